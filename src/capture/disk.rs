@@ -1,0 +1,3 @@
+//! To come.
+#[derive(Debug, thiserror::Error)]
+pub enum CaptureError {}

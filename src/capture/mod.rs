@@ -1,0 +1,209 @@
+//! What a frame left behind: every attachment after every pass, as data.
+//!
+//! A capture stands alone: it can be written to a folder and read back ([`disk`]) without a
+//! plan, a scene or a GPU, and everything that looks at frames (inspector, tests, later history
+//! and reports) reads it. An aspect that a pass did not change is shared with the step before.
+
+pub mod disk;
+mod image;
+
+pub use disk::CaptureError;
+pub use image::{Image, PixelFormat};
+
+use crate::plan::{LeftOut, Part};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A frame with a snapshot after every pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Capture {
+    /// Name of the scene.
+    pub scene: String,
+    /// Name of the technique.
+    pub technique: String,
+    /// Every setting of the technique.
+    pub settings: BTreeMap<String, String>,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Where it ran.
+    pub adapter: AdapterInfo,
+    /// The camera it was seen by.
+    pub camera: crate::scene::Camera,
+    /// One a pass, in order.
+    pub steps: Vec<Step>,
+    /// Parallel to the scene's lights.
+    pub lights: Vec<CapturedLight>,
+    /// What the scene did not need.
+    pub left_out: Vec<LeftOut>,
+    /// How long things took.
+    pub timing: Timing,
+    /// The plan's stable text form; empty where it is not known.
+    pub plan_text: String,
+}
+
+/// The adapter that ran a capture.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct AdapterInfo {
+    /// For example `llvmpipe (LLVM 15.0.6, 256 bits)`.
+    pub name: String,
+    /// Driver and version.
+    pub driver: String,
+    /// `cpu`, `integrated`, `discrete`, `virtual` or `other`.
+    pub kind: String,
+}
+
+/// One pass and the state after it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// Short: `ambient`, `volumes`.
+    pub name: String,
+    /// One sentence for the learner.
+    pub purpose: String,
+    /// The light it belongs to.
+    pub light: Option<usize>,
+    /// What it drew, in order.
+    pub draws: Vec<DrawSummary>,
+    /// GPU time in milliseconds; `None` where the hardware can't measure it.
+    pub gpu_ms: Option<f64>,
+    /// The state after it.
+    pub snapshot: Snapshot,
+}
+
+/// One draw of a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawSummary {
+    /// Short: `sides of bunny`.
+    pub name: String,
+    /// The object it shows or whose shadow it makes.
+    pub caster: Option<String>,
+    /// Which part of it.
+    pub part: Part,
+    /// Triangles submitted.
+    pub triangles: u64,
+}
+
+/// The state after a step: of the picture's three aspects, or of a shadow map.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Snapshot {
+    /// After a pass that draws into the picture or reads it (a mask pass).
+    Frame(FrameSnapshot),
+    /// After a pass that draws one face of a light's shadow map.
+    Map {
+        /// The light.
+        light: usize,
+        /// Which face was drawn.
+        face: usize,
+    },
+}
+
+/// The picture's aspects after a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameSnapshot {
+    /// sRGB, 8 bits a channel.
+    pub color: Aspect,
+    /// As stored in the buffer.
+    pub depth: Aspect,
+    /// One byte a pixel; `None` where the technique uses no stencil buffer.
+    pub stencil: Option<Aspect>,
+    /// True for the pass that writes the light's labels ([`CapturedLight::shadow`]).
+    pub writes_labels: bool,
+}
+
+/// One aspect after a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Aspect {
+    /// Its texels; shared with the step before where unchanged.
+    pub image: Arc<Image>,
+    /// This pass wrote nothing to it.
+    pub unchanged: bool,
+}
+
+/// What a capture knows of a light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CapturedLight {
+    /// Homogeneous world position: `w = 1` a point, `w = 0` the direction towards it.
+    pub position: glam::DVec4,
+    /// The technique's labels, one byte a pixel, as in `techniques.md` section 2.
+    pub shadow: Option<Arc<Image>>,
+    /// Its shadow map.
+    pub map: Option<CapturedMap>,
+}
+
+/// A shadow map after the whole frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CapturedMap {
+    /// One, or six in wgpu's order (+x −x +y −y +z −z); depth as stored.
+    pub faces: Vec<Arc<Image>>,
+    /// Light space from world space.
+    pub light_from_world: glam::DMat4,
+    /// Clip space of each face from light space.
+    pub clip_from_light: Vec<glam::DMat4>,
+}
+
+/// Milliseconds; medians. What was not measured is `None`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Timing {
+    /// A frame without snapshots and mask passes: recording, submitting, waiting for the GPU.
+    pub frame_ms: Option<f64>,
+    /// The same frame with a snapshot after every pass, read back to memory.
+    pub captured_ms: Option<f64>,
+    /// Writing the folder.
+    pub write_ms: Option<f64>,
+    /// Everything before the first frame: planning, geometry, pipelines, uploads.
+    pub setup_ms: Option<f64>,
+}
+
+impl Capture {
+    /// The picture's aspects after step `index`; for a map pass, those of the nearest step
+    /// before it that has any.
+    #[must_use]
+    pub fn frame_at(&self, index: usize) -> Option<&FrameSnapshot> {
+        let upto = self.steps.get(..=index)?;
+        upto.iter().rev().find_map(|step| match &step.snapshot {
+            Snapshot::Frame(frame) => Some(frame),
+            Snapshot::Map { .. } => None,
+        })
+    }
+
+    /// Bytes of all distinct images: shared ones count once.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let mut seen = std::collections::BTreeSet::new();
+        let mut total = 0;
+        self.for_each_image(|image| {
+            if seen.insert(Arc::as_ptr(image)) {
+                total += image.byte_len() as u64;
+            }
+        });
+        total
+    }
+
+    fn for_each_image(&self, mut visit: impl FnMut(&Arc<Image>)) {
+        for step in &self.steps {
+            if let Snapshot::Frame(frame) = &step.snapshot {
+                visit(&frame.color.image);
+                visit(&frame.depth.image);
+                frame.stencil.iter().for_each(|aspect| visit(&aspect.image));
+            }
+        }
+        for light in &self.lights {
+            light.shadow.iter().for_each(&mut visit);
+            light.map.iter().flat_map(|map| &map.faces).for_each(&mut visit);
+        }
+    }
+}
+
+impl Step {
+    /// Triangles submitted.
+    #[must_use]
+    pub fn triangles(&self) -> u64 {
+        self.draws.iter().map(|draw| draw.triangles).sum()
+    }
+
+    /// The one caster of all draws, if there is just one.
+    #[must_use]
+    pub fn caster(&self) -> Option<&str> {
+        let first = self.draws.first()?.caster.as_deref()?;
+        self.draws.iter().all(|draw| draw.caster.as_deref() == Some(first)).then_some(first)
+    }
+}

@@ -1,0 +1,74 @@
+//! Vertices and indices of draws, named by the hash of their content.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Arc;
+
+/// Shared data with its hash: the executor uploads equal data once and keeps it while it is used.
+#[derive(Debug, Clone)]
+pub struct Blob<T> {
+    data: Arc<[T]>,
+    hash: u64,
+}
+
+impl<T: bytemuck::Pod> Blob<T> {
+    /// Hashes `data`.
+    #[must_use]
+    pub fn new(data: Vec<T>) -> Blob<T> {
+        let mut hasher = DefaultHasher::new();
+        hasher.write(bytemuck::cast_slice(&data));
+        Blob { hash: hasher.finish(), data: data.into() }
+    }
+
+    /// The values.
+    #[must_use]
+    pub fn data(&self) -> &[T] {
+        &self.data
+    }
+
+    /// The same as bytes.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(&self.data)
+    }
+
+    /// Of the bytes. Stable within a process only.
+    #[must_use]
+    pub fn hash(&self) -> u64 {
+        self.hash
+    }
+}
+
+impl<T> PartialEq for Blob<T> {
+    fn eq(&self, other: &Blob<T>) -> bool {
+        self.hash == other.hash && self.data.len() == other.data.len()
+    }
+}
+
+impl<T> Hash for Blob<T> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.hash.hash(state);
+    }
+}
+
+/// An indexed triangle list.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawMesh {
+    /// For people: `bunny`, `volume of bunny`.
+    pub name: String,
+    /// Homogeneous positions relative to the origin of the pass's view; `w = 0` is at infinity.
+    pub vertices: Blob<[f32; 4]>,
+    /// Three a triangle, into `vertices`.
+    pub indices: Blob<u32>,
+    /// What shading and labels need; `None` for meshes drawn by position only.
+    pub surface: Option<SurfaceData>,
+}
+
+/// Data of surfaces beside their positions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceData {
+    /// Unit world-space normal of each corner, parallel to the indices; the fourth is unused.
+    pub normals: Blob<[f32; 4]>,
+    /// One word a triangle: bit `i` is set where light `i` and the eye are not on the same side
+    /// of the triangle's plane (exact signs; on the plane counts).
+    pub away: Blob<u32>,
+}

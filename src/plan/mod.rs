@@ -1,0 +1,292 @@
+//! A frame as data: everything that a GPU will be told, and why.
+//!
+//! A technique turns a scene into a [`FramePlan`]; `gpu::Executor` runs any plan. A plan holds no
+//! GPU object, so it can be printed ([`text`]), checked ([`lint`]), diffed and tested without one,
+//! and a broken frame is a good plan with one thing changed.
+//!
+//! ```text
+//! FramePlan ─ attachments   pictures that passes draw into
+//!           ─ views         a matrix each: the camera, and every face of every shadow map
+//!           ─ lights        what shaders know of a light, and where its map and labels are
+//!           ─ passes ─ draws ─ raster state, program, mesh range, constants
+//!           ─ left_out      what was not needed, and why
+//! ```
+
+mod buffers;
+mod left_out;
+pub mod lint;
+mod raster;
+pub mod text;
+
+pub use buffers::{Blob, DrawMesh, SurfaceData};
+pub use left_out::LeftOut;
+pub use raster::{ColorWrite, RasterState, StencilFace};
+
+use glam::{DMat4, DVec3, Mat4};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Index into [`FramePlan::attachments`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct AttachmentId(pub usize);
+
+/// Index into [`FramePlan::views`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ViewId(pub usize);
+
+/// Index of a light, in the scene and in [`FramePlan::lights`] alike.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LightId(pub usize);
+
+/// Index into [`FramePlan::meshes`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MeshId(pub usize);
+
+/// One frame, ready to be run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FramePlan {
+    /// Name of the technique that made it.
+    pub technique: String,
+    /// Every setting of the technique, defaults included, as in `--set`.
+    pub settings: BTreeMap<String, String>,
+    /// Width and height of the picture in pixels.
+    pub size: [u32; 2],
+    /// Pictures that passes draw into.
+    pub attachments: Vec<Attachment>,
+    /// The camera first, then the faces of shadow maps.
+    pub views: Vec<PlanView>,
+    /// Parallel to the scene's lights.
+    pub lights: Vec<PlanLight>,
+    /// Linear RGB light that reaches every surface.
+    pub ambient: [f32; 3],
+    /// Vertices and indices of the draws.
+    pub meshes: Vec<DrawMesh>,
+    /// In the order in which they run.
+    pub passes: Vec<Pass>,
+    /// What this scene does not need.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A picture that passes draw into.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attachment {
+    /// For people: `color`, `depth and stencil`, `light 0 map`, `light 0 labels`.
+    pub name: String,
+    /// What it is for: how it is read back and shown.
+    pub role: AttachmentRole,
+    /// The GPU's format.
+    pub format: wgpu::TextureFormat,
+    /// Width and height in texels.
+    pub size: [u32; 2],
+    /// 1, or the faces of a shadow map.
+    pub layers: u32,
+}
+
+/// What an attachment is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum AttachmentRole {
+    /// The picture.
+    Color,
+    /// Depth, and stencil where the format has it, of the picture.
+    DepthStencil,
+    /// Depth as a light sees it.
+    Map(LightId),
+    /// The labels of `techniques.md` section 2 for a light, one byte a pixel.
+    Labels(LightId),
+}
+
+/// Where a pass is seen from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanView {
+    /// For people: `camera`, `light 0 face +x`.
+    pub name: String,
+    /// World position that the vertices of this view's meshes are relative to.
+    pub origin: DVec3,
+    /// Clip space from positions relative to `origin`.
+    pub clip_from_relative: Mat4,
+}
+
+/// What shaders know of a light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanLight {
+    /// Homogeneous, relative to the eye: `(L.xyz − L.w·eye, L.w)`.
+    pub relative_position: [f32; 4],
+    /// Linear RGB times intensity.
+    pub color: [f32; 3],
+    /// Where it has faded to nothing; `None`: no falloff.
+    pub range: Option<f32>,
+    /// Its shadow map, where the technique makes one.
+    pub map: Option<PlanMap>,
+    /// Where its mask pass writes labels.
+    pub labels: AttachmentId,
+}
+
+/// A shadow map: one 2-D face, or the six faces of a cube in wgpu's order (+x −x +y −y +z −z).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanMap {
+    /// Its texture.
+    pub attachment: AttachmentId,
+    /// The view of each face; `None` where a face sees no caster and keeps its clear value.
+    pub faces: Vec<Option<ViewId>>,
+    /// Light space from world space.
+    pub light_from_world: DMat4,
+    /// The clip space of each face from light space.
+    pub clip_from_light: Vec<DMat4>,
+    /// The clip space of each face from positions relative to the eye: what a receiver's
+    /// fragment is carried by.
+    pub clip_from_relative: Vec<Mat4>,
+}
+
+/// One render pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pass {
+    /// Short, lower case: `ambient`, `volumes`, `light`.
+    pub name: String,
+    /// One sentence for the learner.
+    pub purpose: String,
+    /// The light it belongs to; `None` for the scene's own passes.
+    pub light: Option<LightId>,
+    /// Part of the frame whose time counts; mask passes are not.
+    pub timed: bool,
+    /// Where it is seen from.
+    pub view: ViewId,
+    /// Colour target, if any.
+    pub color: Option<ColorTarget>,
+    /// Depth-stencil target, if any.
+    pub depth_stencil: Option<DepthStencilTarget>,
+    /// In order.
+    pub draws: Vec<Draw>,
+}
+
+/// The colour target of a pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColorTarget {
+    /// Which picture.
+    pub attachment: AttachmentId,
+    /// What it holds at the start: cleared to this value (linear RGBA, or a label in the first
+    /// component), or kept.
+    pub clear: Option<[f64; 4]>,
+}
+
+/// The depth-stencil target of a pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DepthStencilTarget {
+    /// Which picture.
+    pub attachment: AttachmentId,
+    /// Which of its layers.
+    pub layer: u32,
+    /// Depth is cleared to this value at the start, or kept.
+    pub clear_depth: Option<f32>,
+    /// Stencil is cleared to this value at the start, or kept.
+    pub clear_stencil: Option<u8>,
+}
+
+/// One draw call.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draw {
+    /// Short: `sides of bunny`.
+    pub name: String,
+    /// The object it shows or whose shadow it makes.
+    pub caster: Option<String>,
+    /// Which part of the object or of its shadow.
+    pub part: Part,
+    /// The shader.
+    pub program: Program,
+    /// The whole raster state.
+    pub raster: RasterState,
+    /// Vertices and indices.
+    pub mesh: MeshId,
+    /// Which triangles of the mesh's index list.
+    pub triangles: Range<u32>,
+    /// Values for the shader.
+    pub constants: DrawConstants,
+}
+
+/// Which part of a frame's geometry a draw is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Part {
+    /// Visible surface.
+    Surface,
+    /// Side of a shadow volume.
+    Side,
+    /// The casting triangles themselves.
+    LightCap,
+    /// The casting triangles carried to infinity.
+    DarkCap,
+    /// A plane that planar shadows fall on.
+    Receiver,
+    /// A caster flattened onto a receiver.
+    PlanarShadow,
+    /// Surface as a light sees it.
+    Map,
+}
+
+impl Part {
+    /// The name in manifests and JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Part::Surface => "surface",
+            Part::Side => "side",
+            Part::LightCap => "light-cap",
+            Part::DarkCap => "dark-cap",
+            Part::Receiver => "receiver",
+            Part::PlanarShadow => "planar-shadow",
+            Part::Map => "map",
+        }
+    }
+
+    /// The part of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Part> {
+        use Part::{DarkCap, LightCap, Map, PlanarShadow, Receiver, Side, Surface};
+        [Surface, Side, LightCap, DarkCap, Receiver, PlanarShadow, Map].into_iter().find(|part| part.name() == name)
+    }
+}
+
+/// Which shader a draw runs. All share one vertex transformation, so depths are bit-equal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Program {
+    /// Positions only: volumes, caps, planar shadows, shadow maps, receiver marks.
+    Position,
+    /// The material's colour times the ambient light.
+    Ambient,
+    /// What the pass's light adds; darkened by its shadow map where `reads_map`.
+    Light {
+        /// Looks into the light's shadow map.
+        reads_map: bool,
+    },
+    /// Writes a label: 3 where the triangle faces away from the light, else the draw's `label`,
+    /// or what the shadow map says where `reads_map`. Triangles run in reverse order, so that of
+    /// surfaces at one depth the first drawn decides, as it did for the picture.
+    Label {
+        /// Looks into the light's shadow map.
+        reads_map: bool,
+    },
+}
+
+/// Values that one draw hands to its shader.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DrawConstants {
+    /// Of the surface.
+    pub material: crate::scene::Material,
+    /// What [`Program::Label`] writes: 0 lit or 1 shadow.
+    pub label: u32,
+}
+
+impl FramePlan {
+    /// Triangles submitted by one pass.
+    #[must_use]
+    pub fn triangles_of(&self, pass: &Pass) -> u64 {
+        pass.draws.iter().map(|draw| u64::from(draw.triangles.end - draw.triangles.start)).sum()
+    }
+
+    /// The attachment behind an id.
+    ///
+    /// # Panics
+    /// If the id is of another plan; [`lint::check`] finds that beforehand.
+    #[must_use]
+    pub fn attachment(&self, id: AttachmentId) -> &Attachment {
+        &self.attachments[id.0]
+    }
+}

@@ -1,0 +1,48 @@
+//! The eye: a pinhole camera by eye point, target and up.
+
+use glam::DVec3;
+
+/// A pinhole camera in world space. View space is right-handed and looks down −z.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Where the eye is, world units (metres).
+    pub eye: DVec3,
+    /// The point in the middle of the picture; differs from `eye`.
+    pub target: DVec3,
+    /// Roughly up; not parallel to `target − eye`.
+    pub up: DVec3,
+    /// Vertical field of view in degrees, in (0, 180).
+    pub fov_y_degrees: f64,
+    /// Distance of the near plane, > 0.
+    pub near: f64,
+    /// Distance of the far plane; only finite depth mappings look at it.
+    pub far: Option<f64>,
+}
+
+impl Camera {
+    /// Names what makes this camera unusable, in a few words for an error line.
+    ///
+    /// # Errors
+    /// The first rule broken: finite numbers, an eye apart from its target, an up that is not
+    /// along the view, a field of view in (0, 180), 0 < near < far.
+    pub fn check(&self) -> Result<(), &'static str> {
+        let vectors = [self.eye, self.target, self.up];
+        let forward = self.target - self.eye;
+        let sideways = forward.normalize_or_zero().cross(self.up.normalize_or_zero());
+        if !vectors.iter().all(|vector| vector.is_finite()) {
+            Err("the camera's eye, target and up must be finite numbers")
+        } else if forward.length() == 0.0 {
+            Err("the camera's eye equals its target: move one of them")
+        } else if sideways.length() < 1e-9 {
+            Err("the camera's up is zero or along the view: choose another up")
+        } else if !(self.fov_y_degrees > 0.0 && self.fov_y_degrees < 180.0) {
+            Err("the field of view must be between 0 and 180 degrees")
+        } else if !(self.near > 0.0 && self.near.is_finite()) {
+            Err("the near plane must be at a finite distance greater than 0")
+        } else if self.far.is_some_and(|far| !(far > self.near && far.is_finite())) {
+            Err("the far plane must be farther than the near plane")
+        } else {
+            Ok(())
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! Lights: a homogeneous point, so that point and directional lights are one code path.
+
+use super::Motion;
+use glam::{DVec3, DVec4};
+
+/// A light. Its colour is linear RGB; without a `range` it does not fall off with distance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Light {
+    /// Homogeneous world position: `w = 1` a point light, `w = 0` the direction *towards* a
+    /// directional light (any length but 0).
+    pub position: DVec4,
+    /// Linear RGB, each ≥ 0.
+    pub color: [f32; 3],
+    /// Factor of `color`, ≥ 0.
+    pub intensity: f32,
+    /// Distance in metres at which a point light has faded to nothing.
+    pub range: Option<f64>,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+impl Light {
+    /// A white point light at `position`.
+    #[must_use]
+    pub fn point(position: DVec3) -> Light {
+        Light::white(position.extend(1.0))
+    }
+
+    /// A white directional light that shines from the direction `towards`.
+    #[must_use]
+    pub fn directional(towards: DVec3) -> Light {
+        Light::white(towards.extend(0.0))
+    }
+
+    fn white(position: DVec4) -> Light {
+        Light { position, color: [1.0; 3], intensity: 1.0, range: None, motion: Motion::default() }
+    }
+
+    /// `w = 0`: shines from one direction everywhere.
+    #[must_use]
+    pub fn is_directional(&self) -> bool {
+        self.position.w == 0.0
+    }
+
+    /// Names what makes this light unusable, in a few words for an error line.
+    ///
+    /// # Errors
+    /// The first rule broken: finite numbers, a direction that is not zero, colour and intensity
+    /// not negative, range greater than zero.
+    pub fn check(&self) -> Result<(), &'static str> {
+        let color_is_valid = self.color.iter().all(|c| c.is_finite() && *c >= 0.0);
+        if !self.position.is_finite() {
+            Err("a light's position must be finite numbers")
+        } else if self.is_directional() && self.position.truncate() == DVec3::ZERO {
+            Err("a directional light needs a direction other than 0,0,0")
+        } else if !(color_is_valid && self.intensity.is_finite() && self.intensity >= 0.0) {
+            Err("a light's color and intensity must be finite and not negative")
+        } else if self.range.is_some_and(|range| !(range > 0.0 && range.is_finite())) {
+            Err("a light's range must be a finite distance greater than 0")
+        } else {
+            Ok(())
+        }
+    }
+}

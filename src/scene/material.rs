@@ -1,0 +1,35 @@
+//! How a surface answers light.
+
+/// Where lighting is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Shading {
+    /// One normal a triangle.
+    #[default]
+    Flat,
+    /// Lit at the vertices with averaged normals, interpolated across the triangle.
+    Gouraud,
+    /// Normals interpolated, lit at every pixel.
+    Phong,
+}
+
+/// Colour and gloss of a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// Linear RGB reflectance, each in [0, 1].
+    pub color: [f32; 3],
+    /// Strength of the highlight, in [0, 1].
+    pub specular: f32,
+    /// Blinn-Phong exponent, > 0.
+    pub shininess: f32,
+    /// Where lighting is computed.
+    pub shading: Shading,
+    /// 1 is opaque. Only projective textures look at it: labels count translucent casters as
+    /// opaque.
+    pub opacity: f32,
+}
+
+impl Default for Material {
+    fn default() -> Material {
+        Material { color: [0.75; 3], specular: 0.0, shininess: 16.0, shading: Shading::Flat, opacity: 1.0 }
+    }
+}

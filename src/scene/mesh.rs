@@ -1,0 +1,210 @@
+//! A triangle mesh with bit-identical positions welded.
+//!
+//! Shadow volumes need to know which triangles share an edge, so vertices are identified by
+//! position alone, bit for bit (−0 counts as 0) and never within a tolerance: what a file splits
+//! at material seams is joined again, and what is merely close stays apart. Triangles with two
+//! equal vertices have no area and no edges to share, and are dropped; slivers are kept.
+//! Normals belong to the corners of triangles, so welding cannot blur a crease.
+
+use super::Material;
+use glam::{DVec3, Vec3};
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::ops::Range;
+
+/// A welded triangle mesh in object space. Made by [`MeshBuilder`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    corner_normals: Option<Vec<[Vec3; 3]>>,
+    groups: Vec<Group>,
+    dropped: usize,
+    hash: u64,
+}
+
+/// A named run of a mesh's triangles, as a model file groups them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// The file's name for it; empty where it has none.
+    pub name: String,
+    /// Which triangles; groups follow each other without gaps and cover the mesh.
+    pub triangles: Range<usize>,
+    /// From the file's material library; else the object's material holds.
+    pub material: Option<Material>,
+}
+
+/// Why a mesh can't be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {index} is not finite: replace NaN and infinity by numbers")]
+    NotFinite {
+        /// Counted from 0, in the order the vertices were given.
+        index: usize,
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} uses vertex {index}, but there are {count}: correct the index")]
+    IndexOutOfRange {
+        /// Counted from 0.
+        triangle: usize,
+        /// The index that was used.
+        index: u32,
+        /// How many vertices there are.
+        count: usize,
+    },
+    /// More vertices than 32-bit indices can name twice over (once near, once at infinity).
+    #[error("{count} vertices are too many: at most {most} fit", most = i32::MAX)]
+    TooLarge {
+        /// How many were given.
+        count: usize,
+    },
+}
+
+impl Mesh {
+    /// Distinct positions, object space.
+    #[must_use]
+    pub fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    /// Corners as indices into [`Mesh::positions`], counter-clockwise seen from the front.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Object-space normals of each triangle's corners, not necessarily of unit length, where
+    /// the file gave them.
+    #[must_use]
+    pub fn corner_normals(&self) -> Option<&[[Vec3; 3]]> {
+        self.corner_normals.as_deref()
+    }
+
+    /// At least one, unless the mesh has no triangle.
+    #[must_use]
+    pub fn groups(&self) -> &[Group] {
+        &self.groups
+    }
+
+    /// How many triangles were left out because two of their corners coincide.
+    #[must_use]
+    pub fn dropped_triangles(&self) -> usize {
+        self.dropped
+    }
+
+    /// Hash of positions and triangles: what was computed from one mesh holds for any other with
+    /// the same hash. Stable within a process only.
+    #[must_use]
+    pub fn content_hash(&self) -> u64 {
+        self.hash
+    }
+
+    /// Smallest and largest corner of the bounding box; `None` without vertices.
+    #[must_use]
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let first = *self.positions.first()?;
+        Some(self.positions.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p))))
+    }
+}
+
+/// Collects vertices and triangles, then welds and checks them.
+#[derive(Debug, Clone, Default)]
+pub struct MeshBuilder {
+    /// Object-space positions, duplicates allowed.
+    pub positions: Vec<DVec3>,
+    /// Indices into `positions`.
+    pub triangles: Vec<[u32; 3]>,
+    /// One entry a triangle, or empty when there are no normals.
+    pub corner_normals: Vec<[Vec3; 3]>,
+    /// In order and without gaps; empty for one unnamed group.
+    pub groups: Vec<Group>,
+}
+
+impl MeshBuilder {
+    /// Welds bit-identical positions, drops unused vertices and triangles without area by index.
+    ///
+    /// # Errors
+    /// A coordinate that is not finite, an index out of range, too many vertices.
+    pub fn build(self) -> Result<Mesh, MeshError> {
+        self.check()?;
+        let mut welder = Welder::default();
+        let mut triangles = Vec::with_capacity(self.triangles.len());
+        let mut corner_normals = Vec::with_capacity(self.corner_normals.len());
+        // How many triangles are kept before each old triangle: where a group's ends move to.
+        let mut kept_before = Vec::with_capacity(self.triangles.len() + 1);
+        for (old, corners) in self.triangles.iter().enumerate() {
+            kept_before.push(triangles.len());
+            let [a, b, c] = corners.map(|index| self.positions[index as usize] + 0.0).map(bits);
+            if a == b || b == c || c == a {
+                continue;
+            }
+            triangles.push(corners.map(|index| welder.weld(self.positions[index as usize])));
+            corner_normals.extend(self.corner_normals.get(old));
+        }
+        kept_before.push(triangles.len());
+        let groups = self.groups_after(&kept_before);
+        let mut hasher = DefaultHasher::new();
+        for position in &welder.positions {
+            bits(*position).hash(&mut hasher);
+        }
+        triangles.hash(&mut hasher);
+        Ok(Mesh {
+            dropped: self.triangles.len() - triangles.len(),
+            corner_normals: (!corner_normals.is_empty()).then_some(corner_normals),
+            positions: welder.positions,
+            hash: hasher.finish(),
+            triangles,
+            groups,
+        })
+    }
+
+    fn check(&self) -> Result<(), MeshError> {
+        let count = self.positions.len();
+        if count > i32::MAX as usize {
+            return Err(MeshError::TooLarge { count });
+        }
+        if let Some(index) = self.positions.iter().position(|position| !position.is_finite()) {
+            return Err(MeshError::NotFinite { index });
+        }
+        for (triangle, corners) in self.triangles.iter().enumerate() {
+            if let Some(&index) = corners.iter().find(|index| **index as usize >= count) {
+                return Err(MeshError::IndexOutOfRange { triangle, index, count });
+            }
+        }
+        Ok(())
+    }
+
+    fn groups_after(&self, kept_before: &[usize]) -> Vec<Group> {
+        let all = Group { name: String::new(), triangles: 0..self.triangles.len(), material: None };
+        let given = if self.groups.is_empty() { std::slice::from_ref(&all) } else { &self.groups };
+        let moved = given.iter().map(|group| Group {
+            triangles: kept_before[group.triangles.start]..kept_before[group.triangles.end],
+            ..group.clone()
+        });
+        moved.filter(|group| !group.triangles.is_empty()).collect()
+    }
+}
+
+/// Gives every distinct position one index, in the order of first use.
+#[derive(Default)]
+struct Welder {
+    positions: Vec<DVec3>,
+    index_of: HashMap<[u64; 3], u32>,
+}
+
+impl Welder {
+    fn weld(&mut self, position: DVec3) -> u32 {
+        let position = position + 0.0; // −0 + 0 = 0: the two zeros are one place
+        let next = self.positions.len() as u32;
+        let index = *self.index_of.entry(bits(position)).or_insert(next);
+        if index == next {
+            self.positions.push(position);
+        }
+        index
+    }
+}
+
+fn bits(position: DVec3) -> [u64; 3] {
+    position.to_array().map(f64::to_bits)
+}

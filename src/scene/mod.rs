@@ -1,0 +1,80 @@
+//! What is to be rendered: objects, lights, a camera. Plain data in world space (`f64`), no GPU.
+//!
+//! A scene comes from a scene file ([`file`]), a model ([`obj`], completed by [`model_scene`]) or
+//! code ([`builtin`]); [`open`] takes any of the three names. Everything that moves is put where
+//! it is at a moment by [`Scene::at`], so nothing downstream knows about time.
+
+pub mod builtin;
+mod camera;
+mod error;
+pub mod file;
+mod light;
+mod material;
+mod mesh;
+mod model_scene;
+pub mod obj;
+mod object;
+mod open;
+
+pub use camera::Camera;
+pub use error::SceneError;
+pub use light::Light;
+pub use material::{Material, Shading};
+pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
+pub use model_scene::model_scene;
+pub use object::{Motion, Object, Orbit, Pose};
+pub use open::open;
+
+use std::collections::BTreeMap;
+
+/// A scene at one moment: what every technique and the ground truth start from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Name for people and manifests: a built-in's name, or the file's.
+    pub name: String,
+    /// Linear RGB light that reaches every surface.
+    pub ambient: [f32; 3],
+    /// The eye.
+    pub camera: Camera,
+    /// In the order of the scene file; a light's index names its passes and files.
+    pub lights: Vec<Light>,
+    /// In drawing order.
+    pub objects: Vec<Object>,
+    /// The technique that the scene file asks for, if any.
+    pub technique: Option<TechniqueRequest>,
+}
+
+/// A technique and its settings by name, as written in a scene file or on the command line.
+/// `technique::Choice::parse` checks it: a scene knows no technique.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct TechniqueRequest {
+    /// For example `z-fail`.
+    pub name: String,
+    /// Key and value, as in `--set KEY=VALUE`.
+    pub settings: BTreeMap<String, String>,
+}
+
+impl Scene {
+    /// The scene `seconds` after its start: objects spun and lights and objects moved along
+    /// their orbits. Motions are kept, so `scene.at(a)` is not the start of `at(b)`: always
+    /// call it on the scene as loaded.
+    #[must_use]
+    pub fn at(&self, seconds: f64) -> Scene {
+        let mut moved = self.clone();
+        for object in &mut moved.objects {
+            object.pose = object.motion.apply(&object.pose, seconds);
+        }
+        for light in &mut moved.lights {
+            light.position = light.motion.apply_to_light(light.position, seconds);
+        }
+        moved
+    }
+
+    /// Does anything move?
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        let objects = self.objects.iter().map(|object| &object.motion);
+        let lights = self.lights.iter().map(|light| &light.motion);
+        objects.chain(lights).any(|motion| !motion.is_still())
+    }
+}

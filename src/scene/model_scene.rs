@@ -1,0 +1,5 @@
+//! To come.
+use super::Scene;
+pub fn model_scene() -> Option<Scene> {
+    None
+}

@@ -1,0 +1,140 @@
+//! One placed mesh, and how placed things move.
+
+use super::{Material, Mesh};
+use glam::{DMat4, DQuat, DVec3, DVec4};
+use std::sync::Arc;
+
+/// A mesh placed in the world. One object is one caster, whatever groups its mesh has: groups
+/// would open closed meshes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// Unique within its scene.
+    pub name: String,
+    /// Shared between instances.
+    pub mesh: Arc<Mesh>,
+    /// Where it is.
+    pub pose: Pose,
+    /// How it moves.
+    pub motion: Motion,
+    /// Of every group that has no material of its own.
+    pub material: Material,
+    /// Throws shadows.
+    pub casts: bool,
+    /// Is darkened by shadows; otherwise lit as if nothing stood between.
+    pub receives: bool,
+    /// Is drawn; otherwise it casts without being seen.
+    pub visible: bool,
+}
+
+impl Object {
+    /// An unmoving object at the origin that casts, receives and is visible.
+    #[must_use]
+    pub fn new(name: impl Into<String>, mesh: Arc<Mesh>, material: Material) -> Object {
+        Object {
+            name: name.into(),
+            mesh,
+            pose: Pose::default(),
+            motion: Motion::default(),
+            material,
+            casts: true,
+            receives: true,
+            visible: true,
+        }
+    }
+
+    /// The welded vertices in world space. Every user of a vertex reads this one rounding.
+    #[must_use]
+    pub fn world_positions(&self) -> Vec<DVec3> {
+        if self.pose == Pose::default() {
+            return self.mesh.positions().to_vec();
+        }
+        let world_from_object = self.pose.world_from_object();
+        self.mesh.positions().iter().map(|p| world_from_object.transform_point3(*p)).collect()
+    }
+}
+
+/// Where an object is: scale, then rotations about the fixed x, y and z axes, then translation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// World units.
+    pub translate: DVec3,
+    /// About the fixed x, then y, then z axis.
+    pub rotate_degrees: DVec3,
+    /// No component is zero; negative ones mirror.
+    pub scale: DVec3,
+}
+
+impl Default for Pose {
+    fn default() -> Pose {
+        Pose { translate: DVec3::ZERO, rotate_degrees: DVec3::ZERO, scale: DVec3::ONE }
+    }
+}
+
+impl Pose {
+    /// The matrix of this pose.
+    #[must_use]
+    pub fn world_from_object(&self) -> DMat4 {
+        let [x, y, z] = self.rotate_degrees.to_array().map(f64::to_radians);
+        let rotation = DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
+        DMat4::from_scale_rotation_translation(self.scale, rotation, self.translate)
+    }
+}
+
+/// How an object or a light moves. Still by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Motion {
+    /// Added to [`Pose::rotate_degrees`] every second.
+    pub spin_degrees_per_second: DVec3,
+    /// A circle that the position runs along.
+    pub orbit: Option<Orbit>,
+}
+
+/// A circle about an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Orbit {
+    /// A point of the axis, world units.
+    pub center: DVec3,
+    /// Direction of the axis, not zero.
+    pub axis: DVec3,
+    /// Counter-clockwise seen from the axis' tip.
+    pub degrees_per_second: f64,
+}
+
+impl Motion {
+    /// Neither spins nor orbits.
+    #[must_use]
+    pub fn is_still(&self) -> bool {
+        self.spin_degrees_per_second == DVec3::ZERO && self.orbit.is_none_or(|o| o.degrees_per_second == 0.0)
+    }
+
+    /// The pose `seconds` later.
+    #[must_use]
+    pub fn apply(&self, pose: &Pose, seconds: f64) -> Pose {
+        let translate = self.orbit.map_or(pose.translate, |orbit| orbit.point_at(pose.translate, seconds));
+        let rotate_degrees = pose.rotate_degrees + self.spin_degrees_per_second * seconds;
+        Pose { translate, rotate_degrees, ..*pose }
+    }
+
+    /// The homogeneous light position `seconds` later; a direction turns about the axis.
+    #[must_use]
+    pub fn apply_to_light(&self, position: DVec4, seconds: f64) -> DVec4 {
+        let Some(orbit) = self.orbit else { return position };
+        if position.w == 0.0 {
+            return (orbit.rotation_at(seconds) * position.truncate()).extend(0.0);
+        }
+        orbit.point_at(position.truncate(), seconds).extend(position.w)
+    }
+}
+
+impl Orbit {
+    fn rotation_at(&self, seconds: f64) -> DQuat {
+        DQuat::from_axis_angle(self.axis.normalize(), (self.degrees_per_second * seconds).to_radians())
+    }
+
+    fn point_at(&self, start: DVec3, seconds: f64) -> DVec3 {
+        if self.degrees_per_second * seconds == 0.0 {
+            return start;
+        }
+        self.center + self.rotation_at(seconds) * (start - self.center)
+    }
+}

@@ -1,0 +1,5 @@
+//! To come.
+use super::{Scene, SceneError};
+pub fn open(spec: &str) -> Result<Scene, SceneError> {
+    unimplemented!("{spec}")
+}

@@ -1,0 +1,245 @@
+//! Settings as data: keys, values and defaults of every technique, and the check of a request.
+//!
+//! The command line, scene files and the inspector all read the same table, so a new setting is
+//! one line here and its use in the technique. Only what works is listed: a value that is not
+//! there yet is refused, not ignored.
+
+use super::Technique;
+use crate::scene::TechniqueRequest;
+use std::collections::BTreeMap;
+
+/// One setting of a technique.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SettingSpec {
+    /// As in `--set KEY=VALUE`.
+    pub key: &'static str,
+    /// What it may be.
+    pub values: SettingValues,
+    /// What it is unless set.
+    pub default: &'static str,
+    /// What it does, in a few words.
+    pub meaning: &'static str,
+}
+
+/// What a setting may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SettingValues {
+    /// One of these words.
+    OneOf(&'static [&'static str]),
+    /// A whole number in this range, ends included.
+    Integer(i64, i64),
+    /// A finite number in this range, ends included.
+    Number(f64, f64),
+}
+
+/// Why a request for a technique can't be met.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ChoiceError {
+    /// No such technique.
+    #[error("no technique is called `{name}`: {hint}")]
+    UnknownTechnique {
+        /// What was asked for.
+        name: String,
+        /// The nearest name, or all of them.
+        hint: String,
+    },
+    /// The technique has no such setting.
+    #[error("{technique} has no setting `{key}`: {hint}")]
+    UnknownSetting {
+        /// The technique.
+        technique: &'static str,
+        /// What was asked for.
+        key: String,
+        /// The nearest key, or all of them.
+        hint: String,
+    },
+    /// The setting can't be that.
+    #[error("the setting `{key}` of {technique} can't be `{value}`: {hint}")]
+    BadValue {
+        /// The technique.
+        technique: &'static str,
+        /// The setting.
+        key: &'static str,
+        /// What was asked for.
+        value: String,
+        /// What it may be.
+        hint: String,
+    },
+}
+
+/// A technique with a value for each of its settings, all checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    technique: Technique,
+    settings: BTreeMap<String, String>,
+}
+
+const DEPTH: SettingSpec = SettingSpec {
+    key: "depth",
+    values: SettingValues::OneOf(&["reversed-infinite"]),
+    default: "reversed-infinite",
+    meaning: "how distance becomes depth",
+};
+const DIFFUSE: SettingSpec = SettingSpec {
+    key: "diffuse",
+    values: SettingValues::OneOf(&["lambert"]),
+    default: "lambert",
+    meaning: "how brightness falls off with the angle of light",
+};
+
+const fn word(key: &'static str, values: &'static [&'static str], meaning: &'static str) -> SettingSpec {
+    SettingSpec { key, values: SettingValues::OneOf(values), default: values[0], meaning }
+}
+
+const NONE: &[SettingSpec] = &[DEPTH, DIFFUSE];
+const PLANAR: &[SettingSpec] = &[
+    DEPTH,
+    DIFFUSE,
+    word("stencil", &["on"], "keeps shadows on their receiver"),
+    word("blend", &["once"], "overlapping triangles darken a pixel once"),
+    word("clip", &["on"], "drops what is beyond the light or below the receiver"),
+    word("z-fighting", &["depth-off"], "how a shadow wins over the surface it lies on"),
+];
+const VOLUME: &[SettingSpec] = &[
+    DEPTH,
+    DIFFUSE,
+    word("casters", &["all"], "which triangles cast"),
+    word("extrusion", &["infinite"], "how far volumes reach"),
+    word("faces", &["two-sided"], "both faces in one draw"),
+    word("operations", &["wrap"], "what counts do beyond 0 and 255"),
+    word("counter", &["stencil"], "where counts are kept"),
+    word("light-caps", &["tested"], "how the caps nearest the light are drawn"),
+    word("silhouette", &["adjacency"], "how shared edges are found"),
+];
+const SHADOW_MAP: &[SettingSpec] = &[
+    DEPTH,
+    DIFFUSE,
+    SettingSpec {
+        key: "size",
+        values: SettingValues::Integer(1, 8192),
+        default: "1024",
+        meaning: "texels along each side of the map",
+    },
+    SettingSpec {
+        key: "bias-constant",
+        values: SettingValues::Integer(-1_000_000, 1_000_000),
+        default: "0",
+        meaning: "steps of depth by which the map is pushed away from the light",
+    },
+    SettingSpec {
+        key: "bias-slope",
+        values: SettingValues::Number(-1000.0, 1000.0),
+        default: "2.0",
+        meaning: "the same in units of a triangle's depth slope across one texel",
+    },
+    word("cull", &["none"], "which faces the map leaves out"),
+    word("filter", &["none"], "how neighbouring texels are averaged"),
+];
+
+impl Technique {
+    /// Its settings, in the order in which they are shown.
+    #[must_use]
+    pub fn settings(self) -> &'static [SettingSpec] {
+        match self {
+            Technique::None => NONE,
+            Technique::Planar => PLANAR,
+            Technique::ZPass | Technique::ZFail => VOLUME,
+            Technique::ShadowMap => SHADOW_MAP,
+        }
+    }
+}
+
+impl Choice {
+    /// `technique` with its defaults.
+    #[must_use]
+    pub fn new(technique: Technique) -> Choice {
+        let settings = technique.settings().iter().map(|spec| (spec.key.to_owned(), spec.default.to_owned()));
+        Choice { technique, settings: settings.collect() }
+    }
+
+    /// Checks names and values of a request.
+    ///
+    /// # Errors
+    /// An unknown technique or key, with the nearest name; a value that is not offered.
+    pub fn parse(request: &TechniqueRequest) -> Result<Choice, ChoiceError> {
+        let technique = Technique::from_name(&request.name).ok_or_else(|| {
+            let names: Vec<&str> = Technique::ALL.iter().map(|technique| technique.name()).collect();
+            ChoiceError::UnknownTechnique { name: request.name.clone(), hint: suggestion(&request.name, &names) }
+        })?;
+        let mut choice = Choice::new(technique);
+        for (key, value) in &request.settings {
+            choice.set(key, value)?;
+        }
+        Ok(choice)
+    }
+
+    /// Changes one setting.
+    ///
+    /// # Errors
+    /// An unknown key, or a value that is not offered; nothing is changed then.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
+        let technique = self.technique.name();
+        let specs = self.technique.settings();
+        let Some(spec) = specs.iter().find(|spec| spec.key == key) else {
+            let keys: Vec<&str> = specs.iter().map(|spec| spec.key).collect();
+            return Err(ChoiceError::UnknownSetting { technique, key: key.to_owned(), hint: suggestion(key, &keys) });
+        };
+        spec.values.check(value).map_err(|hint| ChoiceError::BadValue {
+            technique,
+            key: spec.key,
+            value: value.to_owned(),
+            hint,
+        })?;
+        self.settings.insert(key.to_owned(), value.to_owned());
+        Ok(())
+    }
+
+    /// Which technique.
+    #[must_use]
+    pub fn technique(&self) -> Technique {
+        self.technique
+    }
+
+    /// Key and value of every setting.
+    #[must_use]
+    pub fn settings(&self) -> &BTreeMap<String, String> {
+        &self.settings
+    }
+
+    /// The value of a setting as a number; 0 where the technique has no such number.
+    #[must_use]
+    pub(super) fn number(&self, key: &str) -> f64 {
+        self.settings.get(key).and_then(|value| value.parse().ok()).unwrap_or(0.0)
+    }
+}
+
+impl SettingValues {
+    fn check(self, value: &str) -> Result<(), String> {
+        let in_range = match self {
+            SettingValues::OneOf(words) => words.contains(&value),
+            SettingValues::Integer(low, high) => value.parse().is_ok_and(|n: i64| (low..=high).contains(&n)),
+            SettingValues::Number(low, high) => value.parse().is_ok_and(|n: f64| (low..=high).contains(&n)),
+        };
+        if in_range { Ok(()) } else { Err(self.to_string()) }
+    }
+}
+
+impl std::fmt::Display for SettingValues {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            SettingValues::OneOf([only]) => write!(f, "only `{only}` is there yet"),
+            SettingValues::OneOf(words) => write!(f, "choose one of {}", words.join(", ")),
+            SettingValues::Integer(low, high) => write!(f, "choose a whole number from {low} to {high}"),
+            SettingValues::Number(low, high) => write!(f, "choose a number from {low} to {high}"),
+        }
+    }
+}
+
+/// `did you mean X?` where one name is near, else all of them.
+fn suggestion(name: &str, names: &[&str]) -> String {
+    let nearest = names.iter().max_by(|a, b| strsim::jaro_winkler(name, a).total_cmp(&strsim::jaro_winkler(name, b)));
+    match nearest {
+        Some(near) if strsim::jaro_winkler(name, near) > 0.75 => format!("did you mean `{near}`?"),
+        _ => format!("choose one of {}", names.join(", ")),
+    }
+}
