@@ -1,1 +1,85 @@
-//! To come.
+//! Checks a plan without a GPU: what would be a driver error, or silently wrong, is named here.
+
+use super::{AttachmentRole, Draw, FramePlan, Pass, Program};
+
+/// A rule that a plan breaks.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("pass {pass} ({name}): {problem}")]
+pub struct LintError {
+    /// Index of the pass.
+    pub pass: usize,
+    /// Its name.
+    pub name: String,
+    /// What is wrong.
+    pub problem: String,
+}
+
+/// Every broken rule, in the order of passes.
+#[must_use]
+pub fn check(plan: &FramePlan) -> Vec<LintError> {
+    let problems = |(index, pass): (usize, &Pass)| {
+        let error = move |problem| LintError { pass: index, name: pass.name.clone(), problem };
+        check_pass(plan, pass).into_iter().map(error).collect::<Vec<_>>()
+    };
+    plan.passes.iter().enumerate().flat_map(problems).collect()
+}
+
+fn check_pass(plan: &FramePlan, pass: &Pass) -> Vec<String> {
+    let mut problems = Vec::new();
+    if plan.views.get(pass.view.0).is_none() {
+        problems.push("its view does not exist".to_owned());
+    }
+    if let Some(target) = &pass.color {
+        match plan.attachments.get(target.attachment.0).map(|attachment| attachment.role) {
+            Some(AttachmentRole::Color | AttachmentRole::Labels(_)) => {}
+            _ => problems.push("its colour target is no colour attachment".to_owned()),
+        }
+    }
+    let has_stencil = pass.depth_stencil.as_ref().is_some_and(|target| {
+        plan.attachments.get(target.attachment.0).is_some_and(|attachment| attachment.format.has_stencil_aspect())
+    });
+    if let Some(target) = &pass.depth_stencil {
+        match plan.attachments.get(target.attachment.0) {
+            Some(attachment) if attachment.format.has_depth_aspect() && target.layer < attachment.layers => {}
+            _ => problems.push("its depth-stencil target does not exist or has no depth".to_owned()),
+        }
+        if target.clear_stencil.is_some() && !has_stencil {
+            problems.push("it clears a stencil that its target does not have".to_owned());
+        }
+    }
+    for draw in &pass.draws {
+        problems.extend(check_draw(plan, pass, draw, has_stencil).into_iter().map(|p| format!("{}: {p}", draw.name)));
+    }
+    problems
+}
+
+fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> Vec<String> {
+    let mut problems = Vec::new();
+    let mut demand = |holds: bool, problem: &str| {
+        if !holds {
+            problems.push(problem.to_owned());
+        }
+    };
+    let Some(mesh) = plan.meshes.get(draw.mesh.0) else {
+        return vec!["its mesh does not exist".to_owned()];
+    };
+    let indices = mesh.indices.data();
+    demand(draw.triangles.start < draw.triangles.end, "it draws nothing: leave it out");
+    demand(draw.triangles.end as usize * 3 <= indices.len(), "it runs past the end of its mesh");
+    demand(indices.iter().all(|index| (*index as usize) < mesh.vertices.data().len()), "an index is out of range");
+    demand(has_stencil || !draw.raster.stencil.is_enabled(), "it tests a stencil that its pass does not have");
+    let writes_color = draw.raster.color != super::ColorWrite::None;
+    demand(
+        writes_color != (draw.program == Program::Position),
+        "a shader with colour and a state without, or the reverse",
+    );
+    demand(!writes_color || pass.color.is_some(), "it writes a colour that its pass does not have");
+    let shades = matches!(draw.program, Program::Light { .. } | Program::Label { .. });
+    demand(!shades || mesh.surface.is_some(), "it shades a mesh without normals");
+    demand(!shades || pass.light.is_some_and(|light| light.0 < plan.lights.len()), "it shades without a light");
+    if let Program::Light { reads_map: true } | Program::Label { reads_map: true } = draw.program {
+        let map = pass.light.and_then(|light| plan.lights.get(light.0)).and_then(|light| light.map.as_ref());
+        demand(map.is_some(), "it reads a shadow map that its light does not have");
+    }
+    problems
+}

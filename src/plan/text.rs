@@ -1,1 +1,123 @@
-//! To come.
+//! A plan as text: stable, so that two plans can be compared line by line.
+//!
+//! Vertices are given by their number and kind; everything a GPU is told beside them is printed
+//! in full.
+
+use super::{AttachmentId, ColorWrite, DepthStencilTarget, Draw, FramePlan, Pass, Program, RasterState, StencilFace};
+use std::fmt::{self, Display, Formatter};
+
+impl Display for FramePlan {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "technique {} at {}x{}", self.technique, self.size[0], self.size[1])?;
+        for (key, value) in &self.settings {
+            writeln!(f, "  {key} = {value}")?;
+        }
+        for (index, attachment) in self.attachments.iter().enumerate() {
+            let [width, height] = attachment.size;
+            let (name, format, layers) = (&attachment.name, attachment.format, attachment.layers);
+            writeln!(f, "attachment {index}: {name}, {format:?} {width}x{height}, {layers} layer(s)")?;
+        }
+        for (index, mesh) in self.meshes.iter().enumerate() {
+            let (vertices, triangles) = (mesh.vertices.data().len(), mesh.indices.data().len() / 3);
+            let infinite = mesh.vertices.data().iter().filter(|vertex| vertex[3] == 0.0).count();
+            writeln!(
+                f,
+                "mesh {index}: {}, {vertices} vertices ({infinite} at infinity), {triangles} triangles",
+                mesh.name
+            )?;
+        }
+        for (index, light) in self.lights.iter().enumerate() {
+            let kind = if light.relative_position[3] == 0.0 { "directional" } else { "point" };
+            let faces = light.map.as_ref().map_or(0, |map| map.faces.len());
+            writeln!(f, "light {index}: {kind}, {faces} map face(s)")?;
+        }
+        for (index, pass) in self.passes.iter().enumerate() {
+            self.fmt_pass(f, index, pass)?;
+        }
+        for left in &self.left_out {
+            writeln!(f, "left out: {} of {}: {}", left.what, left.of, left.because)?;
+        }
+        Ok(())
+    }
+}
+
+impl FramePlan {
+    fn fmt_pass(&self, f: &mut Formatter<'_>, index: usize, pass: &Pass) -> fmt::Result {
+        let light = pass.light.map_or(String::new(), |light| format!(" of light {}", light.0));
+        let untimed = if pass.timed { "" } else { ", not timed" };
+        writeln!(f, "pass {index}: {}{light}, seen from {}{untimed}", pass.name, self.views[pass.view.0].name)?;
+        writeln!(f, "  {}", pass.purpose)?;
+        if let Some(target) = &pass.color {
+            let load = target.clear.map_or("kept".to_owned(), |value| format!("cleared to {value:?}"));
+            writeln!(f, "  color: {}, {load}", self.name_of(target.attachment))?;
+        }
+        if let Some(target) = &pass.depth_stencil {
+            self.fmt_depth_stencil(f, target)?;
+        }
+        pass.draws.iter().try_for_each(|draw| self.fmt_draw(f, draw))
+    }
+
+    fn fmt_depth_stencil(&self, f: &mut Formatter<'_>, target: &DepthStencilTarget) -> fmt::Result {
+        let depth = target.clear_depth.map_or("kept".to_owned(), |value| format!("cleared to {value}"));
+        let stencil = target.clear_stencil.map_or("kept".to_owned(), |value| format!("cleared to {value}"));
+        let name = self.name_of(target.attachment);
+        writeln!(f, "  depth-stencil: {name} layer {}, depth {depth}, stencil {stencil}", target.layer)
+    }
+
+    fn fmt_draw(&self, f: &mut Formatter<'_>, draw: &Draw) -> fmt::Result {
+        let program = match draw.program {
+            Program::Position => "position",
+            Program::Ambient => "ambient",
+            Program::Light { reads_map: false } => "light",
+            Program::Light { reads_map: true } => "light through its map",
+            Program::Label { reads_map: false } => "label",
+            Program::Label { reads_map: true } => "label through the map",
+        };
+        let range = &draw.triangles;
+        writeln!(
+            f,
+            "  draw {} [{}] by {program}, mesh {} triangles {range:?}",
+            draw.name,
+            draw.part.name(),
+            draw.mesh.0
+        )?;
+        if matches!(draw.program, Program::Label { .. }) {
+            writeln!(f, "    label {}", draw.constants.label)?;
+        }
+        write!(f, "{}", draw.raster)
+    }
+
+    fn name_of(&self, id: AttachmentId) -> &str {
+        self.attachments.get(id.0).map_or("missing", |attachment| &attachment.name)
+    }
+}
+
+impl Display for RasterState {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let write = if self.depth_write { "written" } else { "kept" };
+        writeln!(f, "    depth {:?}, {write}", self.depth_compare)?;
+        if self.depth_bias != wgpu::DepthBiasState::default() {
+            let bias = &self.depth_bias;
+            writeln!(f, "    depth bias {} steps, {} slopes", bias.constant, bias.slope_scale)?;
+        }
+        if self.stencil.is_enabled() {
+            let masks = (self.stencil.read_mask, self.stencil.write_mask);
+            writeln!(f, "    stencil reference {}, read {:#x}, write {:#x}", self.stencil_reference, masks.0, masks.1)?;
+            fmt_face(f, "front", &self.stencil.front)?;
+            fmt_face(f, "back", &self.stencil.back)?;
+        }
+        if let Some(face) = self.cull {
+            writeln!(f, "    {face:?} faces culled")?;
+        }
+        match self.color {
+            ColorWrite::None => Ok(()),
+            ColorWrite::Replace => writeln!(f, "    color replaced"),
+            ColorWrite::Add => writeln!(f, "    color added"),
+        }
+    }
+}
+
+fn fmt_face(f: &mut Formatter<'_>, name: &str, face: &StencilFace) -> fmt::Result {
+    let (fail, depth_fail, pass) = (face.fail_op, face.depth_fail_op, face.pass_op);
+    writeln!(f, "      {name}: {:?}; fail {fail:?}, depth fail {depth_fail:?}, pass {pass:?}", face.compare)
+}

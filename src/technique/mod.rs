@@ -1,12 +1,51 @@
 //! The techniques: each a pure function from a scene to a [`FramePlan`].
 //!
 //! A technique is one file with one function `(Job) → FramePlan`, a line in [`Technique::ALL`] and
-//! its settings as data ([`settings`]). What they share is in [`frame`]: surfaces, the ambient
-//! pass, the light pass and the mask pass.
+//! in [`plan`], and its settings as data (`settings.rs`). What they share is in `frame.rs`: the
+//! camera, surfaces, and the ambient, light and mask passes.
 
+mod frame;
+mod none;
+mod planar;
 mod settings;
+mod shadow_map;
+mod surfaces;
+mod volume;
 
+pub use frame::{Job, MOST_LIGHTS};
 pub use settings::{Choice, ChoiceError, SettingSpec, SettingValues};
+
+use crate::plan::FramePlan;
+
+/// Plans one frame.
+///
+/// # Errors
+/// A camera or light that can't be used, or too many lights.
+pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+    match job.choice.technique() {
+        Technique::None => none::plan(job),
+        Technique::Planar => planar::plan(job),
+        Technique::ZPass | Technique::ZFail => volume::plan(job),
+        Technique::ShadowMap => shadow_map::plan(job),
+    }
+}
+
+/// Why a scene can't be planned.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// A camera, light or object that no technique can draw.
+    #[error("{problem}")]
+    Unusable {
+        /// What is wrong, and the mend.
+        problem: String,
+    },
+    /// More lights than bits in a word.
+    #[error("{count} lights are too many: at most {MOST_LIGHTS} fit")]
+    TooManyLights {
+        /// How many the scene has.
+        count: usize,
+    },
+}
 
 /// A way to make shadows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

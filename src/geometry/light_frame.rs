@@ -1,0 +1,227 @@
+//! Where a shadow map looks from a light, fitted to what casts.
+//!
+//! What can darken a point lies on the ray from the light to it, so a map that covers every caster
+//! answers for every receiver: outside it, nothing stands between. A point light whose casters fit
+//! a cone gets one perspective map whose frustum is as narrow as they allow; otherwise a cube of
+//! six. A directional light gets an orthographic map around the casters. Depth is reversed, and
+//! infinite for point lights, so receivers are never too far away.
+
+use crate::math::{Sign, projection, side_of_triangle};
+use glam::{DMat3, DMat4, DVec3, DVec4};
+
+/// Half the widest cone that one map covers, in degrees.
+const WIDEST_HALF_ANGLE: f64 = 60.0;
+/// Room around the casters, in texels, so that no edge falls on the border.
+const BORDER_TEXELS: f64 = 2.0;
+
+/// A shadow map's frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightFrame {
+    /// World position that map vertices are made relative to before rounding.
+    pub origin: DVec3,
+    /// Light space (light at the origin or, directional, the casters' middle; rotated by
+    /// `light_from_relative`) from world space.
+    pub light_from_world: DMat4,
+    /// The rotation part: light space from positions relative to `origin`.
+    pub light_from_relative: DMat4,
+    /// Clip space of each face from light space: one face, or six in wgpu's order.
+    pub clip_from_light: Vec<DMat4>,
+}
+
+/// wgpu's order of cube faces: the direction each looks, and what is up in its picture.
+pub const CUBE_FACES: [(&str, DVec3, DVec3); 6] = [
+    ("+x", DVec3::X, DVec3::Y),
+    ("-x", DVec3::NEG_X, DVec3::Y),
+    ("+y", DVec3::Y, DVec3::NEG_Z),
+    ("-y", DVec3::NEG_Y, DVec3::Z),
+    ("+z", DVec3::Z, DVec3::Y),
+    ("-z", DVec3::NEG_Z, DVec3::Y),
+];
+
+/// Fits a frame around the triangles that cast, for a map of `size` texels a side. `None` where
+/// nothing casts.
+#[must_use]
+pub fn fit(casters: &[[DVec3; 3]], light: DVec4, size: u32) -> Option<LightFrame> {
+    if casters.is_empty() {
+        return None;
+    }
+    let border = 1.0 + 2.0 * BORDER_TEXELS / f64::from(size);
+    if light.w == 0.0 {
+        return Some(orthographic(casters, light.truncate(), border));
+    }
+    let eye = light.truncate();
+    let relative: Vec<[DVec3; 3]> = casters.iter().map(|corners| corners.map(|corner| corner - eye)).collect();
+    Some(perspective(&relative, eye, border).unwrap_or_else(|| cube(&relative, eye)))
+}
+
+/// `None` where the casters do not fit the widest cone.
+fn perspective(relative: &[[DVec3; 3]], eye: DVec3, border: f64) -> Option<LightFrame> {
+    let points = || relative.iter().flatten().copied();
+    let directions = || points().map(DVec3::normalize_or_zero);
+    let low = directions().reduce(DVec3::min)?;
+    let high = directions().reduce(DVec3::max)?;
+    let axis = (low + high).try_normalize()?;
+    let narrowest = directions().map(|direction| direction.dot(axis)).fold(1.0, f64::min);
+    if narrowest <= WIDEST_HALF_ANGLE.to_radians().cos() {
+        return None;
+    }
+    let rotation = projection::view_from_world_rotation(axis, projection::some_up_for(axis));
+    let slopes = || points().map(|point| rotation * point).map(|p| (p / -p.z).truncate());
+    let (low, high) = (slopes().reduce(glam::DVec2::min)?, slopes().reduce(glam::DVec2::max)?);
+    let nearest = points().map(|point| -(rotation * point).z).fold(f64::INFINITY, f64::min);
+    let middle = (low + high) / 2.0;
+    let half = ((high - low) / 2.0).max(glam::DVec2::splat(1e-6)) * border;
+    // An off-centre frustum: x/−z runs from middle − half to middle + half.
+    let mut clip_from_light = projection::frustum(1.0 / half.x, 1.0 / half.y, nearest * 0.99);
+    clip_from_light.z_axis.x = middle.x / half.x;
+    clip_from_light.z_axis.y = middle.y / half.y;
+    Some(frame(eye, rotation, vec![clip_from_light]))
+}
+
+fn cube(relative: &[[DVec3; 3]], eye: DVec3) -> LightFrame {
+    let farthest = relative.iter().flatten().map(|point| point.length()).fold(0.0, f64::max);
+    let nearest = relative.iter().map(|corners| distance_to_triangle(*corners)).fold(f64::INFINITY, f64::min);
+    // A point at distance d is at least d/√3 along the axis of its face. A caster that touches the
+    // light leaves a sliver of 1e-6 of the scene unseen.
+    let near = (nearest / 3f64.sqrt() * 0.99).max(farthest * 1e-6).max(f64::MIN_POSITIVE);
+    let lens = projection::frustum(1.0, 1.0, near);
+    let face = |(_, forward, up): &(&str, DVec3, DVec3)| {
+        lens * DMat4::from_mat3(projection::view_from_world_rotation(*forward, *up))
+    };
+    frame(eye, DMat3::IDENTITY, CUBE_FACES.iter().map(face).collect())
+}
+
+fn orthographic(casters: &[[DVec3; 3]], towards: DVec3, border: f64) -> LightFrame {
+    let points = || casters.iter().flatten().copied();
+    let forward = -towards;
+    let rotation = projection::view_from_world_rotation(forward, projection::some_up_for(forward));
+    let bounds = |points: &mut dyn Iterator<Item = DVec3>| {
+        points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+    };
+    let (low, high) = bounds(&mut points().map(|point| rotation * point));
+    let origin = rotation.transpose() * ((low + high) / 2.0);
+    let half = (high - low) / 2.0;
+    let least = half.max_element().max(f64::MIN_POSITIVE) * 1e-6;
+    let half = half.max(DVec3::splat(least));
+    let reach = half.z * 1.01;
+    let clip = projection::reversed_orthographic([half.x * border, half.y * border], -reach, reach);
+    frame(origin, rotation, vec![clip])
+}
+
+fn frame(origin: DVec3, rotation: DMat3, clip_from_light: Vec<DMat4>) -> LightFrame {
+    let light_from_relative = DMat4::from_mat3(rotation);
+    let light_from_world = light_from_relative * DMat4::from_translation(-origin);
+    LightFrame { origin, light_from_world, light_from_relative, clip_from_light }
+}
+
+/// Can a triangle (relative to the light) show in a face? Conservative: false only where it lies
+/// wholly outside one of the frustum's sides or behind it.
+#[must_use]
+pub fn may_show(clip_from_light: DMat4, light_from_relative: DMat4, corners: [DVec3; 3]) -> bool {
+    let clip = corners.map(|corner| clip_from_light * light_from_relative * corner.extend(1.0));
+    let sides: [fn(DVec4) -> f64; 5] = [|c| c.w + c.x, |c| c.w - c.x, |c| c.w + c.y, |c| c.w - c.y, |c| c.w];
+    sides.iter().all(|side| clip.iter().any(|corner| side(*corner) > 0.0))
+}
+
+/// Can a triangle darken any of `receivers`? No, where all of them lie on the light's side of its
+/// plane or on it (exact signs), or where the light lies in its plane.
+#[must_use]
+pub fn can_darken(corners: [DVec3; 3], light: DVec4, mut receivers: impl Iterator<Item = DVec3>) -> bool {
+    let light_side = side_of_triangle(corners, light);
+    let behind = |point: DVec3| {
+        let side = side_of_triangle(corners, point.extend(1.0));
+        side != Sign::Zero && side != light_side
+    };
+    light_side != Sign::Zero && receivers.any(behind)
+}
+
+/// Distance from the origin to a triangle (Ericson 2005, "Real-Time Collision Detection", 5.1.5:
+/// by the region of the plane that the nearest point falls into).
+fn distance_to_triangle([a, b, c]: [DVec3; 3]) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let over_inside = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (*q - *p).cross(-*p).dot(normal) >= 0.0);
+    if over_inside && normal.length() > 0.0 {
+        return (a.dot(normal) / normal.length()).abs();
+    }
+    [(a, b), (b, c), (c, a)].iter().map(|(p, q)| distance_to_segment(*p, *q)).fold(f64::INFINITY, f64::min)
+}
+
+fn distance_to_segment(p: DVec3, q: DVec3) -> f64 {
+    let along = q - p;
+    let t = (-p.dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    (p + along * t).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn quad(center: DVec3, half: f64) -> Vec<[DVec3; 3]> {
+        let corner = |x: f64, z: f64| center + DVec3::new(x, 0.0, z) * half;
+        let [a, b, c, d] = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
+        vec![[a, b, c], [a, c, d]]
+    }
+
+    fn project(frame: &LightFrame, face: usize, point: DVec3) -> DVec3 {
+        let clip = frame.clip_from_light[face] * frame.light_from_world * point.extend(1.0);
+        clip.truncate() / clip.w
+    }
+
+    #[test]
+    fn a_narrow_caster_fills_one_perspective_map() {
+        let casters = quad(DVec3::new(1.0, 0.0, -2.0), 0.5);
+        let frame = fit(&casters, DVec4::new(0.0, 5.0, 1.0, 1.0), 1024).expect("a frame");
+        assert_eq!(frame.clip_from_light.len(), 1);
+        let seen: Vec<DVec3> = casters.iter().flatten().map(|point| project(&frame, 0, *point)).collect();
+        for axis in 0..2 {
+            let low = seen.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
+            let high = seen.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
+            assert!((high - 1024.0 / 1028.0).abs() < 1e-9 && (low + 1024.0 / 1028.0).abs() < 1e-9, "{low}..{high}");
+        }
+        assert!(seen.iter().all(|p| p.z > 0.0 && p.z < 1.0));
+    }
+
+    #[test]
+    fn casters_all_round_need_a_cube_and_every_point_is_in_its_face() {
+        let mut casters = quad(DVec3::new(3.0, 0.0, 0.0), 0.5);
+        casters.extend(quad(DVec3::new(-3.0, 0.0, 0.0), 0.5));
+        let frame = fit(&casters, DVec4::new(0.0, 0.1, 0.0, 1.0), 512).expect("a frame");
+        assert_eq!(frame.clip_from_light.len(), 6);
+        for (face, (_, forward, _)) in CUBE_FACES.iter().enumerate() {
+            let seen = project(&frame, face, DVec3::new(0.0, 0.1, 0.0) + *forward * 2.0);
+            assert!(seen.truncate().length() < 1e-12 && seen.z > 0.0 && seen.z < 1.0);
+        }
+    }
+
+    #[test]
+    fn a_directional_light_gets_a_box_around_the_casters() {
+        let casters = quad(DVec3::new(7.0, 2.0, 1.0), 0.5);
+        let frame = fit(&casters, DVec4::new(0.3, 1.0, 0.2, 0.0), 1024).expect("a frame");
+        for point in casters.iter().flatten() {
+            let seen = project(&frame, 0, *point);
+            assert!(seen.x.abs() < 1.0 && seen.y.abs() < 1.0 && seen.z > 0.0 && seen.z < 1.0);
+        }
+        let lower = project(&frame, 0, DVec3::new(7.0, -50.0, 1.0));
+        assert!(lower.z < 0.0, "receivers beyond the box are darker than anything in the map");
+    }
+
+    #[test]
+    fn a_floor_under_everything_can_darken_nothing() {
+        let light = DVec4::new(0.0, 5.0, 0.0, 1.0);
+        let floor = quad(DVec3::ZERO, 4.0);
+        let above = [DVec3::new(0.0, 1.0, 0.0), DVec3::ZERO];
+        let below = [DVec3::new(0.0, -1e-9, 0.0)];
+        assert!(!can_darken(floor[0], light, above.into_iter()));
+        assert!(can_darken(floor[0], light, below.into_iter()));
+    }
+
+    #[test]
+    fn the_nearest_point_of_a_triangle_may_be_inside_on_an_edge_or_a_corner() {
+        let plane = [DVec3::new(-1.0, 2.0, -1.0), DVec3::new(-1.0, 2.0, 3.0), DVec3::new(3.0, 2.0, -1.0)];
+        assert!((distance_to_triangle(plane) - 2.0).abs() < 1e-12);
+        let moved = plane.map(|p| p + DVec3::new(4.0, 0.0, 1.0));
+        assert!((distance_to_triangle(moved) - 13f64.sqrt()).abs() < 1e-12);
+        let far = plane.map(|p| p + DVec3::new(4.0, 0.0, 4.0));
+        assert!((distance_to_triangle(far) - 22f64.sqrt()).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,240 @@
+//! Planar receivers of a mesh, and casters flattened onto them.
+//!
+//! A receiver is a maximal edge-connected set of coplanar triangles. Coplanarity is decided in
+//! the object's own space, before any rounding by its transform, within 1e-9 of its size.
+//!
+//! A caster's point throws a shadow on a plane only if it lies between plane and light; so each
+//! casting triangle is clipped to that slab before it is projected. What is beyond the light
+//! would give an anti-shadow, what is below the plane a false one.
+
+use super::EdgeList;
+use crate::math::Plane;
+use glam::{DVec3, DVec4};
+
+/// Distance from a plane, as a part of the mesh's size, up to which a vertex counts as on it.
+const COPLANAR: f64 = 1e-9;
+
+/// A flat piece of a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Receiver {
+    /// In world space; turned whichever way the triangles run.
+    pub plane: Plane,
+    /// Indices into the mesh's triangles, ascending.
+    pub triangles: Vec<u32>,
+    /// World area.
+    pub area: f64,
+}
+
+/// The planar receivers of a mesh at `world` positions; `object` are its positions before the
+/// transform. Triangles without area belong to none.
+#[must_use]
+pub fn receivers(object: &[DVec3], world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList) -> Vec<Receiver> {
+    let neighbours = neighbours(triangles.len(), edges);
+    let size = extent(object);
+    let mut taken = vec![false; triangles.len()];
+    let mut found = Vec::new();
+    for seed in 0..triangles.len() {
+        let Some(plane) = plane_of(object, triangles[seed]).filter(|_| !taken[seed]) else { continue };
+        let coplanar = |triangle: u32| {
+            let corners = triangles[triangle as usize].map(|v| plane.at(object[v as usize].extend(1.0)));
+            corners.iter().all(|distance| distance.abs() <= COPLANAR * size)
+        };
+        let members = connected(seed as u32, &neighbours, &mut taken, coplanar);
+        found.extend(receiver(world, triangles, members));
+    }
+    found
+}
+
+fn extent(positions: &[DVec3]) -> f64 {
+    let low = positions.iter().copied().reduce(DVec3::min).unwrap_or_default();
+    let high = positions.iter().copied().reduce(DVec3::max).unwrap_or_default();
+    (high - low).max_element()
+}
+
+fn plane_of(positions: &[DVec3], corners: [u32; 3]) -> Option<Plane> {
+    let [a, b, c] = corners.map(|v| positions[v as usize]);
+    let normal = (b - a).cross(c - a);
+    (normal.length() > 0.0 && normal.is_finite()).then(|| Plane::through(a, normal))
+}
+
+fn neighbours(count: usize, edges: &EdgeList) -> Vec<Vec<u32>> {
+    let mut neighbours = vec![Vec::new(); count];
+    for edge in 0..edges.edges().len() {
+        for (triangle, _) in edges.incident(edge) {
+            neighbours[triangle].extend(edges.incident(edge).map(|(other, _)| other as u32));
+        }
+    }
+    neighbours
+}
+
+fn connected(seed: u32, neighbours: &[Vec<u32>], taken: &mut [bool], belongs: impl Fn(u32) -> bool) -> Vec<u32> {
+    let mut members = vec![seed];
+    let mut waiting = vec![seed];
+    taken[seed as usize] = true;
+    while let Some(triangle) = waiting.pop() {
+        for &next in &neighbours[triangle as usize] {
+            if !taken[next as usize] && belongs(next) {
+                taken[next as usize] = true;
+                members.push(next);
+                waiting.push(next);
+            }
+        }
+    }
+    members.sort_unstable();
+    members
+}
+
+/// The plane by area-weighted normals and the mean corner, which a small triangle can't tilt.
+fn receiver(world: &[DVec3], triangles: &[[u32; 3]], members: Vec<u32>) -> Option<Receiver> {
+    let corners = members.iter().map(|t| triangles[*t as usize].map(|v| world[v as usize]));
+    let twice_areas: Vec<DVec3> = corners.clone().map(|[a, b, c]| (b - a).cross(c - a)).collect();
+    // Coplanar triangles may wind either way: turn them all like the first.
+    let first = *twice_areas.first()?;
+    let normal: DVec3 = twice_areas.iter().map(|n| if n.dot(first) < 0.0 { -*n } else { *n }).sum();
+    if normal.length() == 0.0 || !normal.is_finite() {
+        return None;
+    }
+    let middle = corners.flatten().sum::<DVec3>() / (3 * members.len()) as f64;
+    let area = twice_areas.iter().map(|n| n.length() / 2.0).sum();
+    Some(Receiver { plane: Plane::through(middle, normal), triangles: members, area })
+}
+
+/// Flattens casting triangles onto planes, one plane at a time.
+#[derive(Debug)]
+pub struct Flattener {
+    plane: Plane,
+    light: DVec4,
+    /// Signed distance of the light (point) or its direction's normal part (directional); > 0.
+    light_height: f64,
+    /// Homogeneous world positions of the shadows so far, three a triangle.
+    triangles: Vec<[DVec4; 3]>,
+}
+
+impl Flattener {
+    /// Onto `plane`, turned towards the light; `None` where the light lies in the plane.
+    #[must_use]
+    pub fn new(plane: Plane, light: DVec4) -> Option<Flattener> {
+        let plane = if plane.at(light) < 0.0 { plane.turned() } else { plane };
+        let light_height = plane.at(light);
+        (light_height > 0.0).then(|| Flattener { plane, light, light_height, triangles: Vec::new() })
+    }
+
+    /// The plane, turned towards the light.
+    #[must_use]
+    pub fn plane(&self) -> Plane {
+        self.plane
+    }
+
+    /// Adds the shadow of one triangle. `on_plane` says which corners belong to the receiver
+    /// itself, and so are on its plane whatever rounding says.
+    pub fn add(&mut self, corners: [DVec3; 3], on_plane: [bool; 3]) {
+        let height = |i: usize| if on_plane[i] { 0.0 } else { self.plane.at(corners[i].extend(1.0)) };
+        let heights = [height(0), height(1), height(2)];
+        if heights.iter().all(|h| *h <= 0.0) {
+            return;
+        }
+        let polygon: Vec<(DVec3, f64)> = corners.into_iter().zip(heights).collect();
+        let mut polygon = clip(&polygon, 0.0, |h| h);
+        if self.light.w != 0.0 {
+            polygon = clip(&polygon, self.light_height, |h| self.light_height - h);
+        }
+        let shadows: Vec<DVec4> = polygon.iter().map(|(point, h)| self.shadow(*point, *h)).collect();
+        for pair in shadows.windows(2).skip(1) {
+            self.triangles.push([shadows[0], pair[0], pair[1]]);
+        }
+    }
+
+    /// `(P·L) V − (P·V) L`: the matrix of [`Plane::shadow_from_world`] with the clipped height put
+    /// in, so that a corner cut level with the light goes to infinity exactly.
+    fn shadow(&self, point: DVec3, height: f64) -> DVec4 {
+        point.extend(1.0) * self.light_height - self.light * height
+    }
+
+    /// The shadows: homogeneous world positions with `w ≥ 0`.
+    #[must_use]
+    pub fn finish(self) -> Vec<[DVec4; 3]> {
+        self.triangles
+    }
+}
+
+/// Sutherland–Hodgman: keeps the part of a polygon where `inside(height) ≥ 0`. Corners that it
+/// makes have the height `limit` exactly, whatever their position rounds to.
+fn clip(polygon: &[(DVec3, f64)], limit: f64, inside: impl Fn(f64) -> f64) -> Vec<(DVec3, f64)> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (index, &(point, height)) in polygon.iter().enumerate() {
+        let (next_point, next_height) = polygon[(index + 1) % polygon.len()];
+        let (here, there) = (inside(height), inside(next_height));
+        if here >= 0.0 {
+            kept.push((point, height));
+        }
+        if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
+            let t = here / (here - there);
+            kept.push((point + (next_point - point) * t, limit));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_has_six_receivers_of_two_triangles() {
+        let world: Vec<DVec3> =
+            (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2) * 2.0)).collect();
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles: Vec<[u32; 3]> = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        let edges = EdgeList::new(&triangles, 8);
+        let found = receivers(&world, &world, &triangles, &edges);
+        assert_eq!(found.len(), 6);
+        assert!(found.iter().all(|receiver| receiver.triangles.len() == 2));
+        assert!((found.iter().map(|receiver| receiver.area).sum::<f64>() - 10.0).abs() < 1e-12);
+    }
+
+    fn shadow_area(corners: [DVec3; 3], light: DVec4) -> f64 {
+        let mut flattener = Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), light).expect("a light above");
+        flattener.add(corners, [false; 3]);
+        let area = |[a, b, c]: [DVec4; 3]| {
+            let [a, b, c] = [a, b, c].map(|v| v.truncate() / v.w);
+            (b - a).cross(c - a).length() / 2.0
+        };
+        flattener.finish().into_iter().map(area).sum()
+    }
+
+    const LIGHT: DVec4 = DVec4::new(0.0, 4.0, 0.0, 1.0);
+
+    #[test]
+    fn a_level_triangle_halfway_up_throws_four_times_its_area() {
+        let corners = [DVec3::new(0.0, 2.0, 0.0), DVec3::new(1.0, 2.0, 0.0), DVec3::new(0.0, 2.0, 1.0)];
+        assert!((shadow_area(corners, LIGHT) - 2.0).abs() < 1e-12);
+        assert!((shadow_area(corners, DVec4::new(1.0, 1.0, 0.0, 0.0)) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn nothing_beyond_the_light_or_below_the_plane_throws_a_shadow() {
+        for y in [-1.0, 5.0] {
+            let corners = [DVec3::new(0.0, y, 0.0), DVec3::new(1.0, y, 0.0), DVec3::new(0.0, y, 1.0)];
+            assert_eq!(shadow_area(corners, LIGHT), 0.0);
+        }
+    }
+
+    #[test]
+    fn a_triangle_that_reaches_past_the_light_throws_a_shadow_to_infinity() {
+        let corners = [DVec3::new(1.0, 1.0, 0.0), DVec3::new(2.0, 1.0, 0.0), DVec3::new(1.0, 6.0, 0.5)];
+        let mut flattener = Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), LIGHT).expect("a light above");
+        flattener.add(corners, [false; 3]);
+        let corners: Vec<DVec4> = flattener.finish().into_iter().flatten().collect();
+        assert!(corners.iter().all(|corner| corner.w >= 0.0));
+        assert!(corners.iter().any(|corner| corner.w == 0.0), "cut level with the light: at infinity exactly");
+    }
+
+    #[test]
+    fn a_triangle_through_the_plane_throws_only_its_upper_part() {
+        let corners = [DVec3::new(0.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, 1.0, 1.0)];
+        // Above the plane: between the level edge (shadow scaled by 4/3) and the cut at x = 1/2.
+        let (cut, top) = (0.5, 4.0 / 3.0);
+        let expected = (cut + top) / 2.0 * (top - cut);
+        assert!((shadow_area(corners, LIGHT) - expected).abs() < 1e-12);
+    }
+}

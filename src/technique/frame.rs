@@ -1,0 +1,370 @@
+//! What all techniques share: the camera, surfaces, and the ambient, light and mask passes.
+//!
+//! A technique starts a [`Frame`], adds its own passes between `ambient_pass` and, for each
+//! light, `mask_pass` and `light_pass`, and finishes it into a plan.
+
+use super::{Choice, PlanError, surfaces};
+use crate::geometry::GeometryCache;
+use crate::geometry::relative;
+use crate::math::projection;
+use crate::plan::{
+    Attachment, AttachmentId, AttachmentRole, ColorTarget, ColorWrite, DepthStencilTarget, Draw, DrawConstants,
+    DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Pass, PlanLight, PlanView, Program, RasterState, ViewId,
+};
+use crate::scene::{Object, Scene};
+use glam::{DMat4, DVec3};
+use wgpu::TextureFormat;
+
+/// Linear colour of pixels that show no surface.
+const BACKGROUND: [f64; 4] = [0.007, 0.008, 0.012, 1.0];
+/// Lights are bits of one word a triangle.
+pub const MOST_LIGHTS: usize = 32;
+
+const LIT: u32 = 0;
+const SHADOW: u32 = 1;
+const BACKGROUND_LABEL: f64 = 2.0;
+
+/// What a technique is asked for.
+#[derive(Debug)]
+pub struct Job<'a> {
+    /// At one moment.
+    pub scene: &'a Scene,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Technique and settings.
+    pub choice: &'a Choice,
+    /// Kept between plans.
+    pub cache: &'a mut GeometryCache,
+}
+
+/// An object with its vertices in world space and its drawn surface.
+pub struct Placed<'a> {
+    pub object: &'a Object,
+    /// Welded, world space.
+    pub world: Vec<DVec3>,
+    /// `None` for what is not drawn.
+    pub surface: Option<MeshId>,
+}
+
+/// A plan in the making.
+pub struct Frame<'a> {
+    pub job: Job<'a>,
+    pub placed: Vec<Placed<'a>>,
+    pub plan: FramePlan,
+    color: AttachmentId,
+    depth_stencil: AttachmentId,
+    has_stencil: bool,
+}
+
+/// What the mask pass writes where: later layers overwrite earlier ones.
+pub struct LabelLayer {
+    pub label: u32,
+    /// With the stencil test that decides; depth and colour are set by the pass.
+    pub raster: RasterState,
+    pub reads_map: bool,
+}
+
+impl LabelLayer {
+    pub fn everywhere(label: u32) -> LabelLayer {
+        LabelLayer { label, raster: RasterState::visible_surface(ColorWrite::Replace), reads_map: false }
+    }
+
+    pub fn lit() -> LabelLayer {
+        LabelLayer::everywhere(LIT)
+    }
+
+    pub fn shadow() -> LabelLayer {
+        LabelLayer::everywhere(SHADOW)
+    }
+
+    pub fn by_map() -> LabelLayer {
+        LabelLayer { reads_map: true, ..LabelLayer::lit() }
+    }
+
+    /// Only where one face of the stencil test, the same for both sides, passes.
+    pub fn where_stencil(mut self, stencil: wgpu::StencilState, reference: u8) -> LabelLayer {
+        self.raster.stencil = stencil;
+        self.raster.stencil_reference = reference;
+        self
+    }
+}
+
+impl<'a> Frame<'a> {
+    /// Places objects and lights, and makes the attachments.
+    pub fn new(job: Job<'a>, has_stencil: bool) -> Result<Frame<'a>, PlanError> {
+        let scene = job.scene;
+        scene.camera.check().map_err(|problem| PlanError::Unusable { problem: problem.to_owned() })?;
+        if scene.lights.len() > MOST_LIGHTS {
+            return Err(PlanError::TooManyLights { count: scene.lights.len() });
+        }
+        let technique = job.choice.technique().name().to_owned();
+        let plan = FramePlan {
+            technique,
+            settings: job.choice.settings().clone(),
+            size: job.size,
+            attachments: Vec::new(),
+            views: vec![camera_view(scene, job.size)],
+            lights: Vec::new(),
+            ambient: scene.ambient,
+            meshes: Vec::new(),
+            passes: Vec::new(),
+            left_out: Vec::new(),
+        };
+        let no_target = AttachmentId(0);
+        let placed = Vec::new();
+        let mut frame = Frame { placed, plan, color: no_target, depth_stencil: no_target, has_stencil, job };
+        frame.add_attachments();
+        frame.add_lights()?;
+        frame.place_objects()?;
+        Ok(frame)
+    }
+
+    /// The eye, world space: what every vertex of the camera's passes is relative to.
+    pub fn eye(&self) -> DVec3 {
+        self.job.scene.camera.eye
+    }
+
+    /// The lights in order.
+    pub fn light_ids(&self) -> impl Iterator<Item = LightId> + use<> {
+        (0..self.job.scene.lights.len()).map(LightId)
+    }
+
+    /// Homogeneous world position of a light.
+    pub fn light_position(&self, light: LightId) -> glam::DVec4 {
+        self.job.scene.lights[light.0].position
+    }
+
+    /// Names a light for people, counted from 1.
+    pub fn light_name(light: LightId) -> String {
+        format!("light {}", light.0 + 1)
+    }
+
+    /// Adds an attachment.
+    pub fn add_attachment(&mut self, attachment: Attachment) -> AttachmentId {
+        self.plan.attachments.push(attachment);
+        AttachmentId(self.plan.attachments.len() - 1)
+    }
+
+    /// Adds a mesh for draws.
+    pub fn add_mesh(&mut self, mesh: DrawMesh) -> MeshId {
+        self.plan.meshes.push(mesh);
+        MeshId(self.plan.meshes.len() - 1)
+    }
+
+    /// Records that something is not needed.
+    pub fn leave_out(&mut self, what: &str, of: &str, because: &str) {
+        self.plan.left_out.push(LeftOut::new(what, of, because));
+    }
+
+    /// The picture's depth-stencil target, everything kept.
+    pub fn kept_depth_stencil(&self) -> DepthStencilTarget {
+        let attachment = self.depth_stencil;
+        DepthStencilTarget { attachment, layer: 0, clear_depth: None, clear_stencil: None }
+    }
+
+    /// A pass of a light into stencil alone, over the camera's depth. From the second light on it
+    /// clears what the light before has left.
+    pub fn stencil_pass(&mut self, light: LightId, name: &str, purpose: String, draws: Vec<Draw>) {
+        if light.0 == 0 {
+            self.leave_out("stencil clear", &Frame::light_name(light), "nothing has written the stencil before");
+        }
+        let clear_stencil = (light.0 > 0).then_some(0);
+        let depth_stencil = Some(DepthStencilTarget { clear_stencil, ..self.kept_depth_stencil() });
+        let name = name.to_owned();
+        let light = Some(light);
+        self.plan.passes.push(Pass {
+            name,
+            purpose,
+            light,
+            timed: true,
+            view: ViewId(0),
+            color: None,
+            depth_stencil,
+            draws,
+        });
+    }
+
+    /// Depth of all surfaces, and their colour under ambient light.
+    pub fn ambient_pass(&mut self) {
+        let draws = self.surface_draws(Program::Ambient, |_| Some(RasterState::surface()));
+        let purpose = "Draws every surface in ambient light only, and leaves in the depth buffer how far the nearest \
+                       one is: all later passes ask about that surface.";
+        self.plan.passes.push(Pass {
+            name: "ambient".to_owned(),
+            purpose: purpose.to_owned(),
+            light: None,
+            timed: true,
+            view: ViewId(0),
+            color: Some(ColorTarget { attachment: self.color, clear: Some(BACKGROUND) }),
+            depth_stencil: Some(DepthStencilTarget {
+                attachment: self.depth_stencil,
+                layer: 0,
+                clear_depth: Some(0.0),
+                clear_stencil: self.has_stencil.then_some(0),
+            }),
+            draws,
+        });
+    }
+
+    /// Adds a light's diffuse and highlight to the surfaces already visible. What receives no
+    /// shadows is drawn without the stencil test of `raster` and without the map.
+    pub fn light_pass(&mut self, light: LightId, purpose: &str, raster: &RasterState, reads_map: bool) {
+        let unshadowed = RasterState::visible_surface(ColorWrite::Add);
+        let mut draws = self.surface_draws(Program::Light { reads_map }, |object| {
+            Some(if object.receives { raster.clone() } else { unshadowed.clone() })
+        });
+        self.without_map_where_nothing_is_received(&mut draws);
+        self.plan.passes.push(Pass {
+            name: "light".to_owned(),
+            purpose: purpose.to_owned(),
+            light: Some(light),
+            timed: true,
+            view: ViewId(0),
+            color: Some(ColorTarget { attachment: self.color, clear: None }),
+            depth_stencil: Some(self.kept_depth_stencil()),
+            draws,
+        });
+    }
+
+    /// Writes the light's labels. Triangles and draws run in reverse, so that of surfaces at one
+    /// depth the first drawn decides here too.
+    pub fn mask_pass(&mut self, light: LightId, layers: &[LabelLayer]) {
+        let mut draws = Vec::new();
+        for (index, layer) in layers.iter().enumerate() {
+            let program = Program::Label { reads_map: layer.reads_map };
+            let plain = LabelLayer::lit();
+            let mut of_layer = self.surface_draws(program, |object| match (object.receives, index) {
+                (true, _) => Some(layer.raster.clone()),
+                (false, 0) => Some(plain.raster.clone()),
+                (false, _) => None,
+            });
+            of_layer.reverse();
+            for draw in &mut of_layer {
+                draw.constants.label = if self.receives(draw) { layer.label } else { LIT };
+            }
+            self.without_map_where_nothing_is_received(&mut of_layer);
+            draws.extend(of_layer);
+        }
+        let purpose = "Writes what this technique says of the light at every pixel: lit, in shadow, or facing away. \
+                       It is not part of the frame; it is how techniques are compared.";
+        self.plan.passes.push(Pass {
+            name: "mask".to_owned(),
+            purpose: purpose.to_owned(),
+            light: Some(light),
+            timed: false,
+            view: ViewId(0),
+            color: Some(ColorTarget {
+                attachment: self.plan.lights[light.0].labels,
+                clear: Some([BACKGROUND_LABEL, 0.0, 0.0, 0.0]),
+            }),
+            depth_stencil: Some(self.kept_depth_stencil()),
+            draws,
+        });
+    }
+
+    /// One draw a group of every visible object for which `raster` gives a state.
+    pub fn surface_draws(&self, program: Program, raster: impl Fn(&Object) -> Option<RasterState>) -> Vec<Draw> {
+        let mut draws = Vec::new();
+        for placed in &self.placed {
+            let (Some(mesh), Some(raster)) = (placed.surface, raster(placed.object)) else { continue };
+            for group in placed.object.mesh.groups() {
+                let object = &placed.object.name;
+                let name = if group.name.is_empty() { object.clone() } else { format!("{object} · {}", group.name) };
+                let material = group.material.unwrap_or(placed.object.material);
+                draws.push(Draw {
+                    name,
+                    caster: Some(object.clone()),
+                    part: Part::Surface,
+                    program,
+                    raster: raster.clone(),
+                    mesh,
+                    triangles: group.triangles.start as u32..group.triangles.end as u32,
+                    constants: DrawConstants { material, label: 0 },
+                });
+            }
+        }
+        draws
+    }
+
+    /// The plan.
+    pub fn finish(self) -> FramePlan {
+        self.plan
+    }
+
+    fn receives(&self, draw: &Draw) -> bool {
+        let of_draw = |placed: &&Placed| Some(&placed.object.name) == draw.caster.as_ref();
+        self.placed.iter().find(of_draw).is_none_or(|placed| placed.object.receives)
+    }
+
+    fn without_map_where_nothing_is_received(&self, draws: &mut [Draw]) {
+        for draw in draws {
+            if !self.receives(draw) {
+                match &mut draw.program {
+                    Program::Light { reads_map } | Program::Label { reads_map } => *reads_map = false,
+                    Program::Position | Program::Ambient => {}
+                }
+            }
+        }
+    }
+
+    fn add_attachments(&mut self) {
+        let size = self.job.size;
+        self.color = self.add_attachment(Attachment {
+            name: "color".to_owned(),
+            role: AttachmentRole::Color,
+            format: TextureFormat::Rgba8UnormSrgb,
+            size,
+            layers: 1,
+        });
+        let (name, format) = match self.has_stencil {
+            true => ("depth and stencil", TextureFormat::Depth32FloatStencil8),
+            false => ("depth", TextureFormat::Depth32Float),
+        };
+        if !self.has_stencil {
+            self.leave_out("stencil buffer", "the frame", "no pass of this technique counts or marks anything");
+        }
+        let role = AttachmentRole::DepthStencil;
+        self.depth_stencil = self.add_attachment(Attachment { name: name.to_owned(), role, format, size, layers: 1 });
+    }
+
+    fn add_lights(&mut self) -> Result<(), PlanError> {
+        for (light, id) in self.job.scene.lights.iter().zip(self.light_ids()) {
+            light.check().map_err(|problem| PlanError::Unusable { problem: problem.to_owned() })?;
+            let labels = self.add_attachment(Attachment {
+                name: format!("{} labels", Frame::light_name(id)),
+                role: AttachmentRole::Labels(id),
+                format: TextureFormat::R8Uint,
+                size: self.job.size,
+                layers: 1,
+            });
+            let relative_position = relative::homogeneous(light.position, self.eye());
+            let color = light.color.map(|channel| channel * light.intensity);
+            let range = light.range.map(|range| range as f32);
+            self.plan.lights.push(PlanLight { relative_position, color, range, map: None, labels });
+        }
+        Ok(())
+    }
+
+    fn place_objects(&mut self) -> Result<(), PlanError> {
+        for object in &self.job.scene.objects {
+            let world = object.world_positions();
+            if !world.iter().all(|position| position.is_finite()) {
+                let problem = format!("{} is moved or scaled beyond finite numbers: make it smaller", object.name);
+                return Err(PlanError::Unusable { problem });
+            }
+            let drawn = object.visible && !object.mesh.triangles().is_empty();
+            let surface = drawn.then(|| self.add_mesh(surfaces::draw_mesh(object, &world, self.job.scene)));
+            self.placed.push(Placed { object, world, surface });
+        }
+        Ok(())
+    }
+}
+
+fn camera_view(scene: &Scene, size: [u32; 2]) -> PlanView {
+    let camera = &scene.camera;
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let clip_from_view = projection::reversed_infinite(camera.fov_y_degrees, aspect, camera.near);
+    let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
+    let clip_from_relative = (clip_from_view * DMat4::from_mat3(rotation)).as_mat4();
+    PlanView { name: "camera".to_owned(), origin: camera.eye, clip_from_relative }
+}

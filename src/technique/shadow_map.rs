@@ -1,0 +1,206 @@
+//! Shadow maps: the depth that a light sees, compared at every pixel.
+//!
+//! One pass a face draws the casters' depth from the light, pushed away by a bias so that a
+//! surface does not shadow itself; the light pass carries each fragment into the map and skips it
+//! where the map holds something nearer to the light. Casters behind which nothing lies that
+//! could be darkened are left out: a floor under everything would only widen the map.
+
+use super::PlanError;
+use super::frame::{Frame, Job, LabelLayer};
+use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame};
+use crate::geometry::relative;
+use crate::plan::{
+    Attachment, AttachmentRole, Blob, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh, FramePlan,
+    LightId, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState, ViewId,
+};
+use glam::{DMat4, DVec3};
+use wgpu::{DepthBiasState, TextureFormat};
+
+/// Objects of more triangles are taken to darken something without looking: the look is
+/// triangles times vertices, and what it finds (floors, walls, rooms) is small.
+const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
+
+/// A caster in a light's map.
+struct MapCaster {
+    name: String,
+    mesh: MeshId,
+    /// World positions of its triangles.
+    triangles: Vec<[DVec3; 3]>,
+}
+
+/// Plans a frame with shadow maps.
+pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+    let mut frame = Frame::new(job, false)?;
+    for light in frame.light_ids() {
+        add_map(&mut frame, light);
+    }
+    frame.ambient_pass();
+    for light in frame.light_ids() {
+        let reads_map = frame.plan.lights[light.0].map.is_some();
+        frame.mask_pass(light, &[if reads_map { LabelLayer::by_map() } else { LabelLayer::lit() }]);
+        let purpose = "Adds the light, carrying every fragment into the light's map: where the map holds something \
+                       nearer to the light, the fragment is in shadow and gets nothing.";
+        frame.light_pass(light, purpose, &RasterState::visible_surface(ColorWrite::Add), reads_map);
+    }
+    Ok(frame.finish())
+}
+
+fn add_map(frame: &mut Frame, light: LightId) {
+    let size = frame.job.choice.number("size") as u32;
+    let indices = darkening_casters(frame, light);
+    let triangles: Vec<Vec<[DVec3; 3]>> = indices.iter().map(|index| world_triangles(frame, *index)).collect();
+    let Some(light_frame) = light_frame::fit(&triangles.concat(), frame.light_position(light), size) else {
+        frame.leave_out("shadow map", &Frame::light_name(light), "nothing casts a shadow on anything");
+        return;
+    };
+    let casters: Vec<MapCaster> = indices
+        .into_iter()
+        .zip(triangles)
+        .map(|(index, triangles)| MapCaster {
+            name: frame.placed[index].object.name.clone(),
+            mesh: add_caster_mesh(frame, index, light_frame.origin),
+            triangles,
+        })
+        .collect();
+    let attachment = frame.add_attachment(Attachment {
+        name: format!("{} map", Frame::light_name(light)),
+        role: AttachmentRole::Map(light),
+        format: TextureFormat::Depth32Float,
+        size: [size; 2],
+        layers: light_frame.clip_from_light.len() as u32,
+    });
+    let faces = (0..light_frame.clip_from_light.len())
+        .map(|face| add_face(frame, light, &light_frame, face, &casters, attachment));
+    let faces: Vec<Option<ViewId>> = faces.collect();
+    let light_from_eye = light_frame.light_from_world * DMat4::from_translation(frame.eye());
+    let from_relative = |clip_from_light: &DMat4| (*clip_from_light * light_from_eye).as_mat4();
+    frame.plan.lights[light.0].map = Some(PlanMap {
+        attachment,
+        faces,
+        light_from_world: light_frame.light_from_world,
+        clip_from_relative: light_frame.clip_from_light.iter().map(from_relative).collect(),
+        clip_from_light: light_frame.clip_from_light,
+    });
+}
+
+/// Casters but those behind which, seen from the light, there is nothing that receives.
+fn darkening_casters(frame: &mut Frame, light: LightId) -> Vec<usize> {
+    let mut darkening = Vec::new();
+    for index in 0..frame.placed.len() {
+        let object = frame.placed[index].object;
+        if !object.casts || object.mesh.triangles().is_empty() {
+            continue;
+        }
+        if can_darken(frame, index, light) {
+            darkening.push(index);
+        } else {
+            frame.leave_out(
+                &format!("{} in the shadow map", object.name),
+                &Frame::light_name(light),
+                "everything that receives lies on the light's side of its triangles",
+            );
+        }
+    }
+    darkening
+}
+
+fn can_darken(frame: &Frame, index: usize, light: LightId) -> bool {
+    let triangles = world_triangles(frame, index);
+    let receivers = || {
+        let receiving = frame.placed.iter().filter(|placed| placed.object.receives && placed.surface.is_some());
+        receiving.flat_map(|placed| placed.world.iter().copied())
+    };
+    let light = frame.light_position(light);
+    triangles.len() > MOST_TRIANGLES_TO_LOOK_AT
+        || triangles.iter().any(|corners| light_frame::can_darken(*corners, light, receivers()))
+}
+
+fn world_triangles(frame: &Frame, index: usize) -> Vec<[DVec3; 3]> {
+    let placed = &frame.placed[index];
+    placed.object.mesh.triangles().iter().map(|corners| corners.map(|v| placed.world[v as usize])).collect()
+}
+
+fn add_caster_mesh(frame: &mut Frame, index: usize, origin: DVec3) -> MeshId {
+    let placed = &frame.placed[index];
+    let vertices = placed.world.iter().map(|position| relative::point(*position, origin)).collect();
+    let mesh = DrawMesh {
+        name: format!("{} from the light", placed.object.name),
+        vertices: Blob::new(vertices),
+        indices: Blob::new(placed.object.mesh.triangles().as_flattened().to_vec()),
+        surface: None,
+    };
+    frame.add_mesh(mesh)
+}
+
+/// The pass of one face; `None` and no pass where it sees no caster.
+fn add_face(
+    frame: &mut Frame,
+    light: LightId,
+    light_frame: &LightFrame,
+    face: usize,
+    casters: &[MapCaster],
+    attachment: crate::plan::AttachmentId,
+) -> Option<ViewId> {
+    let clip_from_light = light_frame.clip_from_light[face];
+    let shows = |caster: &&MapCaster| {
+        caster.triangles.iter().any(|corners| {
+            let relative = corners.map(|corner| corner - light_frame.origin);
+            light_frame::may_show(clip_from_light, light_frame.light_from_relative, relative)
+        })
+    };
+    let is_cube = light_frame.clip_from_light.len() > 1;
+    let name = if is_cube { format!("map {}", CUBE_FACES[face].0) } else { "map".to_owned() };
+    let raster = map_raster(frame);
+    let draws: Vec<Draw> = casters.iter().filter(shows).map(|caster| map_draw(caster, &raster)).collect();
+    if draws.is_empty() {
+        frame.leave_out(&name, &Frame::light_name(light), "no caster shows in this face");
+        return None;
+    }
+    frame.plan.views.push(PlanView {
+        name: format!("{} {name}", Frame::light_name(light)),
+        origin: light_frame.origin,
+        clip_from_relative: (clip_from_light * light_frame.light_from_relative).as_mat4(),
+    });
+    let view = ViewId(frame.plan.views.len() - 1);
+    let purpose = "Draws the casters as the light sees them and keeps only how far they are: what lies behind them, \
+                   seen from the light, is in shadow.";
+    frame.plan.passes.push(Pass {
+        name,
+        purpose: purpose.to_owned(),
+        light: Some(light),
+        timed: true,
+        view,
+        color: None,
+        depth_stencil: Some(DepthStencilTarget {
+            attachment,
+            layer: face as u32,
+            clear_depth: Some(0.0),
+            clear_stencil: None,
+        }),
+        draws,
+    });
+    Some(view)
+}
+
+/// With reversed depth, away from the light is down: biases change sign.
+fn map_raster(frame: &Frame) -> RasterState {
+    let depth_bias = DepthBiasState {
+        constant: -(frame.job.choice.number("bias-constant") as i32),
+        slope_scale: -(frame.job.choice.number("bias-slope") as f32),
+        clamp: 0.0,
+    };
+    RasterState { depth_bias, color: ColorWrite::None, ..RasterState::surface() }
+}
+
+fn map_draw(caster: &MapCaster, raster: &RasterState) -> Draw {
+    Draw {
+        name: caster.name.clone(),
+        caster: Some(caster.name.clone()),
+        part: Part::Map,
+        program: Program::Position,
+        raster: raster.clone(),
+        mesh: caster.mesh,
+        triangles: 0..caster.triangles.len() as u32,
+        constants: DrawConstants::default(),
+    }
+}

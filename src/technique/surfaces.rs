@@ -1,0 +1,75 @@
+//! Drawn surfaces as data for the GPU: positions, normals, and which triangles face away.
+
+use crate::geometry::relative;
+use crate::math::{Sign, side_of_triangle};
+use crate::plan::{Blob, DrawMesh, SurfaceData};
+use crate::scene::{Mesh, Object, Scene, Shading};
+use glam::{DMat3, DVec3};
+
+/// The surface of `object`, relative to the eye.
+pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene) -> DrawMesh {
+    let eye = scene.camera.eye;
+    let normals = corner_normals(object, world);
+    DrawMesh {
+        name: object.name.clone(),
+        vertices: Blob::new(world.iter().map(|position| relative::point(*position, eye)).collect()),
+        indices: Blob::new(object.mesh.triangles().as_flattened().to_vec()),
+        surface: Some(SurfaceData { normals: Blob::new(normals), away: Blob::new(away(object, world, scene)) }),
+    }
+}
+
+/// One bit a light: set where light and eye are not strictly on one side of the triangle.
+fn away(object: &Object, world: &[DVec3], scene: &Scene) -> Vec<u32> {
+    let eye = scene.camera.eye.extend(1.0);
+    let word = |corners: &[u32; 3]| {
+        let corners = corners.map(|vertex| world[vertex as usize]);
+        let eye_side = side_of_triangle(corners, eye);
+        let is_away = |light: &crate::scene::Light| {
+            eye_side == Sign::Zero || side_of_triangle(corners, light.position) != eye_side
+        };
+        let lights = scene.lights.iter().enumerate();
+        lights.fold(0, |word, (index, light)| word | u32::from(is_away(light)) << index)
+    };
+    object.mesh.triangles().iter().map(word).collect()
+}
+
+/// Unit world-space normals of all corners, on the side from where corners run counter-clockwise.
+fn corner_normals(object: &Object, world: &[DVec3]) -> Vec<[f32; 4]> {
+    let mesh = &object.mesh;
+    let face_normals: Vec<DVec3> = mesh.triangles().iter().map(|corners| scaled_normal(world, *corners)).collect();
+    let averaged = averaged_normals(mesh, &face_normals);
+    let world_from_object = DMat3::from_mat4(object.pose.world_from_object());
+    // Mirroring turns the way corners run, but not a stored normal.
+    let orientation = world_from_object.determinant().signum();
+    let normal_from_object = world_from_object.inverse().transpose() * orientation;
+    let mut normals = Vec::with_capacity(mesh.triangles().len() * 3);
+    for group in mesh.groups() {
+        let shading = group.material.unwrap_or(object.material).shading;
+        for triangle in group.triangles.clone() {
+            for corner in 0..3 {
+                let normal = match (shading, mesh.corner_normals()) {
+                    (Shading::Flat, _) => face_normals[triangle],
+                    (_, Some(given)) => normal_from_object * given[triangle][corner].as_dvec3(),
+                    (_, None) => averaged[mesh.triangles()[triangle][corner] as usize],
+                };
+                let usable = normal.try_normalize().or_else(|| face_normals[triangle].try_normalize());
+                normals.push(usable.unwrap_or(DVec3::Y).as_vec3().extend(0.0).to_array());
+            }
+        }
+    }
+    normals
+}
+
+fn scaled_normal(world: &[DVec3], corners: [u32; 3]) -> DVec3 {
+    let [a, b, c] = corners.map(|vertex| world[vertex as usize]);
+    (b - a).cross(c - a)
+}
+
+/// The sum of the area-weighted normals around each vertex.
+fn averaged_normals(mesh: &Mesh, face_normals: &[DVec3]) -> Vec<DVec3> {
+    let mut sums = vec![DVec3::ZERO; mesh.positions().len()];
+    for (corners, normal) in mesh.triangles().iter().zip(face_normals) {
+        corners.iter().for_each(|vertex| sums[*vertex as usize] += *normal);
+    }
+    sums
+}
