@@ -3,16 +3,20 @@
 //! A session owns the GPU and what is worth keeping between runs (pipelines, buffers, edge
 //! lists). Commands, the window and tests all go through it.
 
-use crate::capture::Capture;
+use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
+use crate::geometry::GeometryCache;
+use crate::gpu::{Context, Executor, GpuError, Output, Prepared};
+use crate::plan::FramePlan;
 use crate::scene::Scene;
-use crate::technique::Choice;
+use crate::technique::{self, Choice, Job, PlanError};
+use std::time::{Duration, Instant};
 
 /// What to capture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaptureRequest {
     /// How shadows are made.
     pub choice: Choice,
-    /// Width and height in pixels.
+    /// Width and height in pixels, each at least 1.
     pub size: [u32; 2],
     /// How often to time the frame with and without snapshots, in turn, after a warm-up;
     /// 0: not at all, and the timing is left unknown.
@@ -24,25 +28,55 @@ pub struct CaptureRequest {
 /// Why nothing came out.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
-    /// No GPU.
-    #[error("no usable GPU adapter: install one (Debian: mesa-vulkan-drivers)")]
-    NoAdapter,
-    /// The picture can't be made.
-    #[error("{0}")]
-    Unusable(String),
+    /// The scene can't be drawn.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The GPU is missing, too small or failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
 }
 
 /// A GPU and what is kept between runs.
 #[derive(Debug)]
-pub struct Session {}
+pub struct Session {
+    executor: Executor,
+    geometry: GeometryCache,
+}
+
+/// A frame's cost, with and without snapshots.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaptureCost {
+    /// Frames without snapshots.
+    pub frames: Vec<Duration>,
+    /// Frames with a snapshot after every pass, in memory.
+    pub captured: Vec<Duration>,
+    /// Bytes that each captured frame copied.
+    pub snapshot_bytes: u64,
+}
 
 impl Session {
-    /// Opens the GPU whose name contains `adapter` (in any case), or the best one.
+    /// Opens the GPU whose name contains `adapter` (in any case), or the fastest kind there is.
     ///
     /// # Errors
     /// No usable adapter, with what to install.
     pub fn new(adapter: Option<&str>) -> Result<Session, SessionError> {
-        unimplemented!("{adapter:?}")
+        let context = Context::new(adapter)?;
+        Ok(Session { executor: Executor::new(context), geometry: GeometryCache::default() })
+    }
+
+    /// The GPU that it runs on.
+    #[must_use]
+    pub fn adapter(&self) -> &AdapterInfo {
+        &self.executor.context().info
+    }
+
+    /// The frame as data, without running it.
+    ///
+    /// # Errors
+    /// A scene that can't be drawn.
+    pub fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
+        let job = Job { scene, size: request.size, choice: &request.choice, cache: &mut self.geometry };
+        Ok(technique::plan(job)?)
     }
 
     /// Renders `scene` and keeps every attachment after every pass.
@@ -50,6 +84,95 @@ impl Session {
     /// # Errors
     /// A scene that the technique can't draw, a picture larger than the adapter allows, a lost GPU.
     pub fn capture(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<Capture, SessionError> {
-        unimplemented!("{} {request:?}", scene.name)
+        let start = Instant::now();
+        let plan = self.plan(scene, request)?;
+        let prepared = self.executor.prepare(&plan)?;
+        let setup = start.elapsed();
+        let mut timing = Timing { setup_ms: Some(milliseconds(setup)), ..Timing::default() };
+        if request.timing_runs > 0 {
+            let cost = self.cost_of(&prepared, request.timing_runs)?;
+            timing.frame_ms = median_ms(&cost.frames);
+            timing.captured_ms = median_ms(&cost.captured);
+        }
+        let output = self.executor.capture(prepared, request.external_capture)?;
+        Ok(self.assemble(scene, &plan, output, timing))
     }
+
+    /// Runs an already made plan, such as a good one with one thing changed, and keeps what it
+    /// left. `scene` gives the camera and lights that the capture tells of.
+    ///
+    /// # Errors
+    /// A plan that can't run, a lost GPU.
+    pub fn capture_plan(&mut self, scene: &Scene, plan: &FramePlan) -> Result<Capture, SessionError> {
+        let prepared = self.executor.prepare(plan)?;
+        let output = self.executor.capture(prepared, false)?;
+        Ok(self.assemble(scene, plan, output, Timing::default()))
+    }
+
+    /// Times the frame with and without snapshots, in turn, after a warm-up of each.
+    ///
+    /// # Errors
+    /// As [`Session::capture`].
+    pub fn capture_cost(
+        &mut self,
+        scene: &Scene,
+        request: &CaptureRequest,
+        runs: usize,
+    ) -> Result<CaptureCost, SessionError> {
+        let plan = self.plan(scene, request)?;
+        let prepared = self.executor.prepare(&plan)?;
+        self.cost_of(&prepared, runs)
+    }
+
+    fn cost_of(&self, prepared: &Prepared, runs: usize) -> Result<CaptureCost, SessionError> {
+        let snapshot_bytes = prepared.snapshot_bytes();
+        let mut cost = CaptureCost { frames: Vec::new(), captured: Vec::new(), snapshot_bytes };
+        self.executor.time(prepared, false)?;
+        self.executor.time(prepared, true)?;
+        for _ in 0..runs {
+            cost.frames.push(self.executor.time(prepared, false)?);
+            cost.captured.push(self.executor.time(prepared, true)?);
+        }
+        Ok(cost)
+    }
+
+    fn assemble(&self, scene: &Scene, plan: &FramePlan, output: Output, timing: Timing) -> Capture {
+        let lights = scene.lights.iter().zip(&plan.lights).zip(output.labels.into_iter().zip(output.maps));
+        let lights = lights.map(|((light, planned), (shadow, faces))| CapturedLight {
+            position: light.position,
+            shadow,
+            map: faces.zip(planned.map.as_ref()).map(|(faces, map)| CapturedMap {
+                faces,
+                light_from_world: map.light_from_world,
+                clip_from_light: map.clip_from_light.clone(),
+            }),
+        });
+        Capture {
+            scene: scene.name.clone(),
+            technique: plan.technique.clone(),
+            settings: plan.settings.clone(),
+            size: plan.size,
+            adapter: self.adapter().clone(),
+            camera: scene.camera,
+            steps: output.steps,
+            lights: lights.collect(),
+            left_out: plan.left_out.clone(),
+            timing,
+            plan_text: plan.to_string(),
+        }
+    }
+}
+
+/// The middle of durations in milliseconds (the mean of the middle two); `None` of none.
+#[must_use]
+pub fn median_ms(durations: &[Duration]) -> Option<f64> {
+    let mut sorted: Vec<f64> = durations.iter().copied().map(milliseconds).collect();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    let upper = *sorted.get(middle)?;
+    Some(if sorted.len() % 2 == 1 { upper } else { (sorted[middle - 1] + upper) / 2.0 })
+}
+
+fn milliseconds(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
 }

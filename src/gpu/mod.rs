@@ -1,1 +1,25 @@
-//! To come.
+//! Runs plans on a GPU. Knows plans and captures, and no technique.
+//!
+//! ```text
+//! Context      adapter and device
+//! Pipelines    shaders and pipelines, interned by description
+//! Buffers      vertices and indices, by the hash of their content
+//! Executor     a plan → prepared textures, bind groups and draws → one command buffer
+//! readback     snapshots: copies recorded between passes, mapped, never copied again
+//! ```
+
+mod buffers;
+mod context;
+mod error;
+mod executor;
+mod pipelines;
+mod prepared;
+mod readback;
+mod shaders;
+mod uniforms;
+
+pub use context::Context;
+pub use error::GpuError;
+pub use executor::{Executor, Output};
+pub use prepared::Prepared;
+pub use shaders::shader_sources;

@@ -68,7 +68,8 @@ pub struct DrawMesh {
 pub struct SurfaceData {
     /// Unit world-space normal of each corner, parallel to the indices; the fourth is unused.
     pub normals: Blob<[f32; 4]>,
-    /// One word a triangle: bit `i` is set where light `i` and the eye are not on the same side
-    /// of the triangle's plane (exact signs; on the plane counts).
-    pub away: Blob<u32>,
+    /// One word a triangle, from exact signs. Bit `i`: light `i` and the eye are not on the same
+    /// side of the triangle's plane (a light or eye on the plane counts as not). Bit 31: the eye
+    /// sees the back.
+    pub sides: Blob<u32>,
 }

@@ -9,16 +9,17 @@ use crate::geometry::relative;
 use crate::math::projection;
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, ColorTarget, ColorWrite, DepthStencilTarget, Draw, DrawConstants,
-    DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Pass, PlanLight, PlanView, Program, RasterState, ViewId,
+    DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Pass, PlanLight, PlanView, Program, RasterState, StencilFace,
+    ViewId,
 };
 use crate::scene::{Object, Scene};
 use glam::{DMat4, DVec3};
-use wgpu::TextureFormat;
+use wgpu::{CompareFunction, StencilOperation, TextureFormat};
 
 /// Linear colour of pixels that show no surface.
 const BACKGROUND: [f64; 4] = [0.007, 0.008, 0.012, 1.0];
-/// Lights are bits of one word a triangle.
-pub const MOST_LIGHTS: usize = 32;
+/// Lights are bits of one word a triangle; the last bit is taken.
+pub const MOST_LIGHTS: usize = 31;
 
 const LIT: u32 = 0;
 const SHADOW: u32 = 1;
@@ -56,6 +57,19 @@ pub struct Frame<'a> {
     has_stencil: bool,
 }
 
+/// Adds light to visible surfaces where the masked stencil is zero, and raises it there, so that
+/// of surfaces at one depth only the first is lit.
+pub fn lit_once_where_zero(read_mask: u32) -> RasterState {
+    let once = StencilFace {
+        compare: CompareFunction::Equal,
+        pass_op: StencilOperation::IncrementClamp,
+        ..StencilFace::IGNORE
+    };
+    let mut raster = RasterState::visible_surface(ColorWrite::Add).with_stencil(once, 0);
+    raster.stencil.read_mask = read_mask;
+    raster
+}
+
 /// What the mask pass writes where: later layers overwrite earlier ones.
 pub struct LabelLayer {
     pub label: u32,
@@ -81,10 +95,12 @@ impl LabelLayer {
         LabelLayer { reads_map: true, ..LabelLayer::lit() }
     }
 
-    /// Only where one face of the stencil test, the same for both sides, passes.
-    pub fn where_stencil(mut self, stencil: wgpu::StencilState, reference: u8) -> LabelLayer {
-        self.raster.stencil = stencil;
-        self.raster.stencil_reference = reference;
+    /// Only where the masked stencil equals `reference`.
+    pub fn where_stencil(mut self, read_mask: u32, reference: u8) -> LabelLayer {
+        let equal = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
+        self.raster = self.raster.with_stencil(equal, reference);
+        self.raster.stencil.read_mask = read_mask;
+        self.raster.stencil.write_mask = 0;
         self
     }
 }

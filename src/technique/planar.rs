@@ -7,13 +7,13 @@
 //! shadow.
 
 use super::PlanError;
-use super::frame::{Frame, Job, LabelLayer};
+use super::frame::{Frame, Job, LabelLayer, lit_once_where_zero};
 use crate::geometry::{planar, relative};
 use crate::math::{Sign, side_of_triangle};
 use crate::plan::{
     Blob, ColorWrite, Draw, DrawConstants, DrawMesh, FramePlan, LightId, Part, Program, RasterState, StencilFace,
 };
-use wgpu::{CompareFunction, StencilOperation, StencilState};
+use wgpu::{CompareFunction, StencilOperation};
 
 /// Marks are even and shadows one more: 64 receivers fit a byte.
 const MOST_RECEIVERS: usize = 64;
@@ -41,11 +41,11 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
             frame.stencil_pass(light, "receivers", purpose.to_owned(), draws);
             shadow_pass(&mut frame, &marked, light);
         }
-        let odd = LabelLayer::shadow().where_stencil(odd_only(), 1);
+        let odd = LabelLayer::shadow().where_stencil(1, 1);
         frame.mask_pass(light, &[LabelLayer::lit(), odd]);
         let purpose = "Adds the light where the stencil is even: odd numbers are shadows. It makes lit numbers odd, so \
                        that no pixel is lit twice.";
-        frame.light_pass(light, purpose, &lit_once(), false);
+        frame.light_pass(light, purpose, &lit_once_where_zero(1), false);
     }
     Ok(frame.finish())
 }
@@ -213,20 +213,4 @@ fn darken_once(mark: u8) -> RasterState {
         ..RasterState::surface()
     };
     anywhere.with_stencil(once, mark)
-}
-
-fn odd_only() -> StencilState {
-    let face = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
-    StencilState { front: face, back: face, read_mask: 1, write_mask: 0 }
-}
-
-fn lit_once() -> RasterState {
-    let once = StencilFace {
-        compare: CompareFunction::Equal,
-        pass_op: StencilOperation::IncrementClamp,
-        ..StencilFace::IGNORE
-    };
-    let mut raster = RasterState::visible_surface(ColorWrite::Add).with_stencil(once, 0);
-    raster.stencil.read_mask = 1;
-    raster
 }

@@ -3,7 +3,7 @@
 use crate::geometry::relative;
 use crate::math::{Sign, side_of_triangle};
 use crate::plan::{Blob, DrawMesh, SurfaceData};
-use crate::scene::{Mesh, Object, Scene, Shading};
+use crate::scene::{Light, Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec3};
 
 /// The surface of `object`, relative to the eye.
@@ -14,21 +14,19 @@ pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene) -> DrawMesh {
         name: object.name.clone(),
         vertices: Blob::new(world.iter().map(|position| relative::point(*position, eye)).collect()),
         indices: Blob::new(object.mesh.triangles().as_flattened().to_vec()),
-        surface: Some(SurfaceData { normals: Blob::new(normals), away: Blob::new(away(object, world, scene)) }),
+        surface: Some(SurfaceData { normals: Blob::new(normals), sides: Blob::new(sides(object, world, scene)) }),
     }
 }
 
-/// One bit a light: set where light and eye are not strictly on one side of the triangle.
-fn away(object: &Object, world: &[DVec3], scene: &Scene) -> Vec<u32> {
+/// [`SurfaceData::sides`].
+fn sides(object: &Object, world: &[DVec3], scene: &Scene) -> Vec<u32> {
     let eye = scene.camera.eye.extend(1.0);
     let word = |corners: &[u32; 3]| {
         let corners = corners.map(|vertex| world[vertex as usize]);
         let eye_side = side_of_triangle(corners, eye);
-        let is_away = |light: &crate::scene::Light| {
-            eye_side == Sign::Zero || side_of_triangle(corners, light.position) != eye_side
-        };
-        let lights = scene.lights.iter().enumerate();
-        lights.fold(0, |word, (index, light)| word | u32::from(is_away(light)) << index)
+        let is_away = |light: &Light| eye_side == Sign::Zero || side_of_triangle(corners, light.position) != eye_side;
+        let away = scene.lights.iter().enumerate().map(|(index, light)| u32::from(is_away(light)) << index);
+        away.fold(u32::from(eye_side == Sign::Negative) << 31, |word, bit| word | bit)
     };
     object.mesh.triangles().iter().map(word).collect()
 }

@@ -9,15 +9,16 @@
 //! bit-equal and the strict test is exact. Triangles that face away from the light count as
 //! turned: they are not turned in the buffer, but drawn with front and back operations swapped.
 
-use super::frame::{Frame, Job, LabelLayer};
+use super::frame::{Frame, Job, LabelLayer, lit_once_where_zero};
 use super::{PlanError, Technique};
 use crate::geometry::{Volume, VolumeParts, relative};
 use crate::plan::{
     Blob, ColorWrite, Draw, DrawConstants, DrawMesh, FramePlan, LightId, MeshId, Part, Program, RasterState,
     StencilFace,
 };
+use crate::scene::Object;
 use std::ops::Range;
-use wgpu::{CompareFunction, StencilOperation, StencilState};
+use wgpu::{CompareFunction, StencilOperation};
 
 /// Where a volume face counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,10 +37,10 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     for light in frame.light_ids() {
         let draws = volume_draws(&mut frame, light, counting);
         frame.stencil_pass(light, "volumes", counting.purpose(light), draws);
-        frame.mask_pass(light, &[LabelLayer::shadow(), LabelLayer::lit().where_stencil(equal_zero(), 0)]);
+        frame.mask_pass(light, &[LabelLayer::shadow(), LabelLayer::lit().where_stencil(0xff, 0)]);
         let purpose = "Adds the light where the count is zero, and raises the count there, so that no pixel is lit \
                        twice. Everywhere else the surface is inside a shadow volume and stays dark.";
-        frame.light_pass(light, purpose, &lit_once(), false);
+        frame.light_pass(light, purpose, &lit_once_where_zero(0xff), false);
     }
     Ok(frame.finish())
 }
@@ -80,20 +81,6 @@ impl Counting {
     }
 }
 
-fn equal_zero() -> StencilState {
-    let face = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
-    StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0 }
-}
-
-fn lit_once() -> RasterState {
-    let once = StencilFace {
-        compare: CompareFunction::Equal,
-        pass_op: StencilOperation::IncrementClamp,
-        ..StencilFace::IGNORE
-    };
-    RasterState::visible_surface(ColorWrite::Add).with_stencil(once, 0)
-}
-
 fn volume_draws(frame: &mut Frame, light: LightId, counting: Counting) -> Vec<Draw> {
     let mut draws = Vec::new();
     for index in 0..frame.placed.len() {
@@ -104,47 +91,51 @@ fn volume_draws(frame: &mut Frame, light: LightId, counting: Counting) -> Vec<Dr
         }
         let edges = frame.job.cache.edges(&object.mesh);
         let volume = Volume::new(&placed.world, object.mesh.triangles(), &edges, frame.light_position(light));
-        let mut needed = needed_parts(frame, light, counting, &volume.parts, object.name.as_str(), object.visible);
-        needed.retain(|(_, _, triangles)| !triangles.is_empty());
+        let mut needed = needed_parts(frame, light, counting, &volume.parts, object);
+        needed.retain(|part| !part.triangles.is_empty());
         if needed.is_empty() {
             frame.leave_out("volume", &object.name, "every triangle is edge-on to the light");
             continue;
         }
         let mesh = add_volume_mesh(frame, &object.name, &volume);
-        let draw =
-            |(part, turned, triangles)| volume_draw(&object.name, mesh, part, triangles, counting.raster(turned));
-        draws.extend(needed.into_iter().map(draw));
+        draws.extend(needed.iter().map(|part| volume_draw(&object.name, mesh, part, counting)));
     }
     draws
 }
 
-/// The parts that count, each with whether it is drawn turned.
+/// A run of a volume's triangles that counts.
+struct NeededPart {
+    part: Part,
+    /// Its triangles face inwards: operations are swapped.
+    turned: bool,
+    triangles: Range<usize>,
+}
+
 fn needed_parts(
     frame: &mut Frame,
     light: LightId,
     counting: Counting,
     parts: &VolumeParts,
-    caster: &str,
-    is_drawn: bool,
-) -> Vec<(Part, bool, Range<usize>)> {
-    let mut needed = vec![(Part::Side, false, parts.sides.clone())];
+    caster: &Object,
+) -> Vec<NeededPart> {
+    let part = |part, turned, triangles: &Range<usize>| NeededPart { part, turned, triangles: triangles.clone() };
+    let sides = part(Part::Side, false, &parts.sides);
     let light_caps =
-        [(Part::LightCap, false, parts.light_cap.clone()), (Part::LightCap, true, parts.light_cap_turned.clone())];
+        [part(Part::LightCap, false, &parts.light_cap), part(Part::LightCap, true, &parts.light_cap_turned)];
+    let mut needed = vec![sides];
     match counting {
-        Counting::ZPass if is_drawn => {
-            frame.leave_out(
-                "caps",
-                caster,
-                "z-pass counts in front of surfaces, and a drawn caster's cap is never in front of itself",
-            );
+        Counting::ZPass if caster.visible => {
+            let because = "z-pass counts in front of surfaces, and a drawn caster's cap is never in front of itself";
+            frame.leave_out("caps", &caster.name, because);
         }
         // The view ray enters the volume of an undrawn caster through its light cap.
         Counting::ZPass => needed.extend(light_caps),
         Counting::ZFail => {
             needed.extend(light_caps);
-            needed.push((Part::DarkCap, false, parts.dark_cap.clone()));
+            needed.push(part(Part::DarkCap, false, &parts.dark_cap));
             if frame.light_position(light).w == 0.0 {
-                frame.leave_out("dark cap", caster, "a directional light's volume closes in one point at infinity");
+                let because = "a directional light's volume closes in one point at infinity";
+                frame.leave_out("dark cap", &caster.name, because);
             }
         }
     }
@@ -162,23 +153,21 @@ fn add_volume_mesh(frame: &mut Frame, caster: &str, volume: &Volume) -> MeshId {
     })
 }
 
-fn volume_draw(caster: &str, mesh: MeshId, part: Part, triangles: Range<usize>, raster: RasterState) -> Draw {
-    let turned = raster.stencil.front.pass_op == StencilOperation::DecrementWrap
-        || raster.stencil.front.depth_fail_op == StencilOperation::IncrementWrap;
-    let what = match part {
-        Part::Side => "sides",
-        Part::LightCap if turned => "light cap, turned,",
-        Part::LightCap => "light cap",
+fn volume_draw(caster: &str, mesh: MeshId, part: &NeededPart, counting: Counting) -> Draw {
+    let what = match (part.part, part.turned) {
+        (Part::Side, _) => "sides",
+        (Part::LightCap, false) => "light cap",
+        (Part::LightCap, true) => "turned light cap",
         _ => "dark cap",
     };
     Draw {
         name: format!("{what} of {caster}"),
         caster: Some(caster.to_owned()),
-        part,
+        part: part.part,
         program: Program::Position,
-        raster,
+        raster: counting.raster(part.turned),
         mesh,
-        triangles: triangles.start as u32..triangles.end as u32,
+        triangles: part.triangles.start as u32..part.triangles.end as u32,
         constants: DrawConstants::default(),
     }
 }

@@ -1,0 +1,16 @@
+// What one light adds to a visible surface.
+
+@fragment
+fn fs_light(surface: Surface) -> @location(0) vec4f {
+    return vec4f(added(surface), 0.0);
+}
+
+fn added(surface: Surface) -> vec3f {
+    if faces_away(surface.sides) {
+        return vec3f(0.0);
+    }
+    if draw.shading == GOURAUD {
+        return surface.lit;
+    }
+    return light_on(surface.relative, normalize(surface.normal));
+}

@@ -1,0 +1,6 @@
+// Positions only: shadow volumes, caps, planar shadows, receiver marks and shadow maps.
+
+@vertex
+fn vs_position(@location(0) relative: vec4f) -> @invariant @builtin(position) vec4f {
+    return clip_position(relative);
+}

@@ -1,0 +1,79 @@
+// Surfaces with what shading and labels need. Vertices are pulled: the triangle is known, so flat
+// normals and per-triangle signs need no duplicated vertices, and positions are the same bits that
+// the ambient pass read.
+
+const NOT_REVERSED: u32 = 0xffffffffu;
+const GOURAUD: u32 = 1u;
+const SEES_BACK: u32 = 0x80000000u;
+
+struct Light {
+    // Homogeneous, relative to the eye.
+    position: vec4f,
+    // Linear RGB times intensity.
+    color: vec3f,
+    // Where it has faded to nothing; 0 for no falloff.
+    range: f32,
+    // Which bit of a triangle's sides is its.
+    index: u32,
+    face_count: u32,
+    clip_from_relative: array<mat4x4f, 6>,
+}
+
+@group(2) @binding(0) var<storage, read> positions: array<vec4f>;
+@group(2) @binding(1) var<storage, read> corners: array<u32>;
+@group(2) @binding(2) var<storage, read> normals: array<vec4f>;
+@group(2) @binding(3) var<storage, read> sides: array<u32>;
+@group(3) @binding(0) var<uniform> light: Light;
+
+struct Surface {
+    @invariant @builtin(position) clip: vec4f,
+    // Relative to the eye.
+    @location(0) relative: vec3f,
+    // Towards the side that the eye sees.
+    @location(1) normal: vec3f,
+    // Gouraud's light.
+    @location(2) lit: vec3f,
+    @location(3) @interpolate(flat) sides: u32,
+}
+
+@vertex
+fn vs_surface(@builtin(vertex_index) vertex_index: u32) -> Surface {
+    var triangle = vertex_index / 3u;
+    if draw.reversed_sum != NOT_REVERSED {
+        triangle = draw.reversed_sum - triangle;
+    }
+    let corner = triangle * 3u + vertex_index % 3u;
+    let relative = positions[corners[corner]];
+    var out: Surface;
+    out.clip = clip_position(relative);
+    out.relative = relative.xyz;
+    out.sides = sides[triangle];
+    let normal = normals[corner].xyz;
+    out.normal = select(normal, -normal, (out.sides & SEES_BACK) != 0u);
+    if draw.shading == GOURAUD {
+        out.lit = light_on(out.relative, out.normal);
+    }
+    return out;
+}
+
+fn faces_away(surface_sides: u32) -> bool {
+    return (surface_sides & (1u << light.index)) != 0u;
+}
+
+// Lambert's diffuse and Blinn-Phong's highlight.
+fn light_on(relative: vec3f, normal: vec3f) -> vec3f {
+    let to_light = light.position.xyz - relative * light.position.w;
+    let direction = normalize(to_light);
+    let diffuse = max(dot(normal, direction), 0.0);
+    let halfway = normalize(direction - normalize(relative));
+    let gloss = select(0.0, draw.specular * pow(max(dot(normal, halfway), 0.0), draw.shininess), diffuse > 0.0);
+    return light.color * falloff(length(to_light)) * (draw.color * diffuse + gloss);
+}
+
+fn falloff(distance: f32) -> f32 {
+    if light.range == 0.0 || light.position.w == 0.0 {
+        return 1.0;
+    }
+    let inside = max(1.0 - distance * distance / (light.range * light.range), 0.0);
+    return inside * inside;
+}

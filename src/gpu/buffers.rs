@@ -1,0 +1,39 @@
+//! Vertex and index data on the GPU, by the hash of its content.
+//!
+//! Equal data is uploaded once, and stays as long as the newest plan uses it.
+
+use super::GpuError;
+use crate::plan::Blob;
+use std::collections::HashMap;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{Buffer, BufferUsages, Device};
+
+/// Hash and length in bytes.
+type Key = (u64, usize);
+
+#[derive(Debug, Default)]
+pub(super) struct Buffers {
+    kept: HashMap<Key, (Buffer, bool)>,
+}
+
+impl Buffers {
+    /// Forgets what has not been asked for since the last call.
+    pub fn next_plan(&mut self) {
+        self.kept.retain(|_, (_, used)| std::mem::take(used));
+    }
+
+    /// The buffer that holds `blob`, readable as vertices, indices and storage.
+    pub fn get<T: bytemuck::Pod>(&mut self, device: &Device, blob: &Blob<T>) -> Result<Buffer, GpuError> {
+        let contents = blob.bytes();
+        let most = device.limits().max_buffer_size.min(device.limits().max_storage_buffer_binding_size);
+        if contents.len() as u64 > most {
+            let [needed, most] = [contents.len() as u64, most].map(|bytes| format!("{bytes} bytes"));
+            return Err(GpuError::TooLarge { what: "a mesh".to_owned(), needed, most });
+        }
+        let usage = BufferUsages::VERTEX | BufferUsages::INDEX | BufferUsages::STORAGE;
+        let upload = || (device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage }), true);
+        let (buffer, used) = self.kept.entry((blob.hash(), contents.len())).or_insert_with(upload);
+        *used = true;
+        Ok(buffer.clone())
+    }
+}

@@ -1,0 +1,141 @@
+//! The adapter and its device.
+
+use super::GpuError;
+use crate::capture::AdapterInfo;
+use wgpu::{Adapter, Backends, Device, DeviceType, Features, Limits, Queue};
+
+/// Backends whose depth-stencil aspects can be copied to buffers.
+const BACKENDS: Backends = Backends::VULKAN.union(Backends::METAL).union(Backends::DX12);
+/// The stencil buffer's format, with a depth that can be copied.
+const REQUIRED: Features = Features::DEPTH32FLOAT_STENCIL8;
+
+/// An adapter with a device on it.
+#[derive(Debug)]
+pub struct Context {
+    /// Who runs the plans.
+    pub info: AdapterInfo,
+    pub(super) device: Device,
+    pub(super) queue: Queue,
+    /// Nanoseconds a timestamp tick; `None` where passes can't be timed.
+    pub(super) timestamp_period: Option<f32>,
+}
+
+impl Context {
+    /// Opens the first adapter whose name contains `wanted` in any case, or the fastest kind.
+    ///
+    /// # Errors
+    /// No such adapter, none that can render and copy depth with stencil, or no device.
+    pub fn new(wanted: Option<&str>) -> Result<Context, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: BACKENDS,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let adapters = pollster::block_on(instance.enumerate_adapters(BACKENDS));
+        let adapter = choose(adapters, wanted)?;
+        let info = info_of(&adapter);
+        let can_time = adapter.features().contains(Features::TIMESTAMP_QUERY);
+        let available = adapter.limits();
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("stencilscope"),
+            required_features: if can_time { REQUIRED | Features::TIMESTAMP_QUERY } else { REQUIRED },
+            // Defaults, but for how large pictures and meshes may be.
+            required_limits: Limits {
+                max_texture_dimension_2d: available.max_texture_dimension_2d,
+                max_buffer_size: available.max_buffer_size,
+                max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
+                ..Limits::default()
+            },
+            ..wgpu::DeviceDescriptor::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: one_line(&error.to_string()) })?;
+        let timestamp_period = can_time.then(|| queue.get_timestamp_period());
+        Ok(Context { info, device, queue, timestamp_period })
+    }
+
+    /// Runs `work` and turns whatever the driver complained about into an error.
+    pub(super) fn guarded<T>(&self, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+        let filters = [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
+        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
+        let result = work();
+        // The last scope pushed is the first popped.
+        let complaints = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
+        let complaints: Vec<String> = complaints.map(|error| one_line(&error.to_string())).collect();
+        match complaints.first() {
+            Some(complaint) => Err(GpuError::Driver(complaint.clone())),
+            None => result,
+        }
+    }
+
+    /// Waits until all submitted work is done.
+    pub(super) fn wait(&self) -> Result<(), GpuError> {
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| GpuError::Driver(error.to_string()))?;
+        Ok(())
+    }
+
+    /// Brackets `work` for an attached graphics debugger, such as RenderDoc.
+    pub(super) fn bracketed<T>(&self, work: impl FnOnce() -> T) -> T {
+        self.start_debugger_capture();
+        let result = work();
+        self.stop_debugger_capture();
+        result
+    }
+
+    #[expect(unsafe_code, reason = "wgpu's capture hook; the device is alive, and no other thread uses it")]
+    fn start_debugger_capture(&self) {
+        unsafe { self.device.start_graphics_debugger_capture() }
+    }
+
+    #[expect(unsafe_code, reason = "wgpu's capture hook; every submission has been waited for")]
+    fn stop_debugger_capture(&self) {
+        unsafe { self.device.stop_graphics_debugger_capture() }
+    }
+}
+
+fn choose(adapters: Vec<Adapter>, wanted: Option<&str>) -> Result<Adapter, GpuError> {
+    let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+    let is_wanted = |adapter: &Adapter| {
+        let name = adapter.get_info().name.to_lowercase();
+        wanted.is_none_or(|wanted| name.contains(&wanted.to_lowercase()))
+    };
+    let (able, unable): (Vec<Adapter>, Vec<Adapter>) =
+        adapters.into_iter().filter(is_wanted).partition(|adapter| adapter.features().contains(REQUIRED));
+    // The first of the fastest kind, so that the choice does not depend on the order of the rest.
+    able.into_iter().min_by_key(|adapter| speed_rank(adapter.get_info().device_type)).ok_or_else(|| {
+        let found = match (unable.first(), wanted) {
+            (Some(adapter), _) => format!(" ({} has no Depth32FloatStencil8)", adapter.get_info().name),
+            (None, Some(wanted)) if !names.is_empty() => {
+                format!(" is called `{wanted}` (there are: {})", names.join(", "))
+            }
+            _ => String::new(),
+        };
+        GpuError::NoAdapter { found }
+    })
+}
+
+fn speed_rank(kind: DeviceType) -> u32 {
+    match kind {
+        DeviceType::DiscreteGpu => 0,
+        DeviceType::IntegratedGpu => 1,
+        DeviceType::VirtualGpu => 2,
+        DeviceType::Other => 3,
+        DeviceType::Cpu => 4,
+    }
+}
+
+fn info_of(adapter: &Adapter) -> AdapterInfo {
+    let info = adapter.get_info();
+    let kind = match info.device_type {
+        DeviceType::Cpu => "cpu",
+        DeviceType::IntegratedGpu => "integrated",
+        DeviceType::DiscreteGpu => "discrete",
+        DeviceType::VirtualGpu => "virtual",
+        DeviceType::Other => "other",
+    };
+    let driver = if info.driver_info.is_empty() { info.driver } else { info.driver_info };
+    AdapterInfo { name: info.name, driver, kind: kind.to_owned() }
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,339 @@
+//! Runs a prepared plan: one command buffer, with copies between passes where snapshots are wanted.
+
+use super::buffers::Buffers;
+use super::pipelines::Pipelines;
+use super::prepared::{Prepared, PreparedDraw};
+use super::readback::{self, Change, StagedPass, color_change, depth_change, stencil_change};
+use super::{Context, GpuError};
+use crate::capture::{Aspect, DrawSummary, FrameSnapshot, Image, PixelFormat, Snapshot, Step};
+use crate::plan::{AttachmentRole, Draw, FramePlan, Pass, lint};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use wgpu::{CommandEncoder, LoadOp, Operations, QuerySet, RenderPass, StoreOp};
+
+/// Runs plans; keeps pipelines and buffers between them.
+#[derive(Debug)]
+pub struct Executor {
+    context: Context,
+    pipelines: Pipelines,
+    buffers: Buffers,
+}
+
+/// What a captured frame left behind.
+#[derive(Debug)]
+pub struct Output {
+    /// One a pass.
+    pub steps: Vec<Step>,
+    /// One a light: its labels.
+    pub labels: Vec<Option<Arc<Image>>>,
+    /// One a light: the faces of its shadow map, left-out ones at their clear value.
+    pub maps: Vec<Option<Vec<Arc<Image>>>>,
+}
+
+/// Which passes run, and what is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mode {
+    /// Timed passes, nothing kept.
+    Frame,
+    /// Timed passes, a snapshot after each.
+    Snapshots,
+    /// All passes, a snapshot after each.
+    Everything,
+}
+
+impl Executor {
+    /// On a context of its own.
+    #[must_use]
+    pub fn new(context: Context) -> Executor {
+        Executor { pipelines: Pipelines::new(&context.device), buffers: Buffers::default(), context }
+    }
+
+    /// Where it runs.
+    #[must_use]
+    pub fn context(&self) -> &Context {
+        &self.context
+    }
+
+    /// Uploads what a plan needs and makes its pipelines.
+    ///
+    /// # Errors
+    /// A plan that breaks a rule, pictures or meshes that are too large, a driver that refuses.
+    pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
+        if let Some(error) = lint::check(plan).into_iter().next() {
+            return Err(GpuError::Plan(error));
+        }
+        let Executor { context, pipelines, buffers } = self;
+        context.guarded(|| Prepared::new(context, pipelines, buffers, plan))
+    }
+
+    /// Runs the timed passes and waits for the GPU: recording, submitting, executing and, with
+    /// `snapshots`, having every snapshot in memory.
+    ///
+    /// # Errors
+    /// A driver that fails.
+    pub fn time(&self, prepared: &Prepared, snapshots: bool) -> Result<Duration, GpuError> {
+        let mode = if snapshots { Mode::Snapshots } else { Mode::Frame };
+        let start = Instant::now();
+        self.context.guarded(|| self.submit(prepared, mode, None))?;
+        let took = start.elapsed();
+        if snapshots {
+            staged(prepared, mode).flat_map(StagedPass::iter).for_each(readback::Staging::unmap);
+        }
+        Ok(took)
+    }
+
+    /// Runs all passes and keeps every attachment after each. With `bracket`, an attached
+    /// graphics debugger records the frame.
+    ///
+    /// # Errors
+    /// A driver that fails.
+    pub fn capture(&self, prepared: Prepared, bracket: bool) -> Result<Output, GpuError> {
+        let timestamps = Timestamps::new(&self.context, prepared.plan.passes.len());
+        let run = || self.context.guarded(|| self.submit(&prepared, Mode::Everything, timestamps.as_ref()));
+        if bracket {
+            self.context.bracketed(run)?
+        } else {
+            run()?
+        }
+        let times = match &timestamps {
+            Some(timestamps) => timestamps.read(&self.context)?,
+            None => vec![None; prepared.plan.passes.len()],
+        };
+        collect(&prepared, &times)
+    }
+
+    fn submit(&self, prepared: &Prepared, mode: Mode, timestamps: Option<&Timestamps>) -> Result<(), GpuError> {
+        let mut encoder = self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        for (index, pass) in prepared.plan.passes.iter().enumerate() {
+            if !mode.runs(pass) {
+                continue;
+            }
+            record_pass(&mut encoder, prepared, index, timestamps);
+            if mode != Mode::Frame {
+                prepared.staged[index].iter().for_each(|staging| staging.record(&mut encoder));
+            }
+        }
+        if let Some(timestamps) = timestamps {
+            timestamps.resolve(&mut encoder);
+        }
+        self.context.queue.submit([encoder.finish()]);
+        if mode != Mode::Frame {
+            staged(prepared, mode).flat_map(StagedPass::iter).for_each(readback::Staging::request_map);
+        }
+        if let Some(timestamps) = timestamps {
+            timestamps.request_map();
+        }
+        self.context.wait()
+    }
+}
+
+impl Mode {
+    fn runs(self, pass: &Pass) -> bool {
+        pass.timed || self == Mode::Everything
+    }
+}
+
+fn staged<'a>(prepared: &'a Prepared, mode: Mode) -> impl Iterator<Item = &'a StagedPass> {
+    let passes = prepared.plan.passes.iter().zip(&prepared.staged);
+    passes.filter(move |(pass, _)| mode.runs(pass)).map(|(_, staged)| staged)
+}
+
+fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, timestamps: Option<&Timestamps>) {
+    let pass = &prepared.plan.passes[index];
+    let targets = &prepared.passes[index];
+    let color = pass.color.as_ref().zip(targets.color.as_ref()).map(|(target, view)| {
+        let clear = |[r, g, b, a]: [f64; 4]| LoadOp::Clear(wgpu::Color { r, g, b, a });
+        let load = target.clear.map_or(LoadOp::Load, clear);
+        let ops = Operations { load, store: StoreOp::Store };
+        wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
+    });
+    let depth_stencil = pass.depth_stencil.as_ref().zip(targets.depth_stencil.as_ref()).map(|(target, view)| {
+        let store = StoreOp::Store;
+        let depth = Operations { load: target.clear_depth.map_or(LoadOp::Load, LoadOp::Clear), store };
+        let clear_stencil = |value| LoadOp::Clear(u32::from(value));
+        let stencil = Operations { load: target.clear_stencil.map_or(LoadOp::Load, clear_stencil), store };
+        let stencil_ops = targets.has_stencil.then_some(stencil);
+        wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(depth), stencil_ops }
+    });
+    let mut render_pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(&pass.name),
+        color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
+        depth_stencil_attachment: depth_stencil,
+        timestamp_writes: timestamps.map(|timestamps| timestamps.of_pass(index)),
+        ..wgpu::RenderPassDescriptor::default()
+    });
+    render_pass.set_bind_group(0, &prepared.view_group, &[prepared.views.offset(pass.view.0)]);
+    for (draw, ready) in pass.draws.iter().zip(&targets.draws) {
+        let light_offset = pass.light.map_or(0, |light| prepared.lights.offset(light.0));
+        record_draw(&mut render_pass, prepared, draw, ready, light_offset);
+    }
+}
+
+fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &PreparedDraw, light_offset: u32) {
+    pass.set_pipeline(&ready.pipeline);
+    pass.set_stencil_reference(u32::from(draw.raster.stencil_reference));
+    if draw.program.group_count() > 1 {
+        pass.set_bind_group(1, &prepared.draw_group, &[prepared.draws.offset(ready.index)]);
+    }
+    let corners = draw.triangles.start * 3..draw.triangles.end * 3;
+    if let Some((surface, light)) = &ready.shading {
+        pass.set_bind_group(2, surface, &[]);
+        pass.set_bind_group(3, light, &[light_offset]);
+        pass.draw(corners, 0..1);
+    } else {
+        pass.set_vertex_buffer(0, ready.vertices.slice(..));
+        pass.set_index_buffer(ready.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(corners, 0, 0..1);
+    }
+}
+
+/// Turns mapped copies into steps, sharing what did not change.
+fn collect(prepared: &Prepared, times: &[Option<f64>]) -> Result<Output, GpuError> {
+    let plan = prepared.plan;
+    let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
+    // wgpu clears new textures to zero.
+    let mut color = zero(PixelFormat::Rgba8Srgb);
+    let mut depth = zero(PixelFormat::Depth32F);
+    let mut stencil = zero(PixelFormat::U8);
+    let mut output = Output { steps: Vec::new(), labels: vec![None; plan.lights.len()], maps: empty_maps(plan) };
+    for (index, pass) in plan.passes.iter().enumerate() {
+        let staged = &prepared.staged[index];
+        let role = |target| plan.attachment(target).role;
+        let depth_role = pass.depth_stencil.as_ref().map(|target| role(target.attachment));
+        let snapshot = if let Some(AttachmentRole::Map(light)) = depth_role {
+            let face = pass.depth_stencil.as_ref().map_or(0, |target| target.layer as usize);
+            if let (Some(faces), Some(staging)) = (&mut output.maps[light.0], &staged.depth) {
+                faces[face] = staging.image()?;
+            }
+            Snapshot::Map { light: light.0, face }
+        } else {
+            let written = after(&color_change(plan, pass), &staged.color, PixelFormat::Rgba8Srgb, plan.size);
+            let labels_of = match pass.color.as_ref().map(|target| role(target.attachment)) {
+                Some(AttachmentRole::Labels(light)) => Some(light),
+                _ => None,
+            };
+            let color_aspect = match labels_of {
+                Some(light) => {
+                    output.labels[light.0] =
+                        after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
+                    step_aspect(&mut color, None)
+                }
+                None => step_aspect(&mut color, written?),
+            };
+            let depth_after = after(&depth_change(pass), &staged.depth, PixelFormat::Depth32F, plan.size)?;
+            let stencil_after = after(&stencil_change(pass), &staged.stencil, PixelFormat::U8, plan.size)?;
+            Snapshot::Frame(FrameSnapshot {
+                color: color_aspect,
+                depth: step_aspect(&mut depth, depth_after),
+                stencil: prepared.passes[index].has_stencil.then(|| step_aspect(&mut stencil, stencil_after)),
+                writes_labels: labels_of.is_some(),
+            })
+        };
+        output.steps.push(step(pass, times[index], snapshot));
+    }
+    Ok(output)
+}
+
+fn empty_maps(plan: &FramePlan) -> Vec<Option<Vec<Arc<Image>>>> {
+    let faces = |map: &crate::plan::PlanMap| {
+        let clear = Image::uniform(PixelFormat::Depth32F, plan.attachment(map.attachment).size, &[0; 4]);
+        vec![Arc::new(clear); map.faces.len()]
+    };
+    plan.lights.iter().map(|light| light.map.as_ref().map(faces)).collect()
+}
+
+/// The picture that a change leaves; `None` where nothing changes.
+fn after(
+    change: &Change,
+    staged: &Option<readback::Staging>,
+    format: PixelFormat,
+    size: [u32; 2],
+) -> Result<Option<Arc<Image>>, GpuError> {
+    match (change, staged) {
+        (Change::Uniform(texel), _) if texel.len() == format.texel_bytes() => {
+            Ok(Some(Arc::new(Image::uniform(format, size, texel))))
+        }
+        (Change::Drawn, Some(staging)) => staging.image().map(Some),
+        _ => Ok(None),
+    }
+}
+
+/// Moves an aspect on by one step. A clear to what was there already changes nothing.
+fn step_aspect(current: &mut Arc<Image>, next: Option<Arc<Image>>) -> Aspect {
+    let changed = next.filter(|next| next != current);
+    let unchanged = changed.is_none();
+    if let Some(next) = changed {
+        *current = next;
+    }
+    Aspect { image: current.clone(), unchanged }
+}
+
+fn step(pass: &Pass, gpu_ms: Option<f64>, snapshot: Snapshot) -> Step {
+    let summary = |draw: &Draw| DrawSummary {
+        name: draw.name.clone(),
+        caster: draw.caster.clone(),
+        part: draw.part,
+        triangles: u64::from(draw.triangles.end - draw.triangles.start),
+    };
+    Step {
+        name: pass.name.clone(),
+        purpose: pass.purpose.clone(),
+        light: pass.light.map(|light| light.0),
+        draws: pass.draws.iter().map(summary).collect(),
+        gpu_ms,
+        snapshot,
+    }
+}
+
+/// When each pass began and ended, on adapters that can tell.
+struct Timestamps {
+    queries: QuerySet,
+    count: u32,
+    resolved: wgpu::Buffer,
+    readable: wgpu::Buffer,
+}
+
+impl Timestamps {
+    fn new(context: &Context, passes: usize) -> Option<Timestamps> {
+        context.timestamp_period?;
+        let count = (passes * 2) as u32;
+        // A query set holds 4096 at most; a frame of more passes goes untimed.
+        if count == 0 || count > wgpu::QUERY_SET_MAX_QUERIES {
+            return None;
+        }
+        let device = &context.device;
+        let ty = wgpu::QueryType::Timestamp;
+        let queries = device.create_query_set(&wgpu::QuerySetDescriptor { label: None, ty, count });
+        let buffer = |usage| {
+            let size = u64::from(count) * 8;
+            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        };
+        let resolved = buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
+        let readable = buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
+        Some(Timestamps { queries, count, resolved, readable })
+    }
+
+    fn of_pass(&self, index: usize) -> wgpu::RenderPassTimestampWrites<'_> {
+        wgpu::RenderPassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(index as u32 * 2),
+            end_of_pass_write_index: Some(index as u32 * 2 + 1),
+        }
+    }
+
+    fn resolve(&self, encoder: &mut CommandEncoder) {
+        encoder.resolve_query_set(&self.queries, 0..self.count, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.resolved.size());
+    }
+
+    fn request_map(&self) {
+        // A failure shows when the mapped range is asked for.
+        self.readable.map_async(wgpu::MapMode::Read, .., |_| {});
+    }
+
+    fn read(&self, context: &Context) -> Result<Vec<Option<f64>>, GpuError> {
+        let bytes = readback::mapped_bytes(&self.readable)?;
+        let ticks: Vec<u64> = bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
+        Ok(readback::milliseconds(context, &ticks))
+    }
+}

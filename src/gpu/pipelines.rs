@@ -1,0 +1,181 @@
+//! Pipelines and bind-group layouts, made once for each description.
+//!
+//! Groups: 0 the pass's view, 1 the draw's constants, 2 a surface's data, 3 the light and, for
+//! programs that read it, its map. A program has only the groups it uses.
+
+use super::shaders::source_of;
+use crate::plan::{ColorWrite, Program, RasterState};
+use std::collections::HashMap;
+use wgpu::{
+    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendComponent, BlendFactor,
+    BlendOperation, BlendState, BufferBindingType, ColorTargetState, ColorWrites, DepthStencilState, Device,
+    FragmentState, RenderPipeline, RenderPipelineDescriptor, ShaderModule, ShaderStages, TextureFormat,
+    VertexBufferLayout, VertexState,
+};
+
+/// What a pipeline is made from.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct PipelineKey {
+    pub program: Program,
+    /// Its reference is set by the pass, and 0 here.
+    pub raster: RasterState,
+    pub color_format: Option<TextureFormat>,
+    pub depth_format: Option<TextureFormat>,
+}
+
+/// Layouts of the bind groups.
+#[derive(Debug)]
+pub(super) struct Layouts {
+    pub view: BindGroupLayout,
+    pub draw: BindGroupLayout,
+    pub surface: BindGroupLayout,
+    pub light: BindGroupLayout,
+    pub light_with_map: BindGroupLayout,
+}
+
+/// Every pipeline made so far.
+#[derive(Debug)]
+pub(super) struct Pipelines {
+    pub layouts: Layouts,
+    modules: HashMap<Program, ShaderModule>,
+    pipelines: HashMap<PipelineKey, RenderPipeline>,
+}
+
+const POSITION_ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x4];
+
+impl Pipelines {
+    pub fn new(device: &Device) -> Pipelines {
+        Pipelines { layouts: Layouts::new(device), modules: HashMap::new(), pipelines: HashMap::new() }
+    }
+
+    /// The pipeline of a description, made on first use.
+    pub fn get(&mut self, device: &Device, key: &PipelineKey) -> RenderPipeline {
+        if let Some(pipeline) = self.pipelines.get(key) {
+            return pipeline.clone();
+        }
+        let pipeline = self.create(device, key);
+        self.pipelines.insert(key.clone(), pipeline.clone());
+        pipeline
+    }
+
+    fn create(&mut self, device: &Device, key: &PipelineKey) -> RenderPipeline {
+        let source = source_of(key.program);
+        let module = self.modules.entry(key.program).or_insert_with(|| {
+            let text = wgpu::ShaderSource::Wgsl(source.source.into());
+            device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(source.vertex), source: text })
+        });
+        let groups = self.layouts.of(key.program);
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(source.vertex),
+            bind_group_layouts: &groups.map(Some)[..key.program.group_count()],
+            ..wgpu::PipelineLayoutDescriptor::default()
+        });
+        let positions = Some(VertexBufferLayout {
+            array_stride: 16,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &POSITION_ATTRIBUTES,
+        });
+        let color_target = key.color_format.map(|format| color_target(format, key.raster.color));
+        let compilation_options = wgpu::PipelineCompilationOptions::default();
+        device.create_render_pipeline(&RenderPipelineDescriptor {
+            label: Some(source.vertex),
+            layout: Some(&layout),
+            vertex: VertexState {
+                module,
+                entry_point: Some(source.vertex),
+                compilation_options: compilation_options.clone(),
+                buffers: if key.program.pulls_vertices() { &[] } else { std::slice::from_ref(&positions) },
+            },
+            primitive: wgpu::PrimitiveState { cull_mode: key.raster.cull, ..wgpu::PrimitiveState::default() },
+            depth_stencil: key.depth_format.map(|format| depth_stencil(format, &key.raster)),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: source.fragment.map(|entry_point| FragmentState {
+                module,
+                entry_point: Some(entry_point),
+                compilation_options,
+                targets: std::slice::from_ref(&color_target),
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+impl Program {
+    /// Reads vertices from storage by index, instead of a vertex buffer.
+    pub(super) fn pulls_vertices(self) -> bool {
+        matches!(self, Program::Light { .. } | Program::Label { .. })
+    }
+
+    /// How many bind groups it uses, from group 0 on.
+    pub(super) fn group_count(self) -> usize {
+        match self {
+            Program::Position => 1,
+            Program::Ambient => 2,
+            Program::Light { .. } | Program::Label { .. } => 4,
+        }
+    }
+
+    pub(super) fn reads_map(self) -> bool {
+        matches!(self, Program::Light { reads_map: true } | Program::Label { reads_map: true })
+    }
+}
+
+fn color_target(format: TextureFormat, write: ColorWrite) -> ColorTargetState {
+    let add =
+        BlendComponent { src_factor: BlendFactor::One, dst_factor: BlendFactor::One, operation: BlendOperation::Add };
+    ColorTargetState {
+        format,
+        blend: (write == ColorWrite::Add).then_some(BlendState { color: add, alpha: add }),
+        write_mask: ColorWrites::ALL,
+    }
+}
+
+fn depth_stencil(format: TextureFormat, raster: &RasterState) -> DepthStencilState {
+    DepthStencilState {
+        format,
+        depth_write_enabled: Some(raster.depth_write),
+        depth_compare: Some(raster.depth_compare),
+        stencil: raster.stencil.clone(),
+        bias: raster.depth_bias,
+    }
+}
+
+impl Layouts {
+    fn new(device: &Device) -> Layouts {
+        let both = ShaderStages::VERTEX_FRAGMENT;
+        let uniform = |binding| entry(binding, both, BufferBindingType::Uniform, true);
+        let storage =
+            |binding| entry(binding, ShaderStages::VERTEX, BufferBindingType::Storage { read_only: true }, false);
+        let map = BindGroupLayoutEntry {
+            binding: 1,
+            visibility: ShaderStages::FRAGMENT,
+            ty: BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Depth,
+                view_dimension: wgpu::TextureViewDimension::D2Array,
+                multisampled: false,
+            },
+            count: None,
+        };
+        let layout = |label, entries: &[BindGroupLayoutEntry]| {
+            device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries })
+        };
+        Layouts {
+            view: layout("view", &[uniform(0)]),
+            draw: layout("draw", &[uniform(0)]),
+            surface: layout("surface", &[storage(0), storage(1), storage(2), storage(3)]),
+            light: layout("light", &[uniform(0)]),
+            light_with_map: layout("light with map", &[uniform(0), map]),
+        }
+    }
+
+    fn of(&self, program: Program) -> [&BindGroupLayout; 4] {
+        let light = if program.reads_map() { &self.light_with_map } else { &self.light };
+        [&self.view, &self.draw, &self.surface, light]
+    }
+}
+
+fn entry(binding: u32, visibility: ShaderStages, ty: BufferBindingType, dynamic: bool) -> BindGroupLayoutEntry {
+    let ty = BindingType::Buffer { ty, has_dynamic_offset: dynamic, min_binding_size: None };
+    BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}

@@ -1,0 +1,226 @@
+//! A plan with everything the GPU needs to run it: textures, pipelines, buffers, bind groups and
+//! the buffers that snapshots are copied to. Made once, run as often as wanted.
+
+use super::buffers::Buffers;
+use super::pipelines::{PipelineKey, Pipelines};
+use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
+use super::uniforms::{self, UniformArray};
+use super::{Context, GpuError};
+use crate::plan::{Attachment, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState};
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, Buffer, Device, RenderPipeline, Texture,
+    TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
+};
+
+/// Attachments and copies together may take this much memory; a frame of 8192 × 8192 fits.
+const MOST_BYTES: u64 = 8 << 30;
+
+/// A plan, ready to run.
+#[derive(Debug)]
+pub struct Prepared<'a> {
+    pub(super) plan: &'a FramePlan,
+    pub(super) textures: Vec<Texture>,
+    pub(super) passes: Vec<PreparedPass>,
+    pub(super) staged: Vec<StagedPass>,
+    pub(super) views: UniformArray,
+    pub(super) view_group: BindGroup,
+    pub(super) draws: UniformArray,
+    pub(super) draw_group: BindGroup,
+    pub(super) lights: UniformArray,
+}
+
+#[derive(Debug)]
+pub(super) struct PreparedPass {
+    pub color: Option<TextureView>,
+    pub depth_stencil: Option<TextureView>,
+    pub has_stencil: bool,
+    pub draws: Vec<PreparedDraw>,
+}
+
+#[derive(Debug)]
+pub(super) struct PreparedDraw {
+    pub pipeline: RenderPipeline,
+    /// Index among all draws of the plan.
+    pub index: usize,
+    pub vertices: Buffer,
+    pub indices: Buffer,
+    /// Groups 2 and 3, for programs that shade.
+    pub shading: Option<(BindGroup, BindGroup)>,
+}
+
+impl<'a> Prepared<'a> {
+    pub(super) fn new(
+        context: &Context,
+        pipelines: &mut Pipelines,
+        buffers: &mut Buffers,
+        plan: &'a FramePlan,
+    ) -> Result<Prepared<'a>, GpuError> {
+        let device = &context.device;
+        check_size(device, plan)?;
+        buffers.next_plan();
+        let textures: Vec<Texture> = plan.attachments.iter().map(|attachment| create(device, attachment)).collect();
+        let views = uniforms::views(device, plan);
+        let draws = uniforms::draws(device, plan);
+        let lights = uniforms::lights(device, plan);
+        let mut next_draw = 0..;
+        let mut passes = Vec::with_capacity(plan.passes.len());
+        for pass in &plan.passes {
+            let mut prepared = prepared_targets(plan, pass, &textures);
+            for (draw, index) in pass.draws.iter().zip(&mut next_draw) {
+                let pipeline = pipelines.get(device, &key_of(plan, pass, draw));
+                let mesh = &plan.meshes[draw.mesh.0];
+                let vertices = buffers.get(device, &mesh.vertices)?;
+                let indices = buffers.get(device, &mesh.indices)?;
+                let shading = match (&mesh.surface, pass.light, draw.program.pulls_vertices()) {
+                    (Some(surface), Some(light), true) => {
+                        let normals = buffers.get(device, &surface.normals)?;
+                        let sides = buffers.get(device, &surface.sides)?;
+                        let storage = [&vertices, &indices, &normals, &sides];
+                        let surface = surface_group(device, pipelines, storage);
+                        Some((surface, light_group(device, pipelines, plan, &lights, &textures, draw, light)))
+                    }
+                    _ => None,
+                };
+                prepared.draws.push(PreparedDraw { pipeline, index, vertices, indices, shading });
+            }
+            passes.push(prepared);
+        }
+        let staged = plan.passes.iter().map(|pass| stage(device, plan, pass, &textures)).collect::<Result<_, _>>()?;
+        let view_group = views.bind_group(device, &pipelines.layouts.view);
+        let draw_group = draws.bind_group(device, &pipelines.layouts.draw);
+        Ok(Prepared { plan, textures, passes, staged, views, view_group, draws, draw_group, lights })
+    }
+
+    /// Bytes that snapshots of the timed passes copy.
+    #[must_use]
+    pub fn snapshot_bytes(&self) -> u64 {
+        let timed = self.plan.passes.iter().zip(&self.staged).filter(|(pass, _)| pass.timed);
+        timed.flat_map(|(_, staged)| staged.iter()).map(Staging::byte_len).sum()
+    }
+}
+
+fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
+    let limit = device.limits().max_texture_dimension_2d;
+    let mut bytes = 0;
+    for attachment in &plan.attachments {
+        let [width, height] = attachment.size;
+        if width > limit || height > limit {
+            return Err(GpuError::TooLarge {
+                what: attachment.name.clone(),
+                needed: format!("{width}x{height}"),
+                most: format!("{limit}x{limit}"),
+            });
+        }
+        bytes += texel_count(attachment) * 8;
+    }
+    for pass in &plan.passes {
+        let targets = pass.color.iter().map(|target| target.attachment);
+        let targets = targets.chain(pass.depth_stencil.iter().map(|target| target.attachment));
+        bytes +=
+            targets.map(|id| texel_count(plan.attachment(id)) / u64::from(plan.attachment(id).layers) * 4).sum::<u64>();
+    }
+    if bytes > MOST_BYTES {
+        let [needed, most] = [bytes, MOST_BYTES].map(|bytes| format!("{} MiB", bytes >> 20));
+        return Err(GpuError::TooLarge { what: "the frame".to_owned(), needed, most });
+    }
+    Ok(())
+}
+
+fn texel_count(attachment: &Attachment) -> u64 {
+    u64::from(attachment.size[0]) * u64::from(attachment.size[1]) * u64::from(attachment.layers)
+}
+
+fn create(device: &Device, attachment: &Attachment) -> Texture {
+    let is_read_by_shaders = matches!(attachment.role, AttachmentRole::Map(_));
+    let reading = if is_read_by_shaders { TextureUsages::TEXTURE_BINDING } else { TextureUsages::empty() };
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(&attachment.name),
+        size: wgpu::Extent3d {
+            width: attachment.size[0],
+            height: attachment.size[1],
+            depth_or_array_layers: attachment.layers,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: attachment.format,
+        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC | reading,
+        view_formats: &[],
+    })
+}
+
+fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> PreparedPass {
+    let layer_view = |texture: &Texture, layer: u32| {
+        texture.create_view(&TextureViewDescriptor {
+            dimension: Some(TextureViewDimension::D2),
+            base_array_layer: layer,
+            array_layer_count: Some(1),
+            ..TextureViewDescriptor::default()
+        })
+    };
+    let target = pass.depth_stencil.as_ref();
+    PreparedPass {
+        color: pass.color.as_ref().map(|target| layer_view(&textures[target.attachment.0], 0)),
+        depth_stencil: target.map(|target| layer_view(&textures[target.attachment.0], target.layer)),
+        has_stencil: target.is_some_and(|target| plan.attachment(target.attachment).format.has_stencil_aspect()),
+        draws: Vec::with_capacity(pass.draws.len()),
+    }
+}
+
+fn key_of(plan: &FramePlan, pass: &Pass, draw: &Draw) -> PipelineKey {
+    let format = |id| plan.attachment(id).format;
+    PipelineKey {
+        program: draw.program,
+        raster: RasterState { stencil_reference: 0, ..draw.raster.clone() },
+        color_format: pass.color.as_ref().map(|target| format(target.attachment)),
+        depth_format: pass.depth_stencil.as_ref().map(|target| format(target.attachment)),
+    }
+}
+
+fn surface_group(device: &Device, pipelines: &Pipelines, storage: [&Buffer; 4]) -> BindGroup {
+    let bindings = (0..).zip(storage);
+    let entries: Vec<BindGroupEntry> =
+        bindings.map(|(binding, buffer)| BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
+    let layout = &pipelines.layouts.surface;
+    device.create_bind_group(&BindGroupDescriptor { label: Some("surface"), layout, entries: &entries })
+}
+
+fn light_group(
+    device: &Device,
+    pipelines: &Pipelines,
+    plan: &FramePlan,
+    lights: &UniformArray,
+    textures: &[Texture],
+    draw: &Draw,
+    light: LightId,
+) -> BindGroup {
+    let map = plan.lights[light.0].map.as_ref().filter(|_| draw.program.reads_map());
+    let Some(map) = map else { return lights.bind_group(device, &pipelines.layouts.light) };
+    let view = textures[map.attachment.0].create_view(&TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::D2Array),
+        ..TextureViewDescriptor::default()
+    });
+    let entries = &[
+        BindGroupEntry { binding: 0, resource: lights.binding() },
+        BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&view) },
+    ];
+    let layout = &pipelines.layouts.light_with_map;
+    device.create_bind_group(&BindGroupDescriptor { label: Some("light with map"), layout, entries })
+}
+
+fn stage(device: &Device, plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Result<StagedPass, GpuError> {
+    let mut staged = StagedPass::default();
+    if let (Some(target), Change::Drawn) = (&pass.color, color_change(plan, pass)) {
+        staged.color = Some(Staging::new(device, &textures[target.attachment.0], 0, TextureAspect::All)?);
+    }
+    if let Some(target) = &pass.depth_stencil {
+        let texture = &textures[target.attachment.0];
+        if depth_change(pass) == Change::Drawn {
+            staged.depth = Some(Staging::new(device, texture, target.layer, TextureAspect::DepthOnly)?);
+        }
+        if stencil_change(pass) == Change::Drawn {
+            staged.stencil = Some(Staging::new(device, texture, target.layer, TextureAspect::StencilOnly)?);
+        }
+    }
+    Ok(staged)
+}

@@ -1,0 +1,169 @@
+//! Snapshots: which aspects a pass changes, and how they come back.
+//!
+//! What a pass can't have changed is known from its state, and a cleared aspect that nothing drew
+//! into is known from its clear value: neither is copied. The rest is copied to a mappable buffer
+//! between passes, in the frame's own command buffer. A mapped buffer becomes the picture's memory.
+
+use super::{Context, GpuError};
+use crate::capture::{Image, PixelFormat};
+use crate::plan::{AttachmentRole, ColorWrite, FramePlan, Pass};
+use bytes::Bytes;
+use std::sync::Arc;
+use wgpu::{Buffer, BufferUsages, BufferView, CommandEncoder, Device, MapMode, Texture, TextureAspect};
+
+const ROW_ALIGNMENT: usize = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize;
+
+/// What a pass leaves in an aspect of its targets.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Change {
+    Unchanged,
+    /// Every texel has these bytes.
+    Uniform(Vec<u8>),
+    Drawn,
+}
+
+/// What a pass leaves in its colour target.
+pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> Change {
+    let Some(target) = &pass.color else { return Change::Unchanged };
+    let is_drawn = pass.draws.iter().any(|draw| draw.raster.color != ColorWrite::None);
+    let texel = |value: [f64; 4]| match plan.attachment(target.attachment).role {
+        AttachmentRole::Labels(_) => vec![value[0] as u8],
+        _ => vec![srgb_byte(value[0]), srgb_byte(value[1]), srgb_byte(value[2]), (value[3] * 255.0).round() as u8],
+    };
+    change(is_drawn, target.clear.map(texel))
+}
+
+/// What a pass leaves in the depth aspect of its target.
+pub(super) fn depth_change(pass: &Pass) -> Change {
+    let clear = pass.depth_stencil.as_ref().and_then(|target| target.clear_depth);
+    let is_drawn = pass.draws.iter().any(|draw| draw.raster.depth_write);
+    change(is_drawn, clear.map(|depth| depth.to_le_bytes().to_vec()))
+}
+
+/// What a pass leaves in the stencil aspect of its target.
+pub(super) fn stencil_change(pass: &Pass) -> Change {
+    let clear = pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil);
+    let is_drawn = pass.draws.iter().any(|draw| draw.raster.writes_stencil());
+    change(is_drawn, clear.map(|stencil| vec![stencil]))
+}
+
+fn change(is_drawn: bool, clear: Option<Vec<u8>>) -> Change {
+    match (is_drawn, clear) {
+        (true, _) => Change::Drawn,
+        (false, Some(texel)) => Change::Uniform(texel),
+        (false, None) => Change::Unchanged,
+    }
+}
+
+/// Linear to sRGB (IEC 61966-2-1), as the GPU does when it clears.
+fn srgb_byte(linear: f64) -> u8 {
+    let encoded = if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (encoded.clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
+/// One aspect of one layer of a texture, and the buffer that it is copied to.
+#[derive(Debug)]
+pub(super) struct Staging {
+    texture: Texture,
+    layer: u32,
+    aspect: TextureAspect,
+    format: PixelFormat,
+    row_stride: usize,
+    buffer: Buffer,
+}
+
+impl Staging {
+    pub fn new(device: &Device, texture: &Texture, layer: u32, aspect: TextureAspect) -> Result<Staging, GpuError> {
+        let format = match (texture.format(), aspect) {
+            (wgpu::TextureFormat::Rgba8UnormSrgb, _) => PixelFormat::Rgba8Srgb,
+            (wgpu::TextureFormat::R8Uint, _) | (_, TextureAspect::StencilOnly) => PixelFormat::U8,
+            _ => PixelFormat::Depth32F,
+        };
+        let row_stride = (texture.width() as usize * format.texel_bytes()).next_multiple_of(ROW_ALIGNMENT);
+        let size = (row_stride * texture.height() as usize) as u64;
+        let most = device.limits().max_buffer_size;
+        if size > most {
+            let [needed, most] = [size, most].map(|bytes| format!("{bytes} bytes"));
+            return Err(GpuError::TooLarge { what: "the picture's copy".to_owned(), needed, most });
+        }
+        let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+        let descriptor = wgpu::BufferDescriptor { label: Some("snapshot"), size, usage, mapped_at_creation: false };
+        let buffer = device.create_buffer(&descriptor);
+        Ok(Staging { texture: texture.clone(), layer, aspect, format, row_stride, buffer })
+    }
+
+    /// Bytes of the copy, padding included.
+    pub fn byte_len(&self) -> u64 {
+        self.buffer.size()
+    }
+
+    /// Records the copy.
+    pub fn record(&self, encoder: &mut CommandEncoder) {
+        let source = wgpu::TexelCopyTextureInfo {
+            texture: &self.texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d { x: 0, y: 0, z: self.layer },
+            aspect: self.aspect,
+        };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(self.row_stride as u32),
+            rows_per_image: None,
+        };
+        let target = wgpu::TexelCopyBufferInfo { buffer: &self.buffer, layout };
+        let size =
+            wgpu::Extent3d { width: self.texture.width(), height: self.texture.height(), depth_or_array_layers: 1 };
+        encoder.copy_texture_to_buffer(source, target, size);
+    }
+
+    /// Asks for the copy to be mapped once the GPU is done; [`Context::wait`] makes it so.
+    pub fn request_map(&self) {
+        // A failure shows when the mapped range is asked for.
+        self.buffer.map_async(MapMode::Read, .., |_| {});
+    }
+
+    /// Gives a mapped buffer back to the GPU.
+    pub fn unmap(&self) {
+        self.buffer.unmap();
+    }
+
+    /// The picture, in the mapped buffer's own memory.
+    pub fn image(&self) -> Result<Arc<Image>, GpuError> {
+        let size = [self.texture.width(), self.texture.height()];
+        Ok(Arc::new(Image::from_rows(self.format, size, self.row_stride, mapped_bytes(&self.buffer)?)))
+    }
+}
+
+/// The memory of a mapped buffer, which stays mapped as long as the bytes live.
+pub(super) fn mapped_bytes(buffer: &Buffer) -> Result<Bytes, GpuError> {
+    let view = buffer.get_mapped_range(..).map_err(|error| GpuError::Driver(error.to_string()))?;
+    Ok(Bytes::from_owner(Mapped(view)))
+}
+
+struct Mapped(BufferView);
+
+impl AsRef<[u8]> for Mapped {
+    fn as_ref(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+/// Copies of a frame in the order of its passes.
+#[derive(Debug, Default)]
+pub(super) struct StagedPass {
+    pub color: Option<Staging>,
+    pub depth: Option<Staging>,
+    pub stencil: Option<Staging>,
+}
+
+impl StagedPass {
+    pub fn iter(&self) -> impl Iterator<Item = &Staging> {
+        [&self.color, &self.depth, &self.stencil].into_iter().flatten()
+    }
+}
+
+/// Milliseconds between pairs of timestamps.
+pub(super) fn milliseconds(context: &Context, ticks: &[u64]) -> Vec<Option<f64>> {
+    let per_tick = context.timestamp_period.map(|nanoseconds| f64::from(nanoseconds) * 1e-6);
+    ticks.chunks_exact(2).map(|pair| per_tick.map(|ms| pair[1].saturating_sub(pair[0]) as f64 * ms)).collect()
+}

@@ -1,0 +1,141 @@
+//! The plan's small values as the shaders' structs, packed into one buffer each.
+
+use crate::plan::{Draw, FramePlan, PlanLight, Program};
+use crate::scene::Shading;
+use bytemuck::{Pod, Zeroable};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, Buffer, BufferBinding, BufferUsages, Device,
+};
+
+const NOT_REVERSED: u32 = u32::MAX;
+
+/// `View` of `shared.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct ViewUniform {
+    clip_from_relative: [f32; 16],
+    ambient: [f32; 4],
+}
+
+/// `DrawConstants` of `draw.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct DrawUniform {
+    color: [f32; 3],
+    specular: f32,
+    shininess: f32,
+    shading: u32,
+    label: u32,
+    reversed_sum: u32,
+}
+
+/// `Light` of `surface.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct LightUniform {
+    position: [f32; 4],
+    color: [f32; 3],
+    range: f32,
+    index: u32,
+    face_count: u32,
+    padding: [u32; 2],
+    clip_from_relative: [[f32; 16]; 6],
+}
+
+/// One struct an element, each at an offset that a dynamic binding may have.
+#[derive(Debug)]
+pub(super) struct UniformArray {
+    pub buffer: Buffer,
+    stride: u32,
+    size: u64,
+}
+
+impl UniformArray {
+    fn new<T: Pod>(device: &Device, label: &str, elements: &[T]) -> UniformArray {
+        let size = size_of::<T>();
+        let alignment = device.limits().min_uniform_buffer_offset_alignment as usize;
+        let stride = size.next_multiple_of(alignment);
+        let mut contents = vec![0; stride * elements.len().max(1)];
+        for (slot, element) in contents.chunks_exact_mut(stride).zip(elements) {
+            slot[..size].copy_from_slice(bytemuck::bytes_of(element));
+        }
+        let usage = BufferUsages::UNIFORM;
+        let buffer =
+            device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents: &contents, usage });
+        UniformArray { buffer, stride: stride as u32, size: size as u64 }
+    }
+
+    /// What the dynamic binding refers to.
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        let size = std::num::NonZeroU64::new(self.size);
+        wgpu::BindingResource::Buffer(BufferBinding { buffer: &self.buffer, offset: 0, size })
+    }
+
+    /// A bind group of this array alone.
+    pub fn bind_group(&self, device: &Device, layout: &BindGroupLayout) -> BindGroup {
+        let entries = &[BindGroupEntry { binding: 0, resource: self.binding() }];
+        device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries })
+    }
+
+    /// The dynamic offset of an element.
+    pub fn offset(&self, index: usize) -> u32 {
+        index as u32 * self.stride
+    }
+}
+
+pub(super) fn views(device: &Device, plan: &FramePlan) -> UniformArray {
+    let [r, g, b] = plan.ambient;
+    let view = |view: &crate::plan::PlanView| ViewUniform {
+        clip_from_relative: view.clip_from_relative.to_cols_array(),
+        ambient: [r, g, b, 0.0],
+    };
+    UniformArray::new(device, "views", &plan.views.iter().map(view).collect::<Vec<_>>())
+}
+
+/// All draws of all passes, in order.
+pub(super) fn draws(device: &Device, plan: &FramePlan) -> UniformArray {
+    let draws = plan.passes.iter().flat_map(|pass| &pass.draws);
+    UniformArray::new(device, "draws", &draws.map(draw_uniform).collect::<Vec<_>>())
+}
+
+fn draw_uniform(draw: &Draw) -> DrawUniform {
+    let material = &draw.constants.material;
+    let is_label = matches!(draw.program, Program::Label { .. });
+    DrawUniform {
+        color: material.color,
+        specular: material.specular,
+        shininess: material.shininess,
+        shading: match material.shading {
+            Shading::Flat => 0,
+            Shading::Gouraud => 1,
+            Shading::Phong => 2,
+        },
+        label: draw.constants.label,
+        reversed_sum: if is_label { draw.triangles.start + draw.triangles.end - 1 } else { NOT_REVERSED },
+    }
+}
+
+pub(super) fn lights(device: &Device, plan: &FramePlan) -> UniformArray {
+    let lights = plan.lights.iter().enumerate();
+    UniformArray::new(device, "lights", &lights.map(|(index, light)| light_uniform(index, light)).collect::<Vec<_>>())
+}
+
+fn light_uniform(index: usize, light: &PlanLight) -> LightUniform {
+    let mut clip_from_relative = [[0.0; 16]; 6];
+    let faces = light.map.iter().flat_map(|map| &map.clip_from_relative);
+    let mut face_count = 0;
+    for (slot, face) in clip_from_relative.iter_mut().zip(faces) {
+        *slot = face.to_cols_array();
+        face_count += 1;
+    }
+    LightUniform {
+        position: light.relative_position,
+        color: light.color,
+        range: light.range.unwrap_or(0.0),
+        index: index as u32,
+        face_count,
+        padding: [0; 2],
+        clip_from_relative,
+    }
+}
