@@ -19,4 +19,5 @@ pub mod math;
 pub mod plan;
 pub mod scene;
 pub mod session;
+pub mod stencil_machine;
 pub mod technique;

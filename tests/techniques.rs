@@ -3,21 +3,253 @@
 mod common;
 
 use common::{cuboid, from_above, label_counts, request, session, square};
+use glam::DVec3;
+use stencilscope::capture::{Capture, Snapshot};
+use stencilscope::scene::{Light, Object, Pose, Scene};
+use stencilscope::session::Session;
 use stencilscope::technique::Technique;
 
 const SHADOWING: [Technique; 4] = [Technique::Planar, Technique::ZPass, Technique::ZFail, Technique::ShadowMap];
+const VOLUMES: [Technique; 2] = [Technique::ZPass, Technique::ZFail];
+/// The eye 10 above the floor sees 20 × 20 units: ten pixels a unit.
+const SIZE: [u32; 2] = [200, 200];
 
-/// The eye 10 above sees 20 × 20 units on 200 × 200 pixels. A square of half-width 1 at height 2,
-/// halfway to the light, throws a square of half-width 2: 40 × 40 pixels, of which the square
-/// itself, 8 from the eye, hides 25 × 25.
+fn capture(session: &mut Session, scene: &Scene, technique: Technique) -> Capture {
+    session.capture(scene, &request(technique, SIZE)).expect("a capture")
+}
+
+fn label_at(capture: &Capture, x: f64, z: f64) -> u8 {
+    let pixel = |world: f64| (100.0 + world * 10.0) as u32;
+    capture.lights[0].shadow.as_ref().and_then(|image| image.byte_at([pixel(x), pixel(z)])).expect("a label")
+}
+
+fn stencil_after(capture: &Capture, name: &str) -> Vec<u8> {
+    let step = capture.steps.iter().find(|step| step.name == name).expect("the pass");
+    let Snapshot::Frame(frame) = &step.snapshot else { panic!("a frame") };
+    frame.stencil.as_ref().expect("a stencil").image.rows().flatten().copied().collect()
+}
+
+/// Of half-width 1 at height 2, halfway to the light, it throws a square of half-width 2: 40 × 40
+/// pixels, of which the caster itself, 8 below the eye, hides 25 × 25.
 #[test]
 fn a_square_halfway_to_the_light_throws_a_square_twice_its_size() {
     let mut session = session();
     let scene = from_above(vec![square("caster", 2.0, 1.0)]);
     for technique in SHADOWING {
-        let capture = session.capture(&scene, &request(technique, [200, 200])).expect("a capture");
-        let [lit, shadow, background, away] = label_counts(&capture);
-        println!("{technique:?}: {lit} {shadow} {background} {away}");
-        assert_eq!(shadow, 40 * 40 - 25 * 25, "{technique:?}");
+        let [lit, shadow, background, away] = label_counts(&capture(&mut session, &scene, technique));
+        assert_eq!([lit, shadow, background, away], [200 * 200 - 975, 40 * 40 - 25 * 25, 0, 0], "{technique:?}");
     }
+}
+
+#[test]
+fn without_shadows_everything_that_faces_the_light_is_lit() {
+    let scene = from_above(vec![square("caster", 2.0, 1.0)]);
+    assert_eq!(label_counts(&capture(&mut session(), &scene, Technique::None)), [200 * 200, 0, 0, 0]);
+}
+
+/// The light stands at 45°, so the square's shadow of its own size moves by its height.
+#[test]
+fn a_directional_light_throws_a_shadow_of_the_same_size() {
+    let mut session = session();
+    let mut scene = from_above(vec![square("caster", 5.0, 1.0)]);
+    scene.lights = vec![Light::directional(DVec3::new(-1.0, 1.0, 0.0))];
+    for technique in SHADOWING {
+        let capture = capture(&mut session, &scene, technique);
+        assert_eq!(label_counts(&capture), [200 * 200 - 400, 400, 0, 0], "{technique:?}");
+        assert_eq!(label_at(&capture, 5.0, 0.0), 1, "{technique:?}");
+    }
+}
+
+/// Turned triangles, mirrored objects and open meshes cast like the closed, outward box.
+#[test]
+fn winding_and_holes_do_not_change_a_shadow() {
+    let mut session = session();
+    let reference = cuboid("caster", [-1.0, 1.0, -1.0], [1.0, 2.0, 1.0]);
+    let turned = |keep: fn(usize) -> bool, turn: fn(usize) -> bool| {
+        let mesh = &reference.mesh;
+        let positions: Vec<[f64; 3]> = mesh.positions().iter().map(|p| p.to_array()).collect();
+        let triangles = mesh.triangles().iter().enumerate().filter(|(index, _)| keep(*index));
+        let triangles: Vec<[u32; 3]> =
+            triangles.map(|(index, &[a, b, c])| if turn(index) { [a, c, b] } else { [a, b, c] }).collect();
+        Object { mesh: common::mesh(&positions, &triangles), ..reference.clone() }
+    };
+    let mirrored = Pose { scale: DVec3::new(-1.0, 1.0, 1.0), ..Pose::default() };
+    let variants = [
+        reference.clone(),
+        turned(|_| true, |_| true),
+        turned(|_| true, |index| index % 3 == 0),
+        Object { pose: mirrored, ..reference.clone() },
+        // Without its bottom, triangles 4 and 5.
+        turned(|index| index != 4 && index != 5, |index| index % 2 == 0),
+    ];
+    let expected = label_counts(&capture(&mut session, &from_above(vec![reference.clone()]), Technique::ZFail));
+    assert!(expected[1] > 500, "{expected:?}");
+    for (index, variant) in variants.into_iter().enumerate() {
+        let scene = from_above(vec![variant]);
+        for technique in VOLUMES {
+            assert_eq!(label_counts(&capture(&mut session, &scene, technique)), expected, "{index} {technique:?}");
+        }
+    }
+}
+
+#[test]
+fn z_pass_and_z_fail_leave_the_same_count_where_the_eye_is_outside() {
+    let mut session = session();
+    let scene = from_above(vec![cuboid("box", [-1.0, 1.0, -1.0], [1.0, 2.0, 0.5]), square("sheet", 0.5, 2.0)]);
+    let [z_pass, z_fail] = VOLUMES.map(|technique| stencil_after(&capture(&mut session, &scene, technique), "volumes"));
+    assert_eq!(z_pass, z_fail);
+    // A closed box counts twice, the sheet under it once.
+    assert!([0, 1, 2].iter().all(|count| z_fail.contains(count)) && z_fail.iter().all(|count| *count <= 3));
+}
+
+/// A roof over the eye but not under it: the eye is inside its shadow volume.
+#[test]
+fn z_fail_holds_with_the_eye_inside_a_volume_and_z_pass_does_not() {
+    let mut session = session();
+    let mut scene = from_above(vec![square("roof", 12.0, 1.0)]);
+    scene.lights = vec![Light::point(DVec3::new(0.0, 14.0, 0.0))];
+    // The roof's shadow on the floor: half-width 1 · 14 / 2 = 7.
+    let right = [200 * 200 - 140 * 140, 140 * 140, 0, 0];
+    for technique in [Technique::ZFail, Technique::Planar, Technique::ShadowMap] {
+        assert_eq!(label_counts(&capture(&mut session, &scene, technique)), right, "{technique:?}");
+    }
+    let [_, shadow, _, _] = label_counts(&capture(&mut session, &scene, Technique::ZPass));
+    assert_ne!(shadow, right[1], "z-pass miscounts by the volume that the eye is in");
+}
+
+#[test]
+fn an_undrawn_caster_casts_and_one_that_does_not_cast_does_not() {
+    let mut session = session();
+    let hidden = Object { visible: false, ..square("caster", 2.0, 1.0) };
+    let ghost = Object { casts: false, ..square("caster", 2.0, 1.0) };
+    for technique in SHADOWING {
+        let shadow = label_counts(&capture(&mut session, &from_above(vec![hidden.clone()]), technique))[1];
+        assert_eq!(shadow, 40 * 40, "{technique:?}");
+        let shadow = label_counts(&capture(&mut session, &from_above(vec![ghost.clone()]), technique))[1];
+        assert_eq!(shadow, 0, "{technique:?}");
+    }
+}
+
+#[test]
+fn what_does_not_receive_is_lit_as_if_nothing_stood_between() {
+    let mut session = session();
+    let mut scene = from_above(vec![square("caster", 2.0, 1.0)]);
+    scene.objects[0].receives = false;
+    for technique in SHADOWING {
+        let capture = capture(&mut session, &scene, technique);
+        assert_eq!(label_counts(&capture), [200 * 200, 0, 0, 0], "{technique:?}");
+        let unshadowed = self::capture(&mut session, &scene, Technique::None);
+        let last = |capture: &Capture| capture.frame_at(capture.steps.len() - 1).expect("a frame").color.image.clone();
+        assert_eq!(last(&capture), last(&unshadowed), "{technique:?}");
+    }
+}
+
+/// Labels of a light do not depend on the lights before it: the stencil starts clean for each.
+#[test]
+fn lights_do_not_disturb_each_other() {
+    let mut session = session();
+    let mut scene = from_above(vec![square("caster", 2.0, 1.0)]);
+    let lights = [Light::point(DVec3::new(3.0, 4.0, 0.0)), Light::directional(DVec3::new(0.0, 1.0, 1.0))];
+    for technique in SHADOWING {
+        let alone = lights.clone().map(|light| {
+            scene.lights = vec![light];
+            capture(&mut session, &scene, technique).lights[0].shadow.clone()
+        });
+        scene.lights = lights.to_vec();
+        let together = capture(&mut session, &scene, technique);
+        for (index, alone) in alone.iter().enumerate() {
+            assert_eq!(together.lights[index].shadow, *alone, "{technique:?} light {index}");
+        }
+    }
+}
+
+/// The box's top faces the light, its sides do not face light and eye alike from straight above;
+/// a ramp turned from the light does.
+#[test]
+fn a_surface_turned_from_the_light_faces_away() {
+    let mut session = session();
+    let mut ramp = square("ramp", 0.0, 1.0);
+    ramp.pose.rotate_degrees.z = 80.0;
+    ramp.pose.translate = DVec3::new(5.0, 1.0, 0.0);
+    let scene = from_above(vec![ramp]);
+    for technique in SHADOWING {
+        let capture = capture(&mut session, &scene, technique);
+        let [_, _, background, away] = label_counts(&capture);
+        assert!(away == 0 && background == 0, "its front faces both");
+    }
+    let mut scene = scene;
+    scene.lights = vec![Light::point(DVec3::new(9.0, 1.0, 0.0))];
+    for technique in SHADOWING {
+        let away = label_counts(&capture(&mut session, &scene, technique))[3];
+        assert!(away > 50, "its back faces the light, its front the eye: {away}, {technique:?}");
+    }
+}
+
+/// Pushed the right way, the map leaves a tilted surface lit; pushed towards the light, it darkens it.
+#[test]
+fn the_shadow_map_bias_pushes_away_from_the_light() {
+    let mut session = session();
+    let mut plate = square("plate", 0.0, 3.0);
+    plate.pose.rotate_degrees.z = 40.0;
+    plate.pose.translate.y = 3.0;
+    let mut scene = from_above(vec![plate]);
+    scene.lights = vec![Light::point(DVec3::new(-2.0, 9.0, 0.0))];
+    let mut request = request(Technique::ShadowMap, SIZE);
+    let mut shadow_with = |bias: &str| {
+        request.choice.set("bias-slope", bias).expect("a bias");
+        request.choice.set("size", "128").expect("a size");
+        let capture = session.capture(&scene, &request).expect("a capture");
+        // Pixels of the plate around its middle, where nothing is above it.
+        (-10..10)
+            .flat_map(|x| (-10..10).map(move |z| (x, z)))
+            .filter(|(x, z)| label_at(&capture, f64::from(*x) / 10.0, f64::from(*z) / 10.0) == 1)
+            .count()
+    };
+    assert_eq!(shadow_with("2.0"), 0);
+    assert!(shadow_with("-2.0") > 300, "{}", shadow_with("-2.0"));
+}
+
+/// Rows of a picture are padded on the GPU: no width may show it.
+#[test]
+fn pictures_of_any_width_are_symmetric_like_their_scene() {
+    let mut session = session();
+    let scene = from_above(vec![square("caster", 2.0, 1.0)]);
+    for size in [[1, 1], [63, 65], [64, 64], [65, 63], [257, 131], [31, 257]] {
+        let capture = session.capture(&scene, &request(Technique::ZFail, size)).expect("a capture");
+        let frame = capture.frame_at(capture.steps.len() - 1).expect("a frame");
+        let labels = capture.lights[0].shadow.as_ref().expect("labels");
+        let depth = &capture.frame_at(0).expect("a frame").depth.image;
+        let mut shadow = 0;
+        for y in 0..size[1] {
+            for x in 0..size[0] {
+                let mirrored = [size[0] - 1 - x, y];
+                assert_eq!(labels.byte_at([x, y]), labels.byte_at(mirrored), "{size:?} {x} {y}");
+                assert_eq!(depth.depth_at([x, y]).is_some_and(|d| d > 0.0), true, "{size:?} {x} {y}");
+                assert_eq!(frame.color.image.rgba_at([x, y]).map(|c| c[3]), Some(255), "{size:?} {x} {y}");
+                shadow += u64::from(labels.byte_at([x, y]) == Some(1));
+            }
+        }
+        assert!(size == [1, 1] || shadow > 0, "{size:?}");
+    }
+}
+
+/// A light in a room with boxes all round needs a cube, and a face that sees no caster is left out.
+#[test]
+fn casters_all_round_make_a_cube_map_without_its_empty_faces() {
+    let mut session = session();
+    let boxes = [[4.0, 0.0], [-4.0, 0.0], [0.0, 4.0], [0.0, -4.0]];
+    let boxes = boxes.map(|[x, z]| cuboid("box", [x - 0.5, 0.0, z - 0.5], [x + 0.5, 3.5, z + 0.5]));
+    let scene = from_above(boxes.to_vec());
+    let request = request(Technique::ShadowMap, SIZE);
+    let plan = session.plan(&scene, &request).expect("a plan");
+    let faces = &plan.lights[0].map.as_ref().expect("a map").faces;
+    assert_eq!(faces.iter().map(Option::is_some).collect::<Vec<_>>(), [true, true, false, true, true, true]);
+    assert!(plan.left_out.iter().any(|left| left.what == "map +y"));
+    let map = session.capture(&scene, &request).expect("a capture");
+    let volumes = capture(&mut session, &scene, Technique::ZFail);
+    let labels = |capture: &Capture| capture.lights[0].shadow.clone().expect("labels");
+    let (by_map, by_volumes) = (labels(&map), labels(&volumes));
+    let differing = by_map.rows().flatten().zip(by_volumes.rows().flatten()).filter(|(a, b)| a != b).count();
+    assert!(differing < 50, "only texels at shadow edges differ: {differing}");
+    assert!(label_counts(&volumes)[1] > 2000);
 }

@@ -5,7 +5,9 @@
 //! and reports) reads it. An aspect that a pass did not change is shared with the step before.
 
 pub mod disk;
+mod files;
 mod image;
+mod manifest;
 
 pub use disk::CaptureError;
 pub use image::{Image, PixelFormat};

@@ -1,6 +1,6 @@
 //! Checks a plan without a GPU: what would be a driver error, or silently wrong, is named here.
 
-use super::{AttachmentRole, Draw, FramePlan, Pass, Program};
+use super::{AttachmentRole, Draw, DrawMesh, FramePlan, Pass, Program};
 
 /// A rule that a plan breaks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -17,14 +17,19 @@ pub struct LintError {
 /// Every broken rule, in the order of passes.
 #[must_use]
 pub fn check(plan: &FramePlan) -> Vec<LintError> {
+    let in_range = |mesh: &DrawMesh| {
+        let vertex_count = mesh.vertices.data().len();
+        mesh.indices.data().iter().all(|index| (*index as usize) < vertex_count)
+    };
+    let meshes_in_range: Vec<bool> = plan.meshes.iter().map(in_range).collect();
     let problems = |(index, pass): (usize, &Pass)| {
         let error = move |problem| LintError { pass: index, name: pass.name.clone(), problem };
-        check_pass(plan, pass).into_iter().map(error).collect::<Vec<_>>()
+        check_pass(plan, pass, &meshes_in_range).into_iter().map(error).collect::<Vec<_>>()
     };
     plan.passes.iter().enumerate().flat_map(problems).collect()
 }
 
-fn check_pass(plan: &FramePlan, pass: &Pass) -> Vec<String> {
+fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<String> {
     let mut problems = Vec::new();
     if plan.views.get(pass.view.0).is_none() {
         problems.push("its view does not exist".to_owned());
@@ -48,6 +53,9 @@ fn check_pass(plan: &FramePlan, pass: &Pass) -> Vec<String> {
         }
     }
     for draw in &pass.draws {
+        if meshes_in_range.get(draw.mesh.0) == Some(&false) {
+            problems.push(format!("{}: an index of its mesh is out of range", draw.name));
+        }
         problems.extend(check_draw(plan, pass, draw, has_stencil).into_iter().map(|p| format!("{}: {p}", draw.name)));
     }
     problems
@@ -63,10 +71,8 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
     let Some(mesh) = plan.meshes.get(draw.mesh.0) else {
         return vec!["its mesh does not exist".to_owned()];
     };
-    let indices = mesh.indices.data();
     demand(draw.triangles.start < draw.triangles.end, "it draws nothing: leave it out");
-    demand(draw.triangles.end as usize * 3 <= indices.len(), "it runs past the end of its mesh");
-    demand(indices.iter().all(|index| (*index as usize) < mesh.vertices.data().len()), "an index is out of range");
+    demand(draw.triangles.end as usize * 3 <= mesh.indices.data().len(), "it runs past the end of its mesh");
     demand(has_stencil || !draw.raster.stencil.is_enabled(), "it tests a stencil that its pass does not have");
     let writes_color = draw.raster.color != super::ColorWrite::None;
     demand(

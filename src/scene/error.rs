@@ -22,4 +22,22 @@ pub enum SceneError {
         /// What is wrong and how to mend it.
         reason: String,
     },
+    /// A line of the file is wrong.
+    #[error("{}:{line}: {reason}", file.display())]
+    Line {
+        /// Which file.
+        file: PathBuf,
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong and how to mend it.
+        reason: String,
+    },
+    /// Neither a built-in scene nor a file that can be one.
+    #[error("no scene is called `{name}`: {hint}")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// The nearest name, or what there is.
+        hint: String,
+    },
 }

@@ -15,6 +15,8 @@ mod model_scene;
 pub mod obj;
 mod object;
 mod open;
+mod placement;
+mod read_text;
 
 pub use camera::Camera;
 pub use error::SceneError;
@@ -23,7 +25,7 @@ pub use material::{Material, Shading};
 pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
 pub use model_scene::model_scene;
 pub use object::{Motion, Object, Orbit, Pose};
-pub use open::open;
+pub use open::{OpenSpec, open};
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,66 @@
-//! To come.
-use super::Scene;
-pub fn model_scene() -> Option<Scene> {
-    None
+//! A scene around a bare model: floor, light and camera from its bounds.
+
+use super::placement::Surroundings;
+use super::{Material, Mesh, MeshBuilder, Object, Scene, SceneError, Shading};
+use glam::DVec3;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Half the floor's width, in sums of the model's three extents.
+const FLOOR_REACH: f64 = 5.0;
+/// The floor's distance below the model, in the same unit: enough to tell their depths apart.
+const FLOOR_GAP: f64 = 0.01;
+/// Positions become `f32` beyond this file, and products of three of them must stay finite.
+const MOST_EXTENT: f64 = 1e12;
+const LEAST_EXTENT: f64 = 1e-12;
+
+const TERRACOTTA: [f32; 3] = [0.62, 0.23, 0.12];
+const WARM_GREY: [f32; 3] = [0.60, 0.57, 0.52];
+const AMBIENT: [f32; 3] = [0.13, 0.13, 0.14];
+
+/// Completes a model to a scene: a point light, a camera and, with `floor`, a level square that
+/// casts and receives like any object.
+///
+/// # Errors
+/// A mesh without triangles, or one so large or small that single precision can't show it.
+pub fn model_scene(name: &str, mesh: Mesh, floor: bool) -> Result<Scene, SceneError> {
+    let unusable = |reason: &str| SceneError::Read { file: PathBuf::from(name), reason: reason.to_owned() };
+    let surroundings = Surroundings::of(mesh.positions())
+        .ok_or_else(|| unusable("has no surface whose size can be told: give a model with triangles"))?;
+    if surroundings.extent() > MOST_EXTENT {
+        return Err(unusable("is too large: scale it down"));
+    }
+    if surroundings.extent() < LEAST_EXTENT {
+        return Err(unusable("is too small: scale it up"));
+    }
+    let shading = if mesh.corner_normals().is_some() { Shading::Phong } else { Shading::Flat };
+    let material = Material { color: TERRACOTTA, specular: 0.12, shininess: 24.0, shading, ..Material::default() };
+    let camera = surroundings.camera(mesh.positions());
+    let model = Object::new(name, Arc::new(mesh), material);
+    let mut objects = vec![model];
+    if floor {
+        objects.push(floor_under(&surroundings)?);
+    }
+    Ok(Scene {
+        name: name.to_owned(),
+        ambient: AMBIENT,
+        camera,
+        lights: vec![surroundings.light()],
+        objects,
+        technique: None,
+    })
+}
+
+/// Around the model's own origin, facing up.
+fn floor_under(model: &Surroundings) -> Result<Object, SceneError> {
+    let half = FLOOR_REACH * model.extent();
+    let y = model.lowest() - FLOOR_GAP * model.extent();
+    let corners = [[-half, y, half], [half, y, half], [half, y, -half], [-half, y, -half]];
+    let builder = MeshBuilder {
+        positions: corners.map(DVec3::from_array).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..MeshBuilder::default()
+    };
+    let mesh = builder.build().map_err(|source| SceneError::Mesh { name: "floor".to_owned(), source })?;
+    Ok(Object::new("floor", Arc::new(mesh), Material { color: WARM_GREY, ..Material::default() }))
 }

@@ -1,1 +1,141 @@
-//! To come.
+//! OBJ models.
+//!
+//! [`load`] checks every line first ([`text`]), lets `tobj` read what is left, and cuts faces into
+//! triangles ([`polygon`]). The whole file is one mesh, whatever groups it has: `tobj` splits it
+//! at `o`, `g` and `usemtl`, and the mesh's weld joins it again, so that what is closed stays
+//! closed. The parts stay known as [`Group`]s.
+
+mod materials;
+mod polygon;
+mod text;
+
+use super::read_text::read_text;
+use super::{Group, Mesh, MeshBuilder, SceneError, Shading};
+use glam::{DVec3, Vec3};
+use std::path::Path;
+
+/// Loads a model as one mesh. It has corner normals if any face of the file has them; faces
+/// without get their own.
+///
+/// # Errors
+/// A missing file, a folder, a file that is not text, empty or without faces; a number that is
+/// not finite, an index out of range, a face with fewer than three corners, with its line.
+pub fn load(file: &Path) -> Result<Mesh, SceneError> {
+    let raw = read_text(file, "OBJ model")?;
+    let folder = file.parent().unwrap_or(Path::new(""));
+    parse(&raw, folder).map_err(|problem| match problem {
+        ObjProblem::Line(text::LineProblem { line, reason }) => {
+            SceneError::Line { file: file.to_owned(), line, reason }
+        }
+        ObjProblem::File(reason) => SceneError::Read { file: file.to_owned(), reason },
+    })
+}
+
+/// What is wrong with the text of a model.
+#[derive(Debug, PartialEq, Eq)]
+enum ObjProblem {
+    Line(text::LineProblem),
+    File(String),
+}
+
+/// Material libraries are looked for in `folder`.
+fn parse(raw: &str, folder: &Path) -> Result<Mesh, ObjProblem> {
+    let cleaned = text::clean(raw).map_err(ObjProblem::Line)?;
+    if cleaned.has_normals.is_empty() {
+        return Err(ObjProblem::File("has no faces: export the surface as `f` lines".to_owned()));
+    }
+    let load_library = |name: &Path| materials::load_library(&folder.join(name));
+    let (models, libraries) =
+        tobj::load_obj_buf(&mut cleaned.text.as_bytes(), &tobj::LoadOptions::default(), load_library)
+            .map_err(|error| ObjProblem::File(format!("can't be read as OBJ: {error}; export it again")))?;
+    // A library that can't be read costs colours only.
+    let libraries = libraries.unwrap_or_default();
+    let mesh = assemble(&models, &libraries, &cleaned.has_normals).build();
+    let mesh = mesh.map_err(|error| ObjProblem::File(error.to_string()))?;
+    if mesh.triangles().is_empty() {
+        return Err(ObjProblem::File("has no triangle with three different corners: export its surface".to_owned()));
+    }
+    Ok(mesh)
+}
+
+/// Joins the parts of a file. `has_normals` has one entry a face, in the file's order.
+fn assemble(models: &[tobj::Model], libraries: &[tobj::Material], has_normals: &[bool]) -> MeshBuilder {
+    let is_smooth = has_normals.contains(&true);
+    let shading = if is_smooth { Shading::Phong } else { Shading::Flat };
+    let mut builder = MeshBuilder::default();
+    let mut faces_have_normals = has_normals.iter().copied();
+    for model in models {
+        let start = builder.triangles.len();
+        let first_vertex = builder.positions.len() as u32;
+        let positions: Vec<DVec3> = model.mesh.positions.as_chunks().0.iter().map(|p| DVec3::from_array(*p)).collect();
+        for face in Faces::of(&model.mesh) {
+            // `tobj` makes up normals where a face has none.
+            let has_normals = faces_have_normals.next() == Some(true);
+            let normals = face.normals.filter(|_| has_normals);
+            let corners: Vec<DVec3> = face.vertices.iter().map(|index| positions[*index as usize]).collect();
+            for triangle in polygon::triangulate(&corners) {
+                builder.triangles.push(triangle.map(|corner| first_vertex + face.vertices[corner]));
+                if is_smooth {
+                    let given = normals.map(|indices| triangle.map(|corner| normal(&model.mesh, indices[corner])));
+                    builder
+                        .corner_normals
+                        .push(given.unwrap_or_else(|| [face_normal(triangle.map(|i| corners[i])); 3]));
+                }
+            }
+        }
+        builder.positions.extend(positions);
+        builder.groups.push(Group {
+            name: if model.name == "unnamed_object" { String::new() } else { model.name.clone() },
+            triangles: start..builder.triangles.len(),
+            material: model
+                .mesh
+                .material_id
+                .and_then(|id| libraries.get(id))
+                .map(|from| materials::material(from, shading)),
+        });
+    }
+    builder
+}
+
+fn normal(mesh: &tobj::Mesh, index: u32) -> Vec3 {
+    let [x, y, z] = mesh.normals.as_chunks::<3>().0[index as usize];
+    DVec3::new(x, y, z).as_vec3()
+}
+
+fn face_normal([a, b, c]: [DVec3; 3]) -> Vec3 {
+    (b - a).cross(c - a).normalize_or_zero().as_vec3()
+}
+
+/// The faces of a part, one after the other.
+struct Faces<'a> {
+    vertices: &'a [u32],
+    /// Parallel to `vertices`, or empty.
+    normals: &'a [u32],
+    /// Corners of each face; empty: three each.
+    arities: &'a [u32],
+}
+
+/// Corners of one face.
+struct Face<'a> {
+    vertices: &'a [u32],
+    normals: Option<&'a [u32]>,
+}
+
+impl<'a> Faces<'a> {
+    fn of(mesh: &'a tobj::Mesh) -> Faces<'a> {
+        Faces { vertices: &mesh.indices, normals: &mesh.normal_indices, arities: &mesh.face_arities }
+    }
+}
+
+impl<'a> Iterator for Faces<'a> {
+    type Item = Face<'a>;
+
+    fn next(&mut self) -> Option<Face<'a>> {
+        let arity = self.arities.split_off_first().map_or(3, |arity| *arity as usize);
+        let vertices = self.vertices.split_off(..arity)?;
+        Some(Face { vertices, normals: self.normals.split_off(..arity) })
+    }
+}
+
+#[cfg(test)]
+mod tests;

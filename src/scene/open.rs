@@ -1,5 +1,73 @@
-//! To come.
-use super::{Scene, SceneError};
-pub fn open(spec: &str) -> Result<Scene, SceneError> {
-    unimplemented!("{spec}")
+//! A scene by whatever names it: a built-in name, a scene file or a model.
+
+use super::builtin::{self, Builtin};
+use super::{Scene, SceneError, file, model_scene, obj};
+use std::path::Path;
+
+/// What to open, and how a bare model is completed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OpenSpec {
+    /// A built-in name, or the path of a scene file (`.toml`) or a model (`.obj`).
+    pub name: String,
+    /// Puts a floor under a bare model; scene files and built-in scenes are taken as they are.
+    pub floor: bool,
+}
+
+impl OpenSpec {
+    /// `name` with a floor under it if it is a model.
+    #[must_use]
+    pub fn new(name: impl Into<String>) -> OpenSpec {
+        OpenSpec { name: name.into(), floor: true }
+    }
+}
+
+/// Opens a scene. The result is at time 0.
+///
+/// # Errors
+/// An unknown name, with the nearest one; a file that is missing or broken, with the line where
+/// there is one, and the mend.
+pub fn open(spec: &OpenSpec) -> Result<Scene, SceneError> {
+    if let Some(builtin) = Builtin::named(&spec.name) {
+        return builtin.scene();
+    }
+    let path = Path::new(&spec.name);
+    let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+    match extension.as_deref().and_then(|extension| extension.to_str()) {
+        Some("toml") => file::load(path),
+        Some("obj") => model_scene(&stem(path), obj::load(path)?, spec.floor),
+        _ => Err(unknown(&spec.name)),
+    }
+}
+
+/// The file's name without folder and ending.
+pub(super) fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+}
+
+fn unknown(name: &str) -> SceneError {
+    let path = Path::new(name);
+    if path.is_dir() {
+        return SceneError::Read {
+            file: path.to_owned(),
+            reason: "is a folder: name a scene file (.toml) or a model (.obj) in it".to_owned(),
+        };
+    }
+    if path.is_file() {
+        let reason = "is of no kind that can be opened: give a scene file (.toml) or a model (.obj)".to_owned();
+        return SceneError::Read { file: path.to_owned(), reason };
+    }
+    let names: Vec<&str> = builtin::ALL.iter().map(|builtin| builtin.name).collect();
+    let hint = match nearest(name, &names) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("choose one of {}, a scene file (.toml) or a model (.obj)", names.join(", ")),
+    };
+    SceneError::Unknown { name: name.escape_debug().to_string(), hint }
+}
+
+/// The name that is most like `word`, if any is much like it.
+pub(super) fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
+    /// Below this the names have little in common.
+    const LIKE: f64 = 0.75;
+    let rated = names.iter().map(|name| (strsim::jaro_winkler(word, name), *name));
+    rated.filter(|(likeness, _)| *likeness > LIKE).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name)
 }

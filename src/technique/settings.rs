@@ -123,7 +123,8 @@ const SHADOW_MAP: &[SettingSpec] = &[
     SettingSpec {
         key: "bias-constant",
         values: SettingValues::Integer(-1_000_000, 1_000_000),
-        default: "0",
+        // Rounding of positions to f32 differs by a few steps between the camera's and the light's view.
+        default: "16",
         meaning: "steps of depth by which the map is pushed away from the light",
     },
     SettingSpec {

@@ -1,5 +1,7 @@
 //! What tests share: a session on the reference adapter, and small scenes with known answers.
 
+pub mod ray_cast;
+
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::capture::Capture;

@@ -1,0 +1,192 @@
+//! `manifest.json` of a capture folder, field by field as `spec/commands.md` has it.
+//!
+//! Names are a contract with scripts: add fields, rename none.
+
+use super::{AdapterInfo, Capture, DrawSummary, Timing};
+use crate::plan::{LeftOut, Part};
+use crate::scene::Camera;
+use glam::{DMat4, DVec3, DVec4};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The version of the folder's layout.
+pub(super) const SCHEMA: u32 = 1;
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Manifest {
+    pub schema: u32,
+    pub program: String,
+    pub scene: String,
+    pub technique: String,
+    pub settings: BTreeMap<String, String>,
+    pub size: [u32; 2],
+    pub adapter: AdapterInfo,
+    pub camera: CameraEntry,
+    pub passes: Vec<PassEntry>,
+    pub lights: Vec<LightEntry>,
+    pub left_out: Vec<LeftOut>,
+    pub timing: Timing,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct CameraEntry {
+    pub eye: [f64; 3],
+    pub target: [f64; 3],
+    pub up: [f64; 3],
+    pub fov_y_degrees: f64,
+    pub near: f64,
+    pub far: Option<f64>,
+}
+
+/// A pass with the files of what it left, or with the map it drew into.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(super) struct PassEntry {
+    pub index: usize,
+    pub name: String,
+    pub purpose: String,
+    pub light: Option<usize>,
+    pub caster: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub color: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stencil: Option<String>,
+    /// Aspects that the pass did not change: they name an earlier file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unchanged: Option<Vec<String>>,
+    /// The labels that a mask pass writes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub labels: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map: Option<String>,
+    /// Which face of the map it drew.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map_face: Option<usize>,
+    pub draws: usize,
+    pub triangles: u64,
+    pub gpu_ms: Option<f64>,
+    pub draw_list: Vec<DrawEntry>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct DrawEntry {
+    pub name: String,
+    pub caster: Option<String>,
+    pub part: String,
+    pub triangles: u64,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct LightEntry {
+    pub index: usize,
+    pub kind: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<[f64; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub towards: Option<[f64; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shadow: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub matrices: Option<Matrices>,
+}
+
+/// Row by row.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Matrices {
+    pub light_from_world: [[f64; 4]; 4],
+    /// One a face.
+    pub clip_from_light: Vec<[[f64; 4]; 4]>,
+}
+
+impl Manifest {
+    /// Everything but passes and lights, whose files the writer names.
+    pub fn new(capture: &Capture) -> Manifest {
+        Manifest {
+            schema: SCHEMA,
+            program: concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")).to_owned(),
+            scene: capture.scene.clone(),
+            technique: capture.technique.clone(),
+            settings: capture.settings.clone(),
+            size: capture.size,
+            adapter: capture.adapter.clone(),
+            camera: CameraEntry::from(&capture.camera),
+            passes: Vec::new(),
+            lights: Vec::new(),
+            left_out: capture.left_out.clone(),
+            timing: capture.timing,
+        }
+    }
+}
+
+impl From<&Camera> for CameraEntry {
+    fn from(camera: &Camera) -> CameraEntry {
+        CameraEntry {
+            eye: camera.eye.to_array(),
+            target: camera.target.to_array(),
+            up: camera.up.to_array(),
+            fov_y_degrees: camera.fov_y_degrees,
+            near: camera.near,
+            far: camera.far,
+        }
+    }
+}
+
+impl From<&CameraEntry> for Camera {
+    fn from(entry: &CameraEntry) -> Camera {
+        Camera {
+            eye: DVec3::from_array(entry.eye),
+            target: DVec3::from_array(entry.target),
+            up: DVec3::from_array(entry.up),
+            fov_y_degrees: entry.fov_y_degrees,
+            near: entry.near,
+            far: entry.far,
+        }
+    }
+}
+
+impl From<&DrawSummary> for DrawEntry {
+    fn from(draw: &DrawSummary) -> DrawEntry {
+        DrawEntry {
+            name: draw.name.clone(),
+            caster: draw.caster.clone(),
+            part: draw.part.name().to_owned(),
+            triangles: draw.triangles,
+        }
+    }
+}
+
+impl DrawEntry {
+    /// `None` for a part that this version does not know.
+    pub fn to_summary(&self) -> Option<DrawSummary> {
+        let part = Part::from_name(&self.part)?;
+        Some(DrawSummary { name: self.name.clone(), caster: self.caster.clone(), part, triangles: self.triangles })
+    }
+}
+
+impl LightEntry {
+    /// A light without files.
+    pub fn new(index: usize, position: DVec4) -> LightEntry {
+        let at = position.truncate().to_array();
+        let (kind, position, towards) =
+            if position.w == 0.0 { ("directional", None, Some(at)) } else { ("point", Some(at), None) };
+        let kind = kind.to_owned();
+        LightEntry { index, kind, position, towards, shadow: None, map: None, matrices: None }
+    }
+
+    /// Homogeneous; `None` where neither form is given.
+    pub fn homogeneous(&self) -> Option<DVec4> {
+        let point = self.position.map(|at| DVec3::from_array(at).extend(1.0));
+        point.or_else(|| self.towards.map(|at| DVec3::from_array(at).extend(0.0)))
+    }
+}
+
+pub(super) fn rows(matrix: DMat4) -> [[f64; 4]; 4] {
+    matrix.transpose().to_cols_array_2d()
+}
+
+pub(super) fn from_rows(rows: &[[f64; 4]; 4]) -> DMat4 {
+    DMat4::from_cols_array_2d(rows).transpose()
+}

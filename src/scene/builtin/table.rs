@@ -1,0 +1,43 @@
+//! `table`: a torus and four spheres over a slab, where shadow maps show their faults.
+
+use super::{placed, shapes};
+use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, Shading};
+use glam::DVec3;
+use std::sync::Arc;
+
+const SLAB: [f32; 3] = [0.55, 0.52, 0.47];
+const TORUS: [f32; 3] = [0.79, 0.35, 0.03];
+const SPHERE: [f32; 3] = [0.09, 0.40, 0.72];
+
+/// Figures from the source that founded the scene: a slab 3×0.15×3 with its middle at the
+/// origin, a torus (0.2, 0.5) at height 0.5, spheres of 0.2 at (±0.45, 1, ±0.45).
+pub fn build() -> Result<Scene, MeshError> {
+    let slab = Arc::new(shapes::cuboid([3.0, 0.15, 3.0])?);
+    let torus = Arc::new(shapes::torus(0.5, 0.2, 64, 32)?);
+    let sphere = Arc::new(shapes::sphere(0.2, 32, 16)?);
+    let flat = |color| Material { color, ..Material::default() };
+    let glossy = |color| Material { color, specular: 0.25, shininess: 40.0, shading: Shading::Phong, opacity: 1.0 };
+    let mut objects = vec![
+        placed("slab", &slab, flat(SLAB), DVec3::ZERO),
+        placed("torus", &torus, glossy(TORUS), DVec3::new(0.0, 0.5, 0.0)),
+    ];
+    let corners = [(-0.45, -0.45), (0.45, -0.45), (0.45, 0.45), (-0.45, 0.45)];
+    objects.extend(corners.iter().enumerate().map(|(index, (x, z))| -> Object {
+        placed(&format!("sphere {}", index + 1), &sphere, glossy(SPHERE), DVec3::new(*x, 1.0, *z))
+    }));
+    Ok(Scene {
+        name: "table".to_owned(),
+        ambient: [0.14, 0.14, 0.15],
+        camera: Camera {
+            eye: DVec3::new(-2.5, 3.5, -2.5),
+            target: DVec3::new(0.0, 0.25, 0.0),
+            up: DVec3::Y,
+            fov_y_degrees: 40.0,
+            near: 0.05,
+            far: None,
+        },
+        lights: vec![Light::point(DVec3::new(2.0, 3.0, -2.0))],
+        objects,
+        technique: None,
+    })
+}

@@ -1,0 +1,110 @@
+//! `tori`: four tori orbit a point light inside a room; each shadows the others and the walls.
+//!
+//! Two tori circle near the light and two further out, so that the inner ones' shadows cross the
+//! outer ones. The eye is in a corner of the room, where at the start no shadow reaches.
+
+use super::{placed, shapes};
+use crate::scene::{Camera, Light, Material, Mesh, MeshError, Motion, Object, Orbit, Scene, Shading};
+use glam::DVec3;
+use std::sync::Arc;
+
+const ROOM: [f64; 3] = [10.0, 6.0, 10.0];
+const LIGHT: DVec3 = DVec3::new(0.0, 0.35, 0.0);
+
+const PLASTER: [f32; 3] = [0.40, 0.42, 0.47];
+
+/// One torus on its way around the light.
+struct Orbiting {
+    name: &'static str,
+    color: [f32; 3],
+    /// From the light's axis, and where on the circle it starts.
+    radius: f64,
+    azimuth_degrees: f64,
+    /// Above the light.
+    height: f64,
+    rotate_degrees: DVec3,
+    spin_degrees_per_second: DVec3,
+    degrees_per_second: f64,
+}
+
+const TORI: [Orbiting; 4] = [
+    Orbiting {
+        name: "blue torus",
+        color: [0.09, 0.40, 0.78],
+        radius: 1.5,
+        azimuth_degrees: 205.0,
+        height: 0.05,
+        rotate_degrees: DVec3::new(62.0, 20.0, 0.0),
+        spin_degrees_per_second: DVec3::new(0.0, 25.0, 0.0),
+        degrees_per_second: 24.0,
+    },
+    Orbiting {
+        name: "orange torus",
+        color: [0.78, 0.35, 0.02],
+        radius: 1.6,
+        azimuth_degrees: 325.0,
+        height: -0.35,
+        rotate_degrees: DVec3::new(25.0, 0.0, 40.0),
+        spin_degrees_per_second: DVec3::new(0.0, -20.0, 0.0),
+        degrees_per_second: 24.0,
+    },
+    Orbiting {
+        name: "green torus",
+        color: [0.02, 0.36, 0.20],
+        radius: 2.9,
+        azimuth_degrees: 222.0,
+        height: 0.0,
+        rotate_degrees: DVec3::new(75.0, -30.0, 0.0),
+        spin_degrees_per_second: DVec3::new(0.0, 15.0, 0.0),
+        degrees_per_second: -11.0,
+    },
+    Orbiting {
+        name: "red torus",
+        color: [0.66, 0.10, 0.03],
+        radius: 2.7,
+        azimuth_degrees: 115.0,
+        height: -0.6,
+        rotate_degrees: DVec3::new(15.0, 0.0, -30.0),
+        spin_degrees_per_second: DVec3::new(0.0, 30.0, 0.0),
+        degrees_per_second: -11.0,
+    },
+];
+
+/// The room's origin is its middle.
+pub fn build() -> Result<Scene, MeshError> {
+    let torus = Arc::new(shapes::torus(0.62, 0.2, 64, 28)?);
+    let plaster = Material { color: PLASTER, ..Material::default() };
+    let room = placed("room", &Arc::new(shapes::room(ROOM)?), plaster, DVec3::ZERO);
+    // Nothing is behind its walls: as a caster it could only shadow itself.
+    let mut objects = vec![Object { casts: false, ..room }];
+    objects.extend(TORI.iter().map(|orbiting| orbiting.object(&torus)));
+    Ok(Scene {
+        name: "tori".to_owned(),
+        ambient: [0.10, 0.10, 0.115],
+        camera: Camera {
+            eye: DVec3::new(3.9, 2.1, 4.3),
+            target: DVec3::new(-0.35, -0.35, -0.4),
+            up: DVec3::Y,
+            fov_y_degrees: 58.0,
+            near: 0.05,
+            far: None,
+        },
+        lights: vec![Light { color: [1.0, 0.95, 0.87], ..Light::point(LIGHT) }],
+        objects,
+        technique: None,
+    })
+}
+
+impl Orbiting {
+    fn object(&self, mesh: &Arc<Mesh>) -> Object {
+        let (sin, cos) = self.azimuth_degrees.to_radians().sin_cos();
+        let start = LIGHT + DVec3::new(self.radius * sin, self.height, self.radius * cos);
+        let material =
+            Material { color: self.color, specular: 0.3, shininess: 32.0, shading: Shading::Phong, opacity: 1.0 };
+        let mut object = placed(self.name, mesh, material, start);
+        object.pose.rotate_degrees = self.rotate_degrees;
+        let orbit = Orbit { center: LIGHT, axis: DVec3::Y, degrees_per_second: self.degrees_per_second };
+        object.motion = Motion { spin_degrees_per_second: self.spin_degrees_per_second, orbit: Some(orbit) };
+        object
+    }
+}

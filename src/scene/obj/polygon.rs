@@ -1,0 +1,61 @@
+//! Cutting a face with any number of corners into triangles.
+//!
+//! The face is looked at along its Newell normal (which exists for corners that are not quite
+//! coplanar, too), by dropping the axis in which that normal is longest. Convex faces become a
+//! fan, others are cut ear by ear. Triangles run the way the face does.
+
+use glam::{DVec2, DVec3};
+
+/// Triangles of the face, as indices into its corners, of which there are at least three.
+#[must_use]
+pub fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
+    if corners.len() == 3 {
+        return vec![[0, 1, 2]];
+    }
+    match projected(corners) {
+        Some(flat) if !is_convex(&flat) => cut_ears(&flat).unwrap_or_else(|| fan(corners.len())),
+        _ => fan(corners.len()),
+    }
+}
+
+fn fan(count: usize) -> Vec<[usize; 3]> {
+    (2..count).map(|last| [0, last - 1, last]).collect()
+}
+
+/// The corners in the plane, counter-clockwise; `None` where the face has no area.
+fn projected(corners: &[DVec3]) -> Option<Vec<DVec2>> {
+    // Scaled to about 1, so that no product overflows.
+    let first = *corners.first()? / 2.0;
+    let halves = || corners.iter().map(|corner| *corner / 2.0 - first);
+    let size = halves().map(|half| half.abs().max_element()).fold(0.0, f64::max);
+    if size == 0.0 {
+        return None;
+    }
+    let scaled: Vec<DVec3> = halves().map(|half| half / size).collect();
+    let following = scaled.iter().cycle().skip(1);
+    let normal: DVec3 = scaled.iter().zip(following).map(|(a, b)| a.cross(*b)).sum();
+    let axis = normal.abs().max_position();
+    let (u, v) = if normal[axis] > 0.0 { ((axis + 1) % 3, (axis + 2) % 3) } else { ((axis + 2) % 3, (axis + 1) % 3) };
+    (normal[axis] != 0.0).then(|| scaled.iter().map(|p| DVec2::new(p[u], p[v])).collect())
+}
+
+/// Turns left at every corner and goes round once.
+fn is_convex(flat: &[DVec2]) -> bool {
+    let edge = |i: usize| flat[(i + 1) % flat.len()] - flat[i % flat.len()];
+    let turns_left = (0..flat.len()).all(|i| edge(i).perp_dot(edge(i + 1)) >= 0.0);
+    // A star turns left everywhere, too, but runs back and forth more than once.
+    let directions: Vec<bool> = (0..flat.len()).map(edge).filter(|e| e.x != 0.0).map(|e| e.x > 0.0).collect();
+    let reversals = (0..directions.len()).filter(|i| directions[*i] != directions[(i + 1) % directions.len()]).count();
+    turns_left && reversals <= 2
+}
+
+/// `None` where no triangle comes out, as for a face that crosses itself.
+fn cut_ears(flat: &[DVec2]) -> Option<Vec<[usize; 3]>> {
+    let no_holes: [usize; 0] = [];
+    let mut indices: Vec<usize> = Vec::new();
+    earcut::Earcut::new().earcut(flat.iter().map(|p| p.to_array()), &no_holes, &mut indices);
+    let area = |[a, b, c]: [usize; 3]| (flat[b] - flat[a]).perp_dot(flat[c] - flat[a]);
+    let (triples, _) = indices.as_chunks::<3>();
+    let turned = triples.iter().map(|&[a, b, c]| if area([a, b, c]) < 0.0 { [a, c, b] } else { [a, b, c] });
+    (!triples.is_empty()).then(|| turned.collect())
+}

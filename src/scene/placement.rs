@@ -1,0 +1,92 @@
+//! Where light and camera go when nobody says so.
+//!
+//! The eye looks from the front, a quarter round and a little from above, so near that the
+//! objects fill a good part of the picture's height. The light stands above and to the other
+//! side in front, so that lit, shadowed and turned-away parts all show and the shadow falls to
+//! where the eye sees the floor.
+
+use super::{Camera, Light};
+use glam::DVec3;
+
+/// From the middle of what is looked at towards the eye.
+const TOWARDS_EYE: DVec3 = DVec3::new(0.42, 0.44, 0.8);
+/// From the middle of what is looked at towards the light.
+const TOWARDS_LIGHT: DVec3 = DVec3::new(0.9, 1.15, 0.12);
+/// Distance of the light, in sums of the bounding box's extents.
+const LIGHT_DISTANCE: f64 = 1.25;
+/// How much of the picture's height the objects fill.
+const HEIGHT_FILLED: f64 = 0.62;
+/// How much wider than that they may spread to the sides.
+const WIDTH_OVER_HEIGHT: f64 = 1.35;
+/// The near plane, in distances from the eye to its target.
+const NEAR: f64 = 0.01;
+const FOV_Y_DEGREES: f64 = 45.0;
+
+/// What is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surroundings {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Surroundings {
+    /// Of these points; `None` where there are none, or where their extents can't be measured.
+    #[must_use]
+    pub fn of<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> Option<Surroundings> {
+        let mut points = points.into_iter();
+        let first = *points.next()?;
+        let (low, high) = points.fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)));
+        (high - low).element_sum().is_finite().then_some(Surroundings { low, high })
+    }
+
+    /// The sum of the bounding box's three extents, the measure of every distance here; 1 where
+    /// the points are all in one place.
+    #[must_use]
+    pub fn extent(&self) -> f64 {
+        let sum = (self.high - self.low).element_sum();
+        if sum > 0.0 { sum } else { 1.0 }
+    }
+
+    /// The lowest height.
+    #[must_use]
+    pub fn lowest(&self) -> f64 {
+        self.low.y
+    }
+
+    fn middle(&self) -> DVec3 {
+        self.low / 2.0 + self.high / 2.0
+    }
+
+    /// A white point light above in front.
+    #[must_use]
+    pub fn light(&self) -> Light {
+        let towards_light = TOWARDS_LIGHT.normalize();
+        Light::point(self.middle() + towards_light * LIGHT_DISTANCE * self.extent())
+    }
+
+    /// A camera that has all of `points` in view, in a picture wider than high.
+    #[must_use]
+    pub fn camera<'a>(&self, points: impl IntoIterator<Item = &'a DVec3>) -> Camera {
+        let back = TOWARDS_EYE.normalize();
+        let right = DVec3::Y.cross(back).normalize();
+        let up = back.cross(right);
+        let target = self.middle();
+        let half_height = (FOV_Y_DEGREES / 2.0).to_radians().tan() * HEIGHT_FILLED;
+        let half_width = half_height * WIDTH_OVER_HEIGHT;
+        let distance_for = |point: &DVec3| {
+            let offset = *point - target;
+            let sideways = (offset.dot(right).abs() / half_width).max(offset.dot(up).abs() / half_height);
+            offset.dot(back) + sideways
+        };
+        let nearest = 0.1 * self.extent();
+        let distance = points.into_iter().map(distance_for).fold(nearest, f64::max);
+        Camera {
+            eye: target + back * distance,
+            target,
+            up: DVec3::Y,
+            fov_y_degrees: FOV_Y_DEGREES,
+            near: distance * NEAR,
+            far: None,
+        }
+    }
+}

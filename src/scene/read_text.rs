@@ -1,0 +1,38 @@
+//! Reading a text file whole, with the ways in which that fails told apart.
+
+use super::SceneError;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// The text of `file`, a byte order mark removed.
+///
+/// # Errors
+/// A missing or unreadable file, a folder, bytes that are no UTF-8 text, an empty file. `kind`
+/// says what was expected: `OBJ model`.
+pub fn read_text(file: &Path, kind: &str) -> Result<String, SceneError> {
+    let fail = |reason: String| SceneError::Read { file: file.to_owned(), reason };
+    if file.is_dir() {
+        return Err(fail(format!("is a folder: name an {kind} in it")));
+    }
+    let bytes = std::fs::read(file).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => fail("there is no such file: check the path".to_owned()),
+        ErrorKind::PermissionDenied => fail("can't be read: allow reading it".to_owned()),
+        _ => fail(format!("can't be read: {error}; check the file")),
+    })?;
+    let text = String::from_utf8(bytes).ok().filter(|text| !text.contains('\0'));
+    let Some(text) = text else {
+        return Err(fail(format!("is not a text file: give an {kind} in UTF-8")));
+    };
+    if text.trim().is_empty() {
+        return Err(fail(format!("is empty: give an {kind} with content")));
+    }
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+}
+
+/// A word of a file as it may stand in an error line: short, and no control characters.
+pub fn quoted(word: &str) -> String {
+    const MOST: usize = 40;
+    let shown: String = word.chars().take(MOST).flat_map(char::escape_debug).collect();
+    let rest = if word.chars().nth(MOST).is_some() { "…" } else { "" };
+    format!("`{shown}{rest}`")
+}

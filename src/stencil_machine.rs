@@ -1,0 +1,97 @@
+//! The depth and stencil tests of one fragment as a pure function.
+//!
+//! The stencil test comes first; if it fails, the fail operation runs and the fragment is gone.
+//! Then the depth test; if it fails, the depth-fail operation runs. Else the pass operation runs
+//! and depth is stored where writing is on. Comparisons see `(reference & read mask) ? (stored &
+//! read mask)`, operations change only the bits of the write mask (WebGPU, section 23.2.7,
+//! "Fragment processing"; OpenGL and Direct3D agree). A test holds it against the GPU.
+
+use crate::plan::RasterState;
+use wgpu::{CompareFunction, StencilOperation};
+
+/// What a pixel holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stored {
+    /// As in the buffer.
+    pub depth: f32,
+    /// Eight bits.
+    pub stencil: u8,
+}
+
+/// A fragment that arrives at a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fragment {
+    /// Bias included.
+    pub depth: f32,
+    /// Of the front of its triangle.
+    pub front_facing: bool,
+}
+
+/// What the tests did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// Did the stencil test pass?
+    pub stencil_passed: bool,
+    /// Did the depth test pass? `None` where the stencil test failed before it.
+    pub depth_passed: Option<bool>,
+    /// The operation that ran.
+    pub operation: StencilOperation,
+    /// What the pixel holds now.
+    pub after: Stored,
+}
+
+impl Outcome {
+    /// Did the fragment reach the colour target?
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.depth_passed == Some(true)
+    }
+}
+
+/// Tests `fragment` against `stored` under `state`. Culling is not part of it: culled faces make
+/// no fragments.
+#[must_use]
+pub fn test(state: &RasterState, fragment: Fragment, stored: Stored) -> Outcome {
+    let face = if fragment.front_facing { &state.stencil.front } else { &state.stencil.back };
+    let masked = |value: u8| u32::from(value) & state.stencil.read_mask;
+    let stencil_passed = compare(face.compare, masked(state.stencil_reference), masked(stored.stencil));
+    let depth_passed = stencil_passed.then(|| compare(state.depth_compare, fragment.depth, stored.depth));
+    let operation = match depth_passed {
+        None => face.fail_op,
+        Some(false) => face.depth_fail_op,
+        Some(true) => face.pass_op,
+    };
+    let written = operate(operation, stored.stencil, state.stencil_reference);
+    let mask = state.stencil.write_mask as u8;
+    let stencil = (stored.stencil & !mask) | (written & mask);
+    let writes_depth = depth_passed == Some(true) && state.depth_write;
+    let depth = if writes_depth { fragment.depth } else { stored.depth };
+    Outcome { stencil_passed, depth_passed, operation, after: Stored { depth, stencil } }
+}
+
+/// `new ? stored`, with the new value on the left, as all APIs have it.
+fn compare<T: PartialOrd>(function: CompareFunction, new: T, stored: T) -> bool {
+    match function {
+        CompareFunction::Never => false,
+        CompareFunction::Less => new < stored,
+        CompareFunction::Equal => new == stored,
+        CompareFunction::LessEqual => new <= stored,
+        CompareFunction::Greater => new > stored,
+        CompareFunction::NotEqual => new != stored,
+        CompareFunction::GreaterEqual => new >= stored,
+        CompareFunction::Always => true,
+    }
+}
+
+fn operate(operation: StencilOperation, stored: u8, reference: u8) -> u8 {
+    match operation {
+        StencilOperation::Keep => stored,
+        StencilOperation::Zero => 0,
+        StencilOperation::Replace => reference,
+        StencilOperation::Invert => !stored,
+        StencilOperation::IncrementClamp => stored.saturating_add(1),
+        StencilOperation::DecrementClamp => stored.saturating_sub(1),
+        StencilOperation::IncrementWrap => stored.wrapping_add(1),
+        StencilOperation::DecrementWrap => stored.wrapping_sub(1),
+    }
+}

@@ -1,0 +1,124 @@
+//! Plans as data: their text, their checks, and shaders, all without a GPU.
+
+mod common;
+
+use common::{from_above, square};
+use stencilscope::geometry::GeometryCache;
+use stencilscope::plan::{FramePlan, MeshId, Part, lint};
+use stencilscope::scene::{Light, Scene};
+use stencilscope::technique::{self, Choice, Job, PlanError, Technique};
+use wgpu::StencilOperation;
+
+fn plan_of(scene: &Scene, technique: Technique) -> Result<FramePlan, PlanError> {
+    let choice = Choice::new(technique);
+    technique::plan(Job { scene, size: [64, 48], choice: &choice, cache: &mut GeometryCache::default() })
+}
+
+fn scene() -> Scene {
+    from_above(vec![square("caster", 2.0, 1.0)])
+}
+
+#[test]
+fn every_technique_makes_a_plan_without_a_broken_rule() {
+    for technique in Technique::ALL {
+        let plan = plan_of(&scene(), technique).expect("a plan");
+        assert_eq!(lint::check(&plan), [], "{technique:?}");
+        assert!(plan.passes.iter().all(|pass| pass.purpose.len() > 20), "every pass explains itself");
+    }
+}
+
+#[test]
+fn a_plan_is_a_pure_function_and_so_is_its_text() {
+    for technique in Technique::ALL {
+        let [a, b] = [0, 1].map(|_| plan_of(&scene(), technique).expect("a plan"));
+        assert_eq!(a, b);
+        assert_eq!(a.to_string(), b.to_string());
+    }
+}
+
+/// The text names every part of the frame, one line each, so that a change shows as a line.
+#[test]
+fn the_text_of_z_fail_shows_its_two_sided_stencil() {
+    let text = plan_of(&scene(), Technique::ZFail).expect("a plan").to_string();
+    let draw = text.find("draw sides of caster [side]").expect("the sides");
+    let state = "    depth Greater, kept\n    stencil reference 0, read 0xff, write 0xff\n      front: Always; fail Keep, \
+                 depth fail DecrementWrap, pass Keep\n      back: Always; fail Keep, depth fail IncrementWrap, pass Keep\n";
+    assert!(text[draw..].lines().skip(1).collect::<Vec<_>>().join("\n").starts_with(state.trim_end()), "{text}");
+    assert!(text.contains("mesh 3: volume of caster, 8 vertices (4 at infinity), 12 triangles"), "{text}");
+}
+
+#[test]
+fn what_a_scene_does_not_need_is_left_out_and_said() {
+    let mut scene = scene();
+    scene.lights = vec![Light::directional(glam::DVec3::Y)];
+    let plan = plan_of(&scene, Technique::ZFail).expect("a plan");
+    assert!(plan.passes.iter().flat_map(|pass| &pass.draws).all(|draw| draw.part != Part::DarkCap));
+    assert!(plan.left_out.iter().any(|left| left.what == "dark cap" && left.of == "caster"));
+    let plan = plan_of(&scene, Technique::ShadowMap).expect("a plan");
+    assert!(plan.attachments.iter().all(|attachment| !attachment.format.has_stencil_aspect()));
+    let floor = plan.left_out.iter().find(|left| left.what.contains("floor")).expect("the floor darkens nothing");
+    assert!(floor.because.contains("light's side"));
+}
+
+#[test]
+fn a_light_cap_is_drawn_in_the_surfaces_own_vertex_order() {
+    let plan = plan_of(&scene(), Technique::ZFail).expect("a plan");
+    let draws: Vec<_> = plan.passes.iter().flat_map(|pass| &pass.draws).collect();
+    let caps = draws.iter().filter(|draw| draw.part == Part::LightCap);
+    let surface = plan.meshes[1].indices.data();
+    for cap in caps.filter(|draw| draw.caster.as_deref() == Some("caster")) {
+        let corners = cap.triangles.start as usize * 3..cap.triangles.end as usize * 3;
+        let triangles: Vec<_> = plan.meshes[cap.mesh.0].indices.data()[corners].chunks(3).collect();
+        assert!(triangles.iter().all(|cap| surface.chunks(3).any(|own| own == *cap)));
+    }
+}
+
+#[test]
+fn a_broken_plan_is_named() {
+    let good = plan_of(&scene(), Technique::ZFail).expect("a plan");
+    let broken = |change: fn(&mut FramePlan)| {
+        let mut plan = good.clone();
+        change(&mut plan);
+        lint::check(&plan).first().map(ToString::to_string).unwrap_or_default()
+    };
+    assert!(broken(|plan| plan.passes[1].draws[0].mesh = MeshId(99)).contains("mesh does not exist"));
+    assert!(broken(|plan| plan.passes[1].draws[0].triangles.end += 99).contains("past the end"));
+    assert!(broken(|plan| plan.passes[3].draws[0].mesh = MeshId(3)).contains("without normals"));
+    assert!(broken(|plan| plan.passes[3].light = None).contains("without a light"));
+    assert!(broken(|plan| plan.passes[1].depth_stencil = None).contains("stencil that its pass does not have"));
+    assert!(broken(|plan| plan.attachments[1].format = wgpu::TextureFormat::Depth32Float).contains("stencil"));
+}
+
+#[test]
+fn a_frame_with_a_broken_camera_or_too_many_lights_is_refused() {
+    let mut blind = scene();
+    blind.camera.target = blind.camera.eye;
+    assert!(plan_of(&blind, Technique::ZFail).is_err());
+    let mut bright = scene();
+    bright.lights = vec![bright.lights[0].clone(); 32];
+    assert_eq!(plan_of(&bright, Technique::ZFail), Err(PlanError::TooManyLights { count: 32 }));
+    bright.lights.truncate(16);
+    assert_eq!(lint::check(&plan_of(&bright, Technique::ZFail).expect("a plan")), []);
+}
+
+#[test]
+fn only_raster_states_that_can_change_the_stencil_say_so() {
+    let plan = plan_of(&scene(), Technique::ZFail).expect("a plan");
+    let mut volume = plan.passes[1].draws[0].raster.clone();
+    assert!(volume.writes_stencil());
+    volume.stencil.front.depth_fail_op = StencilOperation::Keep;
+    assert!(volume.writes_stencil());
+    volume.stencil.back.depth_fail_op = StencilOperation::Keep;
+    assert!(!volume.writes_stencil());
+    assert!(!plan.passes[0].draws[0].raster.writes_stencil());
+}
+
+#[test]
+fn every_shader_is_valid() {
+    for (name, source) in stencilscope::gpu::shader_sources() {
+        let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let flags = naga::valid::ValidationFlags::all();
+        let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty());
+        validator.validate(&module).unwrap_or_else(|error| panic!("{name}: {error:?}"));
+    }
+}

@@ -1,0 +1,67 @@
+//! Z-fail against brute-force ray casting: no wrong pixel, whatever the mesh and the camera.
+
+mod common;
+
+use common::ray_cast::{Difference, difference};
+use common::{from_above, mesh, request, session};
+use glam::DVec3;
+use stencilscope::scene::{Camera, Light, Material, Object, Scene};
+use stencilscope::session::Session;
+use stencilscope::technique::Technique;
+
+/// A small generator of numbers in [0, 1): the same on every machine (Knuth's MMIX constants).
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn within(&mut self, reach: f64) -> DVec3 {
+        let mut one = || (self.unit() * 2.0 - 1.0) * reach;
+        DVec3::new(one(), one(), one())
+    }
+}
+
+/// Triangles through each other, open, unoriented, sharing some vertices; the eye and the light
+/// anywhere, among them too.
+fn soup(seed: u64) -> Scene {
+    let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    let points: Vec<[f64; 3]> = (0..14).map(|_| random.within(1.5).to_array()).collect();
+    let count = 1 + seed as usize % 12;
+    let mut corner = || (random.unit() * 14.0) as u32;
+    let triangles: Vec<[u32; 3]> = (0..count).map(|_| [corner(), corner(), corner()]).collect();
+    let mut scene = from_above(vec![Object::new("soup", mesh(&points, &triangles), Material::default())]);
+    scene.objects[0].pose.translate.y = -2.0;
+    let eye = random.within(3.0);
+    scene.camera = Camera {
+        eye,
+        target: random.within(0.5),
+        up: DVec3::Y,
+        fov_y_degrees: 70.0,
+        near: 0.02 + random.unit() * 0.5,
+        far: None,
+    };
+    let light = random.within(3.0);
+    let is_directional = seed % 4 == 0;
+    scene.lights = vec![if is_directional { Light::directional(light) } else { Light::point(light) }];
+    scene
+}
+
+fn held_against_rays(session: &mut Session, scene: &Scene, size: [u32; 2]) -> Difference {
+    let capture = session.capture(scene, &request(Technique::ZFail, size)).expect("a capture");
+    difference(scene, &capture, 0)
+}
+
+#[test]
+fn z_fail_has_no_wrong_pixel_on_random_soups() {
+    let mut session = session();
+    let mut compared = 0;
+    for seed in 1..=150 {
+        let found = held_against_rays(&mut session, &soup(seed), [64, 48]);
+        assert_eq!(found.wrong, 0, "seed {seed}: {found:?}");
+        compared += found.compared;
+    }
+    assert!(compared > 150_000, "{compared} pixels compared");
+}
