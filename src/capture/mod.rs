@@ -6,6 +6,7 @@
 
 pub mod disk;
 mod image;
+mod manifest;
 
 pub use disk::CaptureError;
 pub use image::{Image, PixelFormat};
