@@ -117,11 +117,10 @@ impl PassWriter<'_> {
     fn write_frame(&mut self, prefix: &str, frame: &FrameSnapshot, entry: &mut PassEntry) -> Result<(), CaptureError> {
         let folder = self.folder;
         let mut keep = |aspect: &Aspect, name: &str, ending: &str, last: &mut Written| {
-            let (file, is_shared) = write_aspect(folder, aspect, format!("{prefix}.{name}.{ending}"), last)?;
-            if is_shared {
+            if aspect.unchanged {
                 entry.unchanged.push(name.to_owned());
             }
-            Ok(Some(file))
+            write_aspect(folder, aspect, format!("{prefix}.{name}.{ending}"), last).map(Some)
         };
         let color = keep(&frame.color, "color", "png", &mut self.color)?;
         let depth = keep(&frame.depth, "depth", "npy", &mut self.depth)?;
@@ -134,18 +133,13 @@ impl PassWriter<'_> {
     }
 }
 
-/// The file that holds the aspect, and whether that is an earlier one.
-fn write_aspect(
-    folder: &Path,
-    aspect: &Aspect,
-    file: String,
-    last: &mut Written,
-) -> Result<(String, bool), CaptureError> {
+/// The file that holds the aspect: an earlier one where nothing changed since.
+fn write_aspect(folder: &Path, aspect: &Aspect, file: String, last: &mut Written) -> Result<String, CaptureError> {
     if let Some((image, earlier)) = last
         && aspect.unchanged
         && (Arc::ptr_eq(image, &aspect.image) || image == &aspect.image)
     {
-        return Ok((earlier.clone(), true));
+        return Ok(earlier.clone());
     }
     let path = folder.join(&file);
     if file.ends_with(".png") {
@@ -154,7 +148,7 @@ fn write_aspect(
         arrays::write_image(&path, &aspect.image)?;
     }
     *last = Some((Arc::clone(&aspect.image), file.clone()));
-    Ok((file, false))
+    Ok(file)
 }
 
 fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<LightEntry, CaptureError> {
