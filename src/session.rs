@@ -44,6 +44,14 @@ pub enum SessionError {
     Gpu(#[from] GpuError),
 }
 
+impl SessionError {
+    /// There is no GPU to run on: something to install, not to correct.
+    #[must_use]
+    pub fn is_missing_adapter(&self) -> bool {
+        matches!(self, SessionError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }))
+    }
+}
+
 /// A GPU and what is kept between runs.
 #[derive(Debug)]
 pub struct Session {
