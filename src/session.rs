@@ -25,6 +25,14 @@ pub struct CaptureRequest {
     pub external_capture: bool,
 }
 
+impl CaptureRequest {
+    /// An untimed capture.
+    #[must_use]
+    pub fn new(choice: Choice, size: [u32; 2]) -> CaptureRequest {
+        CaptureRequest { choice, size, timing_runs: 0, external_capture: false }
+    }
+}
+
 /// Why nothing came out.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
@@ -34,6 +42,14 @@ pub enum SessionError {
     /// The GPU is missing, too small or failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+}
+
+impl SessionError {
+    /// There is no GPU to run on: something to install, not to correct.
+    #[must_use]
+    pub fn is_missing_adapter(&self) -> bool {
+        matches!(self, SessionError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }))
+    }
 }
 
 /// A GPU and what is kept between runs.

@@ -1,1 +1,82 @@
-//! To come.
+//! The command line: one file a command.
+//!
+//! [`run`] takes the words of the command line, does the work and gives back an exit code or the
+//! one error that ended it; `main` turns that into text. Results go to standard output, and
+//! nothing else does.
+
+mod bench;
+mod capture;
+mod error;
+mod options;
+mod output;
+mod scenes;
+mod usage;
+mod view;
+
+pub use error::CliError;
+
+use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+
+/// The commands that exist.
+const COMMANDS: [&str; 5] = ["view", "capture", "scenes", "bench", "help"];
+/// Commands that are planned, but not built.
+const COMMANDS_TO_COME: [&str; 5] = ["pixel", "diagnose", "diff", "report", "stress"];
+
+/// An interactive visual debugger for stencil shadows and shadow maps
+#[derive(Debug, Parser)]
+#[command(name = "stencilscope", version, disable_help_subcommand = false, subcommand_required = true)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Open the inspector window (the default command)
+    View(Box<view::ViewArguments>),
+    /// Render without a window and write every pass to a folder
+    Capture(Box<capture::CaptureArguments>),
+    /// List the built-in scenes
+    Scenes(scenes::ScenesArguments),
+    /// Measure the program's own speed, as ratios
+    Bench(bench::BenchArguments),
+}
+
+/// Runs the command line `arguments`, the program's name first.
+///
+/// # Errors
+/// Whatever ended the command; [`CliError::exit_code`] says how bad it is.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
+    let arguments = with_command(arguments.into_iter().collect());
+    if let Some(name) = arguments.get(1).and_then(|word| word.to_str()).filter(|word| COMMANDS_TO_COME.contains(word)) {
+        let instead = "use view, capture, scenes or bench".to_owned();
+        return Err(CliError::NotThereYet { what: format!("`{name}`"), instead });
+    }
+    let command_line = match CommandLine::try_parse_from(arguments) {
+        Ok(command_line) => command_line,
+        Err(error) => return usage::answer(&error),
+    };
+    match command_line.command {
+        Command::View(arguments) => view::run(&arguments),
+        Command::Capture(arguments) => capture::run(&arguments),
+        Command::Scenes(arguments) => scenes::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
+    }
+}
+
+/// Puts `view` before a first word that is no command.
+fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
+    let is_known = |word: &OsString| {
+        let text = word.to_string_lossy();
+        let is_about_program = ["-h", "--help", "-V", "--version"].contains(&text.as_ref());
+        is_about_program || COMMANDS.contains(&text.as_ref()) || COMMANDS_TO_COME.contains(&text.as_ref())
+    };
+    if arguments.is_empty() {
+        arguments.push("stencilscope".into());
+    }
+    if !arguments.get(1).is_some_and(is_known) {
+        arguments.insert(1, "view".into());
+    }
+    arguments
+}

@@ -9,9 +9,9 @@ use glam::DVec3;
 use std::sync::Arc;
 
 const ROOM: [f64; 3] = [10.0, 6.0, 10.0];
-const LIGHT: DVec3 = DVec3::new(0.0, 0.35, 0.0);
+const LIGHT: DVec3 = DVec3::new(0.0, 0.4, 0.0);
 
-const PLASTER: [f32; 3] = [0.40, 0.42, 0.47];
+const PLASTER: [f32; 3] = [0.30, 0.33, 0.40];
 
 /// One torus on its way around the light.
 struct Orbiting {
@@ -31,9 +31,9 @@ const TORI: [Orbiting; 4] = [
     Orbiting {
         name: "blue torus",
         color: [0.09, 0.40, 0.78],
-        radius: 1.5,
-        azimuth_degrees: 205.0,
-        height: 0.05,
+        radius: 1.7,
+        azimuth_degrees: 203.0,
+        height: 0.1,
         rotate_degrees: DVec3::new(62.0, 20.0, 0.0),
         spin_degrees_per_second: DVec3::new(0.0, 25.0, 0.0),
         degrees_per_second: 24.0,
@@ -41,38 +41,38 @@ const TORI: [Orbiting; 4] = [
     Orbiting {
         name: "orange torus",
         color: [0.78, 0.35, 0.02],
-        radius: 1.6,
-        azimuth_degrees: 325.0,
-        height: -0.35,
-        rotate_degrees: DVec3::new(25.0, 0.0, 40.0),
+        radius: 1.9,
+        azimuth_degrees: 278.0,
+        height: -0.1,
+        rotate_degrees: DVec3::new(30.0, 0.0, 55.0),
         spin_degrees_per_second: DVec3::new(0.0, -20.0, 0.0),
-        degrees_per_second: 24.0,
+        degrees_per_second: -11.0,
     },
     Orbiting {
         name: "green torus",
         color: [0.02, 0.36, 0.20],
-        radius: 2.9,
-        azimuth_degrees: 222.0,
-        height: 0.0,
-        rotate_degrees: DVec3::new(75.0, -30.0, 0.0),
+        radius: 3.1,
+        azimuth_degrees: 226.0,
+        height: -0.25,
+        rotate_degrees: DVec3::new(70.0, 40.0, 0.0),
         spin_degrees_per_second: DVec3::new(0.0, 15.0, 0.0),
         degrees_per_second: -11.0,
     },
     Orbiting {
         name: "red torus",
         color: [0.66, 0.10, 0.03],
-        radius: 2.7,
-        azimuth_degrees: 115.0,
-        height: -0.6,
-        rotate_degrees: DVec3::new(15.0, 0.0, -30.0),
+        radius: 1.45,
+        azimuth_degrees: 128.0,
+        height: -1.15,
+        rotate_degrees: DVec3::new(18.0, 0.0, 25.0),
         spin_degrees_per_second: DVec3::new(0.0, 30.0, 0.0),
-        degrees_per_second: -11.0,
+        degrees_per_second: 24.0,
     },
 ];
 
 /// The room's origin is its middle.
 pub fn build() -> Result<Scene, MeshError> {
-    let torus = Arc::new(shapes::torus(0.62, 0.2, 64, 28)?);
+    let torus = Arc::new(shapes::torus(0.66, 0.22, 64, 28)?);
     let plaster = Material { color: PLASTER, ..Material::default() };
     let room = placed("room", &Arc::new(shapes::room(ROOM)?), plaster, DVec3::ZERO);
     // Nothing is behind its walls: as a caster it could only shadow itself.
@@ -82,14 +82,14 @@ pub fn build() -> Result<Scene, MeshError> {
         name: "tori".to_owned(),
         ambient: [0.10, 0.10, 0.115],
         camera: Camera {
-            eye: DVec3::new(3.9, 2.1, 4.3),
-            target: DVec3::new(-0.35, -0.35, -0.4),
+            eye: DVec3::new(4.0, 1.9, 4.4),
+            target: DVec3::new(-0.3, -0.45, -0.3),
             up: DVec3::Y,
-            fov_y_degrees: 58.0,
+            fov_y_degrees: 52.0,
             near: 0.05,
             far: None,
         },
-        lights: vec![Light { color: [1.0, 0.95, 0.87], ..Light::point(LIGHT) }],
+        lights: vec![Light { color: [1.0, 0.94, 0.84], intensity: 1.15, ..Light::point(LIGHT) }],
         objects,
         technique: None,
     })

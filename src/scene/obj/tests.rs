@@ -1,1 +1,199 @@
 use super::*;
+use glam::DVec3;
+
+fn parsed(text: &str) -> Result<Mesh, String> {
+    parse(text, Path::new("")).map_err(|problem| match problem {
+        ObjProblem::Line(text::LineProblem { line, reason }) => format!("{line}: {reason}"),
+        ObjProblem::File(reason) => reason,
+    })
+}
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+fn area(mesh: &Mesh) -> DVec3 {
+    let corner = |index: u32| mesh.positions()[index as usize];
+    mesh.triangles().iter().map(|&[a, b, c]| (corner(b) - corner(a)).cross(corner(c) - corner(a)) / 2.0).sum()
+}
+
+#[test]
+fn a_face_may_have_any_size_and_negative_indices() {
+    for face in ["f 1 2 3 4", "f -4 -3 -2 -1", "f 1/1 2/1 3/1 4/1 # a comment", "f 1 2 \\\n 3 4"] {
+        let mesh = parsed(&format!("{SQUARE}{face}\n")).expect(face);
+        assert_eq!(mesh.triangles().len(), 2, "{face}");
+        assert_eq!(area(&mesh), DVec3::Z, "{face}");
+    }
+}
+
+#[test]
+fn concave_faces_keep_area_and_orientation() {
+    // An L in each of the three planes, both ways round.
+    let outline = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 3], [0, 3]];
+    for axis in 0..3 {
+        for reversed in [false, true] {
+            let vertex = |[u, v]: [i32; 2]| {
+                let mut at = [0; 3];
+                (at[(axis + 1) % 3], at[(axis + 2) % 3]) = (u, v);
+                format!("v {} {} {}\n", at[0], at[1], at[2])
+            };
+            let vertices: String = outline.into_iter().map(vertex).collect();
+            let face = if reversed { "f 6 5 4 3 2 1" } else { "f 1 2 3 4 5 6" };
+            let mesh = parsed(&format!("{vertices}{face}\n")).expect("an L");
+            let mut expected = DVec3::ZERO;
+            expected[axis] = if reversed { -4.0 } else { 4.0 };
+            assert_eq!(mesh.triangles().len(), 4);
+            assert_eq!(area(&mesh), expected, "axis {axis}, reversed {reversed}");
+        }
+    }
+}
+
+#[test]
+fn split_vertices_are_welded_and_groups_kept() {
+    let text = "o left\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ng right\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 4 6 5\n";
+    let mesh = parsed(text).expect("two groups");
+    assert_eq!(mesh.positions().len(), 4);
+    let names: Vec<&str> = mesh.groups().iter().map(|group| group.name.as_str()).collect();
+    assert_eq!(names, ["left", "right"]);
+    assert_eq!(mesh.groups()[1].triangles, 1..2);
+}
+
+#[test]
+fn normals_are_kept_and_missing_ones_are_the_faces_own() {
+    let text = format!("{SQUARE}vn 0 1 0\nf 1//1 2//1 3//1\nf 1 3 4\nf 1//1 3 4//1\n");
+    let mesh = parsed(&text).expect("normals");
+    let normals = mesh.corner_normals().expect("normals");
+    assert_eq!(normals[0], [Vec3::Y; 3]);
+    assert_eq!(normals[1], [Vec3::Z; 3]);
+    assert_eq!(normals[2], [Vec3::Z; 3]);
+    assert!(parsed(&format!("{SQUARE}f 1 2 3\n")).expect("no normals").corner_normals().is_none());
+}
+
+#[test]
+fn points_lines_and_what_is_unknown_are_passed_over() {
+    let text = format!("{SQUARE}p 1\nl 1 2\ncurv 0 1 1 2\nmtllib missing.mtl\nusemtl red\nusemtl\nf 1 2 3\n");
+    assert_eq!(parsed(&text).expect("one face").triangles().len(), 1);
+}
+
+#[test]
+fn a_material_library_gives_groups_their_colours_and_a_broken_one_is_passed_over() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let library = "newmtl broken\nKd 1 2\nmap_Kd\nillum x\nnewmtl red\nKd 1 0 0.5\nNs 20\nd 0.5\nKs 0.2 0.4 0.6\n";
+    std::fs::write(folder.path().join("a b.mtl"), library).expect("written");
+    let text = format!("mtllib a b.mtl\n{SQUARE}usemtl red\nf 1 2 3\nusemtl broken\nf 1 3 4\n");
+    let mesh = parse(&text, folder.path()).expect("a mesh");
+    let red = mesh.groups()[0].material.expect("red");
+    assert_eq!((red.color, red.shininess, red.opacity), ([1.0, 0.0, 0.5], 20.0, 0.5));
+    assert!((red.specular - 0.4).abs() < 1e-6);
+    assert_eq!(mesh.groups()[1].material.expect("broken").color, crate::scene::Material::default().color);
+}
+
+#[test]
+fn broken_lines_are_named() {
+    let cases = [
+        ("v 0 0", 5, "three numbers, but this has 2"),
+        ("v 0 0 x", 5, "`x` is not a number"),
+        ("v 0 0 nan", 5, "`nan` is not a finite number"),
+        ("v 0 -inf 0", 5, "`-inf` is not a finite number"),
+        ("v 0 0 1e999", 5, "not a finite number"),
+        ("vn 0 0 1e99", 5, "not a finite number"),
+        ("f 1 2", 5, "at least 3 corners, but this has 2"),
+        ("f", 5, "at least 3 corners"),
+        ("f 1 2 5", 5, "vertex index 5 is out of range: there are 4 vertices"),
+        ("f 1 2 0", 5, "vertex index 0 is out of range"),
+        ("f 1 2 -5", 5, "vertex index -5 is out of range: 4 vertices stand before it"),
+        ("f 1 2 -9223372036854775808", 5, "out of range"),
+        ("f 1 2 9223372036854775808", 5, "is no vertex index"),
+        ("f 1//1 2//1 3//1", 5, "normal index 1 is out of range"),
+        ("f 1/2/3/4 2 3", 5, "is no corner"),
+        ("f 1 2 \\\n a", 5, "`a` is no vertex index"),
+    ];
+    for (line, number, words) in cases {
+        let reason = parsed(&format!("{SQUARE}{line}\nf 1 2 3\n")).expect_err(line);
+        assert!(reason.starts_with(&format!("{number}: ")) && reason.contains(words), "{line}: {reason}");
+    }
+    let no_faces = parsed(SQUARE).expect_err("no faces");
+    assert!(no_faces.contains("has no faces"), "{no_faces}");
+    let no_area = parsed(&format!("{SQUARE}f 1 1 2\n")).expect_err("no area");
+    assert!(no_area.contains("three different corners"), "{no_area}");
+}
+
+/// A small generator, so that every run sees the same bytes (Marsaglia 2003).
+struct XorShift(u64);
+
+impl XorShift {
+    fn below(&mut self, most: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % most as u64) as usize
+    }
+}
+
+#[test]
+fn no_bytes_panic_and_every_error_is_one_line() {
+    let words = [
+        "v",
+        "vn",
+        "vt",
+        "f",
+        "l",
+        "g",
+        "o",
+        "usemtl",
+        "mtllib",
+        "\n",
+        "\n",
+        "\n",
+        "1",
+        "2",
+        "3",
+        "-1",
+        "-2",
+        "0",
+        "1//1",
+        "1/1/1",
+        "//",
+        "1e308",
+        "-1e308",
+        "nan",
+        "x",
+        "\\",
+        "#",
+        "\t",
+        "\u{2003}",
+        "é",
+        "9999999999",
+        "1//-9",
+    ];
+    let mut random = XorShift(0x9e37_79b9_7f4a_7c15);
+    for _ in 0..4000 {
+        let mut text = String::from(if random.below(2) == 0 { SQUARE } else { "vn 0 0 1\n" });
+        for _ in 0..random.below(60) {
+            text += words[random.below(words.len())];
+            text.push(if random.below(8) == 0 { '\n' } else { ' ' });
+        }
+        if let Err(reason) = parsed(&text) {
+            assert!(!reason.contains('\n'), "{reason}");
+        }
+    }
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    for _ in 0..300 {
+        let bytes: Vec<u8> = (0..random.below(400)).map(|_| random.below(256) as u8).collect();
+        std::fs::write(file.path(), &bytes).expect("written");
+        if let Err(error) = load(file.path()) {
+            assert!(!error.to_string().contains('\n'), "{error}");
+        }
+    }
+}
+
+#[test]
+fn files_that_are_no_text_say_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("model.obj");
+    let error_of = |path: &Path| load(path).expect_err("broken").to_string();
+    assert!(error_of(&file).contains("no such file"));
+    assert!(error_of(folder.path()).contains("is a folder"));
+    std::fs::write(&file, b"  \n").expect("written");
+    assert!(error_of(&file).contains("is empty"));
+    std::fs::write(&file, b"v 0 0 0\n\xff\xfe\x00").expect("written");
+    assert!(error_of(&file).contains("not a text file"));
+}

@@ -1,0 +1,114 @@
+//! `stencilscope bench`: the program's own speed, as ratios.
+
+use super::options::{FrameOptions, SceneOptions};
+use super::{CliError, output};
+use crate::scene::builtin::shapes;
+use crate::scene::{MeshBuilder, Scene, SceneError, model_scene};
+use crate::session::{CaptureCost, Session, median_ms};
+use clap::Args;
+use glam::DVec3;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+/// The benchmarks that exist.
+const BENCHMARKS: [&str; 1] = ["capture"];
+/// Benchmarks that are planned, but not built.
+const BENCHMARKS_TO_COME: [&str; 4] = ["volumes", "truth", "history", "panels"];
+/// Frames of each kind that are timed.
+const RUNS: usize = 15;
+
+#[derive(Debug, Args)]
+pub struct BenchArguments {
+    /// What to measure: capture
+    #[arg(value_name = "NAME", default_value = "capture")]
+    names: Vec<String>,
+    /// A scene in place of tori and a model of a few thousand triangles; repeatable
+    #[arg(long, value_name = "SCENE")]
+    scene: Vec<String>,
+    #[command(flatten)]
+    scene_options: SceneOptions,
+    #[command(flatten)]
+    frame: FrameOptions,
+}
+
+/// Runs the named benchmarks.
+///
+/// # Errors
+/// A benchmark that does not exist; a scene or frame that can't be made; no GPU.
+pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
+    arguments.names.iter().try_for_each(|name| check_name(name))?;
+    let scenes = scenes(arguments)?;
+    let mut session = Session::new(arguments.frame.adapter.as_deref())?;
+    for scene in &scenes {
+        let request = arguments.frame.request(scene)?;
+        let cost = session.capture_cost(scene, &request, RUNS)?;
+        let title =
+            format!("{}, {}, {}x{}", scene.name, request.choice.technique().name(), request.size[0], request.size[1]);
+        output::print(&capture_lines(&title, &cost))?;
+    }
+    Ok(())
+}
+
+fn check_name(name: &str) -> Result<(), CliError> {
+    if BENCHMARKS.contains(&name) {
+        return Ok(());
+    }
+    let instead = format!("choose {}", BENCHMARKS.join(", "));
+    if BENCHMARKS_TO_COME.contains(&name) {
+        return Err(CliError::NotThereYet { what: format!("benchmark `{name}`"), instead });
+    }
+    Err(CliError::Usage(format!("no benchmark is called `{}`: {instead}", name.escape_debug())))
+}
+
+fn scenes(arguments: &BenchArguments) -> Result<Vec<Scene>, CliError> {
+    let open = |name: &String| arguments.scene_options.open(name);
+    if !arguments.scene.is_empty() {
+        return arguments.scene.iter().map(open).collect();
+    }
+    Ok(vec![open(&"tori".to_owned())?, bumpy_model()?])
+}
+
+/// A closed model of some 3 700 triangles on a floor, as uneven as a scanned one.
+fn bumpy_model() -> Result<Scene, SceneError> {
+    const NAME: &str = "bumpy sphere";
+    let fail = |source| SceneError::Mesh { name: NAME.to_owned(), source };
+    let smooth = shapes::sphere(1.0, 62, 31).map_err(fail)?;
+    let bump = |p: &DVec3| *p * (1.0 + 0.12 * (5.0 * p.x).sin() * (4.0 * p.y + 1.0).sin() * (6.0 * p.z).cos());
+    let builder = MeshBuilder {
+        positions: smooth.positions().iter().map(bump).collect(),
+        triangles: smooth.triangles().to_vec(),
+        ..MeshBuilder::default()
+    };
+    model_scene(NAME, builder.build().map_err(fail)?, true)
+}
+
+/// Times, what snapshots add, and how long copying as many bytes takes in plain memory.
+fn capture_lines(title: &str, cost: &CaptureCost) -> String {
+    let frame = median_ms(&cost.frames).unwrap_or(f64::NAN);
+    let captured = median_ms(&cost.captured).unwrap_or(f64::NAN);
+    let copy = median_ms(&memory_copies(cost.snapshot_bytes)).unwrap_or(f64::NAN);
+    let megabytes = cost.snapshot_bytes as f64 / 1e6;
+    let added = captured - frame;
+    format!(
+        "{title}\n  frame_ms {frame:.2}\n  captured_ms {captured:.2}\n  captured/frame {:.3}\n  \
+         bytes moved {} ({megabytes:.1} MB)\n  plain copy of as many: {copy:.2} ms, {:.3} of a frame; snapshots cost {:.2} such copies\n",
+        captured / frame,
+        cost.snapshot_bytes,
+        copy / frame,
+        added / copy,
+    )
+}
+
+/// The time of copying `count` bytes from one place in memory to another.
+fn memory_copies(count: u64) -> Vec<Duration> {
+    let count = usize::try_from(count).unwrap_or(usize::MAX);
+    let source = vec![1u8; count];
+    let mut target = vec![0u8; count];
+    let copy = |_| {
+        let start = Instant::now();
+        target.copy_from_slice(black_box(&source));
+        black_box(&target);
+        start.elapsed()
+    };
+    (0..RUNS).map(copy).collect()
+}

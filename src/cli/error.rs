@@ -1,0 +1,69 @@
+//! What ends a command early: one line for standard error and an exit code.
+
+use crate::capture::CaptureError;
+use crate::scene::SceneError;
+use crate::session::SessionError;
+use crate::technique::ChoiceError;
+
+/// Why a command did not do what was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// A word of the command line is wrong: what and how to mend it.
+    #[error("{0}")]
+    Usage(String),
+    /// Part of the plan, but not built.
+    #[error("{what} is not there yet: {instead}")]
+    NotThereYet {
+        /// The command, option or value.
+        what: String,
+        /// What to use until then.
+        instead: String,
+    },
+    /// The scene can't be loaded.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// No such technique or setting.
+    #[error(transparent)]
+    Choice(#[from] ChoiceError),
+    /// The capture folder can't be written or read.
+    #[error(transparent)]
+    Capture(#[from] CaptureError),
+    /// The frame can't be made.
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    /// A result can't be written.
+    #[error("{path}: can't be written ({source}): choose another file")]
+    Output {
+        /// The file.
+        path: String,
+        /// The system's words.
+        source: std::io::Error,
+    },
+    /// The window failed.
+    #[error("the window can't be opened: {0}; use `stencilscope capture`")]
+    Window(String),
+    /// Nobody reads standard output any more.
+    #[error("standard output was closed")]
+    ClosedOutput,
+}
+
+impl CliError {
+    /// 2 for bad input or usage, 3 where no GPU can be used, 0 where nobody reads the result.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            CliError::Session(error) if error.is_missing_adapter() => 3,
+            CliError::ClosedOutput => 0,
+            _ => 2,
+        }
+    }
+
+    /// The line for standard error; `None` where there is nothing to say.
+    #[must_use]
+    pub fn line(&self) -> Option<String> {
+        match self {
+            CliError::ClosedOutput => None,
+            error => Some(error.to_string().replace(['\n', '\r'], " ")),
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! Options that commands share, and how their values are read.
+
+use super::CliError;
+use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, open};
+use crate::session::CaptureRequest;
+use crate::technique::{Choice, ChoiceError, Technique};
+use clap::Args;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// The largest picture along a side.
+const LARGEST: u32 = 16_384;
+/// Used where neither the command line nor the scene names a technique.
+const DEFAULT_TECHNIQUE: &str = "z-fail";
+/// Techniques that are planned, but not built.
+const TECHNIQUES_TO_COME: [&str; 5] = ["planar-texture", "z-pass-plus", "auto", "projective", "ray-traced"];
+/// How often a frame is timed with and without snapshots.
+const TIMING_RUNS: usize = 5;
+
+/// How a scene is completed, seen and lit.
+#[derive(Debug, Clone, Args)]
+pub struct SceneOptions {
+    /// Leave out the floor under a bare model
+    #[arg(long)]
+    pub no_floor: bool,
+    /// The eye's place
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub eye: Option<DVec3>,
+    /// The point in the middle of the picture
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub target: Option<DVec3>,
+    /// What is up
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub up: Option<DVec3>,
+    /// Vertical field of view
+    #[arg(long, value_name = "DEGREES", value_parser = finite, allow_hyphen_values = true)]
+    pub fov: Option<f64>,
+    /// Distance of the near plane
+    #[arg(long, value_name = "N", value_parser = finite, allow_hyphen_values = true)]
+    pub near: Option<f64>,
+    /// Distance of the far plane
+    #[arg(long, value_name = "F", value_parser = finite, allow_hyphen_values = true)]
+    pub far: Option<f64>,
+    /// A point light in place of the scene's lights; repeatable
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub light: Vec<DVec3>,
+    /// A directional light, towards it, in place of the scene's lights; repeatable
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub sun: Vec<DVec3>,
+    /// The moment of an animated scene
+    #[arg(long, value_name = "SECONDS", value_parser = finite, default_value = "0", allow_hyphen_values = true)]
+    pub time: f64,
+}
+
+/// How the picture is made.
+#[derive(Debug, Clone, Args)]
+pub struct FrameOptions {
+    /// How shadows are made [default: the scene's, else z-fail]
+    #[arg(short, long, value_name = "NAME")]
+    pub technique: Option<String>,
+    /// A setting of the technique; repeatable
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<(String, String)>,
+    /// Width and height of the picture
+    #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "1280x720")]
+    pub size: [u32; 2],
+    /// How often to snapshot
+    #[arg(long, value_name = "pass|draw", default_value = "pass")]
+    pub every: String,
+    /// A part of the GPU's name; `llvmpipe` is the software one [default: the best]
+    #[arg(long, value_name = "SUBSTRING")]
+    pub adapter: Option<String>,
+    /// Bracket the frame for an attached graphics debugger
+    #[arg(long)]
+    pub external_capture: bool,
+    /// Also write the ground truth and the error (not there yet)
+    #[arg(long, hide = true)]
+    pub truth: bool,
+    /// A picture of the results (not there yet)
+    #[arg(long, hide = true, value_name = "FILE")]
+    pub plot: Option<String>,
+}
+
+impl SceneOptions {
+    /// Opens the scene and applies these options; the result stands still at `--time`.
+    ///
+    /// # Errors
+    /// A scene that can't be opened; a camera or light that can't be used.
+    pub fn open(&self, name: &str) -> Result<Scene, CliError> {
+        Ok(self.load(name)?.at(self.time))
+    }
+
+    /// The same, still at time 0, with all motions.
+    ///
+    /// # Errors
+    /// As [`SceneOptions::open`].
+    pub fn load(&self, name: &str) -> Result<Scene, CliError> {
+        let mut scene = open(&OpenSpec { name: name.to_owned(), floor: !self.no_floor })?;
+        self.place_camera(&mut scene)?;
+        self.place_lights(&mut scene)?;
+        Ok(scene)
+    }
+
+    fn place_camera(&self, scene: &mut Scene) -> Result<(), CliError> {
+        let camera = &mut scene.camera;
+        camera.eye = self.eye.unwrap_or(camera.eye);
+        camera.target = self.target.unwrap_or(camera.target);
+        camera.up = self.up.unwrap_or(camera.up);
+        camera.fov_y_degrees = self.fov.unwrap_or(camera.fov_y_degrees);
+        camera.near = self.near.unwrap_or(camera.near);
+        camera.far = self.far.or(camera.far);
+        camera.check().map_err(|reason| CliError::Usage(reason.to_owned()))
+    }
+
+    fn place_lights(&self, scene: &mut Scene) -> Result<(), CliError> {
+        let points = self.light.iter().copied().map(Light::point);
+        let lights: Vec<Light> = points.chain(self.sun.iter().copied().map(Light::directional)).collect();
+        if let Some(reason) = lights.iter().find_map(|light| light.check().err()) {
+            return Err(CliError::Usage(reason.to_owned()));
+        }
+        if !lights.is_empty() {
+            scene.lights = lights;
+        }
+        Ok(())
+    }
+}
+
+impl FrameOptions {
+    /// What to capture of `scene`, timed.
+    ///
+    /// # Errors
+    /// A technique or setting that does not exist, an option that is not there yet.
+    pub fn request(&self, scene: &Scene) -> Result<CaptureRequest, CliError> {
+        self.refuse_what_is_to_come()?;
+        Ok(CaptureRequest {
+            choice: self.choice(scene)?,
+            size: self.size,
+            timing_runs: TIMING_RUNS,
+            external_capture: self.external_capture,
+        })
+    }
+
+    /// The technique of the command line, else the scene's, else the default. The scene's
+    /// settings hold for the scene's technique only.
+    fn choice(&self, scene: &Scene) -> Result<Choice, CliError> {
+        let of_scene = scene.technique.clone();
+        let name = self.technique.clone().or_else(|| of_scene.as_ref().map(|request| request.name.clone()));
+        let name = name.unwrap_or_else(|| DEFAULT_TECHNIQUE.to_owned());
+        if TECHNIQUES_TO_COME.contains(&name.as_str()) {
+            let built: Vec<&str> = Technique::ALL.iter().map(|technique| technique.name()).collect();
+            let instead = format!("choose one of {}", built.join(", "));
+            return Err(CliError::NotThereYet { what: format!("technique `{name}`"), instead });
+        }
+        let mut settings = of_scene.filter(|request| request.name == name).map_or_else(BTreeMap::new, |r| r.settings);
+        settings.extend(self.set.iter().cloned());
+        Choice::parse(&TechniqueRequest { name, settings }).map_err(|error: ChoiceError| error.into())
+    }
+
+    fn refuse_what_is_to_come(&self) -> Result<(), CliError> {
+        let refuse = |what: &str, instead: &str| {
+            Err(CliError::NotThereYet { what: what.to_owned(), instead: instead.to_owned() })
+        };
+        match self.every.as_str() {
+            "pass" => {}
+            "draw" => return refuse("`--every draw`", "use `--every pass`"),
+            _ => return Err(CliError::Usage("`--every` takes `pass` or `draw`: choose one".to_owned())),
+        }
+        if self.truth {
+            return refuse("`--truth`", "leave it out");
+        }
+        if self.plot.is_some() {
+            return refuse("`--plot`", "leave it out");
+        }
+        Ok(())
+    }
+}
+
+/// `X,Y,Z`, finite.
+pub fn point(text: &str) -> Result<DVec3, String> {
+    let numbers = text.split(',').map(|part| finite(part.trim())).collect::<Result<Vec<f64>, _>>()?;
+    let [x, y, z] = numbers[..] else {
+        return Err("give three numbers as X,Y,Z".to_owned());
+    };
+    Ok(DVec3::new(x, y, z))
+}
+
+/// A finite number.
+pub fn finite(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| "give finite numbers".to_owned())
+}
+
+/// `WxH`, each from 1 to 16 384.
+pub fn picture_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X']).map(|(width, height)| [width.parse(), height.parse()]);
+    match sides {
+        Some([Ok(width), Ok(height)]) if [width, height].iter().all(|n| (1..=LARGEST).contains(n)) => {
+            Ok([width, height])
+        }
+        _ => Err(format!("give WIDTHxHEIGHT, each a whole number from 1 to {LARGEST}")),
+    }
+}
+
+/// `X,Y` of a pixel.
+pub fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(',').map(|(x, y)| [x.trim().parse(), y.trim().parse()]);
+    match sides {
+        Some([Ok(x), Ok(y)]) => Ok([x, y]),
+        _ => Err("give X,Y, counted from 0 at the top left".to_owned()),
+    }
+}
+
+/// `KEY=VALUE`.
+fn setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
+        _ => Err("give KEY=VALUE".to_owned()),
+    }
+}

@@ -1,0 +1,289 @@
+//! From the tables of a scene file to a scene, every value checked.
+
+use super::problem::{Problem, suggestion};
+use super::shape;
+use super::tables::{
+    CameraTable, LightTable, MaterialTable, MeshSource, Number, ObjectTable, OrbitTable, SceneTable, TechniqueTable,
+    Text, Triple,
+};
+use crate::scene::placement::Surroundings;
+use crate::scene::{
+    Camera, Light, Material, Mesh, Motion, Object, Orbit, Pose, Scene, Shading, TechniqueRequest, obj, open::stem,
+};
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use toml::Spanned;
+
+const DEFAULT_AMBIENT: [f32; 3] = [0.15; 3];
+const DEFAULT_FOV_Y_DEGREES: f64 = 45.0;
+/// The near plane's distance unless given, in distances from eye to target.
+const DEFAULT_NEAR: f64 = 0.01;
+
+/// `name` is the scene's unless the table gives one; meshes are looked for in `folder`.
+///
+/// # Errors
+/// The first value that can't be used.
+pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Problem> {
+    let mut builder = ObjectBuilder { folder, models: BTreeMap::new(), objects: Vec::new() };
+    for object in &table.objects {
+        builder.add(object)?;
+    }
+    let objects = builder.objects;
+    if objects.is_empty() {
+        return Err(Problem::new(0..0, "has no objects: add a table [[objects]] with a mesh"));
+    }
+    let lights = table.lights.iter().map(light).collect::<Result<Vec<_>, _>>()?;
+    let points: Vec<DVec3> = objects.iter().flat_map(Object::world_positions).collect();
+    let surroundings = || {
+        Surroundings::of(&points).ok_or_else(|| Problem::new(0..0, "is too large to be looked at: scale objects down"))
+    };
+    Ok(Scene {
+        name: table.name.unwrap_or_else(|| name.to_owned()),
+        ambient: table.ambient.as_ref().map_or(Ok(DEFAULT_AMBIENT), |rgb| color(rgb, f64::MAX))?,
+        camera: match &table.camera {
+            Some(table) => camera(table)?,
+            None => surroundings()?.camera(&points),
+        },
+        lights: if lights.is_empty() { vec![surroundings()?.light()] } else { lights },
+        objects,
+        technique: table.technique.as_ref().map(technique).transpose()?,
+    })
+}
+
+fn camera(table: &CameraTable) -> Result<Camera, Problem> {
+    let [eye, target] = [finite(&table.eye)?, finite(&table.target)?];
+    let number = |value: &Option<Number>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
+    let camera = Camera {
+        eye,
+        target,
+        up: table.up.as_ref().map_or(Ok(DVec3::Y), finite)?,
+        fov_y_degrees: number(&table.fov_y_degrees, DEFAULT_FOV_Y_DEGREES)?,
+        near: number(&table.near, eye.distance(target) * DEFAULT_NEAR)?,
+        far: table.far.as_ref().map(finite_number).transpose()?,
+    };
+    camera.check().map_err(|reason| {
+        let mends = if reason.contains(": ") { "" } else { ": correct it" };
+        Problem { at: culprit(table, &camera), reason: format!("{reason}{mends}") }
+    })?;
+    Ok(camera)
+}
+
+/// Where the value stands that makes the camera unusable.
+fn culprit(table: &CameraTable, camera: &Camera) -> usize {
+    let place = |value: &Option<Number>| value.as_ref().map(|value| value.span().start);
+    let eye = table.eye.span().start;
+    let with_defaults = Camera { fov_y_degrees: DEFAULT_FOV_Y_DEGREES, near: 1.0, far: None, ..*camera };
+    let found = if camera.eye == camera.target {
+        None
+    } else if with_defaults.check().is_err() {
+        table.up.as_ref().map(|up| up.span().start)
+    } else if (Camera { fov_y_degrees: camera.fov_y_degrees, ..with_defaults }).check().is_err() {
+        place(&table.fov_y_degrees)
+    } else if (Camera { far: None, ..*camera }).check().is_err() {
+        place(&table.near)
+    } else {
+        place(&table.far)
+    };
+    found.unwrap_or(eye)
+}
+
+fn light(table: &LightTable) -> Result<Light, Problem> {
+    let at_kind = |reason: &str| Problem::new(table.kind.span(), reason);
+    let kind = table.kind.get_ref().as_str();
+    let (place, of_light): (&Triple, fn(DVec3) -> Light) = match (kind, &table.position, &table.towards) {
+        ("point", Some(position), None) => (position, Light::point),
+        ("directional", None, Some(towards)) => (towards, Light::directional),
+        ("point", ..) => return Err(at_kind("a point light needs `position` and no `towards`: correct it")),
+        ("directional", ..) => {
+            return Err(at_kind("a directional light needs `towards` and no `position`: correct it"));
+        }
+        _ => return Err(unknown(&table.kind, "kind of light", &["point", "directional"])),
+    };
+    let default = of_light(finite(place)?);
+    let light = Light {
+        color: table.color.as_ref().map_or(Ok(default.color), |rgb| color(rgb, f64::MAX))?,
+        intensity: table.intensity.as_ref().map_or(Ok(1.0), |value| within(value, 0.0, f64::from(f32::MAX)))?,
+        range: table.range.as_ref().map(|range| positive(range)).transpose()?,
+        motion: Motion { orbit: table.orbit.as_ref().map(orbit).transpose()?, ..Motion::default() },
+        ..default
+    };
+    light.check().map_err(|reason| Problem::new(place.span(), format!("{reason}: correct it")))?;
+    Ok(light)
+}
+
+fn orbit(table: &OrbitTable) -> Result<Orbit, Problem> {
+    let axis = finite(&table.axis)?;
+    if axis.try_normalize().is_none() {
+        return Err(Problem::new(table.axis.span(), "the axis of an orbit has no direction: correct it"));
+    }
+    let degrees_per_second = finite_number(&table.degrees_per_second)?;
+    Ok(Orbit { center: finite(&table.center)?, axis, degrees_per_second })
+}
+
+fn technique(table: &TechniqueTable) -> Result<TechniqueRequest, Problem> {
+    let setting = |(key, value): (&String, &Spanned<toml::Value>)| {
+        let text = match value.get_ref() {
+            toml::Value::String(text) => text.clone(),
+            toml::Value::Integer(number) => number.to_string(),
+            toml::Value::Float(number) => number.to_string(),
+            toml::Value::Boolean(is_on) => if *is_on { "on" } else { "off" }.to_owned(),
+            _ => return Err(Problem::new(value.span(), "a setting is a text or a number: correct it")),
+        };
+        Ok((key.clone(), text))
+    };
+    let settings = table.settings.iter().map(setting).collect::<Result<_, _>>()?;
+    Ok(TechniqueRequest { name: table.name.clone(), settings })
+}
+
+/// Makes objects; models are loaded once.
+struct ObjectBuilder<'a> {
+    folder: &'a Path,
+    models: BTreeMap<PathBuf, Arc<Mesh>>,
+    objects: Vec<Object>,
+}
+
+impl ObjectBuilder<'_> {
+    fn add(&mut self, table: &ObjectTable) -> Result<(), Problem> {
+        let mesh = self.mesh(&table.mesh)?;
+        let material = material(table.material.as_ref(), &mesh)?;
+        let triple = |value: &Option<Triple>, default: DVec3| value.as_ref().map_or(Ok(default), finite);
+        let object = Object {
+            pose: Pose {
+                translate: triple(&table.translate, DVec3::ZERO)?,
+                rotate_degrees: triple(&table.rotate_degrees, DVec3::ZERO)?,
+                scale: scale(table.scale.as_ref())?,
+            },
+            motion: Motion {
+                spin_degrees_per_second: triple(&table.spin_degrees_per_second, DVec3::ZERO)?,
+                orbit: table.orbit.as_ref().map(orbit).transpose()?,
+            },
+            casts: table.casts.unwrap_or(true),
+            receives: table.receives.unwrap_or(true),
+            visible: table.visible.unwrap_or(true),
+            ..Object::new(self.name(table)?, mesh, material)
+        };
+        if !object.world_positions().iter().all(|position| position.is_finite()) {
+            let reason = "the object's corners are not finite where it is placed: scale it down or move it nearer";
+            return Err(Problem::new(table.mesh.span(), reason));
+        }
+        self.objects.push(object);
+        Ok(())
+    }
+
+    fn mesh(&mut self, source: &Spanned<MeshSource>) -> Result<Arc<Mesh>, Problem> {
+        let path = match source.get_ref() {
+            MeshSource::Shape(table) => return shape::mesh(table).map(Arc::new),
+            MeshSource::File(path) => self.folder.join(path),
+        };
+        if let Some(model) = self.models.get(&path) {
+            return Ok(Arc::clone(model));
+        }
+        let model = obj::load(&path).map_err(|error| Problem::new(source.span(), error.to_string()))?;
+        let model = Arc::new(model);
+        self.models.insert(path, Arc::clone(&model));
+        Ok(model)
+    }
+
+    /// As given, else after the mesh, with a number where that is taken.
+    fn name(&self, table: &ObjectTable) -> Result<String, Problem> {
+        let is_taken = |name: &str| self.objects.iter().any(|object| object.name == name);
+        if let Some(name) = &table.name {
+            if is_taken(name.get_ref()) {
+                let reason = format!(
+                    "another object is called `{}` already: choose another name",
+                    name.get_ref().escape_debug()
+                );
+                return Err(Problem::new(name.span(), reason));
+            }
+            return Ok(name.get_ref().clone());
+        }
+        let base = match table.mesh.get_ref() {
+            MeshSource::Shape(shape) => shape.shape.get_ref().clone(),
+            MeshSource::File(path) => stem(Path::new(path)),
+        };
+        let numbered = (2..).map(|number| format!("{base} {number}"));
+        let mut candidates = std::iter::once(base.clone()).chain(numbered);
+        Ok(candidates.find(|name| !is_taken(name)).unwrap_or(base))
+    }
+}
+
+fn material(table: Option<&MaterialTable>, mesh: &Mesh) -> Result<Material, Problem> {
+    let shading = if mesh.corner_normals().is_some() { Shading::Phong } else { Shading::Flat };
+    let default = Material { shading, ..Material::default() };
+    let Some(table) = table else { return Ok(default) };
+    let fraction = |value: &Option<Number>, default: f32| value.as_ref().map_or(Ok(default), |v| within(v, 0.0, 1.0));
+    Ok(Material {
+        color: table.color.as_ref().map_or(Ok(default.color), |rgb| color(rgb, 1.0))?,
+        specular: fraction(&table.specular, default.specular)?,
+        shininess: table.shininess.as_ref().map_or(Ok(default.shininess), |value| within(value, 0.001, 10_000.0))?,
+        shading: table.shading.as_ref().map_or(Ok(shading), shading_named)?,
+        opacity: fraction(&table.opacity, default.opacity)?,
+    })
+}
+
+fn shading_named(name: &Text) -> Result<Shading, Problem> {
+    match name.get_ref().as_str() {
+        "flat" => Ok(Shading::Flat),
+        "gouraud" => Ok(Shading::Gouraud),
+        "phong" => Ok(Shading::Phong),
+        _ => Err(unknown(name, "shading", &["flat", "gouraud", "phong"])),
+    }
+}
+
+fn scale(value: Option<&Triple>) -> Result<DVec3, Problem> {
+    let Some(value) = value else { return Ok(DVec3::ONE) };
+    let scale = finite(value)?;
+    if scale.to_array().contains(&0.0) {
+        return Err(Problem::new(value.span(), "a scale of zero flattens the object: give numbers other than 0"));
+    }
+    Ok(scale)
+}
+
+fn finite(value: &Triple) -> Result<DVec3, Problem> {
+    let vector = DVec3::from_array(*value.get_ref());
+    if vector.is_finite() { Ok(vector) } else { Err(not_finite(value)) }
+}
+
+fn finite_number(value: &Number) -> Result<f64, Problem> {
+    let number = *value.get_ref();
+    if number.is_finite() { Ok(number) } else { Err(not_finite(value)) }
+}
+
+fn not_finite<T>(value: &Spanned<T>) -> Problem {
+    Problem::new(value.span(), "NaN and infinity are no places or sizes: give finite numbers")
+}
+
+fn positive(value: &Number) -> Result<f64, Problem> {
+    let number = finite_number(value)?;
+    if number > 0.0 { Ok(number) } else { Err(Problem::new(value.span(), "must be greater than 0: correct it")) }
+}
+
+fn within(value: &Number, low: f64, high: f64) -> Result<f32, Problem> {
+    let number = finite_number(value)?;
+    if (low..=high).contains(&number) {
+        return Ok(number as f32);
+    }
+    let range = if high == f64::from(f32::MAX) {
+        format!("must not be below {low}")
+    } else {
+        format!("must be from {low} to {high}")
+    };
+    Err(Problem::new(value.span(), format!("{range}: correct it")))
+}
+
+/// Linear RGB, each from 0 to `most`.
+fn color(value: &Triple, most: f64) -> Result<[f32; 3], Problem> {
+    let rgb = finite(value)?.to_array();
+    if rgb.iter().all(|part| (0.0..=most.min(f64::from(f32::MAX))).contains(part)) {
+        return Ok(rgb.map(|part| part as f32));
+    }
+    let range = if most == 1.0 { "from 0 to 1" } else { "not negative" };
+    Err(Problem::new(value.span(), format!("a color has three parts, {range}: correct it")))
+}
+
+fn unknown(name: &Text, what: &str, known: &[&str]) -> Problem {
+    let word = name.get_ref();
+    Problem::new(name.span(), format!("no {what} is called `{}`: {}", word.escape_debug(), suggestion(word, known)))
+}

@@ -1,0 +1,68 @@
+//! What is wrong with a scene file, and where.
+
+use crate::scene::open::nearest;
+use std::ops::Range;
+
+/// Something wrong at a place of the text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// Byte offset.
+    pub at: usize,
+    /// What is wrong and how to mend it, in one line.
+    pub reason: String,
+}
+
+impl Problem {
+    /// `reason` holds for what stands at `span`.
+    #[must_use]
+    pub fn new(span: Range<usize>, reason: impl Into<String>) -> Problem {
+        Problem { at: span.start, reason: reason.into() }
+    }
+
+    /// What the TOML reader found.
+    #[must_use]
+    pub fn of_toml(error: &toml::de::Error) -> Problem {
+        Problem { at: error.span().map_or(0, |span| span.start), reason: in_words(error.message()) }
+    }
+
+    /// Counted from 1.
+    #[must_use]
+    pub fn line_in(&self, text: &str) -> usize {
+        let before = text.as_bytes().get(..self.at).unwrap_or(text.as_bytes());
+        before.iter().filter(|byte| **byte == b'\n').count() + 1
+    }
+}
+
+/// The reader's message with the mend.
+fn in_words(message: &str) -> String {
+    let message = message.replace(['\n', '\r'], " ");
+    // serde: unknown field `colour`, expected one of `color`, `range`
+    if let Some(rest) = message.strip_prefix("unknown field ") {
+        let names: Vec<&str> = rest.split('`').skip(1).step_by(2).collect();
+        if let [unknown, known @ ..] = names.as_slice() {
+            return format!("unknown key `{unknown}`: {}", suggestion(unknown, known));
+        }
+    }
+    if let Some(missing) = message.strip_prefix("missing field ") {
+        return format!("the key {missing} is missing: add it");
+    }
+    let plain = [
+        ("f64", "a number"),
+        ("u32", "a whole number, not negative"),
+        ("a boolean", "true or false"),
+        ("a string", "a text in quotes"),
+    ];
+    let type_words = plain.iter().fold(message, |text, (type_name, words)| {
+        text.replace(&format!("expected {type_name}"), &format!("expected {words}"))
+    });
+    format!("{type_words}; correct it")
+}
+
+/// `did you mean X?` where a name is near, else all of them.
+pub fn suggestion(unknown: &str, known: &[&str]) -> String {
+    match nearest(unknown, known) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if known.is_empty() => "delete it".to_owned(),
+        None => format!("choose one of {}", known.join(", ")),
+    }
+}
