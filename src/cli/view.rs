@@ -13,7 +13,7 @@ pub struct ViewArguments {
     /// A built-in scene, a scene file (.toml), a model (.obj) or a capture folder
     #[arg(default_value = "tori")]
     scene: String,
-    /// Open at this step
+    /// Open at this step, counted from 1 as in the window
     #[arg(long, value_name = "N")]
     pass: Option<usize>,
     /// Open at this pixel
@@ -58,14 +58,47 @@ fn no_window_because() -> Option<&'static str> {
     (!has_display).then_some("there is no display")
 }
 
-/// The call site of the window.
+/// The window, or a capture where the system gives none after all.
 #[cfg(feature = "inspector")]
 mod window {
-    use super::{CliError, ViewArguments};
+    use super::{CliError, ViewArguments, capture_instead};
+    use crate::app::{self, AppError, ViewRequest, ViewSource};
+    use crate::capture::disk;
+    use crate::session::CaptureRequest;
+    use crate::technique::{Choice, Technique};
+    use std::path::Path;
 
     pub fn open(arguments: &ViewArguments) -> Result<(), CliError> {
-        let _ = (arguments.pass, arguments.at);
-        Err(CliError::NotThereYet { what: "the window".to_owned(), instead: "use `stencilscope capture`".to_owned() })
+        match app::run(request(arguments)?) {
+            Err(AppError::NoWindow(reason)) => {
+                capture_instead(arguments, &format!("there can be no window ({reason})"))
+            }
+            result => result.map_err(|error| CliError::Window(error.to_string())),
+        }
+    }
+
+    /// Everything that can be wrong with the arguments is found before a window is made.
+    fn request(arguments: &ViewArguments) -> Result<ViewRequest, CliError> {
+        let folder = Path::new(&arguments.scene);
+        let (source, capture) = if folder.is_dir() {
+            let capture = disk::read(folder)?;
+            // How a scene would be rendered that is opened from the window later.
+            let choice = Choice::new(Technique::ZFail);
+            let request = CaptureRequest { choice, size: capture.size, timing_runs: 0, external_capture: false };
+            (ViewSource::Capture(Box::new(capture)), request)
+        } else {
+            let scene = arguments.scene_options.load(&arguments.scene)?;
+            let request = arguments.frame.request(&scene)?;
+            (ViewSource::Scene(Box::new(scene)), request)
+        };
+        Ok(ViewRequest {
+            source,
+            capture,
+            time: arguments.scene_options.time,
+            adapter: arguments.frame.adapter.clone(),
+            step: arguments.pass.map(|number| number.saturating_sub(1)),
+            pick: arguments.at,
+        })
     }
 }
 
