@@ -6,6 +6,27 @@
 //!
 //! A frame is data: a technique turns a scene into a plan, one executor runs any plan and keeps
 //! colour, depth and stencil after every pass, and everything after that only reads.
+//!
+//! ```
+//! use stencilscope::scene::{OpenSpec, open};
+//! use stencilscope::session::{CaptureRequest, Session};
+//! use stencilscope::technique::{Choice, Technique};
+//!
+//! let scene = open(&OpenSpec::new("tori"))?;
+//! let request = CaptureRequest::new(Choice::new(Technique::ZFail), [320, 180]);
+//! let capture = Session::new(None)?.capture(&scene, &request)?;
+//!
+//! // Step 1 has counted the shadow volumes of the light: who is in shadow, and how deep?
+//! assert_eq!(capture.steps[1].name, "volumes");
+//! let counts = &capture.frame_at(1).and_then(|frame| frame.stencil.as_ref()).expect("a stencil").image;
+//! let shadowed: u64 = counts.histogram()[1..].iter().sum();
+//! assert!(shadowed > 1000);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! World space is right-handed with Y up, in `f64`; positions go to the GPU relative to the eye.
+//! Depth is reversed and infinite: 1 at the near plane, 0 at infinity. Front faces are
+//! counter-clockwise. Row 0 of a picture is at the top. See [`math`] for the names of transforms.
 
 #[cfg(feature = "inspector")]
 pub mod app;

@@ -25,6 +25,14 @@ pub struct CaptureRequest {
     pub external_capture: bool,
 }
 
+impl CaptureRequest {
+    /// An untimed capture.
+    #[must_use]
+    pub fn new(choice: Choice, size: [u32; 2]) -> CaptureRequest {
+        CaptureRequest { choice, size, timing_runs: 0, external_capture: false }
+    }
+}
+
 /// Why nothing came out.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {

@@ -253,3 +253,27 @@ fn casters_all_round_make_a_cube_map_without_its_empty_faces() {
     assert!(differing < 50, "only texels at shadow edges differ: {differing}");
     assert!(label_counts(&volumes)[1] > 2000);
 }
+
+/// A frame split at its draws ends in the same pictures, and its counts grow draw by draw.
+#[test]
+fn a_snapshot_after_each_draw_ends_like_one_after_each_pass() {
+    let mut session = session();
+    let scene = from_above(vec![cuboid("box", [-1.0, 1.0, -1.0], [1.0, 2.0, 0.5]), square("sheet", 0.5, 2.0)]);
+    for technique in Technique::ALL {
+        let plan = session.plan(&scene, &request(technique, SIZE)).expect("a plan");
+        let by_pass = session.capture_plan(&scene, &plan).expect("a capture");
+        let by_draw = session.capture_plan(&scene, &plan.split_at_draws()).expect("a capture");
+        assert_eq!(by_draw.lights, by_pass.lights, "{technique:?}");
+        let mut last = 0;
+        for (index, step) in by_pass.steps.iter().enumerate() {
+            last += step.draws.len().max(1);
+            let frames = (by_draw.frame_at(last - 1), by_pass.frame_at(index));
+            let (Some(split), Some(whole)) = frames else { continue };
+            assert_eq!(split.color.image, whole.color.image, "{technique:?} {}", step.name);
+            assert_eq!(split.depth.image, whole.depth.image, "{technique:?} {}", step.name);
+            let stencils = [split, whole].map(|frame| frame.stencil.as_ref().map(|aspect| aspect.image.clone()));
+            assert_eq!(stencils[0], stencils[1], "{technique:?} {}", step.name);
+        }
+        assert_eq!(by_draw.steps.len(), last);
+    }
+}

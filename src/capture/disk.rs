@@ -1,76 +1,346 @@
-//! The capture folder: a manifest, NumPy arrays and PNG pictures.
+//! A capture as a folder: `manifest.json`, NumPy arrays and PNG pictures.
 //!
-//! [`write`] fills a hidden folder beside the wanted one and renames it when all is there, the
-//! manifest last, so that a folder with the wanted name is always whole. A folder that is to be
-//! replaced is moved aside first and removed last; if the new one can't take its place, it is
-//! moved back. [`read`] gives back what was written, without a GPU.
-//!
-//! ```text
-//! manifest.json              plan.txt (where the plan's text is known)
-//! 000-ambient.color.png      000-ambient.depth.npy     000-ambient.stencil.npy
-//! light0.shadow.npy          light0.map.npy
-//! ```
+//! The folder is written beside its place and renamed into it, so it is there whole or not at
+//! all; a folder that it replaces is moved aside until then.
 
-mod arrays;
-mod folder;
-mod pictures;
-mod reader;
-mod writer;
-
+use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry};
+use super::{Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, Image, PixelFormat, Snapshot, Step, files};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
 
-pub use folder::{check_target, is_capture_folder};
-pub use reader::read;
-pub use writer::write;
-
-/// The manifest's file name: what makes a folder a capture folder.
-pub const MANIFEST: &str = "manifest.json";
+const MANIFEST: &str = "manifest.json";
+const PLAN: &str = "plan.txt";
 
 /// Why a capture folder can't be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum CaptureError {
-    /// The folder is there and may not be replaced.
-    #[error("{}: exists already: choose another folder, or add --overwrite to replace it", .0.display())]
-    Exists(PathBuf),
-    /// Something that is no capture folder is in the way.
-    #[error("{}: exists and is no capture folder, so it is left alone: choose another folder", .0.display())]
-    NotReplaceable(PathBuf),
-    /// The path does not end in a name.
-    #[error("{}: is no name for a new folder: give a path that ends in a name", .0.display())]
-    NoName(PathBuf),
-    /// The system refuses to write.
-    #[error("{}: can't be written ({reason}): choose a folder that can", path.display())]
-    Write {
-        /// The folder or file.
-        path: PathBuf,
-        /// The system's words.
-        reason: String,
+    /// The folder is there already.
+    #[error("{}: there is a capture already; replace it with --overwrite or choose another folder", folder.display())]
+    Exists {
+        /// Which folder.
+        folder: PathBuf,
     },
-    /// There is no manifest.
-    #[error("{}: is no capture folder: it has no {MANIFEST}; make one with `stencilscope capture`", .0.display())]
-    NotACapture(PathBuf),
-    /// A file of the folder is broken.
-    #[error("{}: {reason}; capture the scene again", path.display())]
-    Broken {
-        /// The file.
-        path: PathBuf,
+    /// What is there is no capture folder, so it is never replaced.
+    #[error("{}: it is there already and is no capture folder; choose another name", folder.display())]
+    InTheWay {
+        /// Which file or folder.
+        folder: PathBuf,
+    },
+    /// The folder can't be made, filled or put in its place.
+    #[error("{}: can't be written ({source}); choose a folder that you may write to", file.display())]
+    Write {
+        /// Which file or folder.
+        file: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A file is missing or broken.
+    #[error("{}: {reason}; capture the scene again", file.display())]
+    Read {
+        /// Which file.
+        file: PathBuf,
         /// What is wrong with it.
         reason: String,
     },
 }
 
-impl CaptureError {
-    fn write(path: &Path, error: impl std::fmt::Display) -> CaptureError {
-        CaptureError::Write { path: path.to_owned(), reason: one_line(error) }
-    }
+/// Is there a capture folder at this path?
+#[must_use]
+pub fn is_capture(folder: &Path) -> bool {
+    folder.join(MANIFEST).is_file()
+}
 
-    fn broken(path: &Path, reason: impl std::fmt::Display) -> CaptureError {
-        CaptureError::Broken { path: path.to_owned(), reason: one_line(reason) }
+/// Checks that [`write`] may put a capture at this path, before any work is done for it.
+///
+/// # Errors
+/// Something is there that may not be replaced.
+pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> {
+    let is_empty_folder = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
+    let folder = folder.to_owned();
+    if !folder.exists() || is_empty_folder {
+        Ok(())
+    } else if !is_capture(&folder) {
+        Err(CaptureError::InTheWay { folder })
+    } else if overwrite {
+        Ok(())
+    } else {
+        Err(CaptureError::Exists { folder })
     }
 }
 
-fn one_line(text: impl std::fmt::Display) -> String {
-    text.to_string().replace('\n', " ")
+/// Writes `capture` to `folder`, whole or not at all, and returns how many milliseconds its
+/// pictures took (also in the manifest).
+///
+/// # Errors
+/// A folder that is there already and may not be replaced, or a place that can't be written to.
+pub fn write(capture: &Capture, folder: &Path, overwrite: bool) -> Result<f64, CaptureError> {
+    check_target(folder, overwrite)?;
+    // A link to a folder stays a link: what it points to is replaced.
+    let folder = &fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
+    let [new, old] = ["new", "old"].map(|which| beside(folder, which));
+    let result = write_files(capture, &new).and_then(|write_ms| {
+        put_in_place(folder, &new, &old)?;
+        Ok(write_ms)
+    });
+    if result.is_err() {
+        // What could not be finished is not left behind; what failed is the error already.
+        let _ = fs::remove_dir_all(&new);
+    }
+    result
+}
+
+/// A hidden name in the same folder, so that renaming stays on one file system.
+fn beside(folder: &Path, which: &str) -> PathBuf {
+    let name = folder.file_name().map_or("capture".into(), |name| name.to_string_lossy());
+    folder.with_file_name(format!(".{name}.{which}-{}", std::process::id()))
+}
+
+fn put_in_place(folder: &Path, new: &Path, old: &Path) -> Result<(), CaptureError> {
+    let failed = |source| CaptureError::Write { file: folder.to_owned(), source };
+    let replaces = folder.exists();
+    if replaces {
+        fs::rename(folder, old).map_err(failed)?;
+    }
+    if let Err(source) = fs::rename(new, folder) {
+        if replaces {
+            // Back to how it was; if even that fails, the old one is still beside its place.
+            let _ = fs::rename(old, folder);
+        }
+        return Err(failed(source));
+    }
+    if replaces {
+        fs::remove_dir_all(old).map_err(|source| CaptureError::Write { file: old.to_owned(), source })?;
+    }
+    Ok(())
+}
+
+fn write_files(capture: &Capture, folder: &Path) -> Result<f64, CaptureError> {
+    let start = Instant::now();
+    fs::create_dir_all(folder).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
+    let mut manifest = Manifest::new(capture);
+    let mut written = BTreeMap::new();
+    for (index, step) in capture.steps.iter().enumerate() {
+        let entry = write_step(folder, index, step, &mut written)?;
+        manifest.passes.push(entry);
+    }
+    for (index, light) in capture.lights.iter().enumerate() {
+        manifest.lights.push(write_light(folder, index, light)?);
+    }
+    if !capture.plan_text.is_empty() {
+        files::write(&folder.join(PLAN), |out| out.write_all(capture.plan_text.as_bytes()))?;
+    }
+    let write_ms = start.elapsed().as_secs_f64() * 1e3;
+    manifest.timing.write_ms = Some(write_ms);
+    files::write(&folder.join(MANIFEST), |out| Ok(serde_json::to_writer_pretty(out, &manifest)?))?;
+    Ok(write_ms)
+}
+
+fn write_step(
+    folder: &Path,
+    index: usize,
+    step: &Step,
+    written: &mut BTreeMap<&'static str, (Arc<Image>, String)>,
+) -> Result<PassEntry, CaptureError> {
+    let mut entry = PassEntry {
+        index,
+        name: step.name.clone(),
+        purpose: step.purpose.clone(),
+        light: step.light,
+        caster: step.caster().map(ToOwned::to_owned),
+        draws: step.draws.len(),
+        triangles: step.triangles(),
+        gpu_ms: step.gpu_ms,
+        draw_list: step.draws.iter().map(Into::into).collect(),
+        ..PassEntry::default()
+    };
+    let frame = match &step.snapshot {
+        Snapshot::Map { light, face } => {
+            entry.map = Some(map_file(*light));
+            entry.map_face = Some(*face);
+            return Ok(entry);
+        }
+        Snapshot::Frame(frame) => frame,
+    };
+    let mut unchanged = Vec::new();
+    let mut put = |name: &'static str, ending: &str, aspect: &Aspect| {
+        if aspect.unchanged {
+            unchanged.push(name.to_owned());
+        }
+        if let Some((image, file)) = written.get(name)
+            && Arc::ptr_eq(image, &aspect.image)
+        {
+            return Ok(Some(file.clone()));
+        }
+        let file = format!("{index:03}-{}.{name}.{ending}", slug(&step.name));
+        files::write_image(&folder.join(&file), &aspect.image)?;
+        written.insert(name, (aspect.image.clone(), file.clone()));
+        Ok(Some(file))
+    };
+    entry.color = put("color", "png", &frame.color)?;
+    entry.depth = put("depth", "npy", &frame.depth)?;
+    if let Some(stencil) = &frame.stencil {
+        entry.stencil = put("stencil", "npy", stencil)?;
+    }
+    entry.unchanged = Some(unchanged);
+    entry.labels = step.light.filter(|_| frame.writes_labels).map(shadow_file);
+    Ok(entry)
+}
+
+fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<LightEntry, CaptureError> {
+    let mut entry = LightEntry::new(index, light.position);
+    if let Some(shadow) = &light.shadow {
+        entry.shadow = Some(shadow_file(index));
+        files::write_image(&folder.join(shadow_file(index)), shadow)?;
+    }
+    if let Some(map) = &light.map {
+        entry.map = Some(map_file(index));
+        files::write_layers(&folder.join(map_file(index)), &map.faces)?;
+        entry.matrices = Some(Matrices {
+            light_from_world: manifest::rows(map.light_from_world),
+            clip_from_light: map.clip_from_light.iter().copied().map(manifest::rows).collect(),
+        });
+    }
+    Ok(entry)
+}
+
+fn shadow_file(light: usize) -> String {
+    format!("light{light}.shadow.npy")
+}
+
+fn map_file(light: usize) -> String {
+    format!("light{light}.map.npy")
+}
+
+/// Letters, digits, `+` and `-` of a name; the rest becomes `-`.
+fn slug(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '+' || c == '-' { c } else { '-' }).collect()
+}
+
+/// Reads a capture folder.
+///
+/// # Errors
+/// A file that is missing, broken or of another size than the manifest says.
+pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
+    let file = folder.join(MANIFEST);
+    let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
+    let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
+    let manifest: Manifest = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    if manifest.schema != manifest::SCHEMA {
+        return Err(wrong(format!("its schema is {}, not {}", manifest.schema, manifest::SCHEMA)));
+    }
+    if !manifest.size.iter().all(|pixels| (1..=files::LARGEST).contains(pixels)) {
+        return Err(wrong(format!("its picture is {}x{}", manifest.size[0], manifest.size[1])));
+    }
+    let mut reader = Reader { folder, size: manifest.size, images: BTreeMap::new() };
+    let lights = manifest.lights.iter().map(|light| reader.light(light)).collect::<Result<_, _>>()?;
+    let steps = manifest.passes.iter().map(|pass| reader.step(pass)).collect::<Result<_, _>>()?;
+    Ok(Capture {
+        scene: manifest.scene,
+        technique: manifest.technique,
+        settings: manifest.settings,
+        size: manifest.size,
+        adapter: manifest.adapter,
+        camera: (&manifest.camera).into(),
+        steps,
+        lights,
+        left_out: manifest.left_out,
+        timing: manifest.timing,
+        plan_text: fs::read_to_string(folder.join(PLAN)).unwrap_or_default(),
+    })
+}
+
+/// Reads each file once: what the manifest names twice is shared again.
+struct Reader<'a> {
+    folder: &'a Path,
+    size: [u32; 2],
+    images: BTreeMap<String, Arc<Image>>,
+}
+
+impl Reader<'_> {
+    fn wrong(&self, file: &str, reason: &str) -> CaptureError {
+        CaptureError::Read { file: self.folder.join(file), reason: reason.to_owned() }
+    }
+
+    fn image(&mut self, file: &str, format: PixelFormat) -> Result<Arc<Image>, CaptureError> {
+        if let Some(image) = self.images.get(file) {
+            let is_same_kind = image.format() == format;
+            return is_same_kind
+                .then(|| image.clone())
+                .ok_or_else(|| self.wrong(file, "it is named as two kinds of picture"));
+        }
+        let image = files::read_image(&self.path(file)?, format)?;
+        if image.size() != self.size {
+            return Err(self.wrong(file, "its size is not the manifest's"));
+        }
+        let image = Arc::new(image);
+        self.images.insert(file.to_owned(), image.clone());
+        Ok(image)
+    }
+
+    /// Only plain names: a manifest can't point out of its folder.
+    fn path(&self, file: &str) -> Result<PathBuf, CaptureError> {
+        if file.contains(['/', '\\']) || file.starts_with('.') {
+            return Err(self.wrong(MANIFEST, "it names a file outside its folder"));
+        }
+        Ok(self.folder.join(file))
+    }
+
+    fn step(&mut self, pass: &PassEntry) -> Result<Step, CaptureError> {
+        let draws = pass.draw_list.iter().map(|draw| {
+            draw.to_summary().ok_or_else(|| self.wrong(MANIFEST, "it names a part of a draw that is not known"))
+        });
+        let draws = draws.collect::<Result<_, _>>()?;
+        let snapshot = match (&pass.map, pass.light) {
+            (Some(_), Some(light)) => Snapshot::Map { light, face: pass.map_face.unwrap_or(0) },
+            _ => Snapshot::Frame(self.frame(pass)?),
+        };
+        Ok(Step {
+            name: pass.name.clone(),
+            purpose: pass.purpose.clone(),
+            light: pass.light,
+            draws,
+            gpu_ms: pass.gpu_ms,
+            snapshot,
+        })
+    }
+
+    fn frame(&mut self, pass: &PassEntry) -> Result<FrameSnapshot, CaptureError> {
+        let unchanged = pass.unchanged.clone().unwrap_or_default();
+        let mut aspect = |name: &str, file: &Option<String>, format| {
+            let file = file.as_ref().ok_or_else(|| self.wrong(MANIFEST, &format!("a pass lacks its {name}")))?;
+            let unchanged = unchanged.iter().any(|aspect| aspect == name);
+            Ok(Aspect { image: self.image(file, format)?, unchanged })
+        };
+        let color = aspect("color", &pass.color, PixelFormat::Rgba8Srgb)?;
+        let depth = aspect("depth", &pass.depth, PixelFormat::Depth32F)?;
+        let has_stencil = pass.stencil.is_some();
+        let stencil = has_stencil.then(|| aspect("stencil", &pass.stencil, PixelFormat::U8)).transpose()?;
+        Ok(FrameSnapshot { color, depth, stencil, writes_labels: pass.labels.is_some() })
+    }
+
+    fn light(&mut self, entry: &LightEntry) -> Result<CapturedLight, CaptureError> {
+        let position = entry.homogeneous().ok_or_else(|| self.wrong(MANIFEST, "a light has no place"))?;
+        let shadow = entry.shadow.as_ref().map(|file| self.image(file, PixelFormat::U8)).transpose()?;
+        let map = match (&entry.map, &entry.matrices) {
+            (Some(file), Some(matrices)) => {
+                let faces = files::read_layers(&self.path(file)?)?;
+                if faces.len() != matrices.clip_from_light.len() {
+                    return Err(self.wrong(file, "it has another number of faces than the manifest"));
+                }
+                Some(CapturedMap {
+                    faces: faces.into_iter().map(Arc::new).collect(),
+                    light_from_world: manifest::from_rows(&matrices.light_from_world),
+                    clip_from_light: matrices.clip_from_light.iter().map(manifest::from_rows).collect(),
+                })
+            }
+            _ => None,
+        };
+        Ok(CapturedLight { position, shadow, map })
+    }
 }
 
 #[cfg(test)]

@@ -1,19 +1,19 @@
-//! `manifest.json`: the capture folder's table of contents, as written and read.
+//! `manifest.json` of a capture folder, field by field as `spec/commands.md` has it.
 //!
-//! Field names are a contract with scripts (`commands.md`, "The capture folder"): fields may be
-//! added, none renamed. A key that does not apply is absent; a value that can't be known is null.
+//! Names are a contract with scripts: add fields, rename none.
 
-use super::{AdapterInfo, Timing};
-use crate::plan::LeftOut;
+use super::{AdapterInfo, Capture, DrawSummary, Timing};
+use crate::plan::{LeftOut, Part};
+use crate::scene::Camera;
+use glam::{DMat4, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The number that changes when old readers would misread the folder.
-pub const SCHEMA: u32 = 1;
+/// The version of the folder's layout.
+pub(super) const SCHEMA: u32 = 1;
 
-/// The whole file.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Manifest {
+pub(super) struct Manifest {
     pub schema: u32,
     pub program: String,
     pub scene: String,
@@ -26,14 +26,10 @@ pub struct Manifest {
     pub lights: Vec<LightEntry>,
     pub left_out: Vec<LeftOut>,
     pub timing: Timing,
-    /// File of the plan's text form.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub plan: Option<String>,
 }
 
-/// The camera.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct CameraEntry {
+pub(super) struct CameraEntry {
     pub eye: [f64; 3],
     pub target: [f64; 3],
     pub up: [f64; 3],
@@ -42,9 +38,9 @@ pub struct CameraEntry {
     pub far: Option<f64>,
 }
 
-/// One pass: of the picture (`color`, `depth`, `stencil`) or of a shadow map (`map`, `map_face`).
-#[derive(Debug, Serialize, Deserialize)]
-pub struct PassEntry {
+/// A pass with the files of what it left, or with the map it drew into.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(super) struct PassEntry {
     pub index: usize,
     pub name: String,
     pub purpose: String,
@@ -56,39 +52,35 @@ pub struct PassEntry {
     pub depth: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stencil: Option<String>,
-    /// The light's labels, for the pass that writes them.
+    /// Aspects that the pass did not change: they name an earlier file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unchanged: Option<Vec<String>>,
+    /// The labels that a mask pass writes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub labels: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
-    /// Index of the face of `map` that the pass draws.
+    /// Which face of the map it drew.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map_face: Option<usize>,
-    /// Aspects whose file is an earlier pass's.
-    #[serde(default)]
-    pub unchanged: Vec<String>,
     pub draws: usize,
     pub triangles: u64,
     pub gpu_ms: Option<f64>,
-    /// What was drawn, in order.
-    #[serde(default)]
     pub draw_list: Vec<DrawEntry>,
 }
 
-/// One draw of a pass.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct DrawEntry {
+pub(super) struct DrawEntry {
     pub name: String,
     pub caster: Option<String>,
     pub part: String,
     pub triangles: u64,
 }
 
-/// One light: `position` for a point light, `towards` for a directional one.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct LightEntry {
+pub(super) struct LightEntry {
     pub index: usize,
-    pub kind: LightKind,
+    pub kind: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -101,21 +93,100 @@ pub struct LightEntry {
     pub matrices: Option<Matrices>,
 }
 
-/// What a light is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum LightKind {
-    Point,
-    Directional,
-}
-
-/// The transforms of a shadow map, row by row.
+/// Row by row.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Matrices {
-    pub light_from_world: Rows,
+pub(super) struct Matrices {
+    pub light_from_world: [[f64; 4]; 4],
     /// One a face.
-    pub clip_from_light: Vec<Rows>,
+    pub clip_from_light: Vec<[[f64; 4]; 4]>,
 }
 
-/// A 4×4 matrix, rows first.
-pub type Rows = [[f64; 4]; 4];
+impl Manifest {
+    /// Everything but passes and lights, whose files the writer names.
+    pub fn new(capture: &Capture) -> Manifest {
+        Manifest {
+            schema: SCHEMA,
+            program: concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")).to_owned(),
+            scene: capture.scene.clone(),
+            technique: capture.technique.clone(),
+            settings: capture.settings.clone(),
+            size: capture.size,
+            adapter: capture.adapter.clone(),
+            camera: CameraEntry::from(&capture.camera),
+            passes: Vec::new(),
+            lights: Vec::new(),
+            left_out: capture.left_out.clone(),
+            timing: capture.timing,
+        }
+    }
+}
+
+impl From<&Camera> for CameraEntry {
+    fn from(camera: &Camera) -> CameraEntry {
+        CameraEntry {
+            eye: camera.eye.to_array(),
+            target: camera.target.to_array(),
+            up: camera.up.to_array(),
+            fov_y_degrees: camera.fov_y_degrees,
+            near: camera.near,
+            far: camera.far,
+        }
+    }
+}
+
+impl From<&CameraEntry> for Camera {
+    fn from(entry: &CameraEntry) -> Camera {
+        Camera {
+            eye: DVec3::from_array(entry.eye),
+            target: DVec3::from_array(entry.target),
+            up: DVec3::from_array(entry.up),
+            fov_y_degrees: entry.fov_y_degrees,
+            near: entry.near,
+            far: entry.far,
+        }
+    }
+}
+
+impl From<&DrawSummary> for DrawEntry {
+    fn from(draw: &DrawSummary) -> DrawEntry {
+        DrawEntry {
+            name: draw.name.clone(),
+            caster: draw.caster.clone(),
+            part: draw.part.name().to_owned(),
+            triangles: draw.triangles,
+        }
+    }
+}
+
+impl DrawEntry {
+    /// `None` for a part that this version does not know.
+    pub fn to_summary(&self) -> Option<DrawSummary> {
+        let part = Part::from_name(&self.part)?;
+        Some(DrawSummary { name: self.name.clone(), caster: self.caster.clone(), part, triangles: self.triangles })
+    }
+}
+
+impl LightEntry {
+    /// A light without files.
+    pub fn new(index: usize, position: DVec4) -> LightEntry {
+        let at = position.truncate().to_array();
+        let (kind, position, towards) =
+            if position.w == 0.0 { ("directional", None, Some(at)) } else { ("point", Some(at), None) };
+        let kind = kind.to_owned();
+        LightEntry { index, kind, position, towards, shadow: None, map: None, matrices: None }
+    }
+
+    /// Homogeneous; `None` where neither form is given.
+    pub fn homogeneous(&self) -> Option<DVec4> {
+        let point = self.position.map(|at| DVec3::from_array(at).extend(1.0));
+        point.or_else(|| self.towards.map(|at| DVec3::from_array(at).extend(0.0)))
+    }
+}
+
+pub(super) fn rows(matrix: DMat4) -> [[f64; 4]; 4] {
+    matrix.transpose().to_cols_array_2d()
+}
+
+pub(super) fn from_rows(rows: &[[f64; 4]; 4]) -> DMat4 {
+    DMat4::from_cols_array_2d(rows).transpose()
+}

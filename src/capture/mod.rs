@@ -5,6 +5,7 @@
 //! and reports) reads it. An aspect that a pass did not change is shared with the step before.
 
 pub mod disk;
+mod files;
 mod image;
 mod manifest;
 

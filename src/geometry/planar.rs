@@ -125,16 +125,25 @@ impl Flattener {
         self.plane
     }
 
-    /// Adds the shadow of one triangle. `on_plane` says which corners belong to the receiver
-    /// itself, and so are on its plane whatever rounding says.
-    pub fn add(&mut self, corners: [DVec3; 3], on_plane: [bool; 3]) {
-        let height = |i: usize| if on_plane[i] { 0.0 } else { self.plane.at(corners[i].extend(1.0)) };
-        let heights = [height(0), height(1), height(2)];
-        if heights.iter().all(|h| *h <= 0.0) {
+    /// Adds the shadow of a mesh. `on_plane` names vertices of the receiver itself: they are on its
+    /// plane whatever rounding says.
+    pub fn add(&mut self, world: &[DVec3], triangles: &[[u32; 3]], on_plane: &[u32]) {
+        let mut heights: Vec<f64> = world.iter().map(|position| self.plane.at(position.extend(1.0))).collect();
+        on_plane.iter().for_each(|vertex| heights[*vertex as usize] = 0.0);
+        if heights.iter().all(|height| *height <= 0.0) {
             return;
         }
-        let polygon: Vec<(DVec3, f64)> = corners.into_iter().zip(heights).collect();
-        let mut polygon = clip(&polygon, 0.0, |h| h);
+        for corners in triangles {
+            let corners = corners.map(|vertex| (world[vertex as usize], heights[vertex as usize]));
+            if corners.iter().any(|(_, height)| *height > 0.0) {
+                self.add_triangle(corners);
+            }
+        }
+    }
+
+    /// One triangle by its corners and their heights over the plane.
+    fn add_triangle(&mut self, corners: [(DVec3, f64); 3]) {
+        let mut polygon = clip(&corners, 0.0, |h| h);
         if self.light.w != 0.0 {
             polygon = clip(&polygon, self.light_height, |h| self.light_height - h);
         }
@@ -194,7 +203,7 @@ mod tests {
 
     fn shadow_area(corners: [DVec3; 3], light: DVec4) -> f64 {
         let mut flattener = Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), light).expect("a light above");
-        flattener.add(corners, [false; 3]);
+        flattener.add(&corners, &[[0, 1, 2]], &[]);
         let area = |[a, b, c]: [DVec4; 3]| {
             let [a, b, c] = [a, b, c].map(|v| v.truncate() / v.w);
             (b - a).cross(c - a).length() / 2.0
@@ -223,7 +232,7 @@ mod tests {
     fn a_triangle_that_reaches_past_the_light_throws_a_shadow_to_infinity() {
         let corners = [DVec3::new(1.0, 1.0, 0.0), DVec3::new(2.0, 1.0, 0.0), DVec3::new(1.0, 6.0, 0.5)];
         let mut flattener = Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), LIGHT).expect("a light above");
-        flattener.add(corners, [false; 3]);
+        flattener.add(&corners, &[[0, 1, 2]], &[]);
         let corners: Vec<DVec4> = flattener.finish().into_iter().flatten().collect();
         assert!(corners.iter().all(|corner| corner.w >= 0.0));
         assert!(corners.iter().any(|corner| corner.w == 0.0), "cut level with the light: at infinity exactly");

@@ -19,7 +19,6 @@ const MOST_BYTES: u64 = 8 << 30;
 #[derive(Debug)]
 pub struct Prepared<'a> {
     pub(super) plan: &'a FramePlan,
-    pub(super) textures: Vec<Texture>,
     pub(super) passes: Vec<PreparedPass>,
     pub(super) staged: Vec<StagedPass>,
     pub(super) views: UniformArray,
@@ -88,7 +87,7 @@ impl<'a> Prepared<'a> {
         let staged = plan.passes.iter().map(|pass| stage(device, plan, pass, &textures)).collect::<Result<_, _>>()?;
         let view_group = views.bind_group(device, &pipelines.layouts.view);
         let draw_group = draws.bind_group(device, &pipelines.layouts.draw);
-        Ok(Prepared { plan, textures, passes, staged, views, view_group, draws, draw_group, lights })
+        Ok(Prepared { plan, passes, staged, views, view_group, draws, draw_group, lights })
     }
 
     /// Bytes that snapshots of the timed passes copy.

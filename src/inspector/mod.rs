@@ -1,1 +1,196 @@
-//! To come.
+//! The inspector: egui panels that show a capture and say what the user wishes.
+//!
+//! Panels are a function of state: they read data (capture, scene, technique) and return
+//! [`Action`]s. They open no file, run nothing and know no GPU; the app does that and hands back
+//! data. So they can be driven and tested without a window.
+//!
+//! ```text
+//! Inspector::ui ─ keys ─ top_bar ─ messages ─ docked panels ─ status_bar ─ open_dialog
+//!                                             passes │ settings │ picture │ pixel
+//! state.rs  what is remembered, and its rules      view.rs     which picture, where on the screen
+//! depth.rs  what a stored depth means              texture.rs  pictures as textures, cached
+//! ```
+
+mod action;
+mod canvas;
+mod depth;
+mod dock;
+mod draws;
+mod format;
+mod keys;
+mod legend;
+mod magnifier;
+mod messages;
+mod open_dialog;
+mod palette;
+mod passes;
+mod picture;
+mod pixel;
+mod pixel_run;
+mod settings;
+mod settings_scene;
+mod state;
+mod status_bar;
+mod texture;
+mod theme;
+mod top_bar;
+mod transport;
+mod verdict;
+mod view;
+
+pub use action::{Action, RunRequest};
+pub use state::SceneEntry;
+pub use view::{PictureKind, Zoom};
+
+use crate::capture::Capture;
+use crate::scene::Scene;
+use state::State;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// All panels and what they remember.
+#[derive(Debug)]
+pub struct Inspector {
+    state: State,
+    dock: dock::Dock,
+    styled: bool,
+}
+
+impl Default for Inspector {
+    fn default() -> Inspector {
+        Inspector::new(Vec::new())
+    }
+}
+
+impl Inspector {
+    /// With nothing open; `scenes` are the built-in ones that its dialog offers.
+    #[must_use]
+    pub fn new(scenes: Vec<SceneEntry>) -> Inspector {
+        let state = State { scenes, ..State::default() };
+        Inspector { state, dock: dock::Dock::new(), styled: false }
+    }
+
+    /// Draws everything and returns what the user wishes.
+    pub fn ui(&mut self, ui: &mut egui::Ui) -> Vec<Action> {
+        if !self.styled {
+            theme::apply(ui.ctx());
+            ui.reset_style();
+            self.styled = true;
+        }
+        let mut actions = Vec::new();
+        self.state.cache.tick();
+        take_dropped_files(ui.ctx(), &mut actions);
+        keys::handle(ui.ctx(), &mut self.state);
+        self.play(ui.ctx());
+        top_bar::ui(ui, &mut self.state, &mut actions);
+        messages::ui(ui, &mut self.state);
+        status_bar::ui(ui, &self.state);
+        self.dock.ui(ui, &mut self.state, &mut actions);
+        open_dialog::ui(ui.ctx(), &mut self.state, &mut actions);
+        actions
+    }
+
+    fn play(&mut self, ctx: &egui::Context) {
+        let now = ctx.input(|input| input.time);
+        if let Some(seconds) = self.state.play(now) {
+            ctx.request_repaint_after(Duration::from_secs_f64(seconds));
+        }
+    }
+
+    /// Another scene is open, to be run as `draft` says.
+    pub fn set_scene(&mut self, scene: &Scene, draft: RunRequest) {
+        self.state.set_scene(Some((scene, draft)));
+    }
+
+    /// What is open can't be run again: a capture folder.
+    pub fn clear_scene(&mut self) {
+        self.state.set_scene(None);
+    }
+
+    /// Shows a capture; the selected step and pixel stay where they mean the same.
+    pub fn set_capture(&mut self, capture: Arc<Capture>) {
+        self.state.set_capture(capture);
+    }
+
+    /// The capture that is shown.
+    #[must_use]
+    pub fn capture(&self) -> Option<&Arc<Capture>> {
+        self.state.capture.as_ref()
+    }
+
+    /// What is being done, in a few words; `None` when nothing is.
+    pub fn set_job(&mut self, job: Option<String>) {
+        self.state.job = job;
+    }
+
+    /// Shows an error with its mend until it is dismissed; what was shown before stays.
+    pub fn push_error(&mut self, error: String) {
+        if !self.state.errors.contains(&error) {
+            self.state.errors.push(error);
+        }
+    }
+
+    /// The errors that are shown.
+    #[must_use]
+    pub fn errors(&self) -> &[String] {
+        &self.state.errors
+    }
+
+    /// Index of the selected step.
+    #[must_use]
+    pub fn step(&self) -> usize {
+        self.state.step
+    }
+
+    /// Selects a step; the last one if there are fewer.
+    pub fn select_step(&mut self, step: usize) {
+        self.state.select_step(step);
+    }
+
+    /// The picked pixel of the picture.
+    #[must_use]
+    pub fn picked(&self) -> Option<[u32; 2]> {
+        self.state.pick
+    }
+
+    /// Picks a pixel.
+    pub fn pick(&mut self, at: [u32; 2]) {
+        self.state.pick = Some(at);
+    }
+
+    /// The kind of picture that is shown.
+    #[must_use]
+    pub fn picture_kind(&self) -> Option<PictureKind> {
+        let capture = self.state.capture.as_ref()?;
+        self.state.view.shown(capture, self.state.step).map(|shown| shown.kind)
+    }
+
+    /// Wishes for a kind of picture.
+    pub fn set_picture_kind(&mut self, kind: PictureKind) {
+        self.state.view.choose(kind);
+    }
+
+    /// How large texels are shown.
+    #[must_use]
+    pub fn zoom(&self) -> Zoom {
+        self.state.view.zoom
+    }
+
+    /// Shows texels in a size, `center` (in texels) in the middle.
+    pub fn set_zoom(&mut self, zoom: Zoom, center: [f64; 2]) {
+        self.state.view.zoom = zoom;
+        self.state.view.center = center;
+    }
+
+    /// Is the scene playing?
+    #[must_use]
+    pub fn is_playing(&self) -> bool {
+        self.state.playing.is_some()
+    }
+}
+
+/// A dropped file is opened; of several the last one, as only one scene is open at a time.
+fn take_dropped_files(ctx: &egui::Context, actions: &mut Vec<Action>) {
+    let dropped = ctx.input(|input| input.raw.dropped_files.last().map(|file| file.path().display().to_string()));
+    actions.extend(dropped.map(Action::Open));
+}

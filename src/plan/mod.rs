@@ -16,6 +16,7 @@ mod buffers;
 mod left_out;
 pub mod lint;
 mod raster;
+mod split;
 pub mod text;
 
 pub use buffers::{Blob, DrawMesh, SurfaceData};

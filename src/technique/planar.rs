@@ -165,14 +165,9 @@ fn shadow_draw(frame: &mut Frame, one: &Marked, caster: usize, light: LightId) -
     let placed = &frame.placed[caster];
     let mesh = &placed.object.mesh;
     let mut flattener = planar::Flattener::new(one.receiver.plane, frame.light_position(light))?;
-    let mut on_plane = vec![false; mesh.positions().len()];
-    if caster == one.object {
-        let corners = one.receiver.triangles.iter().flat_map(|triangle| mesh.triangles()[*triangle as usize]);
-        corners.for_each(|vertex| on_plane[vertex as usize] = true);
-    }
-    for corners in mesh.triangles() {
-        flattener.add(corners.map(|v| placed.world[v as usize]), corners.map(|v| on_plane[v as usize]));
-    }
+    let own = one.receiver.triangles.iter().filter(|_| caster == one.object);
+    let on_plane: Vec<u32> = own.flat_map(|triangle| mesh.triangles()[*triangle as usize]).collect();
+    flattener.add(&placed.world, mesh.triangles(), &on_plane);
     let triangles = flattener.finish();
     if triangles.is_empty() {
         return None;

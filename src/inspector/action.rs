@@ -1,0 +1,50 @@
+//! What the panels ask of the app. Panels change nothing outside themselves.
+
+use crate::scene::{Camera, Light};
+use crate::technique::Choice;
+
+/// A wish of the user that needs files, windows or the GPU.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Action {
+    /// Open a built-in scene by name, or a scene file, model or capture folder by path.
+    Open(String),
+    /// Ask for a file with the system's dialog.
+    Browse,
+    /// Render again, with this changed.
+    Run(Box<RunRequest>),
+}
+
+/// Everything about a run that the panels can change; the objects are the app's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunRequest {
+    /// How shadows are made.
+    pub choice: Choice,
+    /// Width and height of the picture in pixels.
+    pub size: [u32; 2],
+    /// The eye.
+    pub camera: Camera,
+    /// All lights, where they are at the scene's start.
+    pub lights: Vec<Light>,
+    /// The moment of an animated scene, seconds.
+    pub time: f64,
+}
+
+impl RunRequest {
+    /// Names what can't be run, in a few words with the mend.
+    ///
+    /// # Errors
+    /// A camera or light that can't be used, a picture without pixels.
+    pub fn check(&self) -> Result<(), String> {
+        self.camera.check()?;
+        for (index, light) in self.lights.iter().enumerate() {
+            light.check().map_err(|reason| format!("light {}: {reason}", index + 1))?;
+        }
+        if self.size.contains(&0) {
+            return Err("the picture needs at least one pixel each way".to_owned());
+        }
+        if !self.time.is_finite() {
+            return Err("the time must be a finite number of seconds".to_owned());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,160 @@
+//! The picture itself: zoom, pan and pick by mouse and keys, numbers on large texels, and the
+//! crosshair of the pick.
+
+use super::palette;
+use super::state::{Hover, State};
+use super::texture::TextureSize;
+use super::theme;
+use super::view::{Coloring, Placement, Shown, Zoom};
+use crate::capture::Image;
+use egui::{
+    Align2, Color32, CornerRadius, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
+};
+use egui::{WidgetInfo, pos2, vec2};
+
+/// Screen pixels a texel from which on each texel shows its number.
+pub const NUMBERS_FROM: f32 = 24.0;
+/// How much one point of wheel movement zooms, as a power of e; a notch is about 50 points.
+const WHEEL_ZOOM: f32 = 0.004;
+
+/// Draws `shown` into `rect` and acts on mouse and keys. Returns where the picture lies.
+pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Coloring) -> Placement {
+    let image = &shown.images[0];
+    let response = ui.interact(rect, ui.scope_id().with("canvas"), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
+    let pixels_per_point = ui.pixels_per_point();
+    let place = |state: &State| Placement::new(&state.view, image.size(), rect, pixels_per_point);
+    move_view(ui, state, &response, place(state), pixels_per_point);
+    let placement = place(state);
+    pick(ui, state, &response, placement, shown);
+    state.hover = response.hover_pos().and_then(|at| placement.texel(at)).map(|at| Hover { image: 0, at });
+
+    let painter = ui.painter_at(rect);
+    let visible = placement.rect().intersect(rect);
+    if visible.is_positive() {
+        let texture = state.cache.texture(ui.ctx(), image, coloring, TextureSize::Full);
+        painter.image(texture.id(), visible, uv_of(placement.rect(), visible), Color32::WHITE);
+    }
+    painter.rect_stroke(placement.rect(), CornerRadius::ZERO, Stroke::new(1.0, theme::LINE), StrokeKind::Outside);
+    if placement.pixels(pixels_per_point) >= NUMBERS_FROM {
+        numbers(ui, rect, image, coloring, placement);
+    }
+    if let Some(at) = *state.shown_pick(shown.kind) {
+        crosshair(&painter, placement.rect_of(at));
+    }
+    if response.has_focus() {
+        painter.rect_stroke(
+            rect.shrink(1.0),
+            CornerRadius::ZERO,
+            Stroke::new(1.0, theme::SELECTED),
+            StrokeKind::Inside,
+        );
+    }
+    placement
+}
+
+fn uv_of(whole: Rect, part: Rect) -> Rect {
+    let at = |p: Pos2| pos2((p.x - whole.min.x) / whole.width(), (p.y - whole.min.y) / whole.height());
+    Rect::from_min_max(at(part.min), at(part.max))
+}
+
+/// The wheel zooms at the pointer, left-drag pans.
+fn move_view(ui: &Ui, state: &mut State, response: &Response, placement: Placement, pixels_per_point: f32) {
+    if response.dragged_by(PointerButton::Primary) && response.drag_delta() != egui::Vec2::ZERO {
+        let moved = placement.texel_position(response.rect.center() - response.drag_delta());
+        set_view(state, placement.pixels(pixels_per_point), moved);
+    }
+    let Some(pointer) = response.hover_pos() else { return };
+    let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+    let factor = (scroll * WHEEL_ZOOM).exp() * pinch;
+    if factor != 1.0 {
+        let [least, most] = Placement::ZOOM_LIMITS;
+        let pixels = (placement.pixels(pixels_per_point) * factor).clamp(least, most);
+        // The texel under the pointer stays there.
+        let under_pointer = placement.texel_position(pointer);
+        let center = under_pointer + (response.rect.center() - pointer) / (pixels / pixels_per_point);
+        set_view(state, pixels, center);
+    }
+}
+
+fn set_view(state: &mut State, pixels: f32, center: egui::Vec2) {
+    state.view.zoom = Zoom::Pixels(pixels);
+    state.view.center = [f64::from(center.x), f64::from(center.y)];
+}
+
+/// Right-click and right-drag pick; arrow keys nudge the pick while the picture has the focus.
+fn pick(ui: &Ui, state: &mut State, response: &Response, placement: Placement, shown: &Shown) {
+    if response.clicked() || response.secondary_clicked() || response.drag_started() {
+        response.request_focus();
+    }
+    let by_mouse = response.secondary_clicked() || response.dragged_by(PointerButton::Secondary);
+    if let Some(texel) = response.interact_pointer_pos().filter(|_| by_mouse).and_then(|at| placement.texel(at)) {
+        *state.shown_pick(shown.kind) = Some(texel);
+    }
+    if response.has_focus() {
+        let arrows = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+        let by = nudge(ui);
+        if by != [0, 0] {
+            let pick = state.shown_pick(shown.kind);
+            let from = pick.unwrap_or(placement.size.map(|side| side / 2));
+            *pick = Some([0, 1].map(|axis| {
+                let last = placement.size[axis].saturating_sub(1);
+                from[axis].saturating_add_signed(by[axis]).min(last)
+            }));
+        }
+    }
+}
+
+/// Texels to move by: one a key press, ten with Shift.
+fn nudge(ui: &Ui) -> [i32; 2] {
+    ui.input(|input| {
+        let far = if input.modifiers.shift { 10 } else { 1 };
+        let presses = |key| input.num_presses(key) as i32 * far;
+        [presses(Key::ArrowRight) - presses(Key::ArrowLeft), presses(Key::ArrowDown) - presses(Key::ArrowUp)]
+    })
+}
+
+/// The number of every visible texel.
+fn numbers(ui: &Ui, rect: Rect, image: &Image, coloring: Coloring, placement: Placement) {
+    let painter = ui.painter_at(rect);
+    let first = placement.texel_position(rect.min).max(egui::Vec2::ZERO);
+    let last = placement.texel_position(rect.max);
+    let end = |position: f32, side: u32| (position.max(0.0).ceil() as u32).min(side);
+    for y in first.y as u32..end(last.y, placement.size[1]) {
+        for x in first.x as u32..end(last.x, placement.size[0]) {
+            texel_number(&painter, image, coloring, [x, y], placement.rect_of([x, y]));
+        }
+    }
+}
+
+/// Draws a texel's number into its cell, as large as fits, in black or white.
+pub fn texel_number(painter: &egui::Painter, image: &Image, coloring: Coloring, at: [u32; 2], cell: Rect) {
+    let Some(color) = coloring.color_at(image, at) else { return };
+    let lines = if coloring == Coloring::Srgb { 3.0 } else { 1.0 };
+    let size = (cell.height() * 0.38).min(cell.height() * 0.86 / (lines * 1.2)).clamp(6.0, 13.0);
+    // A character of the monospaced face is 0.6 of its size wide.
+    let columns = (cell.width() * 0.94 / (size * 0.6)) as usize;
+    let Some(text) = coloring.number_at(image, at, columns) else { return };
+    let longest = text.lines().map(|line| line.chars().count()).max().unwrap_or(1);
+    let size = size.min(cell.width() * 0.94 / (longest as f32 * 0.6));
+    let ink = palette::ink_on(color);
+    let galley = painter.layout_no_wrap(text, theme::number_font(size), ink);
+    let at = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), cell).min;
+    painter.galley(at, galley, ink);
+}
+
+/// A box around the picked texel with four ticks, light on dark so that it shows on any picture.
+fn crosshair(painter: &egui::Painter, texel: Rect) {
+    let middle = texel.center();
+    let half = vec2(texel.width().max(11.0), texel.height().max(11.0)) / 2.0;
+    let frame = Rect::from_center_size(middle, half * 2.0).expand(1.0);
+    let (inner, outer) = (half.x + 5.0, half.x + 17.0);
+    for (width, color) in [(4.0, Color32::from_black_alpha(170)), (1.5, Color32::WHITE)] {
+        let stroke = Stroke::new(width, color);
+        painter.rect_stroke(frame, CornerRadius::ZERO, stroke, StrokeKind::Middle);
+        for direction in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
+            painter.line_segment([middle + direction * inner, middle + direction * outer], stroke);
+        }
+    }
+}

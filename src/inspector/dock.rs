@@ -1,0 +1,157 @@
+//! The docked panels: passes and settings on the left, picture in the middle, pixel on the right.
+//!
+//! They can be dragged and resized. Until the user does, the side panels keep their width and
+//! the picture takes what is left.
+
+use super::action::Action;
+use super::state::State;
+use super::{passes, picture, pixel, settings, theme};
+use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
+use egui_tiles::{
+    Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
+};
+
+/// Widths of the side panels in points, where the window is wide enough.
+const LEFT_WIDTH: f32 = 264.0;
+const RIGHT_WIDTH: f32 = 332.0;
+/// What a side panel may take of the window at most.
+const SIDE_SHARE: f32 = 0.26;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Panel {
+    Passes,
+    Settings,
+    Picture,
+    Pixel,
+}
+
+/// The panels and where they are.
+#[derive(Debug)]
+pub struct Dock {
+    tree: Tree<Panel>,
+    row: TileId,
+    left: TileId,
+    picture: TileId,
+    right: TileId,
+    arranged_by_user: bool,
+}
+
+impl Dock {
+    /// As first shown.
+    #[must_use]
+    pub fn new() -> Dock {
+        let mut tiles = Tiles::default();
+        let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
+        let left = tiles.insert_tab_tile(sides.to_vec());
+        let [picture, right] = [Panel::Picture, Panel::Pixel].map(|panel| {
+            let pane = tiles.insert_pane(panel);
+            tiles.insert_tab_tile(vec![pane])
+        });
+        let row = tiles.insert_horizontal_tile(vec![left, picture, right]);
+        let tree = Tree::new(Id::unique("inspector dock"), row, tiles);
+        Dock { tree, row, left, picture, right, arranged_by_user: false }
+    }
+
+    /// Draws all panels into what is left of the window.
+    pub fn ui(&mut self, ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+        if !self.arranged_by_user {
+            self.keep_widths(ui.available_width());
+        }
+        let mut behavior = Panels { state, actions, edited: false };
+        self.tree.ui(&mut behavior, ui);
+        self.arranged_by_user |= behavior.edited;
+    }
+
+    fn keep_widths(&mut self, width: f32) {
+        let most = width * SIDE_SHARE;
+        let sides = [LEFT_WIDTH.min(most), RIGHT_WIDTH.min(most)];
+        if let Some(Tile::Container(Container::Linear(row))) = self.tree.tiles.get_mut(self.row) {
+            row.shares.set_share(self.left, sides[0]);
+            row.shares.set_share(self.right, sides[1]);
+            row.shares.set_share(self.picture, (width - sides[0] - sides[1]).max(1.0));
+        }
+    }
+}
+
+struct Panels<'a> {
+    state: &'a mut State,
+    actions: &'a mut Vec<Action>,
+    edited: bool,
+}
+
+impl Behavior<Panel> for Panels<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, panel: &mut Panel) -> UiResponse {
+        let frame = match panel {
+            Panel::Picture => egui::Frame::new().fill(theme::PANEL),
+            _ => theme::panel_frame(),
+        };
+        frame.show(ui, |ui| {
+            ui.set_min_size(ui.available_size());
+            match panel {
+                Panel::Passes => passes::ui(ui, self.state),
+                Panel::Settings => settings::ui(ui, self.state, self.actions),
+                Panel::Picture => picture::ui(ui, self.state),
+                Panel::Pixel => pixel::ui(ui, self.state),
+            }
+        });
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, panel: &Panel) -> WidgetText {
+        let title = match panel {
+            Panel::Passes => "Passes",
+            Panel::Settings => "Settings",
+            Panel::Picture => "Picture",
+            Panel::Pixel => "Pixel",
+        };
+        title.into()
+    }
+
+    fn tab_ui(&mut self, tiles: &mut Tiles<Panel>, ui: &mut Ui, id: Id, tile_id: TileId, tab: &TabState) -> Response {
+        let color = if tab.active { theme::TEXT } else { theme::DIM };
+        let text = self.tab_title_for_tile(tiles, tile_id);
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let galley = text.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, font);
+        let (_, rect) = ui.allocate_space(vec2(galley.size().x + 24.0, ui.available_height()));
+        let response = ui.interact(rect, id, Sense::click_and_drag());
+        let name = galley.text().to_owned();
+        response.widget_info(|| WidgetInfo::selected(Role::Tab, true, tab.active, &name));
+        if ui.is_rect_visible(rect) && !tab.is_being_dragged {
+            if tab.active {
+                ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::PANEL);
+                ui.painter().hline(rect.x_range(), rect.top() + 1.0, Stroke::new(2.0, theme::SELECTED));
+            }
+            if response.has_focus() {
+                let outline = Stroke::new(1.0, theme::SELECTED);
+                ui.painter().rect_stroke(rect.shrink(2.0), CornerRadius::same(2), outline, egui::StrokeKind::Inside);
+            }
+            ui.painter().galley(rect.center() - galley.size() / 2.0, galley, color);
+        }
+        self.on_tab_button(tiles, tile_id, response)
+    }
+
+    fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
+        28.0
+    }
+
+    fn tab_bar_color(&self, _visuals: &egui::Visuals) -> Color32 {
+        theme::BACKGROUND
+    }
+
+    fn tab_bar_hline_stroke(&self, _visuals: &egui::Visuals) -> Stroke {
+        Stroke::NONE
+    }
+
+    fn resize_stroke(&self, _style: &egui::Style, state: egui_tiles::ResizeState) -> Stroke {
+        let color = if state == egui_tiles::ResizeState::Idle { theme::LINE } else { theme::SELECTED };
+        Stroke::new(1.0, color)
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+
+    fn on_edit(&mut self, action: EditAction) {
+        self.edited |= action != EditAction::TabSelected;
+    }
+}

@@ -1,0 +1,44 @@
+//! Keys that act on the whole window: stepping, playing, the search fields.
+//!
+//! They act while nothing, or a widget of the pass tree, has the focus; a text field or the
+//! picture keeps its keys. Keys are consumed before widgets see them.
+
+use super::state::{State, StepSearch};
+use egui::{Context, Key, Modifiers};
+
+/// Acts on the keys of this frame.
+pub fn handle(ctx: &Context, state: &mut State) {
+    if state.dialog.is_some() {
+        return;
+    }
+    let pressed = |modifiers, key| ctx.input_mut(|input| input.consume_key(modifiers, key));
+    if pressed(Modifiers::COMMAND, Key::G) {
+        open_search(state, StepSearch::GoTo(String::new()));
+    } else if pressed(Modifiers::COMMAND, Key::F) {
+        open_search(state, StepSearch::Find(String::new()));
+    } else if pressed(Modifiers::COMMAND, Key::O) {
+        state.dialog = Some(super::state::OpenDialog::default());
+    }
+    let focus = ctx.memory(egui::Memory::focused);
+    if focus.is_some_and(|id| !state.tree_widgets.contains(&id)) || egui::Popup::is_any_open(ctx) {
+        return;
+    }
+    if pressed(Modifiers::NONE, Key::ArrowLeft) {
+        state.step_by(-1);
+    } else if pressed(Modifiers::NONE, Key::ArrowRight) {
+        state.step_by(1);
+    } else if pressed(Modifiers::NONE, Key::Home) {
+        state.select_step(0);
+    } else if pressed(Modifiers::NONE, Key::End) {
+        state.select_step(usize::MAX);
+    } else if pressed(Modifiers::NONE, Key::Space) {
+        state.toggle_play(ctx.input(|input| input.time));
+    }
+}
+
+fn open_search(state: &mut State, search: StepSearch) {
+    if state.steps() > 0 {
+        state.search = Some(search);
+        state.search_wants_focus = true;
+    }
+}

@@ -1,0 +1,41 @@
+//! An inset that shows the texels around the pick with their numbers, while the picture is too
+//! small to show them itself.
+
+use super::canvas;
+use super::state::State;
+use super::theme;
+use super::view::{Coloring, Placement, Shown};
+use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
+
+/// Texels across and down; odd, so that the pick is in the middle.
+const CELLS: [i64; 2] = [7, 5];
+/// Size of a texel in the inset, points.
+const CELL: f32 = 26.0;
+
+/// Draws the inset into the lower left corner of `rect`.
+pub fn ui(ui: &Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Coloring, placement: Placement) {
+    let Some(pick) = *state.shown_pick(shown.kind) else { return };
+    let size = vec2(CELLS[0] as f32, CELLS[1] as f32) * CELL;
+    let is_large = placement.pixels(ui.pixels_per_point()) >= canvas::NUMBERS_FROM;
+    if is_large || rect.width() < size.x * 2.0 || rect.height() < size.y * 2.0 {
+        return;
+    }
+    let inset = Rect::from_min_size(pos2(rect.left() + 12.0, rect.bottom() - 12.0 - size.y), size);
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(inset, CornerRadius::same(4), theme::BACKGROUND);
+    let image = &shown.images[0];
+    for row in 0..CELLS[1] {
+        for column in 0..CELLS[0] {
+            let offset = [column - CELLS[0] / 2, row - CELLS[1] / 2];
+            let cell = Rect::from_min_size(inset.min + vec2(column as f32, row as f32) * CELL, vec2(CELL, CELL));
+            let texel = [0, 1].map(|axis| u32::try_from(i64::from(pick[axis]) + offset[axis]));
+            let [Ok(x), Ok(y)] = texel else { continue };
+            let Some(color) = coloring.color_at(image, [x, y]) else { continue };
+            painter.rect_filled(cell.shrink(0.5), CornerRadius::ZERO, color);
+            canvas::texel_number(&painter, image, coloring, [x, y], cell);
+        }
+    }
+    let middle = Rect::from_center_size(inset.center(), vec2(CELL, CELL));
+    painter.rect_stroke(middle, CornerRadius::ZERO, Stroke::new(2.0, Color32::WHITE), StrokeKind::Middle);
+    painter.rect_stroke(inset.expand(1.0), CornerRadius::same(4), Stroke::new(1.0, theme::FAINT), StrokeKind::Outside);
+}

@@ -1,0 +1,129 @@
+//! The colours of integers and labels in pictures: exact, so that a number can be read off.
+//!
+//! Hues are Okabe and Ito's (2008), safe for the common kinds of colour blindness; the number
+//! itself is always shown too, in the legend and on large texels.
+
+use egui::Color32;
+
+/// Labels of `techniques.md` section 2, by value.
+pub const LABELS: [Label; 4] = [
+    Label { name: "lit", meaning: "the light reaches the surface", color: Color32::from_rgb(0xf2, 0xd1, 0x6b) },
+    Label { name: "shadow", meaning: "something lies between", color: Color32::from_rgb(0x46, 0x55, 0x7d) },
+    Label { name: "background", meaning: "no surface is here", color: Color32::from_rgb(0x14, 0x17, 0x1d) },
+    Label {
+        name: "faces away",
+        meaning: "the light is on the surface's other side",
+        color: Color32::from_rgb(0x7b, 0x82, 0x90),
+    },
+];
+
+/// What a byte of a shadow mask means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Label {
+    /// In words.
+    pub name: &'static str,
+    /// In more words.
+    pub meaning: &'static str,
+    /// In pictures and legends.
+    pub color: Color32,
+}
+
+/// A stencil count of 0.
+const STENCIL_ZERO: Color32 = Color32::from_rgb(0x14, 0x17, 0x1d);
+/// Counts 1 to 7.
+const STENCIL_CYCLE: [Color32; 7] = [
+    Color32::from_rgb(0x56, 0xb4, 0xe9),
+    Color32::from_rgb(0x00, 0x9e, 0x73),
+    Color32::from_rgb(0xf0, 0xe4, 0x42),
+    Color32::from_rgb(0xe6, 0x9f, 0x00),
+    Color32::from_rgb(0xd5, 0x5e, 0x00),
+    Color32::from_rgb(0xcc, 0x79, 0xa7),
+    Color32::from_rgb(0x96, 0x78, 0xdc),
+];
+/// A count of −1, stored as 255.
+const STENCIL_MINUS_ONE: Color32 = Color32::from_rgb(0xff, 0x59, 0x64);
+/// What −128 ends at: lighter further away.
+const STENCIL_MINUS_MOST: Color32 = Color32::from_rgb(0xff, 0xe3, 0xe5);
+
+/// The colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle darker by a step
+/// each turn; 255 (−1) downwards in reds, lighter further away.
+#[must_use]
+pub fn stencil(value: u8) -> Color32 {
+    match value {
+        0 => STENCIL_ZERO,
+        1..=127 => {
+            let turn = f32::from((value - 1) / 7);
+            // 18 turns fit below 128; the last one keeps a third of its brightness.
+            STENCIL_CYCLE[usize::from((value - 1) % 7)].lerp_to_gamma(Color32::BLACK, turn * (2.0 / 3.0) / 18.0)
+        }
+        128..=255 => {
+            let away = f32::from(255 - value) / 127.0;
+            STENCIL_MINUS_ONE.lerp_to_gamma(STENCIL_MINUS_MOST, away.sqrt())
+        }
+    }
+}
+
+/// The colour of a label; a value that is none is drawn as its stencil colour would be.
+#[must_use]
+pub fn label(value: u8) -> Color32 {
+    LABELS.get(usize::from(value)).map_or_else(|| stencil(value), |label| label.color)
+}
+
+/// A stencil value as people read it: 255 is `−1 (255)`.
+#[must_use]
+pub fn signed(value: u8) -> String {
+    if value < 128 { value.to_string() } else { format!("−{} ({value})", 256 - u32::from(value)) }
+}
+
+/// Grey for a place between near (0) and far (1): near is light.
+#[must_use]
+pub fn near_far(place: f32) -> Color32 {
+    let gray = 238.0 - 196.0 * place.clamp(0.0, 1.0);
+    Color32::from_gray(gray as u8)
+}
+
+/// Nothing was drawn here: the depth buffer's clear value.
+pub const NO_SURFACE: Color32 = STENCIL_ZERO;
+
+/// Black or white, whichever is read more easily on `background`.
+#[must_use]
+pub fn ink_on(background: Color32) -> Color32 {
+    let [red, green, blue, _] = background.to_array().map(f32::from);
+    let light = 0.299 * red + 0.587 * green + 0.114 * blue;
+    if light > 128.0 { Color32::from_gray(16) } else { Color32::from_gray(225) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn small_counts_and_minus_one_have_the_colours_of_the_design() {
+        assert_eq!(stencil(0), Color32::from_rgb(0x14, 0x17, 0x1d));
+        assert_eq!(stencil(1), Color32::from_rgb(0x56, 0xb4, 0xe9));
+        assert_eq!(stencil(7), Color32::from_rgb(0x96, 0x78, 0xdc));
+        assert_eq!(stencil(255), Color32::from_rgb(0xff, 0x59, 0x64));
+    }
+
+    #[test]
+    fn every_turn_of_the_cycle_is_darker_than_the_one_before() {
+        let light = |value: u8| stencil(value).to_array()[..3].iter().map(|c| u32::from(*c)).sum::<u32>();
+        assert!((1..=120).all(|value| light(value + 7) < light(value)));
+    }
+
+    #[test]
+    fn neighbouring_values_differ() {
+        let distinct: BTreeSet<[u8; 4]> = (0..=20).map(|value| stencil(value).to_array()).collect();
+        assert_eq!(distinct.len(), 21);
+        assert!((0..=126).all(|value| stencil(value) != stencil(value + 1)));
+        assert_ne!(stencil(255), stencil(254));
+    }
+
+    #[test]
+    fn values_from_128_on_read_as_negative() {
+        assert_eq!(signed(127), "127");
+        assert_eq!(signed(255), "−1 (255)");
+        assert_eq!(signed(128), "−128 (128)");
+    }
+}

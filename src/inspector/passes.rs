@@ -1,0 +1,223 @@
+//! The passes of the frame as a tree: scene and lights, their passes in order, the draws of the
+//! selected one, what was left out, and why the selected pass is there.
+
+use super::draws;
+use super::format;
+use super::state::{State, StepSearch};
+use super::texture::TextureSize;
+use super::theme;
+use super::transport;
+use super::view::Coloring;
+use crate::capture::{Capture, FrameSnapshot, Image, Snapshot, Step};
+use egui::{
+    Color32, CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
+};
+use std::sync::Arc;
+
+/// Height that "Why this pass" takes at most, in points.
+const PURPOSE_HEIGHT: f32 = 168.0;
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, state: &mut State) {
+    state.tree_widgets.clear();
+    let Some(capture) = state.capture.clone() else { return empty(ui, state) };
+    if capture.steps.is_empty() {
+        ui.label(theme::note("This capture has no passes."));
+        return;
+    }
+    transport::ui(ui, state);
+    purpose(ui, &capture.steps[state.step.min(capture.steps.len() - 1)]);
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        tree(ui, state, &capture);
+        draws::left_out(ui, &capture.left_out);
+    });
+    state.scroll_to_step = false;
+}
+
+fn empty(ui: &mut Ui, state: &State) {
+    let text = match &state.job {
+        Some(_) => "The passes appear here as soon as the frame is captured.",
+        None => "Nothing is open. Open a scene, a model or a capture folder, or drop one onto this window.",
+    };
+    ui.add(egui::Label::new(theme::note(text)).wrap());
+}
+
+fn tree(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>) {
+    let filter = match &state.search {
+        Some(StepSearch::Find(words)) => words.clone(),
+        _ => String::new(),
+    };
+    let mut group = None;
+    let mut found = 0;
+    for (index, step) in capture.steps.iter().enumerate() {
+        if !transport::matches(step, &filter) {
+            continue;
+        }
+        found += 1;
+        if group.replace(step.light) != Some(step.light) {
+            group_heading(ui, capture, step.light);
+        }
+        pass_row(ui, state, capture, index);
+        if index == state.step {
+            draws::of_step(ui, step);
+        }
+    }
+    if found == 0 {
+        ui.add_space(8.0);
+        ui.label(theme::note("No pass has these words. Escape shows all again."));
+    }
+}
+
+fn group_heading(ui: &mut Ui, capture: &Capture, light: Option<usize>) {
+    ui.add_space(8.0);
+    let text = match light {
+        None => "Scene".to_owned(),
+        Some(index) => {
+            let kind = capture
+                .lights
+                .get(index)
+                .map_or("", |light| if light.position.w == 0.0 { " · directional" } else { " · point" });
+            format!("Light {}{kind}", index + 1)
+        }
+    };
+    ui.label(theme::note(text));
+    ui.add_space(2.0);
+}
+
+/// One pass: thumbnail of what it changed, number and name, what it drew, its time.
+fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize) {
+    let step = &capture.steps[index];
+    let is_selected = index == state.step;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::PASS_ROW_HEIGHT), Sense::click());
+    let title = format!("{} · {}", index + 1, step.name);
+    response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &title));
+    state.tree_widgets.push(response.id);
+    if response.has_focus() {
+        let arrows = egui::EventFilter { horizontal_arrows: true, ..egui::EventFilter::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+    }
+    if is_selected && state.scroll_to_step {
+        response.scroll_to_me(None);
+    }
+    if response.clicked() {
+        state.playing = None;
+        state.select_step(index);
+        state.scroll_to_step = false;
+    }
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    paint_row_background(ui, rect, is_selected, response.hovered(), response.has_focus());
+    let thumbnail = Rect::from_min_size(rect.min + vec2(8.0, 6.0), vec2(52.0, 32.0));
+    paint_thumbnail(ui, state, capture, step, thumbnail);
+    let time = format::milliseconds(step.gpu_ms);
+    let font = TextStyle::Monospace.resolve(ui.style());
+    let time_rect = ui.painter().text(
+        pos2(rect.right() - 8.0, rect.center().y),
+        egui::Align2::RIGHT_CENTER,
+        time,
+        font,
+        theme::DIM,
+    );
+    let left = thumbnail.right() + 8.0;
+    let room = time_rect.left() - left - 4.0;
+    text_line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, theme::TEXT);
+    text_line(ui, pos2(left, rect.top() + 23.0), room, &summary(step), TextStyle::Small, theme::DIM);
+}
+
+fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool, has_focus: bool) {
+    let painter = ui.painter();
+    if is_selected {
+        painter.rect_filled(rect, CornerRadius::ZERO, theme::SELECTED_ROW);
+        let bar = Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
+        painter.rect_filled(bar, CornerRadius::ZERO, theme::SELECTED);
+    } else if is_hovered {
+        painter.rect_filled(rect, CornerRadius::ZERO, theme::RAISED);
+    }
+    if has_focus {
+        painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::SELECTED), StrokeKind::Inside);
+    }
+}
+
+/// One line of text, cut off with an ellipsis where there is no room.
+fn text_line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: TextStyle, color: Color32) {
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), style.resolve(ui.style()), color);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(8.0));
+    let galley = ui.painter().layout_job(job);
+    ui.painter().galley(at, galley, color);
+}
+
+fn summary(step: &Step) -> String {
+    if step.draws.is_empty() {
+        return "no draws".to_owned();
+    }
+    let draws = format::counted(step.draws.len() as u64, "draw");
+    format!("{draws} · {}", format::counted(step.triangles(), "triangle"))
+}
+
+/// What a step changed, as a picture with its colouring.
+fn changed_picture(state: &mut State, capture: &Capture, step: &Step) -> Option<(Arc<Image>, Coloring)> {
+    match &step.snapshot {
+        Snapshot::Map { light, face } => {
+            let map = capture.lights.get(*light)?.map.as_ref()?;
+            let image = map.faces.get(*face)?.clone();
+            let measure = super::depth::DepthMeasure::of_map(map, *face).unwrap_or(super::depth::DepthMeasure::Raw);
+            let range = state.cache.depth_range(&image, measure).unwrap_or([0.0, 1.0]);
+            Some((image, Coloring::Depth(super::depth::DepthScale { measure, range })))
+        }
+        Snapshot::Frame(frame) => changed_aspect(state, capture, step, frame),
+    }
+}
+
+fn changed_aspect(
+    state: &mut State,
+    capture: &Capture,
+    step: &Step,
+    frame: &FrameSnapshot,
+) -> Option<(Arc<Image>, Coloring)> {
+    if frame.writes_labels {
+        let light = capture.lights.get(step.light?)?;
+        return Some((light.shadow.clone()?, Coloring::Labels));
+    }
+    if !frame.color.unchanged {
+        return Some((frame.color.image.clone(), Coloring::Srgb));
+    }
+    if let Some(stencil) = frame.stencil.as_ref().filter(|stencil| !stencil.unchanged) {
+        return Some((stencil.image.clone(), Coloring::Stencil));
+    }
+    if !frame.depth.unchanged {
+        let measure = super::depth::DepthMeasure::of_camera(capture).unwrap_or(super::depth::DepthMeasure::Raw);
+        let range = state.cache.depth_range(&frame.depth.image, measure).unwrap_or([0.0, 1.0]);
+        return Some((frame.depth.image.clone(), Coloring::Depth(super::depth::DepthScale { measure, range })));
+    }
+    None
+}
+
+fn paint_thumbnail(ui: &Ui, state: &mut State, capture: &Capture, step: &Step, rect: Rect) {
+    let painter = ui.painter();
+    painter.rect_filled(rect, CornerRadius::ZERO, theme::BACKGROUND);
+    if let Some((image, coloring)) = changed_picture(state, capture, step) {
+        let texture = state.cache.texture(ui.ctx(), &image, coloring, TextureSize::Thumbnail);
+        let size = texture.size_vec2();
+        let fitted = size * (rect.width() / size.x).min(rect.height() / size.y);
+        let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        painter.image(texture.id(), Rect::from_center_size(rect.center(), fitted), uv, Color32::WHITE);
+    }
+    painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, theme::LINE), StrokeKind::Outside);
+}
+
+/// "Why this pass", at the panel's foot.
+fn purpose(ui: &mut Ui, step: &Step) {
+    let frame = egui::Frame::new().inner_margin(Margin { top: 8, ..Margin::ZERO });
+    let panel = egui::Panel::bottom("why this pass").frame(frame).show_separator_line(false).resizable(false);
+    panel.max_size(PURPOSE_HEIGHT).show(ui, |ui| {
+        theme::card().show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            theme::heading(ui, "Why this pass");
+            egui::ScrollArea::vertical().max_height(PURPOSE_HEIGHT - 56.0).show(ui, |ui| {
+                ui.add(egui::Label::new(theme::note(step.purpose.as_str())).wrap());
+            });
+        });
+    });
+}

@@ -1,0 +1,147 @@
+//! The picked pixel: one sentence, then its values at the selected step, then how they came to be.
+
+use super::depth::DepthMeasure;
+use super::format;
+use super::palette;
+use super::pixel_run;
+use super::state::State;
+use super::theme;
+use super::verdict::verdict;
+use super::view::PictureKind;
+use crate::capture::{Capture, FrameSnapshot};
+use egui::{Color32, RichText, Ui};
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, state: &mut State) {
+    let Some(capture) = state.capture.clone() else {
+        ui.add(egui::Label::new(theme::note("Open a scene to look at its pixels.")).wrap());
+        return;
+    };
+    let Some(at) = state.pick else { return how_to_pick(ui) };
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        sentence(ui, state, &capture, at);
+        ui.add_space(8.0);
+        values(ui, state, &capture, at);
+        if !capture.lights.is_empty() {
+            ui.add_space(8.0);
+            lights(ui, &capture, at);
+        }
+        ui.add_space(8.0);
+        pixel_run::ui(ui, state, &capture, at);
+    });
+}
+
+fn how_to_pick(ui: &mut Ui) {
+    theme::heading(ui, "No pixel is picked.");
+    let text = "Right-click a pixel of the picture, or drag with the right button. The arrow keys move the pick while \
+                the picture has the focus, ten pixels at a time with Shift.";
+    ui.add(egui::Label::new(theme::note(text)).wrap());
+}
+
+/// The light that the sentence is about: the selected step's, or the first that is blocked.
+fn light_in_question(state: &State, capture: &Capture, at: [u32; 2]) -> usize {
+    let of_step = capture.steps.get(state.step).and_then(|step| step.light);
+    let is_dark =
+        |light: &crate::capture::CapturedLight| light.shadow.as_ref().and_then(|mask| mask.byte_at(at)) == Some(1);
+    of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)
+}
+
+fn sentence(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2]) {
+    let verdict = verdict(capture, light_in_question(state, capture, at), at);
+    theme::card().show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        theme::heading(ui, &verdict.title);
+        ui.add(egui::Label::new(theme::note(verdict.reason)).wrap());
+    });
+}
+
+fn values(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2]) {
+    theme::heading(ui, &format!("After step {}", state.step + 1));
+    egui::Grid::new("pixel values").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
+        row(ui, "pixel", &format!("{}, {}", at[0], at[1]));
+        match capture.frame_at(state.step) {
+            Some(frame) => frame_values(ui, capture, frame, at),
+            None => row(ui, "picture", "not begun yet"),
+        }
+        if let (Some(texel), true) = (state.map_pick, state.view.kind == PictureKind::Map) {
+            map_values(ui, state, capture, texel);
+        }
+    });
+}
+
+fn frame_values(ui: &mut Ui, capture: &Capture, frame: &FrameSnapshot, at: [u32; 2]) {
+    if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
+        ui.label(theme::note("colour"));
+        ui.horizontal(|ui| {
+            theme::swatch(ui, Color32::from_rgb(red, green, blue));
+            ui.label(theme::number(format!("{red} {green} {blue}")));
+            ui.label(theme::note("sRGB"));
+        });
+        ui.end_row();
+    }
+    if let Some(depth) = frame.depth.image.depth_at(at) {
+        row(ui, "depth", &format::depth(depth));
+        if let Some(measure) = DepthMeasure::of_camera(capture) {
+            let distance = measure.value(depth);
+            row(ui, "distance", &distance.map_or_else(|| "no surface".to_owned(), format::metres));
+            let step = measure.step_at(depth);
+            row(ui, "one step", &step.map_or_else(|| "–".to_owned(), format::metres));
+        }
+    }
+    match frame.stencil.as_ref().map(|stencil| stencil.image.byte_at(at)) {
+        Some(Some(stencil)) => stencil_row(ui, stencil),
+        Some(None) => {}
+        None => row(ui, "stencil", "no buffer"),
+    }
+}
+
+fn stencil_row(ui: &mut Ui, stencil: u8) {
+    ui.label(theme::note("stencil"));
+    ui.horizontal(|ui| {
+        theme::swatch(ui, palette::stencil(stencil));
+        ui.label(theme::number(palette::signed(stencil)).color(theme::TEXT));
+        ui.label(theme::number(format!("{:04b} {:04b}", stencil >> 4, stencil & 15)).color(theme::DIM));
+    });
+    ui.end_row();
+}
+
+/// The picked texel of the shadow map that is shown.
+fn map_values(ui: &mut Ui, state: &State, capture: &Capture, texel: [u32; 2]) {
+    let Some(shown) = state.view.shown(capture, state.step).filter(|shown| shown.images.len() == 1) else { return };
+    let Some(depth) = shown.images[0].depth_at(texel) else { return };
+    row(ui, "map texel", &format!("{}, {}", texel[0], texel[1]));
+    row(ui, "map depth", &format::depth(depth));
+    if shown.measure != DepthMeasure::Raw {
+        let distance = shown.measure.value(depth);
+        row(ui, "map distance", &distance.map_or_else(|| "nothing seen".to_owned(), format::metres));
+    }
+}
+
+fn row(ui: &mut Ui, name: &str, value: &str) {
+    ui.label(theme::note(name));
+    ui.label(theme::number(value).color(theme::TEXT));
+    ui.end_row();
+}
+
+/// Every light with its label in words.
+fn lights(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
+    theme::heading(ui, "Lights");
+    egui::Grid::new("pixel lights").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
+        for (index, light) in capture.lights.iter().enumerate() {
+            ui.label(theme::note(format::light(index)));
+            let label = light.shadow.as_ref().and_then(|mask| mask.byte_at(at));
+            match label.and_then(|label| palette::LABELS.get(usize::from(label))) {
+                Some(label) => {
+                    ui.horizontal(|ui| {
+                        theme::swatch(ui, label.color);
+                        ui.label(RichText::new(label.name).color(theme::TEXT)).on_hover_text(label.meaning);
+                    });
+                }
+                None => {
+                    ui.label(theme::note("no mask"));
+                }
+            }
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,208 @@
+//! What the panels show and remember, and how it changes. No widget is drawn here.
+
+use super::action::{Action, RunRequest};
+use super::texture::PictureCache;
+use super::view::{PictureKind, PictureView};
+use crate::capture::Capture;
+use crate::scene::Scene;
+use crate::technique::{Choice, Technique};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Seconds a step is shown while playing.
+pub const SECONDS_A_STEP: f64 = 0.8;
+
+/// A built-in scene in the dialog.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SceneEntry {
+    /// What opens it.
+    pub name: String,
+    /// What it shows, in a sentence.
+    pub lesson: String,
+}
+
+/// The scene that is open, and the run that the settings describe.
+#[derive(Debug, Clone)]
+pub struct OpenScene {
+    /// For people.
+    pub name: String,
+    /// Does anything move?
+    pub animated: bool,
+    /// What the next run will be.
+    pub draft: RunRequest,
+    /// The settings of techniques used before, to come back to.
+    pub choices: BTreeMap<Technique, Choice>,
+    /// Why the draft can't be run.
+    pub problem: Option<String>,
+}
+
+/// The dialog that opens a scene.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct OpenDialog {
+    /// The path field.
+    pub path: String,
+}
+
+/// A small field above the passes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum StepSearch {
+    /// Ctrl-G: a step's number.
+    GoTo(String),
+    /// Ctrl-F: words of a pass.
+    Find(String),
+}
+
+/// A place under the pointer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Hover {
+    /// Which of the shown images.
+    pub image: usize,
+    /// Its texel.
+    pub at: [u32; 2],
+}
+
+/// State of all panels.
+#[derive(Debug, Default)]
+pub struct State {
+    /// What is looked at.
+    pub capture: Option<Arc<Capture>>,
+    /// What can be changed; `None` for a capture folder.
+    pub scene: Option<OpenScene>,
+    /// Built-in scenes.
+    pub scenes: Vec<SceneEntry>,
+    /// Index of the selected step.
+    pub step: usize,
+    /// While playing: the time of the next step, in egui's seconds.
+    pub playing: Option<f64>,
+    /// The picture panel.
+    pub view: PictureView,
+    /// The picked pixel of the picture.
+    pub pick: Option<[u32; 2]>,
+    /// The picked texel of the shown map.
+    pub map_pick: Option<[u32; 2]>,
+    /// What the pointer is over.
+    pub hover: Option<Hover>,
+    /// Errors that were not dismissed yet.
+    pub errors: Vec<String>,
+    /// What is being done.
+    pub job: Option<String>,
+    /// The dialog, while it is open.
+    pub dialog: Option<OpenDialog>,
+    /// The search field, while it is open.
+    pub search: Option<StepSearch>,
+    /// The search field has just been opened and wants the focus.
+    pub search_wants_focus: bool,
+    /// The selected row has to be scrolled to.
+    pub scroll_to_step: bool,
+    /// Widgets of the pass tree: they leave the stepping keys alone.
+    pub tree_widgets: Vec<egui::Id>,
+    /// Textures and facts of images.
+    pub cache: PictureCache,
+}
+
+impl State {
+    /// How many steps there are.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.capture.as_ref().map_or(0, |capture| capture.steps.len())
+    }
+
+    /// Shows another capture. The step stays where it means the same, and so does the pick
+    /// where it still lies inside.
+    pub fn set_capture(&mut self, capture: Arc<Capture>) {
+        self.step = match &self.capture {
+            Some(before) => corresponding_step(before, self.step, &capture),
+            None => capture.steps.len().saturating_sub(1),
+        };
+        let [width, height] = capture.size;
+        self.pick = self.pick.filter(|[x, y]| *x < width && *y < height);
+        self.hover = None;
+        self.playing = None;
+        self.scroll_to_step = true;
+        self.view.follow(&capture, self.step);
+        self.capture = Some(capture);
+        self.cache.forget_unused();
+    }
+
+    /// Another scene is open; `None` for a capture folder, which can't be run again.
+    pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>) {
+        self.scene = scene.map(|(scene, draft)| OpenScene {
+            name: scene.name.clone(),
+            animated: scene.is_animated(),
+            choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
+            problem: draft.check().err(),
+            draft,
+        });
+    }
+
+    /// Selects a step; the last one if there are fewer.
+    pub fn select_step(&mut self, step: usize) {
+        let Some(capture) = self.capture.clone() else { return };
+        self.step = step.min(capture.steps.len().saturating_sub(1));
+        self.scroll_to_step = true;
+        self.view.follow(&capture, self.step);
+    }
+
+    /// Goes `by` steps on, or back where negative.
+    pub fn step_by(&mut self, by: isize) {
+        self.select_step(self.step.saturating_add_signed(by));
+    }
+
+    /// Starts to play at time `now`, from the start if the end is reached; or stops.
+    pub fn toggle_play(&mut self, now: f64) {
+        if self.playing.take().is_none() && self.steps() > 1 {
+            if self.step + 1 >= self.steps() {
+                self.select_step(0);
+            }
+            self.playing = Some(now + SECONDS_A_STEP);
+        }
+    }
+
+    /// Goes on if it is time to; seconds until the next step while playing.
+    pub fn play(&mut self, now: f64) -> Option<f64> {
+        if now >= self.playing? {
+            self.step_by(1);
+            let at_end = self.step + 1 >= self.steps();
+            self.playing = (!at_end).then_some(now + SECONDS_A_STEP);
+        }
+        self.playing.map(|next| (next - now).max(0.0))
+    }
+
+    /// Chooses a technique, with the settings it had when it was last chosen, and runs it.
+    pub fn choose_technique(&mut self, technique: Technique, actions: &mut Vec<Action>) {
+        let Some(scene) = &mut self.scene else { return };
+        if scene.draft.choice.technique() != technique {
+            scene.choices.insert(scene.draft.choice.technique(), scene.draft.choice.clone());
+            let remembered = scene.choices.get(&technique);
+            scene.draft.choice = remembered.cloned().unwrap_or_else(|| Choice::new(technique));
+            self.run_draft(actions);
+        }
+    }
+
+    /// Asks for a run of the draft, or notes why it can't be run.
+    pub fn run_draft(&mut self, actions: &mut Vec<Action>) {
+        if let Some(scene) = &mut self.scene {
+            scene.problem = scene.draft.check().err();
+            if scene.problem.is_none() {
+                actions.push(Action::Run(Box::new(scene.draft.clone())));
+            }
+        }
+    }
+
+    /// The pick of the picture that is shown: of the map, or of the frame.
+    pub fn shown_pick(&mut self, kind: PictureKind) -> &mut Option<[u32; 2]> {
+        if kind == PictureKind::Map { &mut self.map_pick } else { &mut self.pick }
+    }
+}
+
+/// The step of `now` that means what step `index` of `before` meant: the last stays the last,
+/// a pass of the same name and light is the same.
+fn corresponding_step(before: &Capture, index: usize, now: &Capture) -> usize {
+    let last = now.steps.len().saturating_sub(1);
+    let Some(step) = before.steps.get(index).filter(|_| index + 1 < before.steps.len()) else { return last };
+    let is_same = |candidate: &crate::capture::Step| candidate.name == step.name && candidate.light == step.light;
+    if now.steps.get(index).is_some_and(is_same) {
+        return index;
+    }
+    now.steps.iter().position(is_same).unwrap_or(index.min(last))
+}

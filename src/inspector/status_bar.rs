@@ -1,0 +1,75 @@
+//! The bar at the bottom: the picture's facts, what the pointer is over, what a frame costs.
+
+use super::format;
+use super::palette;
+use super::state::State;
+use super::theme;
+use super::view::{Coloring, Shown};
+use crate::capture::Capture;
+use egui::{Margin, Ui};
+
+/// Draws the bar.
+pub fn ui(ui: &mut Ui, state: &State) {
+    let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(Margin::symmetric(8, 2));
+    egui::Panel::bottom("status bar").frame(frame).exact_size(26.0).show(ui, |ui| {
+        ui.horizontal_centered(|ui| {
+            if let Some(capture) = &state.capture {
+                if let Some(shown) = state.view.shown(capture, state.step) {
+                    picture(ui, state, capture, &shown);
+                }
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| costs(ui, state));
+        });
+    });
+}
+
+fn picture(ui: &mut Ui, state: &State, capture: &Capture, shown: &Shown) {
+    let [width, height] = shown.images.first().map_or([0, 0], |image| image.size());
+    ui.label(theme::note(format!("{} · {width}×{height} · {}", shown.title, shown.format)));
+    let Some(hover) = state.hover else { return };
+    let [x, y] = hover.at;
+    ui.add_space(4.0);
+    match super::picture::coloring_of(shown, state.view.depth_range.unwrap_or([0.0, 1.0])) {
+        Coloring::Depth(scale) if shown.kind == super::PictureKind::Map => {
+            let depth = shown.images.get(hover.image).and_then(|image| image.depth_at(hover.at));
+            let value = depth.map_or_else(String::new, |depth| format::depth(depth));
+            let metres = depth.and_then(|depth| scale.measure.value(depth)).map_or_else(String::new, format::digits);
+            ui.label(theme::number(format!("texel {x}, {y}   depth {value}   {metres}")));
+        }
+        _ => frame_values(ui, capture, state.step, hover.at),
+    }
+}
+
+fn frame_values(ui: &mut Ui, capture: &Capture, step: usize, at: [u32; 2]) {
+    let [x, y] = at;
+    let Some(frame) = capture.frame_at(step) else { return };
+    if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
+        theme::swatch(ui, egui::Color32::from_rgb(red, green, blue));
+        ui.label(theme::number(format!("{x}, {y}   colour {red} {green} {blue}")));
+    }
+    if let Some(depth) = frame.depth.image.depth_at(at) {
+        ui.label(theme::number(format!("depth {}", format::depth(depth))));
+    }
+    if let Some(stencil) = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(at)) {
+        ui.label(theme::number(format!("stencil {}", palette::signed(stencil))));
+    }
+}
+
+/// Right to left: adapter, frame time, bytes, and what is being done.
+fn costs(ui: &mut Ui, state: &State) {
+    if let Some(capture) = &state.capture {
+        let adapter = &capture.adapter;
+        let short_name = adapter.name.split(" (").next().unwrap_or_default();
+        ui.label(theme::note(format!("{short_name}, {}", adapter.driver))).on_hover_text(&adapter.name);
+        if let Some(frame) = capture.timing.frame_ms {
+            ui.label(theme::note(format!("frame {}", format::milliseconds(Some(frame)))))
+                .on_hover_text("Median time of a frame without snapshots");
+        }
+        ui.label(theme::note(format!("capture {}", format::bytes(capture.bytes()))))
+            .on_hover_text("Memory of all pictures of this capture");
+    }
+    if let Some(job) = &state.job {
+        ui.label(theme::note(job.clone()));
+        ui.add(egui::Spinner::new().size(14.0));
+    }
+}

@@ -1,0 +1,208 @@
+//! Pictures as egui textures, and what is worth knowing of a picture as a whole.
+//!
+//! A texture is made once for an image and a colouring and kept, so that stepping back and forth
+//! shows in the next frame. Images are told apart by their `Arc`, which the cache keeps alive,
+//! so that a new image can't be taken for an old one at the same address.
+
+use super::depth::DepthMeasure;
+use super::palette;
+use super::view::Coloring;
+use crate::capture::Image;
+use egui::{Color32, ColorImage, Context, TextureFilter, TextureHandle, TextureOptions};
+use std::sync::Arc;
+
+/// Bytes of textures that are kept, beyond those of the current frame.
+const KEPT_BYTES: usize = 384 << 20;
+/// Largest side of a thumbnail in texels: twice the points, for sharp screens.
+const THUMBNAIL_SIDE: u32 = 112;
+
+/// Textures and facts of images, made on first use.
+#[derive(Default)]
+pub struct PictureCache {
+    textures: Vec<CachedTexture>,
+    histograms: Vec<(Arc<Image>, Box<[u64; 256]>)>,
+    ranges: Vec<(Arc<Image>, DepthMeasure, Option<[f64; 2]>)>,
+    clock: u64,
+}
+
+/// How large a texture is needed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TextureSize {
+    /// A texel each, unless the GPU can't hold that many.
+    Full,
+    /// At most [`THUMBNAIL_SIDE`].
+    Thumbnail,
+}
+
+struct CachedTexture {
+    image: Arc<Image>,
+    coloring: Coloring,
+    size: TextureSize,
+    handle: TextureHandle,
+    last_used: u64,
+}
+
+impl PictureCache {
+    /// Call once a frame: what has not been used for long goes first when memory is short.
+    pub fn tick(&mut self) {
+        self.clock += 1;
+        let mut bytes: usize = self.textures.iter().map(|texture| texture.handle.byte_size()).sum();
+        while bytes > KEPT_BYTES {
+            let oldest = self.textures.iter().enumerate().min_by_key(|(_, texture)| texture.last_used);
+            let Some((index, oldest)) = oldest.filter(|(_, texture)| texture.last_used + 1 < self.clock) else { break };
+            bytes -= oldest.handle.byte_size();
+            self.textures.swap_remove(index);
+        }
+    }
+
+    /// Drops what is about images that nobody else holds any more.
+    pub fn forget_unused(&mut self) {
+        let own_uses = |image: &Arc<Image>| {
+            let textures = self.textures.iter().filter(|texture| Arc::ptr_eq(&texture.image, image)).count();
+            let histograms = self.histograms.iter().filter(|(of, _)| Arc::ptr_eq(of, image)).count();
+            let ranges = self.ranges.iter().filter(|(of, _, _)| Arc::ptr_eq(of, image)).count();
+            textures + histograms + ranges
+        };
+        let is_used = |image: &Arc<Image>| Arc::strong_count(image) > own_uses(image);
+        let textures: Vec<bool> = self.textures.iter().map(|texture| is_used(&texture.image)).collect();
+        let histograms: Vec<bool> = self.histograms.iter().map(|(image, _)| is_used(image)).collect();
+        let ranges: Vec<bool> = self.ranges.iter().map(|(image, _, _)| is_used(image)).collect();
+        keep_where(&mut self.textures, &textures);
+        keep_where(&mut self.histograms, &histograms);
+        keep_where(&mut self.ranges, &ranges);
+    }
+
+    /// The texture of `image` in `coloring`.
+    pub fn texture(
+        &mut self,
+        ctx: &Context,
+        image: &Arc<Image>,
+        coloring: Coloring,
+        size: TextureSize,
+    ) -> TextureHandle {
+        let clock = self.clock;
+        let is_it = |cached: &CachedTexture| {
+            Arc::ptr_eq(&cached.image, image) && cached.size == size && cached.coloring == coloring
+        };
+        if let Some(cached) = self.textures.iter_mut().find(|cached| is_it(cached)) {
+            cached.last_used = clock;
+            return cached.handle.clone();
+        }
+        let side = match size {
+            TextureSize::Full => ctx.input(|input| input.max_texture_side) as u32,
+            TextureSize::Thumbnail => THUMBNAIL_SIDE,
+        };
+        let handle = ctx.load_texture("picture", colored(image, coloring, side), options(coloring));
+        // While a range is dragged only its latest texture is worth keeping.
+        if let Coloring::Depth(_) = coloring {
+            let is_older = |cached: &CachedTexture| {
+                Arc::ptr_eq(&cached.image, image) && cached.size == size && cached.last_used < clock
+            };
+            self.textures.retain(|cached| !is_older(cached));
+        }
+        let image = Arc::clone(image);
+        self.textures.push(CachedTexture { image, coloring, size, handle: handle.clone(), last_used: clock });
+        handle
+    }
+
+    /// How many texels of a byte picture have each value.
+    pub fn histogram(&mut self, image: &Arc<Image>) -> [u64; 256] {
+        if let Some((_, histogram)) = self.histograms.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
+            return **histogram;
+        }
+        let histogram = image.histogram();
+        self.histograms.push((Arc::clone(image), Box::new(histogram)));
+        histogram
+    }
+
+    /// The smallest and largest value of a depth picture.
+    pub fn depth_range(&mut self, image: &Arc<Image>, measure: DepthMeasure) -> Option<[f64; 2]> {
+        let known = self.ranges.iter().find(|(of, by, _)| Arc::ptr_eq(of, image) && *by == measure);
+        if let Some((_, _, range)) = known {
+            return *range;
+        }
+        let range = measure.range_of(image);
+        self.ranges.push((Arc::clone(image), measure, range));
+        range
+    }
+}
+
+impl std::fmt::Debug for PictureCache {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "PictureCache({} textures)", self.textures.len())
+    }
+}
+
+fn keep_where<T>(items: &mut Vec<T>, keep: &[bool]) {
+    let mut flags = keep.iter();
+    items.retain(|_| flags.next().copied().unwrap_or(false));
+}
+
+/// Exact texels when magnified; counts and labels stay exact when made smaller, too.
+fn options(coloring: Coloring) -> TextureOptions {
+    let minification = match coloring {
+        Coloring::Stencil | Coloring::Labels => TextureFilter::Nearest,
+        Coloring::Srgb | Coloring::Depth(_) => TextureFilter::Linear,
+    };
+    TextureOptions { magnification: TextureFilter::Nearest, minification, ..TextureOptions::NEAREST }
+}
+
+/// The picture in its colours; every n-th texel where it has more than `most` a side.
+fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
+    let [width, height] = image.size();
+    let step = width.max(height).div_ceil(most.max(1)).max(1) as usize;
+    let size = [(width as usize).div_ceil(step), (height as usize).div_ceil(step)];
+    let mut pixels: Vec<Color32> = Vec::with_capacity(size[0] * size[1]);
+    for row in image.rows().step_by(step) {
+        match coloring {
+            Coloring::Srgb => pixels.extend(texels(row, 4, step).map(|t| Color32::from_rgb(t[0], t[1], t[2]))),
+            Coloring::Stencil => pixels.extend(row.iter().step_by(step).map(|value| palette::stencil(*value))),
+            Coloring::Labels => pixels.extend(row.iter().step_by(step).map(|value| palette::label(*value))),
+            Coloring::Depth(scale) => {
+                pixels.extend(texels(row, 4, step).map(|t| scale.color(bytemuck::pod_read_unaligned(t))));
+            }
+        }
+    }
+    ColorImage::new(size, pixels)
+}
+
+fn texels(row: &[u8], bytes: usize, step: usize) -> impl Iterator<Item = &[u8]> {
+    row.chunks_exact(bytes).step_by(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capture::PixelFormat;
+
+    #[test]
+    fn stencil_values_take_their_palette_colours_row_by_row() {
+        let image = Image::from_rows(PixelFormat::U8, [2, 2], 4, vec![0, 1, 9, 9, 255, 2, 9, 9]);
+        let picture = colored(&image, Coloring::Stencil, 16);
+        assert_eq!(picture.size, [2, 2]);
+        assert_eq!(picture.pixels, [0, 1, 255, 2].map(palette::stencil));
+    }
+
+    #[test]
+    fn a_picture_too_large_for_the_gpu_is_thinned() {
+        let image = Image::uniform(PixelFormat::U8, [1000, 10], &[3]);
+        let picture = colored(&image, Coloring::Stencil, 300);
+        assert_eq!(picture.size, [250, 3]);
+    }
+
+    #[test]
+    fn images_that_left_with_their_capture_are_forgotten() {
+        let ctx = Context::default();
+        let mut cache = PictureCache::default();
+        let [kept, gone] = [1, 2].map(|value| Arc::new(Image::uniform(PixelFormat::U8, [2, 2], &[value])));
+        for image in [&kept, &gone] {
+            cache.texture(&ctx, image, Coloring::Stencil, TextureSize::Full);
+            assert_eq!(cache.histogram(image).iter().sum::<u64>(), 4);
+        }
+        drop(gone);
+        cache.forget_unused();
+        assert_eq!(cache.textures.len(), 1);
+        assert!(Arc::ptr_eq(&cache.textures[0].image, &kept));
+        assert_eq!(cache.histograms.len(), 1);
+    }
+}

@@ -1,0 +1,79 @@
+//! The bar at the top: what is open, and the technique.
+
+use super::action::Action;
+use super::state::{OpenDialog, State};
+use super::theme;
+use crate::technique::Technique;
+use egui::{CornerRadius, Margin, RichText, Stroke, Ui, vec2};
+
+/// Draws the bar.
+pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(Margin::symmetric(8, 4));
+    egui::Panel::top("top bar").frame(frame).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            theme::heading(ui, "stencilscope");
+            ui.separator();
+            if ui.button("Open…").on_hover_text("Open a scene, a model or a capture folder (Ctrl-O)").clicked() {
+                state.dialog = Some(OpenDialog::default());
+            }
+            if let Some(name) = open_name(state) {
+                ui.label(RichText::new(name).color(theme::TEXT)).on_hover_text("What is open");
+            }
+            ui.add_space(8.0);
+            techniques(ui, state, actions);
+        });
+    });
+}
+
+fn open_name(state: &State) -> Option<String> {
+    let of_scene = state.scene.as_ref().map(|scene| scene.name.clone());
+    of_scene.or_else(|| state.capture.as_ref().map(|capture| format!("{} (capture)", capture.scene)))
+}
+
+/// A button a technique, joined into one.
+fn techniques(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let Some(scene) = &state.scene else {
+        // A capture folder: its technique is a fact, not a choice.
+        if let Some(capture) = &state.capture {
+            ui.label(theme::note(format!("technique {}", capture.technique)));
+        }
+        return;
+    };
+    let current = scene.draft.choice.technique();
+    let labels = Technique::ALL.map(|technique| (technique.name(), technique.summary()));
+    let chosen = Technique::ALL.iter().position(|technique| *technique == current);
+    if let Some(index) = segments(ui, &labels, chosen) {
+        state.choose_technique(Technique::ALL[index], actions);
+    }
+}
+
+/// Buttons side by side in one frame, of which one is chosen: label and explanation of each.
+/// Returns the one that was clicked.
+pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
+    let mut clicked = None;
+    let frame = egui::Frame::new()
+        .fill(theme::RAISED)
+        .stroke(Stroke::new(1.0, theme::LINE))
+        .corner_radius(CornerRadius::same(4));
+    frame.show(ui, |ui| {
+        // Laid out left to right whatever surrounds them.
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            for (index, (label, explanation)) in labels.iter().enumerate() {
+                let is_chosen = chosen == Some(index);
+                let color = if is_chosen { theme::TEXT } else { theme::DIM };
+                let fill = if is_chosen { theme::SELECTED_ROW } else { theme::RAISED };
+                let text = RichText::new(*label).color(color);
+                let button = egui::Button::selectable(is_chosen, text)
+                    .fill(fill)
+                    .stroke(Stroke::NONE)
+                    .corner_radius(CornerRadius::same(3))
+                    .min_size(vec2(0.0, theme::ROW_HEIGHT - 2.0));
+                if ui.add(button).on_hover_text(*explanation).clicked() {
+                    clicked = Some(index);
+                }
+            }
+        });
+    });
+    clicked
+}

@@ -1,0 +1,102 @@
+//! Step controls: back, forth, play, a scrubber, and the search fields of Ctrl-G and Ctrl-F.
+
+use super::state::{State, StepSearch};
+use super::theme;
+use egui::{Key, Ui, vec2};
+
+/// Draws the controls above the passes.
+pub fn ui(ui: &mut Ui, state: &mut State) {
+    let steps = state.steps();
+    let mut widgets = Vec::new();
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let back = ui.add_enabled(state.step > 0, egui::Button::new("◀"));
+        let back = back.accessible_name("Previous step").on_hover_text("Previous step (←)");
+        let forth = ui.add_enabled(state.step + 1 < steps, egui::Button::new("▶"));
+        let forth = forth.accessible_name("Next step").on_hover_text("Next step (→)");
+        let word = if state.playing.is_some() { "⏸ Pause" } else { "▶ Play" };
+        let play = ui.add_enabled(steps > 1, egui::Button::new(word));
+        let play = play.accessible_name(&word[word.find(' ').map_or(0, |space| space + 1)..]);
+        let play = play.on_hover_text("Step through the frame (Space)");
+        if back.clicked() {
+            state.step_by(-1);
+        }
+        if forth.clicked() {
+            state.step_by(1);
+        }
+        if play.clicked() {
+            state.toggle_play(ui.input(|input| input.time));
+        }
+        widgets.extend([back.id, forth.id, play.id]);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(theme::note(format!("step {} of {steps}", state.step + 1)));
+        });
+    });
+    if steps > 1 {
+        widgets.push(scrubber(ui, state, steps));
+    }
+    search(ui, state);
+    state.tree_widgets.extend(widgets);
+}
+
+fn scrubber(ui: &mut Ui, state: &mut State, steps: usize) -> egui::Id {
+    ui.spacing_mut().slider_width = ui.available_width();
+    let mut number = state.step + 1;
+    let slider = egui::Slider::new(&mut number, 1..=steps).show_value(false).trailing_fill(true);
+    let response = ui.add(slider).accessible_name("Step scrubber");
+    if response.changed() {
+        state.playing = None;
+        state.select_step(number - 1);
+    }
+    response.id
+}
+
+/// The field of Ctrl-G or Ctrl-F while it is open: Enter goes, Escape closes.
+fn search(ui: &mut Ui, state: &mut State) {
+    let Some(mut search) = state.search.take() else { return };
+    let (text, name, hint) = match &mut search {
+        StepSearch::GoTo(text) => (text, "Go to step", "step number"),
+        StepSearch::Find(text) => (text, "Find a pass", "name, light or caster"),
+    };
+    let field = egui::TextEdit::singleline(text).hint_text(hint).desired_width(f32::INFINITY).min_size(vec2(0.0, 22.0));
+    let field = ui.add(field).accessible_name(name);
+    if state.search_wants_focus {
+        field.request_focus();
+        state.search_wants_focus = false;
+    }
+    let (entered, escaped) = ui.input(|input| (input.key_pressed(Key::Enter), input.key_pressed(Key::Escape)));
+    if field.lost_focus() && entered {
+        go(state, &search);
+    } else if !(field.lost_focus() && escaped) {
+        // A filter stays while it has words; an empty field that lost the focus goes.
+        let is_kept = field.has_focus() || matches!(&search, StepSearch::Find(words) if !words.is_empty());
+        state.search = (is_kept || field.gained_focus() || !field.lost_focus()).then_some(search);
+    }
+}
+
+fn go(state: &mut State, search: &StepSearch) {
+    match search {
+        StepSearch::GoTo(text) => {
+            if let Ok(number) = text.trim().parse::<usize>() {
+                state.select_step(number.saturating_sub(1));
+            }
+        }
+        StepSearch::Find(words) => {
+            let Some(capture) = state.capture.clone() else { return };
+            let found = capture.steps.iter().position(|step| matches(step, words));
+            if let Some(index) = found {
+                state.select_step(index);
+            }
+        }
+    }
+}
+
+/// Do a pass or its draws contain all words?
+#[must_use]
+pub fn matches(step: &crate::capture::Step, words: &str) -> bool {
+    let light = step.light.map_or_else(|| "scene".to_owned(), super::format::light);
+    let draws = step.draws.iter().flat_map(|draw| [draw.name.as_str(), draw.part.name()]);
+    let text =
+        [step.name.as_str(), light.as_str()].into_iter().chain(draws).collect::<Vec<_>>().join(" ").to_lowercase();
+    words.to_lowercase().split_whitespace().all(|word| text.contains(word))
+}

@@ -1,0 +1,111 @@
+//! One sentence about the picked pixel, from what the capture holds and no more.
+//!
+//! It tells what a light's label is and why, as far as labels, stencil and technique say so; it
+//! claims nothing about geometry, which the capture does not know.
+
+use super::format;
+use super::palette;
+use crate::capture::{Capture, FrameSnapshot, Snapshot};
+
+/// A sentence with what stands behind it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Verdict {
+    /// The answer.
+    pub title: String,
+    /// Where it comes from.
+    pub reason: String,
+}
+
+/// What happened at pixel `at` under `light`.
+#[must_use]
+pub fn verdict(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
+    let label = capture.lights.get(light).and_then(|light| light.shadow.as_ref()?.byte_at(at));
+    let name = format::light(light);
+    match label {
+        None => Verdict {
+            title: "No light was asked about this pixel.".to_owned(),
+            reason: "The capture holds no mask, so only the values below are known.".to_owned(),
+        },
+        Some(2) => Verdict {
+            title: "Background: no surface is at this pixel.".to_owned(),
+            reason: "Nothing was drawn here, so there is nothing that a shadow could fall on.".to_owned(),
+        },
+        Some(3) => Verdict {
+            title: format!("Turned away from {name}."),
+            reason: format!(
+                "{} shines on the other side of this surface, so shading alone leaves it dark.{}",
+                capitalized(&name),
+                count_note(capture, light, at)
+            ),
+        },
+        Some(label) => decided(capture, light, at, label != 0),
+    }
+}
+
+fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verdict {
+    let name = format::light(light);
+    let title = if is_dark { format!("Dark under {name}") } else { format!("Lit by {name}") };
+    let reason = match (capture.technique.as_str(), is_dark) {
+        ("z-pass" | "z-fail", _) => return counted(capture, light, at, is_dark, &title),
+        ("shadow-map", true) => {
+            "The light's map holds something nearer to the light here, so the light pass adds nothing."
+        }
+        ("shadow-map", false) => "The light's map holds nothing nearer to the light here, so the light pass adds it.",
+        ("planar", true) => "A caster, flattened onto this flat receiver from the light, covers the pixel.",
+        ("planar", false) => {
+            "No flattened caster covers the pixel. Planar shadows fall on flat receivers only, so nothing else is asked."
+        }
+        ("none", false) => "This technique makes no shadows: the light reaches every surface that faces it.",
+        (_, true) => "The technique's mask says that something lies between the surface and the light.",
+        (_, false) => "The technique's mask says that nothing lies between the surface and the light.",
+    };
+    Verdict { title: format!("{title}."), reason: reason.to_owned() }
+}
+
+/// Shadow volumes: the count that the light pass tested.
+fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: &str) -> Verdict {
+    let Some(count) = tested_count(capture, light, at) else {
+        return Verdict {
+            title: format!("{title}."),
+            reason: "The count that decided it was not captured.".to_owned(),
+        };
+    };
+    let shown = palette::signed(count);
+    let title = format!("{title}: its stencil count is {shown}.");
+    let side = if capture.technique == "z-pass" { "in front of" } else { "behind" };
+    let reason = match (is_dark, count) {
+        (true, 1..=127) => {
+            format!("The volume faces {side} the surface leave {shown}, not 0, so the light pass skips this pixel.")
+        }
+        (true, 128..) => format!(
+            "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it skips \
+             this pixel."
+        ),
+        (false, 0) => format!("The volume faces {side} the surface cancel out, so the light pass adds the light."),
+        // Label and count disagree: say so, and do not explain it away.
+        (_, count) => format!("The mask does not match the count {count} that the light pass tested."),
+    };
+    Verdict { title, reason }
+}
+
+fn count_note(capture: &Capture, light: usize, at: [u32; 2]) -> String {
+    let counts = matches!(capture.technique.as_str(), "z-pass" | "z-fail");
+    let count = tested_count(capture, light, at).filter(|_| counts);
+    count.map_or_else(String::new, |count| format!(" Its count is {}.", palette::signed(count)))
+}
+
+/// The stencil value at `at` when the labels of `light` were decided.
+#[must_use]
+pub fn tested_count(capture: &Capture, light: usize, at: [u32; 2]) -> Option<u8> {
+    let is_mask = |step: &&crate::capture::Step| {
+        step.light == Some(light) && matches!(&step.snapshot, Snapshot::Frame(frame) if frame.writes_labels)
+    };
+    let mask = capture.steps.iter().find(is_mask)?;
+    let Snapshot::Frame(FrameSnapshot { stencil: Some(stencil), .. }) = &mask.snapshot else { return None };
+    stencil.image.byte_at(at)
+}
+
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,159 @@
+//! Capture folders: what is written is read back, whole or not at all.
+
+mod common;
+
+use common::{cuboid, from_above, request, session, square};
+use glam::DVec3;
+use std::fs;
+use std::path::Path;
+use stencilscope::capture::disk::{check_target, is_capture, read, write};
+use stencilscope::capture::{Capture, CaptureError};
+use stencilscope::scene::Light;
+use stencilscope::technique::Technique;
+
+fn captures() -> Vec<Capture> {
+    let mut session = session();
+    let mut scene = from_above(vec![square("caster", 2.0, 1.0), cuboid("a box", [3.0, 0.0, 0.0], [4.0, 3.9, 1.0])]);
+    scene.lights.push(Light::directional(DVec3::new(1.0, 2.0, 0.5)));
+    let captures = Technique::ALL.map(|technique| {
+        let mut capture = session.capture(&scene, &request(technique, [61, 37])).expect("a capture");
+        capture.timing.frame_ms = Some(1.5);
+        capture
+    });
+    captures.to_vec()
+}
+
+/// The time that writing took is known only afterwards.
+fn without_write_time(mut capture: Capture) -> Capture {
+    capture.timing.write_ms = None;
+    capture
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn every_technique_is_written_and_read_back_the_same() {
+    let parent = tempfile::tempdir().expect("a folder");
+    for capture in captures() {
+        let folder = parent.path().join(&capture.technique);
+        write(&capture, &folder, false).expect("written");
+        assert!(without_write_time(read(&folder).expect("read")) == capture, "{}", capture.technique);
+        assert_eq!(names(parent.path()).iter().filter(|name| name.starts_with('.')).count(), 0);
+    }
+}
+
+#[test]
+fn files_are_named_by_pass_and_shared_where_nothing_changed() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    let capture = captures().into_iter().find(|capture| capture.technique == "z-fail").expect("z-fail");
+    write(&capture, &folder, false).expect("written");
+    let expected = [
+        "000-ambient.color.png",
+        "000-ambient.depth.npy",
+        "000-ambient.stencil.npy",
+        "001-volumes.stencil.npy",
+        "003-light.color.png",
+        "003-light.stencil.npy",
+        "004-volumes.stencil.npy",
+        "006-light.color.png",
+        "006-light.stencil.npy",
+        "light0.shadow.npy",
+        "light1.shadow.npy",
+        "manifest.json",
+        "plan.txt",
+    ];
+    assert_eq!(names(&folder), expected);
+    let manifest: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.join("manifest.json")).expect("text")).expect("JSON");
+    assert_eq!(manifest["passes"][0]["unchanged"], serde_json::json!(["stencil"]));
+    assert_eq!(manifest["passes"][1]["unchanged"], serde_json::json!(["color", "depth"]));
+    assert_eq!(manifest["passes"][1]["color"], "000-ambient.color.png");
+    assert_eq!(manifest["passes"][2]["labels"], "light0.shadow.npy");
+    assert_eq!(manifest["lights"][1]["kind"], "directional");
+    assert_eq!(manifest["lights"][1]["towards"], serde_json::json!([1.0, 2.0, 0.5]));
+    assert!(manifest["lights"][1].get("position").is_none());
+    assert_eq!(manifest["camera"]["far"], serde_json::Value::Null);
+}
+
+/// Header of format 1.0, then rows of 61 bytes without padding.
+#[test]
+fn arrays_have_numpys_layout() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    let capture = captures().into_iter().find(|capture| capture.technique == "shadow-map").expect("shadow-map");
+    write(&capture, &folder, false).expect("written");
+    let header = |file: &str| {
+        let bytes = fs::read(folder.join(file)).expect("an array");
+        assert_eq!(&bytes[..6], b"\x93NUMPY");
+        let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]])) + 10;
+        (String::from_utf8_lossy(&bytes[10..length]).trim_end().replace(", )", ")"), bytes[length..].to_vec())
+    };
+    let (text, labels) = header("light0.shadow.npy");
+    assert!(text.contains("'descr': '|u1'") && text.contains("'fortran_order': False"), "{text}");
+    assert!(text.contains("'shape': (37, 61)"), "{text}");
+    let image = capture.lights[0].shadow.as_ref().expect("labels");
+    assert_eq!(labels, image.rows().collect::<Vec<_>>().concat());
+    let (text, _) = header("light1.map.npy");
+    assert!(text.contains("'descr': '<f4'") && text.contains("'shape': (1, 1024, 1024)"), "{text}");
+}
+
+#[test]
+fn nothing_but_a_capture_is_ever_replaced_and_that_only_when_asked() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    let captures = captures();
+    write(&captures[0], &folder, false).expect("written");
+    assert!(matches!(write(&captures[1], &folder, false), Err(CaptureError::Exists { .. })));
+    assert_eq!(read(&folder).expect("read").technique, captures[0].technique);
+    write(&captures[1], &folder, true).expect("replaced");
+    assert_eq!(read(&folder).expect("read").technique, captures[1].technique);
+    assert_eq!(names(parent.path()), ["out"]);
+
+    let precious = parent.path().join("precious");
+    fs::create_dir(&precious).expect("a folder");
+    fs::write(precious.join("thesis.txt"), "years of work").expect("a file");
+    assert!(matches!(write(&captures[0], &precious, true), Err(CaptureError::InTheWay { .. })));
+    let file = parent.path().join("file");
+    fs::write(&file, "a file").expect("a file");
+    assert!(matches!(check_target(&file, true), Err(CaptureError::InTheWay { .. })));
+    assert_eq!(names(parent.path()), ["file", "out", "precious"]);
+    assert!(matches!(write(&captures[0], &file.join("below"), false), Err(CaptureError::Write { .. })));
+
+    let empty = parent.path().join("empty");
+    fs::create_dir(&empty).expect("a folder");
+    write(&captures[0], &empty, false).expect("an empty folder is as good as none");
+    assert!(is_capture(&empty));
+}
+
+#[test]
+fn a_broken_folder_is_an_error_that_names_the_file() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let capture = captures().pop().expect("a capture");
+    let broken = |file: &str, contents: &[u8]| {
+        let folder = parent.path().join("out");
+        write(&capture, &folder, true).expect("written");
+        fs::write(folder.join(file), contents).expect("broken on purpose");
+        let error = read(&folder).expect_err("an error").to_string();
+        assert!(error.contains(file) && !error.contains('\n'), "{error}");
+    };
+    broken("manifest.json", b"{");
+    broken("manifest.json", &[0xff, 0xfe]);
+    broken("light0.shadow.npy", b"");
+    broken("light0.shadow.npy", b"\x93NUMPY\x01\x00");
+    broken("light0.map.npy", b"not an array");
+    let header = "{'descr': '|u1', 'fortran_order': False, 'shape': (4000000000, 4000000000), }\n";
+    let mut huge = b"\x93NUMPY\x01\x00".to_vec();
+    huge.extend((header.len() as u16).to_le_bytes());
+    huge.extend(header.as_bytes());
+    broken("light0.shadow.npy", &huge);
+    let manifest = fs::read_to_string(parent.path().join("out/manifest.json")).expect("text");
+    broken("manifest.json", manifest.replace("light0.shadow.npy", "../light0.shadow.npy").as_bytes());
+    assert!(read(&parent.path().join("nowhere")).is_err());
+}
