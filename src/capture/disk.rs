@@ -82,6 +82,8 @@ pub fn write(capture: &Capture, folder: &Path, overwrite: bool) -> Result<f64, C
     // A link to a folder stays a link: what it points to is replaced.
     let folder = &fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
     let [new, old] = ["new", "old"].map(|which| beside(folder, which));
+    // Named as asked for: the hidden name would only puzzle.
+    fs::create_dir_all(&new).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
     let result = write_files(capture, &new).and_then(|write_ms| {
         put_in_place(folder, &new, &old)?;
         Ok(write_ms)
@@ -120,7 +122,6 @@ fn put_in_place(folder: &Path, new: &Path, old: &Path) -> Result<(), CaptureErro
 
 fn write_files(capture: &Capture, folder: &Path) -> Result<f64, CaptureError> {
     let start = Instant::now();
-    fs::create_dir_all(folder).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
     let mut manifest = Manifest::new(capture);
     let mut written = BTreeMap::new();
     for (index, step) in capture.steps.iter().enumerate() {
