@@ -42,7 +42,7 @@ enum Command {
     /// List the built-in scenes
     Scenes(scenes::ScenesArguments),
     /// Measure the program's own speed, as ratios
-    Bench(bench::BenchArguments),
+    Bench(Box<bench::BenchArguments>),
 }
 
 /// Runs the command line `arguments`, the program's name first.
