@@ -54,7 +54,7 @@ pub fn is_capture(folder: &Path) -> bool {
     folder.join(MANIFEST).is_file()
 }
 
-/// Checks that [`write`] may put a capture at this path, before any work is done for it.
+/// Checks that [`write()`] may put a capture at this path, before any work is done for it.
 ///
 /// # Errors
 /// Something is there that may not be replaced.
