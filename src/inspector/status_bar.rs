@@ -70,6 +70,21 @@ fn costs(ui: &mut Ui, state: &State) {
     }
     if let Some(job) = &state.job {
         ui.label(theme::note(job.clone()));
-        ui.add(egui::Spinner::new().size(14.0));
+        spinner(ui);
     }
+}
+
+/// A turning arc. It moves a few times a second only: on a software GPU every frame that is
+/// drawn here is taken from the work that it stands for.
+fn spinner(ui: &mut Ui) {
+    const TURN_SECONDS: f64 = 1.2;
+    const FRAMES: f64 = 12.0;
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 14.0), egui::Sense::hover());
+    let turn = (ui.input(|input| input.time) / TURN_SECONDS * FRAMES).floor() / FRAMES;
+    let points = (0..=9).map(|step| {
+        let angle = ((turn + f64::from(step) / 12.0) * std::f64::consts::TAU) as f32;
+        rect.center() + egui::Vec2::angled(angle) * 5.0
+    });
+    ui.painter().line(points.collect(), egui::Stroke::new(1.5, theme::DIM));
+    ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(TURN_SECONDS / FRAMES));
 }

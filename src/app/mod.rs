@@ -1,0 +1,64 @@
+//! The window: joins the session, which runs things, and the inspector, which shows them.
+//!
+//! ```text
+//! Inspector ──Action──► Window ──Order──► Worker thread (owns the Session)
+//!     ▲                   │  ▲                    │
+//!     └────── data ───────┘  └──────── News ──────┘
+//! ```
+//!
+//! Nothing blocks: the worker opens files and renders, the window only draws. The worker starts
+//! before the window is made, so that the GPU's first frame and the window's come together.
+
+mod news;
+mod surface;
+mod window;
+mod worker;
+
+use crate::capture::Capture;
+use crate::scene::Scene;
+use crate::session::CaptureRequest;
+
+/// What the window shows first.
+#[derive(Debug, Clone)]
+pub struct ViewRequest {
+    /// What to open.
+    pub source: ViewSource,
+    /// How to render a scene; what is not known from it is taken from here.
+    pub capture: CaptureRequest,
+    /// The moment of an animated scene, seconds.
+    pub time: f64,
+    /// Part of the name of the GPU to use; `None`: the fastest.
+    pub adapter: Option<String>,
+    /// Index of the step to select; `None`: the last.
+    pub step: Option<usize>,
+    /// The pixel to pick.
+    pub pick: Option<[u32; 2]>,
+}
+
+/// What the window opens.
+#[derive(Debug, Clone)]
+pub enum ViewSource {
+    /// A scene, as loaded: at time 0.
+    Scene(Box<Scene>),
+    /// A capture from a folder, to be looked at without a GPU run.
+    Capture(Box<Capture>),
+}
+
+/// Why there is no window.
+#[derive(Debug, thiserror::Error)]
+pub enum AppError {
+    /// No display, or nothing that can draw on it.
+    #[error("there can be no window ({0}): use `stencilscope capture` instead")]
+    NoWindow(String),
+    /// The system gave no thread.
+    #[error("the worker thread can't be started: {0}")]
+    NoThread(std::io::Error),
+}
+
+/// Shows the window until it is closed.
+///
+/// # Errors
+/// No window can be made; nothing was rendered then, and the caller may capture instead.
+pub fn run(request: ViewRequest) -> Result<(), AppError> {
+    window::run(request)
+}

@@ -1,0 +1,50 @@
+//! What wakes the window: news of the worker, a chosen file, a wish to repaint.
+
+use crate::capture::Capture;
+use crate::inspector::RunRequest;
+use crate::scene::Scene;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What the worker has to tell.
+#[derive(Debug)]
+pub enum News {
+    /// It works on something, in a few words.
+    Busy(String),
+    /// It has nothing to do.
+    Idle,
+    /// A scene was opened and will be run as the request says.
+    Opened {
+        /// Tells runs of this scene from those of the one before.
+        generation: u64,
+        /// As loaded.
+        scene: Box<Scene>,
+        /// Its first run.
+        request: Box<RunRequest>,
+    },
+    /// A capture folder was opened.
+    OpenedFolder(Arc<Capture>),
+    /// A frame was captured, or the same frame was timed.
+    Captured(Arc<Capture>),
+    /// Something failed; the text has the mend.
+    Failed(String),
+}
+
+/// An event of the window's loop that is not the system's.
+#[derive(Debug)]
+pub enum WindowNews {
+    /// From the worker.
+    Worker(News),
+    /// The system's dialog gave this path.
+    Chosen(String),
+    /// egui wants to draw at this time.
+    Repaint(Instant),
+    /// From assistive technology.
+    Access(egui_winit::accesskit_winit::Event),
+}
+
+impl From<egui_winit::accesskit_winit::Event> for WindowNews {
+    fn from(event: egui_winit::accesskit_winit::Event) -> WindowNews {
+        WindowNews::Access(event)
+    }
+}

@@ -1,0 +1,162 @@
+//! The system's window with what draws egui on it.
+
+use super::AppError;
+use super::news::WindowNews;
+use egui::{Context, ViewportId};
+use egui_wgpu::winit::Painter;
+use egui_wgpu::{RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use std::num::NonZeroU32;
+use std::sync::Arc;
+use winit::dpi::{LogicalSize, PhysicalSize};
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
+use winit::window::Window;
+
+/// The window's first size in points.
+const FIRST_SIZE: [f64; 2] = [1440.0, 900.0];
+/// Below this the panels have no room.
+const LEAST_SIZE: [f64; 2] = [640.0, 400.0];
+
+/// A window that egui draws on.
+pub struct Surface {
+    window: Arc<Window>,
+    painter: Painter,
+    input: egui_winit::State,
+    /// Texture changes that were not drawn yet.
+    textures: egui::TexturesDelta,
+    title: String,
+    hidden: bool,
+}
+
+impl Surface {
+    /// Opens the window and a GPU that can draw on it, the one named in part by `adapter` where
+    /// there is one.
+    ///
+    /// # Errors
+    /// The system gives no window, or no GPU can draw on it.
+    pub fn new(
+        event_loop: &ActiveEventLoop,
+        ctx: &Context,
+        proxy: EventLoopProxy<WindowNews>,
+        adapter: Option<&str>,
+    ) -> Result<Surface, AppError> {
+        let no_window = |error: &dyn std::fmt::Display| AppError::NoWindow(error.to_string());
+        let attributes = Window::default_attributes()
+            .with_title("stencilscope")
+            .with_inner_size(LogicalSize::<f64>::from(FIRST_SIZE))
+            .with_min_inner_size(LogicalSize::<f64>::from(LEAST_SIZE))
+            // Assistive technology has to be told before the window is seen.
+            .with_visible(false);
+        let window = Arc::new(event_loop.create_window(attributes).map_err(|error| no_window(&error))?);
+        let mut painter = pollster::block_on(Painter::new(
+            ctx.clone(),
+            configuration(event_loop, adapter),
+            false,
+            RendererOptions::default(),
+        ));
+        let set = pollster::block_on(painter.set_window(ViewportId::ROOT, Some(Arc::clone(&window))));
+        set.map_err(|error| no_window(&error))?;
+        let scale = Some(window.scale_factor() as f32);
+        let most = painter.max_texture_side();
+        let theme = event_loop.system_theme();
+        let mut input = egui_winit::State::new(ctx.clone(), ViewportId::ROOT, event_loop, scale, theme, most);
+        input.init_accesskit(event_loop, &window, proxy);
+        window.set_visible(true);
+        let textures = egui::TexturesDelta::default();
+        Ok(Surface { window, painter, input, textures, title: String::new(), hidden: false })
+    }
+
+    /// Names the window.
+    pub fn set_title(&mut self, title: String) {
+        if self.title != title {
+            self.window.set_title(&title);
+            self.title = title;
+        }
+    }
+
+    /// Asks the system for a redraw.
+    pub fn request_redraw(&self) {
+        self.window.request_redraw();
+    }
+
+    /// Hands an event to egui; asks for a redraw where it changes anything.
+    pub fn on_event(&mut self, event: &WindowEvent) {
+        match event {
+            WindowEvent::Resized(size) => self.resize(*size),
+            WindowEvent::Occluded(hidden) => self.hidden = *hidden,
+            _ => {}
+        }
+        if self.input.on_window_event(&self.window, event).repaint {
+            self.window.request_redraw();
+        }
+    }
+
+    /// Hands a request of assistive technology to egui.
+    pub fn on_access(&mut self, event: egui_winit::accesskit_winit::WindowEvent) {
+        use egui_winit::accesskit_winit::WindowEvent as Access;
+        match event {
+            Access::InitialTreeRequested => self.input.egui_ctx().enable_accesskit(),
+            Access::ActionRequested(request) => self.input.on_accesskit_action_request(request),
+            Access::AccessibilityDeactivated => self.input.egui_ctx().disable_accesskit(),
+        }
+        self.window.request_redraw();
+    }
+
+    fn resize(&mut self, size: PhysicalSize<u32>) {
+        if let (Some(width), Some(height)) = (NonZeroU32::new(size.width), NonZeroU32::new(size.height)) {
+            self.painter.on_window_resized(ViewportId::ROOT, width, height);
+        }
+    }
+
+    /// Runs `ui` and draws what it shows, unless nothing of the window can be seen.
+    pub fn draw(&mut self, event_loop: &ActiveEventLoop, ctx: &Context, ui: impl FnMut(&mut egui::Ui)) {
+        let size = self.window.inner_size();
+        if self.hidden || size.width == 0 || size.height == 0 {
+            return;
+        }
+        let input = self.input.take_egui_input(&self.window);
+        let output = ctx.run_ui(input, ui);
+        self.input.handle_platform_output_with_event_loop(&self.window, event_loop, output.platform_output);
+        let primitives = ctx.tessellate(output.shapes, output.pixels_per_point);
+        self.textures.append(output.textures_delta);
+        self.painter.paint_and_update_textures(
+            ViewportId::ROOT,
+            output.pixels_per_point,
+            [0.0, 0.0, 0.0, 1.0],
+            &primitives,
+            &mut self.textures,
+            Vec::new(),
+            &self.window,
+        );
+    }
+}
+
+impl Drop for Surface {
+    fn drop(&mut self) {
+        // What was not drawn yet will never be; egui takes dropping it for a bug otherwise.
+        self.textures.clear();
+    }
+}
+
+fn configuration(event_loop: &ActiveEventLoop, adapter: Option<&str>) -> WgpuConfiguration {
+    let mut setup = WgpuSetupCreateNew::from_display_handle(event_loop.owned_display_handle());
+    setup.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
+        label: Some("stencilscope window"),
+        // Pictures may be as large as the GPU can hold.
+        required_limits: wgpu::Limits {
+            max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
+            ..wgpu::Limits::default()
+        },
+        ..Default::default()
+    });
+    if let Some(wanted) = adapter {
+        let wanted = wanted.to_lowercase();
+        setup.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
+            let can_draw = |a: &&wgpu::Adapter| surface.is_none_or(|surface| a.is_surface_supported(surface));
+            let is_wanted = |a: &&wgpu::Adapter| a.get_info().name.to_lowercase().contains(&wanted);
+            let found = adapters.iter().filter(can_draw).find(is_wanted);
+            found.cloned().ok_or_else(|| format!("no GPU called `{wanted}` can draw on this display"))
+        }));
+    }
+    WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
+}

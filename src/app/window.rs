@@ -1,0 +1,229 @@
+//! The event loop: carries actions of the panels to the worker and its news to the panels.
+
+use super::news::{News, WindowNews};
+use super::surface::Surface;
+use super::worker::{Order, Start, Worker};
+use super::{AppError, ViewRequest};
+use crate::inspector::{Action, Inspector, SceneEntry};
+use crate::scene::builtin;
+use std::time::{Duration, Instant};
+use winit::application::ApplicationHandler;
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::window::WindowId;
+
+/// Shows the window until it is closed.
+pub fn run(request: ViewRequest) -> Result<(), AppError> {
+    let event_loop = EventLoop::<WindowNews>::with_user_event().build();
+    let event_loop = event_loop.map_err(|error| AppError::NoWindow(error.to_string()))?;
+    event_loop.set_control_flow(ControlFlow::Wait);
+    let proxy = event_loop.create_proxy();
+    let mut app = App::new(request, proxy)?;
+    event_loop.run_app(&mut app).map_err(|error| AppError::NoWindow(error.to_string()))?;
+    app.failure.map_or(Ok(()), Err)
+}
+
+struct App {
+    ctx: egui::Context,
+    inspector: Inspector,
+    worker: Worker,
+    proxy: EventLoopProxy<WindowNews>,
+    adapter: Option<String>,
+    surface: Option<Surface>,
+    failure: Option<AppError>,
+    /// Of the scene that is open.
+    generation: u64,
+    /// What is selected when the first capture comes.
+    first_step: Option<usize>,
+    first_pick: Option<[u32; 2]>,
+    repaint_at: Option<Instant>,
+}
+
+impl App {
+    fn new(request: ViewRequest, proxy: EventLoopProxy<WindowNews>) -> Result<App, AppError> {
+        let start = Start {
+            source: request.source,
+            capture: request.capture,
+            time: request.time,
+            adapter: request.adapter.clone(),
+        };
+        // A loop that has ended takes no news, and needs none.
+        let to_window = proxy.clone();
+        let tell = move |news| drop(to_window.send_event(WindowNews::Worker(news)));
+        let worker = Worker::start(start, tell)?;
+        let scene = |builtin: &builtin::Builtin| SceneEntry {
+            name: builtin.name.to_owned(),
+            lesson: builtin.lesson.to_owned(),
+        };
+        let mut inspector = Inspector::new(builtin::ALL.iter().map(scene).collect());
+        inspector.set_job(Some("starting".to_owned()));
+        Ok(App {
+            ctx: context(&proxy),
+            inspector,
+            worker,
+            proxy,
+            adapter: request.adapter,
+            surface: None,
+            failure: None,
+            generation: 0,
+            first_step: request.step,
+            first_pick: request.pick,
+            repaint_at: None,
+        })
+    }
+
+    fn hear(&mut self, news: News) {
+        match news {
+            News::Busy(job) => self.inspector.set_job(Some(job)),
+            News::Idle => self.inspector.set_job(None),
+            News::Opened { generation, scene, request } => {
+                self.generation = generation;
+                self.inspector.set_scene(&scene, *request);
+            }
+            News::OpenedFolder(capture) => {
+                self.inspector.set_job(None);
+                self.inspector.clear_scene();
+                self.show(capture);
+            }
+            News::Captured(capture) => self.show(capture),
+            News::Failed(reason) => self.inspector.push_error(reason),
+        }
+        self.redraw();
+    }
+
+    fn show(&mut self, capture: std::sync::Arc<crate::capture::Capture>) {
+        if let Some(surface) = &mut self.surface {
+            surface.set_title(title(&capture));
+        }
+        self.inspector.set_capture(capture);
+        if let Some(step) = self.first_step.take() {
+            self.inspector.select_step(step);
+        }
+        if let Some(pick) = self.first_pick.take() {
+            self.inspector.pick(pick);
+        }
+    }
+
+    fn act(&mut self, action: Action) {
+        let order = match action {
+            Action::Open(name) => Order::Open(name),
+            Action::Run(request) => Order::Run { generation: self.generation, request },
+            Action::Browse => return self.browse(),
+        };
+        if !self.worker.order(order) {
+            let lost = "the worker thread is gone: close the window and start again";
+            self.inspector.push_error(lost.to_owned());
+        }
+        self.redraw();
+    }
+
+    /// Asks for a file in the system's dialog, beside the window.
+    fn browse(&mut self) {
+        let dialog = rfd::AsyncFileDialog::new().set_title("Open a scene or a model");
+        let dialog = dialog.add_filter("scenes and models", &["toml", "obj"]).pick_file();
+        let proxy = self.proxy.clone();
+        let wait = move || {
+            if let Some(file) = pollster::block_on(dialog) {
+                drop(proxy.send_event(WindowNews::Chosen(file.path().display().to_string())));
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {
+            self.inspector.push_error(format!("the file dialog can't be opened: {error}; type the path instead"));
+        }
+    }
+
+    fn redraw(&self) {
+        if let Some(surface) = &self.surface {
+            surface.request_redraw();
+        }
+    }
+
+    fn draw(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(surface) = &mut self.surface else { return };
+        let mut actions = Vec::new();
+        surface.draw(event_loop, &self.ctx, |ui| actions.extend(self.inspector.ui(ui)));
+        for action in actions {
+            self.act(action);
+        }
+    }
+}
+
+impl ApplicationHandler<WindowNews> for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.surface.is_some() {
+            return;
+        }
+        match Surface::new(event_loop, &self.ctx, self.proxy.clone(), self.adapter.as_deref()) {
+            Ok(mut surface) => {
+                if let Some(capture) = self.inspector.capture() {
+                    surface.set_title(title(capture));
+                }
+                surface.request_redraw();
+                self.surface = Some(surface);
+            }
+            Err(error) => {
+                self.failure = Some(error);
+                event_loop.exit();
+            }
+        }
+    }
+
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, news: WindowNews) {
+        match news {
+            WindowNews::Worker(news) => self.hear(news),
+            WindowNews::Chosen(path) => self.act(Action::Open(path)),
+            WindowNews::Repaint(at) => {
+                let at = self.repaint_at.map_or(at, |earlier| earlier.min(at));
+                self.repaint_at = Some(at);
+                event_loop.set_control_flow(ControlFlow::WaitUntil(at));
+            }
+            WindowNews::Access(event) => {
+                if let Some(surface) = &mut self.surface {
+                    surface.on_access(event.window_event);
+                }
+            }
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _window: WindowId, event: WindowEvent) {
+        match event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::RedrawRequested => self.draw(event_loop),
+            event => {
+                if let Some(surface) = &mut self.surface {
+                    surface.on_event(&event);
+                }
+            }
+        }
+    }
+
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, _cause: StartCause) {
+        if self.repaint_at.is_some_and(|at| at <= Instant::now()) {
+            self.repaint_at = None;
+            event_loop.set_control_flow(ControlFlow::Wait);
+            self.redraw();
+        }
+    }
+
+    fn exiting(&mut self, _event_loop: &ActiveEventLoop) {
+        // The window goes before the loop that it came from.
+        self.surface = None;
+    }
+}
+
+/// An egui context that wakes the loop when it wants to be drawn.
+fn context(proxy: &EventLoopProxy<WindowNews>) -> egui::Context {
+    let ctx = egui::Context::default();
+    let proxy = proxy.clone();
+    ctx.set_request_repaint_callback(move |info| {
+        // "Never" is a delay too long to add.
+        if info.delay < Duration::from_secs(3600) {
+            drop(proxy.send_event(WindowNews::Repaint(Instant::now() + info.delay)));
+        }
+    });
+    ctx
+}
+
+fn title(capture: &crate::capture::Capture) -> String {
+    format!("{} · {} — stencilscope", capture.scene, capture.technique)
+}
