@@ -1,8 +1,6 @@
 //! Techniques on scenes whose answers are known in closed form.
 
-mod common;
-
-use common::{cuboid, from_above, label_counts, request, session, square};
+use crate::common::{cuboid, from_above, label_counts, request, session, square};
 use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::scene::{Light, Object, Pose, Scene};
@@ -71,7 +69,7 @@ fn winding_and_holes_do_not_change_a_shadow() {
         let triangles = mesh.triangles().iter().enumerate().filter(|(index, _)| keep(*index));
         let triangles: Vec<[u32; 3]> =
             triangles.map(|(index, &[a, b, c])| if turn(index) { [a, c, b] } else { [a, b, c] }).collect();
-        Object { mesh: common::mesh(&positions, &triangles), ..reference.clone() }
+        Object { mesh: crate::common::mesh(&positions, &triangles), ..reference.clone() }
     };
     let mirrored = Pose { scale: DVec3::new(-1.0, 1.0, 1.0), ..Pose::default() };
     let variants = [
