@@ -42,7 +42,7 @@ fn soup(seed: u64) -> Scene {
         far: None,
     };
     let light = random.within(3.0);
-    let is_directional = seed % 4 == 0;
+    let is_directional = seed.is_multiple_of(4);
     scene.lights = vec![if is_directional { Light::directional(light) } else { Light::point(light) }];
     scene
 }

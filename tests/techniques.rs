@@ -222,7 +222,7 @@ fn pictures_of_any_width_are_symmetric_like_their_scene() {
             for x in 0..size[0] {
                 let mirrored = [size[0] - 1 - x, y];
                 assert_eq!(labels.byte_at([x, y]), labels.byte_at(mirrored), "{size:?} {x} {y}");
-                assert_eq!(depth.depth_at([x, y]).is_some_and(|d| d > 0.0), true, "{size:?} {x} {y}");
+                assert!(depth.depth_at([x, y]).is_some_and(|d| d > 0.0), "{size:?} {x} {y}");
                 assert_eq!(frame.color.image.rgba_at([x, y]).map(|c| c[3]), Some(255), "{size:?} {x} {y}");
                 shadow += u64::from(labels.byte_at([x, y]) == Some(1));
             }
