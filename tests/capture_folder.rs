@@ -1,8 +1,6 @@
 //! Capture folders: what is written is read back, whole or not at all.
 
-mod common;
-
-use common::{cuboid, from_above, request, session, square};
+use crate::common::{cuboid, from_above, request, session, square};
 use glam::DVec3;
 use std::fs;
 use std::path::Path;

@@ -1,8 +1,6 @@
 //! Plans as data: their text, their checks, and shaders, all without a GPU.
 
-mod common;
-
-use common::{from_above, square};
+use crate::common::{from_above, square};
 use stencilscope::geometry::GeometryCache;
 use stencilscope::plan::{FramePlan, MeshId, Part, lint};
 use stencilscope::scene::{Light, Scene};

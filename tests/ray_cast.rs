@@ -1,9 +1,7 @@
 //! Z-fail against brute-force ray casting: no wrong pixel, whatever the mesh and the camera.
 
-mod common;
-
-use common::ray_cast::{Difference, difference};
-use common::{from_above, mesh, request, session};
+use crate::common::ray_cast::{Difference, difference};
+use crate::common::{from_above, mesh, request, session};
 use glam::DVec3;
 use stencilscope::scene::{Camera, Light, Material, Object, Scene};
 use stencilscope::session::Session;
@@ -44,7 +42,7 @@ fn soup(seed: u64) -> Scene {
         far: None,
     };
     let light = random.within(3.0);
-    let is_directional = seed % 4 == 0;
+    let is_directional = seed.is_multiple_of(4);
     scene.lights = vec![if is_directional { Light::directional(light) } else { Light::point(light) }];
     scene
 }

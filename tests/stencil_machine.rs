@@ -1,8 +1,6 @@
 //! The stencil machine against the GPU: one pixel a combination, read back and compared.
 
-mod common;
-
-use common::{from_above, session};
+use crate::common::{from_above, session};
 use glam::{DVec3, Mat4};
 use std::collections::BTreeMap;
 use stencilscope::capture::{Capture, Snapshot};

@@ -1,8 +1,6 @@
 //! Techniques on scenes whose answers are known in closed form.
 
-mod common;
-
-use common::{cuboid, from_above, label_counts, request, session, square};
+use crate::common::{cuboid, from_above, label_counts, request, session, square};
 use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::scene::{Light, Object, Pose, Scene};
@@ -71,7 +69,7 @@ fn winding_and_holes_do_not_change_a_shadow() {
         let triangles = mesh.triangles().iter().enumerate().filter(|(index, _)| keep(*index));
         let triangles: Vec<[u32; 3]> =
             triangles.map(|(index, &[a, b, c])| if turn(index) { [a, c, b] } else { [a, b, c] }).collect();
-        Object { mesh: common::mesh(&positions, &triangles), ..reference.clone() }
+        Object { mesh: crate::common::mesh(&positions, &triangles), ..reference.clone() }
     };
     let mirrored = Pose { scale: DVec3::new(-1.0, 1.0, 1.0), ..Pose::default() };
     let variants = [
@@ -224,7 +222,7 @@ fn pictures_of_any_width_are_symmetric_like_their_scene() {
             for x in 0..size[0] {
                 let mirrored = [size[0] - 1 - x, y];
                 assert_eq!(labels.byte_at([x, y]), labels.byte_at(mirrored), "{size:?} {x} {y}");
-                assert_eq!(depth.depth_at([x, y]).is_some_and(|d| d > 0.0), true, "{size:?} {x} {y}");
+                assert!(depth.depth_at([x, y]).is_some_and(|d| d > 0.0), "{size:?} {x} {y}");
                 assert_eq!(frame.color.image.rgba_at([x, y]).map(|c| c[3]), Some(255), "{size:?} {x} {y}");
                 shadow += u64::from(labels.byte_at([x, y]) == Some(1));
             }

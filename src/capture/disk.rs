@@ -54,7 +54,7 @@ pub fn is_capture(folder: &Path) -> bool {
     folder.join(MANIFEST).is_file()
 }
 
-/// Checks that [`write`] may put a capture at this path, before any work is done for it.
+/// Checks that [`write()`] may put a capture at this path, before any work is done for it.
 ///
 /// # Errors
 /// Something is there that may not be replaced.
@@ -79,7 +79,11 @@ pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> 
 /// A folder that is there already and may not be replaced, or a place that can't be written to.
 pub fn write(capture: &Capture, folder: &Path, overwrite: bool) -> Result<f64, CaptureError> {
     check_target(folder, overwrite)?;
+    // A link to a folder stays a link: what it points to is replaced.
+    let folder = &fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
     let [new, old] = ["new", "old"].map(|which| beside(folder, which));
+    // Named as asked for: the hidden name would only puzzle.
+    fs::create_dir_all(&new).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
     let result = write_files(capture, &new).and_then(|write_ms| {
         put_in_place(folder, &new, &old)?;
         Ok(write_ms)
@@ -118,7 +122,6 @@ fn put_in_place(folder: &Path, new: &Path, old: &Path) -> Result<(), CaptureErro
 
 fn write_files(capture: &Capture, folder: &Path) -> Result<f64, CaptureError> {
     let start = Instant::now();
-    fs::create_dir_all(folder).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
     let mut manifest = Manifest::new(capture);
     let mut written = BTreeMap::new();
     for (index, step) in capture.steps.iter().enumerate() {
@@ -230,6 +233,9 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     if manifest.schema != manifest::SCHEMA {
         return Err(wrong(format!("its schema is {}, not {}", manifest.schema, manifest::SCHEMA)));
     }
+    if !manifest.size.iter().all(|pixels| (1..=files::LARGEST).contains(pixels)) {
+        return Err(wrong(format!("its picture is {}x{}", manifest.size[0], manifest.size[1])));
+    }
     let mut reader = Reader { folder, size: manifest.size, images: BTreeMap::new() };
     let lights = manifest.lights.iter().map(|light| reader.light(light)).collect::<Result<_, _>>()?;
     let steps = manifest.passes.iter().map(|pass| reader.step(pass)).collect::<Result<_, _>>()?;
@@ -262,7 +268,10 @@ impl Reader<'_> {
 
     fn image(&mut self, file: &str, format: PixelFormat) -> Result<Arc<Image>, CaptureError> {
         if let Some(image) = self.images.get(file) {
-            return Ok(image.clone());
+            let is_same_kind = image.format() == format;
+            return is_same_kind
+                .then(|| image.clone())
+                .ok_or_else(|| self.wrong(file, "it is named as two kinds of picture"));
         }
         let image = files::read_image(&self.path(file)?, format)?;
         if image.size() != self.size {
@@ -334,3 +343,6 @@ impl Reader<'_> {
         Ok(CapturedLight { position, shadow, map })
     }
 }
+
+#[cfg(test)]
+mod tests;

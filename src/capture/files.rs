@@ -10,6 +10,9 @@ use std::io::{self, BufReader, BufWriter, Write};
 use std::path::Path;
 use std::sync::Arc;
 
+/// Texels along a side of the largest picture that is read: what a file claims is not trusted.
+pub(super) const LARGEST: u32 = 1 << 15;
+
 /// Creates a file, lets `fill` write it, and makes sure that all of it arrived.
 pub(super) fn write(
     path: &Path,
@@ -33,9 +36,12 @@ pub(super) fn write_image(path: &Path, image: &Image) -> Result<(), CaptureError
 
 /// Pictures of one size and format as one array with a dimension more.
 pub(super) fn write_layers(path: &Path, layers: &[Arc<Image>]) -> Result<(), CaptureError> {
-    let mut full = vec![layers.len() as u64];
-    full.extend(layers.first().map_or([0, 0], |image| shape(image)));
-    write(path, |out| write_depths(out, &full, layers.iter().map(Arc::as_ref)))
+    write(path, |out| {
+        let first = layers.first().ok_or_else(|| io::Error::other("a shadow map without faces"))?;
+        let [height, width] = shape(first);
+        let full = [layers.len() as u64, height, width];
+        write_depths(out, &full, layers.iter().map(Arc::as_ref))
+    })
 }
 
 fn shape(image: &Image) -> [u64; 2] {
@@ -133,24 +139,25 @@ fn layers(shape: &[u64], values: &[f32], dimensions: usize) -> Result<Vec<Image>
         return Err(format!("it has not {dimensions} dimensions"));
     }
     let (width, height) = (shape[dimensions - 1], shape[dimensions - 2]);
-    let texels = (width * height) as usize;
-    if texels == 0 {
-        return Err("it is empty".to_owned());
-    }
     let size = size(width, height)?;
+    let texels = size[0] as usize * size[1] as usize;
     let image =
         |layer: &[f32]| Image::packed(PixelFormat::Depth32F, size, bytemuck::cast_slice::<f32, u8>(layer).to_vec());
     Ok(values.chunks_exact(texels).map(image).collect())
 }
 
 fn size(width: u64, height: u64) -> Result<[u32; 2], String> {
-    let fits = |n: u64| u32::try_from(n).map_err(|error| error.to_string());
-    Ok([fits(width)?, fits(height)?])
+    let fits = |n: u64| u32::try_from(n).ok().filter(|n| (1..=LARGEST).contains(n));
+    match [fits(width), fits(height)] {
+        [Some(width), Some(height)] => Ok([width, height]),
+        _ => Err(format!("its size is {width}x{height}")),
+    }
 }
 
 fn read_png(path: &Path) -> Result<Vec<Image>, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     let mut reader = png::Decoder::new(BufReader::new(file)).read_info().map_err(|error| error.to_string())?;
+    size(u64::from(reader.info().width), u64::from(reader.info().height))?;
     let length = reader.output_buffer_size().ok_or("it is too large")?;
     let mut bytes = vec![0; length];
     let info = reader.next_frame(&mut bytes).map_err(|error| error.to_string())?;

@@ -15,8 +15,10 @@ mod view;
 
 pub use error::CliError;
 
+use crate::scene::builtin::Builtin;
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
+use std::path::Path;
 
 /// The commands that exist.
 const COMMANDS: [&str; 5] = ["view", "capture", "scenes", "bench", "help"];
@@ -40,7 +42,7 @@ enum Command {
     /// List the built-in scenes
     Scenes(scenes::ScenesArguments),
     /// Measure the program's own speed, as ratios
-    Bench(bench::BenchArguments),
+    Bench(Box<bench::BenchArguments>),
 }
 
 /// Runs the command line `arguments`, the program's name first.
@@ -49,9 +51,14 @@ enum Command {
 /// Whatever ended the command; [`CliError::exit_code`] says how bad it is.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
     let arguments = with_command(arguments.into_iter().collect());
-    if let Some(name) = arguments.get(1).and_then(|word| word.to_str()).filter(|word| COMMANDS_TO_COME.contains(word)) {
+    let first = arguments.get(1).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
+    if COMMANDS_TO_COME.contains(&first.as_str()) {
         let instead = "use view, capture, scenes or bench".to_owned();
-        return Err(CliError::NotThereYet { what: format!("`{name}`"), instead });
+        return Err(CliError::NotThereYet { what: format!("`{first}`"), instead });
+    }
+    let second = arguments.get(2).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
+    if let Some(near) = misspelled_command(&second).filter(|_| first == "view") {
+        return Err(CliError::Usage(format!("`{second}` is neither a command nor a scene: did you mean `{near}`?")));
     }
     let command_line = match CommandLine::try_parse_from(arguments) {
         Ok(command_line) => command_line,
@@ -79,4 +86,15 @@ fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
         arguments.insert(1, "view".into());
     }
     arguments
+}
+
+/// The command that `word` must mean, if it names no scene and is nearly a command.
+fn misspelled_command(word: &str) -> Option<&'static str> {
+    /// Above this two words differ in a letter or two.
+    const NEARLY: f64 = 0.9;
+    let is_scene = Builtin::named(word).is_some() || Path::new(word).exists();
+    let commands = COMMANDS.into_iter().chain(COMMANDS_TO_COME);
+    let rated = commands.map(|command| (strsim::jaro_winkler(word, command), command));
+    let nearest = rated.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(likeness, _)| *likeness > NEARLY && !is_scene);
+    nearest.map(|(_, command)| command)
 }

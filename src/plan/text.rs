@@ -29,7 +29,7 @@ impl Display for FramePlan {
         for (index, light) in self.lights.iter().enumerate() {
             let kind = if light.relative_position[3] == 0.0 { "directional" } else { "point" };
             let faces = light.map.as_ref().map_or(0, |map| map.faces.len());
-            writeln!(f, "light {index}: {kind}, {faces} map face(s)")?;
+            writeln!(f, "light {}: {kind}, {faces} map face(s)", index + 1)?;
         }
         for (index, pass) in self.passes.iter().enumerate() {
             self.fmt_pass(f, index, pass)?;

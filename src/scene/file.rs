@@ -1,7 +1,7 @@
 //! Scene files (TOML), as described in `commands.md`.
 //!
-//! The text becomes plain tables ([`tables`]) that know where each value stands; those are
-//! checked and become a [`Scene`] ([`build`]), meshes by [`shape`]. Whatever is wrong ends as one
+//! The text becomes plain tables (`tables`) that know where each value stands; those are
+//! checked and become a [`Scene`] (`build`), meshes by `shape`. Whatever is wrong ends as one
 //! line: file, line, what, mend.
 
 mod build;

@@ -1,6 +1,6 @@
 //! What is to be rendered: objects, lights, a camera. Plain data in world space (`f64`), no GPU.
 //!
-//! A scene comes from a scene file ([`file`]), a model ([`obj`], completed by [`model_scene`]) or
+//! A scene comes from a scene file ([`mod@file`]), a model ([`obj`], completed by [`model_scene`]) or
 //! code ([`builtin`]); [`open`] takes any of the three names. Everything that moves is put where
 //! it is at a moment by [`Scene::at`], so nothing downstream knows about time.
 

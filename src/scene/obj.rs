@@ -1,7 +1,7 @@
 //! OBJ models.
 //!
-//! [`load`] checks every line first ([`text`]), lets `tobj` read what is left, and cuts faces into
-//! triangles ([`polygon`]). The whole file is one mesh, whatever groups it has: `tobj` splits it
+//! [`load`] checks every line first (`text`), lets `tobj` read what is left, and cuts faces into
+//! triangles (`polygon`). The whole file is one mesh, whatever groups it has: `tobj` splits it
 //! at `o`, `g` and `usemtl`, and the mesh's weld joins it again, so that what is closed stays
 //! closed. The parts stay known as [`Group`]s.
 

@@ -30,9 +30,9 @@ pub fn build() -> Result<Scene, MeshError> {
         ambient: [0.14, 0.14, 0.15],
         camera: Camera {
             eye: DVec3::new(-2.5, 3.5, -2.5),
-            target: DVec3::new(0.0, 0.05, 0.0),
+            target: DVec3::new(-0.1, 0.0, -0.1),
             up: DVec3::Y,
-            fov_y_degrees: 44.0,
+            fov_y_degrees: 45.0,
             near: 0.05,
             far: None,
         },

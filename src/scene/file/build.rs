@@ -105,7 +105,7 @@ fn light(table: &LightTable) -> Result<Light, Problem> {
     let light = Light {
         color: table.color.as_ref().map_or(Ok(default.color), |rgb| color(rgb, f64::MAX))?,
         intensity: table.intensity.as_ref().map_or(Ok(1.0), |value| within(value, 0.0, f64::from(f32::MAX)))?,
-        range: table.range.as_ref().map(|range| positive(range)).transpose()?,
+        range: table.range.as_ref().map(positive).transpose()?,
         motion: Motion { orbit: table.orbit.as_ref().map(orbit).transpose()?, ..Motion::default() },
         ..default
     };

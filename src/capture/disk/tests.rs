@@ -1,0 +1,286 @@
+use super::*;
+use crate::capture::{
+    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, DrawSummary, FrameSnapshot, Image, PixelFormat, Snapshot,
+    Step, Timing,
+};
+use crate::plan::{LeftOut, Part};
+use crate::scene::Camera;
+use glam::{DMat4, DVec3, DVec4};
+use std::fs;
+use std::sync::Arc;
+
+const SIZE: [u32; 2] = [5, 3];
+
+/// Rows padded to 32 bytes; the padding is `0xee`.
+fn padded(format: PixelFormat, first: u8) -> Arc<Image> {
+    let row_bytes = SIZE[0] as usize * format.texel_bytes();
+    let mut bytes = vec![0xee; 32 * SIZE[1] as usize];
+    for (y, row) in bytes.chunks_mut(32).enumerate() {
+        row[..row_bytes].iter_mut().enumerate().for_each(|(x, byte)| *byte = first.wrapping_add((y * 40 + x) as u8));
+    }
+    Arc::new(Image::from_rows(format, SIZE, 32, bytes))
+}
+
+fn aspect(image: &Arc<Image>, unchanged: bool) -> Aspect {
+    Aspect { image: Arc::clone(image), unchanged }
+}
+
+fn step(name: &str, light: Option<usize>, snapshot: Snapshot) -> Step {
+    let draw =
+        DrawSummary { name: "sides of bunny".into(), caster: Some("bunny".into()), part: Part::Side, triangles: 7 };
+    Step {
+        name: name.to_owned(),
+        purpose: "To be seen.".to_owned(),
+        light,
+        draws: vec![draw.clone(), DrawSummary { caster: None, part: Part::Surface, ..draw }],
+        gpu_ms: light.map(|_| 0.1 + 0.2),
+        snapshot,
+    }
+}
+
+/// Passes of the picture and of a map, shared aspects, padded and uniform images, both kinds of light.
+fn example() -> Capture {
+    let color = padded(PixelFormat::Rgba8Srgb, 3);
+    let depth = padded(PixelFormat::Depth32F, 9);
+    let cleared = Arc::new(Image::uniform(PixelFormat::U8, SIZE, &[0]));
+    let stencil = padded(PixelFormat::U8, 250);
+    let frame = |stencil: Option<Aspect>, unchanged: bool, writes_labels: bool| {
+        Snapshot::Frame(FrameSnapshot {
+            color: aspect(&color, unchanged),
+            depth: aspect(&depth, unchanged),
+            stencil,
+            writes_labels,
+        })
+    };
+    let face = |value: f32| Arc::new(Image::uniform(PixelFormat::Depth32F, [4, 4], &value.to_le_bytes()));
+    let cube = CapturedMap {
+        faces: (0..6).map(|index| face(index as f32 / 7.0)).collect(),
+        light_from_world: DMat4::from_translation(DVec3::new(0.1, -0.7, 1e-300)),
+        clip_from_light: (0..6).map(|index| DMat4::from_rotation_x(f64::from(index) / 3.0)).collect(),
+    };
+    let lit = |position: DVec4, map| CapturedLight { position, shadow: Some(padded(PixelFormat::U8, 1)), map };
+    Capture {
+        scene: "bunny \"on\" a floor".into(),
+        technique: "z-fail".into(),
+        settings: [("faces".to_owned(), "two-sided".to_owned())].into(),
+        size: SIZE,
+        adapter: AdapterInfo { name: "none".into(), driver: "by hand".into(), kind: "other".into() },
+        camera: Camera {
+            eye: DVec3::new(0.1, 0.2, 1.0 / 3.0),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            fov_y_degrees: 44.9,
+            near: 0.05,
+            far: None,
+        },
+        steps: vec![
+            step("ambient", None, frame(Some(aspect(&cleared, true)), false, false)),
+            step("light 0 map +x", Some(0), Snapshot::Map { light: 0, face: 3 }),
+            step("volumes", Some(0), frame(Some(aspect(&stencil, false)), true, false)),
+            step("mask", Some(0), frame(Some(aspect(&stencil, true)), true, true)),
+            step("no stencil", Some(1), frame(None, true, false)),
+        ],
+        lights: vec![
+            lit(DVec4::new(1.0, 2.0, 3.0, 1.0), Some(cube)),
+            lit(DVec4::new(0.0, 1.0, 0.0, 0.0), None),
+            CapturedLight { position: DVec4::new(0.5, 0.0, 0.0, 1.0), shadow: None, map: None },
+        ],
+        left_out: vec![LeftOut::new("caps", "torus 2", "outside the near-clip volume")],
+        timing: Timing { frame_ms: Some(9.1), captured_ms: None, write_ms: None, setup_ms: Some(0.3) },
+        plan_text: "pass ambient\n".into(),
+    }
+}
+
+fn manifest(folder: &Path) -> serde_json::Value {
+    serde_json::from_str(&fs::read_to_string(folder.join(MANIFEST)).expect("a manifest")).expect("JSON")
+}
+
+/// Names in a folder, sorted.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn what_is_written_is_read_back() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    let written = example();
+    write(&written, &folder, false).expect("written");
+    let mut read_back = read(&folder).expect("read");
+    assert!(read_back.timing.write_ms.is_some_and(|ms| ms >= 0.0));
+    read_back.timing.write_ms = None;
+    assert_eq!(read_back, written);
+    assert_eq!(names(parent.path()), ["out"]);
+}
+
+#[test]
+fn the_folder_is_laid_out_as_promised() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    write(&example(), &folder, false).expect("written");
+    let expected = [
+        "000-ambient.color.png",
+        "000-ambient.depth.npy",
+        "000-ambient.stencil.npy",
+        "002-volumes.stencil.npy",
+        "light0.map.npy",
+        "light0.shadow.npy",
+        "light1.shadow.npy",
+        MANIFEST,
+        "plan.txt",
+    ];
+    assert_eq!(names(&folder), expected);
+    let manifest = manifest(&folder);
+    let passes = &manifest["passes"];
+    assert_eq!(passes[0]["caster"], serde_json::Value::Null);
+    assert_eq!(passes[0]["draws"], 2);
+    assert_eq!(passes[0]["triangles"], 14);
+    // Nothing was there to point to.
+    assert_eq!(passes[0]["unchanged"], serde_json::json!(["stencil"]));
+    assert_eq!(passes[1]["map"], "light0.map.npy");
+    assert_eq!(passes[1]["map_face"], 3);
+    assert!(passes[1].get("color").is_none());
+    assert_eq!(passes[2]["color"], "000-ambient.color.png");
+    assert_eq!(passes[2]["unchanged"], serde_json::json!(["color", "depth"]));
+    assert_eq!(passes[3]["stencil"], "002-volumes.stencil.npy");
+    assert_eq!(passes[3]["labels"], "light0.shadow.npy");
+    assert!(passes[4].get("stencil").is_none());
+    assert_eq!(manifest["lights"][1]["kind"], "directional");
+    assert_eq!(manifest["lights"][1]["towards"], serde_json::json!([0.0, 1.0, 0.0]));
+    assert_eq!(manifest["lights"][0]["matrices"]["light_from_world"][0][3], 0.1);
+    assert!(manifest["lights"][2].get("shadow").is_none());
+    assert_eq!(manifest["camera"]["far"], serde_json::Value::Null);
+}
+
+#[test]
+fn arrays_are_what_numpy_expects() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    write(&example(), &folder, false).expect("written");
+    let bytes = fs::read(folder.join("002-volumes.stencil.npy")).expect("an array");
+    let header = String::from_utf8_lossy(&bytes[..128]).into_owned();
+    assert!(bytes.starts_with(b"\x93NUMPY") && header.contains("'|u1'") && header.contains("(3, 5"), "{header}");
+    // Rows follow each other without the padding.
+    let row = |y: u8| (0..5).map(move |x| 250u8.wrapping_add(y * 40 + x));
+    assert_eq!(bytes[bytes.len() - 15..], (0..3).flat_map(row).collect::<Vec<u8>>());
+    let map = fs::read(folder.join("light0.map.npy")).expect("an array");
+    let header = String::from_utf8_lossy(&map[..128]).into_owned();
+    assert!(header.contains("'<f4'") && header.contains("(6, 4, 4"), "{header}");
+}
+
+#[test]
+fn a_folder_in_the_way_is_left_alone() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    fs::create_dir(&folder).expect("made");
+    fs::write(folder.join("precious"), "data").expect("written");
+    for overwrite in [false, true] {
+        let error = write(&example(), &folder, overwrite).expect_err("in the way");
+        assert!(matches!(error, CaptureError::InTheWay { .. }), "{error}");
+    }
+    assert_eq!(names(&folder), ["precious"]);
+    assert_eq!(names(parent.path()), ["out"]);
+    let file = folder.join("precious");
+    assert!(matches!(write(&example(), &file, true), Err(CaptureError::InTheWay { .. })));
+}
+
+#[test]
+fn a_capture_is_replaced_only_on_request() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    write(&example(), &folder, false).expect("written");
+    let other = Capture { scene: "other".into(), ..example() };
+    assert!(matches!(write(&other, &folder, false), Err(CaptureError::Exists { .. })));
+    assert_eq!(manifest(&folder)["scene"], "bunny \"on\" a floor");
+    write(&other, &folder, true).expect("replaced");
+    assert_eq!(manifest(&folder)["scene"], "other");
+    assert_eq!(names(parent.path()), ["out"]);
+}
+
+#[test]
+fn a_failure_leaves_nothing_and_keeps_the_old_capture() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    write(&example(), &folder, false).expect("written");
+    let mut broken = example();
+    // A map without faces can't be written.
+    broken.lights[0].map.as_mut().expect("a map").faces.clear();
+    assert!(matches!(write(&broken, &folder, true), Err(CaptureError::Write { .. })));
+    assert_eq!(names(parent.path()), ["out"]);
+    assert_eq!(read(&folder).expect("the old one").scene, example().scene);
+    let fresh = parent.path().join("fresh");
+    assert!(write(&broken, &fresh, false).is_err());
+    assert_eq!(names(parent.path()), ["out"]);
+}
+
+#[test]
+fn a_link_to_a_capture_is_followed() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    write(&example(), &folder, false).expect("written");
+    #[cfg(unix)]
+    {
+        let link = parent.path().join("link");
+        std::os::unix::fs::symlink(&folder, &link).expect("a link");
+        write(&Capture { scene: "other".into(), ..example() }, &link, true).expect("replaced");
+        assert!(link.is_symlink());
+        assert_eq!(manifest(&folder)["scene"], "other");
+        assert_eq!(names(parent.path()), ["link", "out"]);
+    }
+}
+
+/// What reading says after `change` to the manifest's text.
+fn reading_after(change: impl Fn(&str) -> String) -> String {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    write(&example(), &folder, false).expect("written");
+    let path = folder.join(MANIFEST);
+    let text = fs::read_to_string(&path).expect("a manifest");
+    let changed = change(&text);
+    assert_ne!(changed, text, "nothing was changed");
+    fs::write(&path, changed).expect("written");
+    let error = read(&folder).expect_err("broken").to_string();
+    assert!(!error.contains('\n'), "{error}");
+    error
+}
+
+#[test]
+fn broken_folders_are_refused_with_a_reason() {
+    let replaced = |from: &'static str, to: &'static str| reading_after(move |text| text.replacen(from, to, 1));
+    assert!(replaced("\"schema\": 1", "\"schema\": 2").contains("schema is 2"));
+    assert!(replaced("000-ambient.depth.npy", "../secret.npy").contains("outside its folder"));
+    assert!(replaced("000-ambient.depth.npy", "missing.npy").contains("missing.npy"));
+    assert!(replaced("000-ambient.depth.npy", "000-ambient.stencil.npy").contains("stencil.npy"));
+    assert!(replaced("000-ambient.depth.npy", "light1.shadow.npy").contains("light1.shadow.npy"));
+    assert!(replaced("000-ambient.color.png", "000-ambient.depth.npy").contains("capture the scene again"));
+    assert!(replaced("  \"size\": [\n    5,", "  \"size\": [\n    6,").contains("size is not"));
+    assert!(replaced("  \"size\": [\n    5,", "  \"size\": [\n    4000000000,").contains("4000000000x3"));
+    assert!(replaced("\"part\": \"side\"", "\"part\": \"inside\"").contains("part of a draw"));
+    assert!(replaced("{", "").contains(MANIFEST));
+    let parent = tempfile::tempdir().expect("a folder");
+    assert!(matches!(read(parent.path()), Err(CaptureError::Read { .. })));
+}
+
+#[test]
+fn a_cut_array_is_refused() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    write(&example(), &folder, false).expect("written");
+    for name in ["000-ambient.depth.npy", "light0.map.npy", "000-ambient.color.png"] {
+        let path = folder.join(name);
+        let whole = fs::read(&path).expect("a file");
+        for length in [0, 7, whole.len() / 2, whole.len() - 1] {
+            fs::write(&path, &whole[..length]).expect("written");
+            // The last byte of a PNG is the end chunk's checksum, which readers may pass over.
+            if !(name.ends_with(".png") && length + 1 == whole.len()) {
+                assert!(matches!(read(&folder), Err(CaptureError::Read { .. })), "{name} cut to {length}");
+            }
+        }
+        fs::write(&path, &whole).expect("written");
+    }
+    read(&folder).expect("whole again");
+}

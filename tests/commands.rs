@@ -1,0 +1,259 @@
+//! The program from outside: exit codes, error lines, and what it leaves behind.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0.3\nf 1 2 3\n";
+
+/// A folder that the program runs in, with some input.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let put = |name: &str, text: &[u8]| fs::write(folder.path().join(name), text).expect("written");
+    put("triangle.obj", TRIANGLE.as_bytes());
+    put("empty.obj", b"");
+    put("nan.obj", format!("{TRIANGLE}v 0 nan 0\n").as_bytes());
+    put("no-faces.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    put("range.obj", format!("{TRIANGLE}f 1 2 9\n").as_bytes());
+    put("binary.obj", &[0x89, b'P', b'N', b'G', 0, 0xff, 0xfe]);
+    put("key.toml", b"ambiant = [0.1, 0.1, 0.1]\n[[objects]]\nmesh = \"triangle.obj\"\n");
+    put("good.toml", b"[[objects]]\nmesh = \"triangle.obj\"\n[technique]\nname = \"planar\"\n");
+    put("technique.toml", b"[[objects]]\nmesh = \"triangle.obj\"\n[technique]\nname = \"planer\"\n");
+    fs::create_dir(folder.path().join("models")).expect("made");
+    folder
+}
+
+/// The program without a display.
+fn program(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stencilscope"));
+    command.args(arguments).current_dir(folder).stdin(Stdio::null());
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+    // The Vulkan loader complains on standard error without it.
+    command.env("XDG_RUNTIME_DIR", folder);
+    command
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    program(folder, arguments).output().expect("the program runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Names in a folder, sorted.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// Runs a command that must fail with `code` and one line that has all `words`, leaving nothing.
+fn assert_fails(arguments: &[&str], code: i32, words: &[&str]) {
+    let folder = folder();
+    let before = names(folder.path());
+    let output = run(folder.path(), arguments);
+    let line = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {line}");
+    assert_eq!(line.trim_end().lines().count(), 1, "{arguments:?}: {line}");
+    for word in words {
+        assert!(line.contains(word), "{arguments:?}: `{word}` is not in {line}");
+    }
+    assert_eq!(text(&output.stdout), "", "{arguments:?}");
+    assert_eq!(names(folder.path()), before, "{arguments:?}");
+}
+
+#[test]
+fn broken_input_is_refused_in_one_line_with_the_mend() {
+    let cases: &[(&str, &[&str])] = &[
+        ("missing.obj", &["missing.obj", "no such file", "check the path"]),
+        ("empty.obj", &["empty.obj", "is empty"]),
+        ("nan.obj", &["nan.obj:5", "not a finite number", "replace it"]),
+        ("no-faces.obj", &["no-faces.obj", "no faces", "export"]),
+        ("range.obj", &["range.obj:5", "index 9 is out of range", "there are 3"]),
+        ("models", &["models", "is a folder"]),
+        ("binary.obj", &["binary.obj", "not a text file"]),
+        ("key.toml", &["key.toml:1", "unknown key `ambiant`", "did you mean `ambient`?"]),
+        ("missing.toml", &["missing.toml", "no such file"]),
+        ("technique.toml", &["planer", "did you mean `planar`?"]),
+        ("tory", &["tory", "did you mean `tori`?"]),
+        ("nothing-like-it", &["choose one of tori, table"]),
+    ];
+    for (scene, words) in cases {
+        assert_fails(&["capture", scene, "-o", "out"], 2, words);
+    }
+}
+
+#[test]
+fn broken_usage_is_refused_in_one_line_with_the_mend() {
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["--size", "0x0"], &["0x0", "from 1 to 16384"]),
+        (&["--size", "100000x100000"], &["100000x100000", "from 1 to 16384"]),
+        (&["--size", "12"], &["WIDTHxHEIGHT"]),
+        (&["--eye", "1,2"], &["three numbers"]),
+        (&["--eye", "1,2,nan"], &["finite"]),
+        (&["--eye", "-1,-2,-3", "--target", "-1,-2,-3"], &["eye equals its target"]),
+        (&["--fov", "180"], &["field of view"]),
+        (&["--near", "-1"], &["near plane"]),
+        (&["--sun", "0,0,0"], &["direction"]),
+        (&["-t", "z-fial"], &["did you mean `z-fail`?"]),
+        (&["-t", "auto"], &["`auto` is not there yet"]),
+        (&["-t", "z-pass", "-t", "z-fail"], &["multiple times"]),
+        (&["--set", "fases=two-sided"], &["did you mean `faces`?"]),
+        (&["--set", "faces=three"], &["three"]),
+        (&["--set", "faces"], &["KEY=VALUE"]),
+        (&["--every", "draw"], &["not there yet", "--every pass"]),
+        (&["--truth"], &["not there yet"]),
+        (&["--plot", "a.svg"], &["not there yet"]),
+        (&["--bogus"], &["--bogus"]),
+    ];
+    for (options, words) in cases {
+        assert_fails(&[&["capture", "tori", "-o", "out"], *options].concat(), 2, words);
+    }
+    assert_fails(&["capture", "tori"], 2, &["--output"]);
+    assert_fails(&["captur", "tori"], 2, &["did you mean `capture`?"]);
+    for command in ["pixel", "diagnose", "diff", "report", "stress"] {
+        assert_fails(&[command, "tori"], 2, &[command, "not there yet"]);
+    }
+    assert_fails(&["bench", "truth"], 2, &["not there yet", "capture"]);
+    assert_fails(&["bench", "nothing"], 2, &["choose capture"]);
+}
+
+#[test]
+fn a_place_that_can_not_be_written_to_is_refused() {
+    // Root may write anywhere but below a file.
+    assert_fails(
+        &["capture", "tori", "--size", "16x16", "-o", "triangle.obj/out"],
+        2,
+        &["triangle.obj", "can't be written"],
+    );
+    assert_fails(&["capture", "tori", "-o", "models/.."], 2, &["no capture folder"]);
+    let folder = folder();
+    fs::write(folder.path().join("models/thesis.txt"), "years of work").expect("written");
+    let output = run(folder.path(), &["capture", "tori", "-o", "models", "--overwrite"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("no capture folder"));
+    assert_eq!(names(&folder.path().join("models")), ["thesis.txt"]);
+}
+
+#[test]
+fn without_an_adapter_it_says_what_to_install() {
+    assert_fails(
+        &["capture", "tori", "-o", "out", "--adapter", "no such gpu"],
+        3,
+        &["no such gpu", "mesa-vulkan-drivers"],
+    );
+    let folder = folder();
+    let mut command = program(folder.path(), &["capture", "tori", "-o", "out"]);
+    let output = command.env("VK_DRIVER_FILES", "missing.json").env("VK_ICD_FILENAMES", "missing.json").output();
+    let output = output.expect("the program runs");
+    assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("mesa-vulkan-drivers"));
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn captures_are_written_and_replaced_only_on_request() {
+    let folder = folder();
+    let capture = ["capture", "triangle.obj", "--size", "48x32", "-o", "out"];
+    let output = run(folder.path(), &capture);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).starts_with("out: triangle, z-fail, 48x32"));
+    let manifest = || -> serde_json::Value {
+        let text = fs::read_to_string(folder.path().join("out/manifest.json")).expect("a manifest");
+        serde_json::from_str(&text).expect("JSON")
+    };
+    assert_eq!(manifest()["technique"], "z-fail");
+    for key in ["frame_ms", "captured_ms", "write_ms", "setup_ms"] {
+        assert!(manifest()["timing"][key].as_f64().is_some_and(|ms| ms > 0.0), "{key}");
+    }
+    let again = run(folder.path(), &capture);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(text(&again.stderr).contains("--overwrite"));
+    let options =
+        ["-t", "planar", "--overwrite", "--eye", "-3,2,4", "--target", "0,0,0", "--sun", "-1,2,1", "--no-floor"];
+    let replaced = run(folder.path(), &[&capture[..], &options[..]].concat());
+    assert_eq!(replaced.status.code(), Some(0), "{}", text(&replaced.stderr));
+    let manifest = manifest();
+    assert_eq!(manifest["technique"], "planar");
+    assert_eq!(manifest["camera"]["eye"], serde_json::json!([-3.0, 2.0, 4.0]));
+    assert_eq!(manifest["lights"][0]["towards"], serde_json::json!([-1.0, 2.0, 1.0]));
+    assert!(!names(folder.path()).iter().any(|name| name.starts_with('.')));
+}
+
+#[test]
+fn a_scene_file_chooses_its_technique_and_the_command_line_another() {
+    let folder = folder();
+    for (options, technique) in [(&[][..], "planar"), (&["-t", "z-pass"][..], "z-pass")] {
+        let capture = ["capture", "good.toml", "--size", "16x16", "-o", "out", "--overwrite"];
+        let output = run(folder.path(), &[&capture[..], options].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        assert!(text(&output.stdout).contains(technique), "{}", text(&output.stdout));
+    }
+}
+
+#[test]
+fn view_without_a_display_says_so_and_captures() {
+    let folder = folder();
+    for arguments in [
+        &["--size", "32x24"][..],
+        &["view", "triangle.obj", "--size", "32x24"][..],
+        &["triangle.obj", "--size", "32x24"][..],
+    ] {
+        let output = run(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        assert!(text(&output.stderr).contains("capturing into ./stencilscope-out"), "{}", text(&output.stderr));
+        assert!(folder.path().join("stencilscope-out/manifest.json").is_file());
+    }
+}
+
+#[test]
+fn scenes_lists_names_first_and_as_json() {
+    let folder = folder();
+    let output = run(folder.path(), &["scenes"]);
+    let lines = text(&output.stdout);
+    let first_words: Vec<&str> = lines.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(first_words[..2], ["tori", "table"]);
+    assert_eq!(run(folder.path(), &["scenes", "--json", "list.json"]).status.code(), Some(0));
+    let json: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("list.json")).expect("a file")).expect("JSON");
+    assert_eq!(json["scenes"][0]["name"], "tori");
+    assert_fails(&["scenes", "--json", "missing/list.json"], 2, &["missing/list.json", "choose another file"]);
+}
+
+#[test]
+fn bench_capture_prints_ratios() {
+    let folder = folder();
+    let output = run(folder.path(), &["bench", "capture", "--scene", "triangle.obj", "--size", "64x64"]);
+    let lines = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    for word in ["frame_ms", "captured_ms", "captured/frame", "bytes moved", "plain copy"] {
+        assert!(lines.contains(word), "{word} is not in {lines}");
+    }
+}
+
+#[test]
+fn help_and_version_are_results() {
+    let folder = folder();
+    for (argument, word) in [("--help", "capture"), ("--version", "stencilscope")] {
+        let output = run(folder.path(), &[argument]);
+        assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()));
+        assert!(text(&output.stdout).contains(word));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let folder = folder();
+    let mut child = program(folder.path(), &["scenes"]).stdout(Stdio::piped()).spawn().expect("the program runs");
+    drop(child.stdout.take());
+    assert!(child.wait().expect("an end").success());
+    let full = fs::File::options().write(true).open("/dev/full").expect("a device that is full");
+    let output = program(folder.path(), &["scenes"]).stdout(full).output().expect("the program runs");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(text(&output.stderr).lines().count(), 1);
+}

@@ -1,0 +1,11 @@
+//! Tests by behaviour, in one program: it links once, and what they share is used by all.
+
+mod capture_folder;
+mod commands;
+mod common;
+mod layering;
+mod plan;
+mod ray_cast;
+mod scenes;
+mod stencil_machine;
+mod techniques;
