@@ -3,6 +3,8 @@
 mod capture_folder;
 mod commands;
 mod common;
+#[cfg(feature = "inspector")]
+mod inspector;
 mod layering;
 mod plan;
 mod ray_cast;

@@ -21,7 +21,7 @@ const WHEEL_ZOOM: f32 = 0.004;
 pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Coloring) -> Placement {
     let image = &shown.images[0];
     let response = ui.interact(rect, ui.scope_id().with("canvas"), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture canvas"));
     let pixels_per_point = ui.pixels_per_point();
     let place = |state: &State| Placement::new(&state.view, image.size(), rect, pixels_per_point);
     move_view(ui, state, &response, place(state), pixels_per_point);

@@ -58,9 +58,9 @@ pub fn digits(value: f64) -> String {
         "0".to_owned()
     } else if !(1e-3..1e5).contains(&size) {
         format!("{value:.1e}")
-    } else if size < 1.0 {
+    } else if size < 0.999_95 {
         format!("{value:.4}")
-    } else if size < 100.0 {
+    } else if size < 99.999_5 {
         format!("{value:.3}")
     } else {
         format!("{value:.1}")

@@ -32,7 +32,7 @@ fn bar(ui: &mut Ui, error: &str) -> bool {
     let contents = |ui: &mut Ui| {
         let dismiss = ui.button("Dismiss").on_hover_text("Hide this message");
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.label(RichText::new("✖ Error").color(theme::ERROR));
+            ui.label(RichText::new("× Error").color(theme::ERROR));
             ui.add(egui::Label::new(error).wrap());
         });
         dismiss.clicked()

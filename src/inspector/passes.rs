@@ -114,7 +114,7 @@ fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize
     let time = format::milliseconds(step.gpu_ms);
     let font = TextStyle::Monospace.resolve(ui.style());
     let time_rect = ui.painter().text(
-        pos2(rect.right() - 8.0, rect.center().y),
+        pos2(rect.right() - 8.0, rect.top() + 14.0),
         egui::Align2::RIGHT_CENTER,
         time,
         font,
@@ -123,6 +123,7 @@ fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize
     let left = thumbnail.right() + 8.0;
     let room = time_rect.left() - left - 4.0;
     text_line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, theme::TEXT);
+    let room = rect.right() - 8.0 - left;
     text_line(ui, pos2(left, rect.top() + 23.0), room, &summary(step), TextStyle::Small, theme::DIM);
 }
 

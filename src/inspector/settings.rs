@@ -31,7 +31,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         }
         if let Some(problem) = state.scene.as_ref().and_then(|scene| scene.problem.as_ref()) {
             ui.add_space(8.0);
-            let text = RichText::new(format!("✖ Not run: {problem}")).color(theme::ERROR);
+            let text = RichText::new(format!("× Not run: {problem}")).color(theme::ERROR);
             ui.add(egui::Label::new(text).wrap());
         }
         ui.add_space(16.0);

@@ -10,14 +10,13 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
     let mut widgets = Vec::new();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let back = ui.add_enabled(state.step > 0, egui::Button::new("◀"));
-        let back = back.accessible_name("Previous step").on_hover_text("Previous step (←)");
-        let forth = ui.add_enabled(state.step + 1 < steps, egui::Button::new("▶"));
-        let forth = forth.accessible_name("Next step").on_hover_text("Next step (→)");
-        let word = if state.playing.is_some() { "⏸ Pause" } else { "▶ Play" };
-        let play = ui.add_enabled(steps > 1, egui::Button::new(word));
-        let play = play.accessible_name(&word[word.find(' ').map_or(0, |space| space + 1)..]);
-        let play = play.on_hover_text("Step through the frame (Space)");
+        let back = ui.add_enabled(state.step > 0, egui::Button::new(symbol("◀")));
+        let back = back.accessible_name("Previous step").on_hover_text("Previous step (left arrow)");
+        let forth = ui.add_enabled(state.step + 1 < steps, egui::Button::new(symbol("▶")));
+        let forth = forth.accessible_name("Next step").on_hover_text("Next step (right arrow)");
+        let (sign, word) = if state.playing.is_some() { ("■", "Pause") } else { ("▷", "Play") };
+        let play = ui.add_enabled(steps > 1, egui::Button::new((symbol(sign), word)));
+        let play = play.accessible_name(word).on_hover_text("Step through the frame (Space)");
         if back.clicked() {
             state.step_by(-1);
         }
@@ -37,6 +36,11 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
     }
     search(ui, state);
     state.tree_widgets.extend(widgets);
+}
+
+/// A sign that only the monospaced face has.
+fn symbol(text: &str) -> egui::RichText {
+    theme::number(text)
 }
 
 fn scrubber(ui: &mut Ui, state: &mut State, steps: usize) -> egui::Id {

@@ -1,0 +1,621 @@
+//! The panels, driven by the names of their widgets, over a frame made by hand.
+
+use crate::common;
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
+use egui_kittest::{Harness, kittest::Queryable};
+use glam::{DMat4, DVec3, DVec4};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use stencilscope::capture::{
+    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, DrawSummary, FrameSnapshot, Image, PixelFormat, Snapshot,
+    Step, Timing,
+};
+use stencilscope::inspector::{Action, Inspector, PictureKind, RunRequest, SceneEntry, Zoom};
+use stencilscope::math::projection::reversed_infinite;
+use stencilscope::plan::{LeftOut, Part};
+use stencilscope::scene::{Camera, Scene};
+use stencilscope::technique::{Choice, Technique};
+
+const SIZE: [u32; 2] = [40, 30];
+
+/// What a test looks at: the panels, and everything they asked for.
+struct Seen {
+    inspector: Inspector,
+    actions: Vec<Action>,
+}
+
+fn camera() -> Camera {
+    Camera { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov_y_degrees: 45.0, near: 0.1, far: None }
+}
+
+fn image_of<const N: usize>(format: PixelFormat, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; N]) -> Arc<Image> {
+    let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    let bytes: Vec<u8> = texels.flat_map(|(x, y)| texel(x, y)).collect();
+    Arc::new(Image::packed(format, size, bytes))
+}
+
+fn draw(name: &str, part: Part, triangles: u64) -> DrawSummary {
+    DrawSummary { name: name.to_owned(), caster: Some("box".to_owned()), part, triangles }
+}
+
+fn step(name: &str, light: Option<usize>, draws: Vec<DrawSummary>, snapshot: Snapshot) -> Step {
+    let purpose = format!("Why {name} is there.");
+    Step { name: name.to_owned(), purpose, light, draws, gpu_ms: Some(1.25), snapshot }
+}
+
+/// Z-fail by hand: the left half of the picture is inside one volume, a corner of it inside 255
+/// (−1), the last column is background.
+fn z_fail(size: [u32; 2]) -> Capture {
+    let count = move |x: u32, y: u32| match (x, y) {
+        (0, 0) => 255,
+        (x, _) if x < size[0] / 2 => 1,
+        _ => 0,
+    };
+    let is_background = move |x: u32| x + 1 == size[0] && size[0] > 1;
+    let dark = image_of(PixelFormat::Rgba8Srgb, size, |_, _| [20, 20, 24, 255]);
+    let lit =
+        image_of(
+            PixelFormat::Rgba8Srgb,
+            size,
+            |x, y| if count(x, y) == 0 { [200, 180, 90, 255] } else { [20, 20, 24, 255] },
+        );
+    let depth = image_of(PixelFormat::Depth32F, size, |x, _| {
+        let depth = if is_background(x) { 0.0 } else { 0.1 / (1.0 + x as f32) };
+        depth.to_le_bytes()
+    });
+    let zero = Arc::new(Image::uniform(PixelFormat::U8, size, &[0]));
+    let counts = image_of(PixelFormat::U8, size, |x, y| [count(x, y)]);
+    let after_light = image_of(PixelFormat::U8, size, |x, y| [if count(x, y) == 0 { 1 } else { count(x, y) }]);
+    let labels = image_of(PixelFormat::U8, size, |x, y| match count(x, y) {
+        _ if is_background(x) => [2],
+        0 => [0],
+        _ => [1],
+    });
+    let new = |image: &Arc<Image>| Aspect { image: image.clone(), unchanged: false };
+    let old = |image: &Arc<Image>| Aspect { image: image.clone(), unchanged: true };
+    let frame = |color, depth, stencil, writes_labels| {
+        Snapshot::Frame(FrameSnapshot { color, depth, stencil: Some(stencil), writes_labels })
+    };
+    let volumes = vec![draw("sides of box", Part::Side, 24), draw("dark cap of box", Part::DarkCap, 1212)];
+    Capture {
+        scene: "by hand".to_owned(),
+        technique: "z-fail".to_owned(),
+        settings: BTreeMap::from([("depth".to_owned(), "reversed-infinite".to_owned())]),
+        size,
+        adapter: AdapterInfo { name: "none (made by hand)".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() },
+        camera: camera(),
+        steps: vec![
+            step(
+                "ambient",
+                None,
+                vec![draw("floor", Part::Surface, 2)],
+                frame(new(&dark), new(&depth), new(&zero), false),
+            ),
+            step("volumes", Some(0), volumes, frame(old(&dark), old(&depth), new(&counts), false)),
+            step("mask", Some(0), Vec::new(), frame(old(&dark), old(&depth), old(&counts), true)),
+            step(
+                "light",
+                Some(0),
+                vec![draw("floor", Part::Surface, 2)],
+                frame(new(&lit), old(&depth), new(&after_light), false),
+            ),
+        ],
+        lights: vec![CapturedLight { position: DVec4::new(0.0, 4.0, 0.0, 1.0), shadow: Some(labels), map: None }],
+        left_out: vec![LeftOut::new("stencil clear", "light 1", "nothing has written the stencil before")],
+        timing: Timing { frame_ms: Some(6.25), ..Timing::default() },
+        plan_text: String::new(),
+    }
+}
+
+/// Two map passes before anything is drawn into the picture.
+fn cube_map() -> Capture {
+    let mut capture = z_fail(SIZE);
+    capture.technique = "shadow-map".to_owned();
+    capture.steps.drain(1..3);
+    for face in [3, 1] {
+        let name = format!("map face {face}");
+        capture.steps.insert(0, step(&name, Some(0), Vec::new(), Snapshot::Map { light: 0, face }));
+    }
+    let face = |index: usize| {
+        let depth = if index == 1 || index == 3 { 0.25_f32 } else { 0.0 };
+        Arc::new(Image::uniform(PixelFormat::Depth32F, [16, 16], &depth.to_le_bytes()))
+    };
+    capture.lights[0].map = Some(CapturedMap {
+        faces: (0..6).map(face).collect(),
+        light_from_world: DMat4::IDENTITY,
+        clip_from_light: vec![reversed_infinite(90.0, 1.0, 0.05); 6],
+    });
+    capture
+}
+
+fn run_request(technique: Technique) -> RunRequest {
+    let scene = scene();
+    RunRequest { choice: Choice::new(technique), size: SIZE, camera: scene.camera, lights: scene.lights, time: 0.0 }
+}
+
+fn scene() -> Scene {
+    Scene { name: "by hand".to_owned(), ..common::from_above(Vec::new()) }
+}
+
+fn inspector(capture: Capture) -> Inspector {
+    let entry = |name: &str| SceneEntry { name: name.to_owned(), lesson: format!("what {name} teaches") };
+    let mut inspector = Inspector::new(vec![entry("tori"), entry("table")]);
+    inspector.set_scene(&scene(), run_request(Technique::ZFail));
+    inspector.set_capture(Arc::new(capture));
+    inspector
+}
+
+fn harness_of(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
+    let seen = Seen { inspector, actions: Vec::new() };
+    let ui = |ui: &mut egui::Ui, seen: &mut Seen| {
+        let actions = seen.inspector.ui(ui);
+        seen.actions.extend(actions);
+    };
+    let mut harness = Harness::builder().with_size(size).with_max_steps(32).build_ui_state(ui, seen);
+    harness.run_steps(3);
+    harness
+}
+
+fn harness(capture: Capture) -> Harness<'static, Seen> {
+    harness_of(inspector(capture), [1280.0, 800.0])
+}
+
+fn press(harness: &mut Harness<Seen>, key: Key) {
+    harness.key_press(key);
+    harness.run_steps(2);
+}
+
+fn click(harness: &mut Harness<Seen>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.run_steps(2);
+}
+
+fn click_button(harness: &mut Harness<Seen>, label: &str) {
+    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.run_steps(2);
+}
+
+/// The middle of a texel on the screen while the whole picture fits.
+fn place_of(harness: &Harness<Seen>, texel: [u32; 2], size: [u32; 2]) -> Pos2 {
+    let canvas = harness.get_by_label("Picture canvas").rect();
+    let scale = (canvas.width() / size[0] as f32).min(canvas.height() / size[1] as f32);
+    let whole = vec2(size[0] as f32, size[1] as f32);
+    canvas.center() + (vec2(texel[0] as f32 + 0.5, texel[1] as f32 + 0.5) - whole / 2.0) * scale
+}
+
+fn mouse(harness: &mut Harness<Seen>, at: Pos2, button: PointerButton) {
+    harness.hover_at(at);
+    harness.run_steps(1);
+    for pressed in [true, false] {
+        harness.event(Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE });
+    }
+    harness.run_steps(3);
+}
+
+#[test]
+fn it_opens_at_the_last_step_and_keys_walk_pass_by_pass() {
+    let mut harness = harness(z_fail(SIZE));
+    assert_eq!(harness.state().inspector.step(), 3);
+    harness.get_by_label("step 4 of 4");
+    press(&mut harness, Key::ArrowLeft);
+    assert_eq!(harness.state().inspector.step(), 2);
+    press(&mut harness, Key::Home);
+    harness.get_by_label("step 1 of 4");
+    press(&mut harness, Key::ArrowLeft);
+    assert_eq!(harness.state().inspector.step(), 0, "there is nothing before the first step");
+    press(&mut harness, Key::ArrowRight);
+    harness.get_by_label("step 2 of 4");
+    press(&mut harness, Key::End);
+    press(&mut harness, Key::ArrowRight);
+    assert_eq!(harness.state().inspector.step(), 3);
+}
+
+#[test]
+fn buttons_scrubber_and_tree_select_steps() {
+    let mut harness = harness(z_fail(SIZE));
+    click(&mut harness, "Previous step");
+    assert_eq!(harness.state().inspector.step(), 2);
+    click(&mut harness, "Next step");
+    assert_eq!(harness.state().inspector.step(), 3);
+    click(&mut harness, "2 · volumes");
+    assert_eq!(harness.state().inspector.step(), 1);
+    harness.get_by_label("Why volumes is there.");
+    harness.get_by_label("sides of box");
+    harness.get_by_label("Step scrubber").set_value_accesskit(1.0);
+    harness.run_steps(2);
+    assert_eq!(harness.state().inspector.step(), 0);
+}
+
+#[test]
+fn space_plays_to_the_end_and_stops() {
+    let mut harness = harness(z_fail(SIZE));
+    press(&mut harness, Key::Space);
+    assert!(harness.state().inspector.is_playing());
+    assert_eq!(harness.state().inspector.step(), 0, "at the end it starts again");
+    // A frame of the harness is a quarter of a second.
+    harness.run_steps(14);
+    assert_eq!(harness.state().inspector.step(), 3);
+    assert!(!harness.state().inspector.is_playing());
+}
+
+#[test]
+fn control_g_goes_to_a_number_and_control_f_finds_a_pass() {
+    let mut harness = harness(z_fail(SIZE));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::G);
+    harness.run_steps(2);
+    harness.get_by_label("Go to step").type_text("2");
+    harness.run_steps(2);
+    press(&mut harness, Key::Enter);
+    assert_eq!(harness.state().inspector.step(), 1);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::F);
+    harness.run_steps(2);
+    harness.get_by_label("Find a pass").type_text("mask");
+    harness.run_steps(2);
+    assert!(harness.query_by_label("2 · volumes").is_none(), "passes without the word are hidden");
+    press(&mut harness, Key::ArrowLeft);
+    assert_eq!(harness.state().inspector.step(), 1, "a text field keeps its keys");
+    press(&mut harness, Key::Enter);
+    assert_eq!(harness.state().inspector.step(), 2);
+}
+
+#[test]
+fn a_right_click_picks_and_arrows_nudge_while_the_picture_has_the_focus() {
+    let mut harness = harness(z_fail(SIZE));
+    harness.get_by_label("No pixel is picked.");
+    let at = place_of(&harness, [12, 7], SIZE);
+    mouse(&mut harness, at, PointerButton::Secondary);
+    assert_eq!(harness.state().inspector.picked(), Some([12, 7]));
+    press(&mut harness, Key::ArrowRight);
+    press(&mut harness, Key::ArrowUp);
+    assert_eq!(harness.state().inspector.picked(), Some([13, 6]));
+    assert_eq!(harness.state().inspector.step(), 3, "the picture keeps its keys");
+    harness.get_by_label("13, 6");
+}
+
+#[test]
+fn the_read_out_says_why_a_pixel_is_dark_and_how_its_values_ran() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.pick([3, 4]);
+    inspector.select_step(1);
+    let harness = harness_of(inspector, [1280.0, 800.0]);
+    harness.get_by_label("Dark under light 1: its stencil count is 1.");
+    harness.get_by_label("0000 0001");
+    harness.get_by_label("shadow");
+    assert_eq!(harness.query_all_by_label("4.000 m").count(), 5, "now, and after each step");
+    assert!(harness.query_all_by_label("20 20 24").count() >= 4, "a row for each step");
+}
+
+#[test]
+fn a_count_below_zero_is_shown_with_its_sign() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.pick([0, 0]);
+    let harness = harness_of(inspector, [1280.0, 800.0]);
+    harness.get_by_label("Dark under light 1: its stencil count is −1 (255).");
+    harness.get_by_label("1111 1111");
+}
+
+#[test]
+fn every_label_has_its_own_sentence() {
+    let mut with_background = inspector(z_fail(SIZE));
+    with_background.pick([39, 4]);
+    harness_of(with_background, [1280.0, 800.0]).get_by_label("Background: no surface is at this pixel.");
+    let mut lit = inspector(z_fail(SIZE));
+    lit.pick([30, 4]);
+    harness_of(lit, [1280.0, 800.0]).get_by_label("Lit by light 1: its stencil count is 0.");
+}
+
+#[test]
+fn only_pictures_that_exist_have_a_button_and_the_legend_counts_pixels() {
+    let mut harness = harness(z_fail(SIZE));
+    assert!(harness.query_by_label("Shadow map").is_none());
+    press(&mut harness, Key::Home);
+    press(&mut harness, Key::ArrowRight);
+    click_button(&mut harness, "Stencil");
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Stencil));
+    harness.get_by_label("Stencil count");
+    harness.get_by_label("−1 (255)");
+    // 20 columns of 30, less the corner.
+    harness.get_by_label("599");
+    harness.get_by_label("600");
+    click_button(&mut harness, "Mask");
+    harness.get_by_label("3 faces away");
+    click_button(&mut harness, "Depth");
+    harness.get_by_label("Distance");
+    harness.get_by_label("1.000 m");
+    harness.get_by_label("39.000 m");
+    click_button(&mut harness, "Raw");
+    harness.get_by_label("Depth as stored");
+}
+
+#[test]
+fn the_depth_range_is_set_by_handles_and_fitted_again() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "Depth");
+    let ends = |harness: &Harness<Seen>| ["1.000 m", "39.000 m"].map(|end| harness.query_by_label(end).is_some());
+    assert_eq!(ends(&harness), [true, true]);
+    let slider = harness.get_all_by_label("Depth range").next().expect("a slider").rect();
+    let from = pos2(slider.right() - 4.0, slider.center().y);
+    harness.drag_at(from);
+    harness.run_steps(2);
+    harness.hover_at(slider.center());
+    harness.run_steps(2);
+    harness.drop_at(slider.center());
+    harness.run_steps(2);
+    assert_eq!(ends(&harness), [true, false], "the far end was dragged");
+    click_button(&mut harness, "Autofit");
+    assert_eq!(ends(&harness), [true, true]);
+}
+
+#[test]
+fn a_map_pass_shows_its_face_and_leaving_it_shows_what_was_shown_before() {
+    let mut harness = harness(cube_map());
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Color));
+    press(&mut harness, Key::Home);
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Map));
+    harness.get_by_label_contains("shadow map of light 1, face −x");
+    assert!(harness.query_by_role_and_label(Role::Button, "Colour").is_none(), "nothing is drawn yet");
+    click_button(&mut harness, "All");
+    click(&mut harness, "Face −y");
+    harness.get_by_label_contains("shadow map of light 1, face −y");
+    press(&mut harness, Key::End);
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Color));
+}
+
+#[test]
+fn the_wheel_zooms_at_the_pointer_and_the_buttons_go_back() {
+    let mut harness = harness(z_fail(SIZE));
+    let at = place_of(&harness, [10, 10], SIZE);
+    harness.hover_at(at);
+    harness.run_steps(2);
+    harness.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: vec2(0.0, 400.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(12);
+    assert!(matches!(harness.state().inspector.zoom(), Zoom::Pixels(pixels) if pixels > 30.0));
+    mouse(&mut harness, at, PointerButton::Secondary);
+    assert_eq!(harness.state().inspector.picked(), Some([10, 10]), "the texel under the pointer stayed there");
+    click_button(&mut harness, "1:1");
+    assert_eq!(harness.state().inspector.zoom(), Zoom::Pixels(1.0));
+    click_button(&mut harness, "Fit");
+    assert_eq!(harness.state().inspector.zoom(), Zoom::Fit);
+}
+
+#[test]
+fn choosing_a_technique_asks_for_a_run_and_remembers_settings() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "shadow-map");
+    let Some(Action::Run(request)) = harness.state().actions.last() else { panic!("a run") };
+    assert_eq!(request.choice, Choice::new(Technique::ShadowMap));
+    click(&mut harness, "Settings");
+    let size = harness.get_by_role_and_label(Role::SpinButton, "size");
+    size.set_value_accesskit(256.0);
+    harness.run_steps(2);
+    let set = |actions: &[Action]| match actions.last() {
+        Some(Action::Run(request)) => request.choice.settings().get("size").cloned(),
+        _ => None,
+    };
+    assert_eq!(set(&harness.state().actions).as_deref(), Some("256"));
+    click_button(&mut harness, "z-pass");
+    click_button(&mut harness, "shadow-map");
+    assert_eq!(set(&harness.state().actions).as_deref(), Some("256"), "as it was set before");
+}
+
+#[test]
+fn lights_camera_and_size_by_number_ask_for_a_run() {
+    let mut harness = harness(z_fail(SIZE));
+    click(&mut harness, "Settings");
+    for (name, value) in [("light 1 position x", 2.5), ("camera eye y", 12.0), ("Picture width", 64.0)] {
+        harness.get_by_label(name).set_value_accesskit(value);
+        harness.run_steps(2);
+    }
+    let Some(Action::Run(request)) = harness.state().actions.last() else { panic!("a run") };
+    assert_eq!(request.lights[0].position.x, 2.5);
+    assert_eq!(request.camera.eye.y, 12.0);
+    assert_eq!(request.size, [64, 30]);
+}
+
+#[test]
+fn what_cannot_be_run_is_said_and_not_run() {
+    let mut harness = harness(z_fail(SIZE));
+    click(&mut harness, "Settings");
+    // Where the target is: the eye of the scene looks straight down from 10 above.
+    harness.get_by_label("camera eye y").set_value_accesskit(0.0);
+    harness.run_steps(2);
+    assert!(harness.state().actions.is_empty());
+    harness.get_by_label_contains("the camera's eye equals its target");
+}
+
+#[test]
+fn the_dialog_opens_built_in_scenes_and_paths() {
+    let mut harness = harness(z_fail(SIZE));
+    click(&mut harness, "Open…");
+    harness.get_by_label("what table teaches");
+    click(&mut harness, "table");
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open("table".to_owned())));
+    assert!(harness.query_by_label("what table teaches").is_none(), "it closes");
+    click(&mut harness, "Open…");
+    harness.get_by_role(Role::TextInput).type_text("models/bunny.obj");
+    harness.run_steps(2);
+    click(&mut harness, "Open this");
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open("models/bunny.obj".to_owned())));
+    click(&mut harness, "Open…");
+    click(&mut harness, "Browse…");
+    assert_eq!(harness.state().actions.last(), Some(&Action::Browse));
+}
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        Err("not read by the panels".to_owned())
+    }
+}
+
+#[test]
+fn a_dropped_file_is_opened() {
+    let mut harness = harness(z_fail(SIZE));
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(PathBuf::from("dropped.obj"))));
+    harness.run_steps(1);
+    assert_eq!(harness.state().actions, [Action::Open("dropped.obj".to_owned())]);
+}
+
+#[test]
+fn an_error_stays_until_dismissed_and_so_does_the_picture() {
+    let mut harness = harness(z_fail(SIZE));
+    harness.state_mut().inspector.push_error("nothing.obj: no such file: check the path".to_owned());
+    harness.run_steps(2);
+    harness.get_by_label("nothing.obj: no such file: check the path");
+    harness.get_by_label("step 4 of 4");
+    click(&mut harness, "Dismiss");
+    assert!(harness.state().inspector.errors().is_empty());
+    assert!(harness.query_by_label_contains("no such file").is_none());
+}
+
+#[test]
+fn with_nothing_open_it_says_what_to_do() {
+    let harness = harness_of(Inspector::default(), [1280.0, 800.0]);
+    harness.get_by_label("Nothing is open yet.");
+    harness.get_by_label_contains("Press Open…");
+    harness.get_by_label_contains("Open a scene, a model or a capture folder");
+}
+
+#[test]
+fn a_capture_folder_is_looked_at_but_not_run() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.clear_scene();
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    harness.get_by_label("technique z-fail");
+    click(&mut harness, "Settings");
+    harness.get_by_label_contains("This is a capture folder");
+    press(&mut harness, Key::Home);
+    harness.get_by_role_and_label(Role::Tab, "Passes").click();
+    harness.run_steps(2);
+    harness.get_by_label("step 1 of 4");
+}
+
+#[test]
+fn the_smallest_capture_and_an_empty_one_are_shown() {
+    let mut one = inspector(z_fail([1, 1]));
+    one.pick([0, 0]);
+    let mut harness = harness_of(one, [1280.0, 800.0]);
+    for kind in ["Stencil", "Depth", "Mask", "Colour"] {
+        click_button(&mut harness, kind);
+    }
+    let mut empty = z_fail([1, 1]);
+    empty.steps.clear();
+    empty.lights.clear();
+    harness.state_mut().inspector.set_capture(Arc::new(empty));
+    harness.run_steps(3);
+    press(&mut harness, Key::ArrowRight);
+    harness.get_by_label("This capture has no passes.");
+}
+
+#[test]
+fn a_map_larger_than_the_gpus_textures_is_shown() {
+    let mut capture = cube_map();
+    let map = capture.lights[0].map.as_mut().expect("a map");
+    map.faces[1] = Arc::new(Image::uniform(PixelFormat::Depth32F, [16_384, 16_384], &0.5_f32.to_le_bytes()));
+    let mut inspector = inspector(capture);
+    inspector.select_step(0);
+    let harness = harness_of(inspector, [640.0, 400.0]);
+    harness.get_by_label_contains("16384×16384");
+}
+
+#[test]
+fn nothing_is_redrawn_while_nothing_changes() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.pick([3, 4]);
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    harness.run_steps(4);
+    harness.step();
+    let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
+    assert!(delay > std::time::Duration::from_secs(60), "{delay:?}");
+}
+
+#[test]
+fn another_capture_keeps_the_step_that_means_the_same() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.select_step(1);
+    inspector.pick([30, 20]);
+    let mut other = z_fail([20, 10]);
+    other.steps.insert(0, other.steps[0].clone());
+    inspector.set_capture(Arc::new(other));
+    assert_eq!(inspector.step(), 2, "volumes");
+    assert_eq!(inspector.picked(), None, "outside the smaller picture");
+}
+
+/// Pictures of the panels, for people to look at: `INSPECTOR_PICTURES=DIR cargo test pictures_of`.
+/// Without the variable it only draws them.
+#[test]
+fn pictures_of_the_panels_can_be_drawn() {
+    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
+    let sizes = if folder.is_some() {
+        [[1280.0, 800.0], [1440.0, 900.0], [1920.0, 1080.0]].as_slice()
+    } else {
+        &[[640.0, 400.0]]
+    };
+    let scene = stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("tori")).expect("tori");
+    let mut session = common::session();
+    for technique in [Technique::ZFail, Technique::ShadowMap, Technique::Planar] {
+        let request = common::request(technique, [1280, 720]);
+        let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
+        for (view, size) in views().into_iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
+            let mut inspector =
+                Inspector::new(vec![SceneEntry { name: "tori".to_owned(), lesson: "four tori".to_owned() }]);
+            let draft = RunRequest {
+                choice: request.choice.clone(),
+                size: request.size,
+                camera: scene.camera,
+                lights: scene.lights.clone(),
+                time: 0.0,
+            };
+            inspector.set_scene(&scene, draft);
+            inspector.set_capture(capture.clone());
+            inspector.pick([470, 330]);
+            let mut harness = harness_of(inspector, size);
+            (view.1)(&mut harness);
+            harness.run_steps(2);
+            let picture = harness.render().expect("a picture");
+            if let Some(folder) = &folder {
+                let name = format!("{}-{}-{}.png", technique.name(), view.0, size[0]);
+                picture.save(folder.join(name)).expect("a file");
+            }
+        }
+    }
+}
+
+type View = (&'static str, fn(&mut Harness<Seen>));
+
+fn views() -> Vec<View> {
+    let zoom = |harness: &mut Harness<Seen>| {
+        harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+        harness.state_mut().inspector.set_zoom(Zoom::Pixels(28.0), [470.5, 330.5]);
+    };
+    vec![
+        ("colour", |_| ()),
+        ("stencil", |harness| {
+            harness.state_mut().inspector.select_step(1);
+            harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+        }),
+        ("depth", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Depth)),
+        ("mask", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Mask)),
+        ("map", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
+        ("large", zoom),
+        ("settings", |harness| click(harness, "Settings")),
+        ("open", |harness| click(harness, "Open…")),
+        ("error", |harness| {
+            harness.state_mut().inspector.push_error("bunny.obj: no such file: check the path".to_owned())
+        }),
+    ]
+}
