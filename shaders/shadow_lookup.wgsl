@@ -15,7 +15,9 @@ fn lit_by_map(relative: vec3f) -> bool {
         let device = clip.xyz / clip.w;
         let place = (device.xy * vec2f(0.5, -0.5) + 0.5) * size;
         let texel = vec2i(clamp(floor(place), vec2f(0.0), size - 1.0));
-        return device.z >= textureLoad(shadow_map, texel, face, 0);
+        let stored = textureLoad(shadow_map, texel, face, 0);
+        // 0 is what the map was cleared to: no caster covers this texel.
+        return stored == 0.0 || device.z >= stored;
     }
     // Outside the map: no caster lies in this direction.
     return true;

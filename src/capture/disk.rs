@@ -31,7 +31,7 @@ pub enum CaptureError {
         folder: PathBuf,
     },
     /// The folder can't be made, filled or put in its place.
-    #[error("{}: can't be written ({source}); choose a folder that you may write to", file.display())]
+    #[error("{}: can't be written ({source}); choose a folder that you may write to, with room in it", file.display())]
     Write {
         /// Which file or folder.
         file: PathBuf,
@@ -61,7 +61,10 @@ pub fn is_capture(folder: &Path) -> bool {
 pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> {
     let is_empty_folder = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
     let folder = folder.to_owned();
-    if !folder.exists() || is_empty_folder {
+    if folder.file_name().is_none() {
+        // `.`, `..` or `/`: they have no name to be replaced by.
+        Err(CaptureError::InTheWay { folder })
+    } else if !folder.exists() || is_empty_folder {
         Ok(())
     } else if !is_capture(&folder) {
         Err(CaptureError::InTheWay { folder })
@@ -82,17 +85,24 @@ pub fn write(capture: &Capture, folder: &Path, overwrite: bool) -> Result<f64, C
     // A link to a folder stays a link: what it points to is replaced.
     let folder = &fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
     let [new, old] = ["new", "old"].map(|which| beside(folder, which));
-    // Named as asked for: the hidden name would only puzzle.
-    fs::create_dir_all(&new).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
+    let made: Vec<&Path> = new.ancestors().take_while(|ancestor| !ancestor.exists()).collect();
     let result = write_files(capture, &new).and_then(|write_ms| {
         put_in_place(folder, &new, &old)?;
         Ok(write_ms)
     });
-    if result.is_err() {
-        // What could not be finished is not left behind; what failed is the error already.
+    result.map_err(|error| {
+        // What could not be finished is not left behind, nor are the folders made for it; what
+        // failed is the error already.
         let _ = fs::remove_dir_all(&new);
-    }
-    result
+        for ancestor in made {
+            let _ = fs::remove_dir(ancestor);
+        }
+        match error {
+            // Named as asked for: the hidden name would only puzzle.
+            CaptureError::Write { source, .. } => CaptureError::Write { file: folder.to_owned(), source },
+            other => other,
+        }
+    })
 }
 
 /// A hidden name in the same folder, so that renaming stays on one file system.
@@ -122,6 +132,7 @@ fn put_in_place(folder: &Path, new: &Path, old: &Path) -> Result<(), CaptureErro
 
 fn write_files(capture: &Capture, folder: &Path) -> Result<f64, CaptureError> {
     let start = Instant::now();
+    fs::create_dir_all(folder).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
     let mut manifest = Manifest::new(capture);
     let mut written = BTreeMap::new();
     for (index, step) in capture.steps.iter().enumerate() {
@@ -239,7 +250,7 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     let mut reader = Reader { folder, size: manifest.size, images: BTreeMap::new() };
     let lights = manifest.lights.iter().map(|light| reader.light(light)).collect::<Result<_, _>>()?;
     let steps = manifest.passes.iter().map(|pass| reader.step(pass)).collect::<Result<_, _>>()?;
-    Ok(Capture {
+    let capture = Capture {
         scene: manifest.scene,
         technique: manifest.technique,
         settings: manifest.settings,
@@ -250,8 +261,45 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
         lights,
         left_out: manifest.left_out,
         timing: manifest.timing,
-        plan_text: fs::read_to_string(folder.join(PLAN)).unwrap_or_default(),
-    })
+        plan_text: read_plan(folder)?,
+    };
+    match inconsistency(&capture) {
+        Some(reason) => Err(wrong(reason.to_owned())),
+        None => Ok(capture),
+    }
+}
+
+/// The plan's text, where there is one.
+fn read_plan(folder: &Path) -> Result<String, CaptureError> {
+    let file = folder.join(PLAN);
+    match fs::read_to_string(&file) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
+        Err(error) => Err(CaptureError::Read { file, reason: error.to_string() }),
+        Ok(text) => Ok(text),
+    }
+}
+
+/// What a manifest may say that no frame leaves behind.
+fn inconsistency(capture: &Capture) -> Option<&'static str> {
+    let light = |index: usize| capture.lights.get(index);
+    let is_consistent = |step: &Step| match &step.snapshot {
+        Snapshot::Map { light: index, face } => {
+            light(*index).and_then(|light| light.map.as_ref()).is_some_and(|map| *face < map.faces.len())
+        }
+        Snapshot::Frame(frame) => {
+            let labels = step.light.and_then(light).is_some_and(|light| light.shadow.is_some());
+            step.light.is_none_or(|index| light(index).is_some()) && (!frame.writes_labels || labels)
+        }
+    };
+    if capture.steps.is_empty() {
+        Some("it has no passes")
+    } else if !capture.steps.iter().all(is_consistent) {
+        Some("a pass names a light, map or face that is not there")
+    } else if capture.camera.check().is_err() {
+        Some("its camera can't see")
+    } else {
+        None
+    }
 }
 
 /// Reads each file once: what the manifest names twice is shared again.

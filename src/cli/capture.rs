@@ -3,9 +3,11 @@
 use super::options::{FrameOptions, SceneOptions};
 use super::{CliError, output};
 use crate::capture::{Capture, disk};
-use crate::session::Session;
+use crate::scene::Scene;
+use crate::session::{CaptureRequest, Session};
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub struct CaptureArguments {
@@ -23,32 +25,57 @@ pub struct CaptureArguments {
     frame: FrameOptions,
 }
 
-/// Everything that can be wrong without a GPU is checked before one is opened.
+/// Captures a scene.
 ///
 /// # Errors
 /// A scene, option or folder that can't be used; no GPU; a frame that can't be made.
 pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
-    let scene = &arguments.scene;
-    into_folder(scene, &arguments.scene_options, &arguments.frame, &arguments.output, arguments.overwrite)
+    let CaptureArguments { scene, scene_options, frame, output, overwrite } = arguments;
+    Job::new(scene, scene_options, frame, output, *overwrite)?.run()
 }
 
-/// Captures a scene into `folder` and says so.
-///
-/// # Errors
-/// As [`run`].
-pub fn into_folder(
-    name: &str,
-    scene_options: &SceneOptions,
-    frame: &FrameOptions,
-    folder: &Path,
+/// A capture whose input was checked.
+pub struct Job<'a> {
+    started: Instant,
+    scene: Scene,
+    request: CaptureRequest,
+    adapter: Option<&'a str>,
+    folder: &'a Path,
     overwrite: bool,
-) -> Result<(), CliError> {
-    let scene = scene_options.open(name)?;
-    let request = frame.request(&scene)?;
-    disk::check_target(folder, overwrite)?;
-    let capture = Session::new(frame.adapter.as_deref())?.capture(&scene, &request)?;
-    disk::write(&capture, folder, overwrite)?;
-    output::print(&summary(&capture, folder))
+}
+
+impl<'a> Job<'a> {
+    /// Everything that can be wrong without a GPU is found here, before one is opened.
+    ///
+    /// # Errors
+    /// A scene, option or folder that can't be used.
+    pub fn new(
+        name: &str,
+        scene_options: &SceneOptions,
+        frame: &'a FrameOptions,
+        folder: &'a Path,
+        overwrite: bool,
+    ) -> Result<Job<'a>, CliError> {
+        let started = Instant::now();
+        let scene = scene_options.open(name)?;
+        let request = frame.request(&scene)?;
+        disk::check_target(folder, overwrite)?;
+        Ok(Job { started, scene, request, adapter: frame.adapter.as_deref(), folder, overwrite })
+    }
+
+    /// Captures into the folder and says so.
+    ///
+    /// # Errors
+    /// No GPU; a frame that can't be made; a folder that can't be written.
+    pub fn run(self) -> Result<(), CliError> {
+        let mut session = Session::new(self.adapter)?;
+        let before = self.started.elapsed().as_secs_f64() * 1e3;
+        let mut capture = session.capture(&self.scene, &self.request)?;
+        // Loading the scene and opening the GPU come before the first frame too.
+        capture.timing.setup_ms = capture.timing.setup_ms.map(|setup| setup + before);
+        disk::write(&capture, self.folder, self.overwrite)?;
+        output::print(&summary(&capture, self.folder))
+    }
 }
 
 fn summary(capture: &Capture, folder: &Path) -> String {

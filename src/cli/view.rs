@@ -41,10 +41,12 @@ fn capture_instead(arguments: &ViewArguments, reason: &str) -> Result<(), CliErr
     if Path::new(&arguments.scene).is_dir() {
         // Whatever is wrong with the folder is the better answer.
         crate::capture::disk::read(Path::new(&arguments.scene))?;
-        return Err(CliError::Window(reason.to_owned()));
+        let mend = "read its manifest.json, .npy and .png files, or open it where there is a display";
+        return Err(CliError::Usage(format!("a capture folder can only be shown in a window, but {reason}: {mend}")));
     }
+    let job = capture::Job::new(&arguments.scene, &arguments.scene_options, &arguments.frame, folder, true)?;
     output::note(&format!("{reason}: capturing into ./{FALLBACK_FOLDER} instead"));
-    capture::into_folder(&arguments.scene, &arguments.scene_options, &arguments.frame, folder, true)
+    job.run()
 }
 
 /// Why there can be no window; `None` where there may be one.

@@ -29,17 +29,17 @@ pub struct Receiver {
 /// transform. Triangles without area belong to none.
 #[must_use]
 pub fn receivers(object: &[DVec3], world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList) -> Vec<Receiver> {
-    let neighbours = neighbours(triangles.len(), edges);
+    let edges_of = edges_of_triangles(triangles.len(), edges);
+    let mut walk = Walk { edges, edges_of, taken: vec![false; triangles.len()] };
     let size = extent(object);
-    let mut taken = vec![false; triangles.len()];
     let mut found = Vec::new();
     for seed in 0..triangles.len() {
-        let Some(plane) = plane_of(object, triangles[seed]).filter(|_| !taken[seed]) else { continue };
+        let Some(plane) = plane_of(object, triangles[seed]).filter(|_| !walk.taken[seed]) else { continue };
         let coplanar = |triangle: u32| {
             let corners = triangles[triangle as usize].map(|v| plane.at(object[v as usize].extend(1.0)));
             corners.iter().all(|distance| distance.abs() <= COPLANAR * size)
         };
-        let members = connected(seed as u32, &neighbours, &mut taken, coplanar);
+        let members = walk.from(seed as u32, coplanar);
         found.extend(receiver(world, triangles, members));
     }
     found
@@ -57,31 +57,42 @@ fn plane_of(positions: &[DVec3], corners: [u32; 3]) -> Option<Plane> {
     (normal.length() > 0.0 && normal.is_finite()).then(|| Plane::through(a, normal))
 }
 
-fn neighbours(count: usize, edges: &EdgeList) -> Vec<Vec<u32>> {
-    let mut neighbours = vec![Vec::new(); count];
+/// The three edges of each triangle.
+fn edges_of_triangles(count: usize, edges: &EdgeList) -> Vec<Vec<u32>> {
+    let mut of_triangle = vec![Vec::with_capacity(3); count];
     for edge in 0..edges.edges().len() {
-        for (triangle, _) in edges.incident(edge) {
-            neighbours[triangle].extend(edges.incident(edge).map(|(other, _)| other as u32));
-        }
+        edges.incident(edge).for_each(|(triangle, _)| of_triangle[triangle].push(edge as u32));
     }
-    neighbours
+    of_triangle
 }
 
-fn connected(seed: u32, neighbours: &[Vec<u32>], taken: &mut [bool], belongs: impl Fn(u32) -> bool) -> Vec<u32> {
-    let mut members = vec![seed];
-    let mut waiting = vec![seed];
-    taken[seed as usize] = true;
-    while let Some(triangle) = waiting.pop() {
-        for &next in &neighbours[triangle as usize] {
-            if !taken[next as usize] && belongs(next) {
-                taken[next as usize] = true;
-                members.push(next);
-                waiting.push(next);
+/// Finds what can be reached over shared edges.
+struct Walk<'a> {
+    edges: &'a EdgeList,
+    edges_of: Vec<Vec<u32>>,
+    taken: Vec<bool>,
+}
+
+impl Walk<'_> {
+    /// The triangles connected with `seed` that `belongs` lets in, ascending. They are taken then.
+    fn from(&mut self, seed: u32, belongs: impl Fn(u32) -> bool) -> Vec<u32> {
+        let mut members = vec![seed];
+        let mut waiting = vec![seed];
+        self.taken[seed as usize] = true;
+        while let Some(triangle) = waiting.pop() {
+            for &edge in &self.edges_of[triangle as usize] {
+                for (next, _) in self.edges.incident(edge as usize) {
+                    if !self.taken[next] && belongs(next as u32) {
+                        self.taken[next] = true;
+                        members.push(next as u32);
+                        waiting.push(next as u32);
+                    }
+                }
             }
         }
+        members.sort_unstable();
+        members
     }
-    members.sort_unstable();
-    members
 }
 
 /// The plane by area-weighted normals and the mean corner, which a small triangle can't tilt.
@@ -119,12 +130,6 @@ impl Flattener {
         (light_height > 0.0).then(|| Flattener { plane, light, light_height, triangles: Vec::new() })
     }
 
-    /// The plane, turned towards the light.
-    #[must_use]
-    pub fn plane(&self) -> Plane {
-        self.plane
-    }
-
     /// Adds the shadow of a mesh. `on_plane` names vertices of the receiver itself: they are on its
     /// plane whatever rounding says.
     pub fn add(&mut self, world: &[DVec3], triangles: &[[u32; 3]], on_plane: &[u32]) {
@@ -153,10 +158,10 @@ impl Flattener {
         }
     }
 
-    /// `(P·L) V − (P·V) L`: the matrix of [`Plane::shadow_from_world`] with the clipped height put
-    /// in, so that a corner cut level with the light goes to infinity exactly.
+    /// `V − L (P·V) / (P·L)`, which is Blinn's `(P·L) V − (P·V) L` (1988) without its scale: w is 1
+    /// on the plane and exactly 0 for a corner that was cut level with the light.
     fn shadow(&self, point: DVec3, height: f64) -> DVec4 {
-        point.extend(1.0) * self.light_height - self.light * height
+        point.extend(1.0) - self.light * (height / self.light_height)
     }
 
     /// The shadows: homogeneous world positions with `w ≥ 0`.
@@ -212,6 +217,24 @@ mod tests {
     }
 
     const LIGHT: DVec4 = DVec4::new(0.0, 4.0, 0.0, 1.0);
+
+    /// A shadow lies on the plane, and on the line through light and point: the definition.
+    #[test]
+    fn a_shadow_is_where_the_ray_from_the_light_meets_the_plane() {
+        let plane = Plane::through(DVec3::new(0.3, -1.0, 2.0), DVec3::new(0.2, 1.0, -0.1));
+        for light in [DVec4::new(3.0, 7.0, -2.0, 1.0), DVec4::new(0.4, 1.0, 0.3, 0.0)] {
+            let flattener = Flattener::new(plane, light).expect("a light above");
+            for point in [DVec3::new(0.0, 1.0, 0.0), DVec3::new(-4.0, 2.0, 5.0), DVec3::new(1.0, 0.5, 1.0)] {
+                let shadow = flattener.shadow(point, plane.at(point.extend(1.0)));
+                assert!(shadow.w > 0.0);
+                let shadow = shadow.truncate() / shadow.w;
+                assert!(plane.at(shadow.extend(1.0)).abs() < 1e-9);
+                let ray = if light.w == 0.0 { light.truncate() } else { light.truncate() - point };
+                assert!((shadow - point).cross(ray).length() < 1e-9 * ray.length());
+                assert!((shadow - point).dot(ray) < 0.0, "the shadow is beyond the point, away from the light");
+            }
+        }
+    }
 
     #[test]
     fn a_level_triangle_halfway_up_throws_four_times_its_area() {

@@ -88,7 +88,7 @@ impl Executor {
     /// # Errors
     /// A driver that fails.
     pub fn capture(&self, prepared: Prepared, bracket: bool) -> Result<Output, GpuError> {
-        let timestamps = Timestamps::new(&self.context, prepared.plan.passes.len());
+        let timestamps = self.context.guarded(|| Ok(Timestamps::new(&self.context, prepared.plan.passes.len())))?;
         let run = || self.context.guarded(|| self.submit(&prepared, Mode::Everything, timestamps.as_ref()));
         if bracket {
             self.context.bracketed(run)?
@@ -207,23 +207,22 @@ fn collect(prepared: &Prepared, times: &[Option<f64>]) -> Result<Output, GpuErro
             }
             Snapshot::Map { light: light.0, face }
         } else {
-            let written = after(&color_change(plan, pass), &staged.color, PixelFormat::Rgba8Srgb, plan.size);
             let labels_of = match pass.color.as_ref().map(|target| role(target.attachment)) {
                 Some(AttachmentRole::Labels(light)) => Some(light),
                 _ => None,
             };
-            let color_aspect = match labels_of {
+            let target = color_change(plan, pass);
+            let color_after = match labels_of {
                 Some(light) => {
-                    output.labels[light.0] =
-                        after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
-                    step_aspect(&mut color, None)
+                    output.labels[light.0] = after(&target, &staged.color, PixelFormat::U8, plan.size)?;
+                    None
                 }
-                None => step_aspect(&mut color, written?),
+                None => after(&target, &staged.color, PixelFormat::Rgba8Srgb, plan.size)?,
             };
             let depth_after = after(&depth_change(pass), &staged.depth, PixelFormat::Depth32F, plan.size)?;
             let stencil_after = after(&stencil_change(pass), &staged.stencil, PixelFormat::U8, plan.size)?;
             Snapshot::Frame(FrameSnapshot {
-                color: color_aspect,
+                color: step_aspect(&mut color, color_after),
                 depth: step_aspect(&mut depth, depth_after),
                 stencil: prepared.passes[index].has_stencil.then(|| step_aspect(&mut stencil, stencil_after)),
                 writes_labels: labels_of.is_some(),
@@ -250,9 +249,7 @@ fn after(
     size: [u32; 2],
 ) -> Result<Option<Arc<Image>>, GpuError> {
     match (change, staged) {
-        (Change::Uniform(texel), _) if texel.len() == format.texel_bytes() => {
-            Ok(Some(Arc::new(Image::uniform(format, size, texel))))
-        }
+        (Change::Uniform(texel), _) => Ok(Some(Arc::new(Image::uniform(format, size, texel)))),
         (Change::Drawn, Some(staging)) => staging.image().map(Some),
         _ => Ok(None),
     }

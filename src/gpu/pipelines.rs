@@ -41,6 +41,9 @@ pub(super) struct Pipelines {
     pipelines: HashMap<PipelineKey, RenderPipeline>,
 }
 
+/// Pipelines kept at once; more than the plan of the stencil machine's test needs.
+const MOST_KEPT: usize = 2048;
+
 const POSITION_ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x4];
 
 impl Pipelines {
@@ -52,6 +55,10 @@ impl Pipelines {
     pub fn get(&mut self, device: &Device, key: &PipelineKey) -> RenderPipeline {
         if let Some(pipeline) = self.pipelines.get(key) {
             return pipeline.clone();
+        }
+        if self.pipelines.len() >= MOST_KEPT {
+            // A slider moved over many biases has made one each.
+            self.pipelines.clear();
         }
         let pipeline = self.create(device, key);
         self.pipelines.insert(key.clone(), pipeline.clone());

@@ -53,12 +53,6 @@ pub fn some_up_for(direction: DVec3) -> DVec3 {
     if direction.y.abs() > 0.9 * direction.length() { DVec3::Z } else { DVec3::Y }
 }
 
-/// World distance along the view axis of a stored reversed-infinite depth; infinite for 0.
-#[must_use]
-pub fn distance_of_depth(depth: f64, near: f64) -> f64 {
-    near / depth
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -76,7 +70,6 @@ mod tests {
         assert_eq!((clip_from_view * DVec4::new(0.1, 0.2, -1.0, 0.0)).z, 0.0);
         let corner = project(clip_from_view, DVec3::new(6.0, 3.0, -3.0));
         assert!((corner.x - 1.0).abs() < 1e-12 && (corner.y - 1.0).abs() < 1e-12);
-        assert_eq!(distance_of_depth(0.25 / 1000.0, 0.25), 1000.0);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Vertices and indices of draws, named by the hash of their content.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{DefaultHasher, Hasher};
 use std::sync::Arc;
 
 /// Shared data with its hash: the executor uploads equal data once and keeps it while it is used.
@@ -41,12 +41,6 @@ impl<T: bytemuck::Pod> Blob<T> {
 impl<T> PartialEq for Blob<T> {
     fn eq(&self, other: &Blob<T>) -> bool {
         self.hash == other.hash && self.data.len() == other.data.len()
-    }
-}
-
-impl<T> Hash for Blob<T> {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        self.hash.hash(state);
     }
 }
 

@@ -276,12 +276,6 @@ pub struct DrawConstants {
 }
 
 impl FramePlan {
-    /// Triangles submitted by one pass.
-    #[must_use]
-    pub fn triangles_of(&self, pass: &Pass) -> u64 {
-        pass.draws.iter().map(|draw| u64::from(draw.triangles.end - draw.triangles.start)).sum()
-    }
-
     /// The attachment behind an id.
     ///
     /// # Panics

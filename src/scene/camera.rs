@@ -23,22 +23,22 @@ impl Camera {
     /// Names what makes this camera unusable, in a few words for an error line.
     ///
     /// # Errors
-    /// The first rule broken: finite numbers, an eye apart from its target, an up that is not
-    /// along the view, a field of view in (0, 180), 0 < near < far.
+    /// The first rule broken: numbers that single precision can work with, an eye apart from its
+    /// target, an up that is not along the view, a field of view in (0, 180), 0 < near < far.
     pub fn check(&self) -> Result<(), &'static str> {
         let vectors = [self.eye, self.target, self.up];
         let forward = self.target - self.eye;
         let sideways = forward.normalize_or_zero().cross(self.up.normalize_or_zero());
-        if !vectors.iter().all(|vector| vector.is_finite()) {
-            Err("the camera's eye, target and up must be finite numbers")
+        if !vectors.iter().all(|vector| vector.abs().max_element() <= 1e30) {
+            Err("the camera's eye, target and up must be numbers up to 1e30")
         } else if forward.length() == 0.0 {
             Err("the camera's eye equals its target: move one of them")
         } else if sideways.length() < 1e-9 {
             Err("the camera's up is zero or along the view: choose another up")
-        } else if !(self.fov_y_degrees > 0.0 && self.fov_y_degrees < 180.0) {
-            Err("the field of view must be between 0 and 180 degrees")
-        } else if !(self.near > 0.0 && self.near.is_finite()) {
-            Err("the near plane must be at a finite distance greater than 0")
+        } else if !(0.001..180.0).contains(&self.fov_y_degrees) {
+            Err("the field of view must be between 0.001 and 180 degrees")
+        } else if !(1e-30..=1e30).contains(&self.near) {
+            Err("the near plane must be at a distance from 1e-30 to 1e30")
         } else if self.far.is_some_and(|far| !(far > self.near && far.is_finite())) {
             Err("the far plane must be farther than the near plane")
         } else {

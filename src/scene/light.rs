@@ -42,21 +42,35 @@ impl Light {
         self.position.w == 0.0
     }
 
+    /// The position that geometry is computed with: a direction is scaled by a power of two, which
+    /// rounds nothing, to a length near 1, so that products of it stay in range.
+    #[must_use]
+    pub fn homogeneous(&self) -> DVec4 {
+        if !self.is_directional() {
+            return self.position;
+        }
+        let largest = self.position.abs().max_element();
+        // In two steps: the exponent of a subnormal is beyond what one factor holds.
+        let half = (-largest.log2().floor() / 2.0).floor();
+        let rest = -largest.log2().floor() - half;
+        self.position * half.exp2() * rest.exp2()
+    }
+
     /// Names what makes this light unusable, in a few words for an error line.
     ///
     /// # Errors
     /// The first rule broken: finite numbers, a direction that is not zero, colour and intensity
     /// not negative, range greater than zero.
     pub fn check(&self) -> Result<(), &'static str> {
-        let color_is_valid = self.color.iter().all(|c| c.is_finite() && *c >= 0.0);
+        let color_is_valid = self.color.iter().all(|c| (c * self.intensity).is_finite() && *c >= 0.0);
         if !self.position.is_finite() {
             Err("a light's position must be finite numbers")
         } else if self.is_directional() && self.position.truncate() == DVec3::ZERO {
             Err("a directional light needs a direction other than 0,0,0")
         } else if !(color_is_valid && self.intensity.is_finite() && self.intensity >= 0.0) {
             Err("a light's color and intensity must be finite and not negative")
-        } else if self.range.is_some_and(|range| !(range > 0.0 && range.is_finite())) {
-            Err("a light's range must be a finite distance greater than 0")
+        } else if self.range.is_some_and(|range| !(1e-30..=1e30).contains(&range)) {
+            Err("a light's range must be a distance from 1e-30 to 1e30")
         } else {
             Ok(())
         }

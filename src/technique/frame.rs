@@ -18,6 +18,8 @@ use wgpu::{CompareFunction, StencilOperation, TextureFormat};
 
 /// Linear colour of pixels that show no surface.
 const BACKGROUND: [f64; 4] = [0.007, 0.008, 0.012, 1.0];
+/// Beyond it, products of single-precision coordinates overflow.
+const MOST_DISTANCE: f64 = 1e18;
 /// Lights are bits of one word a triangle; the last bit is taken.
 pub const MOST_LIGHTS: usize = 31;
 
@@ -55,59 +57,74 @@ pub struct Frame<'a> {
     color: AttachmentId,
     depth_stencil: AttachmentId,
     has_stencil: bool,
+    /// The light whose passes have last written the stencil.
+    stencil_of: Option<LightId>,
 }
 
-/// Adds light to visible surfaces where the masked stencil is zero, and raises it there, so that
-/// of surfaces at one depth only the first is lit.
-pub fn lit_once_where_zero(read_mask: u32) -> RasterState {
-    let once = StencilFace {
-        compare: CompareFunction::Equal,
-        pass_op: StencilOperation::IncrementClamp,
-        ..StencilFace::IGNORE
-    };
-    let mut raster = RasterState::visible_surface(ColorWrite::Add).with_stencil(once, 0);
-    raster.stencil.read_mask = read_mask;
-    raster
+/// How surfaces are drawn in a pass.
+pub struct Drawn {
+    program: Program,
+    raster: RasterState,
+    /// What a label program writes.
+    label: u32,
 }
 
-/// What the mask pass writes where: later layers overwrite earlier ones.
-pub struct LabelLayer {
-    pub label: u32,
-    /// With the stencil test that decides; depth and colour are set by the pass.
-    pub raster: RasterState,
-    pub reads_map: bool,
-}
-
-impl LabelLayer {
-    pub fn everywhere(label: u32) -> LabelLayer {
-        LabelLayer { label, raster: RasterState::visible_surface(ColorWrite::Replace), reads_map: false }
+impl Drawn {
+    /// Writes "lit" everywhere, or what a later layer says.
+    pub fn lit() -> Drawn {
+        Drawn::label(LIT)
     }
 
-    pub fn lit() -> LabelLayer {
-        LabelLayer::everywhere(LIT)
+    /// Writes "in shadow" everywhere.
+    pub fn shadow() -> Drawn {
+        Drawn::label(SHADOW)
     }
 
-    pub fn shadow() -> LabelLayer {
-        LabelLayer::everywhere(SHADOW)
+    /// Writes what the light's map says.
+    pub fn lit_or_shadow_by_map() -> Drawn {
+        Drawn { program: Program::Label { reads_map: true }, ..Drawn::label(LIT) }
     }
 
-    pub fn by_map() -> LabelLayer {
-        LabelLayer { reads_map: true, ..LabelLayer::lit() }
+    fn label(label: u32) -> Drawn {
+        let raster = RasterState::visible_surface(ColorWrite::Replace);
+        Drawn { program: Program::Label { reads_map: false }, raster, label }
     }
 
     /// Only where the masked stencil equals `reference`.
-    pub fn where_stencil(mut self, read_mask: u32, reference: u8) -> LabelLayer {
+    pub fn where_stencil(mut self, read_mask: u32, reference: u8) -> Drawn {
         let equal = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
         self.raster = self.raster.with_stencil(equal, reference);
         self.raster.stencil.read_mask = read_mask;
         self.raster.stencil.write_mask = 0;
         self
     }
+
+    /// Adds light where the masked stencil is zero, and raises it there, so that of surfaces at one
+    /// depth only the first is lit.
+    pub fn light_once_where_zero(read_mask: u32) -> Drawn {
+        let once = StencilFace {
+            compare: CompareFunction::Equal,
+            pass_op: StencilOperation::IncrementClamp,
+            ..StencilFace::IGNORE
+        };
+        let mut raster = RasterState::visible_surface(ColorWrite::Add).with_stencil(once, 0);
+        raster.stencil.read_mask = read_mask;
+        Drawn { program: Program::Light { reads_map: false }, raster, label: LIT }
+    }
+}
+
+/// What a technique wants of the stencil buffer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StencilUse {
+    /// It counts or marks.
+    Always,
+    /// Nothing, but where surfaces coincide it keeps them from being lit twice.
+    ToLightOnce,
 }
 
 impl<'a> Frame<'a> {
     /// Places objects and lights, and makes the attachments.
-    pub fn new(job: Job<'a>, has_stencil: bool) -> Result<Frame<'a>, PlanError> {
+    pub fn new(job: Job<'a>, stencil: StencilUse) -> Result<Frame<'a>, PlanError> {
         let scene = job.scene;
         scene.camera.check().map_err(|problem| PlanError::Unusable { problem: problem.to_owned() })?;
         if scene.lights.len() > MOST_LIGHTS {
@@ -128,10 +145,19 @@ impl<'a> Frame<'a> {
         };
         let no_target = AttachmentId(0);
         let placed = Vec::new();
-        let mut frame = Frame { placed, plan, color: no_target, depth_stencil: no_target, has_stencil, job };
+        let mut frame = Frame {
+            placed,
+            plan,
+            color: no_target,
+            depth_stencil: no_target,
+            has_stencil: stencil == StencilUse::Always,
+            stencil_of: None,
+            job,
+        };
+        frame.place_objects()?;
+        frame.has_stencil |= surfaces::coincide(&frame.placed);
         frame.add_attachments();
         frame.add_lights()?;
-        frame.place_objects()?;
         Ok(frame)
     }
 
@@ -147,7 +173,18 @@ impl<'a> Frame<'a> {
 
     /// Homogeneous world position of a light.
     pub fn light_position(&self, light: LightId) -> glam::DVec4 {
-        self.job.scene.lights[light.0].position
+        self.job.scene.lights[light.0].homogeneous()
+    }
+
+    /// Light added everywhere, or only once to each pixel where surfaces coincide.
+    pub fn light_everywhere(&self) -> Drawn {
+        let once = Drawn::light_once_where_zero(0xff);
+        if self.has_stencil { once } else { Drawn { raster: RasterState::visible_surface(ColorWrite::Add), ..once } }
+    }
+
+    /// The same, through the light's map.
+    pub fn light_by_map(&self) -> Drawn {
+        Drawn { program: Program::Light { reads_map: true }, ..self.light_everywhere() }
     }
 
     /// Names a light for people, counted from 1.
@@ -172,37 +209,30 @@ impl<'a> Frame<'a> {
         self.plan.left_out.push(LeftOut::new(what, of, because));
     }
 
-    /// The picture's depth-stencil target, everything kept.
-    pub fn kept_depth_stencil(&self) -> DepthStencilTarget {
-        let attachment = self.depth_stencil;
-        DepthStencilTarget { attachment, layer: 0, clear_depth: None, clear_stencil: None }
-    }
-
-    /// A pass of a light into stencil alone, over the camera's depth. From the second light on it
+    /// A pass of a light into stencil alone, over the camera's depth. The first one of a light
     /// clears what the light before has left.
-    pub fn stencil_pass(&mut self, light: LightId, name: &str, purpose: String, draws: Vec<Draw>) {
-        if light.0 == 0 {
+    pub fn stencil_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
+        if self.stencil_of.is_none() {
             self.leave_out("stencil clear", &Frame::light_name(light), "nothing has written the stencil before");
         }
-        let clear_stencil = (light.0 > 0).then_some(0);
-        let depth_stencil = Some(DepthStencilTarget { clear_stencil, ..self.kept_depth_stencil() });
-        let name = name.to_owned();
-        let light = Some(light);
+        let depth_stencil = self.depth_stencil_of(light);
+        self.stencil_of = Some(light);
         self.plan.passes.push(Pass {
-            name,
-            purpose,
-            light,
+            name: name.to_owned(),
+            purpose: purpose.to_owned(),
+            light: Some(light),
             timed: true,
             view: ViewId(0),
             color: None,
-            depth_stencil,
+            depth_stencil: Some(depth_stencil),
             draws,
         });
     }
 
     /// Depth of all surfaces, and their colour under ambient light.
     pub fn ambient_pass(&mut self) {
-        let draws = self.surface_draws(Program::Ambient, |_| Some(RasterState::surface()));
+        let drawn = Drawn { program: Program::Ambient, raster: RasterState::surface(), label: LIT };
+        let draws = self.surface_draws(|_| Some(&drawn));
         let purpose = "Draws every surface in ambient light only, and leaves in the depth buffer how far the nearest \
                        one is: all later passes ask about that surface.";
         self.plan.passes.push(Pass {
@@ -222,14 +252,17 @@ impl<'a> Frame<'a> {
         });
     }
 
-    /// Adds a light's diffuse and highlight to the surfaces already visible. What receives no
-    /// shadows is drawn without the stencil test of `raster` and without the map.
-    pub fn light_pass(&mut self, light: LightId, purpose: &str, raster: &RasterState, reads_map: bool) {
-        let unshadowed = RasterState::visible_surface(ColorWrite::Add);
-        let mut draws = self.surface_draws(Program::Light { reads_map }, |object| {
-            Some(if object.receives { raster.clone() } else { unshadowed.clone() })
-        });
-        self.without_map_where_nothing_is_received(&mut draws);
+    /// Adds a light's diffuse and highlight to the surfaces already visible; `shadowed` says how on
+    /// objects that receive shadows. The others are lit as if nothing stood between.
+    pub fn light_pass(&mut self, light: LightId, purpose: &str, shadowed: &Drawn) {
+        let unshadowed = Drawn {
+            program: Program::Light { reads_map: false },
+            raster: RasterState::visible_surface(ColorWrite::Add),
+            label: LIT,
+        };
+        let draws = self.surface_draws(|object| Some(if object.receives { shadowed } else { &unshadowed }));
+        let depth_stencil = self.depth_stencil_of(light);
+        self.stencil_of = Some(light);
         self.plan.passes.push(Pass {
             name: "light".to_owned(),
             purpose: purpose.to_owned(),
@@ -237,28 +270,23 @@ impl<'a> Frame<'a> {
             timed: true,
             view: ViewId(0),
             color: Some(ColorTarget { attachment: self.color, clear: None }),
-            depth_stencil: Some(self.kept_depth_stencil()),
+            depth_stencil: Some(depth_stencil),
             draws,
         });
     }
 
-    /// Writes the light's labels. Triangles and draws run in reverse, so that of surfaces at one
-    /// depth the first drawn decides here too.
-    pub fn mask_pass(&mut self, light: LightId, layers: &[LabelLayer]) {
+    /// Writes the light's labels, later layers over earlier ones. Triangles and draws run in
+    /// reverse, so that of surfaces at one depth the first drawn decides here too.
+    pub fn mask_pass(&mut self, light: LightId, layers: &[Drawn]) {
         let mut draws = Vec::new();
+        let unshadowed = Drawn::lit();
         for (index, layer) in layers.iter().enumerate() {
-            let program = Program::Label { reads_map: layer.reads_map };
-            let plain = LabelLayer::lit();
-            let mut of_layer = self.surface_draws(program, |object| match (object.receives, index) {
-                (true, _) => Some(layer.raster.clone()),
-                (false, 0) => Some(plain.raster.clone()),
+            let mut of_layer = self.surface_draws(|object| match (object.receives, index) {
+                (true, _) => Some(layer),
+                (false, 0) => Some(&unshadowed),
                 (false, _) => None,
             });
             of_layer.reverse();
-            for draw in &mut of_layer {
-                draw.constants.label = if self.receives(draw) { layer.label } else { LIT };
-            }
-            self.without_map_where_nothing_is_received(&mut of_layer);
             draws.extend(of_layer);
         }
         let purpose = "Writes what this technique says of the light at every pixel: lit, in shadow, or facing away. \
@@ -273,16 +301,16 @@ impl<'a> Frame<'a> {
                 attachment: self.plan.lights[light.0].labels,
                 clear: Some([BACKGROUND_LABEL, 0.0, 0.0, 0.0]),
             }),
-            depth_stencil: Some(self.kept_depth_stencil()),
+            depth_stencil: Some(self.depth_stencil_of(light)),
             draws,
         });
     }
 
-    /// One draw a group of every visible object for which `raster` gives a state.
-    pub fn surface_draws(&self, program: Program, raster: impl Fn(&Object) -> Option<RasterState>) -> Vec<Draw> {
+    /// One draw a group of every visible object, as `look` says for the object.
+    fn surface_draws<'d>(&self, look: impl Fn(&Object) -> Option<&'d Drawn>) -> Vec<Draw> {
         let mut draws = Vec::new();
         for placed in &self.placed {
-            let (Some(mesh), Some(raster)) = (placed.surface, raster(placed.object)) else { continue };
+            let (Some(mesh), Some(drawn)) = (placed.surface, look(placed.object)) else { continue };
             for group in placed.object.mesh.groups() {
                 let object = &placed.object.name;
                 let name = if group.name.is_empty() { object.clone() } else { format!("{object} · {}", group.name) };
@@ -291,36 +319,28 @@ impl<'a> Frame<'a> {
                     name,
                     caster: Some(object.clone()),
                     part: Part::Surface,
-                    program,
-                    raster: raster.clone(),
+                    program: drawn.program,
+                    raster: drawn.raster.clone(),
                     mesh,
                     triangles: group.triangles.start as u32..group.triangles.end as u32,
-                    constants: DrawConstants { material, label: 0 },
+                    constants: DrawConstants { material, label: drawn.label },
                 });
             }
         }
         draws
     }
 
+    /// The picture's depth-stencil target for a pass of `light`: what another light has left in the
+    /// stencil is cleared.
+    fn depth_stencil_of(&self, light: LightId) -> DepthStencilTarget {
+        let is_of_another = self.stencil_of.is_some_and(|other| other != light);
+        let clear_stencil = (self.has_stencil && is_of_another).then_some(0);
+        DepthStencilTarget { attachment: self.depth_stencil, layer: 0, clear_depth: None, clear_stencil }
+    }
+
     /// The plan.
     pub fn finish(self) -> FramePlan {
         self.plan
-    }
-
-    fn receives(&self, draw: &Draw) -> bool {
-        let of_draw = |placed: &&Placed| Some(&placed.object.name) == draw.caster.as_ref();
-        self.placed.iter().find(of_draw).is_none_or(|placed| placed.object.receives)
-    }
-
-    fn without_map_where_nothing_is_received(&self, draws: &mut [Draw]) {
-        for draw in draws {
-            if !self.receives(draw) {
-                match &mut draw.program {
-                    Program::Light { reads_map } | Program::Label { reads_map } => *reads_map = false,
-                    Program::Position | Program::Ambient => {}
-                }
-            }
-        }
     }
 
     fn add_attachments(&mut self) {
@@ -337,7 +357,8 @@ impl<'a> Frame<'a> {
             false => ("depth", TextureFormat::Depth32Float),
         };
         if !self.has_stencil {
-            self.leave_out("stencil buffer", "the frame", "no pass of this technique counts or marks anything");
+            let because = "this technique counts and marks nothing, and no two triangles coincide";
+            self.leave_out("stencil buffer", "the frame", because);
         }
         let role = AttachmentRole::DepthStencil;
         self.depth_stencil = self.add_attachment(Attachment { name: name.to_owned(), role, format, size, layers: 1 });
@@ -353,7 +374,11 @@ impl<'a> Frame<'a> {
                 size: self.job.size,
                 layers: 1,
             });
-            let relative_position = relative::homogeneous(light.position, self.eye());
+            let relative_position = relative::homogeneous(light.homogeneous(), self.eye());
+            if !relative_position.iter().all(|component| component.is_finite()) {
+                let problem = format!("{} is too far from the eye for single precision", Frame::light_name(id));
+                return Err(PlanError::Unusable { problem });
+            }
             let color = light.color.map(|channel| channel * light.intensity);
             let range = light.range.map(|range| range as f32);
             self.plan.lights.push(PlanLight { relative_position, color, range, map: None, labels });
@@ -364,8 +389,9 @@ impl<'a> Frame<'a> {
     fn place_objects(&mut self) -> Result<(), PlanError> {
         for object in &self.job.scene.objects {
             let world = object.world_positions();
-            if !world.iter().all(|position| position.is_finite()) {
-                let problem = format!("{} is moved or scaled beyond finite numbers: make it smaller", object.name);
+            let is_usable = |position: &DVec3| (*position - self.eye()).abs().max_element() <= MOST_DISTANCE;
+            if !world.iter().all(is_usable) {
+                let problem = format!("{} is too large or too far from the eye for single precision", object.name);
                 return Err(PlanError::Unusable { problem });
             }
             let drawn = object.visible && !object.mesh.triangles().is_empty();

@@ -1,7 +1,7 @@
 //! The techniques: each a pure function from a scene to a [`FramePlan`].
 //!
-//! A technique is one file with one function `(Job) → FramePlan`, a line in [`Technique::ALL`] and
-//! in [`plan`], and its settings as data (`settings.rs`). What they share is in `frame.rs`: the
+//! A technique is one file with one function `(Job) → FramePlan`, a variant of [`Technique`] with its
+//! name and summary, a line in [`plan`], and its settings as data (`settings.rs`). What they share is in `frame.rs`: the
 //! camera, surfaces, and the ambient, light and mask passes.
 
 mod frame;

@@ -1,17 +1,17 @@
 //! No shadows: every light reaches every surface that faces it.
 
 use super::PlanError;
-use super::frame::{Frame, Job, LabelLayer};
-use crate::plan::{ColorWrite, FramePlan, RasterState};
+use super::frame::{Drawn, Frame, Job, StencilUse};
+use crate::plan::FramePlan;
 
 /// Plans a frame without shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let mut frame = Frame::new(job, false)?;
+    let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
     frame.ambient_pass();
     for light in frame.light_ids() {
-        frame.mask_pass(light, &[LabelLayer::lit()]);
+        frame.mask_pass(light, &[Drawn::lit()]);
         let purpose = "Adds the light everywhere: nothing asks whether something stands between.";
-        frame.light_pass(light, purpose, &RasterState::visible_surface(ColorWrite::Add), false);
+        frame.light_pass(light, purpose, &frame.light_everywhere());
     }
     Ok(frame.finish())
 }

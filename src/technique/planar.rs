@@ -7,7 +7,7 @@
 //! shadow.
 
 use super::PlanError;
-use super::frame::{Frame, Job, LabelLayer, lit_once_where_zero};
+use super::frame::{Drawn, Frame, Job, StencilUse};
 use crate::geometry::{planar, relative};
 use crate::math::{Sign, side_of_triangle};
 use crate::plan::{
@@ -15,7 +15,8 @@ use crate::plan::{
 };
 use wgpu::{CompareFunction, StencilOperation};
 
-/// Marks are even and shadows one more: 64 receivers fit a byte.
+/// The largest are served; each costs a draw a caster. (Marks are even and shadows one more, so a
+/// byte would hold 127.)
 const MOST_RECEIVERS: usize = 64;
 
 /// A receiver that can show shadows: where it is, and its mark.
@@ -27,7 +28,7 @@ struct Marked {
 
 /// Plans planar shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let mut frame = Frame::new(job, true)?;
+    let mut frame = Frame::new(job, StencilUse::Always)?;
     frame.ambient_pass();
     let receivers = all_receivers(&mut frame);
     for light in frame.light_ids() {
@@ -38,14 +39,14 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
             let draws = mark_draws(&mut frame, &marked);
             let purpose = "Marks the visible pixels of each flat receiver with an even number of its own, so that no \
                            shadow can leave its receiver.";
-            frame.stencil_pass(light, "receivers", purpose.to_owned(), draws);
+            frame.stencil_pass(light, "receivers", purpose, draws);
             shadow_pass(&mut frame, &marked, light);
         }
-        let odd = LabelLayer::shadow().where_stencil(1, 1);
-        frame.mask_pass(light, &[LabelLayer::lit(), odd]);
+        let odd = Drawn::shadow().where_stencil(1, 1);
+        frame.mask_pass(light, &[Drawn::lit(), odd]);
         let purpose = "Adds the light where the stencil is even: odd numbers are shadows. It makes lit numbers odd, so \
                        that no pixel is lit twice.";
-        frame.light_pass(light, purpose, &lit_once_where_zero(1), false);
+        frame.light_pass(light, purpose, &Drawn::light_once_where_zero(1));
     }
     Ok(frame.finish())
 }
@@ -84,7 +85,7 @@ fn marked_receivers(frame: &mut Frame, all: &[(usize, planar::Receiver)], light:
         frame.leave_out(&format!("{} flat receivers", all.len() - shown.len()), &name, because);
     }
     if shown.len() > MOST_RECEIVERS {
-        let because = "the 64 largest are kept: marks of more do not fit the stencil's eight bits";
+        let because = "the 64 largest are kept: every one costs a draw for each caster";
         frame.leave_out(&format!("{} small flat receivers", shown.len() - MOST_RECEIVERS), &name, because);
     }
     let mark = |index: usize| (index as u8 + 1) * 2;
@@ -147,17 +148,7 @@ fn shadow_pass(frame: &mut Frame, marked: &[Marked], light: LightId) {
     }
     let purpose = "Draws every caster, flattened onto each receiver's plane. Where the stencil still has the \
                    receiver's mark it goes up by one: overlapping triangles can't darken a pixel twice.";
-    let depth_stencil = Some(frame.kept_depth_stencil());
-    frame.plan.passes.push(crate::plan::Pass {
-        name: "shadows".to_owned(),
-        purpose: purpose.to_owned(),
-        light: Some(light),
-        timed: true,
-        view: crate::plan::ViewId(0),
-        color: None,
-        depth_stencil,
-        draws,
-    });
+    frame.stencil_pass(light, "shadows", purpose, draws);
 }
 
 /// A caster flattened onto one receiver; `None` where no part of it is between plane and light.

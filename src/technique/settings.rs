@@ -53,6 +53,12 @@ pub enum ChoiceError {
         /// The nearest key, or all of them.
         hint: String,
     },
+    /// A setting of the plan, but not built.
+    #[error("the setting `{key}` is not there yet: leave it out")]
+    NotThereYet {
+        /// What was asked for.
+        key: String,
+    },
     /// The setting can't be that.
     #[error("the setting `{key}` of {technique} can't be `{value}`: {hint}")]
     BadValue {
@@ -91,6 +97,8 @@ const fn word(key: &'static str, values: &'static [&'static str], meaning: &'sta
     SettingSpec { key, values: SettingValues::OneOf(values), default: values[0], meaning }
 }
 
+/// Settings that are planned, but not built.
+const TO_COME: [&str; 5] = ["epsilon", "cache", "bias-normal", "bias-receiver-plane", "leave-out"];
 const NONE: &[SettingSpec] = &[DEPTH, DIFFUSE];
 const PLANAR: &[SettingSpec] = &[
     DEPTH,
@@ -182,6 +190,9 @@ impl Choice {
         let technique = self.technique.name();
         let specs = self.technique.settings();
         let Some(spec) = specs.iter().find(|spec| spec.key == key) else {
+            if TO_COME.contains(&key) {
+                return Err(ChoiceError::NotThereYet { key: key.to_owned() });
+            }
             let keys: Vec<&str> = specs.iter().map(|spec| spec.key).collect();
             return Err(ChoiceError::UnknownSetting { technique, key: key.to_owned(), hint: suggestion(key, &keys) });
         };

@@ -6,7 +6,7 @@
 //! could be darkened are left out: a floor under everything would only widen the map.
 
 use super::PlanError;
-use super::frame::{Frame, Job, LabelLayer};
+use super::frame::{Drawn, Frame, Job, StencilUse};
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame};
 use crate::geometry::relative;
 use crate::plan::{
@@ -30,17 +30,21 @@ struct MapCaster {
 
 /// Plans a frame with shadow maps.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let mut frame = Frame::new(job, false)?;
+    let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
     for light in frame.light_ids() {
         add_map(&mut frame, light);
     }
     frame.ambient_pass();
     for light in frame.light_ids() {
-        let reads_map = frame.plan.lights[light.0].map.is_some();
-        frame.mask_pass(light, &[if reads_map { LabelLayer::by_map() } else { LabelLayer::lit() }]);
+        let has_map = frame.plan.lights[light.0].map.is_some();
+        let (label, drawn) = match has_map {
+            true => (Drawn::lit_or_shadow_by_map(), frame.light_by_map()),
+            false => (Drawn::lit(), frame.light_everywhere()),
+        };
+        frame.mask_pass(light, &[label]);
         let purpose = "Adds the light, carrying every fragment into the light's map: where the map holds something \
                        nearer to the light, the fragment is in shadow and gets nothing.";
-        frame.light_pass(light, purpose, &RasterState::visible_surface(ColorWrite::Add), reads_map);
+        frame.light_pass(light, purpose, &drawn);
     }
     Ok(frame.finish())
 }

@@ -1,10 +1,12 @@
 //! Drawn surfaces as data for the GPU: positions, normals, and which triangles face away.
 
+use super::frame::Placed;
 use crate::geometry::relative;
 use crate::math::{Sign, side_of_triangle};
 use crate::plan::{Blob, DrawMesh, SurfaceData};
 use crate::scene::{Light, Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec3};
+use std::collections::HashSet;
 
 /// The surface of `object`, relative to the eye.
 pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene) -> DrawMesh {
@@ -18,13 +20,27 @@ pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene) -> DrawMesh {
     }
 }
 
+/// Do any two drawn triangles have the same three corners? Then both are visible at one depth.
+pub fn coincide(placed: &[Placed]) -> bool {
+    let mut seen = HashSet::new();
+    let drawn = placed.iter().filter(|placed| placed.surface.is_some());
+    drawn.flat_map(|placed| placed.object.mesh.triangles().iter().map(move |corners| (placed, corners))).any(
+        |(placed, corners)| {
+            let mut key = corners.map(|vertex| placed.world[vertex as usize].to_array().map(f64::to_bits));
+            key.sort_unstable();
+            !seen.insert(key)
+        },
+    )
+}
+
 /// [`SurfaceData::sides`].
 fn sides(object: &Object, world: &[DVec3], scene: &Scene) -> Vec<u32> {
     let eye = scene.camera.eye.extend(1.0);
     let word = |corners: &[u32; 3]| {
         let corners = corners.map(|vertex| world[vertex as usize]);
         let eye_side = side_of_triangle(corners, eye);
-        let is_away = |light: &Light| eye_side == Sign::Zero || side_of_triangle(corners, light.position) != eye_side;
+        let is_away =
+            |light: &Light| eye_side == Sign::Zero || side_of_triangle(corners, light.homogeneous()) != eye_side;
         let away = scene.lights.iter().enumerate().map(|(index, light)| u32::from(is_away(light)) << index);
         away.fold(u32::from(eye_side == Sign::Negative) << 31, |word, bit| word | bit)
     };

@@ -9,7 +9,7 @@
 //! bit-equal and the strict test is exact. Triangles that face away from the light count as
 //! turned: they are not turned in the buffer, but drawn with front and back operations swapped.
 
-use super::frame::{Frame, Job, LabelLayer, lit_once_where_zero};
+use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::{PlanError, Technique};
 use crate::geometry::{Volume, VolumeParts, relative};
 use crate::plan::{
@@ -32,15 +32,15 @@ enum Counting {
 /// Plans z-pass or z-fail.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let counting = if job.choice.technique() == Technique::ZPass { Counting::ZPass } else { Counting::ZFail };
-    let mut frame = Frame::new(job, true)?;
+    let mut frame = Frame::new(job, StencilUse::Always)?;
     frame.ambient_pass();
     for light in frame.light_ids() {
         let draws = volume_draws(&mut frame, light, counting);
-        frame.stencil_pass(light, "volumes", counting.purpose(light), draws);
-        frame.mask_pass(light, &[LabelLayer::shadow(), LabelLayer::lit().where_stencil(0xff, 0)]);
+        frame.stencil_pass(light, "volumes", &counting.purpose(light), draws);
+        frame.mask_pass(light, &[Drawn::shadow(), Drawn::lit().where_stencil(0xff, 0)]);
         let purpose = "Adds the light where the count is zero, and raises the count there, so that no pixel is lit \
                        twice. Everywhere else the surface is inside a shadow volume and stays dark.";
-        frame.light_pass(light, purpose, &lit_once_where_zero(0xff), false);
+        frame.light_pass(light, purpose, &Drawn::light_once_where_zero(0xff));
     }
     Ok(frame.finish())
 }
