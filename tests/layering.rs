@@ -41,12 +41,49 @@ fn module_of(file: &Path, source: &Path) -> String {
     first.as_os_str().to_string_lossy().trim_end_matches(".rs").to_owned()
 }
 
-/// The modules that a line of code names as `crate::name`.
-fn named_modules(line: &str) -> Vec<String> {
-    let code = line.split("//").next().unwrap_or_default();
-    let after = code.split("crate::").skip(1);
+/// A file's code on one line, without comments.
+fn code_of(text: &str) -> String {
+    text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join(" ")
+}
+
+/// The modules that code names as `crate::name` or in `crate::{name::…, name}`.
+fn named_modules(code: &str) -> Vec<String> {
     let name = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
-    after.map(name).filter(|name| !name.is_empty()).collect()
+    let mut names = Vec::new();
+    for after in code.split("crate::").skip(1) {
+        let Some(group) = after.strip_prefix('{') else {
+            names.push(name(after));
+            continue;
+        };
+        let (mut depth, mut is_start) = (1, true);
+        for (at, c) in group.char_indices() {
+            match c {
+                '{' => depth += 1,
+                '}' => depth -= 1,
+                ',' if depth == 1 => is_start = true,
+                c if is_start && c.is_alphabetic() => {
+                    names.push(name(&group[at..]));
+                    is_start = false;
+                }
+                _ => {}
+            }
+            if depth == 0 {
+                break;
+            }
+        }
+    }
+    names
+}
+
+/// A device or queue of wgpu, imported in any way or named in full.
+fn holds_device(code: &str) -> bool {
+    let words = |text: &str| {
+        let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+        words.map(ToOwned::to_owned).collect::<Vec<_>>()
+    };
+    let in_wgpu =
+        |item: &str| item.contains("wgpu") && words(item).iter().any(|word| word == "Device" || word == "Queue");
+    code.split(';').any(in_wgpu)
 }
 
 fn violations(module: &str, text: &str) -> Vec<String> {
@@ -54,17 +91,11 @@ fn violations(module: &str, text: &str) -> Vec<String> {
     let Some(allowed) = may_use.get(module) else {
         return vec![format!("`{module}` is not in the table of layers")];
     };
-    let mut found = Vec::new();
-    for line in text.lines() {
-        for used in named_modules(line) {
-            if used != module && !allowed.contains(&used.as_str()) {
-                found.push(format!("`{module}` uses `{used}`: {}", line.trim()));
-            }
-        }
-        let holds_device = ["wgpu::Device", "wgpu::Queue", "Device,", "Queue}"].iter().any(|name| line.contains(name));
-        if holds_device && line.contains("wgpu") && !["gpu", "app"].contains(&module) {
-            found.push(format!("`{module}` names a device: {}", line.trim()));
-        }
+    let code = code_of(text);
+    let forbidden = named_modules(&code).into_iter().filter(|used| used != module && !allowed.contains(&used.as_str()));
+    let mut found: Vec<String> = forbidden.map(|used| format!("`{module}` uses `{used}`")).collect();
+    if holds_device(&code) && !["gpu", "app"].contains(&module) {
+        found.push(format!("`{module}` names a device"));
     }
     found
 }
@@ -86,7 +117,10 @@ fn dependencies_point_one_way() {
 #[test]
 fn an_arrow_that_runs_the_other_way_is_found() {
     assert!(violations("plan", "use crate::technique::Choice;").len() == 1);
+    assert!(violations("plan", "use crate::{capture::Image,\n    gpu::{Context, Executor}, scene};").len() == 2);
     assert!(violations("capture", "    let device: wgpu::Device = open();").len() == 1);
+    assert!(violations("session", "use wgpu::{\n    Buffer,\n    Queue,\n};").len() == 1);
+    assert!(violations("session", "use wgpu::Device as D;").len() == 1);
     assert!(violations("gpu", "use crate::plan::Pass; // crate::technique is not needed").is_empty());
     assert!(violations("newcomer", "").len() == 1);
 }

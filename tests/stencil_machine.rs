@@ -216,3 +216,50 @@ fn the_machine_agrees_with_the_gpu_on_every_function_operation_place_face_refere
         }
     }
 }
+
+/// Fragments below, at and above the stored depth.
+const COMPARED_DEPTHS: [f32; 3] = [0.25, STORED_DEPTH, 0.75];
+
+/// Every depth compare function meets a smaller, an equal and a larger depth, with and without
+/// writing: the count tells whether the test passed, the depth what was stored.
+#[test]
+fn the_machine_agrees_with_the_gpu_on_every_depth_test() {
+    let count = StencilFace {
+        compare: Compare::Always,
+        fail_op: Operation::Keep,
+        depth_fail_op: Operation::Invert,
+        pass_op: Operation::IncrementWrap,
+    };
+    let mut states = Vec::new();
+    for depth_compare in COMPARES {
+        for depth_write in [false, true] {
+            let base = RasterState { depth_compare, depth_write, color: ColorWrite::None, ..RasterState::surface() };
+            states.push(base.with_stencil(count, 0));
+        }
+    }
+    let size = [WIDTH as u32, 1];
+    let (mut vertices, mut indices, mut draws) = (Vec::new(), Vec::new(), Vec::new());
+    for (index, state) in states.iter().enumerate() {
+        let start = indices.len() as u32 / 3;
+        for (slot, depth) in COMPARED_DEPTHS.into_iter().enumerate() {
+            push_pixel(&mut vertices, &mut indices, size, index * COMPARED_DEPTHS.len() + slot, depth, true);
+        }
+        draws.push(draw(state.clone(), 0, start..indices.len() as u32 / 3));
+    }
+    let mut plan = plan(&[]);
+    plan.size = size;
+    plan.attachments[0].size = size;
+    plan.meshes = vec![mesh("tested", vertices, indices)];
+    plan.passes = vec![pass("test", true, draws)];
+    let capture = session().capture_plan(&from_above(Vec::new()), &plan).expect("a capture");
+    let Snapshot::Frame(frame) = &capture.steps[0].snapshot else { panic!("no frame") };
+    for (index, state) in states.iter().enumerate() {
+        for (slot, depth) in COMPARED_DEPTHS.into_iter().enumerate() {
+            let stored = Stored { depth: STORED_DEPTH, stencil: 0 };
+            let outcome = test(state, Fragment { depth, front_facing: true }, stored);
+            let at = (index * COMPARED_DEPTHS.len() + slot) as u32;
+            assert_eq!(stencil_after(&capture, 0, at as usize), outcome.after.stencil, "{depth}\n{state}");
+            assert_eq!(frame.depth.image.depth_at([at, 0]), Some(outcome.after.depth), "{depth}\n{state}");
+        }
+    }
+}

@@ -275,3 +275,111 @@ fn a_snapshot_after_each_draw_ends_like_one_after_each_pass() {
         assert_eq!(by_draw.steps.len(), last);
     }
 }
+
+fn color_after_all(capture: &Capture) -> std::sync::Arc<stencilscope::capture::Image> {
+    capture.frame_at(capture.steps.len() - 1).expect("a frame").color.image.clone()
+}
+
+/// Eight triangles around a point: its shadow does not fill its map's rectangle.
+fn octahedron(name: &str, center: [f64; 3], radius: f64) -> Object {
+    let at = |axis: usize, sign: f64| {
+        let mut point = center;
+        point[axis] += sign * radius;
+        point
+    };
+    let points = [at(0, 1.0), at(0, -1.0), at(1, 1.0), at(1, -1.0), at(2, 1.0), at(2, -1.0)];
+    let upper = [[2, 4, 0], [2, 0, 5], [2, 5, 1], [2, 1, 4]];
+    let lower = [[3, 0, 4], [3, 5, 0], [3, 1, 5], [3, 4, 1]];
+    Object::new(name, crate::common::mesh(&points, &[upper, lower].concat()), Default::default())
+}
+
+/// Counts of labels by volumes and by map, which differ only along the shadow's edge.
+#[test]
+fn maps_of_points_and_suns_agree_with_volumes_but_for_edges() {
+    let mut session = session();
+    let lights = [Light::point(DVec3::new(1.0, 5.0, 0.5)), Light::directional(DVec3::new(0.4, 1.0, -0.3))];
+    for light in lights {
+        let mut scene = from_above(vec![octahedron("caster", [0.0, 2.0, 0.0], 1.0)]);
+        scene.lights = vec![light];
+        let by_map = capture(&mut session, &scene, Technique::ShadowMap);
+        let by_volumes = capture(&mut session, &scene, Technique::ZFail);
+        let labels = |capture: &Capture| capture.lights[0].shadow.clone().expect("labels");
+        let (map, volumes) = (labels(&by_map), labels(&by_volumes));
+        let differing = map.rows().flatten().zip(volumes.rows().flatten()).filter(|(a, b)| a != b).count();
+        assert!(label_counts(&by_volumes)[1] > 100, "{:?}", label_counts(&by_volumes));
+        assert!(differing <= 12, "{differing} pixels differ");
+    }
+}
+
+/// Nothing has a size of its own: the same scene a billion times larger or smaller looks the same.
+#[test]
+fn a_scene_of_any_size_has_the_same_labels() {
+    let mut session = session();
+    let scaled = |scale: f64| {
+        let mut scene = from_above(vec![octahedron("caster", [0.0, 2.0, 0.0], 1.0)]);
+        for object in &mut scene.objects {
+            object.pose.scale *= scale;
+        }
+        scene.camera.eye *= scale;
+        scene.camera.near *= scale;
+        scene.lights[0].position = (scene.lights[0].position.truncate() * scale).extend(1.0);
+        scene
+    };
+    for technique in SHADOWING {
+        let expected = label_counts(&capture(&mut session, &scaled(1.0), technique));
+        // Powers of two, so that no coordinate is rounded anew.
+        for scale in [2f64.powi(40), 2f64.powi(-40)] {
+            let counts = label_counts(&capture(&mut session, &scaled(scale), technique));
+            assert_eq!(counts, expected, "{technique:?} at {scale:e}");
+        }
+    }
+}
+
+#[test]
+fn a_direction_of_any_length_is_one_direction() {
+    let mut session = session();
+    let mut counts_under = |length: f64| {
+        let mut scene = from_above(vec![octahedron("caster", [0.0, 2.0, 0.0], 1.0)]);
+        scene.lights = vec![Light::directional(DVec3::new(0.25, 1.0, -0.5) * length)];
+        SHADOWING.map(|technique| label_counts(&capture(&mut session, &scene, technique)))
+    };
+    let expected = counts_under(1.0);
+    for length in [2f64.powi(-1060), 2f64.powi(-600), 2f64.powi(600), 2f64.powi(1000)] {
+        assert_eq!(counts_under(length), expected, "{length:e}");
+    }
+}
+
+#[test]
+fn what_single_precision_can_not_hold_is_refused() {
+    let mut session = session();
+    let mut refused = |change: fn(&mut Scene)| {
+        let mut scene = from_above(vec![square("caster", 2.0, 1.0)]);
+        change(&mut scene);
+        session.capture(&scene, &request(Technique::ZFail, [8, 8])).is_err()
+    };
+    assert!(!refused(|_| {}));
+    assert!(refused(|scene| scene.lights[0].position.x = 1e300));
+    assert!(refused(|scene| scene.objects[1].pose.translate.x = 1e30));
+    assert!(refused(|scene| scene.camera.near = 1e-60));
+    assert!(refused(|scene| scene.camera.fov_y_degrees = 1e-30));
+    assert!(refused(|scene| scene.lights[0].range = Some(1e-50)));
+    assert!(refused(|scene| scene.lights[0].intensity = f32::NAN));
+}
+
+/// A triangle given twice is lit once, whatever the technique.
+#[test]
+fn coinciding_surfaces_are_lit_once() {
+    let mut session = session();
+    let single = octahedron("caster", [0.0, 2.0, 0.0], 1.0);
+    let positions: Vec<[f64; 3]> = single.mesh.positions().iter().map(|p| p.to_array()).collect();
+    let twice = [single.mesh.triangles(), single.mesh.triangles()].concat();
+    let doubled = Object { mesh: crate::common::mesh(&positions, &twice), ..single.clone() };
+    for technique in Technique::ALL {
+        let [one, two] = [&single, &doubled].map(|object| {
+            let mut scene = from_above(vec![object.clone()]);
+            scene.lights.push(Light::directional(DVec3::Y));
+            color_after_all(&capture(&mut session, &scene, technique))
+        });
+        assert!(one == two, "{technique:?}");
+    }
+}
