@@ -15,7 +15,7 @@ use egui::{
 use std::sync::Arc;
 
 /// Height that "Why this pass" takes at most, in points.
-const PURPOSE_HEIGHT: f32 = 168.0;
+const PURPOSE_HEIGHT: f32 = 184.0;
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State) {
@@ -60,7 +60,7 @@ fn tree(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>) {
         }
         pass_row(ui, state, capture, index);
         if index == state.step {
-            draws::of_step(ui, step);
+            draws::of_step(ui, step, &mut state.all_draws);
         }
     }
     if found == 0 {
@@ -137,7 +137,7 @@ fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool
         painter.rect_filled(rect, CornerRadius::ZERO, theme::RAISED);
     }
     if has_focus {
-        painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::SELECTED), StrokeKind::Inside);
+        painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::FOCUS), StrokeKind::Inside);
     }
 }
 
@@ -216,7 +216,7 @@ fn purpose(ui: &mut Ui, step: &Step) {
         theme::card().show(ui, |ui| {
             ui.set_width(ui.available_width());
             theme::heading(ui, "Why this pass");
-            egui::ScrollArea::vertical().max_height(PURPOSE_HEIGHT - 56.0).show(ui, |ui| {
+            egui::ScrollArea::vertical().max_height(PURPOSE_HEIGHT - 52.0).show(ui, |ui| {
                 ui.add(egui::Label::new(theme::note(step.purpose.as_str())).wrap());
             });
         });
