@@ -14,9 +14,6 @@ use egui::{
 };
 use std::sync::Arc;
 
-/// Height that "Why this pass" takes at most, in points.
-const PURPOSE_HEIGHT: f32 = 184.0;
-
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State) {
     state.tree_widgets.clear();
@@ -212,13 +209,11 @@ fn paint_thumbnail(ui: &Ui, state: &mut State, capture: &Capture, step: &Step, r
 fn purpose(ui: &mut Ui, step: &Step) {
     let frame = egui::Frame::new().inner_margin(Margin { top: 8, ..Margin::ZERO });
     let panel = egui::Panel::bottom("why this pass").frame(frame).show_separator_line(false).resizable(false);
-    panel.max_size(PURPOSE_HEIGHT).show(ui, |ui| {
+    panel.show(ui, |ui| {
         theme::card().show(ui, |ui| {
             ui.set_width(ui.available_width());
             theme::heading(ui, "Why this pass");
-            egui::ScrollArea::vertical().max_height(PURPOSE_HEIGHT - 52.0).show(ui, |ui| {
-                ui.add(egui::Label::new(theme::note(step.purpose.as_str())).wrap());
-            });
+            ui.add(egui::Label::new(theme::note(step.purpose.as_str())).wrap());
         });
     });
 }

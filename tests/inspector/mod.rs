@@ -447,3 +447,17 @@ fn another_capture_keeps_the_step_that_means_the_same() {
     assert_eq!(inspector.step(), 2, "volumes");
     assert_eq!(inspector.picked(), None, "outside the smaller picture");
 }
+
+#[test]
+fn key_presses_that_come_in_one_frame_all_count() {
+    let mut harness = harness(z_fail(SIZE));
+    for _ in 0..2 {
+        for pressed in [true, false] {
+            let (key, modifiers) = (Key::ArrowLeft, Modifiers::NONE);
+            let event = Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
+            harness.input_mut().events.push(event);
+        }
+    }
+    harness.run_steps(2);
+    assert_eq!(harness.state().inspector.step(), 1);
+}
