@@ -1,8 +1,8 @@
 //! The thread that owns the session: opens what is asked for, renders, and tells the window.
 //!
 //! Of all orders that wait, only the newest counts; a run that was asked for before another
-//! scene was opened is dropped. After a frame was captured and while nothing waits, the same
-//! frame is timed, so that the first picture need not wait for the clock.
+//! scene was opened is dropped. Once a frame was captured and no order has come for a while, the
+//! same frame is timed, so that neither the first picture nor a dragged light waits for the clock.
 
 use super::news::News;
 use super::{AppError, ViewSource};
@@ -13,14 +13,16 @@ use crate::session::{CaptureRequest, Session, SessionError, median_ms};
 use crate::technique::Choice;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 /// Frames that are timed, each with and without snapshots.
 const TIMED_FRAMES: usize = 5;
-/// A frame that takes longer to capture is not timed: the window would wait for it.
+/// A frame that takes longer to capture is not timed: the next order would wait for it.
 const LONGEST_TIMED: Duration = Duration::from_millis(250);
+/// How long nothing is asked for before the clock runs.
+const IDLE: Duration = Duration::from_millis(400);
 
 /// What the window asks for.
 #[derive(Debug)]
@@ -64,8 +66,8 @@ impl Worker {
         let (orders, waiting) = channel();
         let run = move || {
             let mut bench = Bench::new(start.adapter, &start.capture, Box::new(tell));
-            bench.begin(start.source, start.time);
-            bench.obey_all(&waiting);
+            let first = bench.begin(start.source, start.time);
+            bench.obey_all(first, &waiting);
         };
         let builder = thread::Builder::new().name("stencilscope worker".to_owned());
         builder.spawn(run).map_err(AppError::NoThread)?;
@@ -105,27 +107,51 @@ impl Bench {
         Bench { adapter, session: None, scene: None, generation: 0, choice, size, tell }
     }
 
-    fn begin(&mut self, source: ViewSource, time: f64) {
+    /// The first thing to show.
+    fn begin(&mut self, source: ViewSource, time: f64) -> Option<Done> {
         match source {
-            ViewSource::Capture(capture) => (self.tell)(News::OpenedFolder(Arc::new(*capture))),
+            ViewSource::Capture(capture) => {
+                (self.tell)(News::OpenedFolder(Arc::new(*capture)));
+                None
+            }
             ViewSource::Scene(scene) => {
                 let done = self.show_scene(scene, time);
-                self.finish(done);
+                self.finish(done)
             }
         }
     }
 
-    fn obey_all(&mut self, waiting: &Receiver<Order>) {
-        while let Ok(first) = waiting.recv() {
-            let order = waiting.try_iter().fold(first, newest);
-            let done = match order {
-                Order::Open(name) => self.open(&name),
-                Order::Run { generation, request } if generation == self.generation => self.run(&request),
-                // Of a scene that is open no more.
-                Order::Run { .. } => continue,
+    /// Obeys orders until the window is gone, and times what was captured in between.
+    fn obey_all(&mut self, mut untimed: Option<Done>, waiting: &Receiver<Order>) {
+        loop {
+            let next = if untimed.is_some() {
+                waiting.recv_timeout(IDLE)
+            } else {
+                waiting.recv().map_err(|_| RecvTimeoutError::Disconnected)
             };
-            self.finish(done);
+            match next {
+                Ok(first) => {
+                    let order = waiting.try_iter().fold(first, newest);
+                    untimed = self.obey(order);
+                }
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Some(done) = untimed.take() {
+                        self.time(&done);
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
         }
+    }
+
+    fn obey(&mut self, order: Order) -> Option<Done> {
+        let done = match order {
+            Order::Open(name) => self.open(&name),
+            Order::Run { generation, request } if generation == self.generation => self.run(&request),
+            // Of a scene that is open no more.
+            Order::Run { .. } => return None,
+        };
+        self.finish(done)
     }
 
     fn open(&mut self, name: &str) -> Result<Option<Done>, String> {
@@ -192,15 +218,18 @@ impl Bench {
         Ok(Done { scene, request, capture, took })
     }
 
-    /// Tells of an error, or times what was captured.
-    fn finish(&mut self, done: Result<Option<Done>, String>) {
-        if let Err(reason) = &done {
-            (self.tell)(News::Failed(reason.clone()));
-        }
-        // Before the clock runs: a window that draws its progress would slow the frames down.
+    /// Tells that the work is over, and of an error; gives back what may be timed.
+    fn finish(&mut self, done: Result<Option<Done>, String>) -> Option<Done> {
+        let done = done.unwrap_or_else(|reason| {
+            (self.tell)(News::Failed(reason));
+            None
+        });
         (self.tell)(News::Idle);
-        let Ok(Some(done)) = done else { return };
-        let Some(session) = self.session.as_mut().filter(|_| done.took <= LONGEST_TIMED) else { return };
+        done.filter(|done| done.took <= LONGEST_TIMED)
+    }
+
+    fn time(&mut self, done: &Done) {
+        let Some(session) = &mut self.session else { return };
         // The frame has just run, so this can fail only where the GPU is lost: the next run says so.
         if let Ok(cost) = session.capture_cost(&done.scene, &done.request, TIMED_FRAMES) {
             let mut capture = Capture::clone(&done.capture);

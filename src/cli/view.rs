@@ -13,7 +13,7 @@ pub struct ViewArguments {
     /// A built-in scene, a scene file (.toml), a model (.obj) or a capture folder
     #[arg(default_value = "tori")]
     scene: String,
-    /// Open at this step, counted from 1 as in the window
+    /// Open at this pass, by its index in the manifest
     #[arg(long, value_name = "N")]
     pass: Option<usize>,
     /// Open at this pixel
@@ -94,7 +94,7 @@ mod window {
             capture,
             time: arguments.scene_options.time,
             adapter: arguments.frame.adapter.clone(),
-            step: arguments.pass.map(|number| number.saturating_sub(1)),
+            step: arguments.pass,
             pick: arguments.at,
         })
     }
