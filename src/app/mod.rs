@@ -62,3 +62,10 @@ pub enum AppError {
 pub fn run(request: ViewRequest) -> Result<(), AppError> {
     window::run(request)
 }
+
+/// The system's words for why there is no window, without the place in a library's source.
+fn no_window(error: &dyn std::fmt::Display) -> AppError {
+    let text = error.to_string();
+    let reason = text.rsplit(": ").next().filter(|_| text.starts_with("os error at "));
+    AppError::NoWindow(reason.unwrap_or(&text).to_owned())
+}

@@ -1,7 +1,7 @@
 //! The system's window with what draws egui on it.
 
-use super::AppError;
 use super::news::WindowNews;
+use super::{AppError, no_window};
 use egui::{Context, ViewportId};
 use egui_wgpu::winit::Painter;
 use egui_wgpu::{RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -40,7 +40,6 @@ impl Surface {
         proxy: EventLoopProxy<WindowNews>,
         adapter: Option<&str>,
     ) -> Result<Surface, AppError> {
-        let no_window = |error: &dyn std::fmt::Display| AppError::NoWindow(error.to_string());
         let attributes = Window::default_attributes()
             .with_title("stencilscope")
             .with_inner_size(LogicalSize::<f64>::from(FIRST_SIZE))

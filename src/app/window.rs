@@ -3,7 +3,7 @@
 use super::news::{News, WindowNews};
 use super::surface::Surface;
 use super::worker::{Order, Start, Worker};
-use super::{AppError, ViewRequest};
+use super::{AppError, ViewRequest, no_window};
 use crate::inspector::{Action, Inspector, SceneEntry};
 use crate::scene::builtin;
 use std::time::{Duration, Instant};
@@ -15,11 +15,11 @@ use winit::window::WindowId;
 /// Shows the window until it is closed.
 pub fn run(request: ViewRequest) -> Result<(), AppError> {
     let event_loop = EventLoop::<WindowNews>::with_user_event().build();
-    let event_loop = event_loop.map_err(|error| AppError::NoWindow(error.to_string()))?;
+    let event_loop = event_loop.map_err(|error| no_window(&error))?;
     event_loop.set_control_flow(ControlFlow::Wait);
     let proxy = event_loop.create_proxy();
     let mut app = App::new(request, proxy)?;
-    event_loop.run_app(&mut app).map_err(|error| AppError::NoWindow(error.to_string()))?;
+    event_loop.run_app(&mut app).map_err(|error| no_window(&error))?;
     app.failure.map_or(Ok(()), Err)
 }
 

@@ -72,9 +72,7 @@ mod window {
 
     pub fn open(arguments: &ViewArguments) -> Result<(), CliError> {
         match app::run(request(arguments)?) {
-            Err(AppError::NoWindow(reason)) => {
-                capture_instead(arguments, &format!("there can be no window ({reason})"))
-            }
+            Err(AppError::NoWindow(reason)) => capture_instead(arguments, &format!("no window ({reason})")),
             result => result.map_err(|error| CliError::Window(error.to_string())),
         }
     }

@@ -43,12 +43,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: C
         crosshair(&painter, placement.rect_of(at));
     }
     if response.has_focus() {
-        painter.rect_stroke(
-            rect.shrink(1.0),
-            CornerRadius::ZERO,
-            Stroke::new(1.0, theme::SELECTED),
-            StrokeKind::Inside,
-        );
+        painter.rect_stroke(rect.shrink(1.0), CornerRadius::ZERO, Stroke::new(1.0, theme::FOCUS), StrokeKind::Inside);
     }
     placement
 }

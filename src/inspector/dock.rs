@@ -122,7 +122,7 @@ impl Behavior<Panel> for Panels<'_> {
                 ui.painter().hline(rect.x_range(), rect.top() + 1.0, Stroke::new(2.0, theme::SELECTED));
             }
             if response.has_focus() {
-                let outline = Stroke::new(1.0, theme::SELECTED);
+                let outline = Stroke::new(1.0, theme::FOCUS);
                 ui.painter().rect_stroke(rect.shrink(2.0), CornerRadius::same(2), outline, egui::StrokeKind::Inside);
             }
             ui.painter().galley(rect.center() - galley.size() / 2.0, galley, color);

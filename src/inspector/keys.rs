@@ -23,10 +23,11 @@ pub fn handle(ctx: &Context, state: &mut State) {
     if focus.is_some_and(|id| !state.tree_widgets.contains(&id)) || egui::Popup::is_any_open(ctx) {
         return;
     }
-    if pressed(Modifiers::NONE, Key::ArrowLeft) {
-        state.step_by(-1);
-    } else if pressed(Modifiers::NONE, Key::ArrowRight) {
-        state.step_by(1);
+    // Several presses may come in one frame.
+    let presses = |key| ctx.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as isize;
+    let by = presses(Key::ArrowRight) - presses(Key::ArrowLeft);
+    if by != 0 {
+        state.step_by(by);
     } else if pressed(Modifiers::NONE, Key::Home) {
         state.select_step(0);
     } else if pressed(Modifiers::NONE, Key::End) {

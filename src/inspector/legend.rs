@@ -15,9 +15,19 @@ const WIDTH: f32 = 168.0;
 /// Stencil values that are listed one by one.
 const MOST_VALUES: usize = 12;
 
+/// What the legend takes of a picture of this size, points.
+#[must_use]
+pub fn room(rect: Rect) -> f32 {
+    if fits(rect) { WIDTH + 12.0 } else { 0.0 }
+}
+
+fn fits(rect: Rect) -> bool {
+    rect.width() >= WIDTH * 2.0
+}
+
 /// Draws the legend of `shown`; `range` is that of the grey ramp.
 pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, range: [f64; 2]) {
-    if shown.kind == PictureKind::Color || rect.width() < WIDTH * 2.0 {
+    if shown.kind == PictureKind::Color || !fits(rect) {
         return;
     }
     let corner = Rect::from_min_size(pos2(rect.right() - WIDTH - 12.0, rect.top() + 12.0), vec2(WIDTH, rect.height()));
@@ -39,7 +49,9 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, range: [f64
 
 fn stencil(ui: &mut Ui, state: &mut State, shown: &Shown) {
     let histogram = state.cache.histogram(&shown.images[0]);
-    theme::heading(ui, "Stencil count");
+    let counts =
+        state.capture.as_ref().is_some_and(|capture| matches!(capture.technique.as_str(), "z-pass" | "z-fail"));
+    theme::heading(ui, if counts { "Stencil count" } else { "Stencil value" });
     // 0, 1, 2 … and then −1, −2 …: the order in which people think of them.
     let values = (0..=127).chain((128..=255).rev()).filter(|value| histogram[usize::from(*value)] > 0);
     let values: Vec<u8> = values.collect();

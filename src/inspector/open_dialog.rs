@@ -45,6 +45,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, state: &State) -> Answer {
     }
     let label = ui.label(theme::note("A scene file (.toml), a model (.obj) or a capture folder"));
     let field = egui::TextEdit::singleline(&mut dialog.path).hint_text("path").desired_width(f32::INFINITY);
+    let field = field.align(egui::Align2::LEFT_CENTER);
     let field = ui.add(field).labelled_by(label.id);
     let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     if ui.memory(|memory| memory.focused().is_none()) {

@@ -14,9 +14,6 @@ use egui::{
 };
 use std::sync::Arc;
 
-/// Height that "Why this pass" takes at most, in points.
-const PURPOSE_HEIGHT: f32 = 168.0;
-
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State) {
     state.tree_widgets.clear();
@@ -60,7 +57,7 @@ fn tree(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>) {
         }
         pass_row(ui, state, capture, index);
         if index == state.step {
-            draws::of_step(ui, step);
+            draws::of_step(ui, step, &mut state.all_draws);
         }
     }
     if found == 0 {
@@ -137,7 +134,7 @@ fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool
         painter.rect_filled(rect, CornerRadius::ZERO, theme::RAISED);
     }
     if has_focus {
-        painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::SELECTED), StrokeKind::Inside);
+        painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::FOCUS), StrokeKind::Inside);
     }
 }
 
@@ -212,13 +209,11 @@ fn paint_thumbnail(ui: &Ui, state: &mut State, capture: &Capture, step: &Step, r
 fn purpose(ui: &mut Ui, step: &Step) {
     let frame = egui::Frame::new().inner_margin(Margin { top: 8, ..Margin::ZERO });
     let panel = egui::Panel::bottom("why this pass").frame(frame).show_separator_line(false).resizable(false);
-    panel.max_size(PURPOSE_HEIGHT).show(ui, |ui| {
+    panel.show(ui, |ui| {
         theme::card().show(ui, |ui| {
             ui.set_width(ui.available_width());
             theme::heading(ui, "Why this pass");
-            egui::ScrollArea::vertical().max_height(PURPOSE_HEIGHT - 56.0).show(ui, |ui| {
-                ui.add(egui::Label::new(theme::note(step.purpose.as_str())).wrap());
-            });
+            ui.add(egui::Label::new(theme::note(step.purpose.as_str())).wrap());
         });
     });
 }

@@ -1,7 +1,7 @@
 //! The picture panel: which picture, its tools, and the picture itself.
 
 use super::canvas;
-use super::depth::DepthScale;
+use super::depth::{DepthMeasure, DepthScale};
 use super::format;
 use super::legend;
 use super::magnifier;
@@ -10,8 +10,9 @@ use super::texture::TextureSize;
 use super::theme;
 use super::top_bar::segments;
 use super::view::{CUBE_FACES, Coloring, DepthMode, FaceChoice, PictureKind, Placement, Shown, Zoom, available};
-use crate::capture::Capture;
+use crate::capture::{Capture, Image};
 use egui::{Align2, CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use std::sync::Arc;
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State) {
@@ -170,11 +171,17 @@ fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
         ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::DIM));
     }
     let fits = state.view.zoom == Zoom::Fit;
-    if ui.add(egui::Button::selectable(fits, "Fit")).on_hover_text("The whole picture").clicked() {
+    let word =
+        |text: &str, chosen: bool| egui::RichText::new(text).color(if chosen { theme::TEXT } else { theme::DIM });
+    if ui.add(egui::Button::selectable(fits, word("Fit", fits))).on_hover_text("The whole picture").clicked() {
         state.view.zoom = Zoom::Fit;
     }
     let is_exact = state.view.zoom == Zoom::Pixels(1.0);
-    if ui.add(egui::Button::selectable(is_exact, "1:1")).on_hover_text("One screen pixel a texel").clicked() {
+    if ui
+        .add(egui::Button::selectable(is_exact, word("1:1", is_exact)))
+        .on_hover_text("One screen pixel a texel")
+        .clicked()
+    {
         if fits {
             state.view.center = size.map(|side| f64::from(side) / 2.0);
         }
@@ -182,33 +189,46 @@ fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
     }
 }
 
-/// The six faces of a cube map, named; a click shows one of them large.
+/// The six faces of a cube map, named; a click shows one of them large. They leave room for the
+/// legend.
 fn faces(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Coloring) {
-    let columns = 3;
-    let rows = shown.images.len().div_ceil(columns);
-    let cell = vec2(rect.width() / columns as f32, rect.height() / rows.max(1) as f32);
+    let area = Rect::from_min_max(rect.min, rect.max - vec2(legend::room(rect), 0.0)).shrink(8.0);
+    let caption = 24.0;
+    let side_of = |columns: usize| {
+        let rows = shown.images.len().div_ceil(columns).max(1);
+        (area.width() / columns as f32 - 8.0).min(area.height() / rows as f32 - caption).max(1.0)
+    };
+    // As large as they get.
+    let columns = [2, 3, 6].into_iter().max_by(|a, b| side_of(*a).total_cmp(&side_of(*b))).unwrap_or(3);
+    let side = side_of(columns);
     for (index, image) in shown.images.iter().enumerate() {
-        let corner = rect.min + vec2((index % columns) as f32 * cell.x, (index / columns) as f32 * cell.y);
-        let inner = Rect::from_min_size(corner, cell).shrink(8.0);
-        let name = CUBE_FACES.get(index).copied().unwrap_or("?");
-        let side = inner.width().min(inner.height() - 20.0).max(1.0);
-        let square = Rect::from_min_size(inner.min + vec2((inner.width() - side) / 2.0, 20.0), vec2(side, side));
-        let response = ui.interact(square, ui.scope_id().with(("face", index)), Sense::click());
-        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Face {name}")));
-        let texture = state.cache.texture(ui.ctx(), image, coloring, TextureSize::Full);
-        let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        ui.painter().image(texture.id(), square, uv, egui::Color32::WHITE);
-        let outline = if response.hovered() || response.has_focus() { theme::SELECTED } else { theme::LINE };
-        ui.painter().rect_stroke(square, CornerRadius::ZERO, Stroke::new(1.0, outline), StrokeKind::Outside);
-        let font = theme::number_font(theme::SMALL_SIZE);
-        ui.painter().text(square.left_top() - vec2(0.0, 4.0), Align2::LEFT_BOTTOM, name, font, theme::DIM);
-        if let Some(at) = response.hover_pos() {
-            let placement = Placement { origin: square.min, scale: side / image.size()[0] as f32, size: image.size() };
-            state.hover = placement.texel(at).map(|at| Hover { image: index, at });
-        }
-        if response.on_hover_text(format!("Show face {name} large")).clicked() {
-            state.view.face = FaceChoice::One(index);
-            state.view.zoom = Zoom::Fit;
-        }
+        let cell = vec2((index % columns) as f32 * (side + 8.0), (index / columns) as f32 * (side + caption));
+        let square = Rect::from_min_size(area.min + cell + vec2(0.0, caption - 4.0), vec2(side, side));
+        face(ui, state, index, image, coloring, square);
+    }
+}
+
+fn face(ui: &mut Ui, state: &mut State, index: usize, image: &Arc<Image>, coloring: Coloring, square: Rect) {
+    let name = CUBE_FACES.get(index).copied().unwrap_or("?");
+    let response = ui.interact(square, ui.scope_id().with(("face", index)), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Face {name}")));
+    let texture = state.cache.texture(ui.ctx(), image, coloring, TextureSize::Full);
+    let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    ui.painter().image(texture.id(), square, uv, egui::Color32::WHITE);
+    let outline = if response.hovered() || response.has_focus() { theme::FOCUS } else { theme::LINE };
+    ui.painter().rect_stroke(square, CornerRadius::ZERO, Stroke::new(1.0, outline), StrokeKind::Outside);
+    let sees_nothing = state.cache.depth_range(image, DepthMeasure::Parallel { length: 1.0 }).is_none();
+    let (caption, ink) =
+        if sees_nothing { (format!("{name} sees no caster"), theme::FAINT) } else { (name.to_owned(), theme::TEXT) };
+    let font = theme::number_font(theme::SMALL_SIZE);
+    ui.painter().text(square.left_top() - vec2(0.0, 3.0), Align2::LEFT_BOTTOM, caption, font, ink);
+    if let Some(at) = response.hover_pos() {
+        let scale = square.width() / image.size()[0].max(1) as f32;
+        let placement = Placement { origin: square.min, scale, size: image.size() };
+        state.hover = placement.texel(at).map(|at| Hover { image: index, at });
+    }
+    if response.on_hover_text(format!("Show face {name} large")).clicked() {
+        state.view.face = FaceChoice::One(index);
+        state.view.zoom = Zoom::Fit;
     }
 }

@@ -1,33 +1,47 @@
-//! How the picked pixel's values ran over the steps: what each pass changed, and what it left.
+//! How the picked pixel's values ran over the steps: what each pass changed here, and what it left.
 
 use super::depth::DepthMeasure;
 use super::format;
 use super::palette;
 use super::state::State;
 use super::theme;
-use crate::capture::{Aspect, Capture, FrameSnapshot, Snapshot};
+use crate::capture::{Capture, FrameSnapshot, Snapshot};
 use egui::{Color32, CornerRadius, RichText, Ui};
+
+/// A value in the table, with the colour that stands for it.
+#[derive(Debug, Clone, PartialEq)]
+struct Value {
+    text: String,
+    color: Option<Color32>,
+}
+
+/// The pixel's values after a step.
+#[derive(Debug, Clone, PartialEq)]
+struct Values {
+    stencil: Option<Value>,
+    color: Option<Value>,
+    depth: Option<Value>,
+}
 
 /// Draws the table; clicking a pass selects its step.
 pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     theme::heading(ui, "Over the steps");
     let mut selected = None;
-    let has_stencil =
-        capture.frame_at(capture.steps.len().saturating_sub(1)).is_some_and(|last| last.stencil.is_some());
+    let last = capture.steps.len().saturating_sub(1);
+    let has_stencil = capture.frame_at(last).is_some_and(|frame| frame.stencil.is_some());
     egui::Grid::new("pixel over the steps").num_columns(4).spacing([12.0, 2.0]).min_row_height(20.0).show(ui, |ui| {
-        ui.label(theme::note("pass"));
-        if has_stencil {
-            ui.label(theme::note("stencil"));
-        }
-        ui.label(theme::note("colour"));
-        ui.label(theme::note("distance"));
-        ui.end_row();
+        head(ui, has_stencil);
+        let mut before: Option<Values> = None;
         for (index, step) in capture.steps.iter().enumerate() {
             if pass_cell(ui, index, &step.name, index == state.step) {
                 selected = Some(index);
             }
             match &step.snapshot {
-                Snapshot::Frame(frame) => aspects(ui, capture, frame, at, has_stencil),
+                Snapshot::Frame(frame) => {
+                    let now = values(capture, frame, at);
+                    row(ui, &now, before.as_ref(), has_stencil);
+                    before = Some(now);
+                }
                 Snapshot::Map { .. } => {
                     ui.label(RichText::new("map only").size(theme::SMALL_SIZE).color(theme::FAINT));
                 }
@@ -41,6 +55,14 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     }
 }
 
+fn head(ui: &mut Ui, has_stencil: bool) {
+    let columns = ["pass", "stencil", "colour", "distance"];
+    for name in columns.into_iter().filter(|name| has_stencil || *name != "stencil") {
+        ui.label(theme::note(name));
+    }
+    ui.end_row();
+}
+
 /// Number and name of a pass; true when it is clicked.
 fn pass_cell(ui: &mut Ui, index: usize, name: &str, is_selected: bool) -> bool {
     let color = if is_selected { theme::TEXT } else { theme::DIM };
@@ -49,45 +71,50 @@ fn pass_cell(ui: &mut Ui, index: usize, name: &str, is_selected: bool) -> bool {
     ui.add(button).on_hover_text("Go to this step").clicked()
 }
 
-fn aspects(ui: &mut Ui, capture: &Capture, frame: &FrameSnapshot, at: [u32; 2], has_stencil: bool) {
-    if has_stencil {
-        match frame.stencil.as_ref().and_then(|aspect| Some((aspect, aspect.image.byte_at(at)?))) {
-            Some((aspect, value)) => cell(ui, aspect, Some(palette::stencil(value)), palette::signed(value)),
-            None => {
-                ui.label("");
-            }
-        }
-    }
-    match frame.color.image.rgba_at(at) {
-        Some([red, green, blue, _]) => {
-            cell(ui, &frame.color, Some(Color32::from_rgb(red, green, blue)), format!("{red} {green} {blue}"));
-        }
-        None => {
-            ui.label("");
-        }
-    }
-    if let Some(depth) = frame.depth.image.depth_at(at) {
-        let distance = DepthMeasure::of_camera(capture).and_then(|measure| measure.value(depth));
-        let text = match distance {
-            Some(distance) => format::metres(distance),
-            None if depth == 0.0 => "–".to_owned(),
-            None => format::depth(depth),
-        };
-        cell(ui, &frame.depth, None, text);
+fn values(capture: &Capture, frame: &FrameSnapshot, at: [u32; 2]) -> Values {
+    let stencil = frame.stencil.as_ref().and_then(|aspect| aspect.image.byte_at(at));
+    Values {
+        stencil: stencil.map(|value| Value { text: palette::signed(value), color: Some(palette::stencil(value)) }),
+        color: frame.color.image.rgba_at(at).map(|[red, green, blue, _]| Value {
+            text: format!("{red} {green} {blue}"),
+            color: Some(Color32::from_rgb(red, green, blue)),
+        }),
+        depth: frame.depth.image.depth_at(at).map(|depth| Value { text: distance(capture, depth), color: None }),
     }
 }
 
-/// A value with its colour; faint where the pass did not touch the aspect.
-fn cell(ui: &mut Ui, aspect: &Aspect, color: Option<Color32>, text: String) {
-    let ink = if aspect.unchanged { theme::FAINT } else { theme::TEXT };
+fn distance(capture: &Capture, depth: f32) -> String {
+    match DepthMeasure::of_camera(capture).and_then(|measure| measure.value(depth)) {
+        Some(distance) => format::metres(distance),
+        None if depth == 0.0 => "–".to_owned(),
+        None => format::depth(depth),
+    }
+}
+
+fn row(ui: &mut Ui, now: &Values, before: Option<&Values>, has_stencil: bool) {
+    if has_stencil {
+        cell(ui, now.stencil.as_ref(), before.and_then(|before| before.stencil.as_ref()));
+    }
+    cell(ui, now.color.as_ref(), before.and_then(|before| before.color.as_ref()));
+    cell(ui, now.depth.as_ref(), before.and_then(|before| before.depth.as_ref()));
+}
+
+/// A value with its colour; faint where the pass left it as it was at this pixel.
+fn cell(ui: &mut Ui, now: Option<&Value>, before: Option<&Value>) {
+    let Some(value) = now else {
+        ui.label("");
+        return;
+    };
+    let unchanged = before == Some(value);
+    let ink = if unchanged { theme::FAINT } else { theme::TEXT };
     let line = ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        if let Some(color) = color {
-            theme::swatch(ui, if aspect.unchanged { color.gamma_multiply(0.45) } else { color });
+        if let Some(color) = value.color {
+            theme::swatch(ui, if unchanged { color.gamma_multiply(0.45) } else { color });
         }
-        ui.label(theme::number(text).color(ink));
+        ui.label(theme::number(value.text.as_str()).color(ink));
     });
-    if aspect.unchanged {
-        line.response.on_hover_text("Unchanged by this pass");
+    if unchanged {
+        line.response.on_hover_text("Unchanged here by this pass");
     }
 }

@@ -45,7 +45,8 @@ fn techniques(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         ui.spacing_mut().item_spacing.x = 4.0;
         for technique in Technique::ALL {
             let is_current = technique == current;
-            let button = egui::Button::selectable(is_current, technique.name()).frame_when_inactive(true);
+            let name = RichText::new(technique.name()).color(theme::TEXT);
+            let button = egui::Button::selectable(is_current, name).frame_when_inactive(true);
             let button = ui.add(button).accessible_name(format!("Technique {}", technique.name()));
             if button.on_hover_text(technique.summary()).clicked() {
                 state.choose_technique(technique, actions);

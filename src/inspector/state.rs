@@ -92,6 +92,8 @@ pub struct State {
     pub search: Option<StepSearch>,
     /// The search field has just been opened and wants the focus.
     pub search_wants_focus: bool,
+    /// All draws of the selected pass are listed, however many.
+    pub all_draws: bool,
     /// The selected row has to be scrolled to.
     pub scroll_to_step: bool,
     /// Widgets of the pass tree: they leave the stepping keys alone.
@@ -139,6 +141,7 @@ impl State {
     pub fn select_step(&mut self, step: usize) {
         let Some(capture) = self.capture.clone() else { return };
         self.step = step.min(capture.steps.len().saturating_sub(1));
+        self.all_draws = false;
         self.scroll_to_step = true;
         self.view.follow(&capture, self.step);
     }

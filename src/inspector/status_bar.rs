@@ -7,16 +7,16 @@ use super::theme;
 use super::view::{Coloring, Shown};
 use crate::capture::Capture;
 use egui::{Margin, Ui};
+use std::sync::Arc;
 
 /// Draws the bar.
 pub fn ui(ui: &mut Ui, state: &State) {
     let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(Margin::symmetric(8, 2));
     egui::Panel::bottom("status bar").frame(frame).exact_size(26.0).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
-            if let Some(capture) = &state.capture {
-                if let Some(shown) = state.view.shown(capture, state.step) {
-                    picture(ui, state, capture, &shown);
-                }
+            let shown = |capture: &Arc<Capture>| Some((Arc::clone(capture), state.view.shown(capture, state.step)?));
+            if let Some((capture, shown)) = state.capture.as_ref().and_then(shown) {
+                picture(ui, state, &capture, &shown);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| costs(ui, state));
         });
@@ -32,7 +32,7 @@ fn picture(ui: &mut Ui, state: &State, capture: &Capture, shown: &Shown) {
     match super::picture::coloring_of(shown, state.view.depth_range.unwrap_or([0.0, 1.0])) {
         Coloring::Depth(scale) if shown.kind == super::PictureKind::Map => {
             let depth = shown.images.get(hover.image).and_then(|image| image.depth_at(hover.at));
-            let value = depth.map_or_else(String::new, |depth| format::depth(depth));
+            let value = depth.map_or_else(String::new, format::depth);
             let metres = depth.and_then(|depth| scale.measure.value(depth)).map_or_else(String::new, format::digits);
             ui.label(theme::number(format!("texel {x}, {y}   depth {value}   {metres}")));
         }

@@ -196,7 +196,7 @@ mod tests {
         let mut cache = PictureCache::default();
         let [kept, gone] = [1, 2].map(|value| Arc::new(Image::uniform(PixelFormat::U8, [2, 2], &[value])));
         for image in [&kept, &gone] {
-            cache.texture(&ctx, image, Coloring::Stencil, TextureSize::Full);
+            let _kept_by_the_cache = cache.texture(&ctx, image, Coloring::Stencil, TextureSize::Full);
             assert_eq!(cache.histogram(image).iter().sum::<u64>(), 4);
         }
         drop(gone);

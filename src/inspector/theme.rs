@@ -22,6 +22,8 @@ pub const DIM: Color32 = Color32::from_rgb(0x8b, 0x92, 0xa1);
 pub const FAINT: Color32 = Color32::from_rgb(0x5d, 0x64, 0x73);
 /// The accent: selected.
 pub const SELECTED: Color32 = Color32::from_rgb(0x5a, 0xa9, 0xe6);
+/// The outline of what has the keyboard, apart from the accent.
+pub const FOCUS: Color32 = Color32::from_rgb(0x8b, 0x92, 0xa1);
 /// A selected row.
 pub const SELECTED_ROW: Color32 = Color32::from_rgb(0x22, 0x34, 0x4a);
 /// An error message's bar.
@@ -138,7 +140,6 @@ pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
 }
 
 /// A card on a panel.
-#[must_use]
 pub fn card() -> egui::Frame {
     egui::Frame::new()
         .fill(RAISED)
@@ -148,7 +149,6 @@ pub fn card() -> egui::Frame {
 }
 
 /// A frame around the contents of a docked panel.
-#[must_use]
 pub fn panel_frame() -> egui::Frame {
     egui::Frame::new().fill(PANEL).inner_margin(Margin::same(8))
 }

@@ -63,6 +63,7 @@ fn search(ui: &mut Ui, state: &mut State) {
         StepSearch::Find(text) => (text, "Find a pass", "name, light or caster"),
     };
     let field = egui::TextEdit::singleline(text).hint_text(hint).desired_width(f32::INFINITY).min_size(vec2(0.0, 22.0));
+    let field = field.align(egui::Align2::LEFT_CENTER);
     let field = ui.add(field).accessible_name(name);
     if state.search_wants_focus {
         field.request_focus();

@@ -1,21 +1,18 @@
 //! The panels, driven by the names of their widgets, over a frame made by hand.
 
+mod by_hand;
+mod pictures;
+
 use crate::common;
+use by_hand::{cube_map, z_fail};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::{Harness, kittest::Queryable};
-use glam::{DMat4, DVec3, DVec4};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stencilscope::capture::{
-    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, DrawSummary, FrameSnapshot, Image, PixelFormat, Snapshot,
-    Step, Timing,
-};
+use stencilscope::capture::{Capture, Image, PixelFormat};
 use stencilscope::inspector::{Action, Inspector, PictureKind, RunRequest, SceneEntry, Zoom};
-use stencilscope::math::projection::reversed_infinite;
-use stencilscope::plan::{LeftOut, Part};
-use stencilscope::scene::{Camera, Scene};
+use stencilscope::scene::Scene;
 use stencilscope::technique::{Choice, Technique};
 
 const SIZE: [u32; 2] = [40, 30];
@@ -24,110 +21,6 @@ const SIZE: [u32; 2] = [40, 30];
 struct Seen {
     inspector: Inspector,
     actions: Vec<Action>,
-}
-
-fn camera() -> Camera {
-    Camera { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov_y_degrees: 45.0, near: 0.1, far: None }
-}
-
-fn image_of<const N: usize>(format: PixelFormat, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; N]) -> Arc<Image> {
-    let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
-    let bytes: Vec<u8> = texels.flat_map(|(x, y)| texel(x, y)).collect();
-    Arc::new(Image::packed(format, size, bytes))
-}
-
-fn draw(name: &str, part: Part, triangles: u64) -> DrawSummary {
-    DrawSummary { name: name.to_owned(), caster: Some("box".to_owned()), part, triangles }
-}
-
-fn step(name: &str, light: Option<usize>, draws: Vec<DrawSummary>, snapshot: Snapshot) -> Step {
-    let purpose = format!("Why {name} is there.");
-    Step { name: name.to_owned(), purpose, light, draws, gpu_ms: Some(1.25), snapshot }
-}
-
-/// Z-fail by hand: the left half of the picture is inside one volume, a corner of it inside 255
-/// (−1), the last column is background.
-fn z_fail(size: [u32; 2]) -> Capture {
-    let count = move |x: u32, y: u32| match (x, y) {
-        (0, 0) => 255,
-        (x, _) if x < size[0] / 2 => 1,
-        _ => 0,
-    };
-    let is_background = move |x: u32| x + 1 == size[0] && size[0] > 1;
-    let dark = image_of(PixelFormat::Rgba8Srgb, size, |_, _| [20, 20, 24, 255]);
-    let lit =
-        image_of(
-            PixelFormat::Rgba8Srgb,
-            size,
-            |x, y| if count(x, y) == 0 { [200, 180, 90, 255] } else { [20, 20, 24, 255] },
-        );
-    let depth = image_of(PixelFormat::Depth32F, size, |x, _| {
-        let depth = if is_background(x) { 0.0 } else { 0.1 / (1.0 + x as f32) };
-        depth.to_le_bytes()
-    });
-    let zero = Arc::new(Image::uniform(PixelFormat::U8, size, &[0]));
-    let counts = image_of(PixelFormat::U8, size, |x, y| [count(x, y)]);
-    let after_light = image_of(PixelFormat::U8, size, |x, y| [if count(x, y) == 0 { 1 } else { count(x, y) }]);
-    let labels = image_of(PixelFormat::U8, size, |x, y| match count(x, y) {
-        _ if is_background(x) => [2],
-        0 => [0],
-        _ => [1],
-    });
-    let new = |image: &Arc<Image>| Aspect { image: image.clone(), unchanged: false };
-    let old = |image: &Arc<Image>| Aspect { image: image.clone(), unchanged: true };
-    let frame = |color, depth, stencil, writes_labels| {
-        Snapshot::Frame(FrameSnapshot { color, depth, stencil: Some(stencil), writes_labels })
-    };
-    let volumes = vec![draw("sides of box", Part::Side, 24), draw("dark cap of box", Part::DarkCap, 1212)];
-    Capture {
-        scene: "by hand".to_owned(),
-        technique: "z-fail".to_owned(),
-        settings: BTreeMap::from([("depth".to_owned(), "reversed-infinite".to_owned())]),
-        size,
-        adapter: AdapterInfo { name: "none (made by hand)".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() },
-        camera: camera(),
-        steps: vec![
-            step(
-                "ambient",
-                None,
-                vec![draw("floor", Part::Surface, 2)],
-                frame(new(&dark), new(&depth), new(&zero), false),
-            ),
-            step("volumes", Some(0), volumes, frame(old(&dark), old(&depth), new(&counts), false)),
-            step("mask", Some(0), Vec::new(), frame(old(&dark), old(&depth), old(&counts), true)),
-            step(
-                "light",
-                Some(0),
-                vec![draw("floor", Part::Surface, 2)],
-                frame(new(&lit), old(&depth), new(&after_light), false),
-            ),
-        ],
-        lights: vec![CapturedLight { position: DVec4::new(0.0, 4.0, 0.0, 1.0), shadow: Some(labels), map: None }],
-        left_out: vec![LeftOut::new("stencil clear", "light 1", "nothing has written the stencil before")],
-        timing: Timing { frame_ms: Some(6.25), ..Timing::default() },
-        plan_text: String::new(),
-    }
-}
-
-/// Two map passes before anything is drawn into the picture.
-fn cube_map() -> Capture {
-    let mut capture = z_fail(SIZE);
-    capture.technique = "shadow-map".to_owned();
-    capture.steps.drain(1..3);
-    for face in [3, 1] {
-        let name = format!("map face {face}");
-        capture.steps.insert(0, step(&name, Some(0), Vec::new(), Snapshot::Map { light: 0, face }));
-    }
-    let face = |index: usize| {
-        let depth = if index == 1 || index == 3 { 0.25_f32 } else { 0.0 };
-        Arc::new(Image::uniform(PixelFormat::Depth32F, [16, 16], &depth.to_le_bytes()))
-    };
-    capture.lights[0].map = Some(CapturedMap {
-        faces: (0..6).map(face).collect(),
-        light_from_world: DMat4::IDENTITY,
-        clip_from_light: vec![reversed_infinite(90.0, 1.0, 0.05); 6],
-    });
-    capture
 }
 
 fn run_request(technique: Technique) -> RunRequest {
@@ -555,67 +448,16 @@ fn another_capture_keeps_the_step_that_means_the_same() {
     assert_eq!(inspector.picked(), None, "outside the smaller picture");
 }
 
-/// Pictures of the panels, for people to look at: `INSPECTOR_PICTURES=DIR cargo test pictures_of`.
-/// Without the variable it only draws them.
 #[test]
-fn pictures_of_the_panels_can_be_drawn() {
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
-    let sizes = if folder.is_some() {
-        [[1280.0, 800.0], [1440.0, 900.0], [1920.0, 1080.0]].as_slice()
-    } else {
-        &[[640.0, 400.0]]
-    };
-    let scene = stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("tori")).expect("tori");
-    let mut session = common::session();
-    for technique in [Technique::ZFail, Technique::ShadowMap, Technique::Planar] {
-        let request = common::request(technique, [1280, 720]);
-        let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
-        for (view, size) in views().into_iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
-            let mut inspector =
-                Inspector::new(vec![SceneEntry { name: "tori".to_owned(), lesson: "four tori".to_owned() }]);
-            let draft = RunRequest {
-                choice: request.choice.clone(),
-                size: request.size,
-                camera: scene.camera,
-                lights: scene.lights.clone(),
-                time: 0.0,
-            };
-            inspector.set_scene(&scene, draft);
-            inspector.set_capture(capture.clone());
-            inspector.pick([470, 330]);
-            let mut harness = harness_of(inspector, size);
-            (view.1)(&mut harness);
-            harness.run_steps(2);
-            let picture = harness.render().expect("a picture");
-            if let Some(folder) = &folder {
-                let name = format!("{}-{}-{}.png", technique.name(), view.0, size[0]);
-                picture.save(folder.join(name)).expect("a file");
-            }
+fn key_presses_that_come_in_one_frame_all_count() {
+    let mut harness = harness(z_fail(SIZE));
+    for _ in 0..2 {
+        for pressed in [true, false] {
+            let (key, modifiers) = (Key::ArrowLeft, Modifiers::NONE);
+            let event = Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
+            harness.input_mut().events.push(event);
         }
     }
-}
-
-type View = (&'static str, fn(&mut Harness<Seen>));
-
-fn views() -> Vec<View> {
-    let zoom = |harness: &mut Harness<Seen>| {
-        harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
-        harness.state_mut().inspector.set_zoom(Zoom::Pixels(28.0), [470.5, 330.5]);
-    };
-    vec![
-        ("colour", |_| ()),
-        ("stencil", |harness| {
-            harness.state_mut().inspector.select_step(1);
-            harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
-        }),
-        ("depth", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Depth)),
-        ("mask", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Mask)),
-        ("map", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
-        ("large", zoom),
-        ("settings", |harness| click(harness, "Settings")),
-        ("open", |harness| click(harness, "Open…")),
-        ("error", |harness| {
-            harness.state_mut().inspector.push_error("bunny.obj: no such file: check the path".to_owned())
-        }),
-    ]
+    harness.run_steps(2);
+    assert_eq!(harness.state().inspector.step(), 1);
 }

@@ -1,0 +1,117 @@
+//! Captures made by hand: no GPU, and every value known.
+
+use super::SIZE;
+use glam::{DMat4, DVec3, DVec4};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use stencilscope::capture::{
+    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, DrawSummary, FrameSnapshot, Image, PixelFormat, Snapshot,
+    Step, Timing,
+};
+use stencilscope::math::projection::reversed_infinite;
+use stencilscope::plan::{LeftOut, Part};
+use stencilscope::scene::Camera;
+
+fn camera() -> Camera {
+    Camera { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov_y_degrees: 45.0, near: 0.1, far: None }
+}
+
+fn image_of<const N: usize>(format: PixelFormat, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; N]) -> Arc<Image> {
+    let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    let bytes: Vec<u8> = texels.flat_map(|(x, y)| texel(x, y)).collect();
+    Arc::new(Image::packed(format, size, bytes))
+}
+
+fn draw(name: &str, part: Part, triangles: u64) -> DrawSummary {
+    DrawSummary { name: name.to_owned(), caster: Some("box".to_owned()), part, triangles }
+}
+
+fn step(name: &str, light: Option<usize>, draws: Vec<DrawSummary>, snapshot: Snapshot) -> Step {
+    let purpose = format!("Why {name} is there.");
+    Step { name: name.to_owned(), purpose, light, draws, gpu_ms: Some(1.25), snapshot }
+}
+
+/// Z-fail by hand: the left half of the picture is inside one volume, a corner of it inside 255
+/// (−1), the last column is background.
+pub fn z_fail(size: [u32; 2]) -> Capture {
+    let count = move |x: u32, y: u32| match (x, y) {
+        (0, 0) => 255,
+        (x, _) if x < size[0] / 2 => 1,
+        _ => 0,
+    };
+    let is_background = move |x: u32| x + 1 == size[0] && size[0] > 1;
+    let dark = image_of(PixelFormat::Rgba8Srgb, size, |_, _| [20, 20, 24, 255]);
+    let lit =
+        image_of(
+            PixelFormat::Rgba8Srgb,
+            size,
+            |x, y| if count(x, y) == 0 { [200, 180, 90, 255] } else { [20, 20, 24, 255] },
+        );
+    let depth = image_of(PixelFormat::Depth32F, size, |x, _| {
+        let depth = if is_background(x) { 0.0 } else { 0.1 / (1.0 + x as f32) };
+        depth.to_le_bytes()
+    });
+    let zero = Arc::new(Image::uniform(PixelFormat::U8, size, &[0]));
+    let counts = image_of(PixelFormat::U8, size, |x, y| [count(x, y)]);
+    let after_light = image_of(PixelFormat::U8, size, |x, y| [if count(x, y) == 0 { 1 } else { count(x, y) }]);
+    let labels = image_of(PixelFormat::U8, size, |x, y| match count(x, y) {
+        _ if is_background(x) => [2],
+        0 => [0],
+        _ => [1],
+    });
+    let new = |image: &Arc<Image>| Aspect { image: image.clone(), unchanged: false };
+    let old = |image: &Arc<Image>| Aspect { image: image.clone(), unchanged: true };
+    let frame = |color, depth, stencil, writes_labels| {
+        Snapshot::Frame(FrameSnapshot { color, depth, stencil: Some(stencil), writes_labels })
+    };
+    let volumes = vec![draw("sides of box", Part::Side, 24), draw("dark cap of box", Part::DarkCap, 1212)];
+    Capture {
+        scene: "by hand".to_owned(),
+        technique: "z-fail".to_owned(),
+        settings: BTreeMap::from([("depth".to_owned(), "reversed-infinite".to_owned())]),
+        size,
+        adapter: AdapterInfo { name: "none (made by hand)".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() },
+        camera: camera(),
+        steps: vec![
+            step(
+                "ambient",
+                None,
+                vec![draw("floor", Part::Surface, 2)],
+                frame(new(&dark), new(&depth), new(&zero), false),
+            ),
+            step("volumes", Some(0), volumes, frame(old(&dark), old(&depth), new(&counts), false)),
+            step("mask", Some(0), Vec::new(), frame(old(&dark), old(&depth), old(&counts), true)),
+            step(
+                "light",
+                Some(0),
+                vec![draw("floor", Part::Surface, 2)],
+                frame(new(&lit), old(&depth), new(&after_light), false),
+            ),
+        ],
+        lights: vec![CapturedLight { position: DVec4::new(0.0, 4.0, 0.0, 1.0), shadow: Some(labels), map: None }],
+        left_out: vec![LeftOut::new("stencil clear", "light 1", "nothing has written the stencil before")],
+        timing: Timing { frame_ms: Some(6.25), ..Timing::default() },
+        plan_text: String::new(),
+    }
+}
+
+/// Two map passes before anything is drawn into the picture.
+pub fn cube_map() -> Capture {
+    let mut capture = z_fail(SIZE);
+    capture.technique = "shadow-map".to_owned();
+    capture.steps.drain(1..3);
+    for face in [3, 1] {
+        let name = format!("map face {face}");
+        capture.steps.insert(0, step(&name, Some(0), Vec::new(), Snapshot::Map { light: 0, face }));
+    }
+    let face = |index: usize| {
+        let depth = if index == 1 || index == 3 { 0.25_f32 } else { 0.0 };
+        Arc::new(Image::uniform(PixelFormat::Depth32F, [16, 16], &depth.to_le_bytes()))
+    };
+    capture.lights[0].map = Some(CapturedMap {
+        faces: (0..6).map(face).collect(),
+        light_from_world: DMat4::IDENTITY,
+        clip_from_light: vec![reversed_infinite(90.0, 1.0, 0.05); 6],
+    });
+    capture
+}

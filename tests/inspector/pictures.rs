@@ -1,0 +1,96 @@
+//! Pictures of the panels over real frames, for people to look at.
+
+use super::{Seen, click, harness_of};
+use crate::common;
+use egui_kittest::Harness;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use stencilscope::capture::Capture;
+use stencilscope::inspector::{Inspector, PictureKind, RunRequest, SceneEntry, Zoom};
+use stencilscope::scene::{OpenSpec, Scene, open};
+use stencilscope::session::CaptureRequest;
+use stencilscope::technique::Technique;
+
+/// The harness leaves this much around the panels, pixels.
+const MARGIN: u32 = 8;
+/// Where light, one shadow and two shadows meet.
+const PICK: [u32; 2] = [689, 142];
+
+/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of` writes them; the README's is
+/// `z-fail-stencil-1440.png`. Without the variable the panels are only drawn, small.
+#[test]
+fn pictures_of_the_panels_can_be_drawn() {
+    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
+    let sizes: &[[u32; 2]] = if folder.is_some() { &[[1280, 800], [1440, 900], [1920, 1080]] } else { &[[640, 400]] };
+    let scene = open(&OpenSpec::new("tori")).expect("tori");
+    let mut session = common::session();
+    for technique in [Technique::ZFail, Technique::ShadowMap, Technique::Planar] {
+        let timing_runs = if folder.is_some() { 5 } else { 0 };
+        let request = CaptureRequest { timing_runs, ..common::request(technique, [1280, 720]) };
+        let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
+        for (name, view) in VIEWS {
+            for size in sizes {
+                let inspector = inspector(&scene, &request, &capture);
+                let outer = size.map(|side| (side + 2 * MARGIN) as f32);
+                let mut harness = harness_of(inspector, outer);
+                view(&mut harness);
+                harness.run_steps(2);
+                let picture = harness.render().expect("a picture");
+                if let Some(folder) = &folder {
+                    let file = format!("{}-{name}-{}.png", technique.name(), size[0]);
+                    save(&folder.join(file), picture.as_raw(), *size);
+                }
+            }
+        }
+    }
+}
+
+fn inspector(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>) -> Inspector {
+    let entry = SceneEntry { name: "tori".to_owned(), lesson: "four tori".to_owned() };
+    let mut inspector = Inspector::new(vec![entry]);
+    let draft = RunRequest {
+        choice: request.choice.clone(),
+        size: request.size,
+        camera: scene.camera,
+        lights: scene.lights.clone(),
+        time: 0.0,
+    };
+    inspector.set_scene(scene, draft);
+    inspector.set_capture(capture.clone());
+    inspector.pick(PICK);
+    inspector
+}
+
+/// Writes the picture without its margin.
+fn save(file: &Path, rgba: &[u8], [width, height]: [u32; 2]) {
+    let stride = (width + 2 * MARGIN) as usize * 4;
+    let rows = rgba.chunks_exact(stride).skip(MARGIN as usize).take(height as usize);
+    let inner: Vec<u8> = rows.flat_map(|row| &row[MARGIN as usize * 4..][..width as usize * 4]).copied().collect();
+    let file = std::fs::File::create(file).expect("a file");
+    let mut encoder = png::Encoder::new(file, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_compression(png::Compression::High);
+    encoder.write_header().expect("a header").write_image_data(&inner).expect("the picture");
+}
+
+type View = fn(&mut Harness<Seen>);
+
+const VIEWS: [(&str, View); 9] = [
+    ("colour", |_| ()),
+    ("stencil", |harness| {
+        harness.state_mut().inspector.select_step(1);
+        harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+    }),
+    ("depth", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Depth)),
+    ("mask", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Mask)),
+    ("map", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
+    ("large", |harness| {
+        harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+        harness.state_mut().inspector.set_zoom(Zoom::Pixels(28.0), PICK.map(f64::from));
+    }),
+    ("settings", |harness| click(harness, "Settings")),
+    ("open", |harness| click(harness, "Open…")),
+    ("error", |harness| {
+        harness.state_mut().inspector.push_error("bunny.obj: no such file: check the path".to_owned());
+    }),
+];
