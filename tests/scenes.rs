@@ -140,3 +140,15 @@ fn flat_thin_far_and_tiny_models_can_be_looked_at() {
         assert!(error.contains("scale it"), "{error}");
     }
 }
+
+/// The model and the scene file that the README names.
+#[test]
+fn what_ships_can_be_opened() {
+    let asset = |path: &str| format!("{}/assets/{path}", env!("CARGO_MANIFEST_DIR"));
+    let model = open(&OpenSpec::new(asset("models/knot.obj"))).expect("the model");
+    assert_eq!(open_edges(&model.objects[0].mesh), 0, "closed");
+    assert!(volume(&model.objects[0].mesh) > 0.0, "faces look outward");
+    let scene = open(&OpenSpec::new(asset("scenes/knot.toml"))).expect("the scene");
+    assert_eq!(scene.lights.len(), 2);
+    assert!(scene.is_animated());
+}

@@ -44,7 +44,7 @@ pub struct SceneOptions {
     /// A point light in place of the scene's lights; repeatable
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub light: Vec<DVec3>,
-    /// A directional light, towards it, in place of the scene's lights; repeatable
+    /// A directional light, towards it, in place of the scene's lights, after all of --light; repeatable
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub sun: Vec<DVec3>,
     /// The moment of an animated scene

@@ -1,6 +1,7 @@
 //! Why a scene can't be loaded: one line with the file, the line and the mend.
 
 use super::MeshError;
+use std::path::Path;
 use std::path::PathBuf;
 
 /// Why a scene can't be loaded.
@@ -40,4 +41,15 @@ pub enum SceneError {
         /// The nearest name, or what there is.
         hint: String,
     },
+}
+
+impl SceneError {
+    /// The same, of this file: what a part of a scene only knows by its name.
+    #[must_use]
+    pub(super) fn in_file(self, file: &Path) -> SceneError {
+        match self {
+            SceneError::Read { reason, .. } => SceneError::Read { file: file.to_owned(), reason },
+            other => other,
+        }
+    }
 }

@@ -17,6 +17,7 @@ mod object;
 mod open;
 mod placement;
 mod read_text;
+mod suggestion;
 
 pub use camera::Camera;
 pub use error::SceneError;
@@ -26,6 +27,7 @@ pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
 pub use model_scene::model_scene;
 pub use object::{Motion, Object, Orbit, Pose};
 pub use open::{OpenSpec, open};
+pub use suggestion::suggestion;
 
 use std::collections::BTreeMap;
 

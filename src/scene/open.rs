@@ -1,6 +1,7 @@
 //! A scene by whatever names it: a built-in name, a scene file or a model.
 
 use super::builtin::{self, Builtin};
+use super::suggestion::nearest;
 use super::{Scene, SceneError, file, model_scene, obj};
 use std::path::Path;
 
@@ -34,7 +35,7 @@ pub fn open(spec: &OpenSpec) -> Result<Scene, SceneError> {
     let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
     match extension.as_deref().and_then(|extension| extension.to_str()) {
         Some("toml") => file::load(path),
-        Some("obj") => model_scene(&stem(path), obj::load(path)?, spec.floor),
+        Some("obj") => model_scene(&stem(path), obj::load(path)?, spec.floor).map_err(|error| error.in_file(path)),
         _ => Err(unknown(&spec.name)),
     }
 }
@@ -62,12 +63,4 @@ fn unknown(name: &str) -> SceneError {
         None => format!("choose one of {}, a scene file (.toml) or a model (.obj)", names.join(", ")),
     };
     SceneError::Unknown { name: name.escape_debug().to_string(), hint }
-}
-
-/// The name that is most like `word`, if any is much like it.
-pub(super) fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
-    /// Below this the names have little in common.
-    const LIKE: f64 = 0.75;
-    let rated = names.iter().map(|name| (strsim::jaro_winkler(word, name), *name));
-    rated.filter(|(likeness, _)| *likeness > LIKE).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name)
 }

@@ -5,7 +5,7 @@
 //! there yet is refused, not ignored.
 
 use super::Technique;
-use crate::scene::TechniqueRequest;
+use crate::scene::{TechniqueRequest, suggestion};
 use std::collections::BTreeMap;
 
 /// One setting of a technique.
@@ -244,14 +244,5 @@ impl std::fmt::Display for SettingValues {
             SettingValues::Integer(low, high) => write!(f, "choose a whole number from {low} to {high}"),
             SettingValues::Number(low, high) => write!(f, "choose a number from {low} to {high}"),
         }
-    }
-}
-
-/// `did you mean X?` where one name is near, else all of them.
-fn suggestion(name: &str, names: &[&str]) -> String {
-    let nearest = names.iter().max_by(|a, b| strsim::jaro_winkler(name, a).total_cmp(&strsim::jaro_winkler(name, b)));
-    match nearest {
-        Some(near) if strsim::jaro_winkler(name, near) > 0.75 => format!("did you mean `{near}`?"),
-        _ => format!("choose one of {}", names.join(", ")),
     }
 }

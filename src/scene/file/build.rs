@@ -1,12 +1,13 @@
 //! From the tables of a scene file to a scene, every value checked.
 
-use super::problem::{Problem, suggestion};
+use super::problem::Problem;
 use super::shape;
 use super::tables::{
     CameraTable, LightTable, MaterialTable, MeshSource, Number, ObjectTable, OrbitTable, SceneTable, TechniqueTable,
     Text, Triple,
 };
 use crate::scene::placement::Surroundings;
+use crate::scene::suggestion;
 use crate::scene::{
     Camera, Light, Material, Mesh, Motion, Object, Orbit, Pose, Scene, Shading, TechniqueRequest, obj, open::stem,
 };

@@ -1,6 +1,6 @@
 //! What is wrong with a scene file, and where.
 
-use crate::scene::open::nearest;
+use crate::scene::suggestion;
 use std::ops::Range;
 
 /// Something wrong at a place of the text.
@@ -56,13 +56,4 @@ fn in_words(message: &str) -> String {
         text.replace(&format!("expected {type_name}"), &format!("expected {words}"))
     });
     format!("{type_words}; correct it")
-}
-
-/// `did you mean X?` where a name is near, else all of them.
-pub fn suggestion(unknown: &str, known: &[&str]) -> String {
-    match nearest(unknown, known) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None if known.is_empty() => "delete it".to_owned(),
-        None => format!("choose one of {}", known.join(", ")),
-    }
 }

@@ -1,8 +1,9 @@
 //! Shapes of scene files as meshes.
 
-use super::problem::{Problem, suggestion};
+use super::problem::Problem;
 use super::tables::{Number, Segments, ShapeTable};
 use crate::scene::builtin::shapes;
+use crate::scene::suggestion;
 use crate::scene::{Mesh, MeshError};
 use glam::DVec2;
 use std::ops::Range;
