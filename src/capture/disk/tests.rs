@@ -1,3 +1,5 @@
+//! Capture folders of a hand-made capture: padded rows, shared aspects, a cube, a sun; no GPU.
+
 use super::*;
 use crate::capture::{
     AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, DrawSummary, FrameSnapshot, Image, PixelFormat, Snapshot,
@@ -174,6 +176,9 @@ fn arrays_are_what_numpy_expects() {
 
 #[test]
 fn a_folder_in_the_way_is_left_alone() {
+    for nameless in [".", "..", "/"] {
+        assert!(matches!(check_target(Path::new(nameless), true), Err(CaptureError::InTheWay { .. })), "{nameless}");
+    }
     let parent = tempfile::tempdir().expect("a folder");
     let folder = parent.path().join("out");
     fs::create_dir(&folder).expect("made");
@@ -260,6 +265,8 @@ fn broken_folders_are_refused_with_a_reason() {
     assert!(replaced("  \"size\": [\n    5,", "  \"size\": [\n    6,").contains("size is not"));
     assert!(replaced("  \"size\": [\n    5,", "  \"size\": [\n    4000000000,").contains("4000000000x3"));
     assert!(replaced("\"part\": \"side\"", "\"part\": \"inside\"").contains("part of a draw"));
+    assert!(replaced("\"map_face\": 3", "\"map_face\": 99").contains("not there"));
+    assert!(replaced("\"near\": ", "\"near\": -").contains("camera"));
     assert!(replaced("{", "").contains(MANIFEST));
     let parent = tempfile::tempdir().expect("a folder");
     assert!(matches!(read(parent.path()), Err(CaptureError::Read { .. })));
