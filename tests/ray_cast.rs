@@ -3,7 +3,7 @@
 use crate::common::ray_cast::{Difference, difference};
 use crate::common::{from_above, mesh, request, session};
 use glam::DVec3;
-use stencilscope::scene::{Camera, Light, Material, Object, Scene};
+use stencilscope::scene::{Camera, Light, Material, Object, Pose, Scene};
 use stencilscope::session::Session;
 use stencilscope::technique::Technique;
 
@@ -22,8 +22,8 @@ impl Random {
     }
 }
 
-/// Triangles through each other, open, unoriented, sharing some vertices; the eye and the light
-/// anywhere, among them too.
+/// Triangles through each other, open, unoriented, sharing some vertices, some in a turned and
+/// mirrored object; the eye and the light anywhere, among them too.
 fn soup(seed: u64) -> Scene {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
     let points: Vec<[f64; 3]> = (0..14).map(|_| random.within(1.5).to_array()).collect();
@@ -32,6 +32,11 @@ fn soup(seed: u64) -> Scene {
     let triangles: Vec<[u32; 3]> = (0..count).map(|_| [corner(), corner(), corner()]).collect();
     let mut scene = from_above(vec![Object::new("soup", mesh(&points, &triangles), Material::default())]);
     scene.objects[0].pose.translate.y = -2.0;
+    if seed.is_multiple_of(3) {
+        // Turned, squeezed and sometimes mirrored.
+        let scale = random.within(1.0).map(|s| if s.abs() < 0.2 { 0.2 } else { s });
+        scene.objects[1].pose = Pose { rotate_degrees: random.within(180.0), scale, ..Pose::default() };
+    }
     let eye = random.within(3.0);
     scene.camera = Camera {
         eye,
