@@ -1,9 +1,8 @@
 //! Capture folders of real frames, and hostile ones. (What holds for any capture is tested beside the code.)
 
-use crate::common::{cuboid, from_above, request, session, square};
+use crate::common::{cuboid, from_above, names, request, session, square};
 use glam::DVec3;
 use std::fs;
-use std::path::Path;
 use stencilscope::capture::Capture;
 use stencilscope::capture::disk::{read, write};
 use stencilscope::scene::Light;
@@ -25,14 +24,6 @@ fn captures() -> Vec<Capture> {
 fn without_write_time(mut capture: Capture) -> Capture {
     capture.timing.write_ms = None;
     capture
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("a folder");
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 #[test]

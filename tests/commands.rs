@@ -1,5 +1,6 @@
 //! The program from outside: exit codes, error lines, and what it leaves behind.
 
+use crate::common::names;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -40,15 +41,6 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
-}
-
-/// Names in a folder, sorted.
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("a folder");
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 /// Runs a command that must fail with `code` and one line that has all `words`, leaving nothing.

@@ -3,10 +3,11 @@
 /// Below this two names have little in common (Jaro–Winkler likeness, 0 to 1).
 const LIKE: f64 = 0.75;
 
-/// The name that is most like `word`, if any is much like it.
+/// The lower-case name that is most like `word` in any case, if one is much like it.
 #[must_use]
 pub fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
-    let rated = names.iter().map(|name| (strsim::jaro_winkler(word, name), *name));
+    let word = word.to_lowercase();
+    let rated = names.iter().map(|name| (strsim::jaro_winkler(&word, name), *name));
     rated.filter(|(likeness, _)| *likeness > LIKE).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name)
 }
 

@@ -3,6 +3,8 @@
 pub mod ray_cast;
 
 use glam::DVec3;
+use std::fs;
+use std::path::Path;
 use std::sync::Arc;
 use stencilscope::capture::Capture;
 use stencilscope::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene};
@@ -68,4 +70,13 @@ pub fn from_above(objects: Vec<Object>) -> Scene {
 pub fn label_counts(capture: &Capture) -> [u64; 4] {
     let histogram = capture.lights[0].shadow.as_ref().expect("labels").histogram();
     [histogram[0], histogram[1], histogram[2], histogram[3]]
+}
+
+/// Names in a folder, sorted.
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
 }
