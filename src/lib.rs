@@ -28,6 +28,7 @@
 //! Depth is reversed and infinite: 1 at the near plane, 0 at infinity. Front faces are
 //! counter-clockwise. Row 0 of a picture is at the top. See [`math`] for the names of transforms.
 
+pub mod accuracy;
 #[cfg(feature = "inspector")]
 pub mod app;
 pub mod capture;
@@ -38,7 +39,9 @@ pub mod gpu;
 pub mod inspector;
 pub mod math;
 pub mod plan;
+pub mod progress;
 pub mod scene;
 pub mod session;
 pub mod stencil_machine;
 pub mod technique;
+pub mod truth;

@@ -11,3 +11,4 @@ mod ray_cast;
 mod scenes;
 mod stencil_machine;
 mod techniques;
+mod truth;

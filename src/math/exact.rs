@@ -32,6 +32,12 @@ impl Sign {
         }
     }
 
+    /// This sign, or another one where it is zero.
+    #[must_use]
+    pub fn or_else(self, other: impl FnOnce() -> Sign) -> Sign {
+        if self == Sign::Zero { other() } else { self }
+    }
+
     fn of(value: f64) -> Sign {
         if value > 0.0 {
             Sign::Positive
@@ -54,6 +60,14 @@ pub fn side_of_triangle([a, b, c]: [DVec3; 3], point: DVec4) -> Sign {
     let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     // Shewchuk's sign is positive for a point below, from where the corners run clockwise.
     Sign::of(-orient3d(coord(a), coord(b), coord(c), coord(point.truncate())))
+}
+
+/// The exact sign of a sum of products of two numbers each, but for overflow and underflow.
+#[must_use]
+pub fn sign_of_sum(products: &[(f64, f64)]) -> Sign {
+    let mut sum = Expansion::default();
+    products.iter().for_each(|(a, b)| sum.add_product(*a, *b, 1.0));
+    sum.sign()
 }
 
 fn side_of_direction([a, b, c]: [DVec3; 3], direction: DVec3) -> Sign {
@@ -157,6 +171,14 @@ mod tests {
             assert_eq!(side_of_triangle([c, b, a], nudged.extend(0.0)).value(), -sign);
             assert_eq!(side_of_triangle([b, c, a], nudged.extend(0.0)).value(), sign);
         }
+    }
+
+    #[test]
+    fn a_sum_of_products_keeps_what_rounding_would_lose() {
+        let tiny = 1.0 + f64::EPSILON;
+        assert_eq!(sign_of_sum(&[(tiny, tiny), (-1.0, 1.0), (-2.0, f64::EPSILON)]), Sign::Positive);
+        assert_eq!(sign_of_sum(&[(1e9 + 1.0, 1e9 - 1.0), (-1e9, 1e9), (1.0, 1.0)]), Sign::Zero);
+        assert_eq!(sign_of_sum(&[]), Sign::Zero);
     }
 
     #[test]

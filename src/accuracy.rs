@@ -1,0 +1,277 @@
+//! A technique's labels held against the ground truth.
+//!
+//! Compared are the pixels that the truth calls lit or in shadow. Where a technique says anything
+//! else it is wrong, unless no picture of that size could be certain: the truth itself changes
+//! within an eighth of a pixel, or another triangle is visible within 1/256, which rasterisers
+//! snap to. Only for disagreeing pixels are those extra rays cast.
+
+use crate::truth::{LIT, SHADOW, Tracer, Truth};
+use rayon::prelude::*;
+
+/// How far from a pixel's centre another label excuses a disagreement, in pixels.
+const LABEL_REACH: f64 = 1.0 / 8.0;
+/// The same for another visible triangle.
+const SURFACE_REACH: f64 = 1.0 / 256.0;
+
+/// What a pixel of the error picture says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(u8)]
+pub enum Finding {
+    /// Truth and technique agree.
+    Agrees = 0,
+    /// Truth: lit. Technique: in shadow.
+    FalseShadow = 1,
+    /// Truth: in shadow. Technique: lit.
+    MissingShadow = 2,
+    /// The technique shows another surface, one that faces away, or none.
+    WrongSurface = 3,
+    /// They differ where the truth itself changes: excused.
+    EdgeBand = 4,
+    /// The truth is background or faces away.
+    NotCompared = 5,
+}
+
+impl Finding {
+    /// In the order of their numbers.
+    pub const ALL: [Finding; 6] = [
+        Finding::Agrees,
+        Finding::FalseShadow,
+        Finding::MissingShadow,
+        Finding::WrongSurface,
+        Finding::EdgeBand,
+        Finding::NotCompared,
+    ];
+
+    /// The finding of that number, as in an error picture.
+    #[must_use]
+    pub fn from_byte(byte: u8) -> Option<Finding> {
+        Finding::ALL.get(usize::from(byte)).copied()
+    }
+
+    /// The name in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Finding::Agrees => "agrees",
+            Finding::FalseShadow => "false_shadow",
+            Finding::MissingShadow => "missing_shadow",
+            Finding::WrongSurface => "wrong_surface",
+            Finding::EdgeBand => "edge_band",
+            Finding::NotCompared => "not_compared",
+        }
+    }
+
+    /// Counts as wrong.
+    #[must_use]
+    pub fn is_wrong(self) -> bool {
+        matches!(self, Finding::FalseShadow | Finding::MissingShadow | Finding::WrongSurface)
+    }
+
+    /// Before any excuse.
+    fn of(truth: u8, answer: u8) -> Finding {
+        match (truth, answer) {
+            (LIT | SHADOW, _) if truth == answer => Finding::Agrees,
+            (LIT, SHADOW) => Finding::FalseShadow,
+            (SHADOW, LIT) => Finding::MissingShadow,
+            (LIT | SHADOW, _) => Finding::WrongSurface,
+            _ => Finding::NotCompared,
+        }
+    }
+}
+
+/// How many pixels are how wrong. With several lights, sums over them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub struct ErrorCounts {
+    /// The truth is lit or shadow.
+    pub compared: u64,
+    /// Lit in truth.
+    pub false_shadow: u64,
+    /// In shadow in truth.
+    pub missing_shadow: u64,
+    /// Another surface, or none.
+    pub wrong_surface: u64,
+    /// Disagreements that are excused.
+    pub edge_band: u64,
+}
+
+impl ErrorCounts {
+    /// Pixels that are wrong and not excused.
+    #[must_use]
+    pub fn wrong(&self) -> u64 {
+        self.false_shadow + self.missing_shadow + self.wrong_surface
+    }
+
+    fn of(findings: &[u8]) -> ErrorCounts {
+        let mut counts = [0; Finding::ALL.len()];
+        findings.iter().for_each(|finding| counts[usize::from(*finding)] += 1);
+        let count = |finding: Finding| counts[finding as usize];
+        ErrorCounts {
+            compared: findings.len() as u64 - count(Finding::NotCompared),
+            false_shadow: count(Finding::FalseShadow),
+            missing_shadow: count(Finding::MissingShadow),
+            wrong_surface: count(Finding::WrongSurface),
+            edge_band: count(Finding::EdgeBand),
+        }
+    }
+}
+
+impl std::iter::Sum for ErrorCounts {
+    fn sum<I: Iterator<Item = ErrorCounts>>(counts: I) -> ErrorCounts {
+        counts.fold(ErrorCounts::default(), |sum, one| ErrorCounts {
+            compared: sum.compared + one.compared,
+            false_shadow: sum.false_shadow + one.false_shadow,
+            missing_shadow: sum.missing_shadow + one.missing_shadow,
+            wrong_surface: sum.wrong_surface + one.wrong_surface,
+            edge_band: sum.edge_band + one.edge_band,
+        })
+    }
+}
+
+/// Wrong pixels of one kind that touch each other, corners included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Region {
+    /// How many.
+    pub pixels: u64,
+    /// Which kind.
+    pub kind: Finding,
+    /// First and last column and row: left, top, right, bottom.
+    pub bounds: [u32; 4],
+    /// One of its pixels: the first in reading order.
+    pub at: [u32; 2],
+}
+
+/// How a technique did for one light.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Accuracy {
+    /// Totals.
+    pub counts: ErrorCounts,
+    /// A [`Finding`] a pixel, row by row.
+    pub findings: Vec<u8>,
+    /// The largest connected wrong region.
+    pub worst: Option<Region>,
+}
+
+/// Holds a technique's labels of one light, given by rows, against the truth, which `tracer` has
+/// traced.
+///
+/// # Panics
+/// If the rows are not of the truth's size, or there is no such light.
+#[must_use]
+pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]]) -> Accuracy {
+    let width = truth.size[0] as usize;
+    assert_eq!(rows.len(), truth.size[1] as usize, "rows of labels");
+    let labels = &truth.labels[light];
+    let mut findings = vec![Finding::NotCompared as u8; labels.len()];
+    let by_row = findings.par_chunks_mut(width.max(1)).zip(labels.par_chunks(width.max(1))).zip(rows);
+    by_row.enumerate().for_each(|(y, ((findings, labels), answers))| {
+        assert_eq!(answers.len(), width, "labels of a row");
+        for (x, ((finding, label), answer)) in findings.iter_mut().zip(labels).zip(*answers).enumerate() {
+            let found = Finding::of(*label, *answer);
+            let is_excused = found.is_wrong() && is_at_an_edge(tracer, light, *label, [x as u32, y as u32]);
+            *finding = if is_excused { Finding::EdgeBand } else { found } as u8;
+        }
+    });
+    Accuracy { counts: ErrorCounts::of(&findings), worst: worst_region(&findings, truth.size), findings }
+}
+
+/// Could the truth be another one so near the pixel's centre that no rasteriser can be held to it?
+fn is_at_an_edge(tracer: &Tracer, light: usize, label: u8, [x, y]: [u32; 2]) -> bool {
+    let center = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+    let labels = tracer.labels_at(light, around(center, LABEL_REACH));
+    if labels.iter().any(|other| *other != label) {
+        return true;
+    }
+    let [here] = tracer.visible_at([center]);
+    tracer.visible_at(around(center, SURFACE_REACH)).iter().any(|other| *other != here)
+}
+
+/// The eight neighbours of a point in a grid of that spacing.
+fn around([x, y]: [f64; 2], reach: f64) -> [[f64; 2]; 8] {
+    let steps = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
+    steps.map(|[dx, dy]| [x + f64::from(dx) * reach, y + f64::from(dy) * reach])
+}
+
+/// The largest set of wrong pixels of one kind that hang together.
+fn worst_region(findings: &[u8], [width, height]: [u32; 2]) -> Option<Region> {
+    let is_wrong = |byte: &u8| Finding::from_byte(*byte).is_some_and(Finding::is_wrong);
+    let mut left = findings.to_vec();
+    let mut worst: Option<Region> = None;
+    for start in 0..left.len() {
+        if !is_wrong(&left[start]) {
+            continue;
+        }
+        let region = take_region(&mut left, start, [width, height]);
+        if worst.is_none_or(|worst| region.pixels > worst.pixels) {
+            worst = Some(region);
+        }
+    }
+    worst
+}
+
+/// Removes the region around a wrong pixel and describes it.
+fn take_region(left: &mut [u8], start: usize, [width, height]: [u32; 2]) -> Region {
+    let place = |index: usize| [(index % width as usize) as u32, (index / width as usize) as u32];
+    let byte = left[start];
+    let at = place(start);
+    let kind = Finding::from_byte(byte).unwrap_or(Finding::WrongSurface);
+    let mut region = Region { pixels: 0, kind, bounds: [at[0], at[1], at[0], at[1]], at };
+    let mut open = vec![start];
+    left[start] = Finding::NotCompared as u8;
+    while let Some(index) = open.pop() {
+        let [x, y] = place(index);
+        let [low_x, low_y, high_x, high_y] = region.bounds;
+        region.bounds = [low_x.min(x), low_y.min(y), high_x.max(x), high_y.max(y)];
+        region.pixels += 1;
+        for near_y in y.saturating_sub(1)..=(y + 1).min(height - 1) {
+            for near_x in x.saturating_sub(1)..=(x + 1).min(width - 1) {
+                let near = near_y as usize * width as usize + near_x as usize;
+                if left[near] == byte {
+                    left[near] = Finding::NotCompared as u8;
+                    open.push(near);
+                }
+            }
+        }
+    }
+    region
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::truth::FACES_AWAY;
+
+    #[test]
+    fn every_pair_of_labels_has_its_finding() {
+        use Finding::{Agrees, FalseShadow, MissingShadow, NotCompared, WrongSurface};
+        let expected = [
+            [Agrees, FalseShadow, WrongSurface, WrongSurface],
+            [MissingShadow, Agrees, WrongSurface, WrongSurface],
+            [NotCompared; 4],
+            [NotCompared; 4],
+        ];
+        for truth in LIT..=FACES_AWAY {
+            for answer in LIT..=FACES_AWAY {
+                assert_eq!(Finding::of(truth, answer), expected[usize::from(truth)][usize::from(answer)]);
+            }
+        }
+    }
+
+    /// Two regions of false shadow that touch at a corner are one; missing shadow beside it is another.
+    #[test]
+    fn the_largest_region_is_found_and_measured() {
+        let picture = [
+            [1, 1, 0, 0, 0, 3], //
+            [0, 0, 1, 2, 2, 0],
+            [4, 4, 4, 2, 0, 0],
+            [4, 4, 4, 4, 5, 5],
+        ];
+        let worst = worst_region(picture.as_flattened(), [6, 4]).expect("a region");
+        assert_eq!(worst, Region { pixels: 3, kind: Finding::FalseShadow, bounds: [0, 0, 2, 1], at: [0, 0] });
+        assert_eq!(worst_region(&[0, 4, 5, 0], [2, 2]), None);
+        let counts = ErrorCounts::of(picture.as_flattened());
+        let expected =
+            ErrorCounts { compared: 22, false_shadow: 3, missing_shadow: 3, wrong_surface: 1, edge_band: 7 };
+        assert_eq!((counts, counts.wrong()), (expected, 7));
+        assert_eq!([counts, counts].into_iter().sum::<ErrorCounts>().compared, 44);
+    }
+}

@@ -1,0 +1,325 @@
+//! Ground truth: who is lit and who is not, by rays in `f64` from the scene alone.
+//!
+//! It shares no code with shadow volumes, plans or techniques, so that no mistake can hide in
+//! both answers. A ray of sight goes through each pixel's centre, from the near plane on; where it
+//! meets a surface, a ray of light is followed from the light to that point. Which triangles a ray
+//! meets is decided by exact orientation signs, so rays slip through no edge and meet no edge
+//! twice; nothing is moved off a surface by an offset, which would lose occluders at grazing
+//! angles. What is left out instead are triangles whose plane goes through the point itself.
+//!
+//! ```text
+//! scene ─► World (triangles) ─► Pencil of the eye    ─► nearest triangle ─┐
+//!                             ► Pencil of each light ─► anything between? ┴► labels
+//! ```
+//!
+//! A [`pencil`](Pencil) is all lines through one centre. All rays of a frame belong to one pencil
+//! or another, which makes a test cheap enough for a picture in a tenth of a second.
+
+mod chart;
+mod pencil;
+#[cfg(test)]
+mod tests;
+mod view;
+mod world;
+
+pub use world::Place;
+
+use crate::math::{Sign, side_of_triangle};
+use crate::progress::Progress;
+use crate::scene::Scene;
+use glam::{DVec3, DVec4};
+use pencil::{Bundle, Pencil, Seen, Then};
+use rayon::prelude::*;
+use view::View;
+use world::World;
+
+/// The light reaches the surface.
+pub const LIT: u8 = 0;
+/// Something lies between the light and the surface.
+pub const SHADOW: u8 = 1;
+/// No surface at this pixel.
+pub const BACKGROUND: u8 = 2;
+/// Light and eye are on different sides of the surface's plane.
+pub const FACES_AWAY: u8 = 3;
+
+/// Pixels along each side of the tiles whose rays are followed together.
+const TILE: usize = 4;
+/// Units in the last place by which a surface point may be off: the eye, the direction and their
+/// sum are rounded.
+const POINT_ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// A scene whose truth can't be told.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{problem}")]
+pub struct TruthError {
+    /// What is wrong, and the mend.
+    problem: String,
+}
+
+/// The labels of a picture (`techniques.md` section 2), one byte a pixel, row by row.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Truth {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Parallel to the scene's lights.
+    pub labels: Vec<Vec<u8>>,
+}
+
+impl Truth {
+    /// The label of a light at a pixel.
+    #[must_use]
+    pub fn label(&self, light: usize, [x, y]: [u32; 2]) -> u8 {
+        self.labels[light][y as usize * self.size[0] as usize + x as usize]
+    }
+}
+
+/// A scene made ready for rays.
+#[derive(Debug)]
+pub struct Tracer {
+    world: World,
+    view: View,
+    size: [u32; 2],
+    eye: Pencil,
+    lights: Vec<LightPencil>,
+}
+
+/// The rays of one light.
+#[derive(Debug)]
+struct LightPencil {
+    position: DVec4,
+    pencil: Pencil,
+}
+
+/// What a ray of sight meets first.
+#[derive(Debug, Clone, Copy)]
+struct Surface {
+    triangle: usize,
+    /// On which side of it the eye is.
+    eye_side: Sign,
+    /// World space, rounded.
+    point: DVec3,
+    /// How far `point` may be off along any axis.
+    rounding: f64,
+}
+
+impl Tracer {
+    /// How many rays are followed together.
+    pub const MOST_POINTS: usize = Bundle::MOST;
+
+    /// Places a scene's triangles and sorts them as the eye and each light see them.
+    ///
+    /// # Errors
+    /// A camera, light or object that no ray can be followed for.
+    pub fn new(scene: &Scene, size: [u32; 2]) -> Result<Tracer, TruthError> {
+        let problem = |problem: &str| TruthError { problem: problem.to_owned() };
+        scene.camera.check().map_err(problem)?;
+        scene.lights.iter().try_for_each(|light| light.check()).map_err(problem)?;
+        let world = World::new(scene)?;
+        let is_seen = |index: usize| world.object(index).visible;
+        let casts = |index: usize| world.object(index).casts;
+        let triangles = &world.triangles;
+        let pencil_of = |position: DVec4| LightPencil { position, pencil: Pencil::new(position, triangles, casts) };
+        let positions: Vec<DVec4> = scene.lights.iter().map(crate::scene::Light::homogeneous).collect();
+        let (eye, lights) = rayon::join(
+            || Pencil::new(scene.camera.eye.extend(1.0), triangles, is_seen),
+            || positions.into_par_iter().map(pencil_of).collect(),
+        );
+        Ok(Tracer { view: View::new(&scene.camera, size), world, size, eye, lights })
+    }
+
+    /// Width and height of the picture.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Labels of every pixel for every light; `None` if it was cancelled.
+    #[must_use]
+    pub fn trace(&self, progress: &Progress) -> Option<Truth> {
+        let lights: Vec<usize> = (0..self.lights.len()).collect();
+        self.trace_lights(&lights, progress)
+    }
+
+    /// The same for some of the lights, in the order given.
+    #[must_use]
+    pub fn trace_lights(&self, lights: &[usize], progress: &Progress) -> Option<Truth> {
+        let [width, height] = self.size.map(|n| n as usize);
+        let bands: Vec<usize> = (0..height).step_by(TILE).collect();
+        progress.start(bands.len());
+        let traced: Option<Vec<Vec<Vec<u8>>>> = bands
+            .into_par_iter()
+            .map(|top| {
+                let band = (!progress.is_cancelled()).then(|| self.trace_band(top, lights));
+                progress.advance();
+                band
+            })
+            .collect();
+        let mut labels = vec![Vec::with_capacity(width * height); lights.len()];
+        for band in traced? {
+            labels.iter_mut().zip(band).for_each(|(all, part)| all.extend(part));
+        }
+        Some(Truth { size: self.size, labels })
+    }
+
+    /// The labels of a light at up to [`Tracer::MOST_POINTS`] points of the picture that are near
+    /// each other; the first pixel's centre is (0.5, 0.5).
+    ///
+    /// # Panics
+    /// If there are more points, or no such light.
+    #[must_use]
+    pub fn labels_at<const N: usize>(&self, light: usize, points: [[f64; 2]; N]) -> [u8; N] {
+        let mut labels = [BACKGROUND; N];
+        self.label_surfaces(&self.lights[light], &self.surfaces_at(points), &mut labels);
+        labels
+    }
+
+    /// The triangles that are visible at such points.
+    ///
+    /// # Panics
+    /// If there are more points.
+    #[must_use]
+    pub fn visible_at<const N: usize>(&self, points: [[f64; 2]; N]) -> [Option<Place>; N] {
+        self.surfaces_at(points).map(|surface| surface.map(|surface| self.world.place(surface.triangle)))
+    }
+
+    fn surfaces_at<const N: usize>(&self, points: [[f64; 2]; N]) -> [Option<Surface>; N] {
+        let mut surfaces = [None; N];
+        self.meet_surfaces(&points.map(|point| self.view.direction(point)), &mut surfaces);
+        surfaces
+    }
+
+    /// Labels of a band of rows, one list a light.
+    fn trace_band(&self, top: usize, lights: &[usize]) -> Vec<Vec<u8>> {
+        let [width, height] = self.size.map(|n| n as usize);
+        let rows = top..height.min(top + TILE);
+        let mut labels = vec![vec![BACKGROUND; rows.len() * width]; lights.len()];
+        let (mut directions, mut places) = (Vec::with_capacity(TILE * TILE), Vec::with_capacity(TILE * TILE));
+        for left in (0..width).step_by(TILE) {
+            directions.clear();
+            places.clear();
+            for (row, y) in rows.clone().enumerate() {
+                for x in left..width.min(left + TILE) {
+                    directions.push(self.view.direction([x as f64 + 0.5, y as f64 + 0.5]));
+                    places.push(row * width + x);
+                }
+            }
+            let mut surfaces = [None; TILE * TILE];
+            let surfaces = &mut surfaces[..directions.len()];
+            self.meet_surfaces(&directions, surfaces);
+            for (light, labels) in lights.iter().zip(&mut labels) {
+                let mut tile = [BACKGROUND; TILE * TILE];
+                self.label_surfaces(&self.lights[*light], surfaces, &mut tile[..surfaces.len()]);
+                places.iter().zip(tile).for_each(|(place, label)| labels[*place] = label);
+            }
+        }
+        labels
+    }
+
+    /// What rays of sight in these directions meet first. Of surfaces at one distance it is the
+    /// one drawn first, as in a rasteriser.
+    fn meet_surfaces(&self, directions: &[DVec3], surfaces: &mut [Option<Surface>]) {
+        let mut bundle = Bundle::default();
+        directions.iter().for_each(|direction| bundle.push(*direction));
+        let mut nearest = [(f64::INFINITY, u32::MAX, Sign::Zero); Bundle::MOST];
+        self.eye.for_each_meeting(&self.world.triangles, &bundle, true, |seen, line| {
+            let distance = self.distance(seen, directions[line]);
+            let (best, index, _) = nearest[line];
+            if distance >= self.view.near && (distance < best || (distance == best && seen.index < index)) {
+                nearest[line] = (distance, seen.index, seen.center_side);
+            }
+            Then::Continue
+        });
+        for ((surface, direction), (distance, index, eye_side)) in surfaces.iter_mut().zip(directions).zip(nearest) {
+            *surface = (index != u32::MAX).then(|| {
+                let offset = *direction * distance;
+                let point = self.eye.origin + offset;
+                let rounding = POINT_ROUNDING
+                    * (self.eye.origin.abs().max_element() + offset.abs().max_element() + point.abs().max_element());
+                Surface { triangle: index as usize, eye_side, point, rounding }
+            });
+        }
+    }
+
+    /// Along the view's axis, within the triangle's own distances: a sliver's plane may be so
+    /// steep that rounding puts the meeting anywhere.
+    fn distance(&self, seen: &Seen, direction: DVec3) -> f64 {
+        let axis = self.view.axis();
+        let depth = |corner: DVec3| (corner - self.eye.origin).dot(axis);
+        let [a, b, c] = self.world.triangles[seen.index as usize];
+        let (a, b, c) = (depth(a), depth(b), depth(c));
+        (seen.offset / seen.normal.dot(direction)).max(a.min(b).min(c)).min(a.max(b).max(c))
+    }
+
+    fn label_surfaces(&self, light: &LightPencil, surfaces: &[Option<Surface>], labels: &mut [u8]) {
+        let mut bundle = Bundle::default();
+        let mut lines = [0; Bundle::MOST];
+        let mut last = (usize::MAX, Sign::Zero);
+        for (index, surface) in surfaces.iter().enumerate() {
+            let Some(surface) = surface else {
+                labels[index] = BACKGROUND;
+                continue;
+            };
+            if last.0 != surface.triangle {
+                last = (surface.triangle, side_of_triangle(self.world.triangles[surface.triangle], light.position));
+            }
+            if last.1 != surface.eye_side {
+                labels[index] = FACES_AWAY;
+                continue;
+            }
+            labels[index] = LIT;
+            if self.world.object(surface.triangle).receives {
+                lines[bundle.len()] = index;
+                bundle.push(surface.point - light.pencil.origin);
+            }
+        }
+        let mut left = bundle.len();
+        if left == 0 {
+            return;
+        }
+        light.pencil.for_each_meeting(&self.world.triangles, &bundle, false, |seen, line| {
+            let index = lines[line];
+            let is_darkened = labels[index] == LIT
+                && surfaces[index].as_ref().is_some_and(|surface| {
+                    self.lies_between(seen, bundle.point(line), surface)
+                });
+            if is_darkened {
+                labels[index] = SHADOW;
+                left -= 1;
+            }
+            if left == 0 { Then::Stop } else { Then::Continue }
+        });
+    }
+
+    /// Are the light and a surface point on different sides of a triangle that their line meets?
+    /// A plane through the point itself, as far as its rounding can tell, has it on neither.
+    fn lies_between(&self, seen: &Seen, offset: DVec3, surface: &Surface) -> bool {
+        if seen.index as usize == surface.triangle {
+            return false;
+        }
+        let height = seen.normal.dot(offset) - seen.offset;
+        let span = offset.abs().element_sum();
+        let rounding = 64.0 * f64::EPSILON * seen.size * seen.size * (seen.size + span)
+            + seen.normal.abs().element_sum() * surface.rounding;
+        if height.abs() > rounding {
+            return is_opposite(height, seen.center_side);
+        }
+        self.lies_just_between(seen, surface)
+    }
+
+    /// The same for points so near a plane that it takes care.
+    fn lies_just_between(&self, seen: &Seen, surface: &Surface) -> bool {
+        let [a, b, c] = self.world.triangles[seen.index as usize];
+        let (ab, ac, offset) = (b - a, c - a, surface.point - a);
+        let normal = ab.cross(ac);
+        let height = normal.dot(offset);
+        let products = ab.abs().element_sum() * ac.abs().element_sum() * offset.abs().element_sum();
+        let rounding = 16.0 * f64::EPSILON * products + normal.abs().element_sum() * surface.rounding;
+        height.abs() > rounding
+            && is_opposite(height, seen.center_side)
+            && !self.world.share_plane(surface.triangle, seen.index as usize)
+    }
+}
+
+fn is_opposite(height: f64, side: Sign) -> bool {
+    (height > 0.0 && side == Sign::Negative) || (height < 0.0 && side == Sign::Positive)
+}

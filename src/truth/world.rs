@@ -1,0 +1,66 @@
+//! All triangles of a scene in world space, and what they belong to.
+
+use super::TruthError;
+use crate::math::{Sign, side_of_triangle};
+use crate::scene::{Object, Scene};
+use glam::DVec3;
+
+/// Beyond it, products of coordinates overflow.
+const FARTHEST: f64 = 1e30;
+
+/// Where a triangle comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// Index of its object in the scene.
+    pub object: usize,
+    /// Its index in the object's mesh.
+    pub triangle: usize,
+}
+
+/// A scene's triangles.
+#[derive(Debug)]
+pub struct World {
+    /// In world space.
+    pub triangles: Vec<[DVec3; 3]>,
+    /// Parallel to `triangles`.
+    places: Vec<Place>,
+    objects: Vec<Object>,
+}
+
+impl World {
+    pub fn new(scene: &Scene) -> Result<World, TruthError> {
+        let mut world = World { triangles: Vec::new(), places: Vec::new(), objects: scene.objects.clone() };
+        for (index, object) in scene.objects.iter().enumerate() {
+            let positions = object.world_positions();
+            let is_usable = |position: &DVec3| (*position - scene.camera.eye).abs().max_element() <= FARTHEST;
+            if !positions.iter().all(is_usable) {
+                return Err(TruthError { problem: format!("{} is too large or too far from the eye", object.name) });
+            }
+            let triangles = object.mesh.triangles();
+            world.triangles.extend(triangles.iter().map(|corners| corners.map(|vertex| positions[vertex as usize])));
+            world.places.extend((0..triangles.len()).map(|triangle| Place { object: index, triangle }));
+        }
+        Ok(world)
+    }
+
+    pub fn place(&self, index: usize) -> Place {
+        self.places[index]
+    }
+
+    pub fn object(&self, index: usize) -> &Object {
+        &self.objects[self.places[index].object]
+    }
+
+    /// Do two triangles lie in one plane of one object? Decided exactly, before the object was
+    /// placed: placing it rounds.
+    pub fn share_plane(&self, one: usize, other: usize) -> bool {
+        let (one, other) = (self.places[one], self.places[other]);
+        if one.object != other.object {
+            return false;
+        }
+        let mesh = &self.objects[one.object].mesh;
+        let corners = |triangle: usize| mesh.triangles()[triangle].map(|vertex| mesh.positions()[vertex as usize]);
+        let plane = corners(one.triangle);
+        corners(other.triangle).iter().all(|corner| side_of_triangle(plane, corner.extend(1.0)) == Sign::Zero)
+    }
+}
