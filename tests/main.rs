@@ -1,5 +1,6 @@
 //! Tests by behaviour, in one program: it links once, and what they share is used by all.
 
+mod accuracy;
 mod capture_folder;
 mod commands;
 mod common;

@@ -1,5 +1,6 @@
 //! Z-fail against brute-force ray casting: no wrong pixel, whatever the mesh and the camera.
 
+use crate::common::random::Random;
 use crate::common::ray_cast::{Difference, difference};
 use crate::common::{from_above, mesh, request, session};
 use glam::DVec3;
@@ -7,25 +8,10 @@ use stencilscope::scene::{Camera, Light, Material, Object, Pose, Scene};
 use stencilscope::session::Session;
 use stencilscope::technique::Technique;
 
-/// A small generator of numbers in [0, 1): the same on every machine (Knuth's MMIX constants).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, reach: f64) -> DVec3 {
-        let mut one = || (self.unit() * 2.0 - 1.0) * reach;
-        DVec3::new(one(), one(), one())
-    }
-}
-
 /// Triangles through each other, open, unoriented, sharing some vertices, some in a turned and
 /// mirrored object; the eye and the light anywhere, among them too.
 fn soup(seed: u64) -> Scene {
-    let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    let mut random = Random::new(seed);
     let points: Vec<[f64; 3]> = (0..14).map(|_| random.within(1.5).to_array()).collect();
     let count = 1 + seed as usize % 12;
     let mut corner = || (random.unit() * 14.0) as u32;

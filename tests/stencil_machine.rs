@@ -122,6 +122,7 @@ fn draw(raster: RasterState, mesh: usize, triangles: std::ops::Range<u32>) -> Dr
 fn pass(name: &str, clear: bool, draws: Vec<Draw>) -> Pass {
     Pass {
         name: name.to_owned(),
+        image: None,
         purpose: String::new(),
         light: None,
         timed: true,

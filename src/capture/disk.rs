@@ -3,8 +3,9 @@
 //! The folder is written beside its place and renamed into it, so it is there whole or not at
 //! all; a folder that it replaces is moved aside until then.
 
-use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry};
-use super::{Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, Image, PixelFormat, Snapshot, Step, files};
+use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, RegionEntry};
+use crate::accuracy::Finding;
+use super::{Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, FrameSnapshot, Image, PixelFormat, Snapshot, Step, files};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
@@ -208,6 +209,16 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
         entry.shadow = Some(shadow_file(index));
         files::write_image(&folder.join(shadow_file(index)), shadow)?;
     }
+    if let Some(truth) = &light.truth {
+        entry.truth = Some(format!("light{index}.truth.npy"));
+        entry.error_picture = Some(format!("light{index}.error.npy"));
+        for (file, image) in [(&entry.truth, &truth.labels), (&entry.error_picture, &truth.findings)] {
+            file.iter().try_for_each(|file| files::write_image(&folder.join(file), image))?;
+        }
+        entry.error = Some(truth.error);
+        entry.findings = Finding::ALL.iter().map(|finding| finding.name().to_owned()).collect();
+        entry.worst_region = truth.worst.as_ref().map(Into::into);
+    }
     if let Some(map) = &light.map {
         entry.map = Some(map_file(index));
         files::write_layers(&folder.join(map_file(index)), &map.faces)?;
@@ -371,6 +382,30 @@ impl Reader<'_> {
         Ok(FrameSnapshot { color, depth, stencil, writes_labels: pass.labels.is_some() })
     }
 
+    fn truth(&mut self, entry: &LightEntry) -> Result<Option<CapturedTruth>, CaptureError> {
+        let (Some(labels), Some(findings), Some(error)) = (&entry.truth, &entry.error_picture, entry.error) else {
+            return Ok(None);
+        };
+        let is_known = |region: &RegionEntry| {
+            let [left, top, right, bottom] = region.bounds;
+            let is_inside = left <= right && right < self.size[0] && top <= bottom && bottom < self.size[1];
+            region.to_region().filter(|_| is_inside && region.at[0] <= right && region.at[1] <= bottom)
+        };
+        let worst = match &entry.worst_region {
+            None => None,
+            Some(region) => {
+                let wrong = || self.wrong(MANIFEST, "its worst region is outside the picture or of no known kind");
+                Some(is_known(region).ok_or_else(wrong)?)
+            }
+        };
+        Ok(Some(CapturedTruth {
+            labels: self.image(labels, PixelFormat::U8)?,
+            findings: self.image(findings, PixelFormat::U8)?,
+            error,
+            worst,
+        }))
+    }
+
     fn light(&mut self, entry: &LightEntry) -> Result<CapturedLight, CaptureError> {
         let position = entry.homogeneous().ok_or_else(|| self.wrong(MANIFEST, "a light has no place"))?;
         let shadow = entry.shadow.as_ref().map(|file| self.image(file, PixelFormat::U8)).transpose()?;
@@ -388,7 +423,7 @@ impl Reader<'_> {
             }
             _ => None,
         };
-        Ok(CapturedLight { position, shadow, map })
+        Ok(CapturedLight { position, shadow, map, truth: self.truth(entry)? })
     }
 }
 

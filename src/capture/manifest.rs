@@ -3,6 +3,7 @@
 //! Names are a contract with scripts: add fields, rename none.
 
 use super::{AdapterInfo, Capture, DrawSummary, Timing};
+use crate::accuracy::{ErrorCounts, Finding, Region};
 use crate::plan::{LeftOut, Part};
 use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
@@ -91,6 +92,29 @@ pub(super) struct LightEntry {
     pub map: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub matrices: Option<Matrices>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub truth: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<ErrorCounts>,
+    /// A finding a pixel, as numbered in `findings`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_picture: Option<String>,
+    /// What the error picture's numbers mean, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worst_region: Option<RegionEntry>,
+}
+
+/// The largest connected wrong region.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct RegionEntry {
+    pub pixels: u64,
+    pub kind: String,
+    /// First and last column and row: left, top, right, bottom.
+    #[serde(rename = "box")]
+    pub bounds: [u32; 4],
+    pub at: [u32; 2],
 }
 
 /// Row by row.
@@ -173,13 +197,41 @@ impl LightEntry {
         let (kind, position, towards) =
             if position.w == 0.0 { ("directional", None, Some(at)) } else { ("point", Some(at), None) };
         let kind = kind.to_owned();
-        LightEntry { index, kind, position, towards, shadow: None, map: None, matrices: None }
+        LightEntry {
+            index,
+            kind,
+            position,
+            towards,
+            shadow: None,
+            map: None,
+            matrices: None,
+            truth: None,
+            error: None,
+            error_picture: None,
+            findings: Vec::new(),
+            worst_region: None,
+        }
     }
 
     /// Homogeneous; `None` where neither form is given.
     pub fn homogeneous(&self) -> Option<DVec4> {
         let point = self.position.map(|at| DVec3::from_array(at).extend(1.0));
         point.or_else(|| self.towards.map(|at| DVec3::from_array(at).extend(0.0)))
+    }
+}
+
+impl From<&Region> for RegionEntry {
+    fn from(region: &Region) -> RegionEntry {
+        let kind = region.kind.name().to_owned();
+        RegionEntry { pixels: region.pixels, kind, bounds: region.bounds, at: region.at }
+    }
+}
+
+impl RegionEntry {
+    /// `None` for a kind that is no error.
+    pub fn to_region(&self) -> Option<Region> {
+        let kind = Finding::ALL.into_iter().find(|finding| finding.is_wrong() && finding.name() == self.kind)?;
+        Some(Region { pixels: self.pixels, kind, bounds: self.bounds, at: self.at })
     }
 }
 

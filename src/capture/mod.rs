@@ -12,6 +12,7 @@ mod manifest;
 pub use disk::CaptureError;
 pub use image::{Image, PixelFormat};
 
+use crate::accuracy::{ErrorCounts, Region};
 use crate::plan::{LeftOut, Part};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -129,6 +130,21 @@ pub struct CapturedLight {
     pub shadow: Option<Arc<Image>>,
     /// Its shadow map.
     pub map: Option<CapturedMap>,
+    /// The ground truth, where it was asked for.
+    pub truth: Option<CapturedTruth>,
+}
+
+/// The ground truth of a light, and how the technique differs from it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CapturedTruth {
+    /// The truth's labels, one byte a pixel.
+    pub labels: Arc<Image>,
+    /// A [`Finding`](crate::accuracy::Finding) a pixel.
+    pub findings: Arc<Image>,
+    /// Totals of the findings.
+    pub error: ErrorCounts,
+    /// The largest connected wrong region.
+    pub worst: Option<Region>,
 }
 
 /// A shadow map after the whole frame.
@@ -180,6 +196,13 @@ impl Capture {
         total
     }
 
+    /// The errors of all lights together; `None` where no truth was asked for.
+    #[must_use]
+    pub fn error(&self) -> Option<ErrorCounts> {
+        let of_lights = self.lights.iter().map(|light| light.truth.as_ref().map(|truth| truth.error));
+        (!self.lights.is_empty()).then(|| of_lights.sum()).flatten()
+    }
+
     fn for_each_image(&self, mut visit: impl FnMut(&Arc<Image>)) {
         for step in &self.steps {
             if let Snapshot::Frame(frame) = &step.snapshot {
@@ -191,6 +214,7 @@ impl Capture {
         for light in &self.lights {
             light.shadow.iter().for_each(&mut visit);
             light.map.iter().flat_map(|map| &map.faces).for_each(&mut visit);
+            light.truth.iter().flat_map(|truth| [&truth.labels, &truth.findings]).for_each(&mut visit);
         }
     }
 }

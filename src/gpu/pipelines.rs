@@ -1,7 +1,7 @@
 //! Pipelines and bind-group layouts, made once for each description.
 //!
 //! Groups: 0 the pass's view, 1 the draw's constants, 2 a surface's data, 3 the light and, for
-//! programs that read it, its map. A program has only the groups it uses.
+//! programs that read them, its map or labels. A program has only the groups it uses.
 
 use super::shaders::source_of;
 use crate::plan::{ColorWrite, Program, RasterState};
@@ -31,6 +31,7 @@ pub(super) struct Layouts {
     pub surface: BindGroupLayout,
     pub light: BindGroupLayout,
     pub light_with_map: BindGroupLayout,
+    pub light_with_labels: BindGroupLayout,
 }
 
 /// Every pipeline made so far.
@@ -111,7 +112,7 @@ impl Pipelines {
 impl Program {
     /// Reads vertices from storage by index, instead of a vertex buffer.
     pub(super) fn pulls_vertices(self) -> bool {
-        matches!(self, Program::Light { .. } | Program::Label { .. })
+        matches!(self, Program::Light { .. } | Program::LightByLabels | Program::Label { .. })
     }
 
     /// How many bind groups it uses, from group 0 on.
@@ -119,7 +120,7 @@ impl Program {
         match self {
             Program::Position => 1,
             Program::Ambient => 2,
-            Program::Light { .. } | Program::Label { .. } => 4,
+            Program::Light { .. } | Program::LightByLabels | Program::Label { .. } => 4,
         }
     }
 
@@ -154,16 +155,14 @@ impl Layouts {
         let uniform = |binding| entry(binding, both, BufferBindingType::Uniform, true);
         let storage =
             |binding| entry(binding, ShaderStages::VERTEX, BufferBindingType::Storage { read_only: true }, false);
-        let map = BindGroupLayoutEntry {
+        let texture = |sample_type, view_dimension| BindGroupLayoutEntry {
             binding: 1,
             visibility: ShaderStages::FRAGMENT,
-            ty: BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Depth,
-                view_dimension: wgpu::TextureViewDimension::D2Array,
-                multisampled: false,
-            },
+            ty: BindingType::Texture { sample_type, view_dimension, multisampled: false },
             count: None,
         };
+        let map = texture(wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array);
+        let labels = texture(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
         let layout = |label, entries: &[BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries })
         };
@@ -173,11 +172,16 @@ impl Layouts {
             surface: layout("surface", &[storage(0), storage(1), storage(2), storage(3)]),
             light: layout("light", &[uniform(0)]),
             light_with_map: layout("light with map", &[uniform(0), map]),
+            light_with_labels: layout("light with labels", &[uniform(0), labels]),
         }
     }
 
     fn of(&self, program: Program) -> [&BindGroupLayout; 4] {
-        let light = if program.reads_map() { &self.light_with_map } else { &self.light };
+        let light = match program {
+            Program::LightByLabels => &self.light_with_labels,
+            _ if program.reads_map() => &self.light_with_map,
+            _ => &self.light,
+        };
         [&self.view, &self.draw, &self.surface, light]
     }
 }

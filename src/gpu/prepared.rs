@@ -6,7 +6,7 @@ use super::pipelines::{PipelineKey, Pipelines};
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError};
-use crate::plan::{Attachment, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState};
+use crate::plan::{Attachment, AttachmentRole, Draw, FramePlan, LightId, Pass, Program, RasterState};
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, Buffer, Device, RenderPipeline, Texture,
     TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
@@ -34,6 +34,8 @@ pub(super) struct PreparedPass {
     pub depth_stencil: Option<TextureView>,
     pub has_stencil: bool,
     pub draws: Vec<PreparedDraw>,
+    /// Where its image from the CPU goes.
+    pub image_target: Option<Texture>,
 }
 
 #[derive(Debug)]
@@ -130,8 +132,11 @@ fn texel_count(attachment: &Attachment) -> u64 {
 }
 
 fn create(device: &Device, attachment: &Attachment) -> Texture {
-    let is_read_by_shaders = matches!(attachment.role, AttachmentRole::Map(_));
-    let reading = if is_read_by_shaders { TextureUsages::TEXTURE_BINDING } else { TextureUsages::empty() };
+    let other = match attachment.role {
+        AttachmentRole::Map(_) => TextureUsages::TEXTURE_BINDING,
+        AttachmentRole::Labels(_) => TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        AttachmentRole::Color | AttachmentRole::DepthStencil => TextureUsages::empty(),
+    };
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some(&attachment.name),
         size: wgpu::Extent3d {
@@ -143,7 +148,7 @@ fn create(device: &Device, attachment: &Attachment) -> Texture {
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: attachment.format,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC | reading,
+        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC | other,
         view_formats: &[],
     })
 }
@@ -163,6 +168,11 @@ fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Prep
         depth_stencil: target.map(|target| layer_view(&textures[target.attachment.0], target.layer)),
         has_stencil: target.is_some_and(|target| plan.attachment(target.attachment).format.has_stencil_aspect()),
         draws: Vec::with_capacity(pass.draws.len()),
+        image_target: pass
+            .image
+            .as_ref()
+            .and(pass.color.as_ref())
+            .map(|target| textures[target.attachment.0].clone()),
     }
 }
 
@@ -193,18 +203,21 @@ fn light_group(
     draw: &Draw,
     light: LightId,
 ) -> BindGroup {
-    let map = plan.lights[light.0].map.as_ref().filter(|_| draw.program.reads_map());
-    let Some(map) = map else { return lights.bind_group(device, &pipelines.layouts.light) };
-    let view = textures[map.attachment.0].create_view(&TextureViewDescriptor {
-        dimension: Some(TextureViewDimension::D2Array),
-        ..TextureViewDescriptor::default()
-    });
+    let layouts = &pipelines.layouts;
+    let light = &plan.lights[light.0];
+    let map = light.map.as_ref().filter(|_| draw.program.reads_map());
+    let (attachment, dimension, layout) = match (map, draw.program) {
+        (Some(map), _) => (map.attachment, TextureViewDimension::D2Array, &layouts.light_with_map),
+        (None, Program::LightByLabels) => (light.labels, TextureViewDimension::D2, &layouts.light_with_labels),
+        (None, _) => return lights.bind_group(device, &layouts.light),
+    };
+    let view = textures[attachment.0]
+        .create_view(&TextureViewDescriptor { dimension: Some(dimension), ..TextureViewDescriptor::default() });
     let entries = &[
         BindGroupEntry { binding: 0, resource: lights.binding() },
         BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&view) },
     ];
-    let layout = &pipelines.layouts.light_with_map;
-    device.create_bind_group(&BindGroupDescriptor { label: Some("light with map"), layout, entries })
+    device.create_bind_group(&BindGroupDescriptor { label: Some("light with texture"), layout, entries })
 }
 
 fn stage(device: &Device, plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Result<StagedPass, GpuError> {

@@ -25,7 +25,7 @@ pub(super) enum Change {
 /// What a pass leaves in its colour target.
 pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> Change {
     let Some(target) = &pass.color else { return Change::Unchanged };
-    let is_drawn = pass.draws.iter().any(|draw| draw.raster.color != ColorWrite::None);
+    let is_drawn = pass.image.is_some() || pass.draws.iter().any(|draw| draw.raster.color != ColorWrite::None);
     let texel = |value: [f64; 4]| match plan.attachment(target.attachment).role {
         AttachmentRole::Labels(_) => vec![value[0] as u8],
         _ => vec![srgb_byte(value[0]), srgb_byte(value[1]), srgb_byte(value[2]), (value[3] * 255.0).round() as u8],

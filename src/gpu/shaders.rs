@@ -32,6 +32,11 @@ const LIGHT_MAP: ProgramSource = ProgramSource {
     vertex: "vs_surface",
     fragment: Some("fs_light_map"),
 };
+const LIGHT_LABELS: ProgramSource = ProgramSource {
+    source: joined!("shared.wgsl", "draw.wgsl", "surface.wgsl", "light.wgsl", "light_labels.wgsl"),
+    vertex: "vs_surface",
+    fragment: Some("fs_light_labels"),
+};
 const LABEL: ProgramSource = ProgramSource {
     source: joined!("shared.wgsl", "draw.wgsl", "surface.wgsl", "label.wgsl"),
     vertex: "vs_surface",
@@ -49,6 +54,7 @@ pub(super) fn source_of(program: Program) -> ProgramSource {
         Program::Ambient => AMBIENT,
         Program::Light { reads_map: false } => LIGHT,
         Program::Light { reads_map: true } => LIGHT_MAP,
+        Program::LightByLabels => LIGHT_LABELS,
         Program::Label { reads_map: false } => LABEL,
         Program::Label { reads_map: true } => LABEL_MAP,
     }
@@ -56,12 +62,13 @@ pub(super) fn source_of(program: Program) -> ProgramSource {
 
 /// Name and WGSL text of every program, to be validated without a GPU.
 #[must_use]
-pub fn shader_sources() -> [(&'static str, &'static str); 6] {
+pub fn shader_sources() -> [(&'static str, &'static str); 7] {
     [
         ("position", POSITION.source),
         ("ambient", AMBIENT.source),
         ("light", LIGHT.source),
         ("light through its map", LIGHT_MAP.source),
+        ("light by labels", LIGHT_LABELS.source),
         ("label", LABEL.source),
         ("label through the map", LABEL_MAP.source),
     ]

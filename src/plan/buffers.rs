@@ -57,6 +57,18 @@ pub struct DrawMesh {
     pub surface: Option<SurfaceData>,
 }
 
+impl DrawMesh {
+    /// Hash and bytes of all its data.
+    pub(super) fn blobs(&self) -> Vec<(u64, u64)> {
+        fn entry<T: bytemuck::Pod>(blob: &Blob<T>) -> (u64, u64) {
+            (blob.hash(), blob.bytes().len() as u64)
+        }
+        let mut blobs = vec![entry(&self.vertices), entry(&self.indices)];
+        blobs.extend(self.surface.iter().flat_map(|surface| [entry(&surface.normals), entry(&surface.sides)]));
+        blobs
+    }
+}
+
 /// Data of surfaces beside their positions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceData {

@@ -52,6 +52,9 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<St
             problems.push("it clears a stencil that its target does not have".to_owned());
         }
     }
+    if pass.image.is_some() && (pass.color.is_none() || !pass.draws.is_empty()) {
+        problems.push("an image made on the CPU needs a colour target and no draws".to_owned());
+    }
     for draw in &pass.draws {
         if meshes_in_range.get(draw.mesh.0) == Some(&false) {
             problems.push(format!("{}: an index of its mesh is out of range", draw.name));
@@ -80,7 +83,7 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
         "a shader with colour and a state without, or the reverse",
     );
     demand(!writes_color || pass.color.is_some(), "it writes a colour that its pass does not have");
-    let shades = matches!(draw.program, Program::Light { .. } | Program::Label { .. });
+    let shades = matches!(draw.program, Program::Light { .. } | Program::LightByLabels | Program::Label { .. });
     demand(!shades || mesh.surface.is_some(), "it shades a mesh without normals");
     demand(!shades || pass.light.is_some_and(|light| light.0 < plan.lights.len()), "it shades without a light");
     if let Program::Light { reads_map: true } | Program::Label { reads_map: true } = draw.program {

@@ -13,6 +13,7 @@
 //! ```
 
 mod buffers;
+mod image;
 mod left_out;
 pub mod lint;
 mod raster;
@@ -20,11 +21,12 @@ mod split;
 pub mod text;
 
 pub use buffers::{Blob, DrawMesh, SurfaceData};
+pub use image::{CpuImage, MakeImage};
 pub use left_out::LeftOut;
 pub use raster::{ColorWrite, RasterState, StencilFace};
 
 use glam::{DMat4, DVec3, Mat4};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Index into [`FramePlan::attachments`].
@@ -81,6 +83,15 @@ pub struct Attachment {
     pub size: [u32; 2],
     /// 1, or the faces of a shadow map.
     pub layers: u32,
+}
+
+impl Attachment {
+    /// Of all its texels.
+    fn bytes(&self) -> u64 {
+        let texels = u64::from(self.size[0]) * u64::from(self.size[1]) * u64::from(self.layers);
+        // Depth32FloatStencil8 has no fixed size; drivers keep four bytes and one.
+        texels * u64::from(self.format.block_copy_size(None).unwrap_or(5))
+    }
 }
 
 /// What an attachment is for.
@@ -157,6 +168,8 @@ pub struct Pass {
     pub depth_stencil: Option<DepthStencilTarget>,
     /// In order.
     pub draws: Vec<Draw>,
+    /// What it leaves in its colour target where no draw makes it.
+    pub image: Option<CpuImage>,
 }
 
 /// The colour target of a pass.
@@ -257,6 +270,8 @@ pub enum Program {
         /// Looks into the light's shadow map.
         reads_map: bool,
     },
+    /// What the pass's light adds where its labels say that it is lit.
+    LightByLabels,
     /// Writes a label: 3 where the triangle faces away from the light, else the draw's `label`,
     /// or what the shadow map says where `reads_map`. Triangles run in reverse order, so that of
     /// surfaces at one depth the first drawn decides, as it did for the picture.
@@ -283,5 +298,32 @@ impl FramePlan {
     #[must_use]
     pub fn attachment(&self, id: AttachmentId) -> &Attachment {
         &self.attachments[id.0]
+    }
+
+    /// Triangles that the frame submits; mask passes are not part of it.
+    #[must_use]
+    pub fn triangles(&self) -> u64 {
+        let draws = self.timed_passes().flat_map(|pass| &pass.draws);
+        draws.map(|draw| u64::from(draw.triangles.end - draw.triangles.start)).sum()
+    }
+
+    /// Bytes of GPU memory that the frame needs for attachments, vertices and indices. What only
+    /// mask passes need is left out.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let (mut attachments, mut blobs) = (BTreeSet::new(), BTreeMap::new());
+        for pass in self.timed_passes() {
+            attachments.extend(pass.color.iter().map(|target| target.attachment));
+            attachments.extend(pass.depth_stencil.iter().map(|target| target.attachment));
+            for mesh in pass.draws.iter().filter_map(|draw| self.meshes.get(draw.mesh.0)) {
+                blobs.extend(mesh.blobs());
+            }
+        }
+        let attachments = attachments.into_iter().filter_map(|id| self.attachments.get(id.0));
+        attachments.map(Attachment::bytes).sum::<u64>() + blobs.values().sum::<u64>()
+    }
+
+    fn timed_passes(&self) -> impl Iterator<Item = &Pass> {
+        self.passes.iter().filter(|pass| pass.timed)
     }
 }

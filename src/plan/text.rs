@@ -54,6 +54,9 @@ impl FramePlan {
         if let Some(target) = &pass.depth_stencil {
             self.fmt_depth_stencil(f, target)?;
         }
+        if let Some(image) = &pass.image {
+            writeln!(f, "  image made on the CPU: {}", image.name)?;
+        }
         pass.draws.iter().try_for_each(|draw| self.fmt_draw(f, draw))
     }
 
@@ -70,6 +73,7 @@ impl FramePlan {
             Program::Ambient => "ambient",
             Program::Light { reads_map: false } => "light",
             Program::Light { reads_map: true } => "light through its map",
+            Program::LightByLabels => "light by labels",
             Program::Label { reads_map: false } => "label",
             Program::Label { reads_map: true } => "label through the map",
         };

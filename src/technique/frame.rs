@@ -188,6 +188,11 @@ impl<'a> Frame<'a> {
         Drawn { program: Program::Light { reads_map: true }, ..self.light_everywhere() }
     }
 
+    /// The same, where the light's labels say "lit".
+    pub fn light_by_labels(&self) -> Drawn {
+        Drawn { program: Program::LightByLabels, ..self.light_everywhere() }
+    }
+
     /// Names a light for people, counted from 1.
     pub fn light_name(light: LightId) -> String {
         format!("light {}", light.0 + 1)
@@ -220,6 +225,7 @@ impl<'a> Frame<'a> {
         self.stencil_of = Some(light);
         self.plan.passes.push(Pass {
             name: name.to_owned(),
+            image: None,
             purpose: purpose.to_owned(),
             light: Some(light),
             timed: true,
@@ -238,6 +244,7 @@ impl<'a> Frame<'a> {
                        one is: all later passes ask about that surface.";
         self.plan.passes.push(Pass {
             name: "ambient".to_owned(),
+            image: None,
             purpose: purpose.to_owned(),
             light: None,
             timed: true,
@@ -266,6 +273,7 @@ impl<'a> Frame<'a> {
         self.stencil_of = Some(light);
         self.plan.passes.push(Pass {
             name: "light".to_owned(),
+            image: None,
             purpose: purpose.to_owned(),
             light: Some(light),
             timed: true,
@@ -294,6 +302,7 @@ impl<'a> Frame<'a> {
                        It is not part of the frame; it is how techniques are compared.";
         self.plan.passes.push(Pass {
             name: "mask".to_owned(),
+            image: None,
             purpose: purpose.to_owned(),
             light: Some(light),
             timed: false,

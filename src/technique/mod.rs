@@ -7,6 +7,7 @@
 mod frame;
 mod none;
 mod planar;
+mod ray_traced;
 mod settings;
 mod shadow_map;
 mod surfaces;
@@ -27,6 +28,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         Technique::Planar => planar::plan(job),
         Technique::ZPass | Technique::ZFail => volume::plan(job),
         Technique::ShadowMap => shadow_map::plan(job),
+        Technique::RayTraced => ray_traced::plan(job),
     }
 }
 
@@ -60,12 +62,20 @@ pub enum Technique {
     ZFail,
     /// Depth from the light, compared at every pixel.
     ShadowMap,
+    /// Rays from eye and light: the ground truth.
+    RayTraced,
 }
 
 impl Technique {
     /// All that exist, in teaching order.
-    pub const ALL: [Technique; 5] =
-        [Technique::None, Technique::Planar, Technique::ZPass, Technique::ZFail, Technique::ShadowMap];
+    pub const ALL: [Technique; 6] = [
+        Technique::None,
+        Technique::Planar,
+        Technique::ZPass,
+        Technique::ZFail,
+        Technique::ShadowMap,
+        Technique::RayTraced,
+    ];
 
     /// The name on the command line, in scene files and manifests.
     #[must_use]
@@ -76,6 +86,7 @@ impl Technique {
             Technique::ZPass => "z-pass",
             Technique::ZFail => "z-fail",
             Technique::ShadowMap => "shadow-map",
+            Technique::RayTraced => "ray-traced",
         }
     }
 
@@ -94,6 +105,9 @@ impl Technique {
                 "Counts the same volumes from infinity back to the surface, so the eye may be inside one."
             }
             Technique::ShadowMap => "Stores the depth of what the light sees, and darkens what lies behind it.",
+            Technique::RayTraced => {
+                "Follows rays from the eye and the light on the CPU: what the other techniques are measured against."
+            }
         }
     }
 

@@ -150,7 +150,7 @@ impl Technique {
     #[must_use]
     pub fn settings(self) -> &'static [SettingSpec] {
         match self {
-            Technique::None => NONE,
+            Technique::None | Technique::RayTraced => NONE,
             Technique::Planar => PLANAR,
             Technique::ZPass | Technique::ZFail => VOLUME,
             Technique::ShadowMap => SHADOW_MAP,

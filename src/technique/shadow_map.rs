@@ -169,6 +169,7 @@ fn add_face(
     let purpose = "Draws the casters as the light sees them and keeps only how far they are: what lies behind them, \
                    seen from the light, is in shadow.";
     frame.plan.passes.push(Pass {
+        image: None,
         name,
         purpose: purpose.to_owned(),
         light: Some(light),

@@ -60,7 +60,7 @@ fn example() -> Capture {
         light_from_world: DMat4::from_translation(DVec3::new(0.1, -0.7, 1e-300)),
         clip_from_light: (0..6).map(|index| DMat4::from_rotation_x(f64::from(index) / 3.0)).collect(),
     };
-    let lit = |position: DVec4, map| CapturedLight { position, shadow: Some(padded(PixelFormat::U8, 1)), map };
+    let lit = |position: DVec4, map| CapturedLight { position, shadow: Some(padded(PixelFormat::U8, 1)), map, truth: None };
     Capture {
         scene: "bunny \"on\" a floor".into(),
         technique: "z-fail".into(),
@@ -85,7 +85,7 @@ fn example() -> Capture {
         lights: vec![
             lit(DVec4::new(1.0, 2.0, 3.0, 1.0), Some(cube)),
             lit(DVec4::new(0.0, 1.0, 0.0, 0.0), None),
-            CapturedLight { position: DVec4::new(0.5, 0.0, 0.0, 1.0), shadow: None, map: None },
+            CapturedLight { position: DVec4::new(0.5, 0.0, 0.0, 1.0), shadow: None, map: None, truth: None },
         ],
         left_out: vec![LeftOut::new("caps", "torus 2", "outside the near-clip volume")],
         timing: Timing { frame_ms: Some(9.1), captured_ms: None, write_ms: None, setup_ms: Some(0.3) },

@@ -3,12 +3,19 @@
 //! A session owns the GPU and what is worth keeping between runs (pipelines, buffers, edge
 //! lists). Commands, the window and tests all go through it.
 
+mod measure;
+mod truth;
+
+pub use measure::{Measured, Measurement};
+
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::GeometryCache;
 use crate::gpu::{Context, Executor, GpuError, Output, Prepared};
 use crate::plan::FramePlan;
 use crate::scene::Scene;
 use crate::technique::{self, Choice, Job, PlanError};
+use crate::truth::TruthError;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What to capture.
@@ -42,6 +49,12 @@ pub enum SessionError {
     /// The GPU is missing, too small or failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// No ray can be followed through the scene.
+    #[error(transparent)]
+    Truth(#[from] TruthError),
+    /// It was asked to stop.
+    #[error("cancelled")]
+    Cancelled,
 }
 
 impl SessionError {
@@ -57,6 +70,7 @@ impl SessionError {
 pub struct Session {
     executor: Executor,
     geometry: GeometryCache,
+    traced: Option<Arc<truth::Traced>>,
 }
 
 /// A frame's cost, with and without snapshots.
@@ -77,7 +91,7 @@ impl Session {
     /// No usable adapter, with what to install.
     pub fn new(adapter: Option<&str>) -> Result<Session, SessionError> {
         let context = Context::new(adapter)?;
-        Ok(Session { executor: Executor::new(context), geometry: GeometryCache::default() })
+        Ok(Session { executor: Executor::new(context), geometry: GeometryCache::default(), traced: None })
     }
 
     /// The GPU that it runs on.
@@ -162,6 +176,7 @@ impl Session {
                 light_from_world: map.light_from_world,
                 clip_from_light: map.clip_from_light.clone(),
             }),
+            truth: None,
         });
         Capture {
             scene: scene.name.clone(),
@@ -189,6 +204,6 @@ pub fn median_ms(durations: &[Duration]) -> Option<f64> {
     Some(if sorted.len() % 2 == 1 { upper } else { (sorted[middle - 1] + upper) / 2.0 })
 }
 
-fn milliseconds(duration: Duration) -> f64 {
+pub(crate) fn milliseconds(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
 }

@@ -1,0 +1,105 @@
+//! Error against run time: several techniques on one scene, timed in turn.
+
+use super::{Session, SessionError, milliseconds};
+use crate::accuracy::ErrorCounts;
+use crate::plan::FramePlan;
+use crate::progress::Progress;
+use crate::scene::Scene;
+use crate::technique::{self, Choice, Job};
+use std::time::{Duration, Instant};
+
+/// What to measure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measurement {
+    /// Techniques with their settings.
+    pub choices: Vec<Choice>,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Frames of each that are timed, after a warm-up.
+    pub runs: usize,
+}
+
+/// How one technique did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Technique and settings.
+    pub choice: Choice,
+    /// Errors, summed over lights.
+    pub error: ErrorCounts,
+    /// Wall times of frames without capture: recording, submitting, waiting.
+    pub frames: Vec<Duration>,
+    /// GPU time of one frame's passes; `None` where the hardware can't measure it.
+    pub gpu_ms: Option<f64>,
+    /// Planning, geometry, pipelines and uploads of this technique.
+    pub setup_ms: f64,
+    /// Submitted in a frame.
+    pub triangles: u64,
+    /// GPU memory of attachments, vertices and indices.
+    pub bytes: u64,
+}
+
+impl Session {
+    /// Measures every choice on one scene. Frames are timed in turn, so that whatever slows the
+    /// machine down for a while slows all alike.
+    ///
+    /// # Errors
+    /// A scene that can't be drawn or traced, a lost GPU; [`SessionError::Cancelled`].
+    pub fn measure(
+        &mut self,
+        scene: &Scene,
+        what: &Measurement,
+        progress: &Progress,
+    ) -> Result<Vec<Measured>, SessionError> {
+        let go_on = || if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(()) };
+        let traced = self.traced(scene, what.size, progress)?;
+        progress.start(what.choices.len() * (what.runs + 2));
+        let plans = self.plans(scene, what)?;
+        let mut prepared = Vec::with_capacity(plans.len());
+        let mut setups = Vec::with_capacity(plans.len());
+        for (plan, planned) in &plans {
+            go_on()?;
+            self.executor.forget();
+            let start = Instant::now();
+            let ready = self.executor.prepare(plan)?;
+            setups.push(milliseconds(start.elapsed() + *planned));
+            self.executor.time(&ready, false)?;
+            prepared.push(ready);
+            progress.advance();
+        }
+        let mut frames = vec![Vec::with_capacity(what.runs); plans.len()];
+        for _ in 0..what.runs {
+            for (ready, frames) in prepared.iter().zip(&mut frames) {
+                go_on()?;
+                frames.push(self.executor.time(ready, false)?);
+                progress.advance();
+            }
+        }
+        let mut measured = Vec::with_capacity(plans.len());
+        for ((((choice, (plan, _)), ready), frames), setup_ms) in
+            what.choices.iter().zip(&plans).zip(prepared).zip(frames).zip(setups)
+        {
+            go_on()?;
+            let output = self.executor.capture(ready, false)?;
+            let labels = output.labels.iter().enumerate();
+            let error = labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
+            let timed = plan.passes.iter().zip(&output.steps).filter(|(pass, _)| pass.timed && pass.image.is_none());
+            let gpu_ms = timed.map(|(_, step)| step.gpu_ms).sum();
+            let (triangles, bytes) = (plan.triangles(), plan.bytes());
+            measured.push(Measured { choice: choice.clone(), error, frames, gpu_ms, setup_ms, triangles, bytes });
+            progress.advance();
+        }
+        Ok(measured)
+    }
+
+    /// The plan of every choice, and how long it took to make. Nothing is kept from one to the
+    /// next, so that none is set up at another's cost.
+    fn plans(&mut self, scene: &Scene, what: &Measurement) -> Result<Vec<(FramePlan, Duration)>, SessionError> {
+        let plan = |choice: &Choice| {
+            let start = Instant::now();
+            let cache = &mut crate::geometry::GeometryCache::default();
+            let plan = technique::plan(Job { scene, size: what.size, choice, cache })?;
+            Ok((plan, start.elapsed()))
+        };
+        what.choices.iter().map(plan).collect()
+    }
+}

@@ -1,0 +1,98 @@
+//! The ground truth of a scene, kept while nothing that it depends on changes.
+
+use super::{Session, SessionError};
+use crate::accuracy::{self, Accuracy};
+use crate::capture::{Capture, CapturedTruth, Image, PixelFormat};
+use crate::progress::Progress;
+use crate::scene::{Camera, Pose, Scene};
+use crate::truth::{Tracer, Truth};
+use glam::DVec4;
+use std::sync::Arc;
+
+/// A traced scene.
+#[derive(Debug)]
+pub(super) struct Traced {
+    key: Key,
+    pub tracer: Tracer,
+    pub truth: Truth,
+}
+
+/// All that a truth depends on.
+#[derive(Debug, Clone, PartialEq)]
+struct Key {
+    size: [u32; 2],
+    camera: Camera,
+    lights: Vec<DVec4>,
+    objects: Vec<ObjectKey>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct ObjectKey {
+    mesh: u64,
+    pose: Pose,
+    casts: bool,
+    receives: bool,
+    visible: bool,
+}
+
+impl Key {
+    fn new(scene: &Scene, size: [u32; 2]) -> Key {
+        let objects = scene.objects.iter().map(|object| ObjectKey {
+            mesh: object.mesh.content_hash(),
+            pose: object.pose,
+            casts: object.casts,
+            receives: object.receives,
+            visible: object.visible,
+        });
+        let lights = scene.lights.iter().map(|light| light.position);
+        Key { size, camera: scene.camera, lights: lights.collect(), objects: objects.collect() }
+    }
+}
+
+impl Session {
+    /// Adds the ground truth, and how the technique differs from it, to a capture of `scene`.
+    ///
+    /// # Errors
+    /// A scene that no ray can be followed for; [`SessionError::Cancelled`] if `progress` was.
+    pub fn judge(&mut self, scene: &Scene, capture: &mut Capture, progress: &Progress) -> Result<(), SessionError> {
+        let traced = self.traced(scene, capture.size, progress)?;
+        let size = capture.size;
+        for (index, light) in capture.lights.iter_mut().enumerate() {
+            if progress.is_cancelled() {
+                return Err(SessionError::Cancelled);
+            }
+            let Some(shadow) = &light.shadow else { continue };
+            let Accuracy { counts, findings, worst } = traced.compare(index, shadow);
+            let image = |bytes: Vec<u8>| Arc::new(Image::packed(PixelFormat::U8, size, bytes));
+            let labels = image(traced.truth.labels[index].clone());
+            light.truth = Some(CapturedTruth { labels, findings: image(findings), error: counts, worst });
+        }
+        Ok(())
+    }
+
+    /// The truth of a scene, traced unless it is the last one traced.
+    pub(super) fn traced(
+        &mut self,
+        scene: &Scene,
+        size: [u32; 2],
+        progress: &Progress,
+    ) -> Result<Arc<Traced>, SessionError> {
+        let key = Key::new(scene, size);
+        if let Some(traced) = self.traced.as_ref().filter(|traced| traced.key == key) {
+            return Ok(traced.clone());
+        }
+        let tracer = Tracer::new(scene, size)?;
+        let truth = tracer.trace(progress).ok_or(SessionError::Cancelled)?;
+        let traced = Arc::new(Traced { key, tracer, truth });
+        self.traced = Some(traced.clone());
+        Ok(traced)
+    }
+}
+
+impl Traced {
+    /// Holds labels of a light against the truth.
+    pub fn compare(&self, light: usize, labels: &Image) -> Accuracy {
+        let rows: Vec<&[u8]> = labels.rows().collect();
+        accuracy::compare(&self.tracer, &self.truth, light, &rows)
+    }
+}

@@ -1,0 +1,58 @@
+//! The ground truth as a technique: a picture made on the CPU by following rays.
+//!
+//! The GPU draws surfaces as for every other technique; each light's labels come from
+//! [`Tracer`], and the light pass adds light where they say so. Sorting the scene for
+//! the rays is set-up, as edge lists are; following them is part of the frame.
+
+use super::PlanError;
+use super::frame::{Frame, Job, StencilUse};
+use crate::plan::{ColorTarget, CpuImage, FramePlan, LightId, MakeImage, Pass, ViewId};
+use crate::progress::Progress;
+use crate::truth::Tracer;
+use std::sync::Arc;
+
+/// The labels of one light.
+#[derive(Debug)]
+struct LightRays {
+    tracer: Arc<Tracer>,
+    light: LightId,
+}
+
+impl MakeImage for LightRays {
+    fn make(&self) -> Vec<u8> {
+        let traced = self.tracer.trace_lights(&[self.light.0], &Progress::default());
+        traced.and_then(|truth| truth.labels.into_iter().next()).unwrap_or_default()
+    }
+}
+
+/// Plans a frame with traced shadows.
+pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+    let (scene, size) = (job.scene, job.size);
+    let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
+    let tracer = Tracer::new(scene, size).map_err(|error| PlanError::Unusable { problem: error.to_string() })?;
+    let tracer = Arc::new(tracer);
+    frame.ambient_pass();
+    for light in frame.light_ids() {
+        ray_pass(&mut frame, light, LightRays { tracer: tracer.clone(), light });
+        let purpose = "Adds the light where its rays arrived.";
+        frame.light_pass(light, purpose, &frame.light_by_labels());
+    }
+    Ok(frame.finish())
+}
+
+fn ray_pass(frame: &mut Frame, light: LightId, rays: LightRays) {
+    let attachment = frame.plan.lights[light.0].labels;
+    frame.plan.passes.push(Pass {
+        name: "rays".to_owned(),
+        purpose: "Follows a ray from the eye through every pixel to the surface it meets, and one from the light to \
+                  that point: whatever lies between keeps the light away. This is done on the CPU."
+            .to_owned(),
+        light: Some(light),
+        timed: true,
+        view: ViewId(0),
+        color: Some(ColorTarget { attachment, clear: None }),
+        depth_stencil: None,
+        draws: Vec::new(),
+        image: Some(CpuImage { name: format!("rays of {}", Frame::light_name(light)), source: Arc::new(rays) }),
+    });
+}
