@@ -269,8 +269,7 @@ mod tests {
         assert_eq!(worst, Region { pixels: 3, kind: Finding::FalseShadow, bounds: [0, 0, 2, 1], at: [0, 0] });
         assert_eq!(worst_region(&[0, 4, 5, 0], [2, 2]), None);
         let counts = ErrorCounts::of(picture.as_flattened());
-        let expected =
-            ErrorCounts { compared: 22, false_shadow: 3, missing_shadow: 3, wrong_surface: 1, edge_band: 7 };
+        let expected = ErrorCounts { compared: 22, false_shadow: 3, missing_shadow: 3, wrong_surface: 1, edge_band: 7 };
         assert_eq!((counts, counts.wrong()), (expected, 7));
         assert_eq!([counts, counts].into_iter().sum::<ErrorCounts>().compared, 44);
     }

@@ -2,15 +2,15 @@
 //! are wrong where they must be, and a wrong answer can't pass.
 
 use crate::common::random::Random;
-use crate::common::{cuboid, from_above, label_counts, request, session, square};
+use crate::common::{cuboid, from_above, request, session, square};
 use glam::DVec3;
 use std::sync::Arc;
-use stencilscope::accuracy::{Accuracy, ErrorCounts, Finding, compare};
+use stencilscope::accuracy::{ErrorCounts, Finding, Region, compare};
 use stencilscope::capture::Capture;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, MeshBuilder, OpenSpec, Scene, open};
 use stencilscope::session::{CaptureRequest, Session};
-use stencilscope::technique::Technique;
+use stencilscope::technique::{Choice, Technique};
 use stencilscope::truth::Tracer;
 
 const SIZE: [u32; 2] = [96, 72];
@@ -80,4 +80,112 @@ fn z_fail_has_no_wrong_pixel_on_any_scene_from_anywhere() {
         }
         assert!(labels[0] >= 500 && labels[1] >= 500, "{}: {labels:?}", scene.name);
     }
+}
+
+fn error_of(session: &mut Session, scene: &Scene, choice: Choice) -> ErrorCounts {
+    let request = CaptureRequest { choice, ..request(Technique::None, SIZE) };
+    judged(session, scene, &request).error().expect("judged")
+}
+
+/// A board over a floor, and the eye outside the board's shadow volume or inside it.
+#[test]
+fn z_pass_is_right_from_outside_a_volume_and_wrong_from_inside() {
+    let mut session = session();
+    let mut scene = from_above(vec![cuboid("board", [-1.0, 2.0, -1.0], [1.0, 2.1, 1.0])]);
+    scene.lights = vec![Light::point(DVec3::new(0.3, 6.0, 0.2))];
+    scene.camera.eye = DVec3::new(7.0, 4.0, 5.0);
+    let [z_pass, z_fail] = [Technique::ZPass, Technique::ZFail].map(Choice::new);
+    let outside = error_of(&mut session, &scene, z_pass.clone());
+    assert_eq!(outside.wrong(), 0, "{outside:?}");
+    assert!(outside.compared > 4000, "{outside:?}");
+    scene.camera.eye = DVec3::new(0.0, 1.0, 0.0); // under the board
+    scene.camera.target = DVec3::new(6.0, 0.0, 0.0);
+    scene.camera.up = DVec3::Y;
+    let inside = error_of(&mut session, &scene, z_pass);
+    // One volume too few is counted: the lit floor beyond the shadow reads −1, its shadow 0.
+    assert!(inside.false_shadow > 1000 && inside.missing_shadow > 100, "{inside:?}");
+    assert_eq!(error_of(&mut session, &scene, z_fail).wrong(), 0);
+}
+
+#[test]
+fn a_shadow_map_errs_less_the_larger_it_is() {
+    let mut session = session();
+    let scene = named("assets/models/knot.obj");
+    let errors = ["16", "48", "144"].map(|size| {
+        let mut choice = Choice::new(Technique::ShadowMap);
+        choice.set("size", size).expect("a size");
+        error_of(&mut session, &scene, choice).wrong()
+    });
+    assert!(errors[0] > 2 * errors[1] && errors[1] > 2 * errors[2], "{errors:?}");
+}
+
+/// Its labels are the truth: not even an edge is excused. Its picture is the one that z-fail makes.
+#[test]
+fn the_ray_traced_technique_is_the_truth_and_looks_like_z_fail() {
+    let mut session = session();
+    for scene in [named("assets/models/knot.obj"), named("table")] {
+        let traced = judged(&mut session, &scene, &request(Technique::RayTraced, SIZE));
+        let error = traced.error().expect("judged");
+        assert_eq!((error.wrong(), error.edge_band), (0, 0));
+        let z_fail = judged(&mut session, &scene, &request(Technique::ZFail, SIZE));
+        let [a, b] = [&traced, &z_fail].map(|capture| {
+            let last = capture.frame_at(capture.steps.len() - 1).expect("a frame");
+            last.color.image.clone()
+        });
+        let differing = a.rows().zip(b.rows()).flat_map(|(a, b)| a.chunks(4).zip(b.chunks(4))).filter(|(a, b)| a != b);
+        let excused = z_fail.error().expect("judged").edge_band;
+        let differing = differing.count() as u64;
+        assert!(differing <= excused + 30, "{}: {differing} pixels differ, {excused} excused", scene.name);
+    }
+}
+
+/// A truth with a triangle of the caster missing disagrees with a technique that drew it.
+#[test]
+fn a_truth_without_one_triangle_is_caught() {
+    let mut session = session();
+    let scene = from_above(vec![square("caster", 2.0, 1.5)]);
+    let capture = session.capture(&scene, &request(Technique::ZFail, SIZE)).expect("a capture");
+    let mut without = scene.clone();
+    let mesh = &scene.objects[1].mesh;
+    let triangles = mesh.triangles()[1..].to_vec();
+    let builder = MeshBuilder { positions: mesh.positions().to_vec(), triangles, ..MeshBuilder::default() };
+    without.objects[1].mesh = Arc::new(builder.build().expect("a mesh"));
+    let mut judged = capture;
+    session.judge(&without, &mut judged, &Progress::default()).expect("a truth");
+    let truth = judged.lights[0].truth.as_ref().expect("judged");
+    assert!(truth.error.false_shadow > 50, "{:?}", truth.error);
+    let worst = truth.worst.expect("a region");
+    assert!(worst.pixels > 50 && worst.kind == Finding::FalseShadow, "{worst:?}");
+}
+
+#[test]
+fn one_flipped_pixel_of_a_mask_is_caught_and_found() {
+    let mut session = session();
+    let scene = from_above(vec![square("caster", 2.0, 1.5)]);
+    let capture = session.capture(&scene, &request(Technique::ZFail, SIZE)).expect("a capture");
+    let tracer = Tracer::new(&scene, SIZE).expect("a tracer");
+    let truth = tracer.trace(&Progress::default()).expect("a truth");
+    let mask = capture.lights[0].shadow.as_ref().expect("labels");
+    let mut rows: Vec<Vec<u8>> = mask.rows().map(<[u8]>::to_vec).collect();
+    let compare_rows =
+        |rows: &[Vec<u8>]| compare(&tracer, &truth, 0, &rows.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    assert_eq!(compare_rows(&rows).counts.wrong(), 0);
+    for (value, kind) in [(1, Finding::FalseShadow), (2, Finding::WrongSurface), (3, Finding::WrongSurface)] {
+        rows[70][2] = value; // a corner of the floor, far from any edge
+        let found = compare_rows(&rows);
+        assert_eq!(found.worst, Some(Region { pixels: 1, kind, bounds: [2, 70, 2, 70], at: [2, 70] }));
+        assert_eq!((found.counts.wrong(), found.findings[70 * 96 + 2]), (1, kind as u8));
+    }
+}
+
+#[test]
+fn a_cancelled_judgement_leaves_the_capture_as_it_was() {
+    let mut session = session();
+    let scene = from_above(vec![]);
+    let before = session.capture(&scene, &request(Technique::ZFail, SIZE)).expect("a capture");
+    let mut capture = before.clone();
+    let progress = Progress::default();
+    progress.cancel();
+    assert!(session.judge(&scene, &mut capture, &progress).is_err());
+    assert_eq!(capture, before);
 }

@@ -134,7 +134,8 @@ fn what_does_not_cast_or_receive_is_left_out() {
 /// one metre: any offset along the normal would lose it.
 #[test]
 fn a_grazing_light_finds_the_smallest_occluder() {
-    let fin = mesh(&[[0.0, 0.0, -30.0], [0.0, 0.0, 30.0], [0.0, 1e-6, 30.0], [0.0, 1e-6, -30.0]], &[[0, 1, 2], [0, 2, 3]]);
+    let fin =
+        mesh(&[[0.0, 0.0, -30.0], [0.0, 0.0, 30.0], [0.0, 1e-6, 30.0], [0.0, 1e-6, -30.0]], &[[0, 1, 2], [0, 2, 3]]);
     let mut scene = from_above(vec![unseen(Object::new("fin", fin, Material::default()))]);
     scene.lights = vec![Light::directional(DVec3::new(-1.0, 1e-6, 0.0))];
     assert_floor(&scene, |x, _| shadow_if(x > 0.0 && x < 1.0));
@@ -154,7 +155,8 @@ fn coplanar_triangles_do_not_darken_each_other() {
     for offset in [0.0, 1e3, 1e7] {
         let mut floor = Object::new("floor", mesh(&corners, &triangles), Material::default());
         let mut scene = from_above(vec![]);
-        floor.pose = Pose { translate: DVec3::splat(offset), rotate_degrees: DVec3::new(0.0, 33.0, 0.0), ..Pose::default() };
+        floor.pose =
+            Pose { translate: DVec3::splat(offset), rotate_degrees: DVec3::new(0.0, 33.0, 0.0), ..Pose::default() };
         let mut beside = square("coplanar", 0.0, 3.0);
         beside.pose = floor.pose;
         scene.objects = vec![floor, beside];

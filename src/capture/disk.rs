@@ -4,8 +4,11 @@
 //! all; a folder that it replaces is moved aside until then.
 
 use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, RegionEntry};
+use super::{
+    Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, FrameSnapshot, Image, PixelFormat, Snapshot, Step,
+    files,
+};
 use crate::accuracy::Finding;
-use super::{Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, FrameSnapshot, Image, PixelFormat, Snapshot, Step, files};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;

@@ -168,11 +168,7 @@ fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Prep
         depth_stencil: target.map(|target| layer_view(&textures[target.attachment.0], target.layer)),
         has_stencil: target.is_some_and(|target| plan.attachment(target.attachment).format.has_stencil_aspect()),
         draws: Vec::with_capacity(pass.draws.len()),
-        image_target: pass
-            .image
-            .as_ref()
-            .and(pass.color.as_ref())
-            .map(|target| textures[target.attachment.0].clone()),
+        image_target: pass.image.as_ref().and(pass.color.as_ref()).map(|target| textures[target.attachment.0].clone()),
     }
 }
 

@@ -279,9 +279,7 @@ impl Tracer {
         light.pencil.for_each_meeting(&self.world.triangles, &bundle, false, |seen, line| {
             let index = lines[line];
             let is_darkened = labels[index] == LIT
-                && surfaces[index].as_ref().is_some_and(|surface| {
-                    self.lies_between(seen, bundle.point(line), surface)
-                });
+                && surfaces[index].as_ref().is_some_and(|surface| self.lies_between(seen, bundle.point(line), surface));
             if is_darkened {
                 labels[index] = SHADOW;
                 left -= 1;

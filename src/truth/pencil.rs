@@ -114,9 +114,7 @@ impl Pencil {
             let u = towards.any_orthonormal_vector();
             Chart::Plane { across: [u, towards.cross(u)], towards, reach }
         };
-        let is_met = |index: &usize| {
-            takes_part(*index) && side_of_triangle(triangles[*index], center) != Sign::Zero
-        };
+        let is_met = |index: &usize| takes_part(*index) && side_of_triangle(triangles[*index], center) != Sign::Zero;
         let entries: Vec<(Aabb, usize)> = (0..triangles.len())
             .into_par_iter()
             .with_min_len(1024)
@@ -188,8 +186,7 @@ impl Pencil {
         let mut high = [f64::NEG_INFINITY; Bundle::MOST];
         for (normal, offset) in seen.edge_normals.iter().zip(seen.edge_offsets) {
             for line in 0..Bundle::MOST {
-                let value =
-                    normal.x * bundle.x[line] + normal.y * bundle.y[line] + normal.z * bundle.z[line] + offset;
+                let value = normal.x * bundle.x[line] + normal.y * bundle.y[line] + normal.z * bundle.z[line] + offset;
                 low[line] = if value < low[line] { value } else { low[line] };
                 high[line] = if value > high[line] { value } else { high[line] };
             }

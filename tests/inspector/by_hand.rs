@@ -88,7 +88,12 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
                 frame(new(&lit), old(&depth), new(&after_light), false),
             ),
         ],
-        lights: vec![CapturedLight { position: DVec4::new(0.0, 4.0, 0.0, 1.0), shadow: Some(labels), map: None, truth: None }],
+        lights: vec![CapturedLight {
+            position: DVec4::new(0.0, 4.0, 0.0, 1.0),
+            shadow: Some(labels),
+            map: None,
+            truth: None,
+        }],
         left_out: vec![LeftOut::new("stencil clear", "light 1", "nothing has written the stencil before")],
         timing: Timing { frame_ms: Some(6.25), ..Timing::default() },
         plan_text: String::new(),

@@ -60,7 +60,8 @@ fn example() -> Capture {
         light_from_world: DMat4::from_translation(DVec3::new(0.1, -0.7, 1e-300)),
         clip_from_light: (0..6).map(|index| DMat4::from_rotation_x(f64::from(index) / 3.0)).collect(),
     };
-    let lit = |position: DVec4, map| CapturedLight { position, shadow: Some(padded(PixelFormat::U8, 1)), map, truth: None };
+    let lit =
+        |position: DVec4, map| CapturedLight { position, shadow: Some(padded(PixelFormat::U8, 1)), map, truth: None };
     Capture {
         scene: "bunny \"on\" a floor".into(),
         technique: "z-fail".into(),
