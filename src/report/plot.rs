@@ -1,0 +1,453 @@
+//! The plot's layout as data: where every mark, line and word goes, in points, y downwards.
+//!
+//! One small chart a scene, all on the same axes. Across: the median frame time, log. Up: wrong
+//! pixels of those compared, log; as zero has no place on a log axis, rows without a wrong pixel
+//! have a band of their own below it, in lanes so that they do not cover each other. SVG, PNG and
+//! the inspector draw the same layout; each gives [`Ink`]s its own colours.
+//!
+//! ```text
+//! plot.rs    what a layout is made of, the page: heading, charts in rows, legend, notes
+//! scale.rs   log scales and their ticks        chart.rs   one scene's chart
+//! labels.rs  words beside points, apart        marks.rs   shape and colour of each technique
+//! ```
+
+mod chart;
+mod labels;
+mod marks;
+mod scale;
+
+#[cfg(test)]
+mod tests;
+
+pub use marks::{Mark, STYLES, Style, UNKNOWN, style_of};
+
+use super::{Report, table};
+use chart::Frame;
+
+/// Size of words in points; titles are larger.
+pub const TEXT_SIZE: f64 = 12.0;
+/// Size of titles in points.
+pub const TITLE_SIZE: f64 = 14.0;
+/// Size of axis numbers and labels in points.
+pub const SMALL_SIZE: f64 = 11.0;
+/// Radius of a mark in points.
+pub const RADIUS: f64 = 4.6;
+
+/// Below this a chart is too narrow to be read, points.
+const LEAST_CHART_WIDTH: f64 = 300.0;
+/// Below this a chart is too low to be read, points.
+const LEAST_CHART_HEIGHT: f64 = 168.0;
+/// Between charts, points.
+const GAP: f64 = 20.0;
+/// Height of a line of words, points.
+const LINE: f64 = 18.0;
+
+/// A place for a plot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Page {
+    /// Width in points.
+    pub width: f64,
+    /// Height in points, to be filled where charts need not be lower than they can be; `None`:
+    /// as high as charts like to be.
+    pub height: Option<f64>,
+    /// Charts side by side at most.
+    pub most_columns: usize,
+    /// With title and adapter above the charts.
+    pub heading: bool,
+}
+
+impl Page {
+    /// A sheet of paper, or a picture in a web page.
+    pub const PAPER: Page = Page { width: 760.0, height: None, most_columns: 2, heading: true };
+}
+
+/// A rectangle in points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rect {
+    /// Upper left corner.
+    pub min: [f64; 2],
+    /// Lower right corner.
+    pub max: [f64; 2],
+}
+
+impl Rect {
+    /// Do the two share more than an edge?
+    #[must_use]
+    pub fn overlaps(&self, other: &Rect) -> bool {
+        (0..2).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
+    }
+
+    /// Does it hold all of `other`?
+    #[must_use]
+    pub fn holds(&self, other: &Rect) -> bool {
+        (0..2).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
+    }
+
+    /// Width in points.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        self.max[0] - self.min[0]
+    }
+
+    /// Height in points.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        self.max[1] - self.min[1]
+    }
+}
+
+/// What a thing means, for whoever colours it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ink {
+    /// Words that matter.
+    Text,
+    /// Words beside them.
+    Dim,
+    /// Lines that help the eye.
+    Grid,
+    /// The Pareto front.
+    Front,
+    /// A technique's.
+    Technique(&'static Style),
+}
+
+/// Which side of a text is at its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Anchor {
+    /// The left.
+    Start,
+    /// The middle.
+    Middle,
+    /// The right.
+    End,
+}
+
+/// Words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Text {
+    /// Across: as `anchor` says; down: the middle of the line.
+    pub at: [f64; 2],
+    /// The words.
+    pub text: String,
+    /// Size in points.
+    pub size: f64,
+    /// What `at` means.
+    pub anchor: Anchor,
+    /// What it means.
+    pub ink: Ink,
+    /// A title.
+    pub strong: bool,
+}
+
+/// A line through points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Two or more.
+    pub points: Vec<[f64; 2]>,
+    /// Thickness in points.
+    pub width: f64,
+    /// What it means.
+    pub ink: Ink,
+    /// Drawn so that marks stand out from it.
+    pub faint: bool,
+}
+
+/// A row's mark.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spot {
+    /// Index of the row in the report.
+    pub row: usize,
+    /// Its middle.
+    pub at: [f64; 2],
+    /// From the fastest to the slowest frame, across.
+    pub whisker: [f64; 2],
+    /// Shape and colour.
+    pub style: &'static Style,
+    /// On the Pareto front; others are hollow.
+    pub filled: bool,
+    /// For who can't see it: `shadow-map 1024: 0.12 % wrong, 3.1 ms`.
+    pub name: String,
+    /// For who points at it, in lines.
+    pub details: String,
+}
+
+/// One scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// The scene's name.
+    pub title: String,
+    /// Where points with wrong pixels are.
+    pub area: Rect,
+    /// Where points without one are.
+    pub band: Rect,
+    /// Grid, joined settings, front: to be drawn in this order, below marks.
+    pub lines: Vec<Line>,
+    /// Marks, those on the front last.
+    pub spots: Vec<Spot>,
+    /// Title and axes.
+    pub texts: Vec<Text>,
+    /// Words beside marks; no two overlap, and none covers a mark.
+    pub labels: Vec<Text>,
+}
+
+/// A mark of the legend, without a row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Key {
+    /// Its middle.
+    pub at: [f64; 2],
+    /// Shape and colour.
+    pub style: &'static Style,
+    /// As on the front.
+    pub filled: bool,
+}
+
+/// A whole plot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plot {
+    /// Width and height in points.
+    pub size: [f64; 2],
+    /// In a sentence, for who can't see it.
+    pub summary: String,
+    /// One a scene.
+    pub charts: Vec<Chart>,
+    /// Heading, legend, notes.
+    pub texts: Vec<Text>,
+    /// Marks of the legend.
+    pub keys: Vec<Key>,
+    /// Lines of the legend.
+    pub lines: Vec<Line>,
+}
+
+/// Estimated width of words in points: those of Helvetica and its like, a little more than most
+/// faces need. What is laid out with it stays apart in whichever face it is drawn.
+#[must_use]
+pub fn text_width(text: &str, size: f64) -> f64 {
+    let width = |c: char| match c {
+        'i' | 'j' | 'l' | 'I' | '|' | '.' | ',' | ':' | ';' | '\'' | '!' => 0.28,
+        '\u{2009}' => 0.2,
+        ' ' | '\u{a0}' | 't' | 'f' | 'r' | '-' | '(' | ')' | '/' | '·' => 0.34,
+        'm' | 'w' | 'M' | 'W' | '%' | '@' | '…' => 0.86,
+        'A'..='Z' => 0.68,
+        c if c.is_ascii() => 0.56,
+        '–' | '×' | '−' => 0.6,
+        _ => 1.0,
+    };
+    text.chars().map(width).sum::<f64>() * size
+}
+
+impl Text {
+    /// A line of words.
+    fn new(at: [f64; 2], text: impl Into<String>, size: f64, ink: Ink) -> Text {
+        Text { at, text: text.into(), size, anchor: Anchor::Start, ink, strong: false }
+    }
+
+    fn anchored(self, anchor: Anchor) -> Text {
+        Text { anchor, ..self }
+    }
+
+    fn strong(self) -> Text {
+        Text { strong: true, ..self }
+    }
+
+    /// What the words cover, by [`text_width`].
+    #[must_use]
+    pub fn rect(&self) -> Rect {
+        let width = text_width(&self.text, self.size);
+        let left = match self.anchor {
+            Anchor::Start => self.at[0],
+            Anchor::Middle => self.at[0] - width / 2.0,
+            Anchor::End => self.at[0] - width,
+        };
+        let half = self.size * 0.6;
+        Rect { min: [left, self.at[1] - half], max: [left + width, self.at[1] + half] }
+    }
+}
+
+/// Lays out the plot of `report`.
+#[must_use]
+pub fn layout(report: &Report, page: &Page) -> Plot {
+    let width = page.width.max(LEAST_CHART_WIDTH);
+    let scenes: Vec<(&str, Vec<usize>)> = report
+        .scenes()
+        .into_iter()
+        .map(|scene| {
+            let is_drawn = |index: &usize| report.rows[*index].scene == scene && report.rows[*index].is_measured();
+            (scene, (0..report.rows.len()).filter(is_drawn).collect())
+        })
+        .collect();
+    let mut plot = Plot {
+        size: [width, 0.0],
+        summary: summary(report),
+        charts: Vec::new(),
+        texts: Vec::new(),
+        keys: Vec::new(),
+        lines: Vec::new(),
+    };
+    let top = if page.heading { heading(&mut plot, report) } else { 4.0 };
+    let legend = legend(report, width);
+    let notes = notes(report, width);
+    let below = legend.size[1] + notes.len() as f64 * LINE + 8.0;
+    let columns = columns(width, page.most_columns, scenes.len());
+    let chart_width = (width - GAP * (columns - 1) as f64) / columns as f64;
+    let rows = scenes.len().div_ceil(columns);
+    let room = page.height.map(|height| (height - top - below) / rows.max(1) as f64 - GAP / 2.0);
+    let frame = Frame::new(report, &scenes, [chart_width, room.unwrap_or(330.0).max(LEAST_CHART_HEIGHT)]);
+    let mut bottom = top;
+    for (index, (scene, rows)) in scenes.iter().enumerate() {
+        let column = index % columns;
+        let corner = [column as f64 * (chart_width + GAP), top + (index / columns) as f64 * (frame.size[1] + GAP / 2.0)];
+        plot.charts.push(chart::chart(report, scene, rows, &frame, corner));
+        bottom = corner[1] + frame.size[1];
+    }
+    if scenes.is_empty() {
+        plot.texts.push(Text::new([8.0, bottom + LINE], "Nothing was measured.", TEXT_SIZE, Ink::Dim));
+        bottom += 2.0 * LINE;
+    }
+    plot.add(legend, bottom + 8.0);
+    let notes_top = plot.size[1];
+    for (index, note) in notes.into_iter().enumerate() {
+        let at = [8.0, notes_top + (index as f64 + 0.5) * LINE];
+        plot.texts.push(Text::new(at, note, SMALL_SIZE, Ink::Dim));
+        plot.size[1] = at[1] + LINE / 2.0;
+    }
+    plot
+}
+
+/// How many charts fit side by side; no more than make the rows even.
+fn columns(width: f64, most: usize, charts: usize) -> usize {
+    let fit = ((width + GAP) / (LEAST_CHART_WIDTH + GAP)).floor() as usize;
+    fit.min(most).min(charts).max(1)
+}
+
+fn summary(report: &Report) -> String {
+    let (rows, scenes) = (report.rows.len(), report.scenes());
+    let front: Vec<String> = report.rows.iter().filter(|row| row.pareto).map(super::Row::summary).collect();
+    format!(
+        "Wrong pixels against frame time of {rows} runs, scenes: {}. On the Pareto front: {}.",
+        if scenes.is_empty() { "none".to_owned() } else { scenes.join(", ") },
+        if front.is_empty() { "none".to_owned() } else { front.join("; ") },
+    )
+}
+
+/// Title and what it was measured on; where the charts begin.
+fn heading(plot: &mut Plot, report: &Report) -> f64 {
+    let title = Text::new([8.0, 18.0], "Wrong pixels against frame time", TITLE_SIZE + 2.0, Ink::Text).strong();
+    let adapter = &report.adapter;
+    let sizes = table::sizes(report.rows.iter().map(|row| row.size));
+    let facts = [adapter.name.as_str(), adapter.driver.as_str(), sizes.as_str()];
+    let facts: Vec<&str> = facts.into_iter().filter(|fact| !fact.is_empty()).collect();
+    let lines = wrapped(&facts.join(" · "), plot.size[0] - 16.0);
+    plot.texts.push(title);
+    let mut y = 38.0;
+    for line in lines {
+        plot.texts.push(Text::new([8.0, y], line, TEXT_SIZE, Ink::Dim));
+        y += LINE;
+    }
+    y + 4.0
+}
+
+/// Words in lines of at most `width` points.
+fn wrapped(text: &str, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), TEXT_SIZE) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+
+/// Each technique's mark, and what filled marks, lines and whiskers mean.
+fn legend(report: &Report, width: f64) -> Plot {
+    let mut legend = Plot {
+        size: [width, 0.0],
+        summary: String::new(),
+        charts: Vec::new(),
+        texts: Vec::new(),
+        keys: Vec::new(),
+        lines: Vec::new(),
+    };
+    let mut used: Vec<(&'static Style, &str)> = Vec::new();
+    for row in report.rows.iter().filter(|row| row.is_measured()) {
+        let entry = (style_of(&row.technique), row.technique.as_str());
+        if !used.contains(&entry) {
+            used.push(entry);
+        }
+    }
+    if used.is_empty() {
+        return legend;
+    }
+    used.sort_by_key(|(style, _)| STYLES.iter().position(|other| other == *style).unwrap_or(STYLES.len()));
+    let mut flow = Flow { legend: &mut legend, at: [8.0, LINE / 2.0], width };
+    for (style, name) in used {
+        flow.add(name, Ink::Technique(style), &|legend, at| {
+            legend.keys.push(Key { at: [at[0] + 6.0, at[1]], style, filled: true });
+        });
+    }
+    flow.next_line();
+    flow.add("Pareto front: nothing is faster and more right", Ink::Dim, &|legend, [x, y]| {
+        let points = vec![[x, y - 4.0], [x + 7.0, y - 4.0], [x + 7.0, y + 4.0], [x + 13.0, y + 4.0]];
+        legend.lines.push(Line { points, width: 1.5, ink: Ink::Front, faint: false });
+    });
+    flow.add("fastest to slowest frame", Ink::Dim, &|legend, [x, y]| {
+        let points = vec![[x, y], [x + 13.0, y]];
+        legend.lines.push(Line { points, width: 1.0, ink: Ink::Dim, faint: false });
+    });
+    let bottom = flow.at[1] + LINE / 2.0;
+    legend.size[1] = bottom;
+    legend
+}
+
+/// Entries of a legend, in lines.
+struct Flow<'a> {
+    legend: &'a mut Plot,
+    at: [f64; 2],
+    width: f64,
+}
+
+impl Flow<'_> {
+    /// An entry: a sign of 14 points, then its words.
+    fn add(&mut self, words: &str, ink: Ink, sign: &dyn Fn(&mut Plot, [f64; 2])) {
+        let taken = 18.0 + text_width(words, SMALL_SIZE) + 14.0;
+        if self.at[0] > 8.0 && self.at[0] + taken > self.width {
+            self.next_line();
+        }
+        sign(self.legend, self.at);
+        self.legend.texts.push(Text::new([self.at[0] + 18.0, self.at[1]], words, SMALL_SIZE, ink));
+        self.at[0] += taken;
+    }
+
+    fn next_line(&mut self) {
+        self.at = [8.0, self.at[1] + LINE];
+    }
+}
+
+/// What is not in the plot, or not where it belongs.
+fn notes(report: &Report, width: f64) -> Vec<String> {
+    let mut notes = Vec::new();
+    for row in &report.rows {
+        if let Some(problem) = row.problem() {
+            notes.push(format!("Not drawn: {} in {}: {problem}.", row.name(), row.scene));
+        } else if row.frame_ms.median == 0.0 {
+            notes.push(format!("At the left edge: {} in {} took 0 ms.", row.name(), row.scene));
+        }
+    }
+    notes.iter().flat_map(|note| wrapped(note, width - 16.0)).collect()
+}
+
+impl Plot {
+    /// Puts a part of the page below `top`.
+    fn add(&mut self, part: Plot, top: f64) {
+        let down = |[x, y]: [f64; 2]| [x, y + top];
+        self.texts.extend(part.texts.into_iter().map(|text| Text { at: down(text.at), ..text }));
+        self.keys.extend(part.keys.into_iter().map(|key| Key { at: down(key.at), ..key }));
+        let lines = part.lines.into_iter();
+        self.lines.extend(lines.map(|line| Line { points: line.points.into_iter().map(down).collect(), ..line }));
+        self.size[1] = top + part.size[1] + 8.0;
+    }
+}
