@@ -38,6 +38,7 @@ pub mod gpu;
 pub mod inspector;
 pub mod math;
 pub mod plan;
+pub mod report;
 pub mod scene;
 pub mod session;
 pub mod stencil_machine;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 13] = [
+const MAY_USE: [(&str, &[&str]); 14] = [
     ("math", &[]),
     ("scene", &["math"]),
     ("geometry", &["math", "scene"]),
@@ -13,11 +13,12 @@ const MAY_USE: [(&str, &[&str]); 13] = [
     ("technique", &["math", "scene", "geometry", "plan"]),
     ("capture", &["math", "scene", "plan"]),
     ("stencil_machine", &["plan"]),
+    ("report", &["capture"]),
     ("gpu", &["math", "scene", "plan", "capture"]),
     ("session", &["math", "scene", "geometry", "plan", "technique", "capture", "gpu"]),
-    ("inspector", &["math", "scene", "plan", "technique", "capture", "stencil_machine"]),
-    ("app", &["scene", "plan", "technique", "capture", "session", "inspector"]),
-    ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app"]),
+    ("inspector", &["math", "scene", "plan", "technique", "capture", "stencil_machine", "report"]),
+    ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "report"]),
+    ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app", "report"]),
     ("main", &["cli"]),
 ];
 

@@ -162,7 +162,9 @@ impl Report {
         let marks: Vec<bool> = self
             .rows
             .iter()
-            .map(|row| row.is_measured() && !self.rows.iter().any(|other| other.scene == row.scene && beats(other, row)))
+            .map(|row| {
+                row.is_measured() && !self.rows.iter().any(|other| other.scene == row.scene && beats(other, row))
+            })
             .collect();
         for (row, mark) in self.rows.iter_mut().zip(marks) {
             row.pareto = mark;
@@ -295,7 +297,13 @@ impl Row {
                 count(self.missing_shadow),
                 count(self.wrong_surface),
             ),
-            format!("{} to {} ms in {} frames, set-up {} ms", ms(times.min), ms(times.max), times.runs, ms(self.setup_ms)),
+            format!(
+                "{} to {} ms in {} frames, set-up {} ms",
+                ms(times.min),
+                ms(times.max),
+                times.runs,
+                ms(self.setup_ms)
+            ),
             format!("{} triangles, {} MiB", count(self.triangles), numbers::mebibytes(self.bytes)),
         ];
         if self.pareto {

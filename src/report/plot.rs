@@ -36,7 +36,9 @@ pub const RADIUS: f64 = 4.6;
 /// Below this a chart is too narrow to be read, points.
 const LEAST_CHART_WIDTH: f64 = 300.0;
 /// Below this a chart is too low to be read, points.
-const LEAST_CHART_HEIGHT: f64 = 168.0;
+const LEAST_CHART_HEIGHT: f64 = 150.0;
+/// How high a chart likes to be, points.
+const CHART_HEIGHT: f64 = 330.0;
 /// Between charts, points.
 const GAP: f64 = 20.0;
 /// Height of a line of words, points.
@@ -52,13 +54,13 @@ pub struct Page {
     pub height: Option<f64>,
     /// Charts side by side at most.
     pub most_columns: usize,
-    /// With title and adapter above the charts.
-    pub heading: bool,
+    /// Without title, adapter and legend, and with low margins: beside a table that has them.
+    pub compact: bool,
 }
 
 impl Page {
     /// A sheet of paper, or a picture in a web page.
-    pub const PAPER: Page = Page { width: 760.0, height: None, most_columns: 2, heading: true };
+    pub const PAPER: Page = Page { width: 760.0, height: None, most_columns: 2, compact: false };
 }
 
 /// A rectangle in points.
@@ -275,27 +277,23 @@ pub fn layout(report: &Report, page: &Page) -> Plot {
             (scene, (0..report.rows.len()).filter(is_drawn).collect())
         })
         .collect();
-    let mut plot = Plot {
-        size: [width, 0.0],
-        summary: summary(report),
-        charts: Vec::new(),
-        texts: Vec::new(),
-        keys: Vec::new(),
-        lines: Vec::new(),
-    };
-    let top = if page.heading { heading(&mut plot, report) } else { 4.0 };
-    let legend = legend(report, width);
+    let mut plot = Plot { summary: summary(report), ..Plot::empty(width) };
+    let top = if page.compact { 0.0 } else { heading(&mut plot, report) };
+    let legend = if page.compact { Plot::empty(width) } else { legend(report, width) };
     let notes = notes(report, width);
-    let below = legend.size[1] + notes.len() as f64 * LINE + 8.0;
+    let around_legend = if page.compact { 0.0 } else { 8.0 };
+    let below = legend.size[1] + notes.len() as f64 * LINE + 2.0 * around_legend;
     let columns = columns(width, page.most_columns, scenes.len());
     let chart_width = (width - GAP * (columns - 1) as f64) / columns as f64;
     let rows = scenes.len().div_ceil(columns);
-    let room = page.height.map(|height| (height - top - below) / rows.max(1) as f64 - GAP / 2.0);
-    let frame = Frame::new(report, &scenes, [chart_width, room.unwrap_or(330.0).max(LEAST_CHART_HEIGHT)]);
+    let gaps = rows.saturating_sub(1) as f64 * GAP / 2.0;
+    let room = page.height.map_or(CHART_HEIGHT, |height| (height - top - below - gaps) / rows.max(1) as f64);
+    let frame = Frame::new(report, &scenes, [chart_width, room.max(LEAST_CHART_HEIGHT)], page.compact);
     let mut bottom = top;
     for (index, (scene, rows)) in scenes.iter().enumerate() {
         let column = index % columns;
-        let corner = [column as f64 * (chart_width + GAP), top + (index / columns) as f64 * (frame.size[1] + GAP / 2.0)];
+        let corner =
+            [column as f64 * (chart_width + GAP), top + (index / columns) as f64 * (frame.size[1] + GAP / 2.0)];
         plot.charts.push(chart::chart(report, scene, rows, &frame, corner));
         bottom = corner[1] + frame.size[1];
     }
@@ -303,7 +301,8 @@ pub fn layout(report: &Report, page: &Page) -> Plot {
         plot.texts.push(Text::new([8.0, bottom + LINE], "Nothing was measured.", TEXT_SIZE, Ink::Dim));
         bottom += 2.0 * LINE;
     }
-    plot.add(legend, bottom + 8.0);
+    plot.add(legend, bottom + around_legend);
+    plot.size[1] += around_legend;
     let notes_top = plot.size[1];
     for (index, note) in notes.into_iter().enumerate() {
         let at = [8.0, notes_top + (index as f64 + 0.5) * LINE];
@@ -361,17 +360,9 @@ fn wrapped(text: &str, width: f64) -> Vec<String> {
     lines
 }
 
-
 /// Each technique's mark, and what filled marks, lines and whiskers mean.
 fn legend(report: &Report, width: f64) -> Plot {
-    let mut legend = Plot {
-        size: [width, 0.0],
-        summary: String::new(),
-        charts: Vec::new(),
-        texts: Vec::new(),
-        keys: Vec::new(),
-        lines: Vec::new(),
-    };
+    let mut legend = Plot::empty(width);
     let mut used: Vec<(&'static Style, &str)> = Vec::new();
     for row in report.rows.iter().filter(|row| row.is_measured()) {
         let entry = (style_of(&row.technique), row.technique.as_str());
@@ -390,7 +381,7 @@ fn legend(report: &Report, width: f64) -> Plot {
         });
     }
     flow.next_line();
-    flow.add("Pareto front: nothing is faster and more right", Ink::Dim, &|legend, [x, y]| {
+    flow.add("Pareto front, filled: none is faster and more right", Ink::Dim, &|legend, [x, y]| {
         let points = vec![[x, y - 4.0], [x + 7.0, y - 4.0], [x + 7.0, y + 4.0], [x + 13.0, y + 4.0]];
         legend.lines.push(Line { points, width: 1.5, ink: Ink::Front, faint: false });
     });
@@ -441,6 +432,17 @@ fn notes(report: &Report, width: f64) -> Vec<String> {
 }
 
 impl Plot {
+    fn empty(width: f64) -> Plot {
+        Plot {
+            size: [width, 0.0],
+            summary: String::new(),
+            charts: Vec::new(),
+            texts: Vec::new(),
+            keys: Vec::new(),
+            lines: Vec::new(),
+        }
+    }
+
     /// Puts a part of the page below `top`.
     fn add(&mut self, part: Plot, top: f64) {
         let down = |[x, y]: [f64; 2]| [x, y + top];
@@ -448,6 +450,6 @@ impl Plot {
         self.keys.extend(part.keys.into_iter().map(|key| Key { at: down(key.at), ..key }));
         let lines = part.lines.into_iter();
         self.lines.extend(lines.map(|line| Line { points: line.points.into_iter().map(down).collect(), ..line }));
-        self.size[1] = top + part.size[1] + 8.0;
+        self.size[1] = top + part.size[1];
     }
 }

@@ -53,7 +53,13 @@ mod tests {
     fn it_has_two_pixels_a_point_and_is_not_blank() {
         let report = Report::new(adapter(), vec![row("tori", "z-fail", "", 0, 6.25), row("tori", "none", "", 9, 2.0)]);
         let svg = report.to_svg();
-        let height: f32 = svg.split("viewBox=\"0 0 760 ").nth(1).and_then(|rest| rest.split('"').next()).expect("a height").parse().expect("a number");
+        let height: f32 = svg
+            .split("viewBox=\"0 0 760 ")
+            .nth(1)
+            .and_then(|rest| rest.split('"').next())
+            .expect("a height")
+            .parse()
+            .expect("a number");
         let bytes = report.to_png().expect("a picture");
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG");
         let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];

@@ -37,6 +37,7 @@ fn chart_group(chart: &Chart) -> String {
     let mut out = format!("<g>\n<title>{}</title>\n", escaped(&chart.title));
     out += &band(&chart.band);
     out.extend(chart.lines.iter().map(line));
+    out.extend(chart.spots.iter().map(whisker));
     out.extend(chart.labels.iter().map(|words| text(words, true)));
     out.extend(chart.spots.iter().map(spot));
     out.extend(chart.texts.iter().map(|words| text(words, false)));
@@ -59,15 +60,15 @@ fn line(line: &Line) -> String {
     )
 }
 
-fn spot(spot: &Spot) -> String {
+fn whisker(spot: &Spot) -> String {
     let [left, right] = spot.whisker.map(number);
-    let y = number(spot.at[1]);
-    format!(
-        "<g>\n<title>{}</title>\n<line x1=\"{left}\" y1=\"{y}\" x2=\"{right}\" y2=\"{y}\" stroke=\"{}\"/>\n{}</g>\n",
-        escaped(&spot.details),
-        hex(spot.style.paper),
-        mark(spot.at, spot.style, spot.filled),
-    )
+    let (y, color) = (number(spot.at[1]), hex(spot.style.paper));
+    format!("<line x1=\"{left}\" y1=\"{y}\" x2=\"{right}\" y2=\"{y}\" stroke=\"{color}\"/>\n")
+}
+
+fn spot(spot: &Spot) -> String {
+    let mark = mark(spot.at, spot.style, spot.filled);
+    format!("<g>\n<title>{}</title>\n{mark}</g>\n", escaped(&spot.details))
 }
 
 fn key(key: &Key) -> String {
@@ -178,7 +179,9 @@ mod tests {
             document.descendants().filter(|node| node.has_tag_name("title")).filter_map(|node| node.text()).collect();
         assert_eq!(titles[0], "Wrong pixels against frame time");
         assert_eq!(titles[1], "a <b> & \"c\" \u{fffd} 'd'");
-        assert!(titles.iter().any(|title| title.starts_with("z-fail <&>: none wrong, 6.2 ms\n0 wrong of 1\u{2009}000")));
+        assert!(
+            titles.iter().any(|title| title.starts_with("z-fail <&>: none wrong, 6.2 ms\n0 wrong of 1\u{2009}000"))
+        );
         assert!(document.descendants().any(|node| node.has_tag_name("desc")));
     }
 

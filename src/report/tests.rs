@@ -87,8 +87,22 @@ fn json_has_the_names_of_the_contract_and_survives_the_way_there_and_back() {
     assert_eq!(
         names(&value["rows"][0]),
         [
-            "bytes", "compared", "edge_band", "false_shadow", "frame_ms", "gpu_ms", "label", "missing_shadow",
-            "pareto", "scene", "settings", "setup_ms", "size", "technique", "triangles", "wrong_fraction",
+            "bytes",
+            "compared",
+            "edge_band",
+            "false_shadow",
+            "frame_ms",
+            "gpu_ms",
+            "label",
+            "missing_shadow",
+            "pareto",
+            "scene",
+            "settings",
+            "setup_ms",
+            "size",
+            "technique",
+            "triangles",
+            "wrong_fraction",
             "wrong_surface",
         ]
     );
@@ -106,7 +120,8 @@ fn another_schema_is_refused() {
 
 #[test]
 fn a_row_says_itself_in_words() {
-    let report = Report::new(adapter(), vec![row("a", "shadow-map", "1024", 12, 3.14), row("a", "z-fail", "", 0, 6.25)]);
+    let report =
+        Report::new(adapter(), vec![row("a", "shadow-map", "1024", 12, 3.14), row("a", "z-fail", "", 0, 6.25)]);
     assert_eq!(report.rows[0].summary(), "shadow-map 1024: 1.2\u{a0}% wrong, 3.1 ms");
     assert_eq!(report.rows[1].summary(), "z-fail: none wrong, 6.2 ms");
     assert!(report.rows[0].details().contains("12 wrong of 1\u{2009}000: 12 false shadow"));

@@ -1,6 +1,7 @@
 //! What tests share: a session on the reference adapter, and small scenes with known answers.
 
 pub mod ray_cast;
+pub mod report;
 
 use glam::DVec3;
 use std::fs;

@@ -45,7 +45,14 @@ fn scene(name: &str, pace: f64, shadow: u64, z_pass_wrong: u64, planar_wrong: u6
             // Twice the texels along a side, half the stairs; acne does not go away.
             let stairs = shadow / 5 * 256 / size;
             let wrong = if worse > 1 { stairs + shadow / 9 * worse } else { stairs };
-            rows.push(row(name, "shadow-map", &label, &settings, wrong, pace * cost * if worse > 1 { 1.02 } else { 1.0 }));
+            rows.push(row(
+                name,
+                "shadow-map",
+                &label,
+                &settings,
+                wrong,
+                pace * cost * if worse > 1 { 1.02 } else { 1.0 },
+            ));
         }
     }
     rows.push(row(name, "ray-traced", "", &[], 0, 150.0 * pace / 7.0));

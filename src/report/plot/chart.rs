@@ -2,14 +2,18 @@
 
 use super::labels::{self, Obstacles, Wish};
 use super::scale::{self, Log};
-use super::{Anchor, Chart, Ink, Line, RADIUS, Rect, SMALL_SIZE, Spot, TITLE_SIZE, Text, style_of, text_width};
+use super::{
+    Anchor, Chart, Ink, Line, RADIUS, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of, text_width,
+};
 use crate::report::{Report, Row, numbers};
 use std::collections::BTreeMap;
 
-/// Above the area: title and caption of the axis that goes up, points.
+/// Above the area: title and caption of the axis that goes up, points; in one line where compact.
 const TOP: f64 = 40.0;
-/// Below the band: ticks and caption of the axis that goes across, points.
+const COMPACT_TOP: f64 = 24.0;
+/// Below the band: ticks and caption of the axis that goes across, points; ticks only where compact.
 const BOTTOM: f64 = 38.0;
+const COMPACT_BOTTOM: f64 = 22.0;
 /// Right of the area, points: half of the last tick's words.
 const RIGHT: f64 = 22.0;
 /// Between area and band, points: a gap that no line of the axis crosses.
@@ -36,16 +40,18 @@ pub struct Frame {
     x_ticks: Vec<f64>,
     y_ticks: Vec<f64>,
     lanes: usize,
+    compact: bool,
 }
 
 impl Frame {
     /// Axes that hold the rows of all `scenes`, in charts of `size`.
-    pub fn new(report: &Report, scenes: &[(&str, Vec<usize>)], size: [f64; 2]) -> Frame {
+    pub fn new(report: &Report, scenes: &[(&str, Vec<usize>)], size: [f64; 2], compact: bool) -> Frame {
+        let [top, below] = if compact { [COMPACT_TOP, COMPACT_BOTTOM] } else { [TOP, BOTTOM] };
         let rows = || scenes.iter().flat_map(|(_, rows)| rows).map(|index| &report.rows[*index]);
         let times = rows().flat_map(|row| [row.frame_ms.median, row.frame_ms.min, row.frame_ms.max]);
         let times = scale::range(times, NO_TIMES);
         let [low, high] = scale::range(rows().map(|row| row.wrong_fraction * 100.0), NO_ERRORS);
-        let room = size[1] - TOP - BOTTOM - BREAK;
+        let room = size[1] - top - below - BREAK;
         // More than half of the chart is not for rows that are all equally right.
         let most_lanes = ((room * 0.55 / LANE) as usize).max(1);
         // The widest words that the axis may have.
@@ -54,16 +60,19 @@ impl Frame {
         let across = Log::new(times, [x0, x1]);
         let lanes = scenes.iter().map(|(_, rows)| {
             let band = band_rows(report, rows);
-            lanes(&band, &captions(report, rows), &across, [x0, x1], most_lanes).values().max().map_or(1, |last| last + 1)
+            lanes(&band, &captions(report, rows), &across, [x0, x1], most_lanes)
+                .values()
+                .max()
+                .map_or(1, |last| last + 1)
         });
         let lanes = lanes.max().unwrap_or(1);
-        let bottom = size[1] - BOTTOM;
+        let bottom = size[1] - below;
         let band = Rect { min: [x0, bottom - lanes as f64 * LANE - 6.0], max: [x1, bottom] };
-        let area = Rect { min: [x0, TOP], max: [x1, band.min[1] - BREAK] };
+        let area = Rect { min: [x0, top], max: [x1, band.min[1] - BREAK] };
         let up = Log::new([low, high], [area.max[1], area.min[1]]);
-        let x_ticks = across.ticks(46.0);
+        let x_ticks = across.ticks(39.0);
         let y_ticks = up.ticks(17.0).into_iter().filter(|percent| *percent <= 100.0).collect();
-        Frame { size, area, band, across, up, x_ticks, y_ticks, lanes }
+        Frame { size, area, band, across, up, x_ticks, y_ticks, lanes, compact }
     }
 
     fn grid(&self) -> Vec<Line> {
@@ -82,14 +91,24 @@ impl Frame {
 
     fn texts(&self, title: &str) -> Vec<Text> {
         let small = |at, text: String, ink| Text::new(at, text, SMALL_SIZE, ink);
-        let mut texts = vec![
-            Text::new([8.0, 10.0], title, TITLE_SIZE, Ink::Text).strong(),
-            small([8.0, 27.0], "wrong pixels, of those compared".to_owned(), Ink::Dim),
-            small([self.area.max[0], self.band.max[1] + 28.0], "frame time, median".to_owned(), Ink::Dim)
-                .anchored(Anchor::End),
-        ];
+        let mut texts = if self.compact {
+            let words = "wrong pixels against frame time".to_owned();
+            let after = 8.0 + text_width(title, TEXT_SIZE) + 10.0;
+            let fits = after + text_width(&words, SMALL_SIZE) <= self.size[0];
+            let caption = fits.then(|| small([after, 9.0], words, Ink::Dim));
+            let title = Text::new([8.0, 9.0], title, TEXT_SIZE, Ink::Text).strong();
+            [title].into_iter().chain(caption).collect()
+        } else {
+            let at = [self.area.max[0], self.band.max[1] + 28.0];
+            vec![
+                Text::new([8.0, 10.0], title, TITLE_SIZE, Ink::Text).strong(),
+                small([8.0, 27.0], "wrong pixels, of those compared".to_owned(), Ink::Dim),
+                small(at, "frame time, median".to_owned(), Ink::Dim).anchored(Anchor::End),
+            ]
+        };
         let beside = self.area.min[0] - 6.0;
-        let levels = self.y_ticks.iter().map(|percent| (self.up.position(*percent), format!("{}\u{a0}%", tick(*percent))));
+        let levels =
+            self.y_ticks.iter().map(|percent| (self.up.position(*percent), format!("{}\u{a0}%", tick(*percent))));
         let none = ((self.band.min[1] + self.band.max[1]) / 2.0, NONE_WRONG.to_owned());
         texts.extend(levels.chain([none]).map(|(y, text)| small([beside, y], text, Ink::Dim).anchored(Anchor::End)));
         texts.extend(self.x_ticks.iter().map(|ms| {
@@ -166,9 +185,16 @@ fn lanes(
     let mut found = BTreeMap::new();
     for (order, (index, row)) in rows.iter().enumerate() {
         let x = across.position(row.frame_ms.median);
-        let reach = captions.get(index).map_or(0.0, |caption| labels::reach(&caption.text)) + 4.0;
-        let own = RADIUS + 4.0;
-        let span = if x + reach <= right || x - reach < left { [x - own, x + reach] } else { [x - reach, x + own] };
+        let whiskers = whiskers(row, x, across);
+        let reach =
+            |whisker: f64| captions.get(index).map_or(0.0, |caption| labels::reach(&caption.text, whisker)) + 4.0;
+        let [left_reach, right_reach] = whiskers.map(reach);
+        let own = whiskers.map(|whisker| whisker.max(RADIUS) + 4.0);
+        let span = if x + right_reach <= right || x - left_reach < left {
+            [x - own[0], x + right_reach]
+        } else {
+            [x - left_reach, x + own[1]]
+        };
         let is_free = |lane: &Vec<[f64; 2]>| lane.iter().all(|other| span[1] <= other[0] || other[1] <= span[0]);
         let lane = taken.iter().position(is_free).unwrap_or_else(|| {
             if taken.len() < most {
@@ -184,13 +210,19 @@ fn lanes(
     found
 }
 
+/// How far the fastest and the slowest frame are from the median, which is at `x`.
+fn whiskers(row: &Row, x: f64, across: &Log) -> [f64; 2] {
+    let length = |ms: f64| if ms.is_finite() { (across.position(ms) - x).abs() } else { 0.0 };
+    [length(row.frame_ms.min), length(row.frame_ms.max)]
+}
+
 fn spot(report: &Report, index: usize, at: [f64; 2], frame: &Frame) -> Spot {
     let row = &report.rows[index];
-    let end = |ms: f64| if ms.is_finite() { frame.across.position(ms) } else { at[0] };
+    let [left, right] = whiskers(row, at[0], &frame.across);
     Spot {
         row: index,
         at,
-        whisker: [end(row.frame_ms.min), end(row.frame_ms.max)],
+        whisker: [at[0] - left, at[0] + right],
         style: style_of(&row.technique),
         filled: row.pareto,
         name: row.summary(),
@@ -229,7 +261,8 @@ fn chains(report: &Report, rows: &[usize]) -> Vec<Vec<usize>> {
     let mut techniques: Vec<&str> = rows.iter().map(|index| report.rows[*index].technique.as_str()).collect();
     techniques.sort_unstable();
     techniques.dedup();
-    let of = |technique: &str| rows.iter().copied().filter(|index| report.rows[*index].technique == technique).collect();
+    let of =
+        |technique: &str| rows.iter().copied().filter(|index| report.rows[*index].technique == technique).collect();
     techniques.into_iter().flat_map(|technique| chains_of(report, of(technique))).collect()
 }
 
@@ -261,7 +294,8 @@ fn chains_of(report: &Report, rows: Vec<usize>) -> Vec<Vec<usize>> {
 
 /// The front as a staircase: right of it and above it, everything is beaten.
 fn front(report: &Report, rows: &[usize], place: &dyn Fn(usize) -> [f64; 2]) -> Option<Line> {
-    let mut on_front: Vec<[f64; 2]> = rows.iter().filter(|index| report.rows[**index].pareto).map(|index| place(*index)).collect();
+    let mut on_front: Vec<[f64; 2]> =
+        rows.iter().filter(|index| report.rows[**index].pareto).map(|index| place(*index)).collect();
     on_front.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let mut points: Vec<[f64; 2]> = Vec::new();
     for at in on_front {
@@ -293,6 +327,7 @@ fn label(
         .iter()
         .map(|(spot, caption)| Wish {
             at: spot.at,
+            whiskers: spot.whisker.map(|x| (x - spot.at[0]).abs()),
             text: caption.text.clone(),
             ink: Ink::Technique(spot.style),
             area: if report.rows[spot.row].wrong_fraction == 0.0 { frame.band } else { frame.area },

@@ -11,6 +11,8 @@ use super::{Anchor, Ink, RADIUS, Rect, SMALL_SIZE, Text, text_width};
 pub struct Wish {
     /// The middle of its point.
     pub at: [f64; 2],
+    /// How far its whiskers reach to the left and to the right of it.
+    pub whiskers: [f64; 2],
     /// The words.
     pub text: String,
     /// Their colour.
@@ -41,6 +43,8 @@ pub struct Placed {
 
 /// Between a mark and its label, points.
 const AWAY: f64 = RADIUS + 4.0;
+/// Whiskers up to this long are left free by words beside them, points.
+const LONGEST_FREE: f64 = 26.0;
 /// Directions around a point with what each costs: right is read most easily.
 const AROUND: [([f64; 2], f64); 8] = [
     ([1.0, 0.0], 0.0),
@@ -96,8 +100,11 @@ fn beside(wish: &Wish, [right, down]: [f64; 2], away: f64) -> Text {
     } else {
         Anchor::Middle
     };
+    let free = |whisker: f64| if down == 0.0 { away.max(whisker.min(LONGEST_FREE) + 3.0) } else { away };
+    let [left_away, right_away] = wish.whiskers.map(free);
+    let across = if right < 0.0 { right * left_away } else { right * right_away };
     // Above and below, the words' half height is between them and the mark too.
-    let at = [wish.at[0] + right * away, wish.at[1] + down * (away + SMALL_SIZE * 0.3)];
+    let at = [wish.at[0] + across, wish.at[1] + down * (away + SMALL_SIZE * 0.3)];
     Text::new(at, wish.text.clone(), SMALL_SIZE, wish.ink).anchored(anchor)
 }
 
@@ -133,9 +140,10 @@ fn crosses([from, to]: &[[f64; 2]; 2], rect: &Rect) -> bool {
     enters <= leaves
 }
 
-/// What a label takes beside its point, points: for those that are laid out in lanes.
-pub fn reach(text: &str) -> f64 {
-    AWAY + text_width(text, SMALL_SIZE)
+/// What a label takes beside a point with such a whisker, points: for those that are laid out in
+/// lanes.
+pub fn reach(text: &str, whisker: f64) -> f64 {
+    AWAY.max(whisker.min(LONGEST_FREE) + 3.0) + text_width(text, SMALL_SIZE)
 }
 
 #[cfg(test)]
@@ -145,7 +153,7 @@ mod tests {
     const AREA: Rect = Rect { min: [0.0, 0.0], max: [200.0, 100.0] };
 
     fn wish(at: [f64; 2], must: bool) -> Wish {
-        Wish { at, text: "1024".to_owned(), ink: Ink::Text, area: AREA, must }
+        Wish { at, whiskers: [0.0; 2], text: "1024".to_owned(), ink: Ink::Text, area: AREA, must }
     }
 
     fn placed(wishes: &[Wish], obstacles: &Obstacles) -> Vec<Option<Placed>> {
@@ -177,7 +185,8 @@ mod tests {
 
     #[test]
     fn words_far_away_have_a_line_back() {
-        let marks: Vec<[f64; 2]> = (0..49).map(|i| [76.0 + f64::from(i % 7) * 8.0, 26.0 + f64::from(i / 7) * 8.0]).collect();
+        let marks: Vec<[f64; 2]> =
+            (0..49).map(|i| [76.0 + f64::from(i % 7) * 8.0, 26.0 + f64::from(i / 7) * 8.0]).collect();
         let obstacles = Obstacles { marks, segments: Vec::new() };
         let found = placed(&[wish([100.0, 50.0], true)], &obstacles);
         assert!(found[0].as_ref().is_some_and(|placed| placed.leader.is_some()));

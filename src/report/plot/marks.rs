@@ -101,7 +101,9 @@ impl Mark {
                 outer.into_iter().zip(inner).flat_map(|(outer, inner)| [outer, inner]).collect()
             }
             Mark::Plus => bars(radius),
-            Mark::Cross => bars(radius).into_iter().map(|[x, y]| [(x - y) * 0.5_f64.sqrt(), (x + y) * 0.5_f64.sqrt()]).collect(),
+            Mark::Cross => {
+                bars(radius).into_iter().map(|[x, y]| [(x - y) * 0.5_f64.sqrt(), (x + y) * 0.5_f64.sqrt()]).collect()
+            }
         }
     }
 }

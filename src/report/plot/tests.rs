@@ -5,15 +5,14 @@ use crate::report::tests::{adapter, row};
 use crate::report::{FrameTimes, Row};
 use std::collections::BTreeMap;
 
-const PAGE: Page = Page { width: 600.0, height: None, most_columns: 3, heading: true };
+const PAGE: Page = Page { width: 600.0, height: None, most_columns: 3, compact: false };
 
 fn report(rows: Vec<Row>) -> Report {
     Report::new(adapter(), rows)
 }
 
 fn with_size(mut row: Row, size: u32, slope: &str) -> Row {
-    row.settings =
-        BTreeMap::from([("size".to_owned(), size.to_string()), ("bias-slope".to_owned(), slope.to_owned())]);
+    row.settings = BTreeMap::from([("size".to_owned(), size.to_string()), ("bias-slope".to_owned(), slope.to_owned())]);
     row
 }
 
@@ -60,7 +59,8 @@ fn chart(plot: &Plot) -> &Chart {
 
 #[test]
 fn points_are_at_the_logarithms_of_time_and_error() {
-    let mut rows = vec![row("a", "none", "", 100, 1.0), row("a", "planar", "", 10, 10.0), row("a", "z-fail", "", 0, 100.0)];
+    let mut rows =
+        vec![row("a", "none", "", 100, 1.0), row("a", "planar", "", 10, 10.0), row("a", "z-fail", "", 0, 100.0)];
     for row in &mut rows {
         (row.frame_ms.min, row.frame_ms.max) = (row.frame_ms.median, row.frame_ms.median);
     }
@@ -120,13 +120,14 @@ fn rows_that_differ_in_one_number_are_joined_in_its_order() {
 #[test]
 fn every_technique_is_named_in_a_crowd() {
     for count in [7, 16, 40] {
-        for page in [PAGE, Page { height: Some(200.0), heading: false, ..PAGE }, Page::PAPER] {
+        for page in [PAGE, Page { height: Some(200.0), compact: true, ..PAGE }, Page::PAPER] {
             let crowd = crowd(count);
             let plot = layout(&crowd, &page);
             let chart = chart(&plot);
             assert_eq!(chart.spots.len(), count);
             for technique in ["none", "planar", "z-pass", "z-fail", "shadow-map", "ray-traced", "later"] {
-                assert!(plot.texts.iter().any(|text| text.text == technique), "{technique} is in the legend");
+                let is_in_legend = plot.texts.iter().any(|text| text.text == technique);
+                assert_eq!(is_in_legend, !page.compact, "{technique}");
                 let is_named = chart.labels.iter().any(|label| label.text.starts_with(technique));
                 assert!(is_named || page.height.is_some(), "{technique} of {count}");
             }
@@ -146,14 +147,15 @@ fn scenes_are_charts_side_by_side_on_the_same_axes() {
     assert_eq!(tops, [tops[0]; 3]);
     let words = |chart: &Chart| chart.texts.iter().skip(1).map(|text| text.text.clone()).collect::<Vec<_>>();
     assert_eq!(words(&plot.charts[0]), words(&plot.charts[2]));
-    let narrow = layout(&report(vec![row("a", "x", "", 1, 1.0), row("b", "x", "", 1, 1.0)]), &Page { width: 10.0, ..PAGE });
+    let narrow =
+        layout(&report(vec![row("a", "x", "", 1, 1.0), row("b", "x", "", 1, 1.0)]), &Page { width: 10.0, ..PAGE });
     check(&narrow);
     assert!(narrow.charts[1].area.min[1] > narrow.charts[0].band.max[1], "below each other where there is no room");
 }
 
 #[test]
 fn a_given_height_is_filled() {
-    let page = Page { height: Some(400.0), heading: false, ..PAGE };
+    let page = Page { height: Some(400.0), compact: true, ..PAGE };
     let plot = layout(&crowd(7), &page);
     check(&plot);
     assert!((380.0..=400.0).contains(&plot.size[1]), "{}", plot.size[1]);
