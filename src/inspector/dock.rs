@@ -18,7 +18,7 @@ const RIGHT_WIDTH: f32 = 332.0;
 /// What a side panel may take of the window at most.
 const SIDE_SHARE: f32 = 0.26;
 /// Height of the report in points, without and with something to show.
-const EMPTY_REPORT_HEIGHT: f32 = 104.0;
+const EMPTY_REPORT_HEIGHT: f32 = 88.0;
 const REPORT_HEIGHT: f32 = 312.0;
 /// What the report may take of the window at most.
 const REPORT_SHARE: f32 = 0.42;

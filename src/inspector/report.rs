@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// From this width on, in points, plot and table are side by side.
 const SIDE_BY_SIDE: f32 = 600.0;
 /// Width of the table beside the plot, points.
-const TABLE_WIDTH: std::ops::RangeInclusive<f32> = 272.0..=480.0;
+const TABLE_WIDTH: std::ops::RangeInclusive<f32> = 296.0..=480.0;
 /// Height of the plot above the table, points.
 const STACKED_PLOT_HEIGHT: f32 = 240.0;
 

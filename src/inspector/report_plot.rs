@@ -84,7 +84,16 @@ impl Sheet {
             let ends = spot.whisker.map(|x| self.place([x, spot.at[1]]));
             self.painter.line_segment(ends, Stroke::new(1.0, screen(spot.style)));
         }
-        for text in chart.labels.iter().chain(&chart.texts) {
+        for text in &chart.labels {
+            // Parts the words from lines that they cover.
+            let in_band = text.at[1] > chart.band.min[1];
+            let words = text.rect();
+            let behind = Rect::from_min_max(self.place(words.min), self.place(words.max)).shrink2(vec2(0.0, 1.5));
+            let fill = if in_band { theme::RAISED } else { theme::PANEL };
+            self.painter.rect_filled(behind, CornerRadius::same(2), fill.gamma_multiply(0.8));
+            self.text(text);
+        }
+        for text in &chart.texts {
             self.text(text);
         }
     }

@@ -3,56 +3,59 @@
 use super::action::Action;
 use super::state::State;
 use super::{format, report, report_plot, theme};
-use crate::report::plot::style_of;
+use crate::report::plot::{style_of, text_width};
 use crate::report::{Row, numbers};
 use egui::{Align2, CornerRadius, Pos2, Rect, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-/// What the name takes at least, points.
-const NAME_WIDTH: f32 = 128.0;
+/// Widths of what stands before a name: its sign.
+const SIGN_WIDTH: f32 = 30.0;
+/// What names take at most, points.
+const WIDEST_NAME: f32 = 200.0;
 
 /// A column of numbers.
 struct Column {
     heading: &'static str,
     width: f32,
+    /// Lower ones are given room first.
+    rank: usize,
     cell: fn(&Row) -> String,
 }
 
-/// In the order in which they are given room.
 const COLUMNS: [Column; 6] = [
-    Column { heading: "wrong", width: 60.0, cell: |row| format::count(row.wrong()) },
-    Column { heading: "%", width: 46.0, cell: |row| numbers::per_hundred(row.wrong_fraction) },
-    Column { heading: "ms", width: 48.0, cell: |row| numbers::milliseconds(row.frame_ms.median) },
-    Column { heading: "set-up ms", width: 66.0, cell: |row| numbers::milliseconds(row.setup_ms) },
-    Column { heading: "triangles", width: 66.0, cell: |row| format::count(row.triangles) },
-    Column { heading: "MiB", width: 46.0, cell: |row| numbers::mebibytes(row.bytes) },
+    Column { heading: "wrong", width: 58.0, rank: 2, cell: |row| format::count(row.wrong()) },
+    Column { heading: "%", width: 46.0, rank: 0, cell: |row| numbers::per_hundred(row.wrong_fraction) },
+    Column { heading: "ms", width: 46.0, rank: 1, cell: |row| numbers::milliseconds(row.frame_ms.median) },
+    Column { heading: "set-up ms", width: 66.0, rank: 3, cell: |row| numbers::milliseconds(row.setup_ms) },
+    Column { heading: "triangles", width: 66.0, rank: 4, cell: |row| format::count(row.triangles) },
+    Column { heading: "MiB", width: 46.0, rank: 5, cell: |row| numbers::mebibytes(row.bytes) },
 ];
 
 /// Draws the table in the width that there is.
 pub fn ui(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
     let Some(report) = &state.report.view().report else { return };
     ui.spacing_mut().item_spacing.y = 0.0;
-    let columns = columns(ui.available_width());
+    let columns = columns(&report.rows, ui.available_width());
     let scenes = report.scenes();
     for scene in &scenes {
-        headings(ui, if scenes.len() > 1 { scene } else { "technique" }, columns);
+        headings(ui, if scenes.len() > 1 { scene } else { "technique" }, &columns);
         for row in report.rows.iter().filter(|row| row.scene == *scene) {
-            table_row(ui, state, row, columns, actions);
+            table_row(ui, state, row, &columns, actions);
         }
         ui.add_space(8.0);
     }
 }
 
-/// As many columns as fit beside the names.
-fn columns(width: f32) -> &'static [Column] {
-    let mut taken = NAME_WIDTH;
-    let fit = COLUMNS.iter().take_while(|column| {
-        taken += column.width;
-        taken <= width
-    });
-    &COLUMNS[..fit.count().max(3)]
+/// The columns that fit beside the names, the more important ones first; error and time always.
+fn columns(rows: &[Row], width: f32) -> Vec<&'static Column> {
+    let name = |row: &Row| text_width(&row.name(), f64::from(theme::TEXT_SIZE)) as f32;
+    let names = SIGN_WIDTH + rows.iter().map(name).fold(0.0, f32::max).min(WIDEST_NAME);
+    let taken = |column: &Column| {
+        COLUMNS.iter().filter(|other| other.rank <= column.rank).fold(names + 12.0, |sum, other| sum + other.width)
+    };
+    COLUMNS.iter().filter(|column| column.rank < 2 || taken(column) <= width).collect()
 }
 
-fn headings(ui: &mut Ui, name: &str, columns: &[Column]) {
+fn headings(ui: &mut Ui, name: &str, columns: &[&'static Column]) {
     let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::RowHeader, true, name));
@@ -65,16 +68,16 @@ fn headings(ui: &mut Ui, name: &str, columns: &[Column]) {
 }
 
 /// Each column with the right end of its cell in a row.
-fn places(columns: &[Column], row: Rect) -> impl Iterator<Item = (&Column, Pos2)> {
+fn places(columns: &[&'static Column], row: Rect) -> impl Iterator<Item = (&'static Column, Pos2)> {
     let mut right = row.right() - 6.0;
-    columns.iter().rev().map(move |column| {
+    columns.iter().copied().rev().map(move |column| {
         let at = pos2(right, row.center().y);
         right -= column.width;
         (column, at)
     })
 }
 
-fn table_row(ui: &mut Ui, state: &State, row: &Row, columns: &[Column], actions: &mut Vec<Action>) {
+fn table_row(ui: &mut Ui, state: &State, row: &Row, columns: &[&'static Column], actions: &mut Vec<Action>) {
     let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let is_current = report::is_current(state, row);
@@ -98,9 +101,9 @@ fn table_row(ui: &mut Ui, state: &State, row: &Row, columns: &[Column], actions:
 }
 
 /// Technique and label, cut where the numbers begin.
-fn name(ui: &Ui, rect: Rect, row: &Row, columns: &[Column]) {
+fn name(ui: &Ui, rect: Rect, row: &Row, columns: &[&'static Column]) {
     let numbers: f32 = columns.iter().map(|column| column.width).sum();
-    let width = (rect.width() - numbers - 34.0).max(40.0);
+    let width = (rect.width() - numbers - SIGN_WIDTH - 6.0).max(40.0);
     let mut job = egui::text::LayoutJob::default();
     let part = |color| egui::TextFormat::simple(TextStyle::Body.resolve(ui.style()), color);
     job.append(&row.technique, 0.0, part(theme::TEXT));
@@ -109,7 +112,7 @@ fn name(ui: &Ui, rect: Rect, row: &Row, columns: &[Column]) {
     }
     job.wrap = egui::text::TextWrapping::truncate_at_width(width);
     let galley = ui.painter().layout_job(job);
-    let at = pos2(rect.left() + 30.0, rect.center().y - galley.size().y / 2.0);
+    let at = pos2(rect.left() + SIGN_WIDTH, rect.center().y - galley.size().y / 2.0);
     ui.painter().galley(at, galley, theme::TEXT);
 }
 

@@ -143,10 +143,13 @@ pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &Frame, corner
     let lanes = lanes(&band_rows(report, rows), &captions, &frame.across, sides, frame.lanes);
     let place = |index: usize| frame.place(&report.rows[index], lanes.get(&index));
     let mut spots: Vec<Spot> = rows.iter().map(|index| spot(report, *index, place(*index), frame)).collect();
-    let joins = chains(report, rows).into_iter().map(|chain| Line {
-        points: chain.iter().map(|index| place(*index)).collect(),
+    // Height in the band says nothing, so a line between two of its rows would say something wrong.
+    let is_apart = |pair: &&[usize]| pair.iter().any(|index| report.rows[*index].wrong_fraction > 0.0);
+    let chains = chains(report, rows);
+    let joins = chains.iter().flat_map(|chain| chain.windows(2)).filter(is_apart).map(|pair| Line {
+        points: pair.iter().map(|index| place(*index)).collect(),
         width: 1.2,
-        ink: Ink::Technique(style_of(&report.rows[chain[0]].technique)),
+        ink: Ink::Technique(style_of(&report.rows[pair[0]].technique)),
         faint: true,
     });
     let mut over_grid: Vec<Line> = joins.collect();
@@ -266,12 +269,15 @@ fn chains(report: &Report, rows: &[usize]) -> Vec<Vec<usize>> {
     techniques.into_iter().flat_map(|technique| chains_of(report, of(technique))).collect()
 }
 
+/// All settings but the number that varies.
+type OtherSettings<'a> = Vec<(&'a String, &'a String)>;
+
 fn chains_of(report: &Report, rows: Vec<usize>) -> Vec<Vec<usize>> {
     let mut keys: Vec<&String> = rows.iter().flat_map(|index| report.rows[*index].settings.keys()).collect();
     keys.sort_unstable();
     keys.dedup();
     let along = |key: &String| {
-        let mut groups: BTreeMap<Vec<(&String, &String)>, Vec<(f64, usize)>> = BTreeMap::new();
+        let mut groups: BTreeMap<OtherSettings, Vec<(f64, usize)>> = BTreeMap::new();
         for index in &rows {
             let settings = &report.rows[*index].settings;
             let value = settings.get(key).and_then(|value| value.parse::<f64>().ok());

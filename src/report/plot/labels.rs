@@ -57,7 +57,9 @@ const AROUND: [([f64; 2], f64); 8] = [
     ([-0.75, 0.9], 3.0),
 ];
 /// What a covered line costs.
-const LINE_COST: f64 = 2.0;
+const LINE_COST: f64 = 2.6;
+/// What is left free between words and a line, points.
+const LINE_GAP: f64 = 2.0;
 
 /// Places labels in the order of `wishes`; `None` for those that are left out.
 pub fn place(wishes: &[Wish], obstacles: &Obstacles) -> Vec<Option<Placed>> {
@@ -85,7 +87,9 @@ fn best(wish: &Wish, away: f64, obstacles: &Obstacles, taken: &[Rect]) -> Option
         if covers_mark || !wish.area.holds(&rect) || taken.iter().any(|other| other.overlaps(&rect)) {
             return None;
         }
-        let lines = obstacles.segments.iter().filter(|segment| crosses(segment, &rect)).count();
+        let [[left, top], [right, bottom]] = [rect.min, rect.max];
+        let room = Rect { min: [left - LINE_GAP, top], max: [right + LINE_GAP, bottom] };
+        let lines = obstacles.segments.iter().filter(|segment| crosses(segment, &room)).count();
         Some((cost + LINE_COST * lines as f64, text))
     });
     candidates.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, text)| text)

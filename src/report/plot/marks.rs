@@ -49,7 +49,7 @@ const fn style(technique: &'static str, mark: Mark, paper: [u8; 3], screen: [u8;
 }
 
 /// Techniques in teaching order.
-pub const STYLES: [Style; 10] = [
+pub static STYLES: [Style; 10] = [
     style("none", Mark::Cross, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]),
     style("planar", Mark::Square, [0x1b, 0x74, 0xa8], [0x56, 0xb4, 0xe9]),
     style("planar-texture", Mark::TriangleRight, [0x00, 0x55, 0xa0], [0x8f, 0xb8, 0xe8]),
@@ -63,15 +63,12 @@ pub const STYLES: [Style; 10] = [
 ];
 
 /// How a technique looks that is not in the table.
-pub const UNKNOWN: Style = style("", Mark::Hexagon, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]);
-
-static STYLE_TABLE: [Style; 10] = STYLES;
-static UNKNOWN_STYLE: Style = UNKNOWN;
+pub static UNKNOWN: Style = style("", Mark::Hexagon, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]);
 
 /// The look of a technique; a neutral one for a name that is not known.
 #[must_use]
 pub fn style_of(technique: &str) -> &'static Style {
-    STYLE_TABLE.iter().find(|style| style.technique == technique).unwrap_or(&UNKNOWN_STYLE)
+    STYLES.iter().find(|style| style.technique == technique).unwrap_or(&UNKNOWN)
 }
 
 impl Mark {

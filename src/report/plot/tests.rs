@@ -111,7 +111,7 @@ fn rows_that_differ_in_one_number_are_joined_in_its_order() {
     let at = |row: usize| chart.spots.iter().find(|spot| spot.row == row).expect("a spot").at;
     let is_join = |line: &&Line| matches!(line.ink, Ink::Technique(_)) && line.width > 1.0;
     let joins: Vec<Vec<[f64; 2]>> = chart.lines.iter().filter(is_join).map(|line| line.points.clone()).collect();
-    assert_eq!(joins, [vec![at(3), at(4)], vec![at(1), at(2), at(0)]]);
+    assert_eq!(joins, [[at(3), at(4)], [at(1), at(2)], [at(2), at(0)]]);
     let words: Vec<&str> = chart.labels.iter().map(|label| label.text.as_str()).collect();
     assert!(words.contains(&"shadow-map 256"), "one row carries the name: {words:?}");
     assert!(words.contains(&"512") && words.contains(&"1024"), "{words:?}");
