@@ -40,6 +40,7 @@ pub mod inspector;
 pub mod math;
 pub mod plan;
 pub mod progress;
+pub mod report;
 pub mod scene;
 pub mod session;
 pub mod stencil_machine;

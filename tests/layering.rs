@@ -5,19 +5,28 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 13] = [
+const MAY_USE: [(&str, &[&str]); 17] = [
     ("math", &[]),
+    ("progress", &[]),
     ("scene", &["math"]),
+    ("truth", &["math", "scene", "progress"]),
+    ("accuracy", &["truth"]),
     ("geometry", &["math", "scene"]),
     ("plan", &["math", "scene", "geometry"]),
-    ("technique", &["math", "scene", "geometry", "plan"]),
-    ("capture", &["math", "scene", "plan"]),
+    ("technique", &["math", "scene", "geometry", "plan", "truth", "progress"]),
+    ("capture", &["math", "scene", "plan", "accuracy"]),
     ("stencil_machine", &["plan"]),
     ("gpu", &["math", "scene", "plan", "capture"]),
-    ("session", &["math", "scene", "geometry", "plan", "technique", "capture", "gpu"]),
-    ("inspector", &["math", "scene", "plan", "technique", "capture", "stencil_machine"]),
-    ("app", &["scene", "plan", "technique", "capture", "session", "inspector"]),
-    ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app"]),
+    ("report", &["capture"]),
+    (
+        "session",
+        &[
+            "math", "scene", "geometry", "plan", "technique", "capture", "gpu", "truth", "accuracy", "progress", "report",
+        ],
+    ),
+    ("inspector", &["math", "scene", "plan", "technique", "capture", "stencil_machine", "accuracy", "report"]),
+    ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report"]),
+    ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app", "progress", "report"]),
     ("main", &["cli"]),
 ];
 

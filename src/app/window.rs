@@ -109,6 +109,7 @@ impl App {
             Action::Open(name) => Order::Open(name),
             Action::Run(request) => Order::Run { generation: self.generation, request },
             Action::Browse => return self.browse(),
+            Action::RunReport | Action::CancelReport | Action::OpenReportRow { .. } => return,
         };
         if !self.worker.order(order) {
             let lost = "the worker thread is gone: close the window and start again";

@@ -2,6 +2,7 @@
 
 use crate::scene::{Camera, Light};
 use crate::technique::Choice;
+use std::collections::BTreeMap;
 
 /// A wish of the user that needs files, windows or the GPU.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,6 +13,17 @@ pub enum Action {
     Browse,
     /// Render again, with this changed.
     Run(Box<RunRequest>),
+    /// Measure every technique on the open scene.
+    RunReport,
+    /// Stop measuring; the rows so far stay.
+    CancelReport,
+    /// Render the open scene as a row of the report was.
+    OpenReportRow {
+        /// Name of the technique.
+        technique: String,
+        /// The row's settings.
+        settings: BTreeMap<String, String>,
+    },
 }
 
 /// Everything about a run that the panels can change; the objects are the app's.

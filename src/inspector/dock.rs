@@ -1,11 +1,12 @@
-//! The docked panels: passes and settings on the left, picture in the middle, pixel on the right.
+//! The docked panels: passes and settings on the left, picture in the middle with the report below
+//! it, pixel on the right.
 //!
-//! They can be dragged and resized. Until the user does, the side panels keep their width and
-//! the picture takes what is left.
+//! They can be dragged and resized. Until the user does, the side panels keep their width, the
+//! report its height, and the picture takes what is left.
 
 use super::action::Action;
 use super::state::State;
-use super::{passes, picture, pixel, settings, theme};
+use super::{passes, picture, pixel, report, settings, theme};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
@@ -16,6 +17,11 @@ const LEFT_WIDTH: f32 = 264.0;
 const RIGHT_WIDTH: f32 = 332.0;
 /// What a side panel may take of the window at most.
 const SIDE_SHARE: f32 = 0.26;
+/// Height of the report in points, without and with something to show.
+const EMPTY_REPORT_HEIGHT: f32 = 88.0;
+const REPORT_HEIGHT: f32 = 312.0;
+/// What the report may take of the window at most.
+const REPORT_SHARE: f32 = 0.42;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Panel {
@@ -23,6 +29,7 @@ enum Panel {
     Settings,
     Picture,
     Pixel,
+    Report,
 }
 
 /// The panels and where they are.
@@ -31,7 +38,9 @@ pub struct Dock {
     tree: Tree<Panel>,
     row: TileId,
     left: TileId,
+    middle: TileId,
     picture: TileId,
+    report: TileId,
     right: TileId,
     arranged_by_user: bool,
 }
@@ -43,19 +52,21 @@ impl Dock {
         let mut tiles = Tiles::default();
         let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
         let left = tiles.insert_tab_tile(sides.to_vec());
-        let [picture, right] = [Panel::Picture, Panel::Pixel].map(|panel| {
+        let [picture, report, right] = [Panel::Picture, Panel::Report, Panel::Pixel].map(|panel| {
             let pane = tiles.insert_pane(panel);
             tiles.insert_tab_tile(vec![pane])
         });
-        let row = tiles.insert_horizontal_tile(vec![left, picture, right]);
+        let middle = tiles.insert_vertical_tile(vec![picture, report]);
+        let row = tiles.insert_horizontal_tile(vec![left, middle, right]);
         let tree = Tree::new(Id::unique("inspector dock"), row, tiles);
-        Dock { tree, row, left, picture, right, arranged_by_user: false }
+        Dock { tree, row, left, middle, picture, report, right, arranged_by_user: false }
     }
 
     /// Draws all panels into what is left of the window.
     pub fn ui(&mut self, ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         if !self.arranged_by_user {
             self.keep_widths(ui.available_width());
+            self.keep_heights(ui.available_height(), state.report.is_empty());
         }
         let mut behavior = Panels { state, actions, edited: false };
         self.tree.ui(&mut behavior, ui);
@@ -68,7 +79,16 @@ impl Dock {
         if let Some(Tile::Container(Container::Linear(row))) = self.tree.tiles.get_mut(self.row) {
             row.shares.set_share(self.left, sides[0]);
             row.shares.set_share(self.right, sides[1]);
-            row.shares.set_share(self.picture, (width - sides[0] - sides[1]).max(1.0));
+            row.shares.set_share(self.middle, (width - sides[0] - sides[1]).max(1.0));
+        }
+    }
+
+    fn keep_heights(&mut self, height: f32, report_is_empty: bool) {
+        let wished = if report_is_empty { EMPTY_REPORT_HEIGHT } else { REPORT_HEIGHT };
+        let report = wished.min(height * REPORT_SHARE);
+        if let Some(Tile::Container(Container::Linear(column))) = self.tree.tiles.get_mut(self.middle) {
+            column.shares.set_share(self.report, report);
+            column.shares.set_share(self.picture, (height - report).max(1.0));
         }
     }
 }
@@ -92,6 +112,7 @@ impl Behavior<Panel> for Panels<'_> {
                 Panel::Settings => settings::ui(ui, self.state, self.actions),
                 Panel::Picture => picture::ui(ui, self.state),
                 Panel::Pixel => pixel::ui(ui, self.state),
+                Panel::Report => report::ui(ui, self.state, self.actions),
             }
         });
         UiResponse::None
@@ -103,6 +124,7 @@ impl Behavior<Panel> for Panels<'_> {
             Panel::Settings => "Settings",
             Panel::Picture => "Picture",
             Panel::Pixel => "Pixel",
+            Panel::Report => "Report",
         };
         title.into()
     }

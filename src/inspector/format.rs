@@ -1,18 +1,6 @@
 //! Numbers as text: thousands with a thin space, units always.
 
-/// A count, its thousands apart by a thin space: `47 425`.
-#[must_use]
-pub fn count(value: u64) -> String {
-    let digits = value.to_string();
-    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push('\u{2009}');
-        }
-        text.push(digit);
-    }
-    text
-}
+pub use crate::report::numbers::count;
 
 /// `count(value)` with the word in the right number: `1 draw`, `2 draws`.
 #[must_use]
@@ -82,14 +70,6 @@ pub fn light(index: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn thousands_are_apart() {
-        assert_eq!(count(0), "0");
-        assert_eq!(count(999), "999");
-        assert_eq!(count(256_525), "256\u{2009}525");
-        assert_eq!(count(1_000_000), "1\u{2009}000\u{2009}000");
-    }
 
     #[test]
     fn units_are_always_there() {

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! Inspector::ui ─ keys ─ top_bar ─ messages ─ docked panels ─ status_bar ─ open_dialog
-//!                                             passes │ settings │ picture │ pixel
+//!                                             passes │ settings │ picture │ pixel │ report
 //! state.rs  what is remembered, and its rules      view.rs     which picture, where on the screen
 //! depth.rs  what a stored depth means              texture.rs  pictures as textures, cached
 //! ```
@@ -27,6 +27,9 @@ mod passes;
 mod picture;
 mod pixel;
 mod pixel_run;
+mod report;
+mod report_plot;
+mod report_table;
 mod settings;
 mod settings_scene;
 mod state;
@@ -39,6 +42,7 @@ mod verdict;
 mod view;
 
 pub use action::{Action, RunRequest};
+pub use report::{ReportProgress, ReportView};
 pub use state::SceneEntry;
 pub use view::{PictureKind, Zoom};
 
@@ -121,6 +125,17 @@ impl Inspector {
     /// What is being done, in a few words; `None` when nothing is.
     pub fn set_job(&mut self, job: Option<String>) {
         self.state.job = job;
+    }
+
+    /// Shows a report, how far its measuring is, or why there is none.
+    pub fn set_report(&mut self, report: ReportView) {
+        self.state.report.show(report);
+    }
+
+    /// What the Report tab shows.
+    #[must_use]
+    pub fn report(&self) -> &ReportView {
+        self.state.report.view()
     }
 
     /// Shows an error with its mend until it is dismissed; what was shown before stays.

@@ -1,6 +1,7 @@
 //! What the panels show and remember, and how it changes. No widget is drawn here.
 
 use super::action::{Action, RunRequest};
+use super::report::ReportState;
 use super::texture::PictureCache;
 use super::view::{PictureKind, PictureView};
 use crate::capture::Capture;
@@ -82,6 +83,8 @@ pub struct State {
     pub map_pick: Option<[u32; 2]>,
     /// What the pointer is over.
     pub hover: Option<Hover>,
+    /// The Report tab.
+    pub report: ReportState,
     /// Errors that were not dismissed yet.
     pub errors: Vec<String>,
     /// What is being done.

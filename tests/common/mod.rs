@@ -2,6 +2,7 @@
 
 pub mod random;
 pub mod ray_cast;
+pub mod report;
 
 use glam::DVec3;
 use std::fs;

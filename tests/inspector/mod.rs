@@ -2,6 +2,7 @@
 
 mod by_hand;
 mod pictures;
+mod report;
 
 use crate::common;
 use by_hand::{cube_map, z_fail};

@@ -2,11 +2,12 @@
 
 use super::{Seen, click, harness_of};
 use crate::common;
+use crate::common::report::{one_scene, three_scenes};
 use egui_kittest::Harness;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stencilscope::capture::Capture;
-use stencilscope::inspector::{Inspector, PictureKind, RunRequest, SceneEntry, Zoom};
+use stencilscope::inspector::{Inspector, PictureKind, ReportProgress, ReportView, RunRequest, SceneEntry, Zoom};
 use stencilscope::scene::{OpenSpec, Scene, open};
 use stencilscope::session::CaptureRequest;
 use stencilscope::technique::Technique;
@@ -75,7 +76,7 @@ fn save(file: &Path, rgba: &[u8], [width, height]: [u32; 2]) {
 
 type View = fn(&mut Harness<Seen>);
 
-const VIEWS: [(&str, View); 9] = [
+const VIEWS: [(&str, View); 12] = [
     ("colour", |_| ()),
     ("stencil", |harness| {
         harness.state_mut().inspector.select_step(1);
@@ -89,6 +90,21 @@ const VIEWS: [(&str, View); 9] = [
         harness.state_mut().inspector.set_zoom(Zoom::Pixels(28.0), PICK.map(f64::from));
     }),
     ("settings", |harness| click(harness, "Settings")),
+    ("report", |harness| {
+        let report = Some(one_scene());
+        harness.state_mut().inspector.set_report(ReportView { report, ..ReportView::default() });
+    }),
+    ("report-running", |harness| {
+        let mut report = one_scene();
+        report.rows.truncate(8);
+        report.mark_pareto();
+        let running = Some(ReportProgress { done: 8, of: 15, what: "shadow-map 4096".to_owned() });
+        harness.state_mut().inspector.set_report(ReportView { report: Some(report), running, error: None });
+    }),
+    ("report-scenes", |harness| {
+        let report = Some(three_scenes());
+        harness.state_mut().inspector.set_report(ReportView { report, ..ReportView::default() });
+    }),
     ("open", |harness| click(harness, "Open…")),
     ("error", |harness| {
         harness.state_mut().inspector.push_error("bunny.obj: no such file: check the path".to_owned());

@@ -1,0 +1,314 @@
+//! What a technique costs and how often it is wrong: the report's rows, and every form they take.
+//!
+//! ```text
+//! rows ──► Report ──► JSON, CSV, text table, Markdown
+//!             └─────► plot::Plot (a layout in points) ──► SVG ──► PNG
+//!                                                     └─► the inspector's Report tab
+//! ```
+//!
+//! Nothing here measures, opens a file or knows a GPU: a report is data, and so is its plot.
+
+mod csv;
+pub mod numbers;
+pub mod plot;
+mod png;
+mod svg;
+mod table;
+
+#[cfg(test)]
+mod tests;
+
+use crate::capture::AdapterInfo;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Version of the JSON form.
+const SCHEMA: u32 = 1;
+
+/// Error against run time: every technique with every setting that was measured, on one machine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Document", into = "Document")]
+pub struct Report {
+    /// What it was measured on.
+    pub adapter: AdapterInfo,
+    /// One a scene, technique and settings, in the order in which they are listed.
+    pub rows: Vec<Row>,
+}
+
+/// One scene, rendered by one technique with one choice of settings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Name of the scene.
+    pub scene: String,
+    /// Name of the technique.
+    pub technique: String,
+    /// Every setting of the technique.
+    pub settings: BTreeMap<String, String>,
+    /// What sets this row apart from others of its technique: `1024`, `1024, slope 0`; may be empty.
+    #[serde(default)]
+    pub label: String,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Pixels whose label was compared with the truth, summed over lights.
+    pub compared: u64,
+    /// Of these: dark, but lit in truth.
+    pub false_shadow: u64,
+    /// Of these: lit, but in shadow in truth.
+    pub missing_shadow: u64,
+    /// Of these: showing another surface than the truth's.
+    #[serde(default)]
+    pub wrong_surface: u64,
+    /// Pixels too near to an edge to be compared.
+    pub edge_band: u64,
+    /// Wrong pixels of those compared, 0 to 1; 0 where nothing was compared.
+    pub wrong_fraction: f64,
+    /// Wall time of a frame.
+    pub frame_ms: FrameTimes,
+    /// GPU time of a frame in milliseconds; `None` where the hardware can't measure it.
+    pub gpu_ms: Option<f64>,
+    /// Everything before the first frame, milliseconds.
+    pub setup_ms: f64,
+    /// Triangles submitted a frame.
+    pub triangles: u64,
+    /// GPU memory of buffers and attachments, bytes.
+    pub bytes: u64,
+    /// No other row of the scene is at least as fast and at least as right, and one of them more:
+    /// see [`Report::mark_pareto`].
+    pub pareto: bool,
+}
+
+/// Wall times of equal frames, milliseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FrameTimes {
+    /// Half of the frames were faster.
+    pub median: f64,
+    /// The fastest.
+    pub min: f64,
+    /// The slowest.
+    pub max: f64,
+    /// How many frames were timed.
+    pub runs: u32,
+}
+
+/// What can go wrong with a report's forms.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// Not JSON, or not a report's.
+    #[error("the report can't be read or written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    /// Written by another version.
+    #[error("a report of schema {found} can't be read: make it again, this version knows schema {SCHEMA}")]
+    Schema {
+        /// The schema it names.
+        found: u32,
+    },
+    /// The plot's SVG was refused.
+    #[error("the plot can't be drawn as pixels: {0}; save it as .svg instead")]
+    Svg(#[from] resvg::usvg::Error),
+    /// More pixels than memory has room for.
+    #[error("a plot of {width}×{height} pixels is too large: save it as .svg instead")]
+    TooLarge {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+    },
+    /// The PNG encoder refused.
+    #[error("the plot can't be written as PNG: {0}; save it as .svg instead")]
+    Png(#[from] ::png::EncodingError),
+}
+
+/// A report as it is in a JSON file.
+#[derive(Serialize, Deserialize)]
+struct Document {
+    schema: u32,
+    adapter: AdapterInfo,
+    rows: Vec<Row>,
+}
+
+impl From<Report> for Document {
+    fn from(report: Report) -> Document {
+        Document { schema: SCHEMA, adapter: report.adapter, rows: report.rows }
+    }
+}
+
+impl TryFrom<Document> for Report {
+    type Error = ReportError;
+
+    fn try_from(document: Document) -> Result<Report, ReportError> {
+        match document.schema {
+            SCHEMA => Ok(Report { adapter: document.adapter, rows: document.rows }),
+            found => Err(ReportError::Schema { found }),
+        }
+    }
+}
+
+impl Report {
+    /// Rows with what follows from them filled in: [`Row::wrong_fraction`] and [`Row::pareto`].
+    #[must_use]
+    pub fn new(adapter: AdapterInfo, rows: Vec<Row>) -> Report {
+        let mut report = Report { adapter, rows };
+        for row in &mut report.rows {
+            row.wrong_fraction = if row.compared == 0 { 0.0 } else { row.wrong() as f64 / row.compared as f64 };
+        }
+        report.mark_pareto();
+        report
+    }
+
+    /// Marks the rows that no other row of their scene beats: one beats another where it is at
+    /// least as fast (median) and at least as right, and one of the two more. Of equal rows all
+    /// are marked; a row without a usable time or error is neither marked nor beats.
+    pub fn mark_pareto(&mut self) {
+        let marks: Vec<bool> = self
+            .rows
+            .iter()
+            .map(|row| {
+                row.is_measured() && !self.rows.iter().any(|other| other.scene == row.scene && beats(other, row))
+            })
+            .collect();
+        for (row, mark) in self.rows.iter_mut().zip(marks) {
+            row.pareto = mark;
+        }
+    }
+
+    /// The scenes, in the order in which they first appear.
+    #[must_use]
+    pub fn scenes(&self) -> Vec<&str> {
+        let mut scenes: Vec<&str> = Vec::new();
+        for row in &self.rows {
+            if !scenes.contains(&row.scene.as_str()) {
+                scenes.push(&row.scene);
+            }
+        }
+        scenes
+    }
+
+    /// The JSON form, indented.
+    ///
+    /// # Errors
+    /// The encoder fails.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+
+    /// Reads the JSON form.
+    ///
+    /// # Errors
+    /// No JSON, fields missing, or another schema.
+    pub fn from_json(text: &str) -> Result<Report, ReportError> {
+        Ok(serde_json::from_str(text)?)
+    }
+
+    /// One line a row, with a heading line (RFC 4180).
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        csv::csv(self)
+    }
+
+    /// A table for the terminal, below 140 columns.
+    #[must_use]
+    pub fn to_table(&self) -> String {
+        table::text(self)
+    }
+
+    /// A table for a README.
+    #[must_use]
+    pub fn to_markdown(&self) -> String {
+        table::markdown(self)
+    }
+
+    /// The plot for paper, as SVG.
+    #[must_use]
+    pub fn to_svg(&self) -> String {
+        svg::svg(&plot::layout(self, &plot::Page::PAPER))
+    }
+
+    /// The plot for paper, as PNG with two pixels a point.
+    ///
+    /// # Errors
+    /// More charts than memory has room for.
+    pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
+        png::png(&self.to_svg(), 2.0)
+    }
+}
+
+/// Is `one` at least as fast and right as `other`, and one of the two more?
+fn beats(one: &Row, other: &Row) -> bool {
+    let (time, error) = (one.frame_ms.median, one.wrong_fraction);
+    let (other_time, other_error) = (other.frame_ms.median, other.wrong_fraction);
+    one.is_measured() && time <= other_time && error <= other_error && (time < other_time || error < other_error)
+}
+
+impl Row {
+    /// Wrong pixels of all kinds.
+    #[must_use]
+    pub fn wrong(&self) -> u64 {
+        self.false_shadow + self.missing_shadow + self.wrong_surface
+    }
+
+    /// Has it both a usable time and something that was compared?
+    #[must_use]
+    pub fn is_measured(&self) -> bool {
+        self.problem().is_none()
+    }
+
+    /// Why the row can't be ranked or drawn, in a few words.
+    #[must_use]
+    pub fn problem(&self) -> Option<&'static str> {
+        if self.compared == 0 {
+            return Some("no pixel was compared");
+        }
+        let is_usable = |value: f64| value.is_finite() && value >= 0.0;
+        if !is_usable(self.wrong_fraction) {
+            return Some("its error is no number");
+        }
+        (!is_usable(self.frame_ms.median)).then_some("its time is no number")
+    }
+
+    /// Technique and label: `shadow-map 1024`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        if self.label.is_empty() { self.technique.clone() } else { format!("{} {}", self.technique, self.label) }
+    }
+
+    /// The row in a few words: `shadow-map 1024: 0.12 % wrong, 3.1 ms`.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let wrong = match self.wrong_fraction {
+            0.0 => "none wrong".to_owned(),
+            fraction => format!("{} wrong", numbers::percent(fraction)),
+        };
+        format!("{}: {wrong}, {} ms", self.name(), numbers::milliseconds(self.frame_ms.median))
+    }
+
+    /// The row in a few lines, for people who point at it.
+    #[must_use]
+    pub fn details(&self) -> String {
+        let count = numbers::count;
+        let times = self.frame_ms;
+        let ms = numbers::milliseconds;
+        let mut lines = vec![
+            self.summary(),
+            format!(
+                "{} wrong of {}: {} false shadow, {} missing shadow, {} wrong surface",
+                count(self.wrong()),
+                count(self.compared),
+                count(self.false_shadow),
+                count(self.missing_shadow),
+                count(self.wrong_surface),
+            ),
+            format!(
+                "{} to {} ms in {} frames, set-up {} ms",
+                ms(times.min),
+                ms(times.max),
+                times.runs,
+                ms(self.setup_ms)
+            ),
+            format!("{} triangles, {} MiB", count(self.triangles), numbers::mebibytes(self.bytes)),
+        ];
+        if self.pareto {
+            lines.push("Nothing here is both faster and more right.".to_owned());
+        }
+        lines.join("\n")
+    }
+}

@@ -1,0 +1,95 @@
+//! Numbers as text for tables and plots: thousands with a thin space, two digits of a share.
+
+/// A count, its thousands apart by a thin space: `47 425`.
+#[must_use]
+pub fn count(value: u64) -> String {
+    let digits = value.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push('\u{2009}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A share of 1 in per cent with two digits, without the sign; exactly `0` only where it is.
+#[must_use]
+pub fn per_hundred(fraction: f64) -> String {
+    let value = fraction * 100.0;
+    if value == 0.0 || !value.is_finite() {
+        return if value == 0.0 { "0".to_owned() } else { "–".to_owned() };
+    }
+    if value >= 99.0 {
+        // Never rounded up to all of them.
+        return if fraction < 1.0 { format!("{:.2}", value.min(99.99)) } else { format!("{value:.0}") };
+    }
+    let decimals = (1.0 - value.log10().floor()).clamp(0.0, 12.0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// A share of 1 in per cent: `0.12 %`; exactly `0` only where it is.
+#[must_use]
+pub fn percent(fraction: f64) -> String {
+    match per_hundred(fraction) {
+        zero if zero == "0" => zero,
+        text => format!("{text}\u{a0}%"),
+    }
+}
+
+/// Milliseconds without the unit, with two or three digits.
+#[must_use]
+pub fn milliseconds(value: f64) -> String {
+    match value {
+        _ if !value.is_finite() => "–".to_owned(),
+        0.0 => "0".to_owned(),
+        ..0.1 => format!("{value:.3}"),
+        ..1.0 => format!("{value:.2}"),
+        ..99.95 => format!("{value:.1}"),
+        _ => count(value.round() as u64),
+    }
+}
+
+/// Bytes in MiB, without the unit.
+#[must_use]
+pub fn mebibytes(bytes: u64) -> String {
+    let value = bytes as f64 / f64::from(1 << 20);
+    if value < 100.0 { format!("{value:.1}") } else { count(value.round() as u64) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_apart() {
+        assert_eq!(count(0), "0");
+        assert_eq!(count(999), "999");
+        assert_eq!(count(256_525), "256\u{2009}525");
+        assert_eq!(count(1_000_000), "1\u{2009}000\u{2009}000");
+    }
+
+    #[test]
+    fn only_zero_reads_as_zero_and_only_all_reads_as_all() {
+        assert_eq!(per_hundred(0.0), "0");
+        assert_eq!(per_hundred(1.0 / 921_600.0), "0.00011");
+        assert_eq!(per_hundred(0.0012), "0.12");
+        assert_eq!(per_hundred(0.042), "4.2");
+        assert_eq!(per_hundred(0.42), "42");
+        assert_eq!(per_hundred(0.999_999), "99.99");
+        assert_eq!(per_hundred(1.0), "100");
+        assert_eq!(percent(0.0), "0");
+        assert_eq!(percent(0.0012), "0.12\u{a0}%");
+    }
+
+    #[test]
+    fn times_have_two_or_three_digits() {
+        assert_eq!(milliseconds(0.0), "0");
+        assert_eq!(milliseconds(0.012), "0.012");
+        assert_eq!(milliseconds(0.316), "0.32");
+        assert_eq!(milliseconds(6.34), "6.3");
+        assert_eq!(milliseconds(1520.4), "1\u{2009}520");
+        assert_eq!(milliseconds(f64::NAN), "–");
+    }
+}

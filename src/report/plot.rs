@@ -1,0 +1,348 @@
+//! The plot's layout as data: where every mark, line and word goes, in points, y downwards.
+//!
+//! One small chart a scene, all on the same axes. Across: the median frame time, log. Up: wrong
+//! pixels of those compared, log; as zero has no place on a log axis, rows without a wrong pixel
+//! have a band of their own below it, in lanes so that they do not cover each other. SVG, PNG and
+//! the inspector draw the same layout; each gives [`Ink`]s its own colours.
+//!
+//! ```text
+//! plot.rs    what a layout is made of; charts in rows on a page
+//! around.rs  heading, legend, notes           chart.rs   one scene's chart
+//! scale.rs   log scales and their ticks       labels.rs  words beside points, apart
+//! marks.rs   shape and colour of each technique
+//! ```
+
+mod around;
+mod chart;
+mod labels;
+mod marks;
+mod scale;
+
+#[cfg(test)]
+mod tests;
+
+pub use marks::{Mark, STYLES, Style, UNKNOWN, style_of};
+
+use super::Report;
+use around::{heading, legend, notes, summary};
+use chart::Frame;
+
+/// Size of words in points; titles are larger.
+pub const TEXT_SIZE: f64 = 12.0;
+/// Size of titles in points.
+pub const TITLE_SIZE: f64 = 14.0;
+/// Size of axis numbers and labels in points.
+pub const SMALL_SIZE: f64 = 11.0;
+/// Radius of a mark in points.
+pub const RADIUS: f64 = 4.6;
+
+/// Below this a chart is too narrow to be read, points.
+const LEAST_CHART_WIDTH: f64 = 300.0;
+/// Below this a chart is too low to be read, points.
+const LEAST_CHART_HEIGHT: f64 = 150.0;
+/// The same where charts are below each other, and the plot is scrolled anyway.
+const LEAST_STACKED_HEIGHT: f64 = 210.0;
+/// How high a chart likes to be, points.
+const CHART_HEIGHT: f64 = 330.0;
+/// Between charts, points.
+const GAP: f64 = 20.0;
+/// Height of a line of words, points.
+const LINE: f64 = 18.0;
+
+/// A place for a plot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Page {
+    /// Width in points.
+    pub width: f64,
+    /// Height in points, to be filled where charts need not be lower than they can be; `None`:
+    /// as high as charts like to be.
+    pub height: Option<f64>,
+    /// Charts side by side at most.
+    pub most_columns: usize,
+    /// Without title, adapter and legend, and with low margins: beside a table that has them.
+    pub compact: bool,
+}
+
+impl Page {
+    /// A sheet of paper, or a picture in a web page.
+    pub const PAPER: Page = Page { width: 760.0, height: None, most_columns: 2, compact: false };
+}
+
+/// A rectangle in points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rect {
+    /// Upper left corner.
+    pub min: [f64; 2],
+    /// Lower right corner.
+    pub max: [f64; 2],
+}
+
+impl Rect {
+    /// Do the two share more than an edge?
+    #[must_use]
+    pub fn overlaps(&self, other: &Rect) -> bool {
+        (0..2).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
+    }
+
+    /// Does it hold all of `other`?
+    #[must_use]
+    pub fn holds(&self, other: &Rect) -> bool {
+        (0..2).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
+    }
+
+    /// Width in points.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        self.max[0] - self.min[0]
+    }
+
+    /// Height in points.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        self.max[1] - self.min[1]
+    }
+}
+
+/// What a thing means, for whoever colours it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ink {
+    /// Words that matter.
+    Text,
+    /// Words beside them.
+    Dim,
+    /// Lines that help the eye.
+    Grid,
+    /// The Pareto front.
+    Front,
+    /// A technique's.
+    Technique(&'static Style),
+}
+
+/// Which side of a text is at its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Anchor {
+    /// The left.
+    Start,
+    /// The middle.
+    Middle,
+    /// The right.
+    End,
+}
+
+/// Words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Text {
+    /// Across: as `anchor` says; down: the middle of the line.
+    pub at: [f64; 2],
+    /// The words.
+    pub text: String,
+    /// Size in points.
+    pub size: f64,
+    /// What `at` means.
+    pub anchor: Anchor,
+    /// What it means.
+    pub ink: Ink,
+    /// A title.
+    pub strong: bool,
+}
+
+/// A line through points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Two or more.
+    pub points: Vec<[f64; 2]>,
+    /// Thickness in points.
+    pub width: f64,
+    /// What it means.
+    pub ink: Ink,
+    /// Drawn so that marks stand out from it.
+    pub faint: bool,
+}
+
+/// A row's mark.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spot {
+    /// Index of the row in the report.
+    pub row: usize,
+    /// Its middle.
+    pub at: [f64; 2],
+    /// From the fastest to the slowest frame, across.
+    pub whisker: [f64; 2],
+    /// Shape and colour.
+    pub style: &'static Style,
+    /// On the Pareto front; others are hollow.
+    pub filled: bool,
+    /// For who can't see it: `shadow-map 1024: 0.12 % wrong, 3.1 ms`.
+    pub name: String,
+    /// For who points at it, in lines.
+    pub details: String,
+}
+
+/// One scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// The scene's name.
+    pub title: String,
+    /// Where points with wrong pixels are.
+    pub area: Rect,
+    /// Where points without one are.
+    pub band: Rect,
+    /// Grid, joined settings, front: to be drawn in this order, below marks.
+    pub lines: Vec<Line>,
+    /// Marks, those on the front last.
+    pub spots: Vec<Spot>,
+    /// Title and axes.
+    pub texts: Vec<Text>,
+    /// Words beside marks; no two overlap, and none covers a mark.
+    pub labels: Vec<Text>,
+}
+
+/// A mark of the legend, without a row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Key {
+    /// Its middle.
+    pub at: [f64; 2],
+    /// Shape and colour.
+    pub style: &'static Style,
+    /// As on the front.
+    pub filled: bool,
+}
+
+/// A whole plot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plot {
+    /// Width and height in points.
+    pub size: [f64; 2],
+    /// In a sentence, for who can't see it.
+    pub summary: String,
+    /// One a scene.
+    pub charts: Vec<Chart>,
+    /// Heading, legend, notes.
+    pub texts: Vec<Text>,
+    /// Marks of the legend.
+    pub keys: Vec<Key>,
+    /// Lines of the legend.
+    pub lines: Vec<Line>,
+}
+
+/// Estimated width of words in points: those of Helvetica and its like, a little more than most
+/// faces need. What is laid out with it stays apart in whichever face it is drawn.
+#[must_use]
+pub fn text_width(text: &str, size: f64) -> f64 {
+    let width = |c: char| match c {
+        'i' | 'j' | 'l' | 'I' | '|' | '.' | ',' | ':' | ';' | '\'' | '!' => 0.28,
+        '\u{2009}' => 0.2,
+        ' ' | '\u{a0}' | 't' | 'f' | 'r' | '-' | '(' | ')' | '/' | '·' => 0.34,
+        'm' | 'w' | 'M' | 'W' | '%' | '@' | '…' => 0.86,
+        'A'..='Z' => 0.68,
+        c if c.is_ascii() => 0.56,
+        '–' | '×' | '−' => 0.6,
+        _ => 1.0,
+    };
+    text.chars().map(width).sum::<f64>() * size
+}
+
+impl Text {
+    /// A line of words.
+    fn new(at: [f64; 2], text: impl Into<String>, size: f64, ink: Ink) -> Text {
+        Text { at, text: text.into(), size, anchor: Anchor::Start, ink, strong: false }
+    }
+
+    fn anchored(self, anchor: Anchor) -> Text {
+        Text { anchor, ..self }
+    }
+
+    fn strong(self) -> Text {
+        Text { strong: true, ..self }
+    }
+
+    /// What the words cover, by [`text_width`].
+    #[must_use]
+    pub fn rect(&self) -> Rect {
+        let width = text_width(&self.text, self.size);
+        let left = match self.anchor {
+            Anchor::Start => self.at[0],
+            Anchor::Middle => self.at[0] - width / 2.0,
+            Anchor::End => self.at[0] - width,
+        };
+        let half = self.size * 0.6;
+        Rect { min: [left, self.at[1] - half], max: [left + width, self.at[1] + half] }
+    }
+}
+
+/// Lays out the plot of `report`.
+#[must_use]
+pub fn layout(report: &Report, page: &Page) -> Plot {
+    let width = page.width.max(LEAST_CHART_WIDTH);
+    let scenes: Vec<(&str, Vec<usize>)> = report
+        .scenes()
+        .into_iter()
+        .map(|scene| {
+            let is_drawn = |index: &usize| report.rows[*index].scene == scene && report.rows[*index].is_measured();
+            (scene, (0..report.rows.len()).filter(is_drawn).collect())
+        })
+        .collect();
+    let mut plot = Plot { summary: summary(report), ..Plot::empty(width) };
+    let top = if page.compact { 0.0 } else { heading(&mut plot, report) };
+    let legend = if page.compact { Plot::empty(width) } else { legend(report, width) };
+    let notes = notes(report, width);
+    let around_legend = if page.compact { 0.0 } else { 8.0 };
+    let below = legend.size[1] + notes.len() as f64 * LINE + 2.0 * around_legend;
+    let columns = columns(width, page.most_columns, scenes.len());
+    let chart_width = (width - GAP * (columns - 1) as f64) / columns as f64;
+    let rows = scenes.len().div_ceil(columns);
+    let gaps = rows.saturating_sub(1) as f64 * GAP / 2.0;
+    let room = page.height.map_or(CHART_HEIGHT, |height| (height - top - below - gaps) / rows.max(1) as f64);
+    let least = if rows > 1 { LEAST_STACKED_HEIGHT } else { LEAST_CHART_HEIGHT };
+    let frame = Frame::new(report, &scenes, [chart_width, room.max(least)], page.compact);
+    let mut bottom = top;
+    for (index, (scene, rows)) in scenes.iter().enumerate() {
+        let column = index % columns;
+        let corner =
+            [column as f64 * (chart_width + GAP), top + (index / columns) as f64 * (frame.size[1] + GAP / 2.0)];
+        plot.charts.push(chart::chart(report, scene, rows, &frame, corner));
+        bottom = corner[1] + frame.size[1];
+    }
+    if scenes.is_empty() {
+        plot.texts.push(Text::new([8.0, bottom + LINE], "Nothing was measured.", TEXT_SIZE, Ink::Dim));
+        bottom += 2.0 * LINE;
+    }
+    plot.add(legend, bottom + around_legend);
+    plot.size[1] += around_legend;
+    let notes_top = plot.size[1];
+    for (index, note) in notes.into_iter().enumerate() {
+        let at = [8.0, notes_top + (index as f64 + 0.5) * LINE];
+        plot.texts.push(Text::new(at, note, SMALL_SIZE, Ink::Dim));
+        plot.size[1] = at[1] + LINE / 2.0;
+    }
+    plot
+}
+
+/// How many charts fit side by side; no more than make the rows even.
+fn columns(width: f64, most: usize, charts: usize) -> usize {
+    let fit = ((width + GAP) / (LEAST_CHART_WIDTH + GAP)).floor() as usize;
+    fit.min(most).min(charts).max(1)
+}
+
+impl Plot {
+    fn empty(width: f64) -> Plot {
+        Plot {
+            size: [width, 0.0],
+            summary: String::new(),
+            charts: Vec::new(),
+            texts: Vec::new(),
+            keys: Vec::new(),
+            lines: Vec::new(),
+        }
+    }
+
+    /// Puts a part of the page below `top`.
+    fn add(&mut self, part: Plot, top: f64) {
+        let down = |[x, y]: [f64; 2]| [x, y + top];
+        self.texts.extend(part.texts.into_iter().map(|text| Text { at: down(text.at), ..text }));
+        self.keys.extend(part.keys.into_iter().map(|key| Key { at: down(key.at), ..key }));
+        let lines = part.lines.into_iter();
+        self.lines.extend(lines.map(|line| Line { points: line.points.into_iter().map(down).collect(), ..line }));
+        self.size[1] = top + part.size[1];
+    }
+}

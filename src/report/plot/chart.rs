@@ -1,0 +1,369 @@
+//! One scene's chart: axes, lines and marks of its rows.
+
+use super::labels::{self, Obstacles, Wish};
+use super::scale::{self, Log};
+use super::{
+    Anchor, Chart, Ink, Line, RADIUS, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of, text_width,
+};
+use crate::report::{Report, Row, numbers};
+use std::collections::BTreeMap;
+
+/// Above the area: title and caption of the axis that goes up, points; in one line where compact.
+const TOP: f64 = 40.0;
+const COMPACT_TOP: f64 = 24.0;
+/// Below the band: ticks and caption of the axis that goes across, points; ticks only where compact.
+const BOTTOM: f64 = 38.0;
+const COMPACT_BOTTOM: f64 = 22.0;
+/// Right of the area, points: half of the last tick's words.
+const RIGHT: f64 = 22.0;
+/// Between area and band, points: a gap that no line of the axis crosses.
+const BREAK: f64 = 7.0;
+/// Height of a lane of the band, points.
+const LANE: f64 = 18.0;
+/// The axes where no row has a place on them: milliseconds, and per cent.
+const NO_TIMES: [f64; 2] = [1.0, 100.0];
+const NO_ERRORS: [f64; 2] = [0.01, 10.0];
+/// What the band says on the axis.
+const NONE_WRONG: &str = "none wrong";
+
+/// What all charts of a plot share: size and axes, relative to the chart's corner.
+#[derive(Debug)]
+pub struct Frame {
+    /// Width and height in points.
+    pub size: [f64; 2],
+    area: Rect,
+    band: Rect,
+    /// Milliseconds.
+    across: Log,
+    /// Per cent.
+    up: Log,
+    x_ticks: Vec<f64>,
+    y_ticks: Vec<f64>,
+    lanes: usize,
+    compact: bool,
+}
+
+impl Frame {
+    /// Axes that hold the rows of all `scenes`, in charts of `size`.
+    pub fn new(report: &Report, scenes: &[(&str, Vec<usize>)], size: [f64; 2], compact: bool) -> Frame {
+        let [top, below] = if compact { [COMPACT_TOP, COMPACT_BOTTOM] } else { [TOP, BOTTOM] };
+        let rows = || scenes.iter().flat_map(|(_, rows)| rows).map(|index| &report.rows[*index]);
+        let times = rows().flat_map(|row| [row.frame_ms.median, row.frame_ms.min, row.frame_ms.max]);
+        let times = scale::range(times, NO_TIMES);
+        let [low, high] = scale::range(rows().map(|row| row.wrong_fraction * 100.0), NO_ERRORS);
+        let room = size[1] - top - below - BREAK;
+        // More than half of the chart is not for rows that are all equally right.
+        let most_lanes = ((room * 0.55 / LANE) as usize).max(1);
+        // The widest words that the axis may have.
+        let left = 8.0 + text_width(NONE_WRONG, SMALL_SIZE).max(text_width("0.00001 %", SMALL_SIZE)) + 6.0;
+        let [x0, x1] = [left, size[0] - RIGHT];
+        let across = Log::new(times, [x0, x1]);
+        let lanes = scenes.iter().map(|(_, rows)| {
+            let band = band_rows(report, rows);
+            lanes(&band, &captions(report, rows), &across, [x0, x1], most_lanes)
+                .values()
+                .max()
+                .map_or(1, |last| last + 1)
+        });
+        let lanes = lanes.max().unwrap_or(1);
+        let bottom = size[1] - below;
+        let band = Rect { min: [x0, bottom - lanes as f64 * LANE - 6.0], max: [x1, bottom] };
+        let area = Rect { min: [x0, top], max: [x1, band.min[1] - BREAK] };
+        let up = Log::new([low, high], [area.max[1], area.min[1]]);
+        let x_ticks = across.ticks(39.0);
+        let y_ticks = up.ticks(17.0).into_iter().filter(|percent| *percent <= 100.0).collect();
+        Frame { size, area, band, across, up, x_ticks, y_ticks, lanes, compact }
+    }
+
+    fn grid(&self) -> Vec<Line> {
+        let line = |points: [[f64; 2]; 2]| Line { points: points.to_vec(), width: 1.0, ink: Ink::Grid, faint: false };
+        let [left, right] = [self.area.min[0], self.area.max[0]];
+        let level = self.y_ticks.iter().map(|tick| {
+            let y = self.up.position(*tick);
+            line([[left, y], [right, y]])
+        });
+        let upright = self.x_ticks.iter().flat_map(|tick| {
+            let x = self.across.position(*tick);
+            [&self.area, &self.band].map(|rect| line([[x, rect.min[1]], [x, rect.max[1]]]))
+        });
+        level.chain(upright).collect()
+    }
+
+    fn texts(&self, title: &str) -> Vec<Text> {
+        let small = |at, text: String, ink| Text::new(at, text, SMALL_SIZE, ink);
+        let mut texts = if self.compact {
+            let words = "wrong pixels against frame time".to_owned();
+            let after = 8.0 + text_width(title, TEXT_SIZE) + 10.0;
+            let fits = after + text_width(&words, SMALL_SIZE) <= self.size[0];
+            let caption = fits.then(|| small([after, 9.0], words, Ink::Dim));
+            let title = Text::new([8.0, 9.0], title, TEXT_SIZE, Ink::Text).strong();
+            [title].into_iter().chain(caption).collect()
+        } else {
+            let at = [self.area.max[0], self.band.max[1] + 28.0];
+            vec![
+                Text::new([8.0, 10.0], title, TITLE_SIZE, Ink::Text).strong(),
+                small([8.0, 27.0], "wrong pixels, of those compared".to_owned(), Ink::Dim),
+                small(at, "frame time, median".to_owned(), Ink::Dim).anchored(Anchor::End),
+            ]
+        };
+        let beside = self.area.min[0] - 6.0;
+        let levels =
+            self.y_ticks.iter().map(|percent| (self.up.position(*percent), format!("{}\u{a0}%", tick(*percent))));
+        let none = ((self.band.min[1] + self.band.max[1]) / 2.0, NONE_WRONG.to_owned());
+        texts.extend(levels.chain([none]).map(|(y, text)| small([beside, y], text, Ink::Dim).anchored(Anchor::End)));
+        texts.extend(self.x_ticks.iter().map(|ms| {
+            let at = [self.across.position(*ms), self.band.max[1] + 11.0];
+            small(at, format!("{}\u{a0}ms", tick(*ms)), Ink::Dim).anchored(Anchor::Middle)
+        }));
+        texts
+    }
+
+    fn place(&self, row: &Row, lane: Option<&usize>) -> [f64; 2] {
+        let y = match lane {
+            Some(lane) => self.band.min[1] + 3.0 + (*lane as f64 + 0.5) * LANE,
+            None => self.up.position(row.wrong_fraction * 100.0),
+        };
+        [self.across.position(row.frame_ms.median), y]
+    }
+}
+
+/// A tick's number: as short as it is exact.
+fn tick(value: f64) -> String {
+    match value {
+        1e-5..1e3 => value.to_string(),
+        1e3..1e7 => numbers::count(value as u64),
+        _ => format!("{value:e}"),
+    }
+}
+
+/// The chart of `rows` at a place of the page.
+pub fn chart(report: &Report, title: &str, rows: &[usize], frame: &Frame, corner: [f64; 2]) -> Chart {
+    let captions = captions(report, rows);
+    let sides = [frame.area.min[0], frame.area.max[0]];
+    let lanes = lanes(&band_rows(report, rows), &captions, &frame.across, sides, frame.lanes);
+    let place = |index: usize| frame.place(&report.rows[index], lanes.get(&index));
+    let mut spots: Vec<Spot> = rows.iter().map(|index| spot(report, *index, place(*index), frame)).collect();
+    // Height in the band says nothing, so a line between two of its rows would say something wrong.
+    let is_apart = |pair: &&[usize]| pair.iter().any(|index| report.rows[*index].wrong_fraction > 0.0);
+    let chains = chains(report, rows);
+    let joins = chains.iter().flat_map(|chain| chain.windows(2)).filter(is_apart).map(|pair| Line {
+        points: pair.iter().map(|index| place(*index)).collect(),
+        width: 1.2,
+        ink: Ink::Technique(style_of(&report.rows[pair[0]].technique)),
+        faint: true,
+    });
+    let mut over_grid: Vec<Line> = joins.collect();
+    over_grid.extend(front(report, rows, &place));
+    let obstacles = Obstacles {
+        marks: spots.iter().map(|spot| spot.at).collect(),
+        segments: segments(&over_grid).chain(spots.iter().map(|spot| spot.whisker.map(|x| [x, spot.at[1]]))).collect(),
+    };
+    let (labels, leaders) = label(report, &spots, &captions, frame, &obstacles);
+    over_grid.extend(leaders);
+    spots.sort_by_key(|spot| spot.filled);
+    let mut lines = frame.grid();
+    lines.extend(over_grid);
+    let title = title.to_owned();
+    Chart { texts: frame.texts(&title), title, area: frame.area, band: frame.band, lines, spots, labels }.moved(corner)
+}
+
+/// Rows without a wrong pixel, those on the front first: they are nearest to the chart's area.
+fn band_rows<'a>(report: &'a Report, rows: &[usize]) -> Vec<(usize, &'a Row)> {
+    let rows = rows.iter().map(|index| (*index, &report.rows[*index]));
+    let mut rows: Vec<_> = rows.filter(|(_, row)| row.wrong_fraction == 0.0).collect();
+    rows.sort_by(|(_, a), (_, b)| b.pareto.cmp(&a.pareto).then(a.frame_ms.median.total_cmp(&b.frame_ms.median)));
+    rows
+}
+
+/// A lane for each row of the band, so that marks with their labels stay apart; beyond `most`
+/// lanes they may meet.
+fn lanes(
+    rows: &[(usize, &Row)],
+    captions: &BTreeMap<usize, Caption>,
+    across: &Log,
+    [left, right]: [f64; 2],
+    most: usize,
+) -> BTreeMap<usize, usize> {
+    let mut taken: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut found = BTreeMap::new();
+    for (order, (index, row)) in rows.iter().enumerate() {
+        let x = across.position(row.frame_ms.median);
+        let whiskers = whiskers(row, x, across);
+        let reach =
+            |whisker: f64| captions.get(index).map_or(0.0, |caption| labels::reach(&caption.text, whisker)) + 4.0;
+        let [left_reach, right_reach] = whiskers.map(reach);
+        let own = whiskers.map(|whisker| whisker.max(RADIUS) + 4.0);
+        let span = if x + right_reach <= right || x - left_reach < left {
+            [x - own[0], x + right_reach]
+        } else {
+            [x - left_reach, x + own[1]]
+        };
+        let is_free = |lane: &Vec<[f64; 2]>| lane.iter().all(|other| span[1] <= other[0] || other[1] <= span[0]);
+        let lane = taken.iter().position(is_free).unwrap_or_else(|| {
+            if taken.len() < most {
+                taken.push(Vec::new());
+                taken.len() - 1
+            } else {
+                order % most
+            }
+        });
+        taken[lane].push(span);
+        found.insert(*index, lane);
+    }
+    found
+}
+
+/// How far the fastest and the slowest frame are from the median, which is at `x`.
+fn whiskers(row: &Row, x: f64, across: &Log) -> [f64; 2] {
+    let length = |ms: f64| if ms.is_finite() { (across.position(ms) - x).abs() } else { 0.0 };
+    [length(row.frame_ms.min), length(row.frame_ms.max)]
+}
+
+fn spot(report: &Report, index: usize, at: [f64; 2], frame: &Frame) -> Spot {
+    let row = &report.rows[index];
+    let [left, right] = whiskers(row, at[0], &frame.across);
+    Spot {
+        row: index,
+        at,
+        whisker: [at[0] - left, at[0] + right],
+        style: style_of(&row.technique),
+        filled: row.pareto,
+        name: row.summary(),
+        details: row.details(),
+    }
+}
+
+/// What stands beside a row's mark.
+#[derive(Debug)]
+struct Caption {
+    text: String,
+    /// It names its technique, and no other in the chart does.
+    names_technique: bool,
+}
+
+/// Words for each row: one row of a technique carries its name, the others what sets them apart.
+fn captions(report: &Report, rows: &[usize]) -> BTreeMap<usize, Caption> {
+    let caption = |index: &usize| {
+        let row = &report.rows[*index];
+        let of_technique = || rows.iter().filter(|other| report.rows[**other].technique == row.technique);
+        // The fastest of the front, or else of all.
+        let namer = of_technique().min_by(|a, b| {
+            let [a, b] = [&report.rows[**a], &report.rows[**b]];
+            b.pareto.cmp(&a.pareto).then(a.frame_ms.median.total_cmp(&b.frame_ms.median))
+        });
+        let names_technique = namer == Some(index);
+        let text = if names_technique || row.label.is_empty() { row.name() } else { row.label.clone() };
+        (*index, Caption { text, names_technique })
+    };
+    rows.iter().map(caption).collect()
+}
+
+/// Rows of one technique that differ in one number only, in its order. Where several numbers
+/// vary, the one that joins most rows counts.
+fn chains(report: &Report, rows: &[usize]) -> Vec<Vec<usize>> {
+    let mut techniques: Vec<&str> = rows.iter().map(|index| report.rows[*index].technique.as_str()).collect();
+    techniques.sort_unstable();
+    techniques.dedup();
+    let of =
+        |technique: &str| rows.iter().copied().filter(|index| report.rows[*index].technique == technique).collect();
+    techniques.into_iter().flat_map(|technique| chains_of(report, of(technique))).collect()
+}
+
+/// All settings but the number that varies.
+type OtherSettings<'a> = Vec<(&'a String, &'a String)>;
+
+fn chains_of(report: &Report, rows: Vec<usize>) -> Vec<Vec<usize>> {
+    let mut keys: Vec<&String> = rows.iter().flat_map(|index| report.rows[*index].settings.keys()).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    let along = |key: &String| {
+        let mut groups: BTreeMap<OtherSettings, Vec<(f64, usize)>> = BTreeMap::new();
+        for index in &rows {
+            let settings = &report.rows[*index].settings;
+            let value = settings.get(key).and_then(|value| value.parse::<f64>().ok());
+            let others = settings.iter().filter(|(other, _)| *other != key).collect();
+            if let Some(value) = value.filter(|value| value.is_finite()) {
+                groups.entry(others).or_default().push((value, *index));
+            }
+        }
+        let chains = groups.into_values().map(|mut chain| {
+            chain.sort_by(|a, b| a.0.total_cmp(&b.0));
+            chain.dedup_by_key(|(value, _)| value.to_bits());
+            chain.into_iter().map(|(_, index)| index).collect::<Vec<_>>()
+        });
+        chains.filter(|chain| chain.len() > 1).collect::<Vec<_>>()
+    };
+    let longest = |chains: &Vec<Vec<usize>>| chains.iter().map(Vec::len).max().unwrap_or(0);
+    // Of equal ones the first key counts.
+    keys.into_iter().map(along).rev().max_by_key(longest).unwrap_or_default()
+}
+
+/// The front as a staircase: right of it and above it, everything is beaten.
+fn front(report: &Report, rows: &[usize], place: &dyn Fn(usize) -> [f64; 2]) -> Option<Line> {
+    let mut on_front: Vec<[f64; 2]> =
+        rows.iter().filter(|index| report.rows[**index].pareto).map(|index| place(*index)).collect();
+    on_front.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for at in on_front {
+        if let Some(last) = points.last().copied().filter(|last| last[0] != at[0] && last[1] != at[1]) {
+            points.push([at[0], last[1]]);
+        }
+        points.push(at);
+    }
+    (points.len() > 1).then_some(Line { points, width: 1.6, ink: Ink::Front, faint: false })
+}
+
+fn segments(lines: &[Line]) -> impl Iterator<Item = [[f64; 2]; 2]> {
+    lines.iter().flat_map(|line| line.points.windows(2).map(|pair| [pair[0], pair[1]]))
+}
+
+/// Words beside marks, and lines to those that are far away. Names of techniques go first, then
+/// the front.
+fn label(
+    report: &Report,
+    spots: &[Spot],
+    captions: &BTreeMap<usize, Caption>,
+    frame: &Frame,
+    obstacles: &Obstacles,
+) -> (Vec<Text>, Vec<Line>) {
+    let with_caption = spots.iter().filter_map(|spot| Some((spot, captions.get(&spot.row)?)));
+    let mut ordered: Vec<(&Spot, &Caption)> = with_caption.filter(|(_, caption)| !caption.text.is_empty()).collect();
+    ordered.sort_by_key(|(spot, caption)| (!caption.names_technique, !spot.filled));
+    let wishes: Vec<Wish> = ordered
+        .iter()
+        .map(|(spot, caption)| Wish {
+            at: spot.at,
+            whiskers: spot.whisker.map(|x| (x - spot.at[0]).abs()),
+            text: caption.text.clone(),
+            ink: Ink::Technique(spot.style),
+            area: if report.rows[spot.row].wrong_fraction == 0.0 { frame.band } else { frame.area },
+            must: caption.names_technique,
+        })
+        .collect();
+    let placed = labels::place(&wishes, obstacles);
+    let leaders = placed.iter().flatten().filter_map(|placed| {
+        let points = placed.leader?.to_vec();
+        Some(Line { points, width: 0.8, ink: placed.text.ink, faint: true })
+    });
+    let leaders = leaders.collect();
+    (placed.into_iter().flatten().map(|placed| placed.text).collect(), leaders)
+}
+
+impl Chart {
+    fn moved(self, [right, down]: [f64; 2]) -> Chart {
+        let to = |[x, y]: [f64; 2]| [x + right, y + down];
+        let rect = |rect: Rect| Rect { min: to(rect.min), max: to(rect.max) };
+        let text = |text: Text| Text { at: to(text.at), ..text };
+        let line = |line: Line| Line { points: line.points.into_iter().map(to).collect(), ..line };
+        let spot = |spot: Spot| Spot { at: to(spot.at), whisker: spot.whisker.map(|x| x + right), ..spot };
+        Chart {
+            title: self.title,
+            area: rect(self.area),
+            band: rect(self.band),
+            lines: self.lines.into_iter().map(line).collect(),
+            spots: self.spots.into_iter().map(spot).collect(),
+            texts: self.texts.into_iter().map(text).collect(),
+            labels: self.labels.into_iter().map(text).collect(),
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Words beside points, so that none covers another, or a point.
+//!
+//! Labels are placed one by one, those that matter most first; each takes the best free place
+//! around its point. One that must be shown goes further away where nothing is free nearby, with
+//! a thin line back; any other is left out.
+
+use super::{Anchor, Ink, RADIUS, Rect, SMALL_SIZE, Text, text_width};
+
+/// A label to be placed.
+#[derive(Debug, Clone)]
+pub struct Wish {
+    /// The middle of its point.
+    pub at: [f64; 2],
+    /// How far its whiskers reach to the left and to the right of it.
+    pub whiskers: [f64; 2],
+    /// The words.
+    pub text: String,
+    /// Their colour.
+    pub ink: Ink,
+    /// Where they may be.
+    pub area: Rect,
+    /// Never left out.
+    pub must: bool,
+}
+
+/// What labels keep away from.
+#[derive(Debug, Default)]
+pub struct Obstacles {
+    /// Middles of marks: never covered.
+    pub marks: Vec<[f64; 2]>,
+    /// Lines: covered only where there is no other place.
+    pub segments: Vec<[[f64; 2]; 2]>,
+}
+
+/// A label in its place.
+#[derive(Debug, Clone)]
+pub struct Placed {
+    /// The words.
+    pub text: Text,
+    /// A line from the mark to words that are far away.
+    pub leader: Option<[[f64; 2]; 2]>,
+}
+
+/// Between a mark and its label, points.
+const AWAY: f64 = RADIUS + 4.0;
+/// Whiskers up to this long are left free by words beside them, points.
+const LONGEST_FREE: f64 = 26.0;
+/// Directions around a point with what each costs: right is read most easily.
+const AROUND: [([f64; 2], f64); 8] = [
+    ([1.0, 0.0], 0.0),
+    ([-1.0, 0.0], 1.0),
+    ([0.0, -1.0], 1.5),
+    ([0.0, 1.0], 2.0),
+    ([0.75, -0.9], 2.0),
+    ([-0.75, -0.9], 2.5),
+    ([0.75, 0.9], 2.5),
+    ([-0.75, 0.9], 3.0),
+];
+/// What a covered line costs.
+const LINE_COST: f64 = 2.6;
+/// What is left free between words and a line, points.
+const LINE_GAP: f64 = 2.0;
+
+/// Places labels in the order of `wishes`; `None` for those that are left out.
+pub fn place(wishes: &[Wish], obstacles: &Obstacles) -> Vec<Option<Placed>> {
+    let mut taken: Vec<Rect> = Vec::new();
+    wishes
+        .iter()
+        .map(|wish| {
+            let near = best(wish, AWAY, obstacles, &taken);
+            let far = || (1..12).find_map(|ring| best(wish, AWAY + 11.0 * f64::from(ring), obstacles, &taken));
+            let text = near.clone().or_else(|| if wish.must { far() } else { None })?;
+            let rect = text.rect();
+            taken.push(rect);
+            let leader = near.is_none().then(|| leader(wish.at, &rect));
+            Some(Placed { text, leader })
+        })
+        .collect()
+}
+
+/// The best free place at a distance.
+fn best(wish: &Wish, away: f64, obstacles: &Obstacles, taken: &[Rect]) -> Option<Text> {
+    let candidates = AROUND.iter().filter_map(|(direction, cost)| {
+        let text = beside(wish, *direction, away);
+        let rect = text.rect();
+        let covers_mark = obstacles.marks.iter().any(|mark| around(*mark).overlaps(&rect));
+        if covers_mark || !wish.area.holds(&rect) || taken.iter().any(|other| other.overlaps(&rect)) {
+            return None;
+        }
+        let [[left, top], [right, bottom]] = [rect.min, rect.max];
+        let room = Rect { min: [left - LINE_GAP, top], max: [right + LINE_GAP, bottom] };
+        let lines = obstacles.segments.iter().filter(|segment| crosses(segment, &room)).count();
+        Some((cost + LINE_COST * lines as f64, text))
+    });
+    candidates.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, text)| text)
+}
+
+/// The words in a direction from their point.
+fn beside(wish: &Wish, [right, down]: [f64; 2], away: f64) -> Text {
+    let anchor = if right > 0.0 {
+        Anchor::Start
+    } else if right < 0.0 {
+        Anchor::End
+    } else {
+        Anchor::Middle
+    };
+    let free = |whisker: f64| if down == 0.0 { away.max(whisker.min(LONGEST_FREE) + 3.0) } else { away };
+    let [left_away, right_away] = wish.whiskers.map(free);
+    let across = if right < 0.0 { right * left_away } else { right * right_away };
+    // Above and below, the words' half height is between them and the mark too.
+    let at = [wish.at[0] + across, wish.at[1] + down * (away + SMALL_SIZE * 0.3)];
+    Text::new(at, wish.text.clone(), SMALL_SIZE, wish.ink).anchored(anchor)
+}
+
+/// What a mark covers.
+fn around([x, y]: [f64; 2]) -> Rect {
+    Rect { min: [x - RADIUS, y - RADIUS], max: [x + RADIUS, y + RADIUS] }
+}
+
+fn leader(from: [f64; 2], rect: &Rect) -> [[f64; 2]; 2] {
+    let to = [from[0].clamp(rect.min[0], rect.max[0]), from[1].clamp(rect.min[1], rect.max[1])];
+    let [right, down] = [to[0] - from[0], to[1] - from[1]];
+    let length = right.hypot(down).max(f64::MIN_POSITIVE);
+    let start = [from[0] + right / length * (RADIUS + 1.0), from[1] + down / length * (RADIUS + 1.0)];
+    [start, to]
+}
+
+/// Does a segment touch the rectangle (Liang and Barsky 1984)?
+fn crosses([from, to]: &[[f64; 2]; 2], rect: &Rect) -> bool {
+    let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        let along = to[axis] - from[axis];
+        let [low, high] = [rect.min[axis] - from[axis], rect.max[axis] - from[axis]];
+        if along == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return false;
+            }
+        } else {
+            let [one, other] = [low / along, high / along];
+            enters = enters.max(one.min(other));
+            leaves = leaves.min(one.max(other));
+        }
+    }
+    enters <= leaves
+}
+
+/// What a label takes beside a point with such a whisker, points: for those that are laid out in
+/// lanes.
+pub fn reach(text: &str, whisker: f64) -> f64 {
+    AWAY.max(whisker.min(LONGEST_FREE) + 3.0) + text_width(text, SMALL_SIZE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AREA: Rect = Rect { min: [0.0, 0.0], max: [200.0, 100.0] };
+
+    fn wish(at: [f64; 2], must: bool) -> Wish {
+        Wish { at, whiskers: [0.0; 2], text: "1024".to_owned(), ink: Ink::Text, area: AREA, must }
+    }
+
+    fn placed(wishes: &[Wish], obstacles: &Obstacles) -> Vec<Option<Placed>> {
+        place(wishes, obstacles)
+    }
+
+    #[test]
+    fn a_lone_label_is_to_the_right_and_at_the_edge_to_the_left() {
+        let found = placed(&[wish([50.0, 50.0], false), wish([195.0, 50.0], false)], &Obstacles::default());
+        let anchors: Vec<_> = found.iter().flatten().map(|placed| placed.text.anchor).collect();
+        assert_eq!(anchors, [Anchor::Start, Anchor::End]);
+    }
+
+    #[test]
+    fn in_a_crowd_none_overlap_and_those_that_must_are_shown() {
+        let at = |index: usize| [90.0 + (index % 5) as f64 * 4.0, 45.0 + (index / 5) as f64 * 4.0];
+        let wishes: Vec<Wish> = (0..25).map(|index| wish(at(index), index < 4)).collect();
+        let obstacles = Obstacles { marks: (0..25).map(at).collect(), segments: Vec::new() };
+        let found = placed(&wishes, &obstacles);
+        assert!(found[..4].iter().all(Option::is_some));
+        assert!(found.iter().any(Option::is_none), "there is no room for all");
+        let rects: Vec<Rect> = found.iter().flatten().map(|placed| placed.text.rect()).collect();
+        for (index, rect) in rects.iter().enumerate() {
+            assert!(AREA.holds(rect));
+            assert!(rects[..index].iter().all(|other| !other.overlaps(rect)));
+            assert!((0..25).all(|mark| !around(at(mark)).overlaps(rect)));
+        }
+    }
+
+    #[test]
+    fn words_far_away_have_a_line_back() {
+        let marks: Vec<[f64; 2]> =
+            (0..49).map(|i| [76.0 + f64::from(i % 7) * 8.0, 26.0 + f64::from(i / 7) * 8.0]).collect();
+        let obstacles = Obstacles { marks, segments: Vec::new() };
+        let found = placed(&[wish([100.0, 50.0], true)], &obstacles);
+        assert!(found[0].as_ref().is_some_and(|placed| placed.leader.is_some()));
+    }
+
+    #[test]
+    fn a_line_is_covered_only_where_there_is_no_other_place() {
+        let obstacles = Obstacles { marks: Vec::new(), segments: vec![[[50.0, 50.0], [200.0, 50.0]]] };
+        let found = placed(&[wish([50.0, 50.0], false)], &obstacles);
+        assert_eq!(found[0].as_ref().map(|placed| placed.text.anchor), Some(Anchor::End));
+    }
+
+    #[test]
+    fn segments_touch_rectangles() {
+        assert!(crosses(&[[-10.0, 50.0], [300.0, 60.0]], &AREA));
+        assert!(crosses(&[[10.0, 10.0], [20.0, 20.0]], &AREA));
+        assert!(!crosses(&[[-10.0, 50.0], [-10.0, 60.0]], &AREA));
+        assert!(!crosses(&[[-30.0, 20.0], [20.0, -30.0]], &AREA));
+    }
+}

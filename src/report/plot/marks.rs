@@ -1,0 +1,164 @@
+//! Shape and colour of each technique: the one table that paper and screen share.
+//!
+//! Hues are Okabe and Ito's (2008), darkened for paper and lightened for the dark panels until
+//! words in them pass a contrast of 4.5 : 1. No two techniques share a shape, so a grey print
+//! tells them apart too.
+
+/// The shape of a mark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    /// A disc.
+    Circle,
+    /// On its side.
+    Square,
+    /// On its corner.
+    Diamond,
+    /// Point up.
+    TriangleUp,
+    /// Point down.
+    TriangleDown,
+    /// Point right.
+    TriangleRight,
+    /// Point left.
+    TriangleLeft,
+    /// Five points.
+    Star,
+    /// Two thick bars, upright.
+    Plus,
+    /// Two thick bars, slanted.
+    Cross,
+    /// Six sides.
+    Hexagon,
+}
+
+/// How a technique looks in every plot.
+#[derive(Debug, PartialEq)]
+pub struct Style {
+    /// Name of the technique.
+    pub technique: &'static str,
+    /// Its shape.
+    pub mark: Mark,
+    /// sRGB on white paper.
+    pub paper: [u8; 3],
+    /// sRGB on the inspector's panels.
+    pub screen: [u8; 3],
+}
+
+const fn style(technique: &'static str, mark: Mark, paper: [u8; 3], screen: [u8; 3]) -> Style {
+    Style { technique, mark, paper, screen }
+}
+
+/// Techniques in teaching order.
+pub static STYLES: [Style; 10] = [
+    style("none", Mark::Cross, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]),
+    style("planar", Mark::Square, [0x1b, 0x74, 0xa8], [0x56, 0xb4, 0xe9]),
+    style("planar-texture", Mark::TriangleRight, [0x00, 0x55, 0xa0], [0x8f, 0xb8, 0xe8]),
+    style("z-pass", Mark::TriangleUp, [0x7d, 0x72, 0x00], [0xf0, 0xe4, 0x42]),
+    style("z-pass-plus", Mark::Plus, [0x94, 0x63, 0x00], [0xe6, 0x9f, 0x00]),
+    style("z-fail", Mark::TriangleDown, [0x00, 0x7d, 0x5b], [0x2f, 0xb5, 0x8a]),
+    style("auto", Mark::Star, [0xa8, 0x4c, 0x80], [0xcc, 0x79, 0xa7]),
+    style("shadow-map", Mark::Diamond, [0xb8, 0x4f, 0x00], [0xe8, 0x7f, 0x3a]),
+    style("projective", Mark::TriangleLeft, [0x6c, 0x4b, 0xb8], [0xa8, 0x8e, 0xe6]),
+    style("ray-traced", Mark::Circle, [0x1b, 0x1e, 0x25], [0xd9, 0xdc, 0xe3]),
+];
+
+/// How a technique looks that is not in the table.
+pub static UNKNOWN: Style = style("", Mark::Hexagon, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]);
+
+/// The look of a technique; a neutral one for a name that is not known.
+#[must_use]
+pub fn style_of(technique: &str) -> &'static Style {
+    STYLES.iter().find(|style| style.technique == technique).unwrap_or(&UNKNOWN)
+}
+
+impl Mark {
+    /// Corners of the shape around the origin, y downwards; all shapes have about the area of a
+    /// disc of this radius, and every corner is seen from the middle.
+    #[must_use]
+    pub fn outline(self, radius: f64) -> Vec<[f64; 2]> {
+        let regular = |corners: u32, turn: f64, size: f64| {
+            let corner = move |index: u32| {
+                let angle = (f64::from(index) / f64::from(corners) + turn) * std::f64::consts::TAU;
+                [angle.sin() * size * radius, -angle.cos() * size * radius]
+            };
+            (0..corners).map(corner).collect::<Vec<_>>()
+        };
+        match self {
+            Mark::Circle => regular(24, 0.0, 1.0),
+            Mark::Square => regular(4, 0.125, 1.25),
+            Mark::Diamond => regular(4, 0.0, 1.25),
+            Mark::TriangleUp => regular(3, 0.0, 1.4),
+            Mark::TriangleRight => regular(3, 0.25, 1.4),
+            Mark::TriangleDown => regular(3, 0.5, 1.4),
+            Mark::TriangleLeft => regular(3, 0.75, 1.4),
+            Mark::Hexagon => regular(6, 0.0, 1.1),
+            Mark::Star => {
+                let outer = regular(5, 0.0, 1.5);
+                let inner = regular(5, 0.1, 0.65);
+                outer.into_iter().zip(inner).flat_map(|(outer, inner)| [outer, inner]).collect()
+            }
+            Mark::Plus => bars(radius),
+            Mark::Cross => {
+                bars(radius).into_iter().map(|[x, y]| [(x - y) * 0.5_f64.sqrt(), (x + y) * 0.5_f64.sqrt()]).collect()
+            }
+        }
+    }
+}
+
+/// Two upright bars.
+fn bars(radius: f64) -> Vec<[f64; 2]> {
+    let [short, long] = [0.4 * radius, 1.25 * radius];
+    let arm = [[-short, -short], [-short, -long], [short, -long]];
+    // The same corner and arm, turned by quarters.
+    let quarter = |turns: usize| arm.map(|point| (0..turns).fold(point, |[x, y], _| [-y, x]));
+    (0..4).flat_map(quarter).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contrast of two colours (WCAG 2.1).
+    fn contrast(one: [u8; 3], other: [u8; 3]) -> f64 {
+        let linear = |byte: u8| {
+            let value = f64::from(byte) / 255.0;
+            if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        };
+        let light = |[r, g, b]: [u8; 3]| 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
+        let [one, other] = [light(one), light(other)];
+        (one.max(other) + 0.05) / (one.min(other) + 0.05)
+    }
+
+    #[test]
+    fn words_in_a_techniques_colour_can_be_read_on_paper_and_on_panels() {
+        for style in STYLES.iter().chain([&UNKNOWN]) {
+            let paper = contrast(style.paper, [255; 3]);
+            let screen = contrast(style.screen, [0x1b, 0x1e, 0x25]);
+            assert!(paper >= 4.5 && screen >= 4.5, "{}: {paper:.2}, {screen:.2}", style.technique);
+        }
+    }
+
+    #[test]
+    fn no_two_techniques_share_a_shape() {
+        for (index, style) in STYLES.iter().enumerate() {
+            assert!(STYLES[..index].iter().all(|other| other.mark != style.mark), "{}", style.technique);
+            assert_ne!(style.mark, UNKNOWN.mark);
+        }
+    }
+
+    #[test]
+    fn shapes_are_about_as_large_as_a_disc() {
+        for style in STYLES.iter().chain([&UNKNOWN]) {
+            let outline = style.mark.outline(1.0);
+            let next = outline.iter().cycle().skip(1);
+            let area: f64 = outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>() / 2.0;
+            assert!((2.3..3.6).contains(&area), "{}: {area}", style.technique);
+        }
+    }
+
+    #[test]
+    fn an_unknown_technique_has_a_neutral_mark() {
+        assert_eq!(style_of("z-fail").mark, Mark::TriangleDown);
+        assert_eq!(style_of("of the future"), &UNKNOWN);
+    }
+}

@@ -1,0 +1,232 @@
+//! The report as text: a table for the terminal, and one in Markdown.
+
+use super::numbers::{count, mebibytes, per_hundred};
+use super::{Report, Row};
+
+/// Between columns.
+const GAP: &str = "  ";
+/// Columns of the terminal that a table stays below.
+const MOST_COLUMNS: usize = 140;
+/// Techniques and labels are cut to the first of these that keeps the table narrow enough.
+const LONGEST_NAMES: [usize; 4] = [24, 18, 13, 8];
+
+/// One column: its heading, and its text for a row.
+struct Column {
+    heading: &'static str,
+    is_number: bool,
+    cells: Vec<String>,
+}
+
+impl Column {
+    fn words(heading: &'static str, cells: impl Iterator<Item = String>) -> Column {
+        Column { heading, is_number: false, cells: cells.collect() }
+    }
+
+    fn numbers(heading: &'static str, cells: impl Iterator<Item = String>) -> Column {
+        Column { heading, is_number: true, cells: cells.collect() }
+    }
+
+    fn width(&self) -> usize {
+        self.cells.iter().map(|cell| width(cell)).chain([width(self.heading)]).max().unwrap_or(0)
+    }
+
+    fn padded(&self, text: &str, column_width: usize) -> String {
+        let space = " ".repeat(column_width.saturating_sub(width(text)));
+        if self.is_number { space + text } else { text.to_owned() + &space }
+    }
+}
+
+/// Columns that a terminal gives the text: every character that we write is one wide.
+fn width(text: &str) -> usize {
+    text.chars().count()
+}
+
+/// A table for the terminal: a block a scene, numbers right-aligned, units in the heading.
+pub fn text(report: &Report) -> String {
+    if report.rows.is_empty() {
+        return "Nothing was measured.\n".to_owned();
+    }
+    let adapter = &report.adapter;
+    let mut text = format!("{} · {} · {}\n", adapter.name, adapter.driver, adapter.kind);
+    let columns = terminal_columns(&report.rows);
+    let widths: Vec<usize> = columns.iter().map(Column::width).collect();
+    let line = |cell: &dyn Fn(&Column) -> String| {
+        let cells = columns.iter().zip(&widths).map(|(column, width)| column.padded(&cell(column), *width));
+        format!("{}\n", cells.collect::<Vec<_>>().join(GAP).trim_end())
+    };
+    for scene in report.scenes() {
+        let rows = || (0..report.rows.len()).filter(|index| report.rows[*index].scene == scene);
+        text += &format!("\n{scene} · {}\n", sizes(rows().map(|index| report.rows[index].size)));
+        text += &line(&|column| column.heading.to_owned());
+        for index in rows() {
+            text += &line(&|column| column.cells[index].clone());
+        }
+    }
+    text += "\n* nothing else of the scene is both at least as fast and at least as right (Pareto front)\n";
+    text + "wrong: false shadow + missing shadow + wrong surface, % of the pixels compared; frame: median, then fastest to slowest\n"
+}
+
+/// The picture sizes that occur: `1280×720`.
+pub(super) fn sizes(sizes: impl Iterator<Item = [u32; 2]>) -> String {
+    let mut names: Vec<String> = Vec::new();
+    for [width, height] in sizes {
+        let name = format!("{width}×{height}");
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names.join(", ")
+}
+
+fn terminal_columns(rows: &[Row]) -> Vec<Column> {
+    let whole = |columns: &Vec<Column>| columns.iter().map(|column| column.width() + width(GAP)).sum::<usize>();
+    let [first, shorter @ ..] = LONGEST_NAMES;
+    let widest = columns_with_names(rows, first);
+    shorter.into_iter().fold(widest, |columns, longest| {
+        if whole(&columns) < MOST_COLUMNS { columns } else { columns_with_names(rows, longest) }
+    })
+}
+
+fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
+    let words = |heading, cell: &dyn Fn(&Row) -> String| Column::words(heading, rows.iter().map(cell));
+    let numbers = |heading, cell: &dyn Fn(&Row) -> String| Column::numbers(heading, rows.iter().map(cell));
+    let decimals = decimals(rows);
+    let times = |ms: f64| milliseconds(ms, decimals);
+    let spread = |ms: f64| milliseconds(ms, decimals - 1);
+    vec![
+        words("", &|row| if row.pareto { "*".to_owned() } else { String::new() }),
+        words("technique", &|row| shortened(&row.technique, longest)),
+        words("settings", &|row| shortened(&row.label, longest)),
+        numbers("wrong px", &wrong),
+        numbers("%", &wrong_percent),
+        numbers("false", &|row| count(row.false_shadow)),
+        numbers("missing", &|row| count(row.missing_shadow)),
+        numbers("frame ms", &|row| times(row.frame_ms.median)),
+        numbers("min–max", &|row| format!("{}–{}", spread(row.frame_ms.min), spread(row.frame_ms.max))),
+        numbers("GPU ms", &|row| row.gpu_ms.map_or_else(|| "-".to_owned(), times)),
+        numbers("set-up ms", &|row| milliseconds(row.setup_ms, 1)),
+        numbers("triangles", &|row| count(row.triangles)),
+        numbers("MiB", &|row| mebibytes(row.bytes)),
+    ]
+}
+
+/// The text, its end cut where it is too long for a column.
+fn shortened(text: &str, longest: usize) -> String {
+    if width(text) <= longest {
+        return text.to_owned();
+    }
+    text.chars().take(longest - 1).chain(['…']).collect()
+}
+
+/// Wrong pixels; a dash where nothing was compared, so that 0 always means "none".
+fn wrong(row: &Row) -> String {
+    if row.compared == 0 { "-".to_owned() } else { count(row.wrong()) }
+}
+
+fn wrong_percent(row: &Row) -> String {
+    if row.compared == 0 { "-".to_owned() } else { per_hundred(row.wrong_fraction) }
+}
+
+/// Digits after the point that the shortest frame needs, the same for all so that points align.
+fn decimals(rows: &[Row]) -> usize {
+    let shortest = rows.iter().map(|row| row.frame_ms.median).filter(|ms| *ms > 0.0).fold(f64::INFINITY, f64::min);
+    if shortest < 0.2 { 3 } else { 2 }
+}
+
+fn milliseconds(value: f64, decimals: usize) -> String {
+    if value.is_finite() { format!("{value:.decimals$}") } else { "-".to_owned() }
+}
+
+/// A Markdown table for a README; with several scenes, each under its name.
+pub fn markdown(report: &Report) -> String {
+    let scenes = report.scenes();
+    let blocks = scenes.iter().map(|scene| {
+        let rows: Vec<&Row> = report.rows.iter().filter(|row| row.scene == *scene).collect();
+        let heading = if scenes.len() > 1 { format!("**{}**\n\n", escaped(scene)) } else { String::new() };
+        heading + &markdown_table(&rows, decimals(&report.rows))
+    });
+    blocks.collect::<Vec<_>>().join("\n")
+}
+
+fn markdown_table(rows: &[&Row], decimals: usize) -> String {
+    let mut text = "| technique | settings | wrong pixels | % of compared | frame ms | set-up ms | triangles | MiB |\n\
+                    |---|---|--:|--:|--:|--:|--:|--:|\n"
+        .to_owned();
+    for row in rows {
+        let strong = |cell: String| if row.pareto { format!("**{cell}**") } else { cell };
+        let cells = [
+            strong(escaped(&row.technique)),
+            escaped(&row.label),
+            wrong(row),
+            wrong_percent(row),
+            milliseconds(row.frame_ms.median, decimals),
+            milliseconds(row.setup_ms, 1),
+            count(row.triangles),
+            mebibytes(row.bytes),
+        ];
+        text += &format!("| {} |\n", cells.join(" | "));
+    }
+    text + "\nBold: nothing else is both at least as fast and at least as right (Pareto front).\n"
+}
+
+/// Text that can't end its cell.
+fn escaped(text: &str) -> String {
+    text.replace('|', "\\|").replace(['\n', '\r'], " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{adapter, row};
+    use super::*;
+
+    fn report() -> Report {
+        let mut timed = row("tori", "z-fail", "", 0, 6.25);
+        timed.gpu_ms = Some(5.5);
+        let mut empty = row("table", "none", "", 0, 2.0);
+        empty.compared = 0;
+        Report::new(adapter(), vec![timed, row("tori", "shadow-map", "1024", 20, 8.0), empty])
+    }
+
+    #[test]
+    fn the_table_is_aligned_and_grouped_by_scene() {
+        let expected = "\
+hand · 1 · cpu
+
+tori · 100×10
+   technique   settings  wrong px    %  false  missing  frame ms  min–max  GPU ms  set-up ms  triangles  MiB
+*  z-fail                       0    0      0        0      6.25  6.2–6.5    5.50       12.5      5 000  2.0
+   shadow-map  1024            20  2.0     20        0      8.00  7.9–8.3       -       12.5      5 000  2.0
+
+table · 100×10
+   technique   settings  wrong px    %  false  missing  frame ms  min–max  GPU ms  set-up ms  triangles  MiB
+   none                         -    -      0        0      2.00  1.9–2.3       -       12.5      5 000  2.0
+";
+        let text = text(&report()).replace('\u{2009}', " ");
+        assert!(text.starts_with(expected), "{text}");
+    }
+
+    #[test]
+    fn the_longest_names_and_numbers_stay_below_140_columns() {
+        let mut long = row("tori", "a-technique-with-a-very-long-name", "4096, slope 2, constant 16, pcf 5", 0, 1234.5);
+        long.compared = 3840 * 2160;
+        long.false_shadow = 2_000_000;
+        long.missing_shadow = 2_000_000;
+        long.triangles = 120_000_000;
+        long.gpu_ms = Some(1234.5);
+        long.bytes = 1 << 34;
+        let text = text(&Report::new(adapter(), vec![long, row("tori", "none", "", 1, 0.1)]));
+        let widest = text.lines().map(width).max();
+        assert!(widest < Some(MOST_COLUMNS), "{widest:?}\n{text}");
+    }
+
+    #[test]
+    fn nothing_measured_is_said() {
+        assert_eq!(text(&Report::new(adapter(), Vec::new())), "Nothing was measured.\n");
+    }
+
+    #[test]
+    fn markdown_marks_the_front_in_bold_and_keeps_cells_apart() {
+        let text = markdown(&Report::new(adapter(), vec![row("tori", "z-fail", "a|b", 0, 6.25)]));
+        assert!(text.contains("| **z-fail** | a\\|b | 0 | 0 | 6.25 | 12.5 | 5\u{2009}000 | 2.0 |\n"), "{text}");
+    }
+}

@@ -1,0 +1,128 @@
+//! The report's rules, on rows made by hand.
+
+use super::*;
+
+pub(super) fn adapter() -> AdapterInfo {
+    AdapterInfo { name: "hand".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() }
+}
+
+/// A row with `wrong` of 1000 pixels wrong, `ms` milliseconds a frame.
+pub(super) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64) -> Row {
+    Row {
+        scene: scene.to_owned(),
+        technique: technique.to_owned(),
+        settings: BTreeMap::new(),
+        label: label.to_owned(),
+        size: [100, 10],
+        compared: 1000,
+        false_shadow: wrong,
+        missing_shadow: 0,
+        wrong_surface: 0,
+        edge_band: 7,
+        wrong_fraction: 0.0,
+        frame_ms: FrameTimes { median: ms, min: ms - 0.1, max: ms + 0.3, runs: 9 },
+        gpu_ms: None,
+        setup_ms: 12.5,
+        triangles: 5000,
+        bytes: 2 << 20,
+        pareto: false,
+    }
+}
+
+fn front_of(rows: Vec<Row>) -> Vec<bool> {
+    Report::new(adapter(), rows).rows.iter().map(|row| row.pareto).collect()
+}
+
+#[test]
+fn the_front_is_what_nothing_beats() {
+    let rows = vec![
+        row("a", "none", "", 100, 1.0),
+        row("a", "planar", "", 50, 2.0),
+        row("a", "z-pass", "", 60, 3.0), // planar is faster and more right
+        row("a", "z-fail", "", 0, 4.0),
+        row("a", "ray-traced", "", 0, 150.0), // z-fail is as right, and faster
+    ];
+    assert_eq!(front_of(rows), [true, true, false, true, false]);
+}
+
+#[test]
+fn of_equal_times_or_errors_the_better_one_is_on_the_front_and_of_equal_rows_all() {
+    assert_eq!(front_of(vec![row("a", "x", "", 5, 1.0), row("a", "y", "", 4, 1.0)]), [false, true]);
+    assert_eq!(front_of(vec![row("a", "x", "", 5, 1.0), row("a", "y", "", 5, 2.0)]), [true, false]);
+    assert_eq!(front_of(vec![row("a", "x", "", 5, 1.0), row("a", "y", "", 5, 1.0)]), [true, true]);
+}
+
+#[test]
+fn scenes_are_apart() {
+    assert_eq!(front_of(vec![row("a", "x", "", 5, 9.0), row("b", "y", "", 0, 1.0)]), [true, true]);
+}
+
+#[test]
+fn a_row_without_time_or_pixels_is_not_ranked_and_beats_none() {
+    let mut nothing_compared = row("a", "x", "", 0, 0.5);
+    nothing_compared.compared = 0;
+    let rows = vec![row("a", "y", "", 5, 1.0), row("a", "z", "", 0, f64::NAN), nothing_compared];
+    assert_eq!(front_of(rows), [true, false, false]);
+}
+
+#[test]
+fn the_wrong_fraction_counts_all_kinds() {
+    let mut one = row("a", "x", "", 1, 1.0);
+    (one.missing_shadow, one.wrong_surface) = (2, 3);
+    let report = Report::new(adapter(), vec![one]);
+    assert_eq!(report.rows[0].wrong(), 6);
+    assert_eq!(report.rows[0].wrong_fraction, 0.006);
+}
+
+#[test]
+fn json_has_the_names_of_the_contract_and_survives_the_way_there_and_back() {
+    let mut one = row("tori", "shadow-map", "1024", 20, 3.0 + 1.0 / 3.0);
+    one.settings.insert("size".to_owned(), "1024".to_owned());
+    let report = Report::new(adapter(), vec![one]);
+    let text = report.to_json().expect("JSON");
+    let value: serde_json::Value = serde_json::from_str(&text).expect("a value");
+    let names = |value: &serde_json::Value| value.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&value), ["adapter", "rows", "schema"]);
+    assert_eq!(value["schema"], 1);
+    assert_eq!(
+        names(&value["rows"][0]),
+        [
+            "bytes",
+            "compared",
+            "edge_band",
+            "false_shadow",
+            "frame_ms",
+            "gpu_ms",
+            "label",
+            "missing_shadow",
+            "pareto",
+            "scene",
+            "settings",
+            "setup_ms",
+            "size",
+            "technique",
+            "triangles",
+            "wrong_fraction",
+            "wrong_surface",
+        ]
+    );
+    assert_eq!(names(&value["rows"][0]["frame_ms"]), ["max", "median", "min", "runs"]);
+    assert_eq!(value["rows"][0]["gpu_ms"], serde_json::Value::Null);
+    assert_eq!(Report::from_json(&text).expect("a report"), report);
+}
+
+#[test]
+fn another_schema_is_refused() {
+    let text = r#"{"schema": 7, "adapter": {"name": "", "driver": "", "kind": ""}, "rows": []}"#;
+    let error = Report::from_json(text).expect_err("schema 7").to_string();
+    assert!(error.contains("schema 7") && error.contains("make it again"), "{error}");
+}
+
+#[test]
+fn a_row_says_itself_in_words() {
+    let report =
+        Report::new(adapter(), vec![row("a", "shadow-map", "1024", 12, 3.12), row("a", "z-fail", "", 0, 6.25)]);
+    assert_eq!(report.rows[0].summary(), "shadow-map 1024: 1.2\u{a0}% wrong, 3.1 ms");
+    assert_eq!(report.rows[1].summary(), "z-fail: none wrong, 6.2 ms");
+    assert!(report.rows[0].details().contains("12 wrong of 1\u{2009}000: 12 false shadow"));
+}

@@ -1,0 +1,137 @@
+//! The Report tab.
+
+use super::{SIZE, Seen, click_button, harness_of, inspector, press, run_request, scene, z_fail};
+use crate::common::report::{one_scene, three_scenes};
+use egui::Key;
+use egui::accesskit::{Role, Toggled};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::collections::BTreeMap;
+use stencilscope::inspector::{Action, Inspector, ReportProgress, ReportView};
+use stencilscope::report::{Report, Row};
+use stencilscope::technique::{Choice, Technique};
+
+fn showing(view: ReportView) -> Harness<'static, Seen> {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.set_report(view);
+    harness_of(inspector, [1280.0, 800.0])
+}
+
+fn with_rows(report: Report) -> ReportView {
+    ReportView { report: Some(report), ..ReportView::default() }
+}
+
+/// What opening the row of `label` asks for.
+fn opening(report: &Report, technique: &str, label: &str) -> Action {
+    let is_row = |row: &&Row| row.technique == technique && row.label == label;
+    let row = report.rows.iter().find(is_row).expect("a row");
+    Action::OpenReportRow { technique: technique.to_owned(), settings: row.settings.clone() }
+}
+
+#[test]
+fn before_anything_is_measured_it_says_what_it_does() {
+    let mut harness = showing(ReportView::default());
+    harness.get_by_label_contains("Measures every technique on this scene");
+    click_button(&mut harness, "Measure");
+    assert_eq!(harness.state().actions, [Action::RunReport]);
+}
+
+#[test]
+fn without_a_scene_nothing_can_be_measured() {
+    let mut harness = harness_of(Inspector::default(), [1280.0, 800.0]);
+    harness.get_by_label_contains("Open a scene to measure");
+    click_button(&mut harness, "Measure");
+    assert!(harness.state().actions.is_empty());
+}
+
+#[test]
+fn while_it_measures_it_says_how_far_it_is_and_shows_the_rows_so_far() {
+    let mut report = one_scene();
+    report.rows.truncate(3);
+    let running = Some(ReportProgress { done: 3, of: 15, what: "z-fail".to_owned() });
+    let mut harness = showing(ReportView { running, ..with_rows(report) });
+    harness.get_by_label("3 of 15 · z-fail");
+    harness.get_by_label("Measuring");
+    assert!(harness.query_by_role_and_label(Role::Button, "Measure again").is_none());
+    harness.get_by_role_and_label(Role::Row, "z-pass: none wrong, 18.2 ms");
+    click_button(&mut harness, "Cancel");
+    assert_eq!(harness.state().actions, [Action::CancelReport]);
+}
+
+#[test]
+fn a_point_and_a_row_open_what_they_stand_for() {
+    let report = one_scene();
+    let mut harness = showing(with_rows(report.clone()));
+    click_button(&mut harness, "shadow-map 1024: 1.5\u{a0}% wrong, 14.0 ms");
+    assert_eq!(harness.state().actions.last(), Some(&opening(&report, "shadow-map", "1024")));
+    harness.get_by_role_and_label(Role::Row, "planar: 9.0\u{a0}% wrong, 10.5 ms").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().actions.last(), Some(&opening(&report, "planar", "")));
+    click_button(&mut harness, "Measure again");
+    assert_eq!(harness.state().actions.last(), Some(&Action::RunReport));
+}
+
+#[test]
+fn the_keyboard_reaches_points_and_rows() {
+    let report = one_scene();
+    let mut harness = showing(with_rows(report.clone()));
+    harness.get_by_role_and_label(Role::Button, "z-fail: none wrong, 21.7 ms").focus();
+    harness.run_steps(2);
+    press(&mut harness, Key::Enter);
+    assert_eq!(harness.state().actions, [opening(&report, "z-fail", "")]);
+    harness.get_by_role_and_label(Role::Row, "ray-traced: none wrong, 150 ms").focus();
+    harness.run_steps(2);
+    press(&mut harness, Key::Space);
+    assert_eq!(harness.state().actions.last(), Some(&opening(&report, "ray-traced", "")));
+}
+
+#[test]
+fn what_is_shown_now_is_selected() {
+    let mut report = one_scene();
+    for row in &mut report.rows {
+        row.scene = "by hand".to_owned();
+    }
+    let mut inspector = inspector(z_fail(SIZE));
+    let mut request = run_request(Technique::ShadowMap);
+    request.choice = Choice::new(Technique::ShadowMap);
+    request.choice.set("size", "2048").expect("a size");
+    request.choice.set("bias-slope", "2").expect("a slope");
+    inspector.set_scene(&scene(), request);
+    inspector.set_report(with_rows(report));
+    let harness = harness_of(inspector, [1280.0, 800.0]);
+    for role in [Role::Button, Role::Row] {
+        let toggled = |label: &str| harness.get_by_role_and_label(role, label).accesskit_node().toggled();
+        assert_eq!(toggled("shadow-map 2048: 0.76\u{a0}% wrong, 23.8 ms"), Some(Toggled::True));
+        assert_eq!(toggled("shadow-map 1024: 1.5\u{a0}% wrong, 14.0 ms"), Some(Toggled::False));
+    }
+}
+
+#[test]
+fn scenes_are_headed_and_narrow_windows_have_plot_and_table_below_each_other() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.set_report(with_rows(three_scenes()));
+    for size in [[1920.0, 1080.0], [700.0, 500.0], [320.0, 240.0]] {
+        let mut other = Inspector::new(Vec::new());
+        other.set_scene(&scene(), run_request(Technique::ZFail));
+        other.set_report(inspector.report().clone());
+        let harness = harness_of(other, size);
+        if size[0] > 1000.0 {
+            harness.get_by_label("inside a volume");
+            assert_eq!(harness.query_all_by_role(Role::Row).count(), 45);
+        }
+    }
+}
+
+#[test]
+fn odd_rows_and_errors_are_shown() {
+    let mut report = one_scene();
+    report.rows[0].frame_ms.median = f64::NAN;
+    report.rows[1].compared = 0;
+    report.rows[2].settings = BTreeMap::from([("of".to_owned(), "the future".to_owned())]);
+    report.rows[2].technique = "later".to_owned();
+    report.mark_pareto();
+    let error = Some("no GPU: install mesa-vulkan-drivers".to_owned());
+    let harness = showing(ReportView { error, ..with_rows(report) });
+    harness.get_by_label("× no GPU: install mesa-vulkan-drivers");
+    harness.get_by_role_and_label(Role::Button, "later: none wrong, 18.2 ms");
+}
