@@ -21,12 +21,22 @@ const MAY_USE: [(&str, &[&str]); 17] = [
     (
         "session",
         &[
-            "math", "scene", "geometry", "plan", "technique", "capture", "gpu", "truth", "accuracy", "progress", "report",
+            "math",
+            "scene",
+            "geometry",
+            "plan",
+            "technique",
+            "capture",
+            "gpu",
+            "truth",
+            "accuracy",
+            "progress",
+            "report",
         ],
     ),
     ("inspector", &["math", "scene", "plan", "technique", "capture", "stencil_machine", "accuracy", "report"]),
     ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report"]),
-    ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app", "progress", "report"]),
+    ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app", "progress", "report", "truth"]),
     ("main", &["cli"]),
 ];
 

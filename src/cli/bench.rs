@@ -2,27 +2,29 @@
 
 use super::options::{FrameOptions, SceneOptions};
 use super::{CliError, output};
+use crate::progress::Progress;
 use crate::scene::builtin::shapes;
 use crate::scene::{MeshBuilder, Scene, SceneError, model_scene};
 use crate::session::{CaptureCost, Session, median_ms};
+use crate::truth::Tracer;
 use clap::Args;
 use glam::DVec3;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 /// The benchmarks that exist.
-const BENCHMARKS: [&str; 1] = ["capture"];
+const BENCHMARKS: [&str; 2] = ["capture", "truth"];
 /// Benchmarks that are planned, but not built.
-const BENCHMARKS_TO_COME: [&str; 4] = ["volumes", "truth", "history", "panels"];
+const BENCHMARKS_TO_COME: [&str; 3] = ["volumes", "history", "panels"];
 /// Frames of each kind that are timed.
 const RUNS: usize = 15;
 
 #[derive(Debug, Args)]
 pub struct BenchArguments {
-    /// What to measure: capture
+    /// What to measure: capture, truth
     #[arg(value_name = "NAME", default_value = "capture")]
     names: Vec<String>,
-    /// A scene in place of tori and a model of a few thousand triangles; repeatable
+    /// A scene in place of the benchmark's own; repeatable
     #[arg(long, value_name = "SCENE")]
     scene: Vec<String>,
     #[command(flatten)]
@@ -37,7 +39,18 @@ pub struct BenchArguments {
 /// A benchmark that does not exist; a scene or frame that can't be made; no GPU.
 pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
     arguments.names.iter().try_for_each(|name| check_name(name))?;
-    let scenes = scenes(arguments)?;
+    for name in &arguments.names {
+        match name.as_str() {
+            "truth" => truth(arguments)?,
+            _ => capture(arguments)?,
+        }
+    }
+    Ok(())
+}
+
+/// Snapshots against plain frames.
+fn capture(arguments: &BenchArguments) -> Result<(), CliError> {
+    let scenes = scenes(arguments, || Ok(vec![arguments.scene_options.open("tori")?, bumpy_model(62, 31)?]))?;
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
     for scene in &scenes {
         let request = arguments.frame.request(scene)?;
@@ -60,19 +73,54 @@ fn check_name(name: &str) -> Result<(), CliError> {
     Err(CliError::Usage(format!("no benchmark is called `{}`: {instead}", name.escape_debug())))
 }
 
-fn scenes(arguments: &BenchArguments) -> Result<Vec<Scene>, CliError> {
-    let open = |name: &String| arguments.scene_options.open(name);
-    if !arguments.scene.is_empty() {
-        return arguments.scene.iter().map(open).collect();
+/// The ground truth: rays a second, sorting the scene apart from following them.
+fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
+    let size = arguments.frame.size;
+    for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
+        let (mut sorting, mut following, mut rays) = (Vec::new(), Vec::new(), 0);
+        for run in 0..=RUNS {
+            let start = Instant::now();
+            let tracer = Tracer::new(&scene, size)?;
+            let sorted = start.elapsed();
+            let Some(truth) = tracer.trace(&Progress::default()) else { continue };
+            let all = start.elapsed();
+            rays = Tracer::rays(&truth);
+            // The first is a warm-up.
+            if run > 0 {
+                sorting.push(sorted);
+                following.push(all - sorted);
+            }
+        }
+        let [sort, follow] = [&sorting, &following].map(|times| median_ms(times).unwrap_or(f64::NAN));
+        let triangles: usize = scene.objects.iter().map(|object| object.mesh.triangles().len()).sum();
+        output::print(&format!(
+            "{}, {triangles} triangles, {}x{}\n  sorting_ms {sort:.1}\n  following_ms {follow:.1}\n  \
+             truth_ms {:.1}\n  rays {rays}\n  million rays a second {:.1}, with sorting {:.1}; sorting/following {:.2}\n",
+            scene.name,
+            size[0],
+            size[1],
+            sort + follow,
+            rays as f64 / follow / 1e3,
+            rays as f64 / (sort + follow) / 1e3,
+            sort / follow,
+        ))?;
     }
-    Ok(vec![open(&"tori".to_owned())?, bumpy_model()?])
+    Ok(())
 }
 
-/// A closed model of some 3 700 triangles on a floor, as uneven as a scanned one.
-fn bumpy_model() -> Result<Scene, SceneError> {
+fn scenes(
+    arguments: &BenchArguments,
+    own: impl FnOnce() -> Result<Vec<Scene>, CliError>,
+) -> Result<Vec<Scene>, CliError> {
+    let open = |name: &String| arguments.scene_options.open(name);
+    if arguments.scene.is_empty() { own() } else { arguments.scene.iter().map(open).collect() }
+}
+
+/// A closed model of about twice `around` times `up` triangles on a floor, as uneven as a scanned one.
+fn bumpy_model(around: u32, up: u32) -> Result<Scene, SceneError> {
     const NAME: &str = "bumpy sphere";
     let fail = |source| SceneError::Mesh { name: NAME.to_owned(), source };
-    let smooth = shapes::sphere(1.0, 62, 31).map_err(fail)?;
+    let smooth = shapes::sphere(1.0, around, up).map_err(fail)?;
     let bump = |p: &DVec3| *p * (1.0 + 0.12 * (5.0 * p.x).sin() * (4.0 * p.y + 1.0).sin() * (6.0 * p.z).cos());
     let builder = MeshBuilder {
         positions: smooth.positions().iter().map(bump).collect(),

@@ -1,8 +1,10 @@
 //! `stencilscope capture`: renders without a window and writes every pass to a folder.
 
 use super::options::{FrameOptions, SceneOptions};
+use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::{Capture, disk};
+use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, Session};
 use clap::Args;
@@ -42,6 +44,7 @@ pub struct Job<'a> {
     adapter: Option<&'a str>,
     folder: &'a Path,
     overwrite: bool,
+    truth: bool,
 }
 
 impl<'a> Job<'a> {
@@ -60,7 +63,7 @@ impl<'a> Job<'a> {
         let scene = scene_options.open(name)?;
         let request = frame.request(&scene)?;
         disk::check_target(folder, overwrite)?;
-        Ok(Job { started, scene, request, adapter: frame.adapter.as_deref(), folder, overwrite })
+        Ok(Job { started, scene, request, adapter: frame.adapter.as_deref(), folder, overwrite, truth: frame.truth })
     }
 
     /// Captures into the folder and says so.
@@ -71,6 +74,11 @@ impl<'a> Job<'a> {
         let mut session = Session::new(self.adapter)?;
         let before = self.started.elapsed().as_secs_f64() * 1e3;
         let mut capture = session.capture(&self.scene, &self.request)?;
+        if self.truth {
+            with_bar("ground truth", &Progress::default(), |progress| {
+                session.judge(&self.scene, &mut capture, progress)
+            })?;
+        }
         // Loading the scene and opening the GPU come before the first frame too.
         capture.timing.setup_ms = capture.timing.setup_ms.map(|setup| setup + before);
         disk::write(&capture, self.folder, self.overwrite)?;
@@ -81,5 +89,16 @@ impl<'a> Job<'a> {
 fn summary(capture: &Capture, folder: &Path) -> String {
     let [width, height] = capture.size;
     let (scene, technique, passes) = (&capture.scene, &capture.technique, capture.steps.len());
-    format!("{}: {scene}, {technique}, {width}x{height}, {passes} passes\n", folder.display())
+    let judged = capture.error().map_or_else(String::new, |error| {
+        format!(
+            "wrong pixels: {} of {} compared ({} false shadow, {} missing shadow, {} wrong surface); {} at edges excused\n",
+            error.wrong(),
+            error.compared,
+            error.false_shadow,
+            error.missing_shadow,
+            error.wrong_surface,
+            error.edge_band,
+        )
+    });
+    format!("{}: {scene}, {technique}, {width}x{height}, {passes} passes\n{judged}", folder.display())
 }

@@ -31,6 +31,12 @@ pub enum CliError {
     /// The frame can't be made.
     #[error(transparent)]
     Session(#[from] SessionError),
+    /// No ray can be followed through the scene.
+    #[error(transparent)]
+    Truth(#[from] crate::truth::TruthError),
+    /// The report can't take the form asked for.
+    #[error(transparent)]
+    Report(#[from] crate::report::ReportError),
     /// A result can't be written.
     #[error("{path}: can't be written ({source}): choose another file")]
     Output {

@@ -73,12 +73,9 @@ pub struct FrameOptions {
     /// Bracket the frame for an attached graphics debugger
     #[arg(long)]
     pub external_capture: bool,
-    /// Also write the ground truth and the error (not there yet)
-    #[arg(long, hide = true)]
+    /// Also trace the ground truth, and tell the technique's errors
+    #[arg(long)]
     pub truth: bool,
-    /// A picture of the results (not there yet)
-    #[arg(long, hide = true, value_name = "FILE")]
-    pub plot: Option<String>,
 }
 
 impl SceneOptions {
@@ -146,11 +143,7 @@ impl FrameOptions {
         let of_scene = scene.technique.clone();
         let name = self.technique.clone().or_else(|| of_scene.as_ref().map(|request| request.name.clone()));
         let name = name.unwrap_or_else(|| DEFAULT_TECHNIQUE.to_owned());
-        if TECHNIQUES_TO_COME.contains(&name.as_str()) {
-            let built: Vec<&str> = Technique::ALL.iter().map(|technique| technique.name()).collect();
-            let instead = format!("choose one of {}", built.join(", "));
-            return Err(CliError::NotThereYet { what: format!("technique `{name}`"), instead });
-        }
+        technique_named(&name)?;
         let mut settings = of_scene.filter(|request| request.name == name).map_or_else(BTreeMap::new, |r| r.settings);
         settings.extend(self.set.iter().cloned());
         Choice::parse(&TechniqueRequest { name, settings }).map_err(|error: ChoiceError| error.into())
@@ -165,14 +158,22 @@ impl FrameOptions {
             "draw" => return refuse("`--every draw`", "use `--every pass`"),
             _ => return Err(CliError::Usage("`--every` takes `pass` or `draw`: choose one".to_owned())),
         }
-        if self.truth {
-            return refuse("`--truth`", "leave it out");
-        }
-        if self.plot.is_some() {
-            return refuse("`--plot`", "leave it out");
-        }
         Ok(())
     }
+}
+
+/// A technique by name.
+///
+/// # Errors
+/// No such technique, or none yet.
+pub fn technique_named(name: &str) -> Result<Technique, CliError> {
+    if TECHNIQUES_TO_COME.contains(&name) {
+        let built: Vec<&str> = Technique::ALL.iter().map(|technique| technique.name()).collect();
+        let instead = format!("choose one of {}", built.join(", "));
+        return Err(CliError::NotThereYet { what: format!("technique `{name}`"), instead });
+    }
+    let request = TechniqueRequest { name: name.to_owned(), settings: BTreeMap::new() };
+    Ok(Choice::parse(&request)?.technique())
 }
 
 /// `X,Y,Z`, finite.
@@ -211,7 +212,7 @@ pub fn pixel(text: &str) -> Result<[u32; 2], String> {
 }
 
 /// `KEY=VALUE`.
-fn setting(text: &str) -> Result<(String, String), String> {
+pub fn setting(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
         _ => Err("give KEY=VALUE".to_owned()),

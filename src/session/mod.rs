@@ -4,9 +4,11 @@
 //! lists). Commands, the window and tests all go through it.
 
 mod measure;
+mod report;
 mod truth;
 
 pub use measure::{Measured, Measurement};
+pub use report::report_rows;
 
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::GeometryCache;

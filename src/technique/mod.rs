@@ -14,7 +14,7 @@ mod surfaces;
 mod volume;
 
 pub use frame::{Job, MOST_LIGHTS};
-pub use settings::{Choice, ChoiceError, SettingSpec, SettingValues};
+pub use settings::{Choice, ChoiceError, ReportRows, SettingSpec, SettingValues};
 
 use crate::plan::FramePlan;
 

@@ -158,7 +158,41 @@ impl Technique {
     }
 }
 
+/// Rows of a technique in a report: the settings that each changes.
+pub type ReportRows = &'static [&'static [(&'static str, &'static str)]];
+
+/// One row with the defaults.
+pub(super) const ONE_ROW: ReportRows = &[&[]];
+
+impl Technique {
+    /// The settings that a report compares by default; each technique declares its own beside
+    /// its plan.
+    #[must_use]
+    pub fn report_rows(self) -> ReportRows {
+        match self {
+            Technique::None | Technique::Planar | Technique::ZPass | Technique::ZFail | Technique::RayTraced => ONE_ROW,
+            Technique::ShadowMap => super::shadow_map::REPORT_ROWS,
+        }
+    }
+}
+
 impl Choice {
+    /// What a report compares by default: every row of every technique.
+    ///
+    /// # Errors
+    /// A row that a technique's settings refuse: a bug, which a test finds.
+    pub fn report_grid() -> Result<Vec<Choice>, ChoiceError> {
+        let mut grid = Vec::new();
+        for technique in Technique::ALL {
+            for row in technique.report_rows() {
+                let mut choice = Choice::new(technique);
+                row.iter().try_for_each(|(key, value)| choice.set(key, value))?;
+                grid.push(choice);
+            }
+        }
+        Ok(grid)
+    }
+
     /// `technique` with its defaults.
     #[must_use]
     pub fn new(technique: Technique) -> Choice {

@@ -5,8 +5,8 @@
 //! where the map holds something nearer to the light. Casters behind which nothing lies that
 //! could be darkened are left out: a floor under everything would only widen the map.
 
-use super::PlanError;
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::{PlanError, ReportRows};
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame};
 use crate::geometry::relative;
 use crate::plan::{
@@ -27,6 +27,20 @@ struct MapCaster {
     /// World positions of its triangles.
     triangles: Vec<[DVec3; 3]>,
 }
+
+/// Sizes with the default bias, and with so little that surfaces darken themselves.
+pub(super) const REPORT_ROWS: ReportRows = &[
+    &[("size", "256")],
+    &[("size", "512")],
+    &[("size", "1024")],
+    &[("size", "2048")],
+    &[("size", "4096")],
+    &[("size", "256"), ("bias-slope", "0")],
+    &[("size", "512"), ("bias-slope", "0")],
+    &[("size", "1024"), ("bias-slope", "0")],
+    &[("size", "2048"), ("bias-slope", "0")],
+    &[("size", "4096"), ("bias-slope", "0")],
+];
 
 /// Plans a frame with shadow maps.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

@@ -133,6 +133,15 @@ impl Tracer {
         self.size
     }
 
+    /// How many rays a truth follows: one of sight a pixel, and for each light one to every surface
+    /// point that faces it and receives shadows.
+    #[must_use]
+    pub fn rays(truth: &Truth) -> u64 {
+        let is_followed = |label: &&u8| matches!(**label, LIT | SHADOW);
+        let of_light = truth.labels.iter().map(|labels| labels.iter().filter(is_followed).count() as u64);
+        u64::from(truth.size[0]) * u64::from(truth.size[1]) + of_light.sum::<u64>()
+    }
+
     /// Labels of every pixel for every light; `None` if it was cancelled.
     #[must_use]
     pub fn trace(&self, progress: &Progress) -> Option<Truth> {

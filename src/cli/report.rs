@@ -1,0 +1,111 @@
+//! `stencilscope report`: how wrong each technique is, and what it costs.
+
+use super::options::{SceneOptions, picture_size, setting, technique_named};
+use super::progress::with_bar;
+use super::{CliError, output};
+use crate::progress::Progress;
+use crate::report::{Report, Row};
+use crate::scene::Scene;
+use crate::session::{Measurement, Session, report_rows};
+use crate::technique::{Choice, Technique};
+use clap::Args;
+use std::path::Path;
+
+#[derive(Debug, Args)]
+pub struct ReportArguments {
+    /// Built-in scenes, scene files (.toml) or models (.obj)
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<String>,
+    #[command(flatten)]
+    scene_options: SceneOptions,
+    /// Only these techniques; repeatable
+    #[arg(short, long, value_name = "NAME")]
+    technique: Vec<String>,
+    /// A setting, for every technique that has it; repeatable
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    set: Vec<(String, String)>,
+    /// Width and height of the picture
+    #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "1280x720")]
+    size: [u32; 2],
+    /// Timed frames of each row
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000), default_value = "9")]
+    runs: u16,
+    /// A part of the GPU's name; `llvmpipe` is the software one [default: the best]
+    #[arg(long, value_name = "SUBSTRING")]
+    adapter: Option<String>,
+    /// Machine-readable, to a file or to standard output in place of the table
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    json: Option<Option<String>>,
+    /// Comma-separated, to a file or to standard output in place of the table
+    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with = "json")]
+    csv: Option<Option<String>>,
+    /// A Markdown table, to a file or to standard output in place of the table
+    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["json", "csv"])]
+    markdown: Option<Option<String>>,
+    /// A picture of error against run time (.svg or .png)
+    #[arg(long, value_name = "FILE", value_parser = plot_file)]
+    plot: Option<String>,
+}
+
+/// Measures and prints.
+///
+/// # Errors
+/// A scene, technique or setting that can't be used; no GPU; a file that can't be written.
+pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
+    let choices = choices(arguments)?;
+    let open = |name: &String| arguments.scene_options.open(name);
+    let scenes = arguments.scenes.iter().map(open).collect::<Result<Vec<Scene>, _>>()?;
+    let mut session = Session::new(arguments.adapter.as_deref())?;
+    let what = Measurement { choices, size: arguments.size, runs: usize::from(arguments.runs) };
+    let mut rows: Vec<Row> = Vec::new();
+    for scene in &scenes {
+        let measured = with_bar(&scene.name, &Progress::default(), |progress| session.measure(scene, &what, progress))?;
+        rows.extend(report_rows(&scene.name, what.size, &measured));
+    }
+    deliver(arguments, &Report::new(session.adapter().clone(), rows))
+}
+
+fn deliver(arguments: &ReportArguments, report: &Report) -> Result<(), CliError> {
+    if let Some(file) = &arguments.plot {
+        let bytes = if is_png(file) { report.to_png()? } else { report.to_svg().into_bytes() };
+        output::write(file, &bytes)?;
+    }
+    match (&arguments.json, &arguments.csv, &arguments.markdown) {
+        (Some(file), _, _) => output::deliver(&report.to_json()?, file.as_deref()),
+        (_, Some(file), _) => output::deliver(&report.to_csv(), file.as_deref()),
+        (_, _, Some(file)) => output::deliver(&report.to_markdown(), file.as_deref()),
+        _ => output::print(&report.to_table()),
+    }
+}
+
+/// The default grid, or its rows of the techniques asked for, with settings changed.
+fn choices(arguments: &ReportArguments) -> Result<Vec<Choice>, CliError> {
+    let only = arguments.technique.iter().map(|name| technique_named(name)).collect::<Result<Vec<Technique>, _>>()?;
+    let mut grid = Choice::report_grid()?;
+    grid.retain(|choice| only.is_empty() || only.contains(&choice.technique()));
+    for (key, value) in &arguments.set {
+        let has_key = |choice: &&mut Choice| choice.settings().contains_key(key);
+        let (with_key, without) = grid.iter_mut().partition::<Vec<_>, _>(has_key);
+        let known = !with_key.is_empty();
+        with_key.into_iter().try_for_each(|choice| choice.set(key, value))?;
+        // No technique has it: the first one's error names the nearest key.
+        without.into_iter().take(usize::from(!known)).try_for_each(|choice| choice.set(key, value))?;
+    }
+    let mut choices: Vec<Choice> = Vec::new();
+    for choice in grid {
+        if !choices.contains(&choice) {
+            choices.push(choice);
+        }
+    }
+    Ok(choices)
+}
+
+fn is_png(file: &str) -> bool {
+    Path::new(file).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
+}
+
+/// A file whose ending says what to write.
+fn plot_file(text: &str) -> Result<String, String> {
+    let is_svg = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+    if is_svg || is_png(text) { Ok(text.to_owned()) } else { Err("give a file that ends in .svg or .png".to_owned()) }
+}

@@ -1,0 +1,62 @@
+//! Measurements as rows of a report.
+
+use super::{Measured, median_ms, milliseconds};
+use crate::report::{FrameTimes, Row};
+use std::collections::BTreeSet;
+
+/// Rows of one scene, in the order measured; [`Report::new`](crate::report::Report::new) fills in
+/// what depends on the other rows.
+#[must_use]
+pub fn report_rows(scene: &str, size: [u32; 2], measured: &[Measured]) -> Vec<Row> {
+    let row = |one: &Measured| {
+        let frames: Vec<f64> = one.frames.iter().copied().map(milliseconds).collect();
+        Row {
+            scene: scene.to_owned(),
+            technique: one.choice.technique().name().to_owned(),
+            settings: one.choice.settings().clone(),
+            label: label(one, measured),
+            size,
+            compared: one.error.compared,
+            false_shadow: one.error.false_shadow,
+            missing_shadow: one.error.missing_shadow,
+            wrong_surface: one.error.wrong_surface,
+            edge_band: one.error.edge_band,
+            wrong_fraction: 0.0,
+            frame_ms: FrameTimes {
+                median: median_ms(&one.frames).unwrap_or(f64::NAN),
+                min: frames.iter().copied().fold(f64::NAN, f64::min),
+                max: frames.iter().copied().fold(f64::NAN, f64::max),
+                runs: frames.len() as u32,
+            },
+            gpu_ms: one.gpu_ms,
+            setup_ms: one.setup_ms,
+            triangles: one.triangles,
+            bytes: one.bytes,
+            pareto: false,
+        }
+    };
+    measured.iter().map(row).collect()
+}
+
+/// What sets a row apart from others of its technique: its size, and other settings that differ
+/// between them where they are not the default.
+fn label(one: &Measured, measured: &[Measured]) -> String {
+    let technique = one.choice.technique();
+    let peers = measured.iter().filter(|other| other.choice.technique() == technique);
+    let differing: BTreeSet<&String> = peers
+        .flat_map(|other| {
+            other.choice.settings().iter().filter(|(key, value)| one.choice.settings().get(*key) != Some(value))
+        })
+        .map(|(key, _)| key)
+        .collect();
+    let varies = |key: &str| differing.iter().any(|other| *other == key);
+    let words = technique.settings().iter().filter_map(|spec| {
+        let value = one.choice.settings().get(spec.key)?;
+        match spec.key {
+            "size" if varies("size") => Some(value.clone()),
+            key if varies(key) && value != spec.default => Some(format!("{key} {value}")),
+            _ => None,
+        }
+    });
+    words.collect::<Vec<_>>().join(", ")
+}
