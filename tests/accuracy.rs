@@ -70,13 +70,16 @@ fn z_fail_has_no_wrong_pixel_on_any_scene_from_anywhere() {
     for scene in &scenes {
         let mut random = Random::new(5);
         let mut labels = [0; 4];
-        for view in 0..10 {
+        let mut views = 0;
+        while views < 10 {
             let scene = seen_from_anywhere(scene, &mut random);
             let capture = judged(&mut session, &scene, &request(Technique::ZFail, SIZE));
             let error = capture.error().expect("judged");
-            assert_eq!(error.wrong(), 0, "{}, view {view}: {error:?} {:?}", scene.name, scene.camera);
-            let truth = &capture.lights[0].truth.as_ref().expect("judged").labels;
-            (0..4).for_each(|label| labels[label] += truth.histogram()[label]);
+            assert_eq!(error.wrong(), 0, "{}, view {views}: {error:?} {:?}", scene.name, scene.camera);
+            let seen = capture.lights[0].truth.as_ref().expect("judged").labels.histogram();
+            (0..4).for_each(|label| labels[label] += seen[label]);
+            // From outside a room all is dark, which says little.
+            views += u32::from(seen[0] >= 100 && seen[1] >= 50);
         }
         assert!(labels[0] >= 500 && labels[1] >= 500, "{}: {labels:?}", scene.name);
     }

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0.3\nf 1 2 3\n";
 
 /// A folder that the program runs in, with some input.
-fn folder() -> TempDir {
+pub fn folder() -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let put = |name: &str, text: &[u8]| fs::write(folder.path().join(name), text).expect("written");
     put("triangle.obj", TRIANGLE.as_bytes());
@@ -35,16 +35,16 @@ fn program(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
+pub fn run(folder: &Path, arguments: &[&str]) -> Output {
     program(folder, arguments).output().expect("the program runs")
 }
 
-fn text(bytes: &[u8]) -> String {
+pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
 /// Runs a command that must fail with `code` and one line that has all `words`, leaving nothing.
-fn assert_fails(arguments: &[&str], code: i32, words: &[&str]) {
+pub fn assert_fails(arguments: &[&str], code: i32, words: &[&str]) {
     let folder = folder();
     let before = names(folder.path());
     let output = run(folder.path(), arguments);
@@ -98,8 +98,7 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
         (&["--set", "faces=three"], &["three"]),
         (&["--set", "faces"], &["KEY=VALUE"]),
         (&["--every", "draw"], &["not there yet", "--every pass"]),
-        (&["--truth"], &["not there yet"]),
-        (&["--plot", "a.svg"], &["not there yet"]),
+        (&["--plot", "a.svg"], &["--plot"]),
         (&["--bogus"], &["--bogus"]),
     ];
     for (options, words) in cases {
@@ -107,10 +106,10 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
     }
     assert_fails(&["capture", "tori"], 2, &["--output"]);
     assert_fails(&["captur", "tori"], 2, &["did you mean `capture`?"]);
-    for command in ["pixel", "diagnose", "diff", "report", "stress"] {
+    for command in ["pixel", "diagnose", "diff", "stress"] {
         assert_fails(&[command, "tori"], 2, &[command, "not there yet"]);
     }
-    assert_fails(&["bench", "truth"], 2, &["not there yet", "capture"]);
+    assert_fails(&["bench", "panels"], 2, &["not there yet", "capture"]);
     assert_fails(&["bench", "nothing"], 2, &["choose capture"]);
 }
 
@@ -224,6 +223,52 @@ fn bench_capture_prints_ratios() {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     for word in ["frame_ms", "captured_ms", "captured/frame", "bytes moved", "plain copy"] {
         assert!(lines.contains(word), "{word} is not in {lines}");
+    }
+}
+
+#[test]
+fn bench_truth_prints_rays_a_second() {
+    let folder = folder();
+    let output = run(folder.path(), &["bench", "truth", "--scene", "triangle.obj", "--size", "64x64"]);
+    let lines = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    for word in ["3 triangles, 64x64", "sorting_ms", "following_ms", "million rays a second", "sorting/following"] {
+        assert!(lines.contains(word), "{word} is not in {lines}");
+    }
+}
+
+#[test]
+fn a_capture_with_truth_tells_errors_in_text_manifest_and_arrays() {
+    let folder = folder();
+    let capture = ["capture", "triangle.obj", "--size", "80x60", "-o", "out", "--truth"];
+    for (technique, is_right) in [("none", false), ("z-fail", true)] {
+        let output = run(folder.path(), &[&capture[..], &["-t", technique, "--overwrite"][..]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let manifest = fs::read_to_string(folder.path().join("out/manifest.json")).expect("a manifest");
+        let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
+        let light = &manifest["lights"][0];
+        let count = |key: &str| light["error"][key].as_u64().expect(key);
+        let missing = count("missing_shadow");
+        assert_eq!((missing == 0, count("false_shadow"), count("wrong_surface")), (is_right, 0, 0));
+        assert!(count("compared") > 1000 && light["error"]["edge_band"].is_u64());
+        assert!(text(&output.stdout).contains(&format!("wrong pixels: {missing} of {}", count("compared"))));
+        let read = |key: &str| {
+            let file = folder.path().join("out").join(light[key].as_str().expect(key));
+            let bytes = fs::read(file).expect("an array");
+            let array = npyz::NpyFile::new(&bytes[..]).expect("NumPy's format");
+            assert_eq!(array.shape(), [60, 80]);
+            array.into_vec::<u8>().expect("bytes")
+        };
+        let [truth, shadow, findings] = ["truth", "shadow", "error_picture"].map(read);
+        let differing =
+            truth.iter().zip(&shadow).filter(|(truth, shadow)| **truth == 1 && **shadow == 0).count() as u64;
+        assert!(differing >= missing && differing <= missing + count("edge_band"));
+        assert_eq!(findings.iter().filter(|finding| **finding == 2).count() as u64, missing);
+        assert_eq!(light["findings"][2], "missing_shadow");
+        if !is_right {
+            let pixels = light["worst_region"]["pixels"].as_u64().expect("a region");
+            assert!(pixels > missing / 2 && pixels <= missing, "{pixels} of {missing}");
+        }
     }
 }
 

@@ -9,6 +9,7 @@ mod inspector;
 mod layering;
 mod plan;
 mod ray_cast;
+mod report;
 mod scenes;
 mod stencil_machine;
 mod techniques;

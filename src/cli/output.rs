@@ -16,6 +16,23 @@ pub fn print(text: &str) -> Result<(), CliError> {
     })
 }
 
+/// Checks, before long work, that a file can be made at this path.
+///
+/// # Errors
+/// There is no such folder, or it is a folder itself.
+pub fn check_target(path: &str) -> Result<(), CliError> {
+    let path_of = std::path::Path::new(path);
+    let folder = path_of.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let problem = if path_of.is_dir() {
+        Some(ErrorKind::IsADirectory)
+    } else if folder.is_some_and(|folder| !folder.is_dir()) {
+        Some(ErrorKind::NotFound)
+    } else {
+        None
+    };
+    problem.map_or(Ok(()), |kind| Err(CliError::Output { path: path.to_owned(), source: kind.into() }))
+}
+
 /// Writes `text` to `file`, or to standard output where there is none.
 ///
 /// # Errors

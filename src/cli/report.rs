@@ -55,6 +55,8 @@ pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
     let choices = choices(arguments)?;
     let open = |name: &String| arguments.scene_options.open(name);
     let scenes = arguments.scenes.iter().map(open).collect::<Result<Vec<Scene>, _>>()?;
+    let files = [&arguments.json, &arguments.csv, &arguments.markdown].into_iter().flatten().flatten();
+    files.chain(&arguments.plot).try_for_each(|file| output::check_target(file))?;
     let mut session = Session::new(arguments.adapter.as_deref())?;
     let what = Measurement { choices, size: arguments.size, runs: usize::from(arguments.runs) };
     let mut rows: Vec<Row> = Vec::new();

@@ -1,9 +1,10 @@
 //! Capture folders of a hand-made capture: padded rows, shared aspects, a cube, a sun; no GPU.
 
 use super::*;
+use crate::accuracy::{ErrorCounts, Finding, Region};
 use crate::capture::{
-    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, DrawSummary, FrameSnapshot, Image, PixelFormat, Snapshot,
-    Step, Timing,
+    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, Image,
+    PixelFormat, Snapshot, Step, Timing,
 };
 use crate::plan::{LeftOut, Part};
 use crate::scene::Camera;
@@ -62,6 +63,12 @@ fn example() -> Capture {
     };
     let lit =
         |position: DVec4, map| CapturedLight { position, shadow: Some(padded(PixelFormat::U8, 1)), map, truth: None };
+    let truth = CapturedTruth {
+        labels: padded(PixelFormat::U8, 0),
+        findings: padded(PixelFormat::U8, 2),
+        error: ErrorCounts { compared: 11, false_shadow: 1, missing_shadow: 2, wrong_surface: 3, edge_band: 4 },
+        worst: Some(Region { pixels: 2, kind: Finding::MissingShadow, bounds: [1, 0, 4, 2], at: [1, 2] }),
+    };
     Capture {
         scene: "bunny \"on\" a floor".into(),
         technique: "z-fail".into(),
@@ -84,7 +91,7 @@ fn example() -> Capture {
             step("no stencil", Some(1), frame(None, true, false)),
         ],
         lights: vec![
-            lit(DVec4::new(1.0, 2.0, 3.0, 1.0), Some(cube)),
+            CapturedLight { truth: Some(truth), ..lit(DVec4::new(1.0, 2.0, 3.0, 1.0), Some(cube)) },
             lit(DVec4::new(0.0, 1.0, 0.0, 0.0), None),
             CapturedLight { position: DVec4::new(0.5, 0.0, 0.0, 1.0), shadow: None, map: None, truth: None },
         ],
@@ -130,8 +137,10 @@ fn the_folder_is_laid_out_as_promised() {
         "000-ambient.depth.npy",
         "000-ambient.stencil.npy",
         "002-volumes.stencil.npy",
+        "light0.error.npy",
         "light0.map.npy",
         "light0.shadow.npy",
+        "light0.truth.npy",
         "light1.shadow.npy",
         MANIFEST,
         "plan.txt",
@@ -155,6 +164,14 @@ fn the_folder_is_laid_out_as_promised() {
     assert_eq!(manifest["lights"][1]["kind"], "directional");
     assert_eq!(manifest["lights"][1]["towards"], serde_json::json!([0.0, 1.0, 0.0]));
     assert_eq!(manifest["lights"][0]["matrices"]["light_from_world"][0][3], 0.1);
+    let light = &manifest["lights"][0];
+    assert_eq!((&light["truth"], &light["error_picture"]), (&"light0.truth.npy".into(), &"light0.error.npy".into()));
+    let error = serde_json::json!(
+        {"compared": 11, "false_shadow": 1, "missing_shadow": 2, "wrong_surface": 3, "edge_band": 4}
+    );
+    assert_eq!(light["error"], error);
+    assert_eq!(light["worst_region"]["box"], serde_json::json!([1, 0, 4, 2]));
+    assert!(manifest["lights"][1].get("error").is_none() && manifest["lights"][1].get("truth").is_none());
     assert!(manifest["lights"][2].get("shadow").is_none());
     assert_eq!(manifest["camera"]["far"], serde_json::Value::Null);
 }
@@ -267,6 +284,9 @@ fn broken_folders_are_refused_with_a_reason() {
     assert!(replaced("  \"size\": [\n    5,", "  \"size\": [\n    4000000000,").contains("4000000000x3"));
     assert!(replaced("\"part\": \"side\"", "\"part\": \"inside\"").contains("part of a draw"));
     assert!(replaced("\"map_face\": 3", "\"map_face\": 99").contains("not there"));
+    assert!(replaced("\"kind\": \"missing_shadow\"", "\"kind\": \"agrees\"").contains("worst region"));
+    assert!(replaced("\"box\": [\n          1", "\"box\": [\n          9").contains("worst region"));
+    assert!(replaced("light0.truth.npy", "000-ambient.depth.npy").contains("capture the scene again"));
     assert!(replaced("\"near\": ", "\"near\": -").contains("camera"));
     assert!(replaced("{", "").contains(MANIFEST));
     let parent = tempfile::tempdir().expect("a folder");

@@ -1,0 +1,82 @@
+//! `report` from outside: all its forms, and what it refuses.
+
+use crate::commands::{assert_fails, folder, run, text};
+use std::collections::BTreeSet;
+use std::fs;
+use stencilscope::report::Report;
+use stencilscope::technique::{Choice, Technique};
+
+const SMALL: [&str; 6] = ["report", "triangle.obj", "--size", "80x60", "--runs", "2"];
+
+#[test]
+fn the_default_grid_has_every_technique_and_ten_shadow_maps() {
+    let grid = Choice::report_grid().expect("every row's settings are valid");
+    for technique in Technique::ALL {
+        let rows = grid.iter().filter(|choice| choice.technique() == technique).count();
+        assert_eq!(rows, if technique == Technique::ShadowMap { 10 } else { 1 }, "{technique:?}");
+    }
+}
+
+#[test]
+fn a_report_is_written_in_every_form() {
+    let folder = folder();
+    let file = |name: &str| fs::read_to_string(folder.path().join(name)).expect(name);
+    let output = run(folder.path(), &[&SMALL[..], &["--json", "r.json", "--plot", "r.svg"][..]].concat());
+    assert_eq!((output.status.code(), text(&output.stdout)), (Some(0), String::new()), "{}", text(&output.stderr));
+    let report = Report::from_json(&file("r.json")).expect("a report");
+    assert_eq!(report.rows.len(), Choice::report_grid().expect("a grid").len());
+    let labels: BTreeSet<&str> = report.rows.iter().map(|row| row.label.as_str()).collect();
+    assert!(labels.contains("1024") && labels.contains("256, bias-slope 0"), "{labels:?}");
+    for row in &report.rows {
+        assert!(row.frame_ms.min > 0.0 && row.frame_ms.min <= row.frame_ms.median, "{row:?}");
+        assert!(row.frame_ms.median <= row.frame_ms.max && row.setup_ms > 0.0, "{row:?}");
+        assert!(row.compared > 1000 && row.bytes > 80 * 60 * 8 && row.triangles >= 3, "{row:?}");
+        assert_eq!(row.frame_ms.runs, 2);
+        let is_exact = ["z-pass", "z-fail", "ray-traced"].contains(&row.technique.as_str());
+        assert!(!is_exact || row.wrong() == 0, "{row:?}");
+    }
+    let none = report.rows.iter().find(|row| row.technique == "none").expect("none");
+    assert!(none.missing_shadow > 20 && none.wrong_fraction > 0.0, "{none:?}");
+    assert!(report.rows.iter().any(|row| row.pareto && row.wrong() == 0));
+    assert!(file("r.svg").starts_with("<svg") || file("r.svg").contains("<svg"));
+
+    let one = [&SMALL[..], &["-t", "z-fail", "-t", "none"][..]].concat();
+    let csv = run(folder.path(), &[&one[..], &["--csv"][..]].concat());
+    assert_eq!(text(&csv.stdout).lines().count(), 3, "{}", text(&csv.stdout));
+    let markdown = run(folder.path(), &[&one[..], &["--markdown", "r.md", "--plot", "r.png"][..]].concat());
+    assert_eq!(markdown.status.code(), Some(0), "{}", text(&markdown.stderr));
+    assert!(file("r.md").contains("z-fail"));
+    assert!(fs::read(folder.path().join("r.png")).expect("a picture").starts_with(b"\x89PNG"));
+    let table = run(folder.path(), &one);
+    assert!(text(&table.stdout).contains("z-fail") && !text(&table.stdout).contains("planar"));
+}
+
+#[test]
+fn settings_narrow_the_grid() {
+    let folder = folder();
+    let options = ["-t", "shadow-map", "--set", "size=64", "--set", "bias-slope=1.5", "--json"];
+    let output = run(folder.path(), &[&SMALL[..], &options[..]].concat());
+    let report = Report::from_json(&text(&output.stdout)).expect("a report");
+    let [row] = &report.rows[..] else { panic!("{report:?}") };
+    assert_eq!((row.settings["size"].as_str(), row.settings["bias-slope"].as_str()), ("64", "1.5"));
+}
+
+#[test]
+fn what_a_report_can_not_do_is_refused_before_it_measures() {
+    let cases: &[(&[&str], &[&str])] = &[
+        (&[], &["<SCENE>"]),
+        (&["tori", "--plot", "r.gif"], &[".svg or .png"]),
+        (&["tori", "--plot", "missing/r.svg"], &["missing/r.svg", "choose another file"]),
+        (&["tori", "--json", "models"], &["models", "choose another file"]),
+        (&["tori", "-t", "z-fial"], &["did you mean `z-fail`?"]),
+        (&["tori", "-t", "auto"], &["not there yet"]),
+        (&["tori", "--set", "sise=3"], &["sise"]),
+        (&["tori", "--set", "size=0"], &["size", "from 1"]),
+        (&["tori", "--runs", "0"], &["0"]),
+        (&["tory"], &["did you mean `tori`?"]),
+    ];
+    for (options, words) in cases {
+        assert_fails(&[&["report"], *options].concat(), 2, words);
+    }
+    assert_fails(&["report", "tori", "--adapter", "no such gpu"], 3, &["mesa-vulkan-drivers"]);
+}
