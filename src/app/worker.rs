@@ -315,15 +315,21 @@ mod tests {
     }
 
     #[test]
-    fn the_last_frame_is_judged_and_its_time_comes_with_its_truth() {
-        let (worker, frame, news) = started();
-        judge(&worker, frame, &Progress::default());
+    fn the_last_frame_is_judged_and_keeps_its_truth_when_it_is_timed() {
+        let (tell, news) = channel();
+        let request = CaptureRequest::new(Choice::new(Technique::Planar), [64, 36]);
+        let mut bench = Bench::new(None, &request, Box::new(move |news| drop(tell.send(news))));
+        let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+        bench.begin(ViewSource::Scene(Box::new(scene)), 0.0);
+        bench.judge(1, &Progress::default());
+        bench.time();
+        let heard: Vec<News> = news.try_iter().collect();
         let judged =
-            wait(&news, |news| if let News::Judged { frame, capture } = news { Some((frame, capture)) } else { None });
-        assert_eq!(judged.0, frame);
-        assert!(judged.1.lights.iter().all(|light| light.truth.is_some()));
-        let timed = wait(&news, |news| if let News::Timed { capture, .. } = news { Some(capture) } else { None });
-        assert!(timed.timing.frame_ms.is_some() && timed.error() == judged.1.error());
+            heard.iter().find_map(|news| if let News::Judged { capture, .. } = news { Some(capture) } else { None });
+        let judged = judged.expect("a truth");
+        assert!(judged.lights.iter().all(|light| light.truth.is_some()));
+        let Some(News::Timed { frame: 1, capture }) = heard.last() else { panic!("a time") };
+        assert!(capture.timing.frame_ms.is_some() && capture.error() == judged.error());
     }
 
     #[test]

@@ -153,7 +153,9 @@ pub fn colored(image: &Image, block: usize) -> ColorImage {
 /// How a technique did for one light, in a sentence.
 #[must_use]
 pub fn sentence(error: &ErrorCounts, worst: Option<&Region>) -> String {
-    let compared = format::count(error.compared);
+    // A line of the sentence must not end inside a number.
+    let count = |value: u64| format::count(value).replace('\u{2009}', "\u{a0}");
+    let compared = count(error.compared);
     if error.compared == 0 {
         return "Nothing was compared: in truth no surface faces the light.".to_owned();
     }
@@ -162,7 +164,7 @@ pub fn sentence(error: &ErrorCounts, worst: Option<&Region>) -> String {
         let excused = match error.edge_band {
             0 => String::new(),
             1 => "; 1 at an edge is excused".to_owned(),
-            edges => format!("; {} at edges are excused", format::count(edges)),
+            edges => format!("; {} at edges are excused", count(edges)),
         };
         return format!("No pixel of {compared} is wrong{excused}.");
     }
@@ -171,14 +173,14 @@ pub fn sentence(error: &ErrorCounts, worst: Option<&Region>) -> String {
         (error.missing_shadow, "missing"),
         (error.wrong_surface, "of another surface"),
     ];
-    let kinds = kinds.into_iter().filter(|(count, _)| *count > 0);
-    let kinds: Vec<String> = kinds.map(|(count, words)| format!("{} {words}", format::count(count))).collect();
+    let kinds = kinds.into_iter().filter(|(pixels, _)| *pixels > 0);
+    let kinds: Vec<String> = kinds.map(|(pixels, words)| format!("{} {words}", count(pixels))).collect();
     let verb = if wrong == 1 { "is" } else { "are" };
     let patch = worst.filter(|_| wrong > 1).map_or_else(String::new, |region| {
         let [x, y] = region.at;
-        format!("; the largest patch has {} at {x}, {y}", format::count(region.pixels))
+        format!("; the largest patch has {} at {x}, {y}", count(region.pixels))
     });
-    format!("{} of {compared} pixels {verb} wrong: {}{patch}.", format::count(wrong), kinds.join(", "))
+    format!("{} of {compared} pixels {verb} wrong: {}{patch}.", count(wrong), kinds.join(", "))
 }
 
 #[cfg(test)]
@@ -235,13 +237,13 @@ mod tests {
     fn the_sentence_counts_what_is_wrong_and_says_where() {
         let none = ErrorCounts { compared: 876_871, edge_band: 412, ..ErrorCounts::default() };
         assert_eq!(
-            sentence(&none, None).replace('\u{2009}', " "),
+            sentence(&none, None).replace('\u{a0}', " "),
             "No pixel of 876 871 is wrong; 412 at edges are excused."
         );
         let counts = ErrorCounts { false_shadow: 1100, missing_shadow: 104, ..none };
         let worst = Region { pixels: 800, kind: Finding::FalseShadow, bounds: [3, 4, 50, 60], at: [7, 4] };
         assert_eq!(
-            sentence(&counts, Some(&worst)).replace('\u{2009}', " "),
+            sentence(&counts, Some(&worst)).replace('\u{a0}', " "),
             "1 204 of 876 871 pixels are wrong: 1 100 false shadow, 104 missing; the largest patch has 800 at 7, 4."
         );
         let one = ErrorCounts { compared: 5, missing_shadow: 1, ..ErrorCounts::default() };

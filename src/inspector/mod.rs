@@ -7,8 +7,10 @@
 //! ```text
 //! Inspector::ui ─ keys ─ top_bar ─ messages ─ docked panels ─ status_bar ─ open_dialog
 //!                                             passes │ settings │ picture │ pixel │ report
-//! state.rs  what is remembered, and its rules      view.rs     which picture, where on the screen
-//! depth.rs  what a stored depth means              texture.rs  pictures as textures, cached
+//! state.rs     what is remembered, and its rules   view.rs       which picture is shown
+//! depth.rs     what a stored depth means           placement.rs  where it is on the screen
+//! coloring.rs  what a texel means                  texture.rs    pictures as textures, cached
+//! findings.rs  the error picture's hatching        truth_note.rs while there is no truth
 //! ```
 
 mod action;

@@ -111,7 +111,7 @@ fn the_legend_begins_with_a_sentence_and_counts_findings() {
     click_button(&mut harness, "Error");
     harness.get_by_label("Error, light 1");
     harness.get_by_label(
-        "41 of 1\u{2009}170 pixels are wrong: 40 false shadow, 1 missing; the largest patch has 40 at 18, 0.",
+        "41 of 1\u{a0}170 pixels are wrong: 40 false shadow, 1 missing; the largest patch has 40 at 18, 0.",
     );
     for text in ["0 agrees", "1\u{2009}109", "1 false shadow", "40", "2 missing shadow", "3 wrong surface", "0"] {
         harness.get_by_label(text);
@@ -134,7 +134,7 @@ fn where_nothing_is_wrong_there_is_nowhere_to_go() {
     truth.worst = None;
     let mut harness = harness(capture);
     click_button(&mut harness, "Error");
-    harness.get_by_label("No pixel of 1\u{2009}170 is wrong; 12 at edges are excused.");
+    harness.get_by_label("No pixel of 1\u{a0}170 is wrong; 12 at edges are excused.");
     assert!(harness.query_by_label("Go to the largest").is_none());
 }
 
