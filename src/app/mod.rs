@@ -9,7 +9,9 @@
 //! Nothing blocks: the worker opens files and renders, the window only draws. The worker starts
 //! before the window is made, so that the GPU's first frame and the window's come together.
 
+mod jobs;
 mod news;
+mod orders;
 mod surface;
 mod window;
 mod worker;

@@ -2,6 +2,7 @@
 
 use crate::capture::Capture;
 use crate::inspector::RunRequest;
+use crate::report::Report;
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::time::Instant;
@@ -24,8 +25,41 @@ pub enum News {
     },
     /// A capture folder was opened.
     OpenedFolder(Arc<Capture>),
-    /// A frame was captured, or the same frame was timed.
-    Captured(Arc<Capture>),
+    /// A frame was captured.
+    Captured {
+        /// Tells it from those before.
+        frame: u64,
+        /// What was seen.
+        capture: Arc<Capture>,
+    },
+    /// The same frame was timed.
+    Timed {
+        /// The frame that is meant.
+        frame: u64,
+        /// With its time.
+        capture: Arc<Capture>,
+    },
+    /// The same frame was held against the truth.
+    Judged {
+        /// The frame that is meant.
+        frame: u64,
+        /// With its truth.
+        capture: Arc<Capture>,
+    },
+    /// The truth of a frame can't be told.
+    NotJudged {
+        /// The frame that is meant.
+        frame: u64,
+        /// Why, with the mend.
+        reason: String,
+    },
+    /// Techniques were measured, or could not be; not told of what was cancelled.
+    Measured {
+        /// The measuring that is meant.
+        job: u64,
+        /// The report, or why there is none.
+        result: Result<Report, String>,
+    },
     /// Something failed; the text has the mend.
     Failed(String),
 }

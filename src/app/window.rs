@@ -1,16 +1,22 @@
 //! The event loop: carries actions of the panels to the worker and its news to the panels.
 
+use super::jobs::Jobs;
 use super::news::{News, WindowNews};
+use super::orders::Order;
 use super::surface::Surface;
-use super::worker::{Order, Start, Worker};
+use super::worker::{Start, Worker};
 use super::{AppError, ViewRequest, no_window};
-use crate::inspector::{Action, Inspector, SceneEntry};
-use crate::scene::builtin;
+use crate::inspector::{Action, Inspector, SceneEntry, TruthState};
+use crate::scene::{TechniqueRequest, builtin};
+use crate::technique::Choice;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::WindowId;
+
+/// How often progress is looked at.
+const WATCH: Duration = Duration::from_millis(100);
 
 /// Shows the window until it is closed.
 pub fn run(request: ViewRequest) -> Result<(), AppError> {
@@ -33,6 +39,9 @@ struct App {
     failure: Option<AppError>,
     /// Of the scene that is open.
     generation: u64,
+    /// Of the frame that is shown.
+    frame: u64,
+    jobs: Jobs,
     /// What is selected when the first capture comes.
     first_step: Option<usize>,
     first_pick: Option<[u32; 2]>,
@@ -66,6 +75,8 @@ impl App {
             surface: None,
             failure: None,
             generation: 0,
+            frame: 0,
+            jobs: Jobs::default(),
             first_step: request.step,
             first_pick: request.pick,
             repaint_at: None,
@@ -81,11 +92,28 @@ impl App {
                 self.inspector.set_scene(&scene, *request);
             }
             News::OpenedFolder(capture) => {
+                self.jobs.stop_judging();
                 self.inspector.set_job(None);
                 self.inspector.clear_scene();
                 self.show(capture);
             }
-            News::Captured(capture) => self.show(capture),
+            News::Captured { frame, capture } => {
+                self.frame = frame;
+                self.jobs.stop_judging();
+                self.show(capture);
+            }
+            News::Timed { frame, capture } if frame == self.frame => self.inspector.update_capture(capture),
+            News::Judged { frame, capture } if frame == self.frame => {
+                self.jobs.stop_judging();
+                self.inspector.update_capture(capture);
+            }
+            News::NotJudged { frame, reason } if frame == self.frame => {
+                self.jobs.stop_judging();
+                self.inspector.set_truth(TruthState::Failed(reason));
+            }
+            // Of a frame that is shown no more.
+            News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
+            News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
             News::Failed(reason) => self.inspector.push_error(reason),
         }
         self.redraw();
@@ -106,16 +134,46 @@ impl App {
 
     fn act(&mut self, action: Action) {
         let order = match action {
-            Action::Open(name) => Order::Open(name),
-            Action::Run(request) => Order::Run { generation: self.generation, request },
+            Action::Open(name) => {
+                self.jobs.make_way(&mut self.inspector);
+                Order::Open(name)
+            }
+            Action::Run(request) => {
+                self.jobs.make_way(&mut self.inspector);
+                Order::Run { generation: self.generation, request }
+            }
             Action::Browse => return self.browse(),
-            Action::RunReport | Action::CancelReport | Action::OpenReportRow { .. } => return,
+            Action::Judge => Order::Judge { frame: self.frame, progress: self.jobs.judge() },
+            Action::CancelJudge => {
+                self.jobs.stop_judging();
+                self.inspector.set_truth(TruthState::Cancelled);
+                return self.redraw();
+            }
+            Action::RunReport => match self.jobs.measure(self.generation, &mut self.inspector) {
+                Some(measure) => Order::Measure(measure),
+                None => return self.redraw(),
+            },
+            Action::CancelReport => {
+                self.jobs.stop_measuring(None, &mut self.inspector);
+                return self.redraw();
+            }
+            Action::OpenReportRow { technique, settings } => {
+                return self.open_report_row(TechniqueRequest { name: technique, settings });
+            }
         };
         if !self.worker.order(order) {
             let lost = "the worker thread is gone: close the window and start again";
             self.inspector.push_error(lost.to_owned());
         }
         self.redraw();
+    }
+
+    /// Makes shadows as a row of the report did.
+    fn open_report_row(&mut self, row: TechniqueRequest) {
+        match Choice::parse(&row) {
+            Ok(choice) => self.inspector.choose(choice).into_iter().for_each(|action| self.act(action)),
+            Err(error) => self.inspector.push_error(error.to_string()),
+        }
     }
 
     /// Asks for a file in the system's dialog, beside the window.
@@ -142,7 +200,13 @@ impl App {
     fn draw(&mut self, event_loop: &ActiveEventLoop) {
         let Some(surface) = &mut self.surface else { return };
         let mut actions = Vec::new();
-        surface.draw(event_loop, &self.ctx, |ui| actions.extend(self.inspector.ui(ui)));
+        let is_watching = self.jobs.watch(&mut self.inspector);
+        surface.draw(event_loop, &self.ctx, |ui| {
+            actions.extend(self.inspector.ui(ui));
+            if is_watching {
+                ui.ctx().request_repaint_after(WATCH);
+            }
+        });
         for action in actions {
             self.act(action);
         }

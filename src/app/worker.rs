@@ -1,15 +1,20 @@
 //! The thread that owns the session: opens what is asked for, renders, and tells the window.
 //!
-//! Of all orders that wait, only the newest counts; a run that was asked for before another
-//! scene was opened is dropped. Once a frame was captured and no order has come for a while, the
-//! same frame is timed, so that neither the first picture nor a dragged light waits for the clock.
+//! Of all orders that wait, only the newest counts ([`Waiting`]); what was asked for a scene or a
+//! frame that is shown no more is dropped. Long work (truth, report) is asked to stop by the
+//! window, through its [`Progress`](crate::progress::Progress). Once a frame was captured and no
+//! order has come for a while, the same frame is timed, so that neither the first picture nor a
+//! dragged light waits for the clock.
 
 use super::news::News;
+use super::orders::{Measure, Order, Waiting};
 use super::{AppError, ViewSource};
 use crate::capture::{Capture, disk};
 use crate::inspector::RunRequest;
+use crate::progress::Progress;
+use crate::report::Report;
 use crate::scene::{OpenSpec, Scene};
-use crate::session::{CaptureRequest, Session, SessionError, median_ms};
+use crate::session::{CaptureRequest, Measurement, Session, SessionError, median_ms, report_rows};
 use crate::technique::Choice;
 use std::path::Path;
 use std::sync::Arc;
@@ -23,20 +28,6 @@ const TIMED_FRAMES: usize = 5;
 const LONGEST_TIMED: Duration = Duration::from_millis(250);
 /// How long nothing is asked for before the clock runs.
 const IDLE: Duration = Duration::from_millis(400);
-
-/// What the window asks for.
-#[derive(Debug)]
-pub enum Order {
-    /// A built-in scene, or the path of a scene file, model or capture folder.
-    Open(String),
-    /// The open scene again, changed.
-    Run {
-        /// The scene that is meant.
-        generation: u64,
-        /// The change.
-        request: Box<RunRequest>,
-    },
-}
 
 /// The way to the worker.
 #[derive(Debug)]
@@ -66,8 +57,8 @@ impl Worker {
         let (orders, waiting) = channel();
         let run = move || {
             let mut bench = Bench::new(start.adapter, &start.capture, Box::new(tell));
-            let first = bench.begin(start.source, start.time);
-            bench.obey_all(first, &waiting);
+            bench.begin(start.source, start.time);
+            bench.obey_all(&waiting);
         };
         let builder = thread::Builder::new().name("stencilscope worker".to_owned());
         builder.spawn(run).map_err(AppError::NoThread)?;
@@ -90,79 +81,83 @@ struct Bench {
     /// How the next scene is rendered, unless it says otherwise.
     choice: Choice,
     size: [u32; 2],
+    /// How many frames were captured.
+    frames: u64,
+    /// The frame that the window shows; `None` for a folder's.
+    last: Option<Done>,
     tell: Box<dyn Fn(News) + Send>,
 }
 
-/// A frame that was captured and may be timed.
+/// A frame that was captured: it may be timed and judged.
 struct Done {
+    frame: u64,
     scene: Scene,
     request: CaptureRequest,
     capture: Arc<Capture>,
-    took: Duration,
+    wants_timing: bool,
 }
 
 impl Bench {
     fn new(adapter: Option<String>, capture: &CaptureRequest, tell: Box<dyn Fn(News) + Send>) -> Bench {
         let (choice, size) = (capture.choice.clone(), capture.size);
-        Bench { adapter, session: None, scene: None, generation: 0, choice, size, tell }
+        Bench { adapter, session: None, scene: None, generation: 0, choice, size, frames: 0, last: None, tell }
     }
 
     /// The first thing to show.
-    fn begin(&mut self, source: ViewSource, time: f64) -> Option<Done> {
+    fn begin(&mut self, source: ViewSource, time: f64) {
         match source {
-            ViewSource::Capture(capture) => {
-                (self.tell)(News::OpenedFolder(Arc::new(*capture)));
-                None
-            }
+            ViewSource::Capture(capture) => (self.tell)(News::OpenedFolder(Arc::new(*capture))),
             ViewSource::Scene(scene) => {
                 let done = self.show_scene(scene, time);
-                self.finish(done)
+                self.finish(done);
             }
         }
     }
 
     /// Obeys orders until the window is gone, and times what was captured in between.
-    fn obey_all(&mut self, mut untimed: Option<Done>, waiting: &Receiver<Order>) {
+    fn obey_all(&mut self, orders: &Receiver<Order>) {
+        let mut waiting = Waiting::default();
         loop {
-            let next = if untimed.is_some() {
-                waiting.recv_timeout(IDLE)
+            orders.try_iter().for_each(|order| waiting.add(order));
+            if let Some(order) = waiting.next() {
+                self.obey(order);
+                continue;
+            }
+            let next = if self.last.as_ref().is_some_and(|done| done.wants_timing) {
+                orders.recv_timeout(IDLE)
             } else {
-                waiting.recv().map_err(|_| RecvTimeoutError::Disconnected)
+                orders.recv().map_err(|_| RecvTimeoutError::Disconnected)
             };
             match next {
-                Ok(first) => {
-                    let order = waiting.try_iter().fold(first, newest);
-                    untimed = self.obey(order);
-                }
-                Err(RecvTimeoutError::Timeout) => {
-                    if let Some(done) = untimed.take() {
-                        self.time(&done);
-                    }
-                }
+                Ok(order) => waiting.add(order),
+                Err(RecvTimeoutError::Timeout) => self.time(),
                 Err(RecvTimeoutError::Disconnected) => return,
             }
         }
     }
 
-    fn obey(&mut self, order: Order) -> Option<Done> {
+    fn obey(&mut self, order: Order) {
         let done = match order {
             Order::Open(name) => self.open(&name),
             Order::Run { generation, request } if generation == self.generation => self.run(&request),
+            Order::Judge { frame, progress } => return self.judge(frame, &progress),
+            Order::Measure(what) if what.generation == self.generation => return self.measure(what),
             // Of a scene that is open no more.
-            Order::Run { .. } => return None,
+            Order::Run { .. } | Order::Measure(_) => return,
         };
-        self.finish(done)
+        self.finish(done);
     }
 
-    fn open(&mut self, name: &str) -> Result<Option<Done>, String> {
+    fn open(&mut self, name: &str) -> Result<(), String> {
         (self.tell)(News::Busy(format!("opening {name}")));
         let path = Path::new(name);
         if path.is_dir() {
             let capture = disk::read(path).map_err(|error| error.to_string())?;
             self.scene = None;
+            self.last = None;
             self.generation += 1;
             (self.tell)(News::OpenedFolder(Arc::new(capture)));
-            return Ok(None);
+            return Ok(());
         }
         let scene = crate::scene::open(&OpenSpec::new(name)).map_err(|error| error.to_string())?;
         if let Some(wish) = &scene.technique {
@@ -171,7 +166,7 @@ impl Bench {
         self.show_scene(Box::new(scene), 0.0)
     }
 
-    fn show_scene(&mut self, scene: Box<Scene>, time: f64) -> Result<Option<Done>, String> {
+    fn show_scene(&mut self, scene: Box<Scene>, time: f64) -> Result<(), String> {
         let request = RunRequest {
             choice: self.choice.clone(),
             size: self.size,
@@ -181,22 +176,23 @@ impl Bench {
         };
         self.generation += 1;
         self.scene = Some(scene.clone());
+        self.last = None;
         (self.tell)(News::Opened { generation: self.generation, scene, request: Box::new(request.clone()) });
         self.run(&request)
     }
 
-    fn run(&mut self, request: &RunRequest) -> Result<Option<Done>, String> {
-        let Some(loaded) = &self.scene else { return Ok(None) };
+    fn run(&mut self, request: &RunRequest) -> Result<(), String> {
+        let Some(loaded) = &self.scene else { return Ok(()) };
         let mut scene = Scene::clone(loaded);
         scene.camera = request.camera;
         scene.lights.clone_from(&request.lights);
         let scene = scene.at(request.time);
         self.choice = request.choice.clone();
         self.size = request.size;
-        self.capture(scene, request).map(Some).map_err(|error| error.to_string())
+        self.capture(scene, request).map_err(|error| error.to_string())
     }
 
-    fn capture(&mut self, scene: Scene, request: &RunRequest) -> Result<Done, SessionError> {
+    fn capture(&mut self, scene: Scene, request: &RunRequest) -> Result<(), SessionError> {
         let request = CaptureRequest {
             choice: request.choice.clone(),
             size: request.size,
@@ -213,39 +209,74 @@ impl Bench {
         (self.tell)(News::Busy(format!("capturing {}", request.choice.technique().name())));
         let start = Instant::now();
         let capture = Arc::new(session.capture(&scene, &request)?);
-        let took = start.elapsed();
-        (self.tell)(News::Captured(Arc::clone(&capture)));
-        Ok(Done { scene, request, capture, took })
+        let wants_timing = start.elapsed() <= LONGEST_TIMED;
+        self.frames += 1;
+        (self.tell)(News::Captured { frame: self.frames, capture: Arc::clone(&capture) });
+        self.last = Some(Done { frame: self.frames, scene, request, capture, wants_timing });
+        Ok(())
     }
 
-    /// Tells that the work is over, and of an error; gives back what may be timed.
-    fn finish(&mut self, done: Result<Option<Done>, String>) -> Option<Done> {
-        let done = done.unwrap_or_else(|reason| {
+    /// Tells that the work is over, and of an error.
+    fn finish(&self, done: Result<(), String>) {
+        if let Err(reason) = done {
             (self.tell)(News::Failed(reason));
-            None
-        });
+        }
         (self.tell)(News::Idle);
-        done.filter(|done| done.took <= LONGEST_TIMED)
     }
 
-    fn time(&mut self, done: &Done) {
-        let Some(session) = &mut self.session else { return };
+    fn time(&mut self) {
+        let (Some(session), Some(done)) = (&mut self.session, &mut self.last) else { return };
+        done.wants_timing = false;
         // The frame has just run, so this can fail only where the GPU is lost: the next run says so.
         if let Ok(cost) = session.capture_cost(&done.scene, &done.request, TIMED_FRAMES) {
             let mut capture = Capture::clone(&done.capture);
             capture.timing.frame_ms = median_ms(&cost.frames);
             capture.timing.captured_ms = median_ms(&cost.captured);
-            (self.tell)(News::Captured(Arc::new(capture)));
+            done.capture = Arc::new(capture);
+            (self.tell)(News::Timed { frame: done.frame, capture: Arc::clone(&done.capture) });
         }
     }
-}
 
-/// Which of two orders in a row counts: opening wins over the runs around it, as those before
-/// are of the old scene and those after were made before the window knew the new one.
-fn newest(earlier: Order, later: Order) -> Order {
-    match (&earlier, &later) {
-        (Order::Open(_), Order::Run { .. }) => earlier,
-        _ => later,
+    /// Adds the truth to the frame that was captured last, if it is the one that is meant.
+    fn judge(&mut self, frame: u64, progress: &Progress) {
+        let is_meant = |done: &&mut Done| done.frame == frame && !progress.is_cancelled();
+        let (Some(session), Some(done)) = (&mut self.session, self.last.as_mut().filter(is_meant)) else { return };
+        (self.tell)(News::Busy("tracing the truth".to_owned()));
+        let mut capture = Capture::clone(&done.capture);
+        match session.judge(&done.scene, &mut capture, progress) {
+            Ok(()) => {
+                done.capture = Arc::new(capture);
+                (self.tell)(News::Judged { frame, capture: Arc::clone(&done.capture) });
+            }
+            // The window knows: it has asked for it.
+            Err(SessionError::Cancelled) => {}
+            Err(error) => (self.tell)(News::NotJudged { frame, reason: error.to_string() }),
+        }
+        (self.tell)(News::Idle);
+    }
+
+    /// Measures the open scene as it was captured last.
+    fn measure(&mut self, what: Measure) {
+        if what.progress.is_cancelled() {
+            return;
+        }
+        (self.tell)(News::Busy("measuring every technique".to_owned()));
+        let result = match (&mut self.session, &self.last) {
+            (Some(session), Some(done)) => {
+                let size = done.request.size;
+                let measurement = Measurement { choices: what.choices, size, runs: what.runs };
+                let measured = session.measure(&done.scene, &measurement, &what.progress);
+                measured.map_err(|error| error.to_string()).map(|measured| {
+                    Report::new(session.adapter().clone(), report_rows(&done.scene.name, size, &measured))
+                })
+            }
+            _ => Err("the open scene was not rendered: mend what the error says, then measure again".to_owned()),
+        };
+        // Where it was cancelled, the window has asked for it.
+        if !what.progress.is_cancelled() {
+            (self.tell)(News::Measured { job: what.job, result });
+        }
+        (self.tell)(News::Idle);
     }
 }
 
@@ -254,33 +285,77 @@ mod tests {
     use super::*;
     use crate::technique::Technique;
 
-    fn run(width: u32) -> Order {
-        let request = RunRequest {
-            choice: Choice::new(Technique::ZFail),
-            size: [width, 1],
-            camera: crate::scene::Camera {
-                eye: glam::DVec3::ZERO,
-                target: glam::DVec3::X,
-                up: glam::DVec3::Y,
-                fov_y_degrees: 45.0,
-                near: 0.1,
-                far: None,
-            },
-            lights: Vec::new(),
+    const PATIENCE: Duration = Duration::from_secs(60);
+
+    /// A worker over a small built-in scene, its first frame, and the news after it.
+    fn started() -> (Worker, u64, Receiver<News>) {
+        let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+        let start = Start {
+            source: ViewSource::Scene(Box::new(scene)),
+            capture: CaptureRequest::new(Choice::new(Technique::Planar), [64, 36]),
             time: 0.0,
+            adapter: None,
         };
-        Order::Run { generation: 1, request: Box::new(request) }
+        let (tell, news) = channel();
+        let worker = Worker::start(start, move |news| drop(tell.send(news))).expect("a thread");
+        let frame = wait(&news, |news| if let News::Captured { frame, .. } = news { Some(frame) } else { None });
+        (worker, frame, news)
+    }
+
+    fn wait<T>(news: &Receiver<News>, is_it: impl Fn(News) -> Option<T>) -> T {
+        loop {
+            if let Some(found) = is_it(news.recv_timeout(PATIENCE).expect("news")) {
+                return found;
+            }
+        }
+    }
+
+    fn judge(worker: &Worker, frame: u64, progress: &Progress) {
+        assert!(worker.order(Order::Judge { frame, progress: progress.clone() }));
     }
 
     #[test]
-    fn of_waiting_runs_the_newest_counts() {
-        let order = [run(2), run(3)].into_iter().fold(run(1), newest);
-        assert!(matches!(order, Order::Run { request, .. } if request.size[0] == 3));
+    fn the_last_frame_is_judged_and_its_time_comes_with_its_truth() {
+        let (worker, frame, news) = started();
+        judge(&worker, frame, &Progress::default());
+        let judged =
+            wait(&news, |news| if let News::Judged { frame, capture } = news { Some((frame, capture)) } else { None });
+        assert_eq!(judged.0, frame);
+        assert!(judged.1.lights.iter().all(|light| light.truth.is_some()));
+        let timed = wait(&news, |news| if let News::Timed { capture, .. } = news { Some(capture) } else { None });
+        assert!(timed.timing.frame_ms.is_some() && timed.error() == judged.1.error());
     }
 
     #[test]
-    fn opening_is_not_lost_to_a_run_of_the_scene_before() {
-        let order = [Order::Open("table".to_owned()), run(2)].into_iter().fold(run(1), newest);
-        assert!(matches!(order, Order::Open(name) if name == "table"));
+    fn a_frame_that_is_shown_no_more_and_a_cancelled_truth_are_passed_over() {
+        let (worker, frame, news) = started();
+        let cancelled = Progress::default();
+        cancelled.cancel();
+        judge(&worker, frame + 1, &Progress::default());
+        judge(&worker, frame, &cancelled);
+        assert!(worker.order(Order::Open("no such scene".to_owned())));
+        let is_judged = wait(&news, |news| match news {
+            News::Judged { .. } => Some(true),
+            News::Failed(_) => Some(false),
+            _ => None,
+        });
+        assert!(!is_judged);
+        judge(&worker, frame, &Progress::default());
+        wait(&news, |news| if let News::Judged { .. } = news { Some(()) } else { None });
+    }
+
+    #[test]
+    fn the_open_scene_is_measured_in_the_size_that_is_shown() {
+        let (worker, _, news) = started();
+        let measure = |generation, job| {
+            let choices = [Technique::ZFail, Technique::Planar].map(Choice::new).to_vec();
+            Order::Measure(Measure { generation, job, choices, runs: 1, progress: Progress::default() })
+        };
+        assert!(worker.order(measure(1, 7)));
+        let (job, result) =
+            wait(&news, |news| if let News::Measured { job, result } = news { Some((job, result)) } else { None });
+        let report = result.expect("a report");
+        let rows: Vec<_> = report.rows.iter().map(|row| (row.technique.as_str(), row.size)).collect();
+        assert_eq!((job, rows), (7, vec![("z-fail", [64, 36]), ("planar", [64, 36])]));
     }
 }

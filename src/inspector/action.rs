@@ -13,6 +13,10 @@ pub enum Action {
     Browse,
     /// Render again, with this changed.
     Run(Box<RunRequest>),
+    /// Trace the truth of the frame that is shown, and hold the technique against it.
+    Judge,
+    /// Stop tracing.
+    CancelJudge,
     /// Measure every technique on the open scene.
     RunReport,
     /// Stop measuring; the rows so far stay.

@@ -1,11 +1,13 @@
 //! The picture itself: zoom, pan and pick by mouse and keys, numbers on large texels, and the
 //! crosshair of the pick.
 
+use super::coloring::Coloring;
 use super::palette;
+use super::placement::Placement;
 use super::state::{Hover, State};
 use super::texture::TextureSize;
 use super::theme;
-use super::view::{Coloring, Placement, Shown, Zoom};
+use super::view::{Shown, Zoom};
 use crate::capture::Image;
 use egui::{
     Align2, Color32, CornerRadius, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
@@ -32,8 +34,14 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: C
     let painter = ui.painter_at(rect);
     let visible = placement.rect().intersect(rect);
     if visible.is_positive() {
-        let texture = state.cache.texture(ui.ctx(), image, coloring, TextureSize::Full);
-        painter.image(texture.id(), visible, uv_of(placement.rect(), visible), Color32::WHITE);
+        let block = if coloring == Coloring::Findings { block_of(placement.pixels(pixels_per_point)) } else { 1 };
+        let size = if block > 1 { TextureSize::Blocks(block) } else { TextureSize::Full };
+        let texture = state.cache.texture(ui.ctx(), image, coloring, size);
+        // The last block of a row may reach over the picture's border.
+        let whole = placement.rect();
+        let covered = [0, 1].map(|axis| image.size()[axis].next_multiple_of(block) as f32 * placement.scale);
+        let whole = if block > 1 { Rect::from_min_size(whole.min, covered.into()) } else { whole };
+        painter.image(texture.id(), visible, uv_of(whole, visible), Color32::WHITE);
     }
     painter.rect_stroke(placement.rect(), CornerRadius::ZERO, Stroke::new(1.0, theme::LINE), StrokeKind::Outside);
     if placement.pixels(pixels_per_point) >= NUMBERS_FROM {
@@ -46,6 +54,11 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: C
         painter.rect_stroke(rect.shrink(1.0), CornerRadius::ZERO, Stroke::new(1.0, theme::FOCUS), StrokeKind::Inside);
     }
     placement
+}
+
+/// How many texels have to be one, each way, so that every one is a screen pixel at least.
+fn block_of(pixels: f32) -> u32 {
+    (1.0 / pixels).ceil().clamp(1.0, 64.0) as u32
 }
 
 fn uv_of(whole: Rect, part: Rect) -> Rect {

@@ -110,7 +110,7 @@ impl Behavior<Panel> for Panels<'_> {
             match panel {
                 Panel::Passes => passes::ui(ui, self.state),
                 Panel::Settings => settings::ui(ui, self.state, self.actions),
-                Panel::Picture => picture::ui(ui, self.state),
+                Panel::Picture => picture::ui(ui, self.state, self.actions),
                 Panel::Pixel => pixel::ui(ui, self.state),
                 Panel::Report => report::ui(ui, self.state, self.actions),
             }

@@ -2,45 +2,55 @@
 //! range of depths.
 
 use super::depth::DepthMeasure;
+use super::findings;
 use super::format;
 use super::palette;
 use super::picture;
 use super::state::State;
 use super::theme;
 use super::view::{PictureKind, Shown};
+use crate::accuracy::Finding;
 use egui::{Color32, CornerRadius, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 
 /// Width of the legend, points.
 const WIDTH: f32 = 168.0;
+/// Width of the legend that begins with a sentence, points.
+const WIDE: f32 = 224.0;
 /// Stencil values that are listed one by one.
 const MOST_VALUES: usize = 12;
 
 /// What the legend takes of a picture of this size, points.
 #[must_use]
-pub fn room(rect: Rect) -> f32 {
-    if fits(rect) { WIDTH + 12.0 } else { 0.0 }
+pub fn room(rect: Rect, kind: PictureKind) -> f32 {
+    if fits(rect, kind) { width(kind) + 12.0 } else { 0.0 }
 }
 
-fn fits(rect: Rect) -> bool {
-    rect.width() >= WIDTH * 2.0
+fn fits(rect: Rect, kind: PictureKind) -> bool {
+    kind != PictureKind::Color && rect.width() >= width(kind) * 2.0
+}
+
+fn width(kind: PictureKind) -> f32 {
+    if kind == PictureKind::Error { WIDE } else { WIDTH }
 }
 
 /// Draws the legend of `shown`; `range` is that of the grey ramp.
 pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, range: [f64; 2]) {
-    if shown.kind == PictureKind::Color || !fits(rect) {
+    if !fits(rect, shown.kind) {
         return;
     }
-    let corner = Rect::from_min_size(pos2(rect.right() - WIDTH - 12.0, rect.top() + 12.0), vec2(WIDTH, rect.height()));
+    let width = width(shown.kind);
+    let corner = Rect::from_min_size(pos2(rect.right() - width - 12.0, rect.top() + 12.0), vec2(width, rect.height()));
     // Senses clicks, so that they do not reach the picture underneath.
     let builder = UiBuilder::new().max_rect(corner).sense(Sense::click_and_drag()).id_salt("legend");
     ui.scope_builder(builder, |ui| {
         let frame = theme::card().fill(theme::PANEL.gamma_multiply(0.94));
         frame.show(ui, |ui| {
-            ui.set_width(WIDTH - 16.0);
+            ui.set_width(width - 16.0);
             ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
             match shown.kind {
                 PictureKind::Stencil => stencil(ui, state, shown),
-                PictureKind::Mask => labels(ui, state, shown),
+                PictureKind::Mask | PictureKind::Truth => labels(ui, state, shown),
+                PictureKind::Error => findings(ui, state, shown),
                 _ => depth(ui, state, shown, range),
             }
         });
@@ -67,8 +77,7 @@ fn stencil(ui: &mut Ui, state: &mut State, shown: &Shown) {
 
 fn labels(ui: &mut Ui, state: &mut State, shown: &Shown) {
     let histogram = state.cache.histogram(&shown.images[0]);
-    let title = shown.title.strip_prefix("mask of ").unwrap_or(&shown.title);
-    theme::heading(ui, &format!("Mask, {title}"));
+    theme::heading(ui, &title(shown));
     for (value, label) in palette::LABELS.iter().enumerate() {
         let text = format!("{value} {}", label.name);
         entry(ui, label.color, &text, histogram[value]).on_hover_text(label.meaning);
@@ -77,6 +86,72 @@ fn labels(ui: &mut Ui, state: &mut State, shown: &Shown) {
     if others > 0 {
         ui.label(theme::note(format!("other values · {}", format::count(others))));
     }
+}
+
+/// `Mask, light 1`.
+fn title(shown: &Shown) -> String {
+    let of = shown.title.split_once(" of ").map_or(shown.title.as_str(), |(_, of)| of);
+    format!("{}, {of}", shown.kind.name())
+}
+
+/// One sentence, the way to the largest wrong patch, then the counts.
+fn findings(ui: &mut Ui, state: &mut State, shown: &Shown) {
+    theme::heading(ui, &title(shown));
+    let truth = state.capture.as_ref().and_then(|capture| state.view.truth_to_show(capture));
+    if let Some((error, worst)) = truth.map(|(_, truth)| (truth.error, truth.worst)) {
+        ui.add(egui::Label::new(findings::sentence(&error, worst.as_ref())).wrap());
+        if let Some(region) = worst {
+            ui.add_space(4.0);
+            let button = ui.button("Go to the largest");
+            if button.on_hover_text("Pick a pixel of the largest wrong patch, and show it large").clicked() {
+                let [left, top, right, bottom] = region.bounds;
+                state.go_to(region.at, (right - left).max(bottom - top) + 1);
+            }
+        }
+        ui.add_space(4.0);
+    }
+    let histogram = state.cache.histogram(&shown.images[0]);
+    for finding in Finding::ALL {
+        let style = findings::style(finding);
+        let line = ui.horizontal(|ui| {
+            hatched(ui, style);
+            ui.label(theme::number(format!("{} {}", finding as u8, style.name)).color(theme::TEXT));
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.label(theme::number(format::count(histogram[finding as usize])).color(theme::DIM));
+            });
+        });
+        line.response.on_hover_text(style.meaning);
+    }
+}
+
+/// A swatch with the hatching of a finding.
+pub fn hatched(ui: &mut Ui, style: findings::Style) {
+    let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, CornerRadius::same(2), style.color);
+    let stroke = egui::Stroke::new(1.5, style.color.lerp_to_gamma(Color32::BLACK, 0.6));
+    let (rising, falling) = match style.pattern {
+        findings::Pattern::Rising => (true, false),
+        findings::Pattern::Falling => (false, true),
+        findings::Pattern::Crossed => (true, true),
+        findings::Pattern::Plain => (false, false),
+        findings::Pattern::Dotted => {
+            for (x, y) in [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)] {
+                painter.circle_filled(rect.lerp_inside(vec2(x, y)), 1.4, stroke.color);
+            }
+            (false, false)
+        }
+    };
+    for shift in [-6.0, 0.0, 6.0] {
+        let aside = vec2(shift, 0.0);
+        if rising {
+            painter.line_segment([rect.left_bottom() + aside, rect.right_top() + aside], stroke);
+        }
+        if falling {
+            painter.line_segment([rect.left_top() + aside, rect.right_bottom() + aside], stroke);
+        }
+    }
+    painter.rect_stroke(rect, CornerRadius::same(2), egui::Stroke::new(1.0, theme::FAINT), egui::StrokeKind::Inside);
 }
 
 /// A line of the legend: colour, value, how many.

@@ -2,9 +2,11 @@
 //! small to show them itself.
 
 use super::canvas;
+use super::coloring::Coloring;
+use super::placement::Placement;
 use super::state::State;
 use super::theme;
-use super::view::{Coloring, Placement, Shown};
+use super::view::Shown;
 use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
 
 /// Texels across and down; odd, so that the pick is in the middle.

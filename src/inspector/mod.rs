@@ -13,9 +13,11 @@
 
 mod action;
 mod canvas;
+mod coloring;
 mod depth;
 mod dock;
 mod draws;
+mod findings;
 mod format;
 mod keys;
 mod legend;
@@ -27,6 +29,7 @@ mod passes;
 mod picture;
 mod pixel;
 mod pixel_run;
+mod placement;
 mod report;
 mod report_plot;
 mod report_table;
@@ -38,16 +41,19 @@ mod texture;
 mod theme;
 mod top_bar;
 mod transport;
+mod truth_note;
 mod verdict;
 mod view;
 
 pub use action::{Action, RunRequest};
 pub use report::{ReportProgress, ReportView};
 pub use state::SceneEntry;
+pub use truth_note::TruthState;
 pub use view::{PictureKind, Zoom};
 
 use crate::capture::Capture;
 use crate::scene::Scene;
+use crate::technique::Choice;
 use state::State;
 use std::sync::Arc;
 use std::time::Duration;
@@ -91,6 +97,7 @@ impl Inspector {
         status_bar::ui(ui, &self.state);
         self.dock.ui(ui, &mut self.state, &mut actions);
         open_dialog::ui(ui.ctx(), &mut self.state, &mut actions);
+        self.state.ask_for_truth(&mut actions);
         actions
     }
 
@@ -114,6 +121,25 @@ impl Inspector {
     /// Shows a capture; the selected step and pixel stay where they mean the same.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
         self.state.set_capture(capture);
+    }
+
+    /// Shows the same frame, of which more is known: how long it takes, or its truth. What is
+    /// selected stays, and playing goes on.
+    pub fn update_capture(&mut self, capture: Arc<Capture>) {
+        self.state.update_capture(capture);
+    }
+
+    /// Tells how far the truth of the shown frame is.
+    pub fn set_truth(&mut self, truth: TruthState) {
+        self.state.set_truth(truth);
+    }
+
+    /// Makes shadows of the open scene as `choice` says; what has to be done for it.
+    #[must_use]
+    pub fn choose(&mut self, choice: Choice) -> Vec<Action> {
+        let mut actions = Vec::new();
+        self.state.choose(choice, &mut actions);
+        actions
     }
 
     /// The capture that is shown.
@@ -182,7 +208,7 @@ impl Inspector {
 
     /// Wishes for a kind of picture.
     pub fn set_picture_kind(&mut self, kind: PictureKind) {
-        self.state.view.choose(kind);
+        self.state.choose_picture(kind);
     }
 
     /// How large texels are shown.

@@ -1,13 +1,13 @@
 //! The passes of the frame as a tree: scene and lights, their passes in order, the draws of the
 //! selected one, what was left out, and why the selected pass is there.
 
+use super::coloring::Coloring;
 use super::draws;
 use super::format;
 use super::state::{State, StepSearch};
 use super::texture::TextureSize;
 use super::theme;
 use super::transport;
-use super::view::Coloring;
 use crate::capture::{Capture, FrameSnapshot, Image, Snapshot, Step};
 use egui::{
     Color32, CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,

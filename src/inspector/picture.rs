@@ -1,21 +1,25 @@
 //! The picture panel: which picture, its tools, and the picture itself.
 
+use super::action::Action;
 use super::canvas;
+use super::coloring::Coloring;
 use super::depth::{DepthMeasure, DepthScale};
 use super::format;
 use super::legend;
 use super::magnifier;
+use super::placement::Placement;
 use super::state::{Hover, State};
 use super::texture::TextureSize;
 use super::theme;
 use super::top_bar::segments;
-use super::view::{CUBE_FACES, Coloring, DepthMode, FaceChoice, PictureKind, Placement, Shown, Zoom, available};
+use super::truth_note;
+use super::view::{CUBE_FACES, DepthMode, FaceChoice, PictureKind, Shown, Zoom, available};
 use crate::capture::{Capture, Image};
 use egui::{Align2, CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 
 /// Draws the panel.
-pub fn ui(ui: &mut Ui, state: &mut State) {
+pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     state.hover = None;
     let Some(capture) = state.capture.clone() else { return empty(ui, state) };
     toolbar(ui, state, &capture);
@@ -40,6 +44,7 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
         faces(ui, state, rect, &shown, coloring);
     }
     legend::ui(ui, state, rect, &shown, range);
+    truth_note::ui(ui, state, rect, &shown, actions);
 }
 
 fn empty(ui: &mut Ui, state: &State) {
@@ -64,7 +69,8 @@ pub fn coloring_of(shown: &Shown, range: [f64; 2]) -> Coloring {
     match shown.kind {
         PictureKind::Color => Coloring::Srgb,
         PictureKind::Stencil => Coloring::Stencil,
-        PictureKind::Mask => Coloring::Labels,
+        PictureKind::Mask | PictureKind::Truth => Coloring::Labels,
+        PictureKind::Error => Coloring::Findings,
         PictureKind::Depth | PictureKind::Map => Coloring::Depth(DepthScale { measure: shown.measure, range }),
     }
 }
@@ -90,6 +96,9 @@ fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
             let kind = state.view.shown(capture, state.step).map(|shown| shown.kind);
             match kind {
                 Some(PictureKind::Mask) => lights(ui, state, capture, |light| light.shadow.is_some()),
+                Some(PictureKind::Truth | PictureKind::Error) => {
+                    lights(ui, state, capture, |light| light.shadow.is_some() || light.truth.is_some());
+                }
                 Some(PictureKind::Map) => {
                     lights(ui, state, capture, |light| light.map.is_some());
                     cube_faces(ui, state, capture);
@@ -107,10 +116,13 @@ fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
 fn kinds(ui: &mut Ui, state: &mut State, capture: &Capture) {
     let kinds = available(capture, state.step);
     let labels: Vec<(&str, &str)> = kinds.iter().map(|kind| (kind.name(), kind.meaning())).collect();
-    let current = state.view.shown(capture, state.step).map(|shown| shown.kind);
+    // What was chosen, even while its truth is not known yet.
+    let is_asked_for = state.view.kind.needs_truth() && kinds.contains(&state.view.kind);
+    let shown = || state.view.shown(capture, state.step).map(|shown| shown.kind);
+    let current = if is_asked_for { Some(state.view.kind) } else { shown() };
     let chosen = kinds.iter().position(|kind| Some(*kind) == current);
     if let Some(index) = segments(ui, &labels, chosen) {
-        state.view.choose(kinds[index]);
+        state.choose_picture(kinds[index]);
     }
 }
 
@@ -192,7 +204,7 @@ fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
 /// The six faces of a cube map, named; a click shows one of them large. They leave room for the
 /// legend.
 fn faces(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Coloring) {
-    let area = Rect::from_min_max(rect.min, rect.max - vec2(legend::room(rect), 0.0)).shrink(8.0);
+    let area = Rect::from_min_max(rect.min, rect.max - vec2(legend::room(rect, shown.kind), 0.0)).shrink(8.0);
     let caption = 24.0;
     let side_of = |columns: usize| {
         let rows = shown.images.len().div_ceil(columns).max(1);

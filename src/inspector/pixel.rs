@@ -1,14 +1,17 @@
 //! The picked pixel: one sentence, then its values at the selected step, then how they came to be.
 
 use super::depth::DepthMeasure;
+use super::findings;
 use super::format;
+use super::legend;
 use super::palette;
 use super::pixel_run;
 use super::state::State;
 use super::theme;
 use super::verdict::verdict;
-use super::view::PictureKind;
-use crate::capture::{Capture, FrameSnapshot};
+use super::view::{PictureKind, has_truth};
+use crate::accuracy::Finding;
+use crate::capture::{Capture, CapturedLight, FrameSnapshot};
 use egui::{Color32, RichText, Ui};
 
 /// Draws the panel.
@@ -41,8 +44,7 @@ fn how_to_pick(ui: &mut Ui) {
 /// The light that the sentence is about: the selected step's, or the first that is blocked.
 fn light_in_question(state: &State, capture: &Capture, at: [u32; 2]) -> usize {
     let of_step = capture.steps.get(state.step).and_then(|step| step.light);
-    let is_dark =
-        |light: &crate::capture::CapturedLight| light.shadow.as_ref().and_then(|mask| mask.byte_at(at)) == Some(1);
+    let is_dark = |light: &CapturedLight| light.shadow.as_ref().and_then(|mask| mask.byte_at(at)) == Some(1);
     of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)
 }
 
@@ -123,25 +125,55 @@ fn row(ui: &mut Ui, name: &str, value: &str) {
     ui.end_row();
 }
 
-/// Every light with its label in words.
+/// Every light with its label in words; where the truth is known, beside it and with the finding.
 fn lights(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
     theme::heading(ui, "Lights");
+    if has_truth(capture) {
+        for (index, light) in capture.lights.iter().enumerate() {
+            judged(ui, capture, index, light, at);
+        }
+        return;
+    }
     egui::Grid::new("pixel lights").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
         for (index, light) in capture.lights.iter().enumerate() {
             ui.label(theme::note(format::light(index)));
             let label = light.shadow.as_ref().and_then(|mask| mask.byte_at(at));
-            match label.and_then(|label| palette::LABELS.get(usize::from(label))) {
-                Some(label) => {
-                    ui.horizontal(|ui| {
-                        theme::swatch(ui, label.color);
-                        ui.label(RichText::new(label.name).color(theme::TEXT)).on_hover_text(label.meaning);
-                    });
-                }
-                None => {
-                    ui.label(theme::note("no mask"));
-                }
-            }
+            ui.horizontal(|ui| label_words(ui, label, "no mask"));
             ui.end_row();
         }
     });
+}
+
+fn label_words(ui: &mut Ui, label: Option<u8>, without: &str) {
+    match label.and_then(|label| palette::LABELS.get(usize::from(label))) {
+        Some(label) => {
+            theme::swatch(ui, label.color);
+            ui.label(RichText::new(label.name).color(theme::TEXT)).on_hover_text(label.meaning);
+        }
+        None => {
+            ui.label(theme::note(without));
+        }
+    }
+}
+
+/// The technique's label beside the truth's, and below them what follows.
+fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, at: [u32; 2]) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::note(format::light(index)));
+        ui.add_space(4.0);
+        ui.label(theme::note(capture.technique.as_str()));
+        label_words(ui, light.shadow.as_ref().and_then(|mask| mask.byte_at(at)), "no mask");
+        ui.add_space(4.0);
+        ui.label(theme::note("truth"));
+        label_words(ui, light.truth.as_ref().and_then(|truth| truth.labels.byte_at(at)), "unknown");
+    });
+    let finding = light.truth.as_ref().and_then(|truth| Finding::from_byte(truth.findings.byte_at(at)?));
+    if let Some(finding) = finding {
+        let style = findings::style(finding);
+        ui.horizontal(|ui| {
+            legend::hatched(ui, style);
+            ui.add(egui::Label::new(RichText::new(style.meaning).color(theme::TEXT)).wrap());
+        });
+    }
+    ui.add_space(4.0);
 }

@@ -3,7 +3,8 @@
 use super::action::{Action, RunRequest};
 use super::report::ReportState;
 use super::texture::PictureCache;
-use super::view::{PictureKind, PictureView};
+use super::truth_note::TruthState;
+use super::view::{PictureKind, PictureView, Zoom, available, has_truth};
 use crate::capture::Capture;
 use crate::scene::Scene;
 use crate::technique::{Choice, Technique};
@@ -12,6 +13,10 @@ use std::sync::Arc;
 
 /// Seconds a step is shown while playing.
 pub const SECONDS_A_STEP: f64 = 0.8;
+/// Screen pixels that a region is to take where the picture goes to it.
+const GO_TO_PIXELS: f32 = 240.0;
+/// Screen pixels a texel at most where the picture goes to a region.
+const MOST_GO_TO_ZOOM: f32 = 12.0;
 
 /// A built-in scene in the dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -83,6 +88,8 @@ pub struct State {
     pub map_pick: Option<[u32; 2]>,
     /// What the pointer is over.
     pub hover: Option<Hover>,
+    /// How far the truth of the shown frame is.
+    pub truth: TruthState,
     /// The Report tab.
     pub report: ReportState,
     /// Errors that were not dismissed yet.
@@ -119,6 +126,11 @@ impl State {
             Some(before) => corresponding_step(before, self.step, &capture),
             None => capture.steps.len().saturating_sub(1),
         };
+        match &self.capture {
+            Some(before) => self.view.keep_truth_of(before, &capture),
+            None => self.view.forget_older_truth(),
+        }
+        self.truth = TruthState::NotAsked;
         let [width, height] = capture.size;
         self.pick = self.pick.filter(|[x, y]| *x < width && *y < height);
         self.hover = None;
@@ -127,6 +139,55 @@ impl State {
         self.view.follow(&capture, self.step);
         self.capture = Some(capture);
         self.cache.forget_unused();
+    }
+
+    /// Shows the same frame, of which more is known: how long it takes, or its truth.
+    pub fn update_capture(&mut self, capture: Arc<Capture>) {
+        if has_truth(&capture) {
+            self.view.forget_older_truth();
+            self.truth = TruthState::NotAsked;
+        }
+        self.capture = Some(capture);
+        self.cache.forget_unused();
+    }
+
+    /// The user wishes to see `kind`. Wishing again for what was not traced tries again.
+    pub fn choose_picture(&mut self, kind: PictureKind) {
+        if kind.needs_truth() && matches!(self.truth, TruthState::Cancelled | TruthState::Failed(_)) {
+            self.truth = TruthState::NotAsked;
+        }
+        self.view.choose(kind);
+    }
+
+    /// Asks for the truth where it is wished for, not known, and was not asked for yet.
+    pub fn ask_for_truth(&mut self, actions: &mut Vec<Action>) {
+        let can_ask = self.truth == TruthState::NotAsked && self.scene.is_some() && self.view.kind.needs_truth();
+        let is_missing =
+            |capture: &Arc<Capture>| !has_truth(capture) && available(capture, self.step).contains(&self.view.kind);
+        if can_ask && self.capture.as_ref().is_some_and(is_missing) {
+            self.truth = TruthState::Running { done: 0, of: 0 };
+            actions.push(Action::Judge);
+        }
+    }
+
+    /// Tells how far the truth of the shown frame is.
+    pub fn set_truth(&mut self, truth: TruthState) {
+        if matches!(truth, TruthState::Cancelled | TruthState::Failed(_)) {
+            self.view.forget_older_truth();
+        }
+        self.truth = truth;
+    }
+
+    /// Picks a pixel and brings it to the middle, large enough that `side` texels around it take
+    /// a good part of the panel.
+    pub fn go_to(&mut self, at: [u32; 2], side: u32) {
+        self.pick = Some(at);
+        let fitting = (GO_TO_PIXELS / side.max(1) as f32).clamp(1.0, MOST_GO_TO_ZOOM);
+        self.view.zoom = match self.view.zoom {
+            Zoom::Fit => Zoom::Pixels(fitting),
+            Zoom::Pixels(pixels) => Zoom::Pixels(pixels.max(1.0)),
+        };
+        self.view.center = at.map(|v| f64::from(v) + 0.5);
     }
 
     /// Another scene is open; `None` for a capture folder, which can't be run again.
@@ -183,6 +244,14 @@ impl State {
             scene.draft.choice = remembered.cloned().unwrap_or_else(|| Choice::new(technique));
             self.run_draft(actions);
         }
+    }
+
+    /// Makes shadows as `choice` says, and runs it.
+    pub fn choose(&mut self, choice: Choice, actions: &mut Vec<Action>) {
+        let Some(scene) = &mut self.scene else { return };
+        scene.choices.insert(scene.draft.choice.technique(), scene.draft.choice.clone());
+        scene.draft.choice = choice;
+        self.run_draft(actions);
     }
 
     /// Asks for a run of the draft, or notes why it can't be run.

@@ -1,10 +1,11 @@
 //! The bar at the bottom: the picture's facts, what the pointer is over, what a frame costs.
 
+use super::coloring::Coloring;
 use super::format;
 use super::palette;
 use super::state::State;
 use super::theme;
-use super::view::{Coloring, Shown};
+use super::view::Shown;
 use crate::capture::Capture;
 use egui::{Margin, Ui};
 use std::sync::Arc;

@@ -4,9 +4,10 @@
 //! shows in the next frame. Images are told apart by their `Arc`, which the cache keeps alive,
 //! so that a new image can't be taken for an old one at the same address.
 
+use super::coloring::Coloring;
 use super::depth::DepthMeasure;
+use super::findings;
 use super::palette;
-use super::view::Coloring;
 use crate::capture::Image;
 use egui::{Color32, ColorImage, Context, TextureFilter, TextureHandle, TextureOptions};
 use std::sync::Arc;
@@ -30,6 +31,9 @@ pub struct PictureCache {
 pub enum TextureSize {
     /// A texel each, unless the GPU can't hold that many.
     Full,
+    /// So many texels each way as one, at least; only findings are made small so, of which the
+    /// worst is shown.
+    Blocks(u32),
     /// At most [`THUMBNAIL_SIDE`].
     Thumbnail,
 }
@@ -89,10 +93,16 @@ impl PictureCache {
             return cached.handle.clone();
         }
         let side = match size {
-            TextureSize::Full => ctx.input(|input| input.max_texture_side) as u32,
+            TextureSize::Full | TextureSize::Blocks(_) => ctx.input(|input| input.max_texture_side) as u32,
             TextureSize::Thumbnail => THUMBNAIL_SIDE,
         };
-        let handle = ctx.load_texture("picture", colored(image, coloring, side), options(coloring));
+        let picture = match (coloring, size) {
+            (Coloring::Findings, TextureSize::Blocks(block)) => {
+                findings::colored(image, thinning(image, side).max(block as usize))
+            }
+            _ => colored(image, coloring, side),
+        };
+        let handle = ctx.load_texture("picture", picture, options(coloring));
         // While a range is dragged only its latest texture is worth keeping.
         if let Coloring::Depth(_) = coloring {
             let is_older = |cached: &CachedTexture| {
@@ -141,16 +151,25 @@ fn keep_where<T>(items: &mut Vec<T>, keep: &[bool]) {
 /// Exact texels when magnified; counts and labels stay exact when made smaller, too.
 fn options(coloring: Coloring) -> TextureOptions {
     let minification = match coloring {
-        Coloring::Stencil | Coloring::Labels => TextureFilter::Nearest,
+        Coloring::Stencil | Coloring::Labels | Coloring::Findings => TextureFilter::Nearest,
         Coloring::Srgb | Coloring::Depth(_) => TextureFilter::Linear,
     };
     TextureOptions { magnification: TextureFilter::Nearest, minification, ..TextureOptions::NEAREST }
 }
 
+/// Texels that become one in a texture of at most `most` a side.
+fn thinning(image: &Image, most: u32) -> usize {
+    let [width, height] = image.size();
+    width.max(height).div_ceil(most.max(1)).max(1) as usize
+}
+
 /// The picture in its colours; every n-th texel where it has more than `most` a side.
 fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
     let [width, height] = image.size();
-    let step = width.max(height).div_ceil(most.max(1)).max(1) as usize;
+    let step = thinning(image, most);
+    if coloring == Coloring::Findings {
+        return findings::colored(image, step);
+    }
     let size = [(width as usize).div_ceil(step), (height as usize).div_ceil(step)];
     let mut pixels: Vec<Color32> = Vec::with_capacity(size[0] * size[1]);
     for row in image.rows().step_by(step) {
@@ -158,6 +177,7 @@ fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
             Coloring::Srgb => pixels.extend(texels(row, 4, step).map(|t| Color32::from_rgb(t[0], t[1], t[2]))),
             Coloring::Stencil => pixels.extend(row.iter().step_by(step).map(|value| palette::stencil(*value))),
             Coloring::Labels => pixels.extend(row.iter().step_by(step).map(|value| palette::label(*value))),
+            Coloring::Findings => pixels.extend(row.iter().step_by(step).map(|value| findings::color(*value))),
             Coloring::Depth(scale) => {
                 pixels.extend(texels(row, 4, step).map(|t| scale.color(bytemuck::pod_read_unaligned(t))));
             }

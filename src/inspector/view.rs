@@ -1,13 +1,12 @@
 //! Which picture is shown and how: its kind, what a texel's value means, zoom and place.
 //!
-//! A capture holds up to five kinds of picture. [`PictureView::shown`] finds the one wished for
-//! at a step, or the nearest that exists there, and says what its texels mean ([`Coloring`]).
+//! A capture holds up to seven kinds of picture. [`PictureView::shown`] finds the one wished for
+//! at a step, or what is shown while there is none. Truth and error may be wished for before they
+//! are there: until then those of the frame before stay, or else the picture before them.
 
-use super::depth::{DepthMeasure, DepthScale};
+use super::depth::DepthMeasure;
 use super::format;
-use super::palette;
-use crate::capture::{Capture, Image, Snapshot};
-use egui::{Color32, Pos2, Rect, Vec2, pos2, vec2};
+use crate::capture::{Capture, CapturedLight, CapturedTruth, Image, Snapshot};
 use std::sync::Arc;
 
 /// A kind of picture that a capture may hold.
@@ -21,14 +20,25 @@ pub enum PictureKind {
     Depth,
     /// A technique's answer for one light.
     Mask,
+    /// The answer that rays give for one light.
+    Truth,
+    /// Where the two differ.
+    Error,
     /// Depth as a light sees it.
     Map,
 }
 
 impl PictureKind {
     /// All, in the order of their buttons.
-    pub const ALL: [PictureKind; 5] =
-        [PictureKind::Color, PictureKind::Stencil, PictureKind::Depth, PictureKind::Mask, PictureKind::Map];
+    pub const ALL: [PictureKind; 7] = [
+        PictureKind::Color,
+        PictureKind::Stencil,
+        PictureKind::Depth,
+        PictureKind::Mask,
+        PictureKind::Truth,
+        PictureKind::Error,
+        PictureKind::Map,
+    ];
 
     /// On its button.
     #[must_use]
@@ -38,6 +48,8 @@ impl PictureKind {
             PictureKind::Stencil => "Stencil",
             PictureKind::Depth => "Depth",
             PictureKind::Mask => "Mask",
+            PictureKind::Truth => "Truth",
+            PictureKind::Error => "Error",
             PictureKind::Map => "Shadow map",
         }
     }
@@ -50,64 +62,17 @@ impl PictureKind {
             PictureKind::Stencil => "The stencil count of every pixel",
             PictureKind::Depth => "How far the surface at every pixel is",
             PictureKind::Mask => "Where the technique says that a light is blocked",
+            PictureKind::Truth => "Where rays say that a light is blocked",
+            PictureKind::Error => "Where the technique and the truth differ",
             PictureKind::Map => "Depth as the light sees it",
         }
     }
-}
 
-/// What the texels of a picture mean.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Coloring {
-    /// sRGB bytes.
-    Srgb,
-    /// Stencil counts.
-    Stencil,
-    /// Labels of a light.
-    Labels,
-    /// Stored depths.
-    Depth(DepthScale),
-}
-
-impl Coloring {
-    /// The colour that a texel is drawn in; `None` outside the picture.
+    /// Can it be shown only once the truth is known?
     #[must_use]
-    pub fn color_at(self, image: &Image, at: [u32; 2]) -> Option<Color32> {
-        match self {
-            Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| Color32::from_rgb(r, g, b)),
-            Coloring::Stencil => image.byte_at(at).map(palette::stencil),
-            Coloring::Labels => image.byte_at(at).map(palette::label),
-            Coloring::Depth(scale) => image.depth_at(at).map(|depth| scale.color(depth)),
-        }
+    pub fn needs_truth(self) -> bool {
+        matches!(self, PictureKind::Truth | PictureKind::Error)
     }
-
-    /// The texel's number for a cell that holds `columns` characters a line; `None` outside the
-    /// picture. Colours have a line a channel.
-    #[must_use]
-    pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
-        match self {
-            Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
-            Coloring::Stencil | Coloring::Labels => image.byte_at(at).map(|value| value.to_string()),
-            Coloring::Depth(scale) => image.depth_at(at).map(|depth| match scale.measure.value(depth) {
-                Some(value) => fitted(value, columns),
-                None => "∞".to_owned(),
-            }),
-        }
-    }
-}
-
-/// As many digits of `value` as fit into `columns` characters.
-fn fitted(value: f64, columns: usize) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let whole = format!("{value:.0}").len();
-    let decimals = columns.saturating_sub(whole + 1).min(6);
-    let text = format!("{value:.decimals$}");
-    // Every digit shown would be a zero: a power of ten says more.
-    if text.chars().all(|c| matches!(c, '0' | '.' | '-')) {
-        return format!("{value:.0e}");
-    }
-    text.strip_prefix('0').filter(|rest| rest.starts_with('.')).map_or(text.clone(), str::to_owned)
 }
 
 /// Which face of a cube map is shown.
@@ -162,6 +127,10 @@ pub struct PictureView {
     pub depth_range: Option<[f64; 2]>,
     /// The kind to go back to when a map pass is left.
     kind_before_map: Option<PictureKind>,
+    /// The kind that is shown until the truth is known.
+    kind_before_truth: Option<PictureKind>,
+    /// The truth of the frame before, light by light, shown until that of the frame is known.
+    older_truth: Vec<Option<CapturedTruth>>,
 }
 
 impl Default for PictureView {
@@ -175,6 +144,8 @@ impl Default for PictureView {
             depth_mode: DepthMode::Linear,
             depth_range: None,
             kind_before_map: None,
+            kind_before_truth: None,
+            older_truth: Vec::new(),
         }
     }
 }
@@ -192,16 +163,42 @@ pub struct Shown {
     pub title: String,
     /// The GPU's format.
     pub format: &'static str,
+    /// It is of the frame before.
+    pub is_older: bool,
 }
 
 impl PictureView {
     /// The user wishes to see `kind`.
     pub fn choose(&mut self, kind: PictureKind) {
+        if kind.needs_truth() && !self.kind.needs_truth() {
+            self.kind_before_truth = Some(self.kind);
+        }
+        if !kind.needs_truth() {
+            self.older_truth.clear();
+        }
+        self.kind_before_map = None;
+        self.switch(kind);
+    }
+
+    fn switch(&mut self, kind: PictureKind) {
         if (kind == PictureKind::Depth) != (self.kind == PictureKind::Depth) {
             self.depth_range = None;
         }
         self.kind = kind;
-        self.kind_before_map = None;
+    }
+
+    /// Another frame takes the place of `before`: its truth stays until the new one is known.
+    pub fn keep_truth_of(&mut self, before: &Capture, now: &Capture) {
+        if !self.kind.needs_truth() || before.scene != now.scene || before.size != now.size {
+            self.older_truth.clear();
+        } else if has_truth(before) {
+            self.older_truth = before.lights.iter().map(|light| light.truth.clone()).collect();
+        }
+    }
+
+    /// The truth of the frame before is not worth showing any longer.
+    pub fn forget_older_truth(&mut self) {
+        self.older_truth.clear();
     }
 
     /// Follows to a step: a map pass shows its map, and the step after it what was shown before.
@@ -210,7 +207,7 @@ impl PictureView {
             Some(Snapshot::Map { light, face }) => {
                 if self.kind != PictureKind::Map {
                     let before = self.kind;
-                    self.choose(PictureKind::Map);
+                    self.switch(PictureKind::Map);
                     self.kind_before_map = Some(before);
                 }
                 self.light = *light;
@@ -221,7 +218,7 @@ impl PictureView {
             }
             _ => {
                 if let Some(before) = self.kind_before_map.take() {
-                    self.choose(before);
+                    self.switch(before);
                     self.face = FaceChoice::Grid;
                 }
                 if let Some(light) = capture.steps.get(step).and_then(|step| step.light) {
@@ -231,11 +228,16 @@ impl PictureView {
         }
     }
 
-    /// The picture to show at a step: the kind wished for, or the first that exists.
+    /// The picture to show at a step: the kind wished for, or what stands in for it.
     #[must_use]
     pub fn shown(&self, capture: &Capture, step: usize) -> Option<Shown> {
         let kinds = available(capture, step);
-        let kind = if kinds.contains(&self.kind) { self.kind } else { *kinds.first()? };
+        let wished = if self.kind.needs_truth() && self.truth_to_show(capture).is_none() {
+            self.kind_before_truth.unwrap_or(PictureKind::Color)
+        } else {
+            self.kind
+        };
+        let kind = if kinds.contains(&wished) { wished } else { *kinds.iter().find(|kind| !kind.needs_truth())? };
         let frame = capture.frame_at(step);
         let after = |what: &str| format!("{what} after step {}", step + 1);
         let depth_format = if has_stencil(capture) { "Depth32FloatStencil8" } else { "Depth32Float" };
@@ -250,9 +252,35 @@ impl PictureView {
                 let title = format!("mask of {}", format::light(light));
                 (capture.lights.get(light)?.shadow.clone()?, raw, title, "R8Uint")
             }
+            PictureKind::Truth | PictureKind::Error => return self.shown_truth(capture, kind),
             PictureKind::Map => return self.shown_map(capture),
         };
-        Some(Shown { kind, images: vec![image], measure, title, format })
+        Some(Shown { kind, images: vec![image], measure, title, format, is_older: false })
+    }
+
+    fn shown_truth(&self, capture: &Capture, kind: PictureKind) -> Option<Shown> {
+        let (light, truth) = self.truth_to_show(capture)?;
+        let (image, word) =
+            if kind == PictureKind::Truth { (&truth.labels, "truth") } else { (&truth.findings, "error") };
+        Some(Shown {
+            kind,
+            images: vec![image.clone()],
+            measure: DepthMeasure::Raw,
+            title: format!("{word} of {}", format::light(light)),
+            format: "R8Uint",
+            is_older: !has_truth(capture),
+        })
+    }
+
+    /// The light whose truth is shown, and that truth: of the frame, or of the one before.
+    #[must_use]
+    pub fn truth_to_show<'a>(&'a self, capture: &'a Capture) -> Option<(usize, &'a CapturedTruth)> {
+        if has_truth(capture) {
+            let light = self.light_with(capture, |light| light.truth.is_some())?;
+            return Some((light, capture.lights.get(light)?.truth.as_ref()?));
+        }
+        let older = |index: usize| Some((index, self.older_truth.get(index)?.as_ref()?));
+        older(self.light).or_else(|| (0..self.older_truth.len()).find_map(older))
     }
 
     fn shown_map(&self, capture: &Capture) -> Option<Shown> {
@@ -267,7 +295,7 @@ impl PictureView {
             _ => (map.faces.clone(), DepthMeasure::of_map(map, 0), title),
         };
         let measure = self.measure_or_raw(measure);
-        Some(Shown { kind: PictureKind::Map, images, measure, title, format: "Depth32Float" })
+        Some(Shown { kind: PictureKind::Map, images, measure, title, format: "Depth32Float", is_older: false })
     }
 
     fn measure_or_raw(&self, linear: Option<DepthMeasure>) -> DepthMeasure {
@@ -275,13 +303,19 @@ impl PictureView {
     }
 
     /// The chosen light if `has` holds for it, else the first for which it does.
-    pub fn light_with(&self, capture: &Capture, has: impl Fn(&crate::capture::CapturedLight) -> bool) -> Option<usize> {
+    pub fn light_with(&self, capture: &Capture, has: impl Fn(&CapturedLight) -> bool) -> Option<usize> {
         let chosen = capture.lights.get(self.light).filter(|light| has(light));
         chosen.map_or_else(|| capture.lights.iter().position(&has), |_| Some(self.light))
     }
 }
 
-/// The kinds of picture that exist at a step, in the order of their buttons.
+/// Is the truth of this frame known?
+#[must_use]
+pub fn has_truth(capture: &Capture) -> bool {
+    capture.lights.iter().any(|light| light.truth.is_some())
+}
+
+/// The kinds of picture that exist at a step, or can be asked for, in the order of their buttons.
 #[must_use]
 pub fn available(capture: &Capture, step: usize) -> Vec<PictureKind> {
     let frame = capture.frame_at(step);
@@ -289,6 +323,9 @@ pub fn available(capture: &Capture, step: usize) -> Vec<PictureKind> {
         PictureKind::Color | PictureKind::Depth => frame.is_some(),
         PictureKind::Stencil => frame.is_some_and(|frame| frame.stencil.is_some()),
         PictureKind::Mask => capture.lights.iter().any(|light| light.shadow.is_some()),
+        PictureKind::Truth | PictureKind::Error => {
+            capture.lights.iter().any(|light| light.shadow.is_some() || light.truth.is_some())
+        }
         PictureKind::Map => capture.lights.iter().any(|light| light.map.is_some()),
     };
     PictureKind::ALL.into_iter().filter(exists).collect()
@@ -297,95 +334,4 @@ pub fn available(capture: &Capture, step: usize) -> Vec<PictureKind> {
 fn has_stencil(capture: &Capture) -> bool {
     let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));
     last.is_some_and(|frame| frame.stencil.is_some())
-}
-
-/// Where a picture lies on the screen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Placement {
-    /// Screen position of the picture's upper left corner, points.
-    pub origin: Pos2,
-    /// Points a texel.
-    pub scale: f32,
-    /// Texels.
-    pub size: [u32; 2],
-}
-
-impl Placement {
-    /// The smallest and largest number of screen pixels a texel.
-    pub const ZOOM_LIMITS: [f32; 2] = [1.0 / 64.0, 256.0];
-
-    /// Places a picture of `size` in `panel`.
-    #[must_use]
-    pub fn new(view: &PictureView, size: [u32; 2], panel: Rect, pixels_per_point: f32) -> Placement {
-        let texels = vec2(size[0] as f32, size[1] as f32);
-        let (scale, middle) = match view.zoom {
-            Zoom::Fit => {
-                let scale = (panel.width() / texels.x).min(panel.height() / texels.y).max(1e-4);
-                (scale, texels / 2.0)
-            }
-            Zoom::Pixels(pixels) => (pixels / pixels_per_point, view.center.map(|c| c as f32).into()),
-        };
-        let origin = panel.center() - middle * scale;
-        // Texels are sharp only where their edges are on the screen's grid.
-        let on_grid = |v: f32| (v * pixels_per_point).round() / pixels_per_point;
-        Placement { origin: pos2(on_grid(origin.x), on_grid(origin.y)), scale, size }
-    }
-
-    /// Screen pixels a texel.
-    #[must_use]
-    pub fn pixels(&self, pixels_per_point: f32) -> f32 {
-        self.scale * pixels_per_point
-    }
-
-    /// The texel position under a screen position; may lie outside the picture.
-    #[must_use]
-    pub fn texel_position(&self, at: Pos2) -> Vec2 {
-        (at - self.origin) / self.scale
-    }
-
-    /// The texel under a screen position.
-    #[must_use]
-    pub fn texel(&self, at: Pos2) -> Option<[u32; 2]> {
-        let position = self.texel_position(at);
-        let inside = position.x >= 0.0 && position.y >= 0.0;
-        let texel = [position.x as u32, position.y as u32];
-        (inside && texel[0] < self.size[0] && texel[1] < self.size[1]).then_some(texel)
-    }
-
-    /// The screen rectangle of a texel.
-    #[must_use]
-    pub fn rect_of(&self, [x, y]: [u32; 2]) -> Rect {
-        let min = self.origin + vec2(x as f32, y as f32) * self.scale;
-        Rect::from_min_size(min, Vec2::splat(self.scale))
-    }
-
-    /// The screen rectangle of the whole picture.
-    #[must_use]
-    pub fn rect(&self) -> Rect {
-        Rect::from_min_size(self.origin, vec2(self.size[0] as f32, self.size[1] as f32) * self.scale)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_fitted_picture_is_centred_and_whole() {
-        let panel = Rect::from_min_size(pos2(10.0, 20.0), vec2(200.0, 100.0));
-        let placement = Placement::new(&PictureView::default(), [100, 100], panel, 1.0);
-        assert_eq!(placement.rect(), Rect::from_min_size(pos2(60.0, 20.0), vec2(100.0, 100.0)));
-        assert_eq!(placement.texel(pos2(60.5, 20.5)), Some([0, 0]));
-        assert_eq!(placement.texel(pos2(59.5, 20.5)), None);
-        assert_eq!(placement.texel(pos2(159.9, 119.9)), Some([99, 99]));
-    }
-
-    #[test]
-    fn numbers_fit_their_cell() {
-        assert_eq!(fitted(13.4823, 4), "13.5");
-        assert_eq!(fitted(0.0, 4), "0");
-        assert_eq!(fitted(0.3712, 4), ".37");
-        assert_eq!(fitted(1234.5, 4), "1234");
-        assert_eq!(fitted(0.000_001, 4), "1e-6");
-    }
 }

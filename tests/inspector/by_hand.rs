@@ -4,9 +4,10 @@ use super::SIZE;
 use glam::{DMat4, DVec3, DVec4};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use stencilscope::accuracy::{ErrorCounts, Finding, Region};
 use stencilscope::capture::{
-    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, DrawSummary, FrameSnapshot, Image, PixelFormat, Snapshot,
-    Step, Timing,
+    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, Image,
+    PixelFormat, Snapshot, Step, Timing,
 };
 use stencilscope::math::projection::reversed_infinite;
 use stencilscope::plan::{LeftOut, Part};
@@ -98,6 +99,32 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
         timing: Timing { frame_ms: Some(6.25), ..Timing::default() },
         plan_text: String::new(),
     }
+}
+
+/// The truth beside z-fail by hand: the shadow ends two columns earlier, ten rows of which lie at
+/// an edge, and one pixel on the lit side is in shadow.
+pub fn with_truth(mut capture: Capture) -> Capture {
+    let size = capture.size;
+    let middle = size[0] / 2;
+    let mask = capture.lights[0].shadow.clone().expect("a mask");
+    let finding = move |x: u32, y: u32| match (x, y) {
+        (30, 10) => Finding::MissingShadow,
+        (x, y) if (middle - 2..middle).contains(&x) && y < 20 => Finding::FalseShadow,
+        (x, _) if (middle - 2..middle).contains(&x) => Finding::EdgeBand,
+        (x, _) if x + 1 == size[0] => Finding::NotCompared,
+        _ => Finding::Agrees,
+    };
+    let labels = image_of(PixelFormat::U8, size, |x, y| match finding(x, y) {
+        Finding::MissingShadow => [1],
+        Finding::FalseShadow | Finding::EdgeBand => [0],
+        _ => [mask.byte_at([x, y]).expect("a label")],
+    });
+    let findings = image_of(PixelFormat::U8, size, |x, y| [finding(x, y) as u8]);
+    let error =
+        ErrorCounts { compared: 1170, false_shadow: 40, missing_shadow: 1, edge_band: 20, ..ErrorCounts::default() };
+    let worst = Region { pixels: 40, kind: Finding::FalseShadow, bounds: [18, 0, 19, 19], at: [18, 0] };
+    capture.lights[0].truth = Some(CapturedTruth { labels, findings, error, worst: Some(worst) });
+    capture
 }
 
 /// Two map passes before anything is drawn into the picture.

@@ -3,6 +3,7 @@
 mod by_hand;
 mod pictures;
 mod report;
+mod truth;
 
 use crate::common;
 use by_hand::{cube_map, z_fail};

@@ -4,10 +4,14 @@ use super::{Seen, click, harness_of};
 use crate::common;
 use crate::common::report::{one_scene, three_scenes};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stencilscope::capture::Capture;
-use stencilscope::inspector::{Inspector, PictureKind, ReportProgress, ReportView, RunRequest, SceneEntry, Zoom};
+use stencilscope::inspector::{
+    Inspector, PictureKind, ReportProgress, ReportView, RunRequest, SceneEntry, TruthState, Zoom,
+};
+use stencilscope::progress::Progress;
 use stencilscope::scene::{OpenSpec, Scene, open};
 use stencilscope::session::CaptureRequest;
 use stencilscope::technique::Technique;
@@ -29,9 +33,13 @@ fn pictures_of_the_panels_can_be_drawn() {
         let timing_runs = if folder.is_some() { 5 } else { 0 };
         let request = CaptureRequest { timing_runs, ..common::request(technique, [1280, 720]) };
         let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
-        for (name, view) in VIEWS {
+        let mut judged = Capture::clone(&capture);
+        session.judge(&scene, &mut judged, &Progress::default()).expect("a truth");
+        let judged = Arc::new(judged);
+        let views = VIEWS.iter().map(|view| (view, &capture)).chain(JUDGED_VIEWS.iter().map(|view| (view, &judged)));
+        for ((name, view), capture) in views {
             for size in sizes {
-                let inspector = inspector(&scene, &request, &capture);
+                let inspector = inspector(&scene, &request, capture);
                 let outer = size.map(|side| (side + 2 * MARGIN) as f32);
                 let mut harness = harness_of(inspector, outer);
                 view(&mut harness);
@@ -76,7 +84,7 @@ fn save(file: &Path, rgba: &[u8], [width, height]: [u32; 2]) {
 
 type View = fn(&mut Harness<Seen>);
 
-const VIEWS: [(&str, View); 12] = [
+const VIEWS: [(&str, View); 13] = [
     ("colour", |_| ()),
     ("stencil", |harness| {
         harness.state_mut().inspector.select_step(1);
@@ -85,6 +93,11 @@ const VIEWS: [(&str, View); 12] = [
     ("depth", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Depth)),
     ("mask", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Mask)),
     ("map", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
+    ("tracing", |harness| {
+        harness.state_mut().inspector.set_picture_kind(PictureKind::Error);
+        harness.run_steps(1);
+        harness.state_mut().inspector.set_truth(TruthState::Running { done: 43, of: 100 });
+    }),
     ("large", |harness| {
         harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
         harness.state_mut().inspector.set_zoom(Zoom::Pixels(28.0), PICK.map(f64::from));
@@ -110,3 +123,23 @@ const VIEWS: [(&str, View); 12] = [
         harness.state_mut().inspector.push_error("bunny.obj: no such file: check the path".to_owned());
     }),
 ];
+
+/// Of frames that were held against the truth.
+const JUDGED_VIEWS: [(&str, View); 4] = [
+    ("truth", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Truth)),
+    ("wrong", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Error)),
+    ("wrong-largest", go_to_the_largest),
+    ("wrong-pixels", |harness| {
+        go_to_the_largest(harness);
+        let at = harness.state().inspector.picked().unwrap_or(PICK);
+        harness.state_mut().inspector.set_zoom(Zoom::Pixels(28.0), at.map(f64::from));
+    }),
+];
+
+fn go_to_the_largest(harness: &mut Harness<Seen>) {
+    harness.state_mut().inspector.set_picture_kind(PictureKind::Error);
+    harness.run_steps(2);
+    if harness.query_by_label("Go to the largest").is_some() {
+        click(harness, "Go to the largest");
+    }
+}

@@ -1,0 +1,129 @@
+//! The worker's long work, as the window watches and stops it: a truth, a report.
+
+use super::orders::Measure;
+use crate::inspector::{Inspector, ReportProgress, ReportView, TruthState};
+use crate::progress::Progress;
+use crate::report::Report;
+use crate::technique::Choice;
+
+/// Timed frames of each row of a report.
+const RUNS: usize = 5;
+/// Steps that a row of a report takes beside its timed frames: setting up, and comparing.
+const OTHER_STEPS: usize = 2;
+
+/// What is under way.
+#[derive(Debug, Default)]
+pub struct Jobs {
+    judging: Option<Progress>,
+    measuring: Option<Measuring>,
+    /// How often measuring was begun.
+    count: u64,
+}
+
+#[derive(Debug)]
+struct Measuring {
+    job: u64,
+    progress: Progress,
+    /// What is measured, in order.
+    names: Vec<String>,
+}
+
+impl Jobs {
+    /// Tells the panels how far everything is; true while anything is under way.
+    pub fn watch(&self, inspector: &mut Inspector) -> bool {
+        if let Some(progress) = &self.judging {
+            let (done, of) = progress.steps();
+            inspector.set_truth(TruthState::Running { done, of });
+        }
+        if let Some(measuring) = &self.measuring {
+            let report = inspector.report().report.clone();
+            inspector.set_report(ReportView { report, running: Some(measuring.steps()), error: None });
+        }
+        self.judging.is_some() || self.measuring.is_some()
+    }
+
+    /// A truth is asked for.
+    pub fn judge(&mut self) -> Progress {
+        self.stop_judging();
+        self.judging.insert(Progress::default()).clone()
+    }
+
+    /// No truth is waited for any longer.
+    pub fn stop_judging(&mut self) {
+        if let Some(progress) = self.judging.take() {
+            progress.cancel();
+        }
+    }
+
+    /// A report over the default grid is asked for; `None` where there can be none, which the
+    /// panel tells.
+    pub fn measure(&mut self, generation: u64, inspector: &mut Inspector) -> Option<Measure> {
+        self.stop_measuring(None, inspector);
+        let choices = match Choice::report_grid() {
+            Ok(choices) => choices,
+            Err(error) => {
+                self.show(inspector, Some(error.to_string()));
+                return None;
+            }
+        };
+        self.count += 1;
+        let (job, progress) = (self.count, Progress::default());
+        let names = choices.iter().map(name).collect();
+        self.measuring = Some(Measuring { job, progress: progress.clone(), names });
+        self.watch(inspector);
+        Some(Measure { generation, job, choices, runs: RUNS, progress })
+    }
+
+    /// Stops measuring, where anything is measured; the rows that were there stay, with `reason`.
+    pub fn stop_measuring(&mut self, reason: Option<&str>, inspector: &mut Inspector) {
+        if let Some(measuring) = self.measuring.take() {
+            measuring.progress.cancel();
+            self.show(inspector, reason.map(str::to_owned));
+        }
+    }
+
+    /// What was measured, or why nothing was.
+    pub fn end_measuring(&mut self, job: u64, result: Result<Report, String>, inspector: &mut Inspector) {
+        if self.measuring.take_if(|measuring| measuring.job == job).is_none() {
+            return;
+        }
+        match result {
+            Ok(report) => inspector.set_report(ReportView { report: Some(report), running: None, error: None }),
+            Err(reason) => self.show(inspector, Some(reason)),
+        }
+    }
+
+    /// Another picture is asked for, and must not wait.
+    pub fn make_way(&mut self, inspector: &mut Inspector) {
+        if self.judging.is_some() {
+            self.stop_judging();
+            // Asked for again: of the new frame, or of this one should there be none.
+            inspector.set_truth(TruthState::NotAsked);
+        }
+        self.stop_measuring(Some("stopped for another picture: measure again when it is the one you want"), inspector);
+    }
+
+    /// The rows that were there, and an error.
+    fn show(&self, inspector: &mut Inspector, error: Option<String>) {
+        let report = inspector.report().report.clone();
+        inspector.set_report(ReportView { report, running: None, error });
+    }
+}
+
+impl Measuring {
+    fn steps(&self) -> ReportProgress {
+        let rows = self.names.len();
+        let all = rows * (RUNS + OTHER_STEPS);
+        let (done, of) = self.progress.steps();
+        // The truth comes first, with steps of its own. Later every phase goes through the rows.
+        let name = (of == all).then(|| self.names.get(done % rows.max(1))).flatten();
+        let what = name.map_or("the truth", String::as_str).to_owned();
+        ReportProgress { done, of: if of == 0 { all } else { of }, what }
+    }
+}
+
+/// `shadow-map 1024`.
+fn name(choice: &Choice) -> String {
+    let technique = choice.technique().name();
+    choice.settings().get("size").map_or_else(|| technique.to_owned(), |size| format!("{technique} {size}"))
+}

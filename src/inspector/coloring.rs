@@ -1,0 +1,81 @@
+//! What the texels of a picture mean: their colour, and their number where they are large.
+
+use super::depth::DepthScale;
+use super::findings;
+use super::palette;
+use crate::capture::Image;
+use egui::Color32;
+
+/// What the texels of a picture mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Coloring {
+    /// sRGB bytes.
+    Srgb,
+    /// Stencil counts.
+    Stencil,
+    /// Labels of a light.
+    Labels,
+    /// Findings of an error picture.
+    Findings,
+    /// Stored depths.
+    Depth(DepthScale),
+}
+
+impl Coloring {
+    /// The colour that a texel is drawn in; `None` outside the picture.
+    #[must_use]
+    pub fn color_at(self, image: &Image, at: [u32; 2]) -> Option<Color32> {
+        match self {
+            Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| Color32::from_rgb(r, g, b)),
+            Coloring::Stencil => image.byte_at(at).map(palette::stencil),
+            Coloring::Labels => image.byte_at(at).map(palette::label),
+            Coloring::Findings => image.byte_at(at).map(findings::color),
+            Coloring::Depth(scale) => image.depth_at(at).map(|depth| scale.color(depth)),
+        }
+    }
+
+    /// The texel's number for a cell that holds `columns` characters a line; `None` outside the
+    /// picture. Colours have a line a channel.
+    #[must_use]
+    pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
+        match self {
+            Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
+            Coloring::Stencil | Coloring::Labels | Coloring::Findings => {
+                image.byte_at(at).map(|value| value.to_string())
+            }
+            Coloring::Depth(scale) => image.depth_at(at).map(|depth| match scale.measure.value(depth) {
+                Some(value) => fitted(value, columns),
+                None => "∞".to_owned(),
+            }),
+        }
+    }
+}
+
+/// As many digits of `value` as fit into `columns` characters.
+fn fitted(value: f64, columns: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let whole = format!("{value:.0}").len();
+    let decimals = columns.saturating_sub(whole + 1).min(6);
+    let text = format!("{value:.decimals$}");
+    // Every digit shown would be a zero: a power of ten says more.
+    if text.chars().all(|c| matches!(c, '0' | '.' | '-')) {
+        return format!("{value:.0e}");
+    }
+    text.strip_prefix('0').filter(|rest| rest.starts_with('.')).map_or(text.clone(), str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_fit_their_cell() {
+        assert_eq!(fitted(13.4823, 4), "13.5");
+        assert_eq!(fitted(0.0, 4), "0");
+        assert_eq!(fitted(0.3712, 4), ".37");
+        assert_eq!(fitted(1234.5, 4), "1234");
+        assert_eq!(fitted(0.000_001, 4), "1e-6");
+    }
+}
