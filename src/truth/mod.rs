@@ -12,7 +12,7 @@
 //!                             ► Pencil of each light ─► anything between? ┴► labels
 //! ```
 //!
-//! A [`pencil`](Pencil) is all lines through one centre. All rays of a frame belong to one pencil
+//! A pencil is all lines through one centre. All rays of a frame belong to one pencil
 //! or another, which makes a test cheap enough for a picture in a tenth of a second.
 
 mod chart;
