@@ -1,11 +1,14 @@
 //! An interactive visual debugger for stencil shadows and shadow maps.
 //!
 //! ```text
-//! scene ──► technique ──► FramePlan ──► gpu::Executor ──► Capture ──► cli, inspector
+//! scene ──► technique ──► FramePlan ──► gpu::Executor ──► Capture ──┬─► cli, inspector
+//!    └────► truth ──────────────────────────────────► accuracy ◄─────┴─► report
 //! ```
 //!
 //! A frame is data: a technique turns a scene into a plan, one executor runs any plan and keeps
-//! colour, depth and stencil after every pass, and everything after that only reads.
+//! colour, depth and stencil after every pass, and everything after that only reads. How right a
+//! frame is, [`accuracy`] tells: [`truth`] follows rays through the same scene and knows nothing of
+//! plans.
 //!
 //! ```
 //! use stencilscope::scene::{OpenSpec, open};

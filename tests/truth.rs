@@ -174,6 +174,85 @@ fn coplanar_triangles_do_not_darken_each_other() {
     }
 }
 
+/// Small triangles in the plane of a large one, tilted and far off: their rounded corners stand out
+/// of it, but they are known to be in it.
+#[test]
+fn what_was_in_one_plane_before_it_was_placed_does_not_darken_it() {
+    let mut points = vec![[-30.0, 0.0, -30.0], [-30.0, 0.0, 30.0], [30.0, 0.0, 30.0], [30.0, 0.0, -30.0]];
+    let mut triangles = vec![[0, 1, 2], [0, 2, 3]];
+    for index in 0..400u32 {
+        let [x, z] = [index % 20, index / 20].map(|n| (f64::from(n) - 9.7) * 1e-3);
+        let first = points.len() as u32;
+        points.extend([[x, 0.0, z], [x, 0.0, z + 1e-4], [x + 1e-4, 0.0, z]]);
+        triangles.push([first, first + 1, first + 2]);
+    }
+    let mut floor = Object::new("floor", mesh(&points, &triangles), Material::default());
+    floor.pose =
+        Pose { translate: DVec3::new(1e7, -2e7, 3e7), rotate_degrees: DVec3::new(17.0, 33.0, 9.0), ..Pose::default() };
+    let world_from_object = floor.pose.world_from_object();
+    let mut scene = from_above(vec![]);
+    scene.camera.eye = world_from_object.transform_point3(scene.camera.eye);
+    scene.camera.target = world_from_object.transform_point3(scene.camera.target);
+    scene.camera.fov_y_degrees = 0.1;
+    scene.camera.up = world_from_object.transform_vector3(scene.camera.up);
+    let elevations = [1e-4, 1e-5, 1e-6, 3e-7, 1e-7];
+    let light = |elevation| Light::directional(world_from_object.transform_vector3(DVec3::new(-1.0, elevation, 0.3)));
+    scene.lights = elevations.map(light).to_vec();
+    scene.objects = vec![floor];
+    for (labels, elevation) in truth(&scene).labels.iter().zip(elevations) {
+        let dark = labels.iter().filter(|label| **label == SHADOW).count();
+        assert_eq!(dark, 0, "light {elevation} above the plane");
+    }
+}
+
+/// Roofs whose ridges run exactly under the centres of pixels: a surface point there is rounded to
+/// either side of the other slope, which must not darken it.
+#[test]
+fn a_ridge_under_the_centres_of_pixels_does_not_darken_itself() {
+    for offset in [0.0, 1e4, 1e7] {
+        let mut scene = from_above(vec![]);
+        scene.objects.clear();
+        for column in 1..94u32 {
+            let [x, _] = on_floor(column, 0);
+            let slope = 1e-3 + f64::from(column % 9) * 0.01;
+            let points = [[x, 0.0, -9.0], [x, 0.0, 9.0], [x - 0.05, -slope, 0.0], [x + 0.05, -slope * 0.7, 0.0]];
+            let points = points.map(|point| point.map(|n| n + offset));
+            let roof = mesh(&points, &[[0, 2, 1], [0, 1, 3]]);
+            scene.objects.push(Object::new(format!("roof {column}"), roof, Material::default()));
+        }
+        scene.camera.eye += DVec3::splat(offset);
+        scene.camera.target += DVec3::splat(offset);
+        scene.lights = vec![
+            Light::point(DVec3::new(0.3, 8.0, 0.2) + offset),
+            Light::point(DVec3::new(2e6, 3e7, -1e6)),
+            Light::directional(DVec3::new(0.01, 1.0, 0.02)),
+        ];
+        let truth = truth(&scene);
+        for (light, labels) in truth.labels.iter().enumerate() {
+            let dark = labels.iter().filter(|label| **label == SHADOW).count();
+            let lit = labels.iter().filter(|label| **label == LIT).count();
+            assert!(dark == 0 && lit > 3000, "offset {offset}, light {light}: {dark} dark, {lit} lit");
+        }
+    }
+}
+
+/// A light so far off that it might as well be a direction: as exact, and as quick.
+#[test]
+fn a_point_light_at_any_distance_agrees_with_a_directional_one() {
+    let mut scene =
+        stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("assets/models/knot.obj")).expect("knot");
+    let towards = DVec3::new(0.5, 1.0, 0.3);
+    scene.lights = vec![Light::directional(towards)];
+    scene.lights.extend([1e6, 1e9, 1e12].map(|distance| Light::point(towards * distance)));
+    let truth = truth(&scene);
+    let shadow = truth.labels[0].iter().filter(|label| **label == SHADOW).count();
+    assert!(shadow > 300, "{shadow}");
+    for labels in &truth.labels[1..] {
+        let differing = labels.iter().zip(&truth.labels[0]).filter(|(a, b)| a != b).count();
+        assert!(differing <= 2, "{differing} pixels differ");
+    }
+}
+
 /// The knot, which has edges and vertices everywhere, in another order and with turned corners.
 #[test]
 fn labels_do_not_depend_on_the_order_of_triangles_or_threads() {

@@ -35,6 +35,8 @@ pub struct ViewRequest {
     pub step: Option<usize>,
     /// The pixel to pick.
     pub pick: Option<[u32; 2]>,
+    /// Show where the technique is wrong.
+    pub truth: bool,
 }
 
 /// What the window opens.

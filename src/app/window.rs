@@ -6,7 +6,7 @@ use super::orders::Order;
 use super::surface::Surface;
 use super::worker::{Start, Worker};
 use super::{AppError, ViewRequest, no_window};
-use crate::inspector::{Action, Inspector, SceneEntry, TruthState};
+use crate::inspector::{Action, Inspector, PictureKind, SceneEntry, TruthState};
 use crate::scene::{TechniqueRequest, builtin};
 use crate::technique::Choice;
 use std::time::{Duration, Instant};
@@ -45,6 +45,7 @@ struct App {
     /// What is selected when the first capture comes.
     first_step: Option<usize>,
     first_pick: Option<[u32; 2]>,
+    first_is_error: bool,
     repaint_at: Option<Instant>,
 }
 
@@ -79,6 +80,7 @@ impl App {
             jobs: Jobs::default(),
             first_step: request.step,
             first_pick: request.pick,
+            first_is_error: request.truth,
             repaint_at: None,
         })
     }
@@ -126,6 +128,9 @@ impl App {
         self.inspector.set_capture(capture);
         if let Some(step) = self.first_step.take() {
             self.inspector.select_step(step);
+        }
+        if std::mem::take(&mut self.first_is_error) {
+            self.inspector.set_picture_kind(PictureKind::Error);
         }
         if let Some(pick) = self.first_pick.take() {
             self.inspector.pick(pick);

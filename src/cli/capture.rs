@@ -25,6 +25,9 @@ pub struct CaptureArguments {
     scene_options: SceneOptions,
     #[command(flatten)]
     frame: FrameOptions,
+    /// Also trace the ground truth, and tell the technique's errors
+    #[arg(long)]
+    truth: bool,
 }
 
 /// Captures a scene.
@@ -32,8 +35,9 @@ pub struct CaptureArguments {
 /// # Errors
 /// A scene, option or folder that can't be used; no GPU; a frame that can't be made.
 pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
-    let CaptureArguments { scene, scene_options, frame, output, overwrite } = arguments;
-    Job::new(scene, scene_options, frame, output, *overwrite)?.run()
+    let CaptureArguments { scene, scene_options, frame, output, overwrite, truth } = arguments;
+    let how = Writing { folder: output, overwrite: *overwrite, truth: *truth };
+    Job::new(scene, scene_options, frame, how)?.run()
 }
 
 /// A capture whose input was checked.
@@ -42,9 +46,17 @@ pub struct Job<'a> {
     scene: Scene,
     request: CaptureRequest,
     adapter: Option<&'a str>,
-    folder: &'a Path,
-    overwrite: bool,
-    truth: bool,
+    writing: Writing<'a>,
+}
+
+/// Where a capture goes, and what goes with it.
+pub struct Writing<'a> {
+    /// The folder to make.
+    pub folder: &'a Path,
+    /// It may replace a capture.
+    pub overwrite: bool,
+    /// The ground truth goes with it.
+    pub truth: bool,
 }
 
 impl<'a> Job<'a> {
@@ -56,14 +68,13 @@ impl<'a> Job<'a> {
         name: &str,
         scene_options: &SceneOptions,
         frame: &'a FrameOptions,
-        folder: &'a Path,
-        overwrite: bool,
+        writing: Writing<'a>,
     ) -> Result<Job<'a>, CliError> {
         let started = Instant::now();
         let scene = scene_options.open(name)?;
         let request = frame.request(&scene)?;
-        disk::check_target(folder, overwrite)?;
-        Ok(Job { started, scene, request, adapter: frame.adapter.as_deref(), folder, overwrite, truth: frame.truth })
+        disk::check_target(writing.folder, writing.overwrite)?;
+        Ok(Job { started, scene, request, adapter: frame.adapter.as_deref(), writing })
     }
 
     /// Captures into the folder and says so.
@@ -74,15 +85,16 @@ impl<'a> Job<'a> {
         let mut session = Session::new(self.adapter)?;
         let before = self.started.elapsed().as_secs_f64() * 1e3;
         let mut capture = session.capture(&self.scene, &self.request)?;
-        if self.truth {
+        let Writing { folder, overwrite, truth } = self.writing;
+        if truth {
             with_bar("ground truth", &Progress::default(), |progress| {
                 session.judge(&self.scene, &mut capture, progress)
             })?;
         }
         // Loading the scene and opening the GPU come before the first frame too.
         capture.timing.setup_ms = capture.timing.setup_ms.map(|setup| setup + before);
-        disk::write(&capture, self.folder, self.overwrite)?;
-        output::print(&summary(&capture, self.folder))
+        disk::write(&capture, folder, overwrite)?;
+        output::print(&summary(&capture, folder))
     }
 }
 

@@ -73,9 +73,6 @@ pub struct FrameOptions {
     /// Bracket the frame for an attached graphics debugger
     #[arg(long)]
     pub external_capture: bool,
-    /// Also trace the ground truth, and tell the technique's errors
-    #[arg(long)]
-    pub truth: bool,
 }
 
 impl SceneOptions {

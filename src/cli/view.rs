@@ -23,6 +23,9 @@ pub struct ViewArguments {
     scene_options: SceneOptions,
     #[command(flatten)]
     frame: FrameOptions,
+    /// Trace the ground truth, and show where the technique is wrong
+    #[arg(long)]
+    truth: bool,
 }
 
 /// Opens the window; with no display, or built without one, says so and captures instead.
@@ -44,7 +47,8 @@ fn capture_instead(arguments: &ViewArguments, reason: &str) -> Result<(), CliErr
         let mend = "read its manifest.json, .npy and .png files, or open it where there is a display";
         return Err(CliError::Usage(format!("a capture folder can only be shown in a window, but {reason}: {mend}")));
     }
-    let job = capture::Job::new(&arguments.scene, &arguments.scene_options, &arguments.frame, folder, true)?;
+    let writing = capture::Writing { folder, overwrite: true, truth: arguments.truth };
+    let job = capture::Job::new(&arguments.scene, &arguments.scene_options, &arguments.frame, writing)?;
     output::note(&format!("{reason}: capturing into ./{FALLBACK_FOLDER} instead"));
     job.run()
 }
@@ -98,6 +102,7 @@ mod window {
             adapter: arguments.frame.adapter.clone(),
             step: arguments.pass,
             pick: arguments.at,
+            truth: arguments.truth,
         })
     }
 }

@@ -3,14 +3,20 @@
 //! All lines of sight meet in the eye, and all lines of light in the light. Seen from there a
 //! line is a point and a triangle a patch, so that "which triangles may this line meet" is a
 //! question about boxes in the plane. A point's surroundings are charted on the six faces of a
-//! cube, laid out side by side; a direction's on one plane across it. The third coordinate grows
-//! with the distance from the centre.
+//! cube, laid out side by side; what a point sees from afar, through a window that fits it; a
+//! direction's, on one plane across it. The third coordinate grows with the distance from the
+//! centre.
 //!
 //! Boxes are `f32`, rounded outwards: a box may be too large, never too small.
 
 use glam::{DVec2, DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 
+/// From farther than this many times its radius, a scene is seen through a window.
+const FAR: f64 = 4.0;
+/// A line that leaves the window's axis by more than the angle with this cosine misses the scene,
+/// which lies within asin(1 / [`FAR`]) of it.
+const WINDOW_COSINE: f64 = 0.5;
 /// Room between the faces' charts, each of which spans −1 to 1.
 const FACE_SPACING: f64 = 4.0;
 /// More than what rounding moves a charted point by, as long as its triangle keeps
@@ -29,18 +35,39 @@ pub type Boxes = [Option<Aabb>; 6];
 pub enum Chart {
     /// Around a point. `middle`: the distance that becomes depth ½.
     Cube { middle: f64 },
+    /// From a point far off: two unit vectors across the axis, and the unit axis towards the
+    /// scene's middle, which is `distance` away; it reaches as far as `reach` around that.
+    Window { across: [DVec3; 2], axis: DVec3, distance: f64, reach: f64 },
     /// Across a direction towards the centre: two unit vectors and the direction; coordinates
     /// are divided by `reach`.
     Plane { across: [DVec3; 2], towards: DVec3, reach: f64 },
 }
 
 impl Chart {
+    /// For lines through a point that see what lies within `reach` of `middle` (relative to it).
+    pub fn around_point(middle: DVec3, reach: f64) -> Chart {
+        let distance = middle.length();
+        if distance > FAR * reach {
+            let axis = middle / distance;
+            let u = axis.any_orthonormal_vector();
+            return Chart::Window { across: [u, axis.cross(u)], axis, distance, reach };
+        }
+        Chart::Cube { middle: distance.max(reach) }
+    }
+
+    /// For parallel lines towards a light, of points within `reach` of their origin.
+    pub fn across(towards: DVec3, reach: f64) -> Chart {
+        let towards = towards.normalize();
+        let u = towards.any_orthonormal_vector();
+        Chart::Plane { across: [u, towards.cross(u)], towards, reach }
+    }
+
     /// Where a triangle is seen. Corners are relative to the pencil's origin; `distance` is its
     /// plane's from there, not zero.
     pub fn triangle(&self, corners: [DVec3; 3], distance: f64) -> Boxes {
         let mut boxes = Boxes::default();
         match self {
-            Chart::Plane { .. } => boxes[0] = Some(bounds(corners.map(|corner| self.on_plane(corner)), 0)),
+            Chart::Plane { .. } | Chart::Window { .. } => boxes[0] = Some(self.on_sheet(corners.into_iter())),
             Chart::Cube { .. } => {
                 let [face, b, c] = corners.map(face_of);
                 let size = corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max);
@@ -68,7 +95,12 @@ impl Chart {
         };
         let mut boxes = Boxes::default();
         match self {
-            Chart::Plane { .. } => boxes[0] = Some(open(bounds(points.map(|point| self.on_plane(point)), 0))),
+            Chart::Plane { .. } => boxes[0] = Some(open(self.on_sheet(points))),
+            Chart::Window { axis, .. } => {
+                let may_meet = |point: &DVec3| point.dot(*axis) > WINDOW_COSINE * point.length();
+                let is_any = points.clone().any(|point| may_meet(&point));
+                boxes[0] = is_any.then(|| open(self.on_sheet(points.filter(may_meet))));
+            }
             Chart::Cube { .. } => {
                 let on = |face: usize| {
                     let here = points.clone().filter(move |point| face_of(*point) == face);
@@ -85,15 +117,29 @@ impl Chart {
     /// Any point of the same line, near the chart: bundles are narrow there.
     pub fn on_chart(&self, point: DVec3) -> DVec3 {
         match self {
-            Chart::Cube { .. } => point / point.abs().max_element(),
+            Chart::Cube { .. } | Chart::Window { .. } => point / point.abs().max_element(),
             Chart::Plane { towards, .. } => point - *towards * point.dot(*towards),
         }
     }
 
-    /// A point on the plane's chart, with its depth.
-    fn on_plane(&self, point: DVec3) -> DVec3 {
-        let Chart::Plane { across: [u, v], towards, reach } = self else { return point };
-        DVec3::new(point.dot(*u), point.dot(*v), -point.dot(*towards)) / *reach
+    /// The box of points on a chart that is one sheet.
+    fn on_sheet(&self, points: impl Iterator<Item = DVec3>) -> Aabb {
+        match self {
+            Chart::Cube { .. } => whole_face(0),
+            Chart::Plane { across: [u, v], towards, reach } => {
+                let place = |point: DVec3| DVec3::new(point.dot(*u), point.dot(*v), -point.dot(*towards)) / *reach;
+                padded_bounds(points.map(place), 0, PADDING)
+            }
+            Chart::Window { across: [u, v], axis, distance, reach } => {
+                let place = |point: DVec3| {
+                    let along = point.dot(*axis);
+                    let [x, y] = [u, v].map(|side| point.dot(*side) / along * (distance / reach));
+                    DVec3::new(x, y, (along - distance) / reach)
+                };
+                // Points are rounded at their distance from the centre, and charted at the scene's size.
+                padded_bounds(points.map(place), 0, PADDING + 64.0 * f64::EPSILON * distance / reach)
+            }
+        }
     }
 
     /// A point on a face's chart, with its depth.
@@ -131,12 +177,16 @@ impl Chart {
     }
 }
 
-/// The box around charted points, at the place of their face.
 fn bounds(charted: impl IntoIterator<Item = DVec3>, face: usize) -> Aabb {
+    padded_bounds(charted, face, PADDING)
+}
+
+/// The box around charted points, at the place of their face.
+fn padded_bounds(charted: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> Aabb {
     let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = charted.into_iter().fold(empty, |(low, high), place| (low.min(place), high.max(place)));
     let shift = DVec3::new(face as f64 * FACE_SPACING, 0.0, 0.0);
-    let (low, high) = (low + shift - PADDING, high + shift + PADDING);
+    let (low, high) = (low + shift - padding, high + shift + padding);
     Aabb::new(
         Vec3A::new(below(low.x), below(low.y), below(low.z)),
         Vec3A::new(above(high.x), above(high.y), above(high.z)),

@@ -12,7 +12,7 @@
 //!                             ► Pencil of each light ─► anything between? ┴► labels
 //! ```
 //!
-//! A [`pencil`](Pencil) is all lines through one centre. All rays of a frame belong to one pencil
+//! A pencil is all lines through one centre. All rays of a frame belong to one pencil
 //! or another, which makes a test cheap enough for a picture in a tenth of a second.
 
 mod chart;
@@ -298,32 +298,29 @@ impl Tracer {
     }
 
     /// Are the light and a surface point on different sides of a triangle that their line meets?
-    /// A plane through the point itself, as far as its rounding can tell, has it on neither.
+    /// A plane through the point itself, as far as its rounding can tell, has it on neither; nor
+    /// has the surface's own plane.
     fn lies_between(&self, seen: &Seen, offset: DVec3, surface: &Surface) -> bool {
-        if seen.index as usize == surface.triangle {
+        let other = seen.index as usize;
+        if other == surface.triangle {
             return false;
         }
-        let height = seen.normal.dot(offset) - seen.offset;
-        let span = offset.abs().element_sum();
-        let rounding = 64.0 * f64::EPSILON * seen.size * seen.size * (seen.size + span)
-            + seen.normal.abs().element_sum() * surface.rounding;
-        if height.abs() > rounding {
-            return is_opposite(height, seen.center_side);
-        }
-        self.lies_just_between(seen, surface)
+        let (height, rounding) = seen.height(offset);
+        let is_sure = height.abs() > rounding + seen.normal.abs().element_sum() * surface.rounding;
+        let height = if is_sure { height } else { self.height_near(other, surface) };
+        is_opposite(height, seen.center_side) && !self.world.share_plane(surface.triangle, other)
     }
 
-    /// The same for points so near a plane that it takes care.
-    fn lies_just_between(&self, seen: &Seen, surface: &Surface) -> bool {
-        let [a, b, c] = self.world.triangles[seen.index as usize];
+    /// How far above a triangle's plane a point is that is so near that it takes care, times twice
+    /// the triangle's area; 0 where rounding can't tell it from the plane.
+    fn height_near(&self, triangle: usize, surface: &Surface) -> f64 {
+        let [a, b, c] = self.world.triangles[triangle];
         let (ab, ac, offset) = (b - a, c - a, surface.point - a);
         let normal = ab.cross(ac);
         let height = normal.dot(offset);
         let products = ab.abs().element_sum() * ac.abs().element_sum() * offset.abs().element_sum();
         let rounding = 16.0 * f64::EPSILON * products + normal.abs().element_sum() * surface.rounding;
-        height.abs() > rounding
-            && is_opposite(height, seen.center_side)
-            && !self.world.share_plane(surface.triangle, seen.index as usize)
+        if height.abs() > rounding { height } else { 0.0 }
     }
 }
 

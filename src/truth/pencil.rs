@@ -5,8 +5,8 @@
 //! the centre, so each edge is one plane through the centre, computed once a triangle, and a test
 //! is three dot products. Where rounding could turn a sign it is decided exactly, and where it is
 //! exactly zero the line is taken as moved a little along x, by less along y and by still less
-//! along z (simulation of simplicity, Edelsbrunner and Mücke 1990). The two triangles at an edge
-//! compute the same number with opposite signs: no line slips between them, and none meets both.
+//! along z (simulation of simplicity, Edelsbrunner and Mücke 1990). So the two triangles at an edge
+//! always see a line on opposite sides of it: it slips between none, and meets no two.
 
 use super::chart::Chart;
 use crate::math::{Sign, side_of_triangle, sign_of_sum};
@@ -33,8 +33,10 @@ pub struct Seen {
     pub normal: DVec3,
     /// … and what `normal · p` is for its points, relative to the pencil's origin.
     pub offset: f64,
-    /// The largest sum of a corner's absolute coordinates.
-    pub size: f64,
+    /// The largest sum of a corner's absolute coordinates, relative to the pencil's origin.
+    size: f64,
+    /// The largest sum of an edge's absolute coordinates.
+    edge: f64,
     /// On which side of the triangle the centre is; exact.
     pub center_side: Sign,
     /// Which triangle of all.
@@ -104,15 +106,12 @@ impl Pencil {
     pub fn new(center: DVec4, triangles: &[[DVec3; 3]], takes_part: impl Fn(usize) -> bool + Sync) -> Pencil {
         let (low, high) = bounds(triangles);
         let middle = low + (high - low) / 2.0;
-        let reach = ((high - low).max_element() / 2.0).max(f64::MIN_POSITIVE);
+        let reach = ((high - low).length() / 2.0).max(f64::MIN_POSITIVE);
         let is_point = center.w != 0.0;
         let origin = if is_point { center.truncate() } else { middle };
-        let chart = if is_point {
-            Chart::Cube { middle: (origin - middle).abs().max_element().max(reach) }
-        } else {
-            let towards = center.truncate().normalize();
-            let u = towards.any_orthonormal_vector();
-            Chart::Plane { across: [u, towards.cross(u)], towards, reach }
+        let chart = match is_point {
+            true => Chart::around_point(middle - origin, reach),
+            false => Chart::across(center.truncate(), reach),
         };
         let is_met = |index: &usize| takes_part(*index) && side_of_triangle(triangles[*index], center) != Sign::Zero;
         let entries: Vec<(Aabb, usize)> = (0..triangles.len())
@@ -264,26 +263,41 @@ fn first_sign_of_cross(a: DVec3, b: DVec3, d: DVec3) -> Sign {
 
 impl Seen {
     fn new(center: DVec4, origin: DVec3, corners: &[DVec3; 3], index: u32) -> Seen {
-        let relative = corners.map(|corner| corner - origin);
-        let [a, b, c] = relative;
-        let normal = (b - a).cross(c - a);
-        let edges = [(b, c), (c, a), (a, b)];
+        let [a, b, c] = *corners;
         let towards = center.truncate();
-        let (edge_normals, edge_offsets) = if center.w == 0.0 {
-            // d · ((p − q) × (r − q)), sorted by q.
-            (edges.map(|(p, r)| (p - r).cross(towards)), edges.map(|(p, r)| towards.dot(p.cross(r))))
-        } else {
-            (edges.map(|(p, r)| p.cross(r)), [0.0; 3])
-        };
-        let size = relative.iter().map(|corner| corner.abs().element_sum()).fold(0.0, f64::max);
-        let center_side = side_of_triangle(*corners, center);
-        Seen { edge_normals, edge_offsets, normal, offset: normal.dot(a), size, center_side, index }
+        // Through the centre and an edge: differences of near corners keep what products of far
+        // ones would lose.
+        let normal_of =
+            |p: DVec3, q: DVec3| if center.w == 0.0 { (p - q).cross(towards) } else { (p - origin).cross(q - p) };
+        let edges = [(b, c), (c, a), (a, b)];
+        let edge_normals = edges.map(|(p, q)| normal_of(p, q));
+        let offset_of = |i: usize| if center.w == 0.0 { -edge_normals[i].dot(edges[i].0 - origin) } else { 0.0 };
+        let span = |vector: DVec3| vector.abs().element_sum();
+        let normal = (b - a).cross(c - a);
+        Seen {
+            edge_normals,
+            edge_offsets: [offset_of(0), offset_of(1), offset_of(2)],
+            normal,
+            offset: normal.dot(a - origin),
+            size: span(a - origin).max(span(b - origin)).max(span(c - origin)),
+            edge: span(b - a).max(span(c - b)).max(span(a - c)),
+            center_side: side_of_triangle(*corners, center),
+            index,
+        }
     }
 
-    /// More than what rounding may have moved an edge's value by.
+    /// More than what rounding may have moved an edge's value by, for a point of that span (sum of
+    /// absolute coordinates).
     fn edge_rounding(&self, center: DVec4, span: f64) -> f64 {
         let spread = if center.w == 0.0 { self.size + span } else { self.size * span };
-        EDGE_ROUNDING * self.size * spread
+        EDGE_ROUNDING * self.edge * spread
+    }
+
+    /// How far above the triangle's plane a point is, times twice its area, and more than what
+    /// rounding may have moved that by.
+    pub fn height(&self, point: DVec3) -> (f64, f64) {
+        let spread = self.size + point.abs().element_sum();
+        (self.normal.dot(point) - self.offset, EDGE_ROUNDING * self.edge * self.edge * spread)
     }
 }
 

@@ -108,6 +108,13 @@ fn the_hierarchy_finds_every_triangle_that_a_line_meets() {
         let center = match round % 5 {
             0 => point(1.0).extend(0.0),
             1 => (triangles[0][0]).extend(1.0),
+            3 => {
+                // Right above the middle of a triangle that reaches all round.
+                let [a, b, c] = triangles[1];
+                let normal = (b - a).cross(c - a).normalize();
+                ((a + b + c) / 3.0 + normal * reach * 10f64.powi(-3 - round as i32 % 12)).extend(1.0)
+            }
+            2 => (point(reach).normalize() * reach * 10f64.powi(1 + round as i32 % 9) + offset).extend(1.0),
             _ => (point(reach) + offset).extend(1.0),
         };
         let pencil = Pencil::new(center, &triangles, |_| true);
