@@ -127,3 +127,44 @@ fn name(choice: &Choice) -> String {
     let technique = choice.technique().name();
     choice.settings().get("size").map_or_else(|| technique.to_owned(), |size| format!("{technique} {size}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capture::AdapterInfo;
+
+    fn report() -> Report {
+        let adapter = AdapterInfo { name: "none".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() };
+        Report::new(adapter, Vec::new())
+    }
+
+    #[test]
+    fn another_picture_stops_all_that_is_under_way() {
+        let (mut jobs, mut inspector) = (Jobs::default(), Inspector::default());
+        let judging = jobs.judge();
+        let measure = jobs.measure(1, &mut inspector).expect("a grid");
+        assert!(jobs.watch(&mut inspector));
+        jobs.make_way(&mut inspector);
+        assert!(judging.is_cancelled() && measure.progress.is_cancelled());
+        assert!(!jobs.watch(&mut inspector) && inspector.report().running.is_none());
+        assert!(inspector.report().error.as_ref().is_some_and(|error| error.contains("measure again")));
+    }
+
+    #[test]
+    fn a_report_says_how_far_it_is_and_one_that_was_stopped_comes_no_more() {
+        let (mut jobs, mut inspector) = (Jobs::default(), Inspector::default());
+        let stopped = jobs.measure(1, &mut inspector).expect("a grid");
+        let measure = jobs.measure(1, &mut inspector).expect("a grid");
+        measure.progress.start(100);
+        jobs.watch(&mut inspector);
+        let what = |inspector: &Inspector| inspector.report().running.clone().map(|running| running.what);
+        assert_eq!(what(&inspector).as_deref(), Some("the truth"));
+        measure.progress.start(measure.choices.len() * (RUNS + OTHER_STEPS));
+        jobs.watch(&mut inspector);
+        assert_eq!(what(&inspector), Some(name(&measure.choices[0])));
+        jobs.end_measuring(stopped.job, Ok(report()), &mut inspector);
+        assert!(inspector.report().report.is_none() && inspector.report().running.is_some());
+        jobs.end_measuring(measure.job, Ok(report()), &mut inspector);
+        assert!(inspector.report().report.is_some() && inspector.report().running.is_none());
+    }
+}

@@ -2,6 +2,7 @@
 
 pub mod random;
 pub mod ray_cast;
+#[cfg(feature = "inspector")]
 pub mod report;
 
 use glam::DVec3;
