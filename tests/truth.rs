@@ -243,7 +243,7 @@ fn a_point_light_at_any_distance_agrees_with_a_directional_one() {
         stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("assets/models/knot.obj")).expect("knot");
     let towards = DVec3::new(0.5, 1.0, 0.3);
     scene.lights = vec![Light::directional(towards)];
-    scene.lights.extend([1e6, 1e9, 1e12].map(|distance| Light::point(towards * distance)));
+    scene.lights.extend([1e4, 1e6, 1e9, 1e13, 1e17].map(|distance| Light::point(towards * distance)));
     let truth = truth(&scene);
     let shadow = truth.labels[0].iter().filter(|label| **label == SHADOW).count();
     assert!(shadow > 300, "{shadow}");

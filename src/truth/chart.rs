@@ -9,11 +9,13 @@
 //!
 //! Boxes are `f32`, rounded outwards: a box may be too large, never too small.
 
-use glam::{DVec2, DVec3, Vec3A};
+use glam::{DVec2, DVec3, DVec4, Vec3A};
 use obvhs::aabb::Aabb;
 
-/// From farther than this many times its radius, a scene is seen through a window.
+/// From farther than this many times its radius, a scene is seen through a window …
 const FAR: f64 = 4.0;
+/// … and from so far by lines that are as good as parallel.
+const VERY_FAR: f64 = 1e5;
 /// A line that leaves the window's axis by more than the angle with this cosine misses the scene,
 /// which lies within asin(1 / [`FAR`]) of it.
 const WINDOW_COSINE: f64 = 0.5;
@@ -23,7 +25,7 @@ const FACE_SPACING: f64 = 4.0;
 /// [`NEAREST`] away from the centre.
 const PADDING: f64 = 1e-7;
 /// A triangle whose plane is nearer to the centre than this part of its size may lie anywhere.
-const NEAREST: f64 = 1e-7;
+pub const NEAREST: f64 = 1e-7;
 /// Faces reach this far over their borders: a line on a border is found on either face.
 const OVERLAP: f64 = 1e-5;
 
@@ -34,74 +36,92 @@ pub type Boxes = [Option<Aabb>; 6];
 #[derive(Debug, Clone, Copy)]
 pub enum Chart {
     /// Around a point. `middle`: the distance that becomes depth ½.
-    Cube { middle: f64 },
+    Cube { center: DVec3, middle: f64 },
     /// From a point far off: two unit vectors across the axis, and the unit axis towards the
     /// scene's middle, which is `distance` away; it reaches as far as `reach` around that.
-    Window { across: [DVec3; 2], axis: DVec3, distance: f64, reach: f64 },
-    /// Across a direction towards the centre: two unit vectors and the direction; coordinates
-    /// are divided by `reach`.
-    Plane { across: [DVec3; 2], towards: DVec3, reach: f64 },
+    Window { center: DVec3, across: [DVec3; 2], axis: DVec3, distance: f64, reach: f64 },
+    /// Across lines that are parallel, or nearly so, as their centre is `distance` away: two unit
+    /// vectors across and the unit direction towards the centre; places are relative to `middle`
+    /// and divided by `reach`.
+    Plane { center: DVec4, middle: DVec3, across: [DVec3; 2], towards: DVec3, reach: f64, distance: f64 },
+}
+
+/// A line through the centre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Line {
+    /// To a point, and no farther.
+    To(DVec3),
+    /// In a direction, without end.
+    Along(DVec3),
 }
 
 impl Chart {
-    /// For lines through a point that see what lies within `reach` of `middle` (relative to it).
-    pub fn around_point(middle: DVec3, reach: f64) -> Chart {
-        let distance = middle.length();
+    /// For the lines of sight of an eye that sees what lies within `reach` of `middle`.
+    pub fn of_eye(center: DVec3, middle: DVec3, reach: f64) -> Chart {
+        let distance = (middle - center).length();
         if distance > FAR * reach {
-            let axis = middle / distance;
+            let axis = (middle - center) / distance;
             let u = axis.any_orthonormal_vector();
-            return Chart::Window { across: [u, axis.cross(u)], axis, distance, reach };
+            return Chart::Window { center, across: [u, axis.cross(u)], axis, distance, reach };
         }
-        Chart::Cube { middle: distance.max(reach) }
+        Chart::Cube { center, middle: distance.max(reach) }
     }
 
-    /// For parallel lines towards a light, of points within `reach` of their origin.
-    pub fn across(towards: DVec3, reach: f64) -> Chart {
+    /// For the lines of a light.
+    pub fn of_light(center: DVec4, middle: DVec3, reach: f64) -> Chart {
+        let place = center.truncate();
+        let distance = if center.w == 0.0 { f64::INFINITY } else { (place - middle).length() };
+        if distance <= VERY_FAR * reach {
+            return Chart::of_eye(place, middle, reach);
+        }
+        let towards = if center.w == 0.0 { place } else { place - middle };
         let towards = towards.normalize();
         let u = towards.any_orthonormal_vector();
-        Chart::Plane { across: [u, towards.cross(u)], towards, reach }
+        Chart::Plane { center, middle, across: [u, towards.cross(u)], towards, reach, distance }
     }
 
-    /// Where a triangle is seen. Corners are relative to the pencil's origin; `distance` is its
-    /// plane's from there, not zero.
-    pub fn triangle(&self, corners: [DVec3; 3], distance: f64) -> Boxes {
+    /// Where a triangle is seen; `is_near`: its plane all but contains the centre.
+    pub fn triangle(&self, corners: [DVec3; 3], is_near: bool) -> Boxes {
         let mut boxes = Boxes::default();
-        match self {
-            Chart::Plane { .. } | Chart::Window { .. } => boxes[0] = Some(self.on_sheet(corners.into_iter())),
-            Chart::Cube { .. } => {
-                let [face, b, c] = corners.map(face_of);
-                let size = corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max);
-                if face == b && face == c {
-                    boxes[0] = Some(bounds(corners.map(|corner| self.on_face(face, corner)), face));
-                } else if distance < NEAREST * size {
-                    boxes = std::array::from_fn(|face| Some(whole_face(face)));
-                } else {
-                    boxes = std::array::from_fn(|face| self.clipped(face, corners));
-                }
-            }
+        let Chart::Cube { center, .. } = self else {
+            boxes[0] = Some(self.on_sheet(corners.into_iter().map(Line::To)));
+            return boxes;
+        };
+        let corners = corners.map(|corner| corner - *center);
+        let face = face_of(corners[0]);
+        if is_near {
+            boxes = std::array::from_fn(|face| Some(whole_face(face)));
+        } else if corners.iter().all(|corner| is_within(face, *corner)) {
+            boxes[0] = Some(bounds(corners.map(|corner| self.on_face(face, corner)), face));
+        } else {
+            boxes = std::array::from_fn(|face| self.clipped(face, corners));
         }
         boxes
     }
 
-    /// Where a bundle of lines is seen, from the centre up to the points given (relative to the
-    /// pencil's origin); `endless`: beyond them too.
-    pub fn bundle(&self, points: impl Iterator<Item = DVec3> + Clone, endless: bool) -> Boxes {
+    /// Where a bundle of lines is seen.
+    pub fn bundle(&self, lines: impl Iterator<Item = Line> + Clone) -> Boxes {
+        let is_endless = lines.clone().any(|line| matches!(line, Line::Along(_)));
         let open = |mut area: Aabb| {
             area.min.z = f32::NEG_INFINITY;
-            if endless {
+            if is_endless {
                 area.max.z = f32::INFINITY;
             }
             area
         };
         let mut boxes = Boxes::default();
         match self {
-            Chart::Plane { .. } => boxes[0] = Some(open(self.on_sheet(points))),
-            Chart::Window { axis, .. } => {
-                let may_meet = |point: &DVec3| point.dot(*axis) > WINDOW_COSINE * point.length();
-                let is_any = points.clone().any(|point| may_meet(&point));
-                boxes[0] = is_any.then(|| open(self.on_sheet(points.filter(may_meet))));
+            Chart::Plane { .. } => boxes[0] = Some(open(self.on_sheet(lines))),
+            Chart::Window { center, axis, .. } => {
+                let may_meet = |line: &Line| {
+                    let along = line.from(*center);
+                    along.dot(*axis) > WINDOW_COSINE * along.length()
+                };
+                let is_any = lines.clone().any(|line| may_meet(&line));
+                boxes[0] = is_any.then(|| open(self.on_sheet(lines.filter(may_meet))));
             }
-            Chart::Cube { .. } => {
+            Chart::Cube { center, .. } => {
+                let points = lines.map(|line| line.from(*center));
                 let on = |face: usize| {
                     let here = points.clone().filter(move |point| face_of(*point) == face);
                     Some(open(bounds(here.map(|point| self.on_face(face, point)), face)))
@@ -114,30 +134,56 @@ impl Chart {
         boxes
     }
 
-    /// Any point of the same line, near the chart: bundles are narrow there.
-    pub fn on_chart(&self, point: DVec3) -> DVec3 {
+    /// What the lines' places are best computed relative to: the centre, or near the scene.
+    pub fn origin(&self) -> DVec3 {
         match self {
-            Chart::Cube { .. } | Chart::Window { .. } => point / point.abs().max_element(),
-            Chart::Plane { towards, .. } => point - *towards * point.dot(*towards),
+            Chart::Cube { center, .. } | Chart::Window { center, .. } => *center,
+            Chart::Plane { middle, .. } => *middle,
         }
     }
 
-    /// The box of points on a chart that is one sheet.
-    fn on_sheet(&self, points: impl Iterator<Item = DVec3>) -> Aabb {
+    /// Is [`Chart::origin`] the lines' centre?
+    pub fn is_centered(&self) -> bool {
+        !matches!(self, Chart::Plane { .. })
+    }
+
+    /// Another point of a line, near the chart, relative to the origin: bundles are narrow there.
+    pub fn on_chart(&self, line: Line) -> DVec3 {
+        match self {
+            Chart::Cube { center, .. } | Chart::Window { center, .. } => {
+                let point = line.from(*center);
+                point / point.abs().max_element()
+            }
+            Chart::Plane { center, middle, towards, .. } => {
+                let place = line.from(*middle);
+                let to_center =
+                    if center.w == 0.0 { *towards } else { (center.truncate() - middle - place).normalize() };
+                place - to_center * (place.dot(*towards) / to_center.dot(*towards))
+            }
+        }
+    }
+
+    /// The box of points or lines on a chart that is one sheet.
+    fn on_sheet(&self, lines: impl Iterator<Item = Line> + Clone) -> Aabb {
         match self {
             Chart::Cube { .. } => whole_face(0),
-            Chart::Plane { across: [u, v], towards, reach } => {
-                let place = |point: DVec3| DVec3::new(point.dot(*u), point.dot(*v), -point.dot(*towards)) / *reach;
-                padded_bounds(points.map(place), 0, PADDING)
+            Chart::Plane { middle, across: [u, v], towards, reach, distance, .. } => {
+                let places = lines.map(|line| line.from(*middle));
+                // Lines lean towards their centre: the more, the farther off they are.
+                let farthest = places.clone().map(|place| place.length()).fold(*reach, f64::max);
+                let leaning = 8.0 * farthest / distance * (farthest / reach);
+                let place = |place: DVec3| DVec3::new(place.dot(*u), place.dot(*v), -place.dot(*towards)) / *reach;
+                padded_bounds(places.map(place), 0, PADDING * farthest / reach + leaning)
             }
-            Chart::Window { across: [u, v], axis, distance, reach } => {
-                let place = |point: DVec3| {
+            Chart::Window { center, across: [u, v], axis, distance, reach } => {
+                let place = |line: Line| {
+                    let point = line.from(*center);
                     let along = point.dot(*axis);
                     let [x, y] = [u, v].map(|side| point.dot(*side) / along * (distance / reach));
                     DVec3::new(x, y, (along - distance) / reach)
                 };
                 // Points are rounded at their distance from the centre, and charted at the scene's size.
-                padded_bounds(points.map(place), 0, PADDING + 64.0 * f64::EPSILON * distance / reach)
+                padded_bounds(lines.map(place), 0, PADDING + 64.0 * f64::EPSILON * distance / reach)
             }
         }
     }
@@ -149,7 +195,7 @@ impl Chart {
 
     /// From a face's own coordinates, the third along its axis.
     fn projected(&self, point: DVec3) -> DVec3 {
-        let Chart::Cube { middle } = self else { return point };
+        let Chart::Cube { middle, .. } = self else { return point };
         let place: DVec2 = point.truncate() / point.z;
         place.extend(point.z / (point.z + middle))
     }
@@ -191,6 +237,22 @@ fn padded_bounds(charted: impl IntoIterator<Item = DVec3>, face: usize, padding:
         Vec3A::new(below(low.x), below(low.y), below(low.z)),
         Vec3A::new(above(high.x), above(high.y), above(high.z)),
     )
+}
+
+impl Line {
+    /// A point of the line, or its direction, as seen from another point.
+    pub fn from(self, center: DVec3) -> DVec3 {
+        match self {
+            Line::To(point) => point - center,
+            Line::Along(direction) => direction,
+        }
+    }
+}
+
+/// Does a corner point to a face, and not to the border with another?
+fn is_within(face: usize, corner: DVec3) -> bool {
+    let along = along_face(face, corner);
+    along.x.abs().max(along.y.abs()) < along.z * (1.0 - OVERLAP)
 }
 
 /// The face that a direction points to: twice its largest axis, one more where it is negative.

@@ -27,8 +27,9 @@ pub use world::Place;
 use crate::math::{Sign, side_of_triangle};
 use crate::progress::Progress;
 use crate::scene::Scene;
+use chart::Line;
 use glam::{DVec3, DVec4};
-use pencil::{Bundle, Pencil, Seen, Then};
+use pencil::{Bundle, Pencil, Seen, Then, Whose};
 use rayon::prelude::*;
 use view::View;
 use world::World;
@@ -102,6 +103,22 @@ struct Surface {
     rounding: f64,
 }
 
+/// What a ray of sight has met so far.
+#[derive(Debug, Clone, Copy)]
+struct Nearest {
+    /// Along the view's axis.
+    distance: f64,
+    triangle: u32,
+    eye_side: Sign,
+    /// How far the triangle's plane may be off.
+    rounding: f64,
+}
+
+impl Nearest {
+    const NOTHING: Nearest =
+        Nearest { distance: f64::INFINITY, triangle: u32::MAX, eye_side: Sign::Zero, rounding: 0.0 };
+}
+
 impl Tracer {
     /// How many rays are followed together.
     pub const MOST_POINTS: usize = Bundle::MOST;
@@ -118,10 +135,11 @@ impl Tracer {
         let is_seen = |index: usize| world.object(index).visible;
         let casts = |index: usize| world.object(index).casts;
         let triangles = &world.triangles;
-        let pencil_of = |position: DVec4| LightPencil { position, pencil: Pencil::new(position, triangles, casts) };
+        let pencil_of =
+            |position: DVec4| LightPencil { position, pencil: Pencil::new(Whose::Light, position, triangles, casts) };
         let positions: Vec<DVec4> = scene.lights.iter().map(crate::scene::Light::homogeneous).collect();
         let (eye, lights) = rayon::join(
-            || Pencil::new(scene.camera.eye.extend(1.0), triangles, is_seen),
+            || Pencil::new(Whose::Eye, scene.camera.eye.extend(1.0), triangles, is_seen),
             || positions.into_par_iter().map(pencil_of).collect(),
         );
         Ok(Tracer { view: View::new(&scene.camera, size), world, size, eye, lights })
@@ -227,24 +245,27 @@ impl Tracer {
     /// What rays of sight in these directions meet first. Of surfaces at one distance it is the
     /// one drawn first, as in a rasteriser.
     fn meet_surfaces(&self, directions: &[DVec3], surfaces: &mut [Option<Surface>]) {
-        let mut bundle = Bundle::default();
-        directions.iter().for_each(|direction| bundle.push(*direction));
-        let mut nearest = [(f64::INFINITY, u32::MAX, Sign::Zero); Bundle::MOST];
-        self.eye.for_each_meeting(&self.world.triangles, &bundle, true, |seen, line| {
+        let mut bundle = Bundle::new();
+        directions.iter().for_each(|direction| bundle.push(Line::Along(*direction)));
+        let mut nearest = [Nearest::NOTHING; Bundle::MOST];
+        self.eye.for_each_meeting(&self.world.triangles, &bundle, |seen, line| {
             let distance = self.distance(seen, directions[line]);
-            let (best, index, _) = nearest[line];
-            if distance >= self.view.near && (distance < best || (distance == best && seen.index < index)) {
-                nearest[line] = (distance, seen.index, seen.center_side);
+            let best = nearest[line];
+            let is_nearer = distance < best.distance || (distance == best.distance && seen.index < best.triangle);
+            if distance >= self.view.near && is_nearer {
+                let rounding = seen.plane_rounding();
+                nearest[line] = Nearest { distance, triangle: seen.index, eye_side: seen.center_side, rounding };
             }
             Then::Continue
         });
-        for ((surface, direction), (distance, index, eye_side)) in surfaces.iter_mut().zip(directions).zip(nearest) {
-            *surface = (index != u32::MAX).then(|| {
-                let offset = *direction * distance;
+        for ((surface, direction), nearest) in surfaces.iter_mut().zip(directions).zip(nearest) {
+            *surface = (nearest.triangle != u32::MAX).then(|| {
+                let offset = *direction * nearest.distance;
                 let point = self.eye.origin + offset;
                 let rounding = POINT_ROUNDING
                     * (self.eye.origin.abs().max_element() + offset.abs().max_element() + point.abs().max_element());
-                Surface { triangle: index as usize, eye_side, point, rounding }
+                let rounding = rounding + nearest.rounding;
+                Surface { triangle: nearest.triangle as usize, eye_side: nearest.eye_side, point, rounding }
             });
         }
     }
@@ -260,7 +281,7 @@ impl Tracer {
     }
 
     fn label_surfaces(&self, light: &LightPencil, surfaces: &[Option<Surface>], labels: &mut [u8]) {
-        let mut bundle = Bundle::default();
+        let mut bundle = Bundle::new();
         let mut lines = [0; Bundle::MOST];
         let mut last = (usize::MAX, Sign::Zero);
         for (index, surface) in surfaces.iter().enumerate() {
@@ -278,17 +299,17 @@ impl Tracer {
             labels[index] = LIT;
             if self.world.object(surface.triangle).receives {
                 lines[bundle.len()] = index;
-                bundle.push(surface.point - light.pencil.origin);
+                bundle.push(Line::To(surface.point));
             }
         }
         let mut left = bundle.len();
         if left == 0 {
             return;
         }
-        light.pencil.for_each_meeting(&self.world.triangles, &bundle, false, |seen, line| {
+        light.pencil.for_each_meeting(&self.world.triangles, &bundle, |seen, line| {
             let index = lines[line];
             let is_darkened = labels[index] == LIT
-                && surfaces[index].as_ref().is_some_and(|surface| self.lies_between(seen, bundle.point(line), surface));
+                && surfaces[index].as_ref().is_some_and(|surface| self.lies_between(light, seen, surface));
             if is_darkened {
                 labels[index] = SHADOW;
                 left -= 1;
@@ -300,12 +321,12 @@ impl Tracer {
     /// Are the light and a surface point on different sides of a triangle that their line meets?
     /// A plane through the point itself, as far as its rounding can tell, has it on neither; nor
     /// has the surface's own plane.
-    fn lies_between(&self, seen: &Seen, offset: DVec3, surface: &Surface) -> bool {
+    fn lies_between(&self, light: &LightPencil, seen: &Seen, surface: &Surface) -> bool {
         let other = seen.index as usize;
         if other == surface.triangle {
             return false;
         }
-        let (height, rounding) = seen.height(offset);
+        let (height, rounding) = seen.height(surface.point - light.pencil.origin);
         let is_sure = height.abs() > rounding + seen.normal.abs().element_sum() * surface.rounding;
         let height = if is_sure { height } else { self.height_near(other, surface) };
         is_opposite(height, seen.center_side) && !self.world.share_plane(surface.triangle, other)

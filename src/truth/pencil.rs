@@ -8,7 +8,7 @@
 //! along z (simulation of simplicity, Edelsbrunner and Mücke 1990). So the two triangles at an edge
 //! always see a line on opposite sides of it: it slips between none, and meets no two.
 
-use super::chart::Chart;
+use super::chart::{Chart, Line, NEAREST};
 use crate::math::{Sign, side_of_triangle, sign_of_sum};
 use glam::{DVec3, DVec4};
 use obvhs::BvhBuildParams;
@@ -20,7 +20,7 @@ use std::time::Duration;
 
 /// Some more than the roundings of a cross and a dot product of rounded differences, in units
 /// of the sum of their products' absolute values.
-const EDGE_ROUNDING: f64 = 64.0 * f64::EPSILON;
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A triangle as its pencil sees it.
 #[derive(Debug, Clone, Copy)]
@@ -29,18 +29,28 @@ pub struct Seen {
     edge_normals: [DVec3; 3],
     /// … and offset, which is zero where the centre is the origin.
     edge_offsets: [f64; 3],
+    is_centered: bool,
+    /// What rounding may move an edge's value by, for each unit of the place's span.
+    edge_rounding: f64,
     /// The triangle's own plane, scaled by twice its area: normal …
     pub normal: DVec3,
     /// … and what `normal · p` is for its points, relative to the pencil's origin.
     pub offset: f64,
+    /// What rounding may move a height by, for each unit of its spread.
+    height_rounding: f64,
     /// The largest sum of a corner's absolute coordinates, relative to the pencil's origin.
     size: f64,
-    /// The largest sum of an edge's absolute coordinates.
-    edge: f64,
     /// On which side of the triangle the centre is; exact.
     pub center_side: Sign,
     /// Which triangle of all.
     pub index: u32,
+}
+
+/// Whose lines they are: an eye's go on without end, a light's end at a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Whose {
+    Eye,
+    Light,
 }
 
 /// All lines through a centre.
@@ -61,13 +71,10 @@ impl std::fmt::Debug for Pencil {
     }
 }
 
-/// Up to [`Bundle::MOST`] lines that are near each other, each by a point relative to the pencil's
-/// origin.
-#[derive(Debug, Default)]
+/// Up to [`Bundle::MOST`] lines that are near each other.
+#[derive(Debug)]
 pub struct Bundle {
-    x: [f64; Bundle::MOST],
-    y: [f64; Bundle::MOST],
-    z: [f64; Bundle::MOST],
+    lines: [Line; Bundle::MOST],
     len: usize,
 }
 
@@ -75,8 +82,12 @@ impl Bundle {
     /// Larger ones meet more triangles that most of their lines miss.
     pub const MOST: usize = 16;
 
-    pub fn push(&mut self, point: DVec3) {
-        (self.x[self.len], self.y[self.len], self.z[self.len]) = point.into();
+    pub fn new() -> Bundle {
+        Bundle { lines: [Line::Along(DVec3::ZERO); Bundle::MOST], len: 0 }
+    }
+
+    pub fn push(&mut self, line: Line) {
+        self.lines[self.len] = line;
         self.len += 1;
     }
 
@@ -84,13 +95,21 @@ impl Bundle {
         self.len
     }
 
-    pub fn point(&self, line: usize) -> DVec3 {
-        DVec3::new(self.x[line], self.y[line], self.z[line])
+    fn lines(&self) -> impl Iterator<Item = Line> + Clone {
+        self.lines[..self.len].iter().copied()
     }
+}
 
-    fn points(&self) -> impl Iterator<Item = DVec3> + Clone {
-        (0..self.len).map(|line| self.point(line))
-    }
+/// A bundle's places relative to a pencil's origin, and a box around its lines where they cross
+/// the chart.
+struct Core {
+    x: [f64; Bundle::MOST],
+    y: [f64; Bundle::MOST],
+    z: [f64; Bundle::MOST],
+    /// The largest sum of a place's absolute coordinates.
+    span: f64,
+    middle: DVec3,
+    half: DVec3,
 }
 
 /// What is done after a line has met a triangle.
@@ -103,15 +122,18 @@ pub enum Then {
 impl Pencil {
     /// The lines through a homogeneous centre and what they meet of `triangles`: those that
     /// `takes_part` says so of. A triangle edge-on to the centre is met by none.
-    pub fn new(center: DVec4, triangles: &[[DVec3; 3]], takes_part: impl Fn(usize) -> bool + Sync) -> Pencil {
-        let (low, high) = bounds(triangles);
+    pub fn new(
+        whose: Whose,
+        center: DVec4,
+        triangles: &[[DVec3; 3]],
+        takes_part: impl Fn(usize) -> bool + Sync,
+    ) -> Pencil {
+        let (low, high) = bounds(triangles, &takes_part);
         let middle = low + (high - low) / 2.0;
         let reach = ((high - low).length() / 2.0).max(f64::MIN_POSITIVE);
-        let is_point = center.w != 0.0;
-        let origin = if is_point { center.truncate() } else { middle };
-        let chart = match is_point {
-            true => Chart::around_point(middle - origin, reach),
-            false => Chart::across(center.truncate(), reach),
+        let chart = match whose {
+            Whose::Eye => Chart::of_eye(center.truncate(), middle, reach),
+            Whose::Light => Chart::of_light(center, middle, reach),
         };
         let is_met = |index: &usize| takes_part(*index) && side_of_triangle(triangles[*index], center) != Sign::Zero;
         let entries: Vec<(Aabb, usize)> = (0..triangles.len())
@@ -119,9 +141,7 @@ impl Pencil {
             .with_min_len(1024)
             .filter(is_met)
             .flat_map_iter(|index| {
-                let [a, b, c] = triangles[index].map(|corner| corner - origin);
-                let normal = (b - a).cross(c - a);
-                let boxes = chart.triangle([a, b, c], normal.dot(a).abs() / normal.length());
+                let boxes = chart.triangle(triangles[index], is_near(center, &triangles[index]));
                 boxes.into_iter().flatten().map(move |area| (area, index))
             })
             .collect();
@@ -131,33 +151,32 @@ impl Pencil {
         let order = hierarchy.as_ref().map_or(&[][..], |hierarchy| &hierarchy.primitive_indices);
         let seen = |entry: &u32| {
             let index = entries[*entry as usize].1;
-            Seen::new(center, origin, &triangles[index], index as u32)
+            Seen::new(center, &chart, &triangles[index], index as u32)
         };
         let seen = order.par_iter().with_min_len(1024).map(seen).collect();
-        Pencil { center, origin, chart, hierarchy, seen }
+        Pencil { center, origin: chart.origin(), chart, hierarchy, seen }
     }
 
     /// Calls `meets` with each triangle that a line of the bundle meets and the line's number, in
-    /// no particular order, perhaps more than once: between centre and point, or anywhere on the
-    /// point's side of the centre where `endless`.
+    /// no particular order, perhaps more than once; some lie on a line's other side of the centre or
+    /// beyond its end.
     pub fn for_each_meeting(
         &self,
         triangles: &[[DVec3; 3]],
         bundle: &Bundle,
-        endless: bool,
         mut meets: impl FnMut(&Seen, usize) -> Then,
     ) {
         let Some(hierarchy) = &self.hierarchy else { return };
         let core = self.core(bundle);
-        for area in self.chart.bundle(bundle.points(), endless).into_iter().flatten() {
+        for area in self.chart.bundle(bundle.lines()).into_iter().flatten() {
             let mut goes_on = true;
             hierarchy.aabb_traverse(area, |hierarchy, node| {
                 let node = &hierarchy.nodes[node as usize];
                 let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-                for seen in self.seen[leaf].iter().filter(|seen| !core.misses(seen, self.center)) {
-                    let (sure, unsure) = self.sides(seen, bundle, core.span);
-                    for line in lines(sure | unsure) {
-                        let is_met = sure >> line & 1 == 1 || self.is_met(triangles, seen, bundle.point(line));
+                for seen in self.seen[leaf].iter().filter(|seen| !core.misses(seen)) {
+                    let (sure, unsure) = core.sides(seen, bundle.len);
+                    for line in set_bits(sure | unsure) {
+                        let is_met = sure >> line & 1 == 1 || self.is_met(triangles, seen, bundle.lines[line]);
                         goes_on = goes_on && (!is_met || meets(seen, line) == Then::Continue);
                     }
                 }
@@ -170,70 +189,56 @@ impl Pencil {
     }
 
     fn core(&self, bundle: &Bundle) -> Core {
-        let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let charted = bundle.points().map(|point| self.chart.on_chart(point));
-        let (low, high) = charted.fold(empty, |(low, high), point| (low.min(point), high.max(point)));
-        let span = bundle.points().map(|point| point.abs().element_sum()).fold(0.0, f64::max);
-        Core { middle: (low + high) / 2.0, half: (high - low) / 2.0, span }
-    }
-
-    /// Which lines pass all edges of a triangle on the same side, and of which rounding leaves it
-    /// open: a bit each.
-    fn sides(&self, seen: &Seen, bundle: &Bundle, span: f64) -> (u32, u32) {
-        let rounding = seen.edge_rounding(self.center, span);
-        let mut low = [f64::INFINITY; Bundle::MOST];
-        let mut high = [f64::NEG_INFINITY; Bundle::MOST];
-        for (normal, offset) in seen.edge_normals.iter().zip(seen.edge_offsets) {
-            for line in 0..Bundle::MOST {
-                let value = normal.x * bundle.x[line] + normal.y * bundle.y[line] + normal.z * bundle.z[line] + offset;
-                low[line] = if value < low[line] { value } else { low[line] };
-                high[line] = if value > high[line] { value } else { high[line] };
-            }
+        let mut core = Core {
+            x: [0.0; Bundle::MOST],
+            y: [0.0; Bundle::MOST],
+            z: [0.0; Bundle::MOST],
+            span: 0.0,
+            middle: DVec3::ZERO,
+            half: DVec3::ZERO,
+        };
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for (index, line) in bundle.lines().enumerate() {
+            let place = line.from(self.origin);
+            (core.x[index], core.y[index], core.z[index]) = place.into();
+            core.span = core.span.max(place.abs().element_sum());
+            let charted = self.chart.on_chart(line);
+            (low, high) = (low.min(charted), high.max(charted));
         }
-        let (mut sure, mut unsure) = (0, 0);
-        for line in 0..bundle.len {
-            let is_sure = low[line] > rounding || high[line] < -rounding;
-            let is_apart = low[line] < -rounding && high[line] > rounding;
-            sure |= u32::from(is_sure) << line;
-            unsure |= u32::from(!is_sure && !is_apart) << line;
-        }
-        (sure, unsure)
+        (core.middle, core.half) = ((low + high) / 2.0, (high - low) / 2.0);
+        core
     }
 
     /// Does a line pass all three edges on the same side? Exact.
-    fn is_met(&self, triangles: &[[DVec3; 3]], seen: &Seen, point: DVec3) -> bool {
+    fn is_met(&self, triangles: &[[DVec3; 3]], seen: &Seen, line: Line) -> bool {
         let corners = &triangles[seen.index as usize];
-        let side = |from: usize, to: usize| self.exact_side(corners[from], corners[to], point);
+        let side = |from: usize, to: usize| self.exact_side(corners[from], corners[to], line);
         let first = side(0, 1);
         first != Sign::Zero && side(1, 2) == first && side(2, 0) == first
     }
 
     /// The exact side on which a line passes the edge from `a` to `b`; zero only where the edge
     /// itself points at the centre.
-    fn exact_side(&self, a: DVec3, b: DVec3, point: DVec3) -> Sign {
-        if self.center.w == 0.0 {
-            let towards = self.center.truncate();
-            let through = side_of_triangle([self.origin + point, a, b], self.center);
-            return through.or_else(|| first_sign_of_cross(a, b, towards));
-        }
-        let through = side_of_triangle([self.origin, a, b], point.extend(0.0));
-        let along = |axis: DVec3| side_of_triangle([self.origin, a, b], axis.extend(0.0));
+    fn exact_side(&self, a: DVec3, b: DVec3, line: Line) -> Sign {
+        let center = self.center.truncate();
+        let along = |axis: DVec3| side_of_triangle([center, a, b], axis.extend(0.0));
+        let through = match line {
+            Line::To(point) if self.center.w == 0.0 => {
+                return side_of_triangle([point, a, b], self.center).or_else(|| first_sign_of_cross(a, b, center));
+            }
+            Line::To(point) => side_of_triangle([center, a, b], point.extend(1.0)),
+            Line::Along(direction) => along(direction),
+        };
         through.or_else(|| along(DVec3::X)).or_else(|| along(DVec3::Y)).or_else(|| along(DVec3::Z))
     }
 }
 
-/// A box around a bundle's lines where they cross the chart.
-struct Core {
-    middle: DVec3,
-    half: DVec3,
-    /// The largest sum of a point's absolute coordinates.
-    span: f64,
-}
-
 impl Core {
     /// Do all lines pass some edge of the triangle on one side, and some edge on the other?
-    fn misses(&self, seen: &Seen, center: DVec4) -> bool {
-        let rounding = seen.edge_rounding(center, self.middle.abs().element_sum() + self.half.element_sum());
+    fn misses(&self, seen: &Seen) -> bool {
+        let charted = self.middle.abs().element_sum() + self.half.element_sum();
+        // A place on the chart carries the rounding of the place that it was moved from.
+        let rounding = seen.edge_rounding(if seen.is_centered { charted } else { charted + self.span });
         let (mut left, mut right) = (false, false);
         for (normal, offset) in seen.edge_normals.iter().zip(seen.edge_offsets) {
             let value = normal.dot(self.middle) + offset;
@@ -243,14 +248,37 @@ impl Core {
         }
         left && right
     }
+
+    /// Which of the first `count` lines pass all edges of a triangle on the same side, and of which
+    /// rounding leaves it open: a bit each.
+    fn sides(&self, seen: &Seen, count: usize) -> (u32, u32) {
+        let rounding = seen.edge_rounding(self.span);
+        let mut low = [f64::INFINITY; Bundle::MOST];
+        let mut high = [f64::NEG_INFINITY; Bundle::MOST];
+        for (normal, offset) in seen.edge_normals.iter().zip(seen.edge_offsets) {
+            for line in 0..Bundle::MOST {
+                let value = normal.x * self.x[line] + normal.y * self.y[line] + normal.z * self.z[line] + offset;
+                low[line] = if value < low[line] { value } else { low[line] };
+                high[line] = if value > high[line] { value } else { high[line] };
+            }
+        }
+        let (mut sure, mut unsure) = (0, 0);
+        for line in 0..count {
+            let is_sure = low[line] > rounding || high[line] < -rounding;
+            let is_apart = low[line] < -rounding && high[line] > rounding;
+            sure |= u32::from(is_sure) << line;
+            unsure |= u32::from(!is_sure && !is_apart) << line;
+        }
+        (sure, unsure)
+    }
 }
 
-/// The lines whose bits are set.
-fn lines(mut bits: u32) -> impl Iterator<Item = usize> {
+/// Which bits are set.
+fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
-        let line = bits.trailing_zeros();
+        let bit = bits.trailing_zeros();
         bits &= bits.wrapping_sub(1);
-        (line < u32::BITS).then_some(line as usize)
+        (bit < u32::BITS).then_some(bit as usize)
     })
 }
 
@@ -262,47 +290,68 @@ fn first_sign_of_cross(a: DVec3, b: DVec3, d: DVec3) -> Sign {
 }
 
 impl Seen {
-    fn new(center: DVec4, origin: DVec3, corners: &[DVec3; 3], index: u32) -> Seen {
+    fn new(center: DVec4, chart: &Chart, corners: &[DVec3; 3], index: u32) -> Seen {
         let [a, b, c] = *corners;
-        let towards = center.truncate();
-        // Through the centre and an edge: differences of near corners keep what products of far
-        // ones would lose.
-        let normal_of =
-            |p: DVec3, q: DVec3| if center.w == 0.0 { (p - q).cross(towards) } else { (p - origin).cross(q - p) };
+        let (towards, origin) = (center.truncate(), chart.origin());
+        // From the centre to a corner; a lever that is the same for all where the centre is at infinity.
+        let lever = |corner: DVec3| if center.w == 0.0 { -towards } else { corner - towards };
+        // Planes through the centre and an edge: differences of near corners keep what products of
+        // far ones would lose.
         let edges = [(b, c), (c, a), (a, b)];
-        let edge_normals = edges.map(|(p, q)| normal_of(p, q));
-        let offset_of = |i: usize| if center.w == 0.0 { -edge_normals[i].dot(edges[i].0 - origin) } else { 0.0 };
+        let edge_normals = edges.map(|(p, q)| lever(p).cross(q - p));
+        let offset = |i: usize| if chart.is_centered() { 0.0 } else { -edge_normals[i].dot(edges[i].0 - origin) };
         let span = |vector: DVec3| vector.abs().element_sum();
+        let largest = |of: [DVec3; 3]| span(of[0]).max(span(of[1])).max(span(of[2]));
         let normal = (b - a).cross(c - a);
+        let edge = largest([b - a, c - b, a - c]);
         Seen {
             edge_normals,
-            edge_offsets: [offset_of(0), offset_of(1), offset_of(2)],
+            edge_offsets: [offset(0), offset(1), offset(2)],
+            is_centered: chart.is_centered(),
+            edge_rounding: ROUNDING * edge * largest([lever(a), lever(b), lever(c)]),
             normal,
             offset: normal.dot(a - origin),
-            size: span(a - origin).max(span(b - origin)).max(span(c - origin)),
-            edge: span(b - a).max(span(c - b)).max(span(a - c)),
+            height_rounding: ROUNDING * edge * edge,
+            size: largest([a - origin, b - origin, c - origin]),
             center_side: side_of_triangle(*corners, center),
             index,
         }
     }
 
-    /// More than what rounding may have moved an edge's value by, for a point of that span (sum of
+    /// More than what rounding may have moved an edge's value by, for a place of that span (sum of
     /// absolute coordinates).
-    fn edge_rounding(&self, center: DVec4, span: f64) -> f64 {
-        let spread = if center.w == 0.0 { self.size + span } else { self.size * span };
-        EDGE_ROUNDING * self.edge * spread
+    fn edge_rounding(&self, span: f64) -> f64 {
+        self.edge_rounding * if self.is_centered { span } else { span + self.size }
     }
 
-    /// How far above the triangle's plane a point is, times twice its area, and more than what
+    /// How far above the triangle's plane a place is, times twice its area, and more than what
     /// rounding may have moved that by.
-    pub fn height(&self, point: DVec3) -> (f64, f64) {
-        let spread = self.size + point.abs().element_sum();
-        (self.normal.dot(point) - self.offset, EDGE_ROUNDING * self.edge * self.edge * spread)
+    pub fn height(&self, place: DVec3) -> (f64, f64) {
+        let spread = self.size + place.abs().element_sum();
+        (self.normal.dot(place) - self.offset, self.height_rounding * spread)
+    }
+
+    /// More than what rounding may have moved a point of the triangle's plane off it, where the
+    /// plane was computed from here.
+    pub fn plane_rounding(&self) -> f64 {
+        ROUNDING * self.size
     }
 }
 
-fn bounds(triangles: &[[DVec3; 3]]) -> (DVec3, DVec3) {
-    let first = triangles.first().map_or(DVec3::ZERO, |corners| corners[0]);
-    let corners = triangles.iter().flatten();
-    corners.fold((first, first), |(low, high), corner| (low.min(*corner), high.max(*corner)))
+/// Is a centre so near to a triangle's plane that the triangle may be seen anywhere around it?
+fn is_near(center: DVec4, corners: &[DVec3; 3]) -> bool {
+    let [a, b, c] = corners.map(|corner| corner - center.truncate());
+    let normal = (b - a).cross(c - a);
+    let span = |vector: DVec3| vector.abs().element_sum();
+    let size = span(a).max(span(b)).max(span(c));
+    let edge = span(b - a).max(span(c - a));
+    normal.dot(a).abs() <= size * (NEAREST * normal.length() + ROUNDING * edge * edge)
+}
+
+/// The box around the triangles that take part.
+fn bounds(triangles: &[[DVec3; 3]], takes_part: impl Fn(usize) -> bool) -> (DVec3, DVec3) {
+    let taking_part = triangles.iter().enumerate().filter(|(index, _)| takes_part(*index));
+    let mut corners = taking_part.flat_map(|(_, corners)| *corners);
+    let first = corners.next().unwrap_or(DVec3::ZERO);
+    corners.fold((first, first), |(low, high), corner| (low.min(corner), high.max(corner)))
 }
