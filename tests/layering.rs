@@ -36,7 +36,7 @@ const MAY_USE: [(&str, &[&str]); 17] = [
     ),
     ("inspector", &["math", "scene", "plan", "technique", "capture", "stencil_machine", "accuracy", "report"]),
     ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report"]),
-    ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app", "progress", "report", "truth"]),
+    ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app", "progress", "report"]),
     ("main", &["cli"]),
 ];
 

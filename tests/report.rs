@@ -38,7 +38,7 @@ fn a_report_is_written_in_every_form() {
     let none = report.rows.iter().find(|row| row.technique == "none").expect("none");
     assert!(none.missing_shadow > 20 && none.wrong_fraction > 0.0, "{none:?}");
     assert!(report.rows.iter().any(|row| row.pareto && row.wrong() == 0));
-    assert!(file("r.svg").starts_with("<svg") || file("r.svg").contains("<svg"));
+    assert!(file("r.svg").contains("<svg") && file("r.svg").contains("shadow-map 4096"));
 
     let one = [&SMALL[..], &["-t", "z-fail", "-t", "none"][..]].concat();
     let csv = run(folder.path(), &[&one[..], &["--csv"][..]].concat());
@@ -49,6 +49,18 @@ fn a_report_is_written_in_every_form() {
     assert!(fs::read(folder.path().join("r.png")).expect("a picture").starts_with(b"\x89PNG"));
     let table = run(folder.path(), &one);
     assert!(text(&table.stdout).contains("z-fail") && !text(&table.stdout).contains("planar"));
+}
+
+/// Two models of one name are two scenes: neither hides the other's front.
+#[test]
+fn scenes_of_one_name_are_told_apart() {
+    let folder = folder();
+    fs::copy(folder.path().join("triangle.obj"), folder.path().join("models/triangle.obj")).expect("copied");
+    let arguments = ["report", "triangle.obj", "models/triangle.obj", "--size", "40x30", "--runs", "1", "-t", "none"];
+    let output = run(folder.path(), &[&arguments[..], &["--json"][..]].concat());
+    let report = Report::from_json(&text(&output.stdout)).expect("a report");
+    assert_eq!(report.scenes(), ["triangle", "triangle (2)"]);
+    assert!(report.rows.iter().all(|row| row.pareto));
 }
 
 #[test]
@@ -73,6 +85,10 @@ fn what_a_report_can_not_do_is_refused_before_it_measures() {
         (&["tori", "--set", "sise=3"], &["sise"]),
         (&["tori", "--set", "size=0"], &["size", "from 1"]),
         (&["tori", "--runs", "0"], &["0"]),
+        (&["tori", "--json", "table"], &["`table` names a scene", "--json=FILE"]),
+        (&["tori", "--csv", "triangle.obj"], &["names a scene"]),
+        (&["good.toml", "--markdown", "good.toml"], &["names a scene"]),
+        (&["tori", "--json", "r.svg", "--plot", "r.svg"], &["two results"]),
         (&["tory"], &["did you mean `tori`?"]),
     ];
     for (options, words) in cases {

@@ -2,11 +2,9 @@
 
 use super::options::{FrameOptions, SceneOptions};
 use super::{CliError, output};
-use crate::progress::Progress;
 use crate::scene::builtin::shapes;
 use crate::scene::{MeshBuilder, Scene, SceneError, model_scene};
-use crate::session::{CaptureCost, Session, median_ms};
-use crate::truth::Tracer;
+use crate::session::{CaptureCost, Session, TruthCost, median_ms, truth_cost};
 use clap::Args;
 use glam::DVec3;
 use std::hint::black_box;
@@ -77,20 +75,9 @@ fn check_name(name: &str) -> Result<(), CliError> {
 fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
     let size = arguments.frame.size;
     for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
-        let (mut sorting, mut following, mut rays) = (Vec::new(), Vec::new(), 0);
-        for run in 0..=RUNS {
-            let start = Instant::now();
-            let tracer = Tracer::new(&scene, size)?;
-            let sorted = start.elapsed();
-            let Some(truth) = tracer.trace(&Progress::default()) else { continue };
-            let all = start.elapsed();
-            rays = Tracer::rays(&truth);
-            // The first is a warm-up.
-            if run > 0 {
-                sorting.push(sorted);
-                following.push(all - sorted);
-            }
-        }
+        // What the options say is checked, though the truth depends on the size alone.
+        arguments.frame.request(&scene)?;
+        let TruthCost { sorting, following, rays } = truth_cost(&scene, size, RUNS)?;
         let [sort, follow] = [&sorting, &following].map(|times| median_ms(times).unwrap_or(f64::NAN));
         let triangles: usize = scene.objects.iter().map(|object| object.mesh.triangles().len()).sum();
         output::print(&format!(

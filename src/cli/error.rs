@@ -31,9 +31,6 @@ pub enum CliError {
     /// The frame can't be made.
     #[error(transparent)]
     Session(#[from] SessionError),
-    /// No ray can be followed through the scene.
-    #[error(transparent)]
-    Truth(#[from] crate::truth::TruthError),
     /// The report can't take the form asked for.
     #[error(transparent)]
     Report(#[from] crate::report::ReportError),

@@ -6,6 +6,7 @@ use super::{CliError, output};
 use crate::progress::Progress;
 use crate::report::{Report, Row};
 use crate::scene::Scene;
+use crate::scene::builtin::Builtin;
 use crate::session::{Measurement, Session, report_rows};
 use crate::technique::{Choice, Technique};
 use clap::Args;
@@ -56,13 +57,15 @@ pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
     let open = |name: &String| arguments.scene_options.open(name);
     let scenes = arguments.scenes.iter().map(open).collect::<Result<Vec<Scene>, _>>()?;
     let files = [&arguments.json, &arguments.csv, &arguments.markdown].into_iter().flatten().flatten();
-    files.chain(&arguments.plot).try_for_each(|file| output::check_target(file))?;
+    let files: Vec<&String> = files.chain(&arguments.plot).collect();
+    files.iter().try_for_each(|file| output::check_target(file))?;
+    check_distinct(&files, &arguments.scenes)?;
     let mut session = Session::new(arguments.adapter.as_deref())?;
     let what = Measurement { choices, size: arguments.size, runs: usize::from(arguments.runs) };
     let mut rows: Vec<Row> = Vec::new();
-    for scene in &scenes {
-        let measured = with_bar(&scene.name, &Progress::default(), |progress| session.measure(scene, &what, progress))?;
-        rows.extend(report_rows(&scene.name, what.size, &measured));
+    for (scene, name) in scenes.iter().zip(distinct_names(&scenes)) {
+        let measured = with_bar(&name, &Progress::default(), |progress| session.measure(scene, &what, progress))?;
+        rows.extend(report_rows(&name, what.size, &measured));
     }
     deliver(arguments, &Report::new(session.adapter().clone(), rows))
 }
@@ -100,6 +103,35 @@ fn choices(arguments: &ReportArguments) -> Result<Vec<Choice>, CliError> {
         }
     }
     Ok(choices)
+}
+
+/// Names of scenes, numbered where two are alike: rows of different scenes are never compared.
+fn distinct_names(scenes: &[Scene]) -> Vec<String> {
+    let name = |(index, scene): (usize, &Scene)| {
+        let earlier = scenes[..index].iter().filter(|other| other.name == scene.name).count();
+        if earlier == 0 { scene.name.clone() } else { format!("{} ({})", scene.name, earlier + 1) }
+    };
+    scenes.iter().enumerate().map(name).collect()
+}
+
+/// No result may replace another, or a scene: an option takes the word after it for its file.
+fn check_distinct(files: &[&String], scenes: &[String]) -> Result<(), CliError> {
+    let is_scene = |file: &str| {
+        let ending = Path::new(file).extension().map(|ending| ending.to_ascii_lowercase());
+        let is_input = ending.is_some_and(|ending| ending == "obj" || ending == "toml");
+        is_input || Builtin::named(file).is_some() || scenes.iter().any(|scene| scene == file)
+    };
+    for (index, file) in files.iter().enumerate() {
+        let what = if is_scene(file) {
+            "names a scene: put the option last, or give its file as `--json=FILE`"
+        } else if files[..index].contains(file) {
+            "is named for two results: choose another file for one"
+        } else {
+            continue;
+        };
+        return Err(CliError::Usage(format!("`{}` {what}", file.escape_debug())));
+    }
+    Ok(())
 }
 
 fn is_png(file: &str) -> bool {

@@ -88,13 +88,29 @@ impl Executor {
         Ok(took)
     }
 
+    /// Runs the timed passes and adds up how long the GPU took for them, in milliseconds; `None`
+    /// where it can't tell.
+    ///
+    /// # Errors
+    /// A driver that fails.
+    pub fn gpu_ms(&self, prepared: &Prepared) -> Result<Option<f64>, GpuError> {
+        let timestamps = self.context.guarded(|| Ok(Timestamps::new(&self.context, prepared.plan, Mode::Frame)))?;
+        let Some(timestamps) = timestamps else { return Ok(None) };
+        self.context.guarded(|| self.submit(prepared, Mode::Frame, Some(&timestamps)))?;
+        let times = timestamps.read(&self.context)?;
+        // What the CPU makes takes the GPU no time.
+        let passes = prepared.plan.passes.iter().zip(times).filter(|(pass, _)| pass.timed && pass.image.is_none());
+        Ok(passes.map(|(_, ms)| ms).sum())
+    }
+
     /// Runs all passes and keeps every attachment after each. With `bracket`, an attached
     /// graphics debugger records the frame.
     ///
     /// # Errors
     /// A driver that fails.
     pub fn capture(&self, prepared: Prepared, bracket: bool) -> Result<Output, GpuError> {
-        let timestamps = self.context.guarded(|| Ok(Timestamps::new(&self.context, prepared.plan.passes.len())))?;
+        let timestamps =
+            self.context.guarded(|| Ok(Timestamps::new(&self.context, prepared.plan, Mode::Everything)))?;
         let run = || self.context.guarded(|| self.submit(&prepared, Mode::Everything, timestamps.as_ref()));
         if bracket {
             self.context.bracketed(run)?
@@ -179,7 +195,7 @@ fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, 
         label: Some(&pass.name),
         color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
         depth_stencil_attachment: depth_stencil,
-        timestamp_writes: timestamps.map(|timestamps| timestamps.of_pass(index)),
+        timestamp_writes: timestamps.and_then(|timestamps| timestamps.of_pass(index)),
         ..wgpu::RenderPassDescriptor::default()
     });
     render_pass.set_bind_group(0, &prepared.view_group, &[prepared.views.offset(pass.view.0)]);
@@ -306,6 +322,8 @@ fn step(pass: &Pass, gpu_ms: Option<f64>, snapshot: Snapshot) -> Step {
 
 /// When each pass began and ended, on adapters that can tell.
 struct Timestamps {
+    /// Which pair of queries is a pass's.
+    slots: Vec<Option<u32>>,
     queries: QuerySet,
     count: u32,
     resolved: wgpu::Buffer,
@@ -313,9 +331,13 @@ struct Timestamps {
 }
 
 impl Timestamps {
-    fn new(context: &Context, passes: usize) -> Option<Timestamps> {
+    /// For the passes that run in a mode.
+    fn new(context: &Context, plan: &FramePlan, mode: Mode) -> Option<Timestamps> {
         context.timestamp_period?;
-        let count = (passes * 2) as u32;
+        let mut next_slot = 0..;
+        let slots: Vec<Option<u32>> =
+            plan.passes.iter().map(|pass| mode.runs(pass).then(|| next_slot.next()).flatten()).collect();
+        let count = slots.iter().flatten().count() as u32 * 2;
         // A query set holds 4096 at most; a frame of more passes goes untimed.
         if count == 0 || count > wgpu::QUERY_SET_MAX_QUERIES {
             return None;
@@ -329,15 +351,15 @@ impl Timestamps {
         };
         let resolved = buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
         let readable = buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-        Some(Timestamps { queries, count, resolved, readable })
+        Some(Timestamps { slots, queries, count, resolved, readable })
     }
 
-    fn of_pass(&self, index: usize) -> wgpu::RenderPassTimestampWrites<'_> {
-        wgpu::RenderPassTimestampWrites {
+    fn of_pass(&self, index: usize) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+        self.slots[index].map(|slot| wgpu::RenderPassTimestampWrites {
             query_set: &self.queries,
-            beginning_of_pass_write_index: Some(index as u32 * 2),
-            end_of_pass_write_index: Some(index as u32 * 2 + 1),
-        }
+            beginning_of_pass_write_index: Some(slot * 2),
+            end_of_pass_write_index: Some(slot * 2 + 1),
+        })
     }
 
     fn resolve(&self, encoder: &mut CommandEncoder) {
@@ -353,6 +375,7 @@ impl Timestamps {
     fn read(&self, context: &Context) -> Result<Vec<Option<f64>>, GpuError> {
         let bytes = readback::mapped_bytes(&self.readable)?;
         let ticks: Vec<u64> = bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
-        Ok(readback::milliseconds(context, &ticks))
+        let times = readback::milliseconds(context, &ticks);
+        Ok(self.slots.iter().map(|slot| slot.and_then(|slot| times.get(slot as usize).copied()).flatten()).collect())
     }
 }

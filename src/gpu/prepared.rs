@@ -12,9 +12,6 @@ use wgpu::{
     TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
 };
 
-/// Attachments and copies together may take this much memory; a frame of 8192 × 8192 fits.
-const MOST_BYTES: u64 = 8 << 30;
-
 /// A plan, ready to run.
 #[derive(Debug)]
 pub struct Prepared<'a> {
@@ -120,8 +117,8 @@ fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
         bytes +=
             targets.map(|id| texel_count(plan.attachment(id)) / u64::from(plan.attachment(id).layers) * 4).sum::<u64>();
     }
-    if bytes > MOST_BYTES {
-        let [needed, most] = [bytes, MOST_BYTES].map(|bytes| format!("{} MiB", bytes >> 20));
+    if bytes > GpuError::MOST_BYTES {
+        let [needed, most] = [bytes, GpuError::MOST_BYTES].map(|bytes| format!("{} MiB", bytes >> 20));
         return Err(GpuError::TooLarge { what: "the frame".to_owned(), needed, most });
     }
     Ok(())

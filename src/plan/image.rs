@@ -14,13 +14,14 @@ pub trait MakeImage: Debug + Send + Sync {
 pub struct CpuImage {
     /// For people: `rays of light 1`.
     pub name: String,
+    /// Hash of all that the picture depends on.
+    pub content: u64,
     /// Does the work.
     pub source: Arc<dyn MakeImage>,
 }
 
-/// The name says what is made: two plans of one scene make the same.
 impl PartialEq for CpuImage {
     fn eq(&self, other: &CpuImage) -> bool {
-        self.name == other.name
+        self.name == other.name && self.content == other.content
     }
 }

@@ -58,7 +58,7 @@ pub struct Row {
     /// Of these: showing another surface than the truth's.
     #[serde(default)]
     pub wrong_surface: u64,
-    /// Pixels too near to an edge to be compared.
+    /// Pixels that differ, but are excused: they are so near an edge that no picture could be certain.
     pub edge_band: u64,
     /// Wrong pixels of those compared, 0 to 1; 0 where nothing was compared.
     pub wrong_fraction: f64,
@@ -66,7 +66,8 @@ pub struct Row {
     pub frame_ms: FrameTimes,
     /// GPU time of a frame in milliseconds; `None` where the hardware can't measure it.
     pub gpu_ms: Option<f64>,
-    /// Everything before the first frame, milliseconds.
+    /// Planning, geometry, pipelines and uploads of this row alone, milliseconds; opening the scene
+    /// and the GPU, which all rows share, is not in it.
     pub setup_ms: f64,
     /// Triangles submitted a frame.
     pub triangles: u64,

@@ -1,7 +1,8 @@
 //! Error against run time: several techniques on one scene, timed in turn.
 
-use super::{Session, SessionError, milliseconds};
+use super::{Session, SessionError, median, milliseconds};
 use crate::accuracy::ErrorCounts;
+use crate::gpu::GpuError;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -28,7 +29,8 @@ pub struct Measured {
     pub error: ErrorCounts,
     /// Wall times of frames without capture: recording, submitting, waiting.
     pub frames: Vec<Duration>,
-    /// GPU time of one frame's passes; `None` where the hardware can't measure it.
+    /// Median of the GPU's time for the frame's passes, measured in frames of their own between
+    /// the others; `None` where the hardware can't measure it.
     pub gpu_ms: Option<f64>,
     /// Planning, geometry, pipelines and uploads of this technique.
     pub setup_ms: f64,
@@ -54,6 +56,7 @@ impl Session {
         let traced = self.traced(scene, what.size, progress)?;
         progress.start(what.choices.len() * (what.runs + 2));
         let plans = self.plans(scene, what)?;
+        check_memory(&plans)?;
         let mut prepared = Vec::with_capacity(plans.len());
         let mut setups = Vec::with_capacity(plans.len());
         for (plan, planned) in &plans {
@@ -67,23 +70,24 @@ impl Session {
             progress.advance();
         }
         let mut frames = vec![Vec::with_capacity(what.runs); plans.len()];
+        let mut gpu: Vec<Vec<f64>> = vec![Vec::with_capacity(what.runs); plans.len()];
         for _ in 0..what.runs {
-            for (ready, frames) in prepared.iter().zip(&mut frames) {
+            for ((ready, frames), gpu) in prepared.iter().zip(&mut frames).zip(&mut gpu) {
                 go_on()?;
                 frames.push(self.executor.time(ready, false)?);
+                gpu.extend(self.executor.gpu_ms(ready)?);
                 progress.advance();
             }
         }
         let mut measured = Vec::with_capacity(plans.len());
-        for ((((choice, (plan, _)), ready), frames), setup_ms) in
-            what.choices.iter().zip(&plans).zip(prepared).zip(frames).zip(setups)
+        let timed = frames.into_iter().zip(gpu.into_iter().map(median)).zip(setups);
+        for (((choice, (plan, _)), ready), ((frames, gpu_ms), setup_ms)) in
+            what.choices.iter().zip(&plans).zip(prepared).zip(timed)
         {
             go_on()?;
             let output = self.executor.capture(ready, false)?;
             let labels = output.labels.iter().enumerate();
             let error = labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
-            let timed = plan.passes.iter().zip(&output.steps).filter(|(pass, _)| pass.timed && pass.image.is_none());
-            let gpu_ms = timed.map(|(_, step)| step.gpu_ms).sum();
             let (triangles, bytes) = (plan.triangles(), plan.bytes());
             measured.push(Measured { choice: choice.clone(), error, frames, gpu_ms, setup_ms, triangles, bytes });
             progress.advance();
@@ -102,4 +106,14 @@ impl Session {
         };
         what.choices.iter().map(plan).collect()
     }
+}
+
+/// All rows stay on the GPU while they are timed in turn, each with as much again for its copies.
+fn check_memory(plans: &[(FramePlan, Duration)]) -> Result<(), SessionError> {
+    let needed: u64 = plans.iter().map(|(plan, _)| plan.bytes() * 2).sum();
+    if needed <= GpuError::MOST_BYTES {
+        return Ok(());
+    }
+    let [needed, most] = [needed, GpuError::MOST_BYTES].map(|bytes| format!("{} MiB", bytes >> 20));
+    Err(GpuError::TooLarge { what: "the report, whose frames are timed in turn,".to_owned(), needed, most }.into())
 }

@@ -9,6 +9,7 @@ mod truth;
 
 pub use measure::{Measured, Measurement};
 pub use report::report_rows;
+pub use truth::{TruthCost, truth_cost};
 
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::GeometryCache;
@@ -199,7 +200,11 @@ impl Session {
 /// The middle of durations in milliseconds (the mean of the middle two); `None` of none.
 #[must_use]
 pub fn median_ms(durations: &[Duration]) -> Option<f64> {
-    let mut sorted: Vec<f64> = durations.iter().copied().map(milliseconds).collect();
+    median(durations.iter().copied().map(milliseconds).collect())
+}
+
+/// The middle of numbers (the mean of the middle two); `None` of none.
+fn median(mut sorted: Vec<f64>) -> Option<f64> {
     sorted.sort_by(f64::total_cmp);
     let middle = sorted.len() / 2;
     let upper = *sorted.get(middle)?;

@@ -8,6 +8,7 @@ use crate::scene::{Camera, Pose, Scene};
 use crate::truth::{Tracer, Truth};
 use glam::DVec4;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// A traced scene.
 #[derive(Debug)]
@@ -87,6 +88,37 @@ impl Session {
         self.traced = Some(traced.clone());
         Ok(traced)
     }
+}
+
+/// What the truth of a scene costs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TruthCost {
+    /// Sorting the scene's triangles as the eye and each light see them.
+    pub sorting: Vec<Duration>,
+    /// Following rays.
+    pub following: Vec<Duration>,
+    /// How many rays are followed each time.
+    pub rays: u64,
+}
+
+/// Times the truth of a scene, after a warm-up; it takes no GPU.
+///
+/// # Errors
+/// A scene that no ray can be followed for.
+pub fn truth_cost(scene: &Scene, size: [u32; 2], runs: usize) -> Result<TruthCost, SessionError> {
+    let mut cost = TruthCost { sorting: Vec::new(), following: Vec::new(), rays: 0 };
+    for run in 0..=runs {
+        let start = Instant::now();
+        let tracer = Tracer::new(scene, size)?;
+        let sorting = start.elapsed();
+        let truth = tracer.trace(&Progress::default()).ok_or(SessionError::Cancelled)?;
+        if run > 0 {
+            cost.following.push(start.elapsed() - sorting);
+            cost.sorting.push(sorting);
+        }
+        cost.rays = Tracer::rays(&truth);
+    }
+    Ok(cost)
 }
 
 impl Traced {

@@ -1,8 +1,12 @@
 //! No shadows: every light reaches every surface that faces it.
 
-use super::PlanError;
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::settings::ONE_ROW;
+use super::{PlanError, ReportRows};
 use crate::plan::FramePlan;
+
+/// What a report compares: the defaults.
+pub(super) const REPORT_ROWS: ReportRows = ONE_ROW;
 
 /// Plans a frame without shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

@@ -6,8 +6,9 @@
 //! can be darkened twice. The light pass then skips odd pixels. Surfaces that are not flat get no
 //! shadow.
 
-use super::PlanError;
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::settings::ONE_ROW;
+use super::{PlanError, ReportRows};
 use crate::geometry::{planar, relative};
 use crate::math::{Sign, side_of_triangle};
 use crate::plan::{
@@ -25,6 +26,9 @@ struct Marked {
     receiver: planar::Receiver,
     mark: u8,
 }
+
+/// What a report compares: the defaults.
+pub(super) const REPORT_ROWS: ReportRows = ONE_ROW;
 
 /// Plans planar shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

@@ -4,11 +4,14 @@
 //! [`Tracer`], and the light pass adds light where they say so. Sorting the scene for
 //! the rays is set-up, as edge lists are; following them is part of the frame.
 
-use super::PlanError;
 use super::frame::{Frame, Job, StencilUse};
+use super::settings::ONE_ROW;
+use super::{PlanError, ReportRows};
 use crate::plan::{ColorTarget, CpuImage, FramePlan, LightId, MakeImage, Pass, ViewId};
 use crate::progress::Progress;
+use crate::scene::Scene;
 use crate::truth::Tracer;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 /// The labels of one light.
@@ -24,6 +27,9 @@ impl MakeImage for LightRays {
         traced.and_then(|truth| truth.labels.into_iter().next()).unwrap_or_default()
     }
 }
+
+/// What a report compares: the defaults.
+pub(super) const REPORT_ROWS: ReportRows = ONE_ROW;
 
 /// Plans a frame with traced shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
@@ -42,6 +48,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
 
 fn ray_pass(frame: &mut Frame, light: LightId, rays: LightRays) {
     let attachment = frame.plan.lights[light.0].labels;
+    let content = content_hash(frame.job.scene, light);
     frame.plan.passes.push(Pass {
         name: "rays".to_owned(),
         purpose: "Follows a ray from the eye through every pixel to the surface it meets, and one from the light to \
@@ -53,6 +60,21 @@ fn ray_pass(frame: &mut Frame, light: LightId, rays: LightRays) {
         color: Some(ColorTarget { attachment, clear: None }),
         depth_stencil: None,
         draws: Vec::new(),
-        image: Some(CpuImage { name: format!("rays of {}", Frame::light_name(light)), source: Arc::new(rays) }),
+        image: Some(CpuImage {
+            name: format!("rays of {}", Frame::light_name(light)),
+            content,
+            source: Arc::new(rays),
+        }),
     });
+}
+
+/// Of the camera, the light and every object as it is placed.
+fn content_hash(scene: &Scene, light: LightId) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    format!("{:?} {:?}", scene.camera, scene.lights[light.0].position).hash(&mut hasher);
+    for object in &scene.objects {
+        let flags = [object.casts, object.receives, object.visible];
+        (object.mesh.content_hash(), format!("{:?}", object.pose), flags).hash(&mut hasher);
+    }
+    hasher.finish()
 }

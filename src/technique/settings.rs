@@ -4,7 +4,7 @@
 //! one line here and its use in the technique. Only what works is listed: a value that is not
 //! there yet is refused, not ignored.
 
-use super::Technique;
+use super::{Technique, none, planar, ray_traced, shadow_map, volume};
 use crate::scene::{TechniqueRequest, suggestion};
 use std::collections::BTreeMap;
 
@@ -170,8 +170,11 @@ impl Technique {
     #[must_use]
     pub fn report_rows(self) -> ReportRows {
         match self {
-            Technique::None | Technique::Planar | Technique::ZPass | Technique::ZFail | Technique::RayTraced => ONE_ROW,
-            Technique::ShadowMap => super::shadow_map::REPORT_ROWS,
+            Technique::None => none::REPORT_ROWS,
+            Technique::Planar => planar::REPORT_ROWS,
+            Technique::ZPass | Technique::ZFail => volume::REPORT_ROWS,
+            Technique::ShadowMap => shadow_map::REPORT_ROWS,
+            Technique::RayTraced => ray_traced::REPORT_ROWS,
         }
     }
 }

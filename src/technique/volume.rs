@@ -10,7 +10,8 @@
 //! turned: they are not turned in the buffer, but drawn with front and back operations swapped.
 
 use super::frame::{Drawn, Frame, Job, StencilUse};
-use super::{PlanError, Technique};
+use super::settings::ONE_ROW;
+use super::{PlanError, ReportRows, Technique};
 use crate::geometry::{Volume, VolumeParts, relative};
 use crate::plan::{
     Blob, ColorWrite, Draw, DrawConstants, DrawMesh, FramePlan, LightId, MeshId, Part, Program, RasterState,
@@ -28,6 +29,9 @@ enum Counting {
     /// Behind the surface.
     ZFail,
 }
+
+/// What a report compares: the defaults.
+pub(super) const REPORT_ROWS: ReportRows = ONE_ROW;
 
 /// Plans z-pass or z-fail.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

@@ -34,7 +34,12 @@ impl World {
             let positions = object.world_positions();
             let is_usable = |position: &DVec3| (*position - scene.camera.eye).abs().max_element() <= FARTHEST;
             if !positions.iter().all(is_usable) {
-                return Err(TruthError { problem: format!("{} is too large or too far from the eye", object.name) });
+                return Err(TruthError {
+                    problem: format!(
+                        "{} is too large or too far from the eye: move it nearer or scale it down",
+                        object.name
+                    ),
+                });
             }
             let triangles = object.mesh.triangles();
             world.triangles.extend(triangles.iter().map(|corners| corners.map(|vertex| positions[vertex as usize])));
