@@ -10,7 +10,7 @@
 
 use super::chart::{Chart, Line, NEAREST};
 use crate::math::{Sign, side_of_triangle, sign_of_sum};
-use glam::{DVec3, DVec4};
+use glam::{DVec3, DVec4, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -21,6 +21,9 @@ use std::time::Duration;
 /// Some more than the roundings of a cross and a dot product of rounded differences, in units
 /// of the sum of their products' absolute values.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// The same for single precision, which sorts out most lines that pass a triangle by.
+const COARSE_ROUNDING: f32 = 64.0 * f32::EPSILON;
 
 /// A triangle as its pencil sees it.
 #[derive(Debug, Clone, Copy)]
@@ -63,6 +66,8 @@ pub struct Pencil {
     hierarchy: Option<Bvh2>,
     /// In the order of the hierarchy's leaves.
     seen: Vec<Seen>,
+    /// Parallel to `seen`.
+    coarse: Vec<Coarse>,
 }
 
 impl std::fmt::Debug for Pencil {
@@ -100,16 +105,30 @@ impl Bundle {
     }
 }
 
+/// The edges of a triangle in single precision.
+#[derive(Debug, Clone, Copy)]
+struct Coarse {
+    normals: [Vec3A; 3],
+    offsets: [f32; 3],
+    /// What rounding may move an edge's value by, for each unit of the place's span …
+    rounding: f32,
+    /// … and for none.
+    least_rounding: f32,
+}
+
 /// A bundle's places relative to a pencil's origin, and a box around its lines where they cross
 /// the chart.
 struct Core {
-    x: [f64; Bundle::MOST],
-    y: [f64; Bundle::MOST],
-    z: [f64; Bundle::MOST],
+    places: [DVec3; Bundle::MOST],
+    x: [f32; Bundle::MOST],
+    y: [f32; Bundle::MOST],
+    z: [f32; Bundle::MOST],
     /// The largest sum of a place's absolute coordinates.
-    span: f64,
-    middle: DVec3,
-    half: DVec3,
+    span: f32,
+    middle: Vec3A,
+    half: Vec3A,
+    /// The same for the box; it carries the rounding of the places that it was moved from.
+    charted_span: f32,
 }
 
 /// What is done after a line has met a triangle.
@@ -153,8 +172,9 @@ impl Pencil {
             let index = entries[*entry as usize].1;
             Seen::new(center, &chart, &triangles[index], index as u32)
         };
-        let seen = order.par_iter().with_min_len(1024).map(seen).collect();
-        Pencil { center, origin: chart.origin(), chart, hierarchy, seen }
+        let seen: Vec<Seen> = order.par_iter().with_min_len(1024).map(seen).collect();
+        let coarse = seen.par_iter().with_min_len(1024).map(Seen::coarse).collect();
+        Pencil { center, origin: chart.origin(), chart, hierarchy, seen, coarse }
     }
 
     /// Calls `meets` with each triangle that a line of the bundle meets and the line's number, in
@@ -173,10 +193,11 @@ impl Pencil {
             hierarchy.aabb_traverse(area, |hierarchy, node| {
                 let node = &hierarchy.nodes[node as usize];
                 let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-                for seen in self.seen[leaf].iter().filter(|seen| !core.misses(seen)) {
-                    let (sure, unsure) = core.sides(seen, bundle.len);
-                    for line in set_bits(sure | unsure) {
-                        let is_met = sure >> line & 1 == 1 || self.is_met(triangles, seen, bundle.lines[line]);
+                for index in leaf.filter(|index| !core.misses(&self.coarse[*index])) {
+                    let seen = &self.seen[index];
+                    for line in set_bits(core.near(&self.coarse[index], bundle.len)) {
+                        let is_met = seen.is_met(core.places[line]);
+                        let is_met = is_met.unwrap_or_else(|| self.is_met(triangles, seen, bundle.lines[line]));
                         goes_on = goes_on && (!is_met || meets(seen, line) == Then::Continue);
                     }
                 }
@@ -190,22 +211,31 @@ impl Pencil {
 
     fn core(&self, bundle: &Bundle) -> Core {
         let mut core = Core {
+            places: [DVec3::ZERO; Bundle::MOST],
             x: [0.0; Bundle::MOST],
             y: [0.0; Bundle::MOST],
             z: [0.0; Bundle::MOST],
             span: 0.0,
-            middle: DVec3::ZERO,
-            half: DVec3::ZERO,
+            middle: Vec3A::ZERO,
+            half: Vec3A::ZERO,
+            charted_span: 0.0,
         };
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for (index, line) in bundle.lines().enumerate() {
             let place = line.from(self.origin);
-            (core.x[index], core.y[index], core.z[index]) = place.into();
-            core.span = core.span.max(place.abs().element_sum());
+            core.places[index] = place;
+            let coarse = place.as_vec3a();
+            (core.x[index], core.y[index], core.z[index]) = coarse.into();
+            core.span = core.span.max(coarse.abs().element_sum());
             let charted = self.chart.on_chart(line);
             (low, high) = (low.min(charted), high.max(charted));
         }
-        (core.middle, core.half) = ((low + high) / 2.0, (high - low) / 2.0);
+        core.middle = ((low + high) / 2.0).as_vec3a();
+        core.half = ((high - low) / 2.0).as_vec3a();
+        core.charted_span = core.middle.abs().element_sum() + core.half.element_sum();
+        if !self.chart.is_centered() {
+            core.charted_span += core.span;
+        }
         core
     }
 
@@ -235,12 +265,10 @@ impl Pencil {
 
 impl Core {
     /// Do all lines pass some edge of the triangle on one side, and some edge on the other?
-    fn misses(&self, seen: &Seen) -> bool {
-        let charted = self.middle.abs().element_sum() + self.half.element_sum();
-        // A place on the chart carries the rounding of the place that it was moved from.
-        let rounding = seen.edge_rounding(if seen.is_centered { charted } else { charted + self.span });
+    fn misses(&self, coarse: &Coarse) -> bool {
+        let rounding = coarse.rounding_at(self.charted_span);
         let (mut left, mut right) = (false, false);
-        for (normal, offset) in seen.edge_normals.iter().zip(seen.edge_offsets) {
+        for (normal, offset) in coarse.normals.iter().zip(coarse.offsets) {
             let value = normal.dot(self.middle) + offset;
             let spread = normal.abs().dot(self.half) + rounding;
             left |= value < -spread;
@@ -249,27 +277,27 @@ impl Core {
         left && right
     }
 
-    /// Which of the first `count` lines pass all edges of a triangle on the same side, and of which
-    /// rounding leaves it open: a bit each.
-    fn sides(&self, seen: &Seen, count: usize) -> (u32, u32) {
-        let rounding = seen.edge_rounding(self.span);
-        let mut low = [f64::INFINITY; Bundle::MOST];
-        let mut high = [f64::NEG_INFINITY; Bundle::MOST];
-        for (normal, offset) in seen.edge_normals.iter().zip(seen.edge_offsets) {
+    /// Which of the first `count` lines do not clearly pass two edges on different sides: a bit each.
+    fn near(&self, coarse: &Coarse, count: usize) -> u32 {
+        let rounding = coarse.rounding_at(self.span);
+        let mut low = [f32::INFINITY; Bundle::MOST];
+        let mut high = [f32::NEG_INFINITY; Bundle::MOST];
+        for (normal, offset) in coarse.normals.iter().zip(coarse.offsets) {
             for line in 0..Bundle::MOST {
                 let value = normal.x * self.x[line] + normal.y * self.y[line] + normal.z * self.z[line] + offset;
                 low[line] = if value < low[line] { value } else { low[line] };
                 high[line] = if value > high[line] { value } else { high[line] };
             }
         }
-        let (mut sure, mut unsure) = (0, 0);
-        for line in 0..count {
-            let is_sure = low[line] > rounding || high[line] < -rounding;
-            let is_apart = low[line] < -rounding && high[line] > rounding;
-            sure |= u32::from(is_sure) << line;
-            unsure |= u32::from(!is_sure && !is_apart) << line;
-        }
-        (sure, unsure)
+        let is_near = |line: &usize| !(low[*line] < -rounding && high[*line] > rounding);
+        (0..count).filter(is_near).fold(0, |bits, line| bits | 1 << line)
+    }
+}
+
+impl Coarse {
+    /// More than what rounding may have moved an edge's value by, for a place of that span.
+    fn rounding_at(&self, span: f32) -> f32 {
+        self.rounding * span + self.least_rounding
     }
 }
 
@@ -318,10 +346,29 @@ impl Seen {
         }
     }
 
-    /// More than what rounding may have moved an edge's value by, for a place of that span (sum of
-    /// absolute coordinates).
-    fn edge_rounding(&self, span: f64) -> f64 {
-        self.edge_rounding * if self.is_centered { span } else { span + self.size }
+    fn coarse(&self) -> Coarse {
+        let rounding = (self.edge_rounding / ROUNDING) as f32 * COARSE_ROUNDING;
+        // Where single precision ends, nothing is sorted out: what is not a number decides nothing.
+        let least_rounding = if self.is_centered { 0.0 } else { rounding * self.size as f32 };
+        Coarse {
+            normals: self.edge_normals.map(|normal| normal.as_vec3a()),
+            offsets: self.edge_offsets.map(|offset| offset as f32),
+            rounding,
+            least_rounding: least_rounding + f32::MIN_POSITIVE,
+        }
+    }
+
+    /// Does a line pass all edges on the same side? `None` where rounding leaves it open.
+    fn is_met(&self, place: DVec3) -> Option<bool> {
+        let span = place.abs().element_sum();
+        let rounding = self.edge_rounding * if self.is_centered { span } else { span + self.size };
+        let value = |i: usize| self.edge_normals[i].dot(place) + self.edge_offsets[i];
+        let (a, b, c) = (value(0), value(1), value(2));
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        if low < -rounding && high > rounding {
+            return Some(false);
+        }
+        (low > rounding || high < -rounding).then_some(true)
     }
 
     /// How far above the triangle's plane a place is, times twice its area, and more than what
