@@ -121,14 +121,16 @@ impl Chart {
                 boxes[0] = is_any.then(|| open(self.on_sheet(lines.filter(may_meet))));
             }
             Chart::Cube { center, .. } => {
-                let points = lines.map(|line| line.from(*center));
-                let on = |face: usize| {
-                    let here = points.clone().filter(move |point| face_of(*point) == face);
-                    Some(open(bounds(here.map(|point| self.on_face(face, point)), face)))
-                };
-                let faces = points.clone().fold(0, |faces, point| faces | 1u8 << face_of(point));
-                let is_touched = |face: &usize| faces >> face & 1 == 1;
-                (0..6).filter(is_touched).for_each(|face| boxes[face] = on(face));
+                let mut spans = [(DVec3::INFINITY, DVec3::NEG_INFINITY); 6];
+                for line in lines {
+                    let point = line.from(*center);
+                    let face = face_of(point);
+                    let place = self.on_face(face, point);
+                    spans[face] = (spans[face].0.min(place), spans[face].1.max(place));
+                }
+                for (face, (low, high)) in spans.into_iter().enumerate().filter(|(_, (low, high))| low.x <= high.x) {
+                    boxes[face] = Some(open(padded(low, high, face, PADDING)));
+                }
             }
         }
         boxes
@@ -231,6 +233,10 @@ fn bounds(charted: impl IntoIterator<Item = DVec3>, face: usize) -> Aabb {
 fn padded_bounds(charted: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> Aabb {
     let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = charted.into_iter().fold(empty, |(low, high), place| (low.min(place), high.max(place)));
+    padded(low, high, face, padding)
+}
+
+fn padded(low: DVec3, high: DVec3, face: usize, padding: f64) -> Aabb {
     let shift = DVec3::new(face as f64 * FACE_SPACING, 0.0, 0.0);
     let (low, high) = (low + shift - padding, high + shift + padding);
     Aabb::new(
