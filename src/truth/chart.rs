@@ -92,7 +92,7 @@ impl Chart {
         if is_near {
             boxes = std::array::from_fn(|face| Some(whole_face(face)));
         } else if corners.iter().all(|corner| is_within(face, *corner)) {
-            boxes[0] = Some(bounds(corners.map(|corner| self.on_face(face, corner)), face));
+            boxes[0] = Some(bounds(corners.map(|corner| self.on_face(face, corner)), face, PADDING));
         } else {
             boxes = std::array::from_fn(|face| self.clipped(face, corners));
         }
@@ -175,7 +175,7 @@ impl Chart {
                 let farthest = places.clone().map(|place| place.length()).fold(*reach, f64::max);
                 let leaning = 8.0 * farthest / distance * (farthest / reach);
                 let place = |place: DVec3| DVec3::new(place.dot(*u), place.dot(*v), -place.dot(*towards)) / *reach;
-                padded_bounds(places.map(place), 0, PADDING * farthest / reach + leaning)
+                bounds(places.map(place), 0, PADDING * farthest / reach + leaning)
             }
             Chart::Window { center, across: [u, v], axis, distance, reach } => {
                 let place = |line: Line| {
@@ -185,7 +185,7 @@ impl Chart {
                     DVec3::new(x, y, (along - distance) / reach)
                 };
                 // Points are rounded at their distance from the centre, and charted at the scene's size.
-                padded_bounds(lines.map(place), 0, PADDING + 64.0 * f64::EPSILON * distance / reach)
+                bounds(lines.map(place), 0, PADDING + 64.0 * f64::EPSILON * distance / reach)
             }
         }
     }
@@ -221,16 +221,12 @@ impl Chart {
             polygon = kept;
         }
         let is_on_face = !polygon.is_empty();
-        is_on_face.then(|| bounds(polygon.into_iter().map(|point| self.projected(point)), face))
+        is_on_face.then(|| bounds(polygon.into_iter().map(|point| self.projected(point)), face, PADDING))
     }
 }
 
-fn bounds(charted: impl IntoIterator<Item = DVec3>, face: usize) -> Aabb {
-    padded_bounds(charted, face, PADDING)
-}
-
 /// The box around charted points, at the place of their face.
-fn padded_bounds(charted: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> Aabb {
+fn bounds(charted: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> Aabb {
     let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = charted.into_iter().fold(empty, |(low, high), place| (low.min(place), high.max(place)));
     padded(low, high, face, padding)
