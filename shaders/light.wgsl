@@ -2,11 +2,12 @@
 
 @fragment
 fn fs_light(surface: Surface) -> @location(0) vec4f {
-    return vec4f(added(surface), 0.0);
+    return vec4f(added(surface) * arriving(surface).rgb, 0.0);
 }
 
 fn added(surface: Surface) -> vec3f {
-    if faces_away(surface.sides) {
+    // Wrapped light reaches round the edge; Lambert's ends there, and exact signs say where.
+    if faces_away(surface.sides) && light.wraps == 0u {
         return vec3f(0.0);
     }
     if draw.shading == GOURAUD {

@@ -5,6 +5,10 @@
 const NOT_REVERSED: u32 = 0xffffffffu;
 const GOURAUD: u32 = 1u;
 const SEES_BACK: u32 = 0x80000000u;
+// Labels.
+const LIT: u32 = 0u;
+const SHADOW: u32 = 1u;
+const AWAY: u32 = 3u;
 
 struct Light {
     // Homogeneous, relative to the eye.
@@ -15,7 +19,16 @@ struct Light {
     range: f32,
     // Which bit of a triangle's sides is its.
     index: u32,
+    // Lambert's diffuse, or wrapped.
+    wraps: u32,
+    // Faces of its shadow map, and what their depth was cleared to: 0 where depth is reversed.
     face_count: u32,
+    map_clear: f32,
+    // How far lookups are moved off the surface, in texels; along the surface's plane where not 0;
+    // texels averaged along each side.
+    bias_normal: f32,
+    bias_receiver_plane: u32,
+    filter_width: u32,
     clip_from_relative: array<mat4x4f, 6>,
 }
 
@@ -60,13 +73,14 @@ fn faces_away(surface_sides: u32) -> bool {
     return (surface_sides & (1u << light.index)) != 0u;
 }
 
-// Lambert's diffuse and Blinn-Phong's highlight.
+// Diffuse, Lambert's or wrapped, and Blinn-Phong's highlight.
 fn light_on(relative: vec3f, normal: vec3f) -> vec3f {
     let to_light = light.position.xyz - relative * light.position.w;
     let direction = normalize(to_light);
-    let diffuse = max(dot(normal, direction), 0.0);
+    let cosine = dot(normal, direction);
+    let diffuse = select(max(cosine, 0.0), 0.5 * cosine + 0.5, light.wraps != 0u);
     let halfway = normalize(direction - normalize(relative));
-    let gloss = select(0.0, draw.specular * pow(max(dot(normal, halfway), 0.0), draw.shininess), diffuse > 0.0);
+    let gloss = select(0.0, draw.specular * pow(max(dot(normal, halfway), 0.0), draw.shininess), cosine > 0.0);
     return light.color * falloff(length(to_light)) * (draw.color * diffuse + gloss);
 }
 

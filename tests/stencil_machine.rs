@@ -175,6 +175,8 @@ fn plan(cases: &[Case]) -> FramePlan {
         tests.push(draw(case.state.clone(), 1, start..indices.len() as u32 / 3));
     }
     FramePlan {
+        depth: stencilscope::math::depth::DepthMapping::ReversedInfinite.curve(1.0, 0.0, 0.0),
+        wraps_diffuse: false,
         technique: "stencil test".to_owned(),
         settings: BTreeMap::new(),
         size,

@@ -9,6 +9,7 @@ use super::{
     files,
 };
 use crate::accuracy::Finding;
+use crate::math::depth::DepthMapping;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
@@ -271,6 +272,7 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
         size: manifest.size,
         adapter: manifest.adapter,
         camera: (&manifest.camera).into(),
+        depth: manifest.depth.unwrap_or_else(|| DepthMapping::ReversedInfinite.curve(manifest.camera.near, 0.0, 0.0)),
         steps,
         lights,
         left_out: manifest.left_out,
@@ -309,6 +311,8 @@ fn inconsistency(capture: &Capture) -> Option<&'static str> {
         Some("it has no passes")
     } else if !capture.steps.iter().all(is_consistent) {
         Some("a pass names a light, map or face that is not there")
+    } else if !(capture.depth.offset.is_finite() && capture.depth.scale.is_finite()) {
+        Some("its depth can't be read back")
     } else if capture.camera.check().is_err() {
         Some("its camera can't see")
     } else {

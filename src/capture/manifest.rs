@@ -4,6 +4,7 @@
 
 use super::{AdapterInfo, Capture, DrawSummary, Timing};
 use crate::accuracy::{ErrorCounts, Finding, Region};
+use crate::math::depth::DepthCurve;
 use crate::plan::{LeftOut, Part};
 use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
@@ -23,6 +24,9 @@ pub(super) struct Manifest {
     pub size: [u32; 2],
     pub adapter: AdapterInfo,
     pub camera: CameraEntry,
+    /// `depth = offset + scale / distance`; a folder without it was stored reversed and infinite.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth: Option<DepthCurve>,
     pub passes: Vec<PassEntry>,
     pub lights: Vec<LightEntry>,
     pub left_out: Vec<LeftOut>,
@@ -137,6 +141,7 @@ impl Manifest {
             size: capture.size,
             adapter: capture.adapter.clone(),
             camera: CameraEntry::from(&capture.camera),
+            depth: Some(capture.depth),
             passes: Vec::new(),
             lights: Vec::new(),
             left_out: capture.left_out.clone(),

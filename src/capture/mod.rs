@@ -32,6 +32,8 @@ pub struct Capture {
     pub adapter: AdapterInfo,
     /// The camera it was seen by.
     pub camera: crate::scene::Camera,
+    /// How the camera's depth buffer was stored.
+    pub depth: crate::math::depth::DepthCurve,
     /// One a pass, in order.
     pub steps: Vec<Step>,
     /// Parallel to the scene's lights.

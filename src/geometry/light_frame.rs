@@ -3,9 +3,10 @@
 //! What can darken a point lies on the ray from the light to it, so a map that covers every caster
 //! answers for every receiver: outside it, nothing stands between. A point light whose casters fit
 //! a cone gets one perspective map whose frustum is as narrow as they allow; otherwise a cube of
-//! six. A directional light gets an orthographic map around the casters. Depth is reversed, and
-//! infinite for point lights, so receivers are never too far away.
+//! six. A directional light gets an orthographic map around the casters. Receivers beyond a map's
+//! far end lie behind every caster: they are compared, not clipped.
 
+use crate::math::depth::{DepthCurve, DepthMapping};
 use crate::math::{Sign, projection, side_of_triangle};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -38,24 +39,41 @@ pub const CUBE_FACES: [(&str, DVec3, DVec3); 6] = [
     ("-z", DVec3::NEG_Z, DVec3::Y),
 ];
 
-/// Fits a frame around the triangles that cast, for a map of `size` texels a side. `None` where
-/// nothing casts.
+/// How a map is stored.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapStorage {
+    /// Texels along each side.
+    pub size: u32,
+    /// How distance from the light becomes depth.
+    pub depth: DepthMapping,
+    /// For the mapping that has one.
+    pub epsilon: f64,
+}
+
+impl MapStorage {
+    /// For casters between two distances along the map's axis.
+    fn curve(&self, nearest: f64, farthest: f64) -> DepthCurve {
+        self.depth.curve(nearest, farthest.max(nearest * 2.0) * 1.01, self.epsilon)
+    }
+}
+
+/// Fits a frame around the triangles that cast. `None` where nothing casts.
 #[must_use]
-pub fn fit(casters: &[[DVec3; 3]], light: DVec4, size: u32) -> Option<LightFrame> {
+pub fn fit(casters: &[[DVec3; 3]], light: DVec4, storage: &MapStorage) -> Option<LightFrame> {
     if casters.is_empty() {
         return None;
     }
-    let border = 1.0 + 2.0 * BORDER_TEXELS / f64::from(size);
+    let border = 1.0 + 2.0 * BORDER_TEXELS / f64::from(storage.size);
     if light.w == 0.0 {
-        return Some(orthographic(casters, light.truncate(), border));
+        return Some(orthographic(casters, light.truncate(), border, storage.depth.is_reversed()));
     }
     let eye = light.truncate();
     let relative: Vec<[DVec3; 3]> = casters.iter().map(|corners| corners.map(|corner| corner - eye)).collect();
-    Some(perspective(&relative, eye, border).unwrap_or_else(|| cube(&relative, eye)))
+    Some(perspective(&relative, eye, border, storage).unwrap_or_else(|| cube(&relative, eye, storage)))
 }
 
 /// `None` where the casters do not fit the widest cone.
-fn perspective(relative: &[[DVec3; 3]], eye: DVec3, border: f64) -> Option<LightFrame> {
+fn perspective(relative: &[[DVec3; 3]], eye: DVec3, border: f64, storage: &MapStorage) -> Option<LightFrame> {
     let points = || relative.iter().flatten().copied();
     let directions = || points().map(DVec3::normalize_or_zero);
     let low = directions().reduce(DVec3::min)?;
@@ -68,30 +86,32 @@ fn perspective(relative: &[[DVec3; 3]], eye: DVec3, border: f64) -> Option<Light
     let rotation = projection::view_from_world_rotation(axis, projection::some_up_for(axis));
     let slopes = || points().map(|point| rotation * point).map(|p| (p / -p.z).truncate());
     let (low, high) = (slopes().reduce(glam::DVec2::min)?, slopes().reduce(glam::DVec2::max)?);
-    let nearest = points().map(|point| -(rotation * point).z).fold(f64::INFINITY, f64::min);
+    let distances = || points().map(|point| -(rotation * point).z);
+    let nearest = distances().fold(f64::INFINITY, f64::min);
+    let depth = storage.curve(nearest * 0.99, distances().fold(0.0, f64::max));
     let middle = (low + high) / 2.0;
     let half = ((high - low) / 2.0).max(glam::DVec2::splat(1e-6)) * border;
     // An off-centre frustum: x/−z runs from middle − half to middle + half.
-    let mut clip_from_light = projection::frustum(1.0 / half.x, 1.0 / half.y, nearest * 0.99);
+    let mut clip_from_light = projection::frustum(1.0 / half.x, 1.0 / half.y, &depth);
     clip_from_light.z_axis.x = middle.x / half.x;
     clip_from_light.z_axis.y = middle.y / half.y;
     Some(frame(eye, rotation, vec![clip_from_light]))
 }
 
-fn cube(relative: &[[DVec3; 3]], eye: DVec3) -> LightFrame {
+fn cube(relative: &[[DVec3; 3]], eye: DVec3, storage: &MapStorage) -> LightFrame {
     let farthest = relative.iter().flatten().map(|point| point.length()).fold(0.0, f64::max);
     let nearest = relative.iter().map(|corners| distance_to_triangle(*corners)).fold(f64::INFINITY, f64::min);
     // A point at distance d is at least d/√3 along the axis of its face. A caster that touches the
     // light leaves a sliver of 1e-6 of the scene unseen.
     let near = (nearest / 3f64.sqrt() * 0.99).max(farthest * 1e-6).max(f64::MIN_POSITIVE);
-    let lens = projection::frustum(1.0, 1.0, near);
+    let lens = projection::frustum(1.0, 1.0, &storage.curve(near, farthest));
     let face = |(_, forward, up): &(&str, DVec3, DVec3)| {
         lens * DMat4::from_mat3(projection::view_from_world_rotation(*forward, *up))
     };
     frame(eye, DMat3::IDENTITY, CUBE_FACES.iter().map(face).collect())
 }
 
-fn orthographic(casters: &[[DVec3; 3]], towards: DVec3, border: f64) -> LightFrame {
+fn orthographic(casters: &[[DVec3; 3]], towards: DVec3, border: f64, is_reversed: bool) -> LightFrame {
     let points = || casters.iter().flatten().copied();
     let forward = -towards;
     let rotation = projection::view_from_world_rotation(forward, projection::some_up_for(forward));
@@ -103,9 +123,10 @@ fn orthographic(casters: &[[DVec3; 3]], towards: DVec3, border: f64) -> LightFra
     let half = (high - low) / 2.0;
     let least = half.max_element().max(f64::MIN_POSITIVE) * 1e-6;
     let half = half.max(DVec3::splat(least));
-    // Far is behind the casters by half their depth, so that no bias pushes one to 0, the value of
+    // Far is behind the casters by half their depth, so that no bias pushes one to the value of
     // texels without a caster.
-    let clip = projection::reversed_orthographic([half.x * border, half.y * border], -half.z * 1.01, half.z * 2.0);
+    let (near, far) = (-half.z * 1.01, half.z * 2.0);
+    let clip = projection::orthographic([half.x * border, half.y * border], near, far, is_reversed);
     frame(origin, rotation, vec![clip])
 }
 
@@ -157,6 +178,10 @@ fn distance_to_segment(p: DVec3, q: DVec3) -> f64 {
 mod tests {
     use super::*;
 
+    fn storage(size: u32) -> MapStorage {
+        MapStorage { size, depth: DepthMapping::ReversedInfinite, epsilon: 0.0 }
+    }
+
     fn quad(center: DVec3, half: f64) -> Vec<[DVec3; 3]> {
         let corner = |x: f64, z: f64| center + DVec3::new(x, 0.0, z) * half;
         let [a, b, c, d] = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
@@ -171,7 +196,7 @@ mod tests {
     #[test]
     fn a_narrow_caster_fills_one_perspective_map() {
         let casters = quad(DVec3::new(1.0, 0.0, -2.0), 0.5);
-        let frame = fit(&casters, DVec4::new(0.0, 5.0, 1.0, 1.0), 1024).expect("a frame");
+        let frame = fit(&casters, DVec4::new(0.0, 5.0, 1.0, 1.0), &storage(1024)).expect("a frame");
         assert_eq!(frame.clip_from_light.len(), 1);
         let seen: Vec<DVec3> = casters.iter().flatten().map(|point| project(&frame, 0, *point)).collect();
         for axis in 0..2 {
@@ -186,7 +211,7 @@ mod tests {
     fn casters_all_round_need_a_cube_and_every_point_is_in_its_face() {
         let mut casters = quad(DVec3::new(3.0, 0.0, 0.0), 0.5);
         casters.extend(quad(DVec3::new(-3.0, 0.0, 0.0), 0.5));
-        let frame = fit(&casters, DVec4::new(0.0, 0.1, 0.0, 1.0), 512).expect("a frame");
+        let frame = fit(&casters, DVec4::new(0.0, 0.1, 0.0, 1.0), &storage(512)).expect("a frame");
         assert_eq!(frame.clip_from_light.len(), 6);
         for (face, (_, forward, _)) in CUBE_FACES.iter().enumerate() {
             let seen = project(&frame, face, DVec3::new(0.0, 0.1, 0.0) + *forward * 2.0);
@@ -197,7 +222,7 @@ mod tests {
     #[test]
     fn a_directional_light_gets_a_box_around_the_casters() {
         let casters = quad(DVec3::new(7.0, 2.0, 1.0), 0.5);
-        let frame = fit(&casters, DVec4::new(0.3, 1.0, 0.2, 0.0), 1024).expect("a frame");
+        let frame = fit(&casters, DVec4::new(0.3, 1.0, 0.2, 0.0), &storage(1024)).expect("a frame");
         for point in casters.iter().flatten() {
             let seen = project(&frame, 0, *point);
             assert!(seen.x.abs() < 1.0 && seen.y.abs() < 1.0 && seen.z > 0.0 && seen.z < 1.0);

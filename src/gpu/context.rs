@@ -8,6 +8,8 @@ use wgpu::{Adapter, Backends, Device, DeviceType, Features, Limits, Queue};
 const BACKENDS: Backends = Backends::VULKAN.union(Backends::METAL).union(Backends::DX12);
 /// The stencil buffer's format, with a depth that can be copied.
 const REQUIRED: Features = Features::DEPTH32FLOAT_STENCIL8;
+/// Times of passes, and depth that is clamped instead of clipped, where the adapter has them.
+const OPTIONAL: Features = Features::TIMESTAMP_QUERY.union(Features::DEPTH_CLIP_CONTROL);
 
 /// An adapter with a device on it.
 #[derive(Debug)]
@@ -37,7 +39,7 @@ impl Context {
         let available = adapter.limits();
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("stencilscope"),
-            required_features: if can_time { REQUIRED | Features::TIMESTAMP_QUERY } else { REQUIRED },
+            required_features: REQUIRED | (adapter.features() & OPTIONAL),
             // Defaults, but for how large pictures and meshes may be.
             required_limits: Limits {
                 max_texture_dimension_2d: available.max_texture_dimension_2d,

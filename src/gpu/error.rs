@@ -32,6 +32,14 @@ pub enum GpuError {
         /// With its unit.
         most: String,
     },
+    /// The plan needs what the adapter does not have.
+    #[error("this adapter has no {name}: {instead}")]
+    MissingFeature {
+        /// In plain words.
+        name: &'static str,
+        /// What to do without it.
+        instead: &'static str,
+    },
     /// The plan breaks a rule: a bug of the technique.
     #[error("the plan can't run, which is a bug of stencilscope: {0}")]
     Plan(#[from] crate::plan::lint::LintError),

@@ -273,7 +273,8 @@ fn collect(prepared: &Prepared, times: &[Option<f64>]) -> Result<Output, GpuErro
 
 fn empty_maps(plan: &FramePlan) -> Vec<Option<Vec<Arc<Image>>>> {
     let faces = |map: &crate::plan::PlanMap| {
-        let clear = Image::uniform(PixelFormat::Depth32F, plan.attachment(map.attachment).size, &[0; 4]);
+        let texel = map.lookup.clear_depth.to_le_bytes();
+        let clear = Image::uniform(PixelFormat::Depth32F, plan.attachment(map.attachment).size, &texel);
         std::iter::repeat_n(Arc::new(clear), map.faces.len()).collect()
     };
     plan.lights.iter().map(|light| light.map.as_ref().map(faces)).collect()

@@ -4,7 +4,7 @@
 //! programs that read them, its map or labels. A program has only the groups it uses.
 
 use super::shaders::source_of;
-use crate::plan::{ColorWrite, Program, RasterState};
+use crate::plan::{ColorWrite, Program, RasterState, Visibility};
 use std::collections::HashMap;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendComponent, BlendFactor,
@@ -69,7 +69,7 @@ impl Pipelines {
     fn create(&mut self, device: &Device, key: &PipelineKey) -> RenderPipeline {
         let source = source_of(key.program);
         let module = self.modules.entry(key.program).or_insert_with(|| {
-            let text = wgpu::ShaderSource::Wgsl(source.source.into());
+            let text = wgpu::ShaderSource::Wgsl(source.source.clone().into());
             device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(source.vertex), source: text })
         });
         let groups = self.layouts.of(key.program);
@@ -94,7 +94,11 @@ impl Pipelines {
                 compilation_options: compilation_options.clone(),
                 buffers: if key.program.pulls_vertices() { &[] } else { std::slice::from_ref(&positions) },
             },
-            primitive: wgpu::PrimitiveState { cull_mode: key.raster.cull, ..wgpu::PrimitiveState::default() },
+            primitive: wgpu::PrimitiveState {
+                cull_mode: key.raster.cull,
+                unclipped_depth: key.raster.unclipped_depth,
+                ..wgpu::PrimitiveState::default()
+            },
             depth_stencil: key.depth_format.map(|format| depth_stencil(format, &key.raster)),
             multisample: wgpu::MultisampleState::default(),
             fragment: source.fragment.map(|entry_point| FragmentState {
@@ -112,20 +116,16 @@ impl Pipelines {
 impl Program {
     /// Reads vertices from storage by index, instead of a vertex buffer.
     pub(super) fn pulls_vertices(self) -> bool {
-        matches!(self, Program::Light { .. } | Program::LightByLabels | Program::Label { .. })
+        self.visibility().is_some()
     }
 
     /// How many bind groups it uses, from group 0 on.
     pub(super) fn group_count(self) -> usize {
         match self {
             Program::Position => 1,
-            Program::Ambient => 2,
-            Program::Light { .. } | Program::LightByLabels | Program::Label { .. } => 4,
+            Program::Ambient { .. } => 2,
+            Program::Light(_) | Program::Label(_) => 4,
         }
-    }
-
-    pub(super) fn reads_map(self) -> bool {
-        matches!(self, Program::Light { reads_map: true } | Program::Label { reads_map: true })
     }
 }
 
@@ -177,10 +177,10 @@ impl Layouts {
     }
 
     fn of(&self, program: Program) -> [&BindGroupLayout; 4] {
-        let light = match program {
-            Program::LightByLabels => &self.light_with_labels,
-            _ if program.reads_map() => &self.light_with_map,
-            _ => &self.light,
+        let light = match program.visibility() {
+            Some(Visibility::Map) => &self.light_with_map,
+            Some(Visibility::Labels) => &self.light_with_labels,
+            Some(Visibility::Everywhere) | None => &self.light,
         };
         [&self.view, &self.draw, &self.surface, light]
     }

@@ -6,7 +6,7 @@ use super::pipelines::{PipelineKey, Pipelines};
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError};
-use crate::plan::{Attachment, AttachmentRole, Draw, FramePlan, LightId, Pass, Program, RasterState};
+use crate::plan::{Attachment, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility};
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, Buffer, Device, RenderPipeline, Texture,
     TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
@@ -54,6 +54,7 @@ impl<'a> Prepared<'a> {
         plan: &'a FramePlan,
     ) -> Result<Prepared<'a>, GpuError> {
         let device = &context.device;
+        check_features(device, plan)?;
         check_size(device, plan)?;
         buffers.next_plan();
         let textures: Vec<Texture> = plan.attachments.iter().map(|attachment| create(device, attachment)).collect();
@@ -95,6 +96,18 @@ impl<'a> Prepared<'a> {
         let timed = self.plan.passes.iter().zip(&self.staged).filter(|(pass, _)| pass.timed);
         timed.flat_map(|(_, staged)| staged.iter()).map(Staging::byte_len).sum()
     }
+}
+
+fn check_features(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
+    let clamps = plan.passes.iter().flat_map(|pass| &pass.draws).any(|draw| draw.raster.unclipped_depth);
+    let missing = |feature, name: &'static str, instead: &'static str| match device.features().contains(feature) {
+        true => Ok(()),
+        false => Err(GpuError::MissingFeature { name, instead }),
+    };
+    if clamps {
+        missing(wgpu::Features::DEPTH_CLIP_CONTROL, "depth clamping", "choose another `depth`")?;
+    }
+    Ok(())
 }
 
 fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
@@ -198,11 +211,10 @@ fn light_group(
 ) -> BindGroup {
     let layouts = &pipelines.layouts;
     let light = &plan.lights[light.0];
-    let map = light.map.as_ref().filter(|_| draw.program.reads_map());
-    let (attachment, dimension, layout) = match (map, draw.program) {
-        (Some(map), _) => (map.attachment, TextureViewDimension::D2Array, &layouts.light_with_map),
-        (None, Program::LightByLabels) => (light.labels, TextureViewDimension::D2, &layouts.light_with_labels),
-        (None, _) => return lights.bind_group(device, &layouts.light),
+    let (attachment, dimension, layout) = match (draw.program.visibility(), &light.map) {
+        (Some(Visibility::Map), Some(map)) => (map.attachment, TextureViewDimension::D2Array, &layouts.light_with_map),
+        (Some(Visibility::Labels), _) => (light.labels, TextureViewDimension::D2, &layouts.light_with_labels),
+        _ => return lights.bind_group(device, &layouts.light),
     };
     let view = textures[attachment.0]
         .create_view(&TextureViewDescriptor { dimension: Some(dimension), ..TextureViewDescriptor::default() });

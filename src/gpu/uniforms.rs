@@ -38,8 +38,13 @@ struct LightUniform {
     color: [f32; 3],
     range: f32,
     index: u32,
+    wraps: u32,
     face_count: u32,
-    padding: [u32; 2],
+    map_clear: f32,
+    bias_normal: f32,
+    bias_receiver_plane: u32,
+    filter_width: u32,
+    padding: u32,
     clip_from_relative: [[f32; 16]; 6],
 }
 
@@ -101,7 +106,7 @@ pub(super) fn draws(device: &Device, plan: &FramePlan) -> UniformArray {
 
 fn draw_uniform(draw: &Draw) -> DrawUniform {
     let material = &draw.constants.material;
-    let is_label = matches!(draw.program, Program::Label { .. });
+    let is_label = matches!(draw.program, Program::Label(_));
     DrawUniform {
         color: material.color,
         specular: material.specular,
@@ -118,10 +123,12 @@ fn draw_uniform(draw: &Draw) -> DrawUniform {
 
 pub(super) fn lights(device: &Device, plan: &FramePlan) -> UniformArray {
     let lights = plan.lights.iter().enumerate();
-    UniformArray::new(device, "lights", &lights.map(|(index, light)| light_uniform(index, light)).collect::<Vec<_>>())
+    let uniforms = lights.map(|(index, light)| light_uniform(index, light, plan.wraps_diffuse));
+    UniformArray::new(device, "lights", &uniforms.collect::<Vec<_>>())
 }
 
-fn light_uniform(index: usize, light: &PlanLight) -> LightUniform {
+fn light_uniform(index: usize, light: &PlanLight, wraps: bool) -> LightUniform {
+    let lookup = light.map.as_ref().map(|map| map.lookup);
     let mut clip_from_relative = [[0.0; 16]; 6];
     let faces = light.map.iter().flat_map(|map| &map.clip_from_relative);
     let mut face_count = 0;
@@ -134,8 +141,13 @@ fn light_uniform(index: usize, light: &PlanLight) -> LightUniform {
         color: light.color,
         range: light.range.unwrap_or(0.0),
         index: index as u32,
+        wraps: u32::from(wraps),
         face_count,
-        padding: [0; 2],
+        map_clear: lookup.map_or(0.0, |lookup| lookup.clear_depth),
+        bias_normal: lookup.map_or(0.0, |lookup| lookup.bias_normal),
+        bias_receiver_plane: lookup.map_or(0, |lookup| u32::from(lookup.bias_receiver_plane)),
+        filter_width: lookup.map_or(1, |lookup| lookup.filter_width),
+        padding: 0,
         clip_from_relative,
     }
 }

@@ -2,6 +2,7 @@
 //! selected one, what was left out, and why the selected pass is there.
 
 use super::coloring::Coloring;
+use super::depth::{DepthMeasure, DepthScale};
 use super::draws;
 use super::format;
 use super::state::{State, StepSearch};
@@ -160,9 +161,9 @@ fn changed_picture(state: &mut State, capture: &Capture, step: &Step) -> Option<
         Snapshot::Map { light, face } => {
             let map = capture.lights.get(*light)?.map.as_ref()?;
             let image = map.faces.get(*face)?.clone();
-            let measure = super::depth::DepthMeasure::of_map(map, *face).unwrap_or(super::depth::DepthMeasure::Raw);
+            let measure = DepthMeasure::of_map(capture, *light, *face).unwrap_or(DepthMeasure::Raw);
             let range = state.cache.depth_range(&image, measure).unwrap_or([0.0, 1.0]);
-            Some((image, Coloring::Depth(super::depth::DepthScale { measure, range })))
+            Some((image, Coloring::Depth(DepthScale { measure, range })))
         }
         Snapshot::Frame(frame) => changed_aspect(state, capture, step, frame),
     }
@@ -185,9 +186,9 @@ fn changed_aspect(
         return Some((stencil.image.clone(), Coloring::Stencil));
     }
     if !frame.depth.unchanged {
-        let measure = super::depth::DepthMeasure::of_camera(capture).unwrap_or(super::depth::DepthMeasure::Raw);
+        let measure = DepthMeasure::of_camera(capture);
         let range = state.cache.depth_range(&frame.depth.image, measure).unwrap_or([0.0, 1.0]);
-        return Some((frame.depth.image.clone(), Coloring::Depth(super::depth::DepthScale { measure, range })));
+        return Some((frame.depth.image.clone(), Coloring::Depth(DepthScale { measure, range })));
     }
     None
 }

@@ -229,7 +229,9 @@ fn face(ui: &mut Ui, state: &mut State, index: usize, image: &Arc<Image>, colori
     ui.painter().image(texture.id(), square, uv, egui::Color32::WHITE);
     let outline = if response.hovered() || response.has_focus() { theme::FOCUS } else { theme::LINE };
     ui.painter().rect_stroke(square, CornerRadius::ZERO, Stroke::new(1.0, outline), StrokeKind::Outside);
-    let sees_nothing = state.cache.depth_range(image, DepthMeasure::Parallel { length: 1.0 }).is_none();
+    let clear = state.capture.as_ref().map_or(0.0, |capture| capture.depth.mapping.clear_depth());
+    let any_distance = DepthMeasure::Parallel { near: 0.0, length: 1.0, clear };
+    let sees_nothing = state.cache.depth_range(image, any_distance).is_none();
     let (caption, ink) =
         if sees_nothing { (format!("{name} sees no caster"), theme::FAINT) } else { (name.to_owned(), theme::TEXT) };
     let font = theme::number_font(theme::SMALL_SIZE);

@@ -1,6 +1,6 @@
 //! The picked pixel: one sentence, then its values at the selected step, then how they came to be.
 
-use super::depth::DepthMeasure;
+use super::depth::{DepthMeasure, FIXED_BITS};
 use super::findings;
 use super::format;
 use super::legend;
@@ -83,12 +83,12 @@ fn frame_values(ui: &mut Ui, capture: &Capture, frame: &FrameSnapshot, at: [u32;
     }
     if let Some(depth) = frame.depth.image.depth_at(at) {
         row(ui, "depth", &format::depth(depth));
-        if let Some(measure) = DepthMeasure::of_camera(capture) {
-            let distance = measure.value(depth);
-            row(ui, "distance", &distance.map_or_else(|| "no surface".to_owned(), format::metres));
-            let step = measure.step_at(depth);
-            row(ui, "one step", &step.map_or_else(|| "–".to_owned(), format::metres));
-        }
+        let measure = DepthMeasure::of_camera(capture);
+        let distance = measure.value(depth);
+        row(ui, "distance", &distance.map_or_else(|| "no surface".to_owned(), format::metres));
+        let metres = |step: Option<f64>| step.map_or_else(|| "–".to_owned(), format::metres);
+        row(ui, "one step", &metres(measure.step_at(depth)));
+        row(ui, &format!("in {FIXED_BITS} bits"), &metres(measure.fixed_step_at(depth)));
     }
     match frame.stencil.as_ref().map(|stencil| stencil.image.byte_at(at)) {
         Some(Some(stencil)) => stencil_row(ui, stencil),

@@ -84,11 +84,7 @@ fn values(capture: &Capture, frame: &FrameSnapshot, at: [u32; 2]) -> Values {
 }
 
 fn distance(capture: &Capture, depth: f32) -> String {
-    match DepthMeasure::of_camera(capture).and_then(|measure| measure.value(depth)) {
-        Some(distance) => format::metres(distance),
-        None if depth == 0.0 => "–".to_owned(),
-        None => format::depth(depth),
-    }
+    DepthMeasure::of_camera(capture).value(depth).map_or_else(|| "–".to_owned(), format::metres)
 }
 
 fn row(ui: &mut Ui, now: &Values, before: Option<&Values>, has_stencil: bool) {

@@ -82,16 +82,23 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id) ->
             ui.label(theme::number(current).color(theme::FAINT)).on_hover_text(spec.meaning);
             None
         }
-        SettingValues::OneOf(words) => {
-            let mut value = current.to_owned();
-            let combo = egui::ComboBox::from_id_salt(spec.key).selected_text(current);
-            let combo = combo.show_ui(ui, |ui| {
-                for word in words {
-                    ui.selectable_value(&mut value, (*word).to_owned(), *word);
-                }
-            });
-            combo.response.labelled_by(label).on_hover_text(spec.meaning);
-            (value != current).then_some(value)
+        SettingValues::OneOf(words) => choose(ui, spec, words, current, label),
+        SettingValues::WordOr { words, prefix, low, high, whole } => {
+            let number = current.strip_prefix(prefix).and_then(|number| number.parse::<f64>().ok());
+            let numbered = prefix.trim_end_matches(':');
+            let options: Vec<&str> = words.iter().copied().chain([numbered]).collect();
+            ui.horizontal(|ui| {
+                let chosen = choose(ui, spec, &options, number.map_or(current, |_| numbered), label);
+                let chosen =
+                    chosen.map(|word| if word == numbered { format!("{prefix}{}", low.max(3.0)) } else { word });
+                let Some(mut value) = number else { return chosen };
+                let widget = DragValue::new(&mut value).range(low..=high).update_while_editing(false);
+                let widget = if whole { widget.fixed_decimals(0) } else { widget };
+                let response = ui.add(widget).accessible_name(format!("{} {numbered}", spec.key));
+                let number = response.changed().then(|| format!("{prefix}{value}"));
+                chosen.or(number)
+            })
+            .inner
         }
         SettingValues::Integer(low, high) => {
             let mut value: i64 = current.parse().unwrap_or(low);
@@ -106,4 +113,17 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id) ->
             response.changed().then(|| value.to_string())
         }
     }
+}
+
+/// One of several words; the new one when it changed.
+fn choose(ui: &mut Ui, spec: &SettingSpec, words: &[&str], current: &str, label: egui::Id) -> Option<String> {
+    let mut value = current.to_owned();
+    let combo = egui::ComboBox::from_id_salt(spec.key).selected_text(current);
+    let combo = combo.show_ui(ui, |ui| {
+        for word in words {
+            ui.selectable_value(&mut value, (*word).to_owned(), *word);
+        }
+    });
+    combo.response.labelled_by(label).on_hover_text(spec.meaning);
+    (value != current).then_some(value)
 }

@@ -242,7 +242,7 @@ impl PictureView {
         let after = |what: &str| format!("{what} after step {}", step + 1);
         let depth_format = if has_stencil(capture) { "Depth32FloatStencil8" } else { "Depth32Float" };
         let raw = DepthMeasure::Raw;
-        let camera = || self.measure_or_raw(DepthMeasure::of_camera(capture));
+        let camera = || self.measure_or_raw(Some(DepthMeasure::of_camera(capture)));
         let (image, measure, title, format) = match kind {
             PictureKind::Color => (frame?.color.image.clone(), raw, after("colour"), "Rgba8UnormSrgb"),
             PictureKind::Stencil => (frame?.stencil.as_ref()?.image.clone(), raw, after("stencil"), depth_format),
@@ -290,9 +290,13 @@ impl PictureView {
         let (images, measure, title) = match self.face {
             FaceChoice::One(face) if map.faces.len() > 1 && face < map.faces.len() => {
                 let name = CUBE_FACES.get(face).copied().unwrap_or("?");
-                (vec![map.faces[face].clone()], DepthMeasure::of_map(map, face), format!("{title}, face {name}"))
+                (
+                    vec![map.faces[face].clone()],
+                    DepthMeasure::of_map(capture, light, face),
+                    format!("{title}, face {name}"),
+                )
             }
-            _ => (map.faces.clone(), DepthMeasure::of_map(map, 0), title),
+            _ => (map.faces.clone(), DepthMeasure::of_map(capture, light, 0), title),
         };
         let measure = self.measure_or_raw(measure);
         Some(Shown { kind: PictureKind::Map, images, measure, title, format: "Depth32Float", is_older: false })

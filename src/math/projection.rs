@@ -1,40 +1,38 @@
-//! Cameras as matrices: view rotation and reversed-infinite perspective.
-//!
-//! Depth is reversed and infinite: `z = near / distance`, 1 at the near plane, 0 at infinity. A
-//! vertex at infinity gets depth 0 exactly, nothing is clipped at far, and `f32` is finest where
-//! it is needed (Reed 2015, "Depth Precision Visualized").
+//! Cameras as matrices: view rotation, perspective and parallel projection.
 
+use super::depth::DepthCurve;
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
-/// Clip space from view space: perspective with reversed-infinite depth.
-/// `aspect` is width over height, `near` the distance of the near plane.
+/// Clip space from view space: perspective. `aspect` is width over height.
 #[must_use]
-pub fn reversed_infinite(fov_y_degrees: f64, aspect: f64, near: f64) -> DMat4 {
+pub fn perspective(fov_y_degrees: f64, aspect: f64, depth: &DepthCurve) -> DMat4 {
     let focal = 1.0 / (fov_y_degrees.to_radians() / 2.0).tan();
-    frustum(focal / aspect, focal, near)
+    frustum(focal / aspect, focal, depth)
 }
 
 /// The same by focal lengths: a point at distance 1 and offset `1 / focal` is at the picture's edge.
 #[must_use]
-pub fn frustum(focal_x: f64, focal_y: f64, near: f64) -> DMat4 {
+pub fn frustum(focal_x: f64, focal_y: f64, depth: &DepthCurve) -> DMat4 {
+    let z_row = depth.z_row();
     DMat4::from_cols(
         DVec4::new(focal_x, 0.0, 0.0, 0.0),
         DVec4::new(0.0, focal_y, 0.0, 0.0),
-        DVec4::new(0.0, 0.0, 0.0, -1.0),
-        DVec4::new(0.0, 0.0, near, 0.0),
+        DVec4::new(0.0, 0.0, z_row.x, -1.0),
+        DVec4::new(0.0, 0.0, z_row.y, 0.0),
     )
 }
 
-/// Clip space from a box in view space, looking down −z: x and y in ±`half`, depth 1 at
-/// `near`, 0 at `far` (distances along −z).
+/// Clip space from a box in view space, looking down −z: x and y in ±`half`, and linear depth
+/// from `near` to `far` (distances along −z): from 1 to 0 where it is reversed, else from 0 to 1.
 #[must_use]
-pub fn reversed_orthographic(half: [f64; 2], near: f64, far: f64) -> DMat4 {
-    let depth = far - near;
+pub fn orthographic(half: [f64; 2], near: f64, far: f64, is_reversed: bool) -> DMat4 {
+    let depth = if is_reversed { far - near } else { near - far };
+    let end = if is_reversed { far } else { near };
     DMat4::from_cols(
         DVec4::new(1.0 / half[0], 0.0, 0.0, 0.0),
         DVec4::new(0.0, 1.0 / half[1], 0.0, 0.0),
         DVec4::new(0.0, 0.0, 1.0 / depth, 0.0),
-        DVec4::new(0.0, 0.0, far / depth, 1.0),
+        DVec4::new(0.0, 0.0, end / depth, 1.0),
     )
 }
 
@@ -55,6 +53,7 @@ pub fn some_up_for(direction: DVec3) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::depth::DepthMapping;
     use super::*;
 
     fn project(clip_from_view: DMat4, point: DVec3) -> DVec3 {
@@ -63,20 +62,29 @@ mod tests {
     }
 
     #[test]
-    fn reversed_infinite_maps_near_to_one_and_infinity_to_zero() {
-        let clip_from_view = reversed_infinite(90.0, 2.0, 0.25);
-        assert!((project(clip_from_view, DVec3::new(0.0, 0.0, -0.25)).z - 1.0).abs() < 1e-15);
-        assert!((project(clip_from_view, DVec3::new(0.0, 0.0, -1000.0)).z - 0.25 / 1000.0).abs() < 1e-15);
-        assert_eq!((clip_from_view * DVec4::new(0.1, 0.2, -1.0, 0.0)).z, 0.0);
-        let corner = project(clip_from_view, DVec3::new(6.0, 3.0, -3.0));
-        assert!((corner.x - 1.0).abs() < 1e-12 && (corner.y - 1.0).abs() < 1e-12);
+    fn perspective_fills_the_picture_with_its_field_of_view() {
+        for mapping in DepthMapping::ALL {
+            let curve = mapping.curve(0.25, 100.0, 1e-6);
+            let clip_from_view = perspective(90.0, 2.0, &curve);
+            let corner = project(clip_from_view, DVec3::new(6.0, 3.0, -3.0));
+            assert!((corner - DVec3::new(1.0, 1.0, curve.depth(3.0))).length() < 1e-12);
+        }
     }
 
     #[test]
-    fn reversed_orthographic_maps_its_box_to_clip_space() {
-        let clip_from_view = reversed_orthographic([2.0, 3.0], 1.0, 5.0);
-        assert!((project(clip_from_view, DVec3::new(2.0, -3.0, -1.0)) - DVec3::new(1.0, -1.0, 1.0)).length() < 1e-12);
-        assert!((project(clip_from_view, DVec3::new(0.0, 0.0, -5.0)) - DVec3::ZERO).length() < 1e-12);
+    fn a_vertex_at_infinity_has_depth_zero_exactly_where_depth_is_reversed() {
+        let curve = DepthMapping::ReversedInfinite.curve(0.25, 0.0, 0.0);
+        assert_eq!((perspective(90.0, 2.0, &curve) * DVec4::new(0.1, 0.2, -1.0, 0.0)).z, 0.0);
+    }
+
+    #[test]
+    fn orthographic_maps_its_box_to_clip_space() {
+        for (is_reversed, near, far) in [(true, 1.0, 0.0), (false, 0.0, 1.0)] {
+            let clip_from_view = orthographic([2.0, 3.0], 1.0, 5.0, is_reversed);
+            let corner = project(clip_from_view, DVec3::new(2.0, -3.0, -1.0));
+            assert!((corner - DVec3::new(1.0, -1.0, near)).length() < 1e-12);
+            assert!((project(clip_from_view, DVec3::new(0.0, 0.0, -5.0)) - DVec3::Z * far).length() < 1e-12);
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Checks a plan without a GPU: what would be a driver error, or silently wrong, is named here.
 
-use super::{AttachmentRole, Draw, DrawMesh, FramePlan, Pass, Program};
+use super::{AttachmentRole, Draw, DrawMesh, FramePlan, Pass, Program, Visibility};
 
 /// A rule that a plan breaks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -83,10 +83,10 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
         "a shader with colour and a state without, or the reverse",
     );
     demand(!writes_color || pass.color.is_some(), "it writes a colour that its pass does not have");
-    let shades = matches!(draw.program, Program::Light { .. } | Program::LightByLabels | Program::Label { .. });
+    let shades = draw.program.visibility().is_some();
     demand(!shades || mesh.surface.is_some(), "it shades a mesh without normals");
     demand(!shades || pass.light.is_some_and(|light| light.0 < plan.lights.len()), "it shades without a light");
-    if let Program::Light { reads_map: true } | Program::Label { reads_map: true } = draw.program {
+    if draw.program.visibility() == Some(Visibility::Map) {
         let map = pass.light.and_then(|light| plan.lights.get(light.0)).and_then(|light| light.map.as_ref());
         demand(map.is_some(), "it reads a shadow map that its light does not have");
     }

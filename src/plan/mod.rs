@@ -25,6 +25,7 @@ pub use image::{CpuImage, MakeImage};
 pub use left_out::LeftOut;
 pub use raster::{ColorWrite, RasterState, StencilFace};
 
+use crate::math::depth::DepthCurve;
 use glam::{DMat4, DVec3, Mat4};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -54,6 +55,10 @@ pub struct FramePlan {
     pub settings: BTreeMap<String, String>,
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
+    /// How the camera's distance becomes stored depth.
+    pub depth: DepthCurve,
+    /// Diffuse light wraps round the edge that Lambert's ends at.
+    pub wraps_diffuse: bool,
     /// Pictures that passes draw into.
     pub attachments: Vec<Attachment>,
     /// The camera first, then the faces of shadow maps.
@@ -147,6 +152,21 @@ pub struct PlanMap {
     /// The clip space of each face from positions relative to the eye: what a receiver's
     /// fragment is carried by.
     pub clip_from_relative: Vec<Mat4>,
+    /// How it is looked up.
+    pub lookup: MapLookup,
+}
+
+/// How a shadow map is looked up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapLookup {
+    /// What texels hold that no caster covers; 0 where depth is reversed.
+    pub clear_depth: f32,
+    /// How far the point is moved along its normal, in texels, times the sine of the light's angle.
+    pub bias_normal: f32,
+    /// Each texel is compared with the depth that the surface's plane has there.
+    pub bias_receiver_plane: bool,
+    /// Texels averaged along each side.
+    pub filter_width: u32,
 }
 
 /// One render pass.
@@ -264,21 +284,51 @@ pub enum Program {
     /// Positions only: volumes, caps, planar shadows, shadow maps, receiver marks.
     Position,
     /// The material's colour times the ambient light.
-    Ambient,
-    /// What the pass's light adds; darkened by its shadow map where `reads_map`.
-    Light {
-        /// Looks into the light's shadow map.
-        reads_map: bool,
+    Ambient {
+        /// Drops what is nearer than the near plane, where nothing else clips it.
+        from_near: bool,
     },
-    /// What the pass's light adds where its labels say that it is lit.
-    LightByLabels,
-    /// Writes a label: 3 where the triangle faces away from the light, else the draw's `label`,
-    /// or what the shadow map says where `reads_map`. Triangles run in reverse order, so that of
+    /// What the pass's light adds, as far as it arrives.
+    Light(Visibility),
+    /// Writes a label: 3 where the triangle faces away from the light, 1 where less than half of
+    /// the light arrives, else the draw's `label`. Triangles run in reverse order, so that of
     /// surfaces at one depth the first drawn decides, as it did for the picture.
-    Label {
-        /// Looks into the light's shadow map.
-        reads_map: bool,
-    },
+    Label(Visibility),
+}
+
+/// What a shader asks how much of a light arrives at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Visibility {
+    /// Nothing: all that the depth and stencil tests let through is lit.
+    Everywhere,
+    /// The light's shadow map.
+    Map,
+    /// The light's labels, made on the CPU.
+    Labels,
+}
+
+impl Program {
+    /// Every one.
+    pub const ALL: [Program; 9] = [
+        Program::Position,
+        Program::Ambient { from_near: false },
+        Program::Ambient { from_near: true },
+        Program::Light(Visibility::Everywhere),
+        Program::Light(Visibility::Map),
+        Program::Light(Visibility::Labels),
+        Program::Label(Visibility::Everywhere),
+        Program::Label(Visibility::Map),
+        Program::Label(Visibility::Labels),
+    ];
+
+    /// What it asks how much light arrives; `None` for programs that do not light.
+    #[must_use]
+    pub fn visibility(self) -> Option<Visibility> {
+        match self {
+            Program::Light(visibility) | Program::Label(visibility) => Some(visibility),
+            Program::Position | Program::Ambient { .. } => None,
+        }
+    }
 }
 
 /// Values that one draw hands to its shader.

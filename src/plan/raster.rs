@@ -10,6 +10,8 @@ pub type StencilFace = wgpu::StencilFaceState;
 pub struct RasterState {
     /// A fragment passes when `compare(fragment depth, stored depth)` holds.
     pub depth_compare: CompareFunction,
+    /// Depths beyond near and far are clamped instead of clipped.
+    pub unclipped_depth: bool,
     /// Passing fragments store their depth.
     pub depth_write: bool,
     /// Added to depth before the test.
@@ -42,6 +44,7 @@ impl RasterState {
     pub fn surface() -> RasterState {
         RasterState {
             depth_compare: CompareFunction::Greater,
+            unclipped_depth: false,
             depth_write: true,
             depth_bias: DepthBiasState::default(),
             stencil: wgpu::StencilState::default(),
@@ -68,6 +71,22 @@ impl RasterState {
     pub fn with_faces(mut self, front: StencilFace, back: StencilFace, reference: u8) -> RasterState {
         self.stencil = wgpu::StencilState { front, back, read_mask: 0xff, write_mask: 0xff };
         self.stencil_reference = reference;
+        self
+    }
+
+    /// Turned round for depth where greater is farther: tests and biases change sign.
+    #[must_use]
+    pub fn for_standard_depth(mut self) -> RasterState {
+        self.depth_compare = match self.depth_compare {
+            CompareFunction::Greater => CompareFunction::Less,
+            CompareFunction::GreaterEqual => CompareFunction::LessEqual,
+            CompareFunction::Less => CompareFunction::Greater,
+            CompareFunction::LessEqual => CompareFunction::GreaterEqual,
+            other => other,
+        };
+        self.depth_bias.constant = -self.depth_bias.constant;
+        self.depth_bias.slope_scale = -self.depth_bias.slope_scale;
+        self.depth_bias.clamp = -self.depth_bias.clamp;
         self
     }
 

@@ -3,7 +3,10 @@
 //! Vertices are given by their number and kind; everything a GPU is told beside them is printed
 //! in full.
 
-use super::{AttachmentId, ColorWrite, DepthStencilTarget, Draw, FramePlan, Pass, Program, RasterState, StencilFace};
+use super::{
+    AttachmentId, ColorWrite, DepthStencilTarget, Draw, FramePlan, MapLookup, Pass, Program, RasterState, StencilFace,
+    Visibility,
+};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for FramePlan {
@@ -12,6 +15,7 @@ impl Display for FramePlan {
         for (key, value) in &self.settings {
             writeln!(f, "  {key} = {value}")?;
         }
+        writeln!(f, "depth {}: {} + {} / distance", self.depth.mapping.name(), self.depth.offset, self.depth.scale)?;
         for (index, attachment) in self.attachments.iter().enumerate() {
             let [width, height] = attachment.size;
             let (name, format, layers) = (&attachment.name, attachment.format, attachment.layers);
@@ -30,6 +34,11 @@ impl Display for FramePlan {
             let kind = if light.relative_position[3] == 0.0 { "directional" } else { "point" };
             let faces = light.map.as_ref().map_or(0, |map| map.faces.len());
             writeln!(f, "light {}: {kind}, {faces} map face(s)", index + 1)?;
+            if let Some(lookup) = light.map.as_ref().map(|map| map.lookup) {
+                let MapLookup { bias_normal, bias_receiver_plane, filter_width, .. } = lookup;
+                let along = if bias_receiver_plane { ", along the surface's plane" } else { "" };
+                writeln!(f, "  looked up {bias_normal} texels off, {filter_width}x{filter_width} texels{along}")?;
+            }
         }
         for (index, pass) in self.passes.iter().enumerate() {
             self.fmt_pass(f, index, pass)?;
@@ -70,22 +79,25 @@ impl FramePlan {
     fn fmt_draw(&self, f: &mut Formatter<'_>, draw: &Draw) -> fmt::Result {
         let program = match draw.program {
             Program::Position => "position",
-            Program::Ambient => "ambient",
-            Program::Light { reads_map: false } => "light",
-            Program::Light { reads_map: true } => "light through its map",
-            Program::LightByLabels => "light by labels",
-            Program::Label { reads_map: false } => "label",
-            Program::Label { reads_map: true } => "label through the map",
+            Program::Ambient { from_near: false } => "ambient",
+            Program::Ambient { from_near: true } => "ambient from the near plane on",
+            Program::Light(_) => "light",
+            Program::Label(_) => "label",
+        };
+        let by = match draw.program.visibility() {
+            None | Some(Visibility::Everywhere) => "",
+            Some(Visibility::Map) => " through the map",
+            Some(Visibility::Labels) => " where labels say so",
         };
         let range = &draw.triangles;
         writeln!(
             f,
-            "  draw {} [{}] by {program}, mesh {} triangles {range:?}",
+            "  draw {} [{}] by {program}{by}, mesh {} triangles {range:?}",
             draw.name,
             draw.part.name(),
             draw.mesh.0
         )?;
-        if matches!(draw.program, Program::Label { .. }) {
+        if matches!(draw.program, Program::Label(_)) {
             writeln!(f, "    label {}", draw.constants.label)?;
         }
         write!(f, "{}", draw.raster)
@@ -99,7 +111,8 @@ impl FramePlan {
 impl Display for RasterState {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let write = if self.depth_write { "written" } else { "kept" };
-        writeln!(f, "    depth {:?}, {write}", self.depth_compare)?;
+        let clamped = if self.unclipped_depth { ", clamped" } else { "" };
+        writeln!(f, "    depth {:?}, {write}{clamped}", self.depth_compare)?;
         if self.depth_bias != wgpu::DepthBiasState::default() {
             let bias = &self.depth_bias;
             writeln!(f, "    depth bias {} steps, {} slopes", bias.constant, bias.slope_scale)?;

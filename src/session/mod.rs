@@ -188,6 +188,7 @@ impl Session {
             size: plan.size,
             adapter: self.adapter().clone(),
             camera: scene.camera,
+            depth: plan.depth,
             steps: output.steps,
             lights: lights.collect(),
             left_out: plan.left_out.clone(),

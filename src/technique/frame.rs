@@ -6,11 +6,12 @@
 use super::{Choice, PlanError, surfaces};
 use crate::geometry::GeometryCache;
 use crate::geometry::relative;
+use crate::math::depth::{DepthCurve, DepthMapping};
 use crate::math::projection;
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, ColorTarget, ColorWrite, DepthStencilTarget, Draw, DrawConstants,
     DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Pass, PlanLight, PlanView, Program, RasterState, StencilFace,
-    ViewId,
+    ViewId, Visibility,
 };
 use crate::scene::{Object, Scene};
 use glam::{DMat4, DVec3};
@@ -22,6 +23,9 @@ const BACKGROUND: [f64; 4] = [0.007, 0.008, 0.012, 1.0];
 const MOST_DISTANCE: f64 = 1e18;
 /// Lights are bits of one word a triangle; the last bit is taken.
 pub const MOST_LIGHTS: usize = 31;
+
+/// Room behind the farthest surface for a far plane that the scene does not give.
+const FAR_MARGIN: f64 = 1.01;
 
 const LIT: u32 = 0;
 const SHADOW: u32 = 1;
@@ -82,12 +86,12 @@ impl Drawn {
 
     /// Writes what the light's map says.
     pub fn lit_or_shadow_by_map() -> Drawn {
-        Drawn { program: Program::Label { reads_map: true }, ..Drawn::label(LIT) }
+        Drawn { program: Program::Label(Visibility::Map), ..Drawn::label(LIT) }
     }
 
     fn label(label: u32) -> Drawn {
         let raster = RasterState::visible_surface(ColorWrite::Replace);
-        Drawn { program: Program::Label { reads_map: false }, raster, label }
+        Drawn { program: Program::Label(Visibility::Everywhere), raster, label }
     }
 
     /// Only where the masked stencil equals `reference`.
@@ -109,7 +113,7 @@ impl Drawn {
         };
         let mut raster = RasterState::visible_surface(ColorWrite::Add).with_stencil(once, 0);
         raster.stencil.read_mask = read_mask;
-        Drawn { program: Program::Light { reads_map: false }, raster, label: LIT }
+        Drawn { program: Program::Light(Visibility::Everywhere), raster, label: LIT }
     }
 }
 
@@ -135,8 +139,10 @@ impl<'a> Frame<'a> {
             technique,
             settings: job.choice.settings().clone(),
             size: job.size,
+            depth: DepthMapping::ReversedInfinite.curve(scene.camera.near, 0.0, 0.0),
+            wraps_diffuse: job.choice.word("diffuse") == "wrapped",
             attachments: Vec::new(),
-            views: vec![camera_view(scene, job.size)],
+            views: Vec::new(),
             lights: Vec::new(),
             ambient: scene.ambient,
             meshes: Vec::new(),
@@ -155,6 +161,8 @@ impl<'a> Frame<'a> {
             job,
         };
         frame.place_objects()?;
+        frame.plan.depth = frame.depth_curve();
+        frame.plan.views.push(camera_view(scene, frame.job.size, &frame.plan.depth));
         // Looking at every triangle pays only where it decides something.
         frame.has_stencil = frame.has_stencil || surfaces::coincide(&frame.placed);
         frame.add_attachments();
@@ -185,12 +193,12 @@ impl<'a> Frame<'a> {
 
     /// The same, through the light's map.
     pub fn light_by_map(&self) -> Drawn {
-        Drawn { program: Program::Light { reads_map: true }, ..self.light_everywhere() }
+        Drawn { program: Program::Light(Visibility::Map), ..self.light_everywhere() }
     }
 
     /// The same, where the light's labels say "lit".
     pub fn light_by_labels(&self) -> Drawn {
-        Drawn { program: Program::LightByLabels, ..self.light_everywhere() }
+        Drawn { program: Program::Light(Visibility::Labels), ..self.light_everywhere() }
     }
 
     /// Names a light for people, counted from 1.
@@ -238,7 +246,9 @@ impl<'a> Frame<'a> {
 
     /// Depth of all surfaces, and their colour under ambient light.
     pub fn ambient_pass(&mut self) {
-        let drawn = Drawn { program: Program::Ambient, raster: RasterState::surface(), label: LIT };
+        // Depth that is clamped lets through what lies between eye and near plane.
+        let from_near = self.depth_mapping().clamps();
+        let drawn = Drawn { program: Program::Ambient { from_near }, raster: RasterState::surface(), label: LIT };
         let draws = self.surface_draws(|_| Some(&drawn));
         let purpose = "Draws every surface in ambient light only, and leaves in the depth buffer how far the nearest \
                        one is: all later passes ask about that surface.";
@@ -264,7 +274,7 @@ impl<'a> Frame<'a> {
     /// objects that receive shadows. The others are lit as if nothing stood between.
     pub fn light_pass(&mut self, light: LightId, purpose: &str, shadowed: &Drawn) {
         let unshadowed = Drawn {
-            program: Program::Light { reads_map: false },
+            program: Program::Light(Visibility::Everywhere),
             raster: RasterState::visible_surface(ColorWrite::Add),
             label: LIT,
         };
@@ -348,8 +358,38 @@ impl<'a> Frame<'a> {
         DepthStencilTarget { attachment: self.depth_stencil, layer: 0, clear_depth: None, clear_stencil }
     }
 
-    /// The plan.
-    pub fn finish(self) -> FramePlan {
+    /// How depth is stored, as the settings say. Without a far plane of its own, the camera's is put
+    /// behind the farthest surface.
+    fn depth_curve(&self) -> DepthCurve {
+        let camera = &self.job.scene.camera;
+        let ahead = (camera.target - camera.eye).normalize_or_zero();
+        let drawn = self.placed.iter().filter(|placed| placed.surface.is_some()).flat_map(|placed| &placed.world);
+        let farthest = drawn.map(|position| (*position - camera.eye).dot(ahead)).fold(camera.near * 2.0, f64::max);
+        let far = camera.far.unwrap_or(farthest * FAR_MARGIN);
+        self.depth_mapping().curve(camera.near, far, self.job.choice.number("epsilon"))
+    }
+
+    /// The mapping of the settings.
+    pub fn depth_mapping(&self) -> DepthMapping {
+        DepthMapping::from_name(self.job.choice.word("depth")).unwrap_or_default()
+    }
+
+    /// The plan. Techniques are written for reversed depth: this turns it round where another is set.
+    pub fn finish(mut self) -> FramePlan {
+        let mapping = self.plan.depth.mapping;
+        for pass in &mut self.plan.passes {
+            let target = pass.depth_stencil.as_mut();
+            if let Some(clear) = target.and_then(|target| target.clear_depth.as_mut()) {
+                *clear = mapping.clear_depth();
+            }
+            let is_of_camera = pass.view == ViewId(0);
+            for draw in &mut pass.draws {
+                draw.raster.unclipped_depth = is_of_camera && mapping.clamps();
+                if !mapping.is_reversed() {
+                    draw.raster = draw.raster.clone().for_standard_depth();
+                }
+            }
+        }
         self.plan
     }
 
@@ -412,10 +452,10 @@ impl<'a> Frame<'a> {
     }
 }
 
-fn camera_view(scene: &Scene, size: [u32; 2]) -> PlanView {
+fn camera_view(scene: &Scene, size: [u32; 2], depth: &DepthCurve) -> PlanView {
     let camera = &scene.camera;
     let aspect = f64::from(size[0]) / f64::from(size[1]);
-    let clip_from_view = projection::reversed_infinite(camera.fov_y_degrees, aspect, camera.near);
+    let clip_from_view = projection::perspective(camera.fov_y_degrees, aspect, depth);
     let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
     let clip_from_relative = (clip_from_view * DMat4::from_mat3(rotation)).as_mat4();
     PlanView { name: "camera".to_owned(), origin: camera.eye, clip_from_relative }

@@ -5,6 +5,7 @@
 //! there yet is refused, not ignored.
 
 use super::{Technique, none, planar, ray_traced, shadow_map, volume};
+use crate::math::depth::DepthMapping;
 use crate::scene::{TechniqueRequest, suggestion};
 use std::collections::BTreeMap;
 
@@ -30,6 +31,19 @@ pub enum SettingValues {
     Integer(i64, i64),
     /// A finite number in this range, ends included.
     Number(f64, f64),
+    /// One of these words, or a number in this range behind a prefix, as in `pcf:3`.
+    WordOr {
+        /// The words.
+        words: &'static [&'static str],
+        /// What the number follows, its colon included.
+        prefix: &'static str,
+        /// The smallest number.
+        low: f64,
+        /// The largest.
+        high: f64,
+        /// Without a fraction.
+        whole: bool,
+    },
 }
 
 /// Why a request for a technique can't be met.
@@ -82,26 +96,34 @@ pub struct Choice {
 
 const DEPTH: SettingSpec = SettingSpec {
     key: "depth",
-    values: SettingValues::OneOf(&["reversed-infinite"]),
-    default: "reversed-infinite",
+    values: SettingValues::OneOf(&DEPTH_NAMES),
+    default: DEPTH_NAMES[0],
     meaning: "how distance becomes depth",
 };
-const DIFFUSE: SettingSpec = SettingSpec {
-    key: "diffuse",
-    values: SettingValues::OneOf(&["lambert"]),
-    default: "lambert",
-    meaning: "how brightness falls off with the angle of light",
+const DEPTH_NAMES: [&str; 5] = {
+    let [a, b, c, d, e] = DepthMapping::ALL;
+    [a.name(), b.name(), c.name(), d.name(), e.name()]
 };
+const EPSILON: SettingSpec = SettingSpec {
+    key: "epsilon",
+    values: SettingValues::Number(0.0, 0.1),
+    // Two to the power of −22.
+    default: "2.4e-7",
+    meaning: "by how much standard-infinite-epsilon pulls infinity in",
+};
+const DIFFUSE: SettingSpec =
+    word("diffuse", &["lambert", "wrapped"], "how brightness falls off with the angle of light");
 
 const fn word(key: &'static str, values: &'static [&'static str], meaning: &'static str) -> SettingSpec {
     SettingSpec { key, values: SettingValues::OneOf(values), default: values[0], meaning }
 }
 
 /// Settings that are planned, but not built.
-const TO_COME: [&str; 5] = ["epsilon", "cache", "bias-normal", "bias-receiver-plane", "leave-out"];
-const NONE: &[SettingSpec] = &[DEPTH, DIFFUSE];
+const TO_COME: [&str; 2] = ["cache", "leave-out"];
+const NONE: &[SettingSpec] = &[DEPTH, EPSILON, DIFFUSE];
 const PLANAR: &[SettingSpec] = &[
     DEPTH,
+    EPSILON,
     DIFFUSE,
     word("stencil", &["on"], "keeps shadows on their receiver"),
     word("blend", &["once"], "overlapping triangles darken a pixel once"),
@@ -110,6 +132,7 @@ const PLANAR: &[SettingSpec] = &[
 ];
 const VOLUME: &[SettingSpec] = &[
     DEPTH,
+    EPSILON,
     DIFFUSE,
     word("casters", &["all"], "which triangles cast"),
     word("extrusion", &["infinite"], "how far volumes reach"),
@@ -121,6 +144,7 @@ const VOLUME: &[SettingSpec] = &[
 ];
 const SHADOW_MAP: &[SettingSpec] = &[
     DEPTH,
+    EPSILON,
     DIFFUSE,
     SettingSpec {
         key: "size",
@@ -141,8 +165,20 @@ const SHADOW_MAP: &[SettingSpec] = &[
         default: "2.0",
         meaning: "the same in units of a triangle's depth slope across one texel",
     },
-    word("cull", &["none"], "which faces the map leaves out"),
-    word("filter", &["none"], "how neighbouring texels are averaged"),
+    SettingSpec {
+        key: "bias-normal",
+        values: SettingValues::Number(-100.0, 100.0),
+        default: "0",
+        meaning: "texels by which a lookup is moved along the surface's normal",
+    },
+    word("bias-receiver-plane", &["off", "on"], "compares each texel with the surface's own plane there"),
+    word("cull", &["none", "back", "front"], "which faces the map leaves out"),
+    SettingSpec {
+        key: "filter",
+        values: SettingValues::WordOr { words: &["none"], prefix: "pcf:", low: 1.0, high: 15.0, whole: true },
+        default: "none",
+        meaning: "how many texels along each side are compared and averaged",
+    },
 ];
 
 impl Technique {
@@ -255,6 +291,18 @@ impl Choice {
         &self.settings
     }
 
+    /// The value of a setting; empty where the technique has none of that name.
+    #[must_use]
+    pub(super) fn word(&self, key: &str) -> &str {
+        self.settings.get(key).map_or("", String::as_str)
+    }
+
+    /// The number behind a setting's prefix, as in `pcf:3`; `None` where a word is set.
+    #[must_use]
+    pub(super) fn number_after(&self, key: &str, prefix: &str) -> Option<f64> {
+        self.word(key).strip_prefix(prefix)?.parse().ok()
+    }
+
     /// The value of a setting as a number; 0 where the technique has no such number.
     #[must_use]
     pub(super) fn number(&self, key: &str) -> f64 {
@@ -268,6 +316,11 @@ impl SettingValues {
             SettingValues::OneOf(words) => words.contains(&value),
             SettingValues::Integer(low, high) => value.parse().is_ok_and(|n: i64| (low..=high).contains(&n)),
             SettingValues::Number(low, high) => value.parse().is_ok_and(|n: f64| (low..=high).contains(&n)),
+            SettingValues::WordOr { words, prefix, low, high, whole } => {
+                let number = value.strip_prefix(prefix).and_then(|number| number.parse::<f64>().ok());
+                let fits = |n: f64| (low..=high).contains(&n) && (!whole || n.fract() == 0.0);
+                words.contains(&value) || number.is_some_and(fits)
+            }
         };
         if in_range { Ok(()) } else { Err(self.to_string()) }
     }
@@ -280,6 +333,10 @@ impl std::fmt::Display for SettingValues {
             SettingValues::OneOf(words) => write!(f, "choose one of {}", words.join(", ")),
             SettingValues::Integer(low, high) => write!(f, "choose a whole number from {low} to {high}"),
             SettingValues::Number(low, high) => write!(f, "choose a number from {low} to {high}"),
+            SettingValues::WordOr { words, prefix, low, high, whole } => {
+                let number = if *whole { "a whole number" } else { "a number" };
+                write!(f, "choose {}, or {prefix} and {number} from {low} to {high}", words.join(", "))
+            }
         }
     }
 }

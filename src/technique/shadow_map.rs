@@ -7,11 +7,11 @@
 
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::{PlanError, ReportRows};
-use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame};
+use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
     Attachment, AttachmentRole, Blob, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh, FramePlan,
-    LightId, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState, ViewId,
+    LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState, ViewId,
 };
 use glam::{DMat4, DVec3};
 use wgpu::{DepthBiasState, TextureFormat};
@@ -67,7 +67,8 @@ fn add_map(frame: &mut Frame, light: LightId) {
     let size = frame.job.choice.number("size") as u32;
     let indices = darkening_casters(frame, light);
     let triangles: Vec<Vec<[DVec3; 3]>> = indices.iter().map(|index| world_triangles(frame, *index)).collect();
-    let Some(light_frame) = light_frame::fit(&triangles.concat(), frame.light_position(light), size) else {
+    let storage = MapStorage { size, depth: frame.depth_mapping(), epsilon: frame.job.choice.number("epsilon") };
+    let Some(light_frame) = light_frame::fit(&triangles.concat(), frame.light_position(light), &storage) else {
         frame.leave_out("shadow map", &Frame::light_name(light), "nothing casts a shadow on anything");
         return;
     };
@@ -98,7 +99,18 @@ fn add_map(frame: &mut Frame, light: LightId) {
         light_from_world: light_frame.light_from_world,
         clip_from_relative: light_frame.clip_from_light.iter().map(from_relative).collect(),
         clip_from_light: light_frame.clip_from_light,
+        lookup: lookup(frame),
     });
+}
+
+fn lookup(frame: &Frame) -> MapLookup {
+    let choice = frame.job.choice;
+    MapLookup {
+        clear_depth: frame.depth_mapping().clear_depth(),
+        bias_normal: choice.number("bias-normal") as f32,
+        bias_receiver_plane: choice.word("bias-receiver-plane") == "on",
+        filter_width: choice.number_after("filter", "pcf:").map_or(1, |width| width as u32),
+    }
 }
 
 /// Casters but those behind which, seen from the light, there is nothing that receives.
@@ -208,7 +220,12 @@ fn map_raster(frame: &Frame) -> RasterState {
         slope_scale: -(frame.job.choice.number("bias-slope") as f32),
         clamp: 0.0,
     };
-    RasterState { depth_bias, color: ColorWrite::None, ..RasterState::surface() }
+    let cull = match frame.job.choice.word("cull") {
+        "back" => Some(wgpu::Face::Back),
+        "front" => Some(wgpu::Face::Front),
+        _ => None,
+    };
+    RasterState { depth_bias, cull, color: ColorWrite::None, ..RasterState::surface() }
 }
 
 fn map_draw(caster: &MapCaster, raster: &RasterState) -> Draw {

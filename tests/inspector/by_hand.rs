@@ -9,7 +9,8 @@ use stencilscope::capture::{
     AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, Image,
     PixelFormat, Snapshot, Step, Timing,
 };
-use stencilscope::math::projection::reversed_infinite;
+use stencilscope::math::depth::DepthMapping;
+use stencilscope::math::projection::perspective;
 use stencilscope::plan::{LeftOut, Part};
 use stencilscope::scene::Camera;
 
@@ -73,6 +74,7 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
         size,
         adapter: AdapterInfo { name: "none (made by hand)".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() },
         camera: camera(),
+        depth: DepthMapping::ReversedInfinite.curve(camera().near, 0.0, 0.0),
         steps: vec![
             step(
                 "ambient",
@@ -143,7 +145,7 @@ pub fn cube_map() -> Capture {
     capture.lights[0].map = Some(CapturedMap {
         faces: (0..6).map(face).collect(),
         light_from_world: DMat4::IDENTITY,
-        clip_from_light: vec![reversed_infinite(90.0, 1.0, 0.05); 6],
+        clip_from_light: vec![perspective(90.0, 1.0, &DepthMapping::ReversedInfinite.curve(0.05, 0.0, 0.0)); 6],
     });
     capture
 }

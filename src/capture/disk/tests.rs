@@ -75,6 +75,7 @@ fn example() -> Capture {
         settings: [("faces".to_owned(), "two-sided".to_owned())].into(),
         size: SIZE,
         adapter: AdapterInfo { name: "none".into(), driver: "by hand".into(), kind: "other".into() },
+        depth: DepthMapping::StandardFinite.curve(0.1, 50.0, 0.0),
         camera: Camera {
             eye: DVec3::new(0.1, 0.2, 1.0 / 3.0),
             target: DVec3::ZERO,

@@ -1,0 +1,175 @@
+//! Depth mappings: how the distance along the view axis becomes the depth that is stored.
+//!
+//! Every perspective mapping here is `depth = offset + scale / distance`, so two numbers say how
+//! a stored depth is read back and how fine it is. Techniques are written for reversed depth,
+//! where greater is nearer; the frame turns tests and biases round for the others.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+/// How distance becomes depth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DepthMapping {
+    /// 1 at the near plane, 0 at infinity: nothing is clipped at far, and `f32` is finest where it
+    /// is needed (Reed 2015, "Depth Precision Visualized").
+    #[default]
+    ReversedInfinite,
+    /// 0 at the near plane, 1 at infinity (Everitt and Kilgard 2002).
+    StandardInfinite,
+    /// The same, with infinity pulled in by epsilon so that rounding can't clip what is there
+    /// (Lengyel 2002).
+    StandardInfiniteEpsilon,
+    /// 0 at the near plane, 1 at the far plane: what reaches beyond is clipped.
+    StandardFinite,
+    /// The same without clipping: what lies beyond is stored as 1.
+    StandardFiniteClamp,
+}
+
+/// A mapping with its numbers: `depth = offset + scale / distance`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DepthCurve {
+    /// Which mapping.
+    pub mapping: DepthMapping,
+    /// What an infinite distance becomes.
+    pub offset: f64,
+    /// In metres.
+    pub scale: f64,
+    /// Distance of the far plane in metres; `None` where there is none.
+    pub far: Option<f64>,
+}
+
+impl DepthMapping {
+    /// All, the best first.
+    pub const ALL: [DepthMapping; 5] = [
+        DepthMapping::ReversedInfinite,
+        DepthMapping::StandardInfinite,
+        DepthMapping::StandardInfiniteEpsilon,
+        DepthMapping::StandardFinite,
+        DepthMapping::StandardFiniteClamp,
+    ];
+
+    /// The name in `--set depth=NAME`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            DepthMapping::ReversedInfinite => "reversed-infinite",
+            DepthMapping::StandardInfinite => "standard-infinite",
+            DepthMapping::StandardInfiniteEpsilon => "standard-infinite-epsilon",
+            DepthMapping::StandardFinite => "standard-finite",
+            DepthMapping::StandardFiniteClamp => "standard-finite-clamp",
+        }
+    }
+
+    /// The mapping of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<DepthMapping> {
+        DepthMapping::ALL.into_iter().find(|mapping| mapping.name() == name)
+    }
+
+    /// Is greater nearer?
+    #[must_use]
+    pub fn is_reversed(self) -> bool {
+        self == DepthMapping::ReversedInfinite
+    }
+
+    /// Does it have a far plane?
+    #[must_use]
+    pub fn is_finite(self) -> bool {
+        matches!(self, DepthMapping::StandardFinite | DepthMapping::StandardFiniteClamp)
+    }
+
+    /// Are depths beyond near and far clamped instead of clipped?
+    #[must_use]
+    pub fn clamps(self) -> bool {
+        self == DepthMapping::StandardFiniteClamp
+    }
+
+    /// The depth where nothing was drawn.
+    #[must_use]
+    pub fn clear_depth(self) -> f32 {
+        if self.is_reversed() { 0.0 } else { 1.0 }
+    }
+
+    /// With its numbers. `far` counts for finite mappings, `epsilon` for the one of that name.
+    #[must_use]
+    pub fn curve(self, near: f64, far: f64, epsilon: f64) -> DepthCurve {
+        let offset = match self {
+            DepthMapping::ReversedInfinite => 0.0,
+            DepthMapping::StandardInfinite => 1.0,
+            DepthMapping::StandardInfiniteEpsilon => 1.0 - epsilon,
+            DepthMapping::StandardFinite | DepthMapping::StandardFiniteClamp => far / (far - near),
+        };
+        let scale = if self.is_reversed() { near } else { -near * offset };
+        DepthCurve { mapping: self, offset, scale, far: self.is_finite().then_some(far) }
+    }
+}
+
+impl DepthCurve {
+    /// What z of clip space is made of: factors of view z (negative ahead) and of w.
+    #[must_use]
+    pub fn z_row(&self) -> DVec2 {
+        DVec2::new(-self.offset, self.scale)
+    }
+
+    /// Distance along the view axis, in metres; `None` for the depth of what was not drawn.
+    #[must_use]
+    pub fn distance(&self, depth: f32) -> Option<f64> {
+        (depth != self.mapping.clear_depth()).then(|| self.scale / (f64::from(depth) - self.offset))
+    }
+
+    /// The depth of a distance, before it is rounded.
+    #[must_use]
+    pub fn depth(&self, distance: f64) -> f64 {
+        self.offset + self.scale / distance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NEAR: f64 = 0.25;
+    const FAR: f64 = 40.0;
+    const EPSILON: f64 = 1.0 / 4_194_304.0;
+
+    #[test]
+    fn each_mapping_is_what_its_name_says_at_near_far_and_infinity() {
+        let ends = |mapping: DepthMapping| {
+            let curve = mapping.curve(NEAR, FAR, EPSILON);
+            (curve.depth(NEAR), curve.depth(FAR), curve.depth(f64::INFINITY))
+        };
+        assert_eq!(ends(DepthMapping::ReversedInfinite), (1.0, NEAR / FAR, 0.0));
+        assert_eq!(ends(DepthMapping::StandardInfinite), (0.0, 1.0 - NEAR / FAR, 1.0));
+        let (near, far, infinity) = ends(DepthMapping::StandardInfiniteEpsilon);
+        assert!(near == 0.0 && far < infinity && infinity == 1.0 - EPSILON);
+        for mapping in [DepthMapping::StandardFinite, DepthMapping::StandardFiniteClamp] {
+            let (near, far, infinity) = ends(mapping);
+            assert!(near.abs() < 1e-15 && (far - 1.0).abs() < 1e-15 && infinity > 1.0);
+        }
+    }
+
+    /// z over w of the matrix rows, against the curve.
+    #[test]
+    fn the_row_makes_the_curve() {
+        for mapping in DepthMapping::ALL {
+            let curve = mapping.curve(NEAR, FAR, EPSILON);
+            let row = curve.z_row();
+            for distance in [NEAR, 1.0, 17.0, FAR, 1e4] {
+                let z = row.x * -distance + row.y;
+                assert!((z / distance - curve.depth(distance)).abs() < 1e-14, "{mapping:?} at {distance}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_stored_depth_is_read_back_and_the_clear_value_is_nowhere() {
+        for mapping in DepthMapping::ALL {
+            let curve = mapping.curve(NEAR, FAR, EPSILON);
+            let back = curve.distance(curve.depth(3.0) as f32).expect("a distance");
+            assert!((back - 3.0).abs() < 1e-5, "{mapping:?}: {back}");
+            assert_eq!(curve.distance(mapping.clear_depth()), None);
+            assert_eq!(DepthMapping::from_name(mapping.name()), Some(mapping));
+        }
+    }
+}
