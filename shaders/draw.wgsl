@@ -12,6 +12,14 @@ struct DrawConstants {
     label: u32,
     // First plus last triangle where triangles run in reverse order, else NOT_REVERSED.
     reversed_sum: u32,
+    // What a flat draw writes.
+    flat: vec4f,
+    // What a count draw adds for a front face.
+    count: f32,
+    // Its own layer of the light's map, else NO_LAYER.
+    layer: u32,
 }
+
+const NO_LAYER: u32 = 0xffffffffu;
 
 @group(1) @binding(0) var<uniform> draw: DrawConstants;

@@ -21,7 +21,7 @@ struct Light {
     index: u32,
     // Lambert's diffuse, or wrapped.
     wraps: u32,
-    // Faces of its shadow map, and what their depth was cleared to: 0 where depth is reversed.
+    // Faces of its map, and what their depth was cleared to: 0 where depth is reversed.
     face_count: u32,
     map_clear: f32,
     // How far lookups are moved off the surface, in texels; along the surface's plane where not 0;
@@ -29,7 +29,9 @@ struct Light {
     bias_normal: f32,
     bias_receiver_plane: u32,
     filter_width: u32,
-    clip_from_relative: array<mat4x4f, 6>,
+    // Projected silhouettes reach behind the light.
+    projects_backwards: u32,
+    clip_from_relative: array<mat4x4f, 64>,
 }
 
 @group(2) @binding(0) var<storage, read> positions: array<vec4f>;

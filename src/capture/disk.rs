@@ -5,8 +5,8 @@
 
 use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, RegionEntry};
 use super::{
-    Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, FrameSnapshot, Image, PixelFormat, Snapshot, Step,
-    files,
+    Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, FrameSnapshot, FrameTarget, Image, PixelFormat,
+    Snapshot, Step, files,
 };
 use crate::accuracy::Finding;
 use crate::math::depth::DepthMapping;
@@ -203,7 +203,8 @@ fn write_step(
         entry.stencil = put("stencil", "npy", stencil)?;
     }
     entry.unchanged = Some(unchanged);
-    entry.labels = step.light.filter(|_| frame.writes_labels).map(shadow_file);
+    entry.labels = step.light.filter(|_| frame.target == FrameTarget::Labels).map(shadow_file);
+    entry.count = step.light.filter(|_| frame.target == FrameTarget::Count).map(count_file);
     Ok(entry)
 }
 
@@ -212,6 +213,10 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
     if let Some(shadow) = &light.shadow {
         entry.shadow = Some(shadow_file(index));
         files::write_image(&folder.join(shadow_file(index)), shadow)?;
+    }
+    if let Some(count) = &light.count {
+        entry.count = Some(count_file(index));
+        files::write_image(&folder.join(count_file(index)), count)?;
     }
     if let Some(truth) = &light.truth {
         entry.truth = Some(format!("light{index}.truth.npy"));
@@ -236,6 +241,10 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
 
 fn shadow_file(light: usize) -> String {
     format!("light{light}.shadow.npy")
+}
+
+fn count_file(light: usize) -> String {
+    format!("light{light}.count.npy")
 }
 
 fn map_file(light: usize) -> String {
@@ -303,8 +312,13 @@ fn inconsistency(capture: &Capture) -> Option<&'static str> {
             light(*index).and_then(|light| light.map.as_ref()).is_some_and(|map| *face < map.faces.len())
         }
         Snapshot::Frame(frame) => {
-            let labels = step.light.and_then(light).is_some_and(|light| light.shadow.is_some());
-            step.light.is_none_or(|index| light(index).is_some()) && (!frame.writes_labels || labels)
+            let own = step.light.and_then(light);
+            let is_there = match frame.target {
+                FrameTarget::Picture => true,
+                FrameTarget::Labels => own.is_some_and(|light| light.shadow.is_some()),
+                FrameTarget::Count => own.is_some_and(|light| light.count.is_some()),
+            };
+            step.light.is_none_or(|index| light(index).is_some()) && is_there
         }
     };
     if capture.steps.is_empty() {
@@ -386,7 +400,12 @@ impl Reader<'_> {
         let depth = aspect("depth", &pass.depth, PixelFormat::Depth32F)?;
         let has_stencil = pass.stencil.is_some();
         let stencil = has_stencil.then(|| aspect("stencil", &pass.stencil, PixelFormat::U8)).transpose()?;
-        Ok(FrameSnapshot { color, depth, stencil, writes_labels: pass.labels.is_some() })
+        let target = match (&pass.labels, &pass.count) {
+            (Some(_), _) => FrameTarget::Labels,
+            (None, Some(_)) => FrameTarget::Count,
+            (None, None) => FrameTarget::Picture,
+        };
+        Ok(FrameSnapshot { color, depth, stencil, target })
     }
 
     fn truth(&mut self, entry: &LightEntry) -> Result<Option<CapturedTruth>, CaptureError> {
@@ -416,6 +435,7 @@ impl Reader<'_> {
     fn light(&mut self, entry: &LightEntry) -> Result<CapturedLight, CaptureError> {
         let position = entry.homogeneous().ok_or_else(|| self.wrong(MANIFEST, "a light has no place"))?;
         let shadow = entry.shadow.as_ref().map(|file| self.image(file, PixelFormat::U8)).transpose()?;
+        let count = entry.count.as_ref().map(|file| self.image(file, PixelFormat::Count32F)).transpose()?;
         let map = match (&entry.map, &entry.matrices) {
             (Some(file), Some(matrices)) => {
                 let faces = files::read_layers(&self.path(file)?)?;
@@ -430,7 +450,7 @@ impl Reader<'_> {
             }
             _ => None,
         };
-        Ok(CapturedLight { position, shadow, map, truth: self.truth(entry)? })
+        Ok(CapturedLight { position, shadow, count, map, truth: self.truth(entry)? })
     }
 }
 

@@ -1,7 +1,8 @@
 //! Single files of a capture folder: `.npy` arrays and `.png` pictures.
 //!
 //! Arrays are C order, shape (height, width), row 0 at the top, or (faces, size, size) for shadow
-//! maps; stencil and labels are `|u1`, depth `<f4` as stored in the buffer.
+//! maps; stencil and labels are `|u1`, depth and counts `<f4`. A light's textures are
+//! (layers, size, size, 4), `|u1`.
 
 use super::{CaptureError, Image, PixelFormat};
 use npyz::WriterBuilder;
@@ -29,46 +30,48 @@ pub(super) fn write(
 pub(super) fn write_image(path: &Path, image: &Image) -> Result<(), CaptureError> {
     match image.format() {
         PixelFormat::Rgba8Srgb => write(path, |out| write_png(out, image)),
-        PixelFormat::Depth32F => write(path, |out| write_depths(out, &shape(image), [image])),
-        PixelFormat::U8 => write(path, |out| write_bytes(out, image)),
+        _ => write(path, |out| write_arrays(out, &[], [image], image)),
     }
 }
 
 /// Pictures of one size and format as one array with a dimension more.
 pub(super) fn write_layers(path: &Path, layers: &[Arc<Image>]) -> Result<(), CaptureError> {
     write(path, |out| {
-        let first = layers.first().ok_or_else(|| io::Error::other("a shadow map without faces"))?;
-        let [height, width] = shape(first);
-        let full = [layers.len() as u64, height, width];
-        write_depths(out, &full, layers.iter().map(Arc::as_ref))
+        let first = layers.first().ok_or_else(|| io::Error::other("a map without faces"))?;
+        write_arrays(out, &[layers.len() as u64], layers.iter().map(Arc::as_ref), first)
     })
 }
 
-fn shape(image: &Image) -> [u64; 2] {
-    let [width, height] = image.size();
-    [u64::from(height), u64::from(width)]
-}
-
-fn write_depths<'a>(
+/// Pictures like `first` as one array, whose shape begins with `outer`.
+fn write_arrays<'a>(
     out: &mut impl Write,
-    shape: &[u64],
-    layers: impl IntoIterator<Item = &'a Image>,
+    outer: &[u64],
+    images: impl IntoIterator<Item = &'a Image>,
+    first: &Image,
 ) -> io::Result<()> {
-    let mut array = npyz::WriteOptions::new().default_dtype().shape(shape).writer(out).begin_nd()?;
-    for image in layers {
-        for row in image.rows() {
-            array.extend(row.chunks_exact(4).map(bytemuck::pod_read_unaligned::<f32>))?;
+    let [width, height] = first.size();
+    let mut shape = [outer, &[u64::from(height), u64::from(width)]].concat();
+    match first.format() {
+        PixelFormat::Depth32F | PixelFormat::Count32F => {
+            let mut array = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(out).begin_nd()?;
+            for image in images {
+                for row in image.rows() {
+                    array.extend(row.chunks_exact(4).map(bytemuck::pod_read_unaligned::<f32>))?;
+                }
+            }
+            array.finish()
+        }
+        format => {
+            if format != PixelFormat::U8 {
+                shape.push(format.texel_bytes() as u64);
+            }
+            let mut array = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(out).begin_nd()?;
+            for image in images {
+                image.rows().try_for_each(|row| array.extend(row.iter().copied()))?;
+            }
+            array.finish()
         }
     }
-    array.finish()
-}
-
-fn write_bytes(out: &mut impl Write, image: &Image) -> io::Result<()> {
-    let mut array = npyz::WriteOptions::new().default_dtype().shape(&shape(image)).writer(out).begin_nd()?;
-    for row in image.rows() {
-        array.extend(row.iter().copied())?;
-    }
-    array.finish()
 }
 
 fn write_png(out: &mut impl Write, image: &Image) -> io::Result<()> {
@@ -88,16 +91,20 @@ fn write_png(out: &mut impl Write, image: &Image) -> io::Result<()> {
 pub(super) fn read_image(path: &Path, format: PixelFormat) -> Result<Image, CaptureError> {
     let read = match format {
         PixelFormat::Rgba8Srgb => read_png(path),
-        PixelFormat::Depth32F => read_depths(path).and_then(|(shape, values)| layers(&shape, &values, 2)),
-        PixelFormat::U8 => read_bytes(path),
+        PixelFormat::Depth32F | PixelFormat::Count32F => read_floats(path, format, 2),
+        PixelFormat::U8 | PixelFormat::Rgba8 => read_bytes(path, format, 2),
     };
     let one = read.map(|mut images| images.pop()).map_err(|reason| broken(path, reason))?;
     one.ok_or_else(|| broken(path, "it is empty".to_owned()))
 }
 
-/// The layers of a shadow map.
+/// The faces of a shadow map, or the layers of a light's textures.
 pub(super) fn read_layers(path: &Path) -> Result<Vec<Image>, CaptureError> {
-    read_depths(path).and_then(|(shape, values)| layers(&shape, &values, 3)).map_err(|reason| broken(path, reason))
+    let read = open(path).and_then(|array| match array.shape().len() {
+        3 => read_floats(path, PixelFormat::Depth32F, 3),
+        _ => read_bytes(path, PixelFormat::Rgba8, 3),
+    });
+    read.map_err(|reason| broken(path, reason))
 }
 
 fn broken(path: &Path, reason: String) -> CaptureError {
@@ -119,31 +126,32 @@ fn checked_shape(path: &Path, array: &npyz::NpyFile<BufReader<File>>, bytes: u64
     }
 }
 
-fn read_depths(path: &Path) -> Result<(Vec<u64>, Vec<f32>), String> {
+fn read_floats(path: &Path, format: PixelFormat, dimensions: usize) -> Result<Vec<Image>, String> {
     let array = open(path)?;
     let shape = checked_shape(path, &array, 4)?;
     let values = array.into_vec::<f32>().map_err(|error| error.to_string())?;
-    Ok((shape, values))
+    layers(&shape, bytemuck::cast_slice(&values), format, dimensions)
 }
 
-fn read_bytes(path: &Path) -> Result<Vec<Image>, String> {
+fn read_bytes(path: &Path, format: PixelFormat, dimensions: usize) -> Result<Vec<Image>, String> {
     let array = open(path)?;
-    let shape = checked_shape(path, &array, 1)?;
+    let mut shape = checked_shape(path, &array, 1)?;
     let values = array.into_vec::<u8>().map_err(|error| error.to_string())?;
-    let [height, width] = shape[..] else { return Err("it has not two dimensions".to_owned()) };
-    Ok(vec![Image::packed(PixelFormat::U8, size(width, height)?, values)])
+    let channels = format.texel_bytes() as u64;
+    if channels > 1 && shape.pop() != Some(channels) {
+        return Err(format!("its texels have not {channels} channels"));
+    }
+    layers(&shape, &values, format, dimensions)
 }
 
-fn layers(shape: &[u64], values: &[f32], dimensions: usize) -> Result<Vec<Image>, String> {
+fn layers(shape: &[u64], bytes: &[u8], format: PixelFormat, dimensions: usize) -> Result<Vec<Image>, String> {
     if shape.len() != dimensions {
         return Err(format!("it has not {dimensions} dimensions"));
     }
     let (width, height) = (shape[dimensions - 1], shape[dimensions - 2]);
     let size = size(width, height)?;
-    let texels = size[0] as usize * size[1] as usize;
-    let image =
-        |layer: &[f32]| Image::packed(PixelFormat::Depth32F, size, bytemuck::cast_slice::<f32, u8>(layer).to_vec());
-    Ok(values.chunks_exact(texels).map(image).collect())
+    let layer_bytes = size[0] as usize * size[1] as usize * format.texel_bytes();
+    Ok(bytes.chunks_exact(layer_bytes).map(|layer| Image::packed(format, size, layer.to_vec())).collect())
 }
 
 fn size(width: u64, height: u64) -> Result<[u32; 2], String> {

@@ -11,8 +11,12 @@ use bytes::Bytes;
 pub enum PixelFormat {
     /// Four bytes: red, green, blue (sRGB), alpha.
     Rgba8Srgb,
-    /// One little-endian `f32`.
+    /// Four bytes: red, green, blue and alpha, linear.
+    Rgba8,
+    /// One little-endian `f32`: a stored depth.
     Depth32F,
+    /// One little-endian `f32`: a signed count.
+    Count32F,
     /// One byte: a stencil count or a label.
     U8,
 }
@@ -22,7 +26,7 @@ impl PixelFormat {
     #[must_use]
     pub fn texel_bytes(self) -> usize {
         match self {
-            PixelFormat::Rgba8Srgb | PixelFormat::Depth32F => 4,
+            PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 | PixelFormat::Depth32F | PixelFormat::Count32F => 4,
             PixelFormat::U8 => 1,
         }
     }
@@ -130,10 +134,18 @@ impl Image {
         Some(bytemuck::pod_read_unaligned(texel))
     }
 
-    /// One colour texel as sRGB bytes; `None` outside the picture or for another format.
+    /// One count; `None` outside the picture or for another format.
+    #[must_use]
+    pub fn count_at(&self, at: [u32; 2]) -> Option<f32> {
+        let texel = (self.format == PixelFormat::Count32F).then(|| self.texel(at)).flatten()?;
+        Some(bytemuck::pod_read_unaligned(texel))
+    }
+
+    /// One colour texel as bytes; `None` outside the picture or for another format.
     #[must_use]
     pub fn rgba_at(&self, at: [u32; 2]) -> Option<[u8; 4]> {
-        let texel = (self.format == PixelFormat::Rgba8Srgb).then(|| self.texel(at)).flatten()?;
+        let is_color = matches!(self.format, PixelFormat::Rgba8Srgb | PixelFormat::Rgba8);
+        let texel = is_color.then(|| self.texel(at)).flatten()?;
         texel.try_into().ok()
     }
 

@@ -63,6 +63,9 @@ pub(super) struct PassEntry {
     /// The labels that a mask pass writes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub labels: Option<String>,
+    /// The counts that a volume pass adds up, where they are not in the stencil.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
     /// Which face of the map it drew.
@@ -92,6 +95,8 @@ pub(super) struct LightEntry {
     pub towards: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shadow: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -208,6 +213,7 @@ impl LightEntry {
             position,
             towards,
             shadow: None,
+            count: None,
             map: None,
             matrices: None,
             truth: None,

@@ -110,8 +110,20 @@ pub struct FrameSnapshot {
     pub depth: Aspect,
     /// One byte a pixel; `None` where the technique uses no stencil buffer.
     pub stencil: Option<Aspect>,
-    /// True for the pass that writes the light's labels ([`CapturedLight::shadow`]).
-    pub writes_labels: bool,
+    /// What the pass draws into.
+    pub target: FrameTarget,
+}
+
+/// What a pass that sees the picture's depth and stencil draws into.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FrameTarget {
+    /// The picture itself.
+    #[default]
+    Picture,
+    /// The light's labels ([`CapturedLight::shadow`]).
+    Labels,
+    /// The light's count ([`CapturedLight::count`]).
+    Count,
 }
 
 /// One aspect after a step.
@@ -130,7 +142,9 @@ pub struct CapturedLight {
     pub position: glam::DVec4,
     /// The technique's labels, one byte a pixel, as in `techniques.md` section 2.
     pub shadow: Option<Arc<Image>>,
-    /// Its shadow map.
+    /// How many shadow volumes contain the surface at each pixel, where they are counted in floats.
+    pub count: Option<Arc<Image>>,
+    /// Its shadow map, or the textures of what it lets through.
     pub map: Option<CapturedMap>,
     /// The ground truth, where it was asked for.
     pub truth: Option<CapturedTruth>,
@@ -149,10 +163,11 @@ pub struct CapturedTruth {
     pub worst: Option<Region>,
 }
 
-/// A shadow map after the whole frame.
+/// What a light sees, after the whole frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CapturedMap {
-    /// One, or six in wgpu's order (+x −x +y −y +z −z); depth as stored.
+    /// Depth as stored: one, or six in wgpu's order (+x −x +y −y +z −z). Or the colour that each
+    /// texture lets through.
     pub faces: Vec<Arc<Image>>,
     /// Light space from world space.
     pub light_from_world: glam::DMat4,
@@ -214,7 +229,7 @@ impl Capture {
             }
         }
         for light in &self.lights {
-            light.shadow.iter().for_each(&mut visit);
+            light.shadow.iter().chain(&light.count).for_each(&mut visit);
             light.map.iter().flat_map(|map| &map.faces).for_each(&mut visit);
             light.truth.iter().flat_map(|truth| [&truth.labels, &truth.findings]).for_each(&mut visit);
         }

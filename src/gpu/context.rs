@@ -8,8 +8,10 @@ use wgpu::{Adapter, Backends, Device, DeviceType, Features, Limits, Queue};
 const BACKENDS: Backends = Backends::VULKAN.union(Backends::METAL).union(Backends::DX12);
 /// The stencil buffer's format, with a depth that can be copied.
 const REQUIRED: Features = Features::DEPTH32FLOAT_STENCIL8;
-/// Times of passes, and depth that is clamped instead of clipped, where the adapter has them.
-const OPTIONAL: Features = Features::TIMESTAMP_QUERY.union(Features::DEPTH_CLIP_CONTROL);
+/// Times of passes, depth that is clamped instead of clipped, and counts in floats, where the
+/// adapter has them.
+const OPTIONAL: Features =
+    Features::TIMESTAMP_QUERY.union(Features::DEPTH_CLIP_CONTROL).union(Features::FLOAT32_BLENDABLE);
 
 /// An adapter with a device on it.
 #[derive(Debug)]

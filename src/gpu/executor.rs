@@ -5,7 +5,7 @@ use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
 use super::readback::{self, Change, StagedPass, color_change, depth_change, stencil_change};
 use super::{Context, GpuError};
-use crate::capture::{Aspect, DrawSummary, FrameSnapshot, Image, PixelFormat, Snapshot, Step};
+use crate::capture::{Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
 use crate::plan::{AttachmentRole, Draw, FramePlan, Pass, lint};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -26,7 +26,9 @@ pub struct Output {
     pub steps: Vec<Step>,
     /// One a light: its labels.
     pub labels: Vec<Option<Arc<Image>>>,
-    /// One a light: the faces of its shadow map, left-out ones at their clear value.
+    /// One a light: its volumes' count.
+    pub counts: Vec<Option<Arc<Image>>>,
+    /// One a light: the faces of its map, left-out ones at their clear value.
     pub maps: Vec<Option<Vec<Arc<Image>>>>,
 }
 
@@ -231,38 +233,49 @@ fn collect(prepared: &Prepared, times: &[Option<f64>]) -> Result<Output, GpuErro
     let mut color = zero(PixelFormat::Rgba8Srgb);
     let mut depth = zero(PixelFormat::Depth32F);
     let mut stencil = zero(PixelFormat::U8);
-    let mut output = Output { steps: Vec::new(), labels: vec![None; plan.lights.len()], maps: empty_maps(plan) };
+    let none = vec![None; plan.lights.len()];
+    let mut output = Output { steps: Vec::new(), labels: none.clone(), counts: none, maps: empty_maps(plan) };
     for (index, pass) in plan.passes.iter().enumerate() {
         let staged = &prepared.staged[index];
         let role = |target| plan.attachment(target).role;
-        let depth_role = pass.depth_stencil.as_ref().map(|target| role(target.attachment));
-        let snapshot = if let Some(AttachmentRole::Map(light)) = depth_role {
-            let face = pass.depth_stencil.as_ref().map_or(0, |target| target.layer as usize);
-            if let (Some(faces), Some(staging)) = (&mut output.maps[light.0], &staged.depth) {
-                faces[face] = staging.image()?;
-            }
-            Snapshot::Map { light: light.0, face }
-        } else {
-            let labels_of = match pass.color.as_ref().map(|target| role(target.attachment)) {
-                Some(AttachmentRole::Labels(light)) => Some(light),
-                _ => None,
-            };
-            let target = color_change(plan, pass);
-            let color_after = match labels_of {
-                Some(light) => {
-                    output.labels[light.0] = after(&target, &staged.color, PixelFormat::U8, plan.size)?;
-                    None
+        let color_role = pass.color.as_ref().map(|target| (role(target.attachment), target.layer));
+        let depth_role = pass.depth_stencil.as_ref().map(|target| (role(target.attachment), target.layer));
+        let snapshot = match (color_role, depth_role) {
+            (Some((AttachmentRole::Map(light), face)), _) | (_, Some((AttachmentRole::Map(light), face))) => {
+                let face = face as usize;
+                if let (Some(faces), Some(staging)) =
+                    (&mut output.maps[light.0], staged.color.as_ref().or(staged.depth.as_ref()))
+                {
+                    faces[face] = staging.image()?;
                 }
-                None => after(&target, &staged.color, PixelFormat::Rgba8Srgb, plan.size)?,
-            };
-            let depth_after = after(&depth_change(pass), &staged.depth, PixelFormat::Depth32F, plan.size)?;
-            let stencil_after = after(&stencil_change(pass), &staged.stencil, PixelFormat::U8, plan.size)?;
-            Snapshot::Frame(FrameSnapshot {
-                color: step_aspect(&mut color, color_after),
-                depth: step_aspect(&mut depth, depth_after),
-                stencil: prepared.passes[index].has_stencil.then(|| step_aspect(&mut stencil, stencil_after)),
-                writes_labels: labels_of.is_some(),
-            })
+                Snapshot::Map { light: light.0, face }
+            }
+            _ => {
+                let change = color_change(plan, pass);
+                let mut color_after = None;
+                let target = match color_role.map(|(role, _)| role) {
+                    Some(AttachmentRole::Labels(light)) => {
+                        output.labels[light.0] = after(&change, &staged.color, PixelFormat::U8, plan.size)?;
+                        FrameTarget::Labels
+                    }
+                    Some(AttachmentRole::Count(light)) => {
+                        output.counts[light.0] = after(&change, &staged.color, PixelFormat::Count32F, plan.size)?;
+                        FrameTarget::Count
+                    }
+                    _ => {
+                        color_after = after(&change, &staged.color, PixelFormat::Rgba8Srgb, plan.size)?;
+                        FrameTarget::Picture
+                    }
+                };
+                let depth_after = after(&depth_change(pass), &staged.depth, PixelFormat::Depth32F, plan.size)?;
+                let stencil_after = after(&stencil_change(pass), &staged.stencil, PixelFormat::U8, plan.size)?;
+                Snapshot::Frame(FrameSnapshot {
+                    color: step_aspect(&mut color, color_after),
+                    depth: step_aspect(&mut depth, depth_after),
+                    stencil: prepared.passes[index].has_stencil.then(|| step_aspect(&mut stencil, stencil_after)),
+                    target,
+                })
+            }
         };
         // What the CPU makes takes the GPU no time.
         let gpu_ms = times[index].filter(|_| pass.image.is_none());
@@ -273,8 +286,11 @@ fn collect(prepared: &Prepared, times: &[Option<f64>]) -> Result<Output, GpuErro
 
 fn empty_maps(plan: &FramePlan) -> Vec<Option<Vec<Arc<Image>>>> {
     let faces = |map: &crate::plan::PlanMap| {
-        let texel = map.lookup.clear_depth.to_le_bytes();
-        let clear = Image::uniform(PixelFormat::Depth32F, plan.attachment(map.attachment).size, &texel);
+        let size = plan.attachment(map.attachment).size;
+        let clear = match map.lookup {
+            Some(lookup) => Image::uniform(PixelFormat::Depth32F, size, &lookup.clear_depth.to_le_bytes()),
+            None => Image::uniform(PixelFormat::Rgba8, size, &[255; 4]),
+        };
         std::iter::repeat_n(Arc::new(clear), map.faces.len()).collect()
     };
     plan.lights.iter().map(|light| light.map.as_ref().map(faces)).collect()

@@ -32,12 +32,16 @@ pub(super) struct Layouts {
     pub light: BindGroupLayout,
     pub light_with_map: BindGroupLayout,
     pub light_with_labels: BindGroupLayout,
+    pub light_with_count: BindGroupLayout,
+    pub light_with_textures: BindGroupLayout,
 }
 
 /// Every pipeline made so far.
 #[derive(Debug)]
 pub(super) struct Pipelines {
     pub layouts: Layouts,
+    /// Linear, clamped to the edge.
+    pub smooth_sampler: wgpu::Sampler,
     modules: HashMap<Program, ShaderModule>,
     pipelines: HashMap<PipelineKey, RenderPipeline>,
 }
@@ -49,7 +53,13 @@ const POSITION_ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array!
 
 impl Pipelines {
     pub fn new(device: &Device) -> Pipelines {
-        Pipelines { layouts: Layouts::new(device), modules: HashMap::new(), pipelines: HashMap::new() }
+        let smooth_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("smooth"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..wgpu::SamplerDescriptor::default()
+        });
+        Pipelines { layouts: Layouts::new(device), smooth_sampler, modules: HashMap::new(), pipelines: HashMap::new() }
     }
 
     /// The pipeline of a description, made on first use.
@@ -123,18 +133,24 @@ impl Program {
     pub(super) fn group_count(self) -> usize {
         match self {
             Program::Position => 1,
-            Program::Ambient { .. } => 2,
+            Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
             Program::Light(_) | Program::Label(_) => 4,
         }
     }
 }
 
 fn color_target(format: TextureFormat, write: ColorWrite) -> ColorTargetState {
-    let add =
-        BlendComponent { src_factor: BlendFactor::One, dst_factor: BlendFactor::One, operation: BlendOperation::Add };
+    let both = |src_factor, dst_factor| {
+        let component = BlendComponent { src_factor, dst_factor, operation: BlendOperation::Add };
+        Some(BlendState { color: component, alpha: component })
+    };
     ColorTargetState {
         format,
-        blend: (write == ColorWrite::Add).then_some(BlendState { color: add, alpha: add }),
+        blend: match write {
+            ColorWrite::None | ColorWrite::Replace => None,
+            ColorWrite::Add => both(BlendFactor::One, BlendFactor::One),
+            ColorWrite::Multiply => both(BlendFactor::Dst, BlendFactor::Zero),
+        },
         write_mask: ColorWrites::ALL,
     }
 }
@@ -162,6 +178,15 @@ impl Layouts {
             count: None,
         };
         let map = texture(wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array);
+        let float = |filterable| wgpu::TextureSampleType::Float { filterable };
+        let count = texture(float(false), wgpu::TextureViewDimension::D2);
+        let textures = texture(float(true), wgpu::TextureViewDimension::D2Array);
+        let sampler = BindGroupLayoutEntry {
+            binding: 2,
+            visibility: ShaderStages::FRAGMENT,
+            ty: BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            count: None,
+        };
         let labels = texture(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
         let layout = |label, entries: &[BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries })
@@ -173,6 +198,8 @@ impl Layouts {
             light: layout("light", &[uniform(0)]),
             light_with_map: layout("light with map", &[uniform(0), map]),
             light_with_labels: layout("light with labels", &[uniform(0), labels]),
+            light_with_count: layout("light with count", &[uniform(0), count]),
+            light_with_textures: layout("light with textures", &[uniform(0), textures, sampler]),
         }
     }
 
@@ -180,6 +207,8 @@ impl Layouts {
         let light = match program.visibility() {
             Some(Visibility::Map) => &self.light_with_map,
             Some(Visibility::Labels) => &self.light_with_labels,
+            Some(Visibility::Count) => &self.light_with_count,
+            Some(Visibility::ReceiverTexture | Visibility::Projected) => &self.light_with_textures,
             Some(Visibility::Everywhere) | None => &self.light,
         };
         [&self.view, &self.draw, &self.surface, light]

@@ -107,6 +107,9 @@ fn check_features(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
     if clamps {
         missing(wgpu::Features::DEPTH_CLIP_CONTROL, "depth clamping", "choose another `depth`")?;
     }
+    if plan.lights.iter().any(|light| light.count.is_some()) {
+        missing(wgpu::Features::FLOAT32_BLENDABLE, "blending of 32-bit floats", "count in the stencil")?;
+    }
     Ok(())
 }
 
@@ -143,7 +146,7 @@ fn texel_count(attachment: &Attachment) -> u64 {
 
 fn create(device: &Device, attachment: &Attachment) -> Texture {
     let other = match attachment.role {
-        AttachmentRole::Map(_) => TextureUsages::TEXTURE_BINDING,
+        AttachmentRole::Map(_) | AttachmentRole::Count(_) => TextureUsages::TEXTURE_BINDING,
         AttachmentRole::Labels(_) => TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
         AttachmentRole::Color | AttachmentRole::DepthStencil => TextureUsages::empty(),
     };
@@ -174,7 +177,7 @@ fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Prep
     };
     let target = pass.depth_stencil.as_ref();
     PreparedPass {
-        color: pass.color.as_ref().map(|target| layer_view(&textures[target.attachment.0], 0)),
+        color: pass.color.as_ref().map(|target| layer_view(&textures[target.attachment.0], target.layer)),
         depth_stencil: target.map(|target| layer_view(&textures[target.attachment.0], target.layer)),
         has_stencil: target.is_some_and(|target| plan.attachment(target.attachment).format.has_stencil_aspect()),
         draws: Vec::with_capacity(pass.draws.len()),
@@ -211,24 +214,33 @@ fn light_group(
 ) -> BindGroup {
     let layouts = &pipelines.layouts;
     let light = &plan.lights[light.0];
-    let (attachment, dimension, layout) = match (draw.program.visibility(), &light.map) {
-        (Some(Visibility::Map), Some(map)) => (map.attachment, TextureViewDimension::D2Array, &layouts.light_with_map),
-        (Some(Visibility::Labels), _) => (light.labels, TextureViewDimension::D2, &layouts.light_with_labels),
+    let array = TextureViewDimension::D2Array;
+    let map = light.map.as_ref().map(|map| map.attachment);
+    let (attachment, dimension, layout) = match (draw.program.visibility(), map, light.count) {
+        (Some(Visibility::Map), Some(map), _) => (map, array, &layouts.light_with_map),
+        (Some(Visibility::ReceiverTexture | Visibility::Projected), Some(map), _) => {
+            (map, array, &layouts.light_with_textures)
+        }
+        (Some(Visibility::Count), _, Some(count)) => (count, TextureViewDimension::D2, &layouts.light_with_count),
+        (Some(Visibility::Labels), ..) => (light.labels, TextureViewDimension::D2, &layouts.light_with_labels),
         _ => return lights.bind_group(device, &layouts.light),
     };
     let view = textures[attachment.0]
         .create_view(&TextureViewDescriptor { dimension: Some(dimension), ..TextureViewDescriptor::default() });
-    let entries = &[
+    let entries = [
         BindGroupEntry { binding: 0, resource: lights.binding() },
         BindGroupEntry { binding: 1, resource: BindingResource::TextureView(&view) },
+        BindGroupEntry { binding: 2, resource: BindingResource::Sampler(&pipelines.smooth_sampler) },
     ];
+    let is_smooth = std::ptr::eq(layout, &layouts.light_with_textures);
+    let entries = if is_smooth { &entries[..] } else { &entries[..2] };
     device.create_bind_group(&BindGroupDescriptor { label: Some("light with texture"), layout, entries })
 }
 
 fn stage(device: &Device, plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Result<StagedPass, GpuError> {
     let mut staged = StagedPass::default();
     if let (Some(target), Change::Drawn) = (&pass.color, color_change(plan, pass)) {
-        staged.color = Some(Staging::new(device, &textures[target.attachment.0], 0, TextureAspect::All)?);
+        staged.color = Some(Staging::new(device, &textures[target.attachment.0], target.layer, TextureAspect::All)?);
     }
     if let Some(target) = &pass.depth_stencil {
         let texture = &textures[target.attachment.0];

@@ -22,6 +22,14 @@ macro_rules! file {
 pub(super) fn source_of(program: Program) -> ProgramSource {
     let (files, vertex, fragment) = match program {
         Program::Position => (vec![file!("position.wgsl")], "vs_position", None),
+        Program::Flat | Program::FlatLabel | Program::Count => {
+            let fragment = match program {
+                Program::Flat => "fs_flat",
+                Program::FlatLabel => "fs_flat_label",
+                _ => "fs_count",
+            };
+            (vec![file!("draw.wgsl"), file!("flat.wgsl")], "vs_flat", Some(fragment))
+        }
         Program::Ambient { from_near } => {
             let fragment = if from_near { "fs_ambient_from_near" } else { "fs_ambient" };
             (vec![file!("draw.wgsl"), file!("ambient.wgsl")], "vs_ambient", Some(fragment))
@@ -37,6 +45,9 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
         Visibility::Everywhere => file!("arriving_everywhere.wgsl"),
         Visibility::Map => file!("arriving_by_map.wgsl"),
         Visibility::Labels => file!("arriving_by_labels.wgsl"),
+        Visibility::Count => file!("arriving_by_count.wgsl"),
+        Visibility::ReceiverTexture => file!("arriving_by_receiver.wgsl"),
+        Visibility::Projected => file!("arriving_by_projection.wgsl"),
     };
     vec![file!("draw.wgsl"), file!("surface.wgsl"), arriving, own]
 }
@@ -44,5 +55,5 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
 /// Name and WGSL text of every program, to be validated without a GPU.
 #[must_use]
 pub fn shader_sources() -> Vec<(String, String)> {
-    Program::ALL.iter().map(|program| (format!("{program:?}"), source_of(*program).source)).collect()
+    Program::all().into_iter().map(|program| (format!("{program:?}"), source_of(program).source)).collect()
 }

@@ -1,6 +1,6 @@
 //! The plan's small values as the shaders' structs, packed into one buffer each.
 
-use crate::plan::{Draw, FramePlan, PlanLight, Program};
+use crate::plan::{Draw, FramePlan, PlanLight, PlanMap, Program};
 use crate::scene::Shading;
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -9,6 +9,7 @@ use wgpu::{
 };
 
 const NOT_REVERSED: u32 = u32::MAX;
+const NO_LAYER: u32 = u32::MAX;
 
 /// `View` of `shared.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -28,6 +29,10 @@ struct DrawUniform {
     shading: u32,
     label: u32,
     reversed_sum: u32,
+    flat: [f32; 4],
+    count: f32,
+    layer: u32,
+    padding: [u32; 2],
 }
 
 /// `Light` of `surface.wgsl`.
@@ -44,8 +49,8 @@ struct LightUniform {
     bias_normal: f32,
     bias_receiver_plane: u32,
     filter_width: u32,
-    padding: u32,
-    clip_from_relative: [[f32; 16]; 6],
+    projects_backwards: u32,
+    clip_from_relative: [[f32; 16]; PlanMap::MOST_FACES],
 }
 
 /// One struct an element, each at an offset that a dynamic binding may have.
@@ -117,6 +122,10 @@ fn draw_uniform(draw: &Draw) -> DrawUniform {
             Shading::Phong => 2,
         },
         label: draw.constants.label,
+        flat: draw.constants.flat,
+        count: draw.constants.count,
+        layer: draw.constants.layer.unwrap_or(NO_LAYER),
+        padding: [0; 2],
         reversed_sum: if is_label { draw.triangles.start + draw.triangles.end - 1 } else { NOT_REVERSED },
     }
 }
@@ -128,8 +137,8 @@ pub(super) fn lights(device: &Device, plan: &FramePlan) -> UniformArray {
 }
 
 fn light_uniform(index: usize, light: &PlanLight, wraps: bool) -> LightUniform {
-    let lookup = light.map.as_ref().map(|map| map.lookup);
-    let mut clip_from_relative = [[0.0; 16]; 6];
+    let lookup = light.map.as_ref().and_then(|map| map.lookup);
+    let mut clip_from_relative = [[0.0; 16]; PlanMap::MOST_FACES];
     let faces = light.map.iter().flat_map(|map| &map.clip_from_relative);
     let mut face_count = 0;
     for (slot, face) in clip_from_relative.iter_mut().zip(faces) {
@@ -147,7 +156,7 @@ fn light_uniform(index: usize, light: &PlanLight, wraps: bool) -> LightUniform {
         bias_normal: lookup.map_or(0.0, |lookup| lookup.bias_normal),
         bias_receiver_plane: lookup.map_or(0, |lookup| u32::from(lookup.bias_receiver_plane)),
         filter_width: lookup.map_or(1, |lookup| lookup.filter_width),
-        padding: 0,
+        projects_backwards: u32::from(light.map.as_ref().is_some_and(|map| map.projects_backwards)),
         clip_from_relative,
     }
 }

@@ -9,7 +9,7 @@ use super::state::{State, StepSearch};
 use super::texture::TextureSize;
 use super::theme;
 use super::transport;
-use crate::capture::{Capture, FrameSnapshot, Image, Snapshot, Step};
+use crate::capture::{Capture, FrameSnapshot, FrameTarget, Image, Snapshot, Step};
 use egui::{
     Color32, CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
@@ -175,9 +175,10 @@ fn changed_aspect(
     step: &Step,
     frame: &FrameSnapshot,
 ) -> Option<(Arc<Image>, Coloring)> {
-    if frame.writes_labels {
-        let light = capture.lights.get(step.light?)?;
-        return Some((light.shadow.clone()?, Coloring::Labels));
+    match frame.target {
+        FrameTarget::Picture => {}
+        FrameTarget::Labels => return Some((capture.lights.get(step.light?)?.shadow.clone()?, Coloring::Labels)),
+        FrameTarget::Count => return Some((capture.lights.get(step.light?)?.count.clone()?, Coloring::Stencil)),
     }
     if !frame.color.unchanged {
         return Some((frame.color.image.clone(), Coloring::Srgb));

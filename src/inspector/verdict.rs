@@ -5,7 +5,7 @@
 
 use super::format;
 use super::palette;
-use crate::capture::{Capture, FrameSnapshot, Snapshot};
+use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot};
 
 /// A sentence with what stands behind it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -98,7 +98,8 @@ fn count_note(capture: &Capture, light: usize, at: [u32; 2]) -> String {
 #[must_use]
 pub fn tested_count(capture: &Capture, light: usize, at: [u32; 2]) -> Option<u8> {
     let is_mask = |step: &&crate::capture::Step| {
-        step.light == Some(light) && matches!(&step.snapshot, Snapshot::Frame(frame) if frame.writes_labels)
+        step.light == Some(light)
+            && matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Labels)
     };
     let mask = capture.steps.iter().find(is_mask)?;
     let Snapshot::Frame(FrameSnapshot { stencil: Some(stencil), .. }) = &mask.snapshot else { return None };

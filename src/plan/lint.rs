@@ -1,6 +1,6 @@
 //! Checks a plan without a GPU: what would be a driver error, or silently wrong, is named here.
 
-use super::{AttachmentRole, Draw, DrawMesh, FramePlan, Pass, Program, Visibility};
+use super::{AttachmentRole, Draw, DrawMesh, FramePlan, Pass, PlanMap, Program, Visibility};
 
 /// A rule that a plan breaks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -36,8 +36,10 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<St
     }
     if let Some(target) = &pass.color {
         match plan.attachments.get(target.attachment.0).map(|attachment| attachment.role) {
-            Some(AttachmentRole::Color | AttachmentRole::Labels(_)) => {}
-            _ => problems.push("its colour target is no colour attachment".to_owned()),
+            Some(AttachmentRole::DepthStencil) | None => {
+                problems.push("its colour target is no colour attachment".to_owned())
+            }
+            Some(_) => {}
         }
     }
     let has_stencil = pass.depth_stencil.as_ref().is_some_and(|target| {
@@ -86,9 +88,24 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
     let shades = draw.program.visibility().is_some();
     demand(!shades || mesh.surface.is_some(), "it shades a mesh without normals");
     demand(!shades || pass.light.is_some_and(|light| light.0 < plan.lights.len()), "it shades without a light");
-    if draw.program.visibility() == Some(Visibility::Map) {
-        let map = pass.light.and_then(|light| plan.lights.get(light.0)).and_then(|light| light.map.as_ref());
-        demand(map.is_some(), "it reads a shadow map that its light does not have");
+    let light = pass.light.and_then(|light| plan.lights.get(light.0));
+    let map = light.and_then(|light| light.map.as_ref());
+    match draw.program.visibility() {
+        Some(Visibility::Map) => {
+            let has_depth = map.is_some_and(|map| map.lookup.is_some());
+            demand(has_depth, "it reads a shadow map that its light does not have");
+        }
+        Some(Visibility::ReceiverTexture | Visibility::Projected) => {
+            let faces = map.map_or(0, |map| map.faces.len());
+            demand(faces > 0, "it reads a texture that its light does not have");
+            let own = draw.constants.layer.is_none_or(|layer| (layer as usize) < faces);
+            demand(own, "its layer is none of its light's map");
+        }
+        Some(Visibility::Count) => {
+            demand(light.is_some_and(|light| light.count.is_some()), "it reads a count that its light does not have");
+        }
+        Some(Visibility::Everywhere | Visibility::Labels) | None => {}
     }
+    demand(map.is_none_or(|map| map.faces.len() <= PlanMap::MOST_FACES), "its light's map has too many faces");
     problems
 }

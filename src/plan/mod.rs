@@ -106,8 +106,10 @@ pub enum AttachmentRole {
     Color,
     /// Depth, and stencil where the format has it, of the picture.
     DepthStencil,
-    /// Depth as a light sees it.
+    /// What a light sees: depth, or the colour of what it lets through.
     Map(LightId),
+    /// How many shadow volumes of a light contain each pixel's surface, signed.
+    Count(LightId),
     /// The labels of `techniques.md` section 2 for a light, one byte a pixel.
     Labels(LightId),
 }
@@ -134,11 +136,14 @@ pub struct PlanLight {
     pub range: Option<f32>,
     /// Its shadow map, where the technique makes one.
     pub map: Option<PlanMap>,
+    /// Where its volumes are counted, if not in the stencil.
+    pub count: Option<AttachmentId>,
     /// Where its mask pass writes labels.
     pub labels: AttachmentId,
 }
 
-/// A shadow map: one 2-D face, or the six faces of a cube in wgpu's order (+x −x +y −y +z −z).
+/// What a light sees, in layers: the face of a shadow map or the six of a cube in wgpu's order
+/// (+x −x +y −y +z −z), the texture of each receiver, or the silhouette of each caster.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanMap {
     /// Its texture.
@@ -152,8 +157,15 @@ pub struct PlanMap {
     /// The clip space of each face from positions relative to the eye: what a receiver's
     /// fragment is carried by.
     pub clip_from_relative: Vec<Mat4>,
-    /// How it is looked up.
-    pub lookup: MapLookup,
+    /// How depths are looked up; `None` where it holds colours.
+    pub lookup: Option<MapLookup>,
+    /// Projected colours reach behind the light too.
+    pub projects_backwards: bool,
+}
+
+impl PlanMap {
+    /// As many faces fit into a shader's light.
+    pub const MOST_FACES: usize = 64;
 }
 
 /// How a shadow map is looked up.
@@ -197,6 +209,8 @@ pub struct Pass {
 pub struct ColorTarget {
     /// Which picture.
     pub attachment: AttachmentId,
+    /// Which of its layers.
+    pub layer: u32,
     /// What it holds at the start: cleared to this value (linear RGBA, or a label in the first
     /// component), or kept.
     pub clear: Option<[f64; 4]>,
@@ -283,6 +297,12 @@ impl Part {
 pub enum Program {
     /// Positions only: volumes, caps, planar shadows, shadow maps, receiver marks.
     Position,
+    /// The draw's flat colour.
+    Flat,
+    /// The draw's label, whichever way the surface faces.
+    FlatLabel,
+    /// The draw's count where the front of a triangle is seen, minus that where its back is.
+    Count,
     /// The material's colour times the ambient light.
     Ambient {
         /// Drops what is nearer than the near plane, where nothing else clips it.
@@ -296,7 +316,7 @@ pub enum Program {
     Label(Visibility),
 }
 
-/// What a shader asks how much of a light arrives at a point.
+/// Whom a shader asks how much of a light arrives at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Visibility {
     /// Nothing: all that the depth and stencil tests let through is lit.
@@ -305,28 +325,48 @@ pub enum Visibility {
     Map,
     /// The light's labels, made on the CPU.
     Labels,
+    /// The light's count: zero is lit.
+    Count,
+    /// The texture of the receiver that is drawn: the draw's layer of the light's map.
+    ReceiverTexture,
+    /// The silhouettes of all casters, projected, but for the draw's own layer.
+    Projected,
+}
+
+impl Visibility {
+    /// Every one.
+    pub const ALL: [Visibility; 6] = [
+        Visibility::Everywhere,
+        Visibility::Map,
+        Visibility::Labels,
+        Visibility::Count,
+        Visibility::ReceiverTexture,
+        Visibility::Projected,
+    ];
+
+    /// Does it read the light's map?
+    #[must_use]
+    pub fn reads_map(self) -> bool {
+        matches!(self, Visibility::Map | Visibility::ReceiverTexture | Visibility::Projected)
+    }
 }
 
 impl Program {
     /// Every one.
-    pub const ALL: [Program; 9] = [
-        Program::Position,
-        Program::Ambient { from_near: false },
-        Program::Ambient { from_near: true },
-        Program::Light(Visibility::Everywhere),
-        Program::Light(Visibility::Map),
-        Program::Light(Visibility::Labels),
-        Program::Label(Visibility::Everywhere),
-        Program::Label(Visibility::Map),
-        Program::Label(Visibility::Labels),
-    ];
+    #[must_use]
+    pub fn all() -> Vec<Program> {
+        let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
+        let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count];
+        let lit = Visibility::ALL.into_iter().flat_map(|how| [Program::Light(how), Program::Label(how)]);
+        flat.into_iter().chain(unlit).chain(lit).collect()
+    }
 
     /// What it asks how much light arrives; `None` for programs that do not light.
     #[must_use]
     pub fn visibility(self) -> Option<Visibility> {
         match self {
             Program::Light(visibility) | Program::Label(visibility) => Some(visibility),
-            Program::Position | Program::Ambient { .. } => None,
+            Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => None,
         }
     }
 }
@@ -336,8 +376,14 @@ impl Program {
 pub struct DrawConstants {
     /// Of the surface.
     pub material: crate::scene::Material,
-    /// What [`Program::Label`] writes: 0 lit or 1 shadow.
+    /// What [`Program::Label`] and [`Program::FlatLabel`] write: 0 lit or 1 shadow.
     pub label: u32,
+    /// What [`Program::Flat`] writes, linear.
+    pub flat: [f32; 4],
+    /// What [`Program::Count`] adds for a front face: 1 or −1.
+    pub count: f32,
+    /// The layer of the light's map that is the draw's own.
+    pub layer: Option<u32>,
 }
 
 impl FramePlan {

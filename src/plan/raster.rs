@@ -36,6 +36,8 @@ pub enum ColorWrite {
     Replace,
     /// Add to it.
     Add,
+    /// Multiply with it.
+    Multiply,
 }
 
 impl RasterState {

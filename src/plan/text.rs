@@ -4,8 +4,8 @@
 //! in full.
 
 use super::{
-    AttachmentId, ColorWrite, DepthStencilTarget, Draw, FramePlan, MapLookup, Pass, Program, RasterState, StencilFace,
-    Visibility,
+    AttachmentId, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FramePlan, MapLookup, Pass, Program,
+    RasterState, StencilFace, Visibility,
 };
 use std::fmt::{self, Display, Formatter};
 
@@ -34,7 +34,7 @@ impl Display for FramePlan {
             let kind = if light.relative_position[3] == 0.0 { "directional" } else { "point" };
             let faces = light.map.as_ref().map_or(0, |map| map.faces.len());
             writeln!(f, "light {}: {kind}, {faces} map face(s)", index + 1)?;
-            if let Some(lookup) = light.map.as_ref().map(|map| map.lookup) {
+            if let Some(lookup) = light.map.as_ref().and_then(|map| map.lookup) {
                 let MapLookup { bias_normal, bias_receiver_plane, filter_width, .. } = lookup;
                 let along = if bias_receiver_plane { ", along the surface's plane" } else { "" };
                 writeln!(f, "  looked up {bias_normal} texels off, {filter_width}x{filter_width} texels{along}")?;
@@ -58,7 +58,7 @@ impl FramePlan {
         writeln!(f, "  {}", pass.purpose)?;
         if let Some(target) = &pass.color {
             let load = target.clear.map_or("kept".to_owned(), |value| format!("cleared to {value:?}"));
-            writeln!(f, "  color: {}, {load}", self.name_of(target.attachment))?;
+            writeln!(f, "  color: {} layer {}, {load}", self.name_of(target.attachment), target.layer)?;
         }
         if let Some(target) = &pass.depth_stencil {
             self.fmt_depth_stencil(f, target)?;
@@ -79,6 +79,9 @@ impl FramePlan {
     fn fmt_draw(&self, f: &mut Formatter<'_>, draw: &Draw) -> fmt::Result {
         let program = match draw.program {
             Program::Position => "position",
+            Program::Flat => "one colour",
+            Program::FlatLabel => "one label",
+            Program::Count => "count",
             Program::Ambient { from_near: false } => "ambient",
             Program::Ambient { from_near: true } => "ambient from the near plane on",
             Program::Light(_) => "light",
@@ -88,6 +91,9 @@ impl FramePlan {
             None | Some(Visibility::Everywhere) => "",
             Some(Visibility::Map) => " through the map",
             Some(Visibility::Labels) => " where labels say so",
+            Some(Visibility::Count) => " where the count is zero",
+            Some(Visibility::ReceiverTexture) => " through the receiver's texture",
+            Some(Visibility::Projected) => " through projected silhouettes",
         };
         let range = &draw.triangles;
         writeln!(
@@ -97,8 +103,15 @@ impl FramePlan {
             draw.part.name(),
             draw.mesh.0
         )?;
-        if matches!(draw.program, Program::Label(_)) {
-            writeln!(f, "    label {}", draw.constants.label)?;
+        let DrawConstants { label, flat, count, layer, .. } = draw.constants;
+        match draw.program {
+            Program::Label(_) | Program::FlatLabel => writeln!(f, "    label {label}")?,
+            Program::Flat => writeln!(f, "    colour {flat:?}")?,
+            Program::Count => writeln!(f, "    front faces count {count}")?,
+            _ => {}
+        }
+        if let Some(layer) = layer {
+            writeln!(f, "    own layer {layer}")?;
         }
         write!(f, "{}", draw.raster)
     }
@@ -130,6 +143,7 @@ impl Display for RasterState {
             ColorWrite::None => Ok(()),
             ColorWrite::Replace => writeln!(f, "    color replaced"),
             ColorWrite::Add => writeln!(f, "    color added"),
+            ColorWrite::Multiply => writeln!(f, "    color multiplied"),
         }
     }
 }

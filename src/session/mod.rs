@@ -170,10 +170,12 @@ impl Session {
     }
 
     fn assemble(&self, scene: &Scene, plan: &FramePlan, output: Output, timing: Timing) -> Capture {
-        let lights = scene.lights.iter().zip(&plan.lights).zip(output.labels.into_iter().zip(output.maps));
-        let lights = lights.map(|((light, planned), (shadow, faces))| CapturedLight {
+        let lights =
+            scene.lights.iter().zip(&plan.lights).zip(output.labels.into_iter().zip(output.counts).zip(output.maps));
+        let lights = lights.map(|((light, planned), ((shadow, count), faces))| CapturedLight {
             position: light.position,
             shadow,
+            count,
             map: faces.zip(planned.map.as_ref()).map(|(faces, map)| CapturedMap {
                 faces,
                 light_from_world: map.light_from_world,

@@ -259,7 +259,7 @@ impl<'a> Frame<'a> {
             light: None,
             timed: true,
             view: ViewId(0),
-            color: Some(ColorTarget { attachment: self.color, clear: Some(BACKGROUND) }),
+            color: Some(ColorTarget { attachment: self.color, layer: 0, clear: Some(BACKGROUND) }),
             depth_stencil: Some(DepthStencilTarget {
                 attachment: self.depth_stencil,
                 layer: 0,
@@ -288,7 +288,7 @@ impl<'a> Frame<'a> {
             light: Some(light),
             timed: true,
             view: ViewId(0),
-            color: Some(ColorTarget { attachment: self.color, clear: None }),
+            color: Some(ColorTarget { attachment: self.color, layer: 0, clear: None }),
             depth_stencil: Some(depth_stencil),
             draws,
         });
@@ -319,6 +319,7 @@ impl<'a> Frame<'a> {
             view: ViewId(0),
             color: Some(ColorTarget {
                 attachment: self.plan.lights[light.0].labels,
+                layer: 0,
                 clear: Some([BACKGROUND_LABEL, 0.0, 0.0, 0.0]),
             }),
             depth_stencil: Some(self.depth_stencil_of(light)),
@@ -343,7 +344,7 @@ impl<'a> Frame<'a> {
                     raster: drawn.raster.clone(),
                     mesh,
                     triangles: group.triangles.start as u32..group.triangles.end as u32,
-                    constants: DrawConstants { material, label: drawn.label },
+                    constants: DrawConstants { material, label: drawn.label, ..DrawConstants::default() },
                 });
             }
         }
@@ -431,7 +432,7 @@ impl<'a> Frame<'a> {
             }
             let color = light.color.map(|channel| channel * light.intensity);
             let range = light.range.map(|range| range as f32);
-            self.plan.lights.push(PlanLight { relative_position, color, range, map: None, labels });
+            self.plan.lights.push(PlanLight { relative_position, color, range, map: None, count: None, labels });
         }
         Ok(())
     }

@@ -57,7 +57,7 @@ fn ray_pass(frame: &mut Frame, light: LightId, rays: LightRays) {
         light: Some(light),
         timed: true,
         view: ViewId(0),
-        color: Some(ColorTarget { attachment, clear: None }),
+        color: Some(ColorTarget { attachment, layer: 0, clear: None }),
         depth_stencil: None,
         draws: Vec::new(),
         image: Some(CpuImage {

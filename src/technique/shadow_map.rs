@@ -99,7 +99,8 @@ fn add_map(frame: &mut Frame, light: LightId) {
         light_from_world: light_frame.light_from_world,
         clip_from_relative: light_frame.clip_from_light.iter().map(from_relative).collect(),
         clip_from_light: light_frame.clip_from_light,
-        lookup: lookup(frame),
+        lookup: Some(lookup(frame)),
+        projects_backwards: false,
     });
 }
 

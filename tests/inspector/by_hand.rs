@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use stencilscope::accuracy::{ErrorCounts, Finding, Region};
 use stencilscope::capture::{
-    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, Image,
-    PixelFormat, Snapshot, Step, Timing,
+    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, FrameTarget,
+    Image, PixelFormat, Snapshot, Step, Timing,
 };
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::math::projection::perspective;
@@ -63,8 +63,9 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
     });
     let new = |image: &Arc<Image>| Aspect { image: image.clone(), unchanged: false };
     let old = |image: &Arc<Image>| Aspect { image: image.clone(), unchanged: true };
-    let frame = |color, depth, stencil, writes_labels| {
-        Snapshot::Frame(FrameSnapshot { color, depth, stencil: Some(stencil), writes_labels })
+    let frame = |color, depth, stencil, writes_labels: bool| {
+        let target = if writes_labels { FrameTarget::Labels } else { FrameTarget::Picture };
+        Snapshot::Frame(FrameSnapshot { color, depth, stencil: Some(stencil), target })
     };
     let volumes = vec![draw("sides of box", Part::Side, 24), draw("dark cap of box", Part::DarkCap, 1212)];
     Capture {
@@ -94,6 +95,7 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
         lights: vec![CapturedLight {
             position: DVec4::new(0.0, 4.0, 0.0, 1.0),
             shadow: Some(labels),
+            count: None,
             map: None,
             truth: None,
         }],

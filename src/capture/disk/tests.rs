@@ -47,12 +47,12 @@ fn example() -> Capture {
     let depth = padded(PixelFormat::Depth32F, 9);
     let cleared = Arc::new(Image::uniform(PixelFormat::U8, SIZE, &[0]));
     let stencil = padded(PixelFormat::U8, 250);
-    let frame = |stencil: Option<Aspect>, unchanged: bool, writes_labels: bool| {
+    let frame = |stencil: Option<Aspect>, unchanged: bool, target: FrameTarget| {
         Snapshot::Frame(FrameSnapshot {
             color: aspect(&color, unchanged),
             depth: aspect(&depth, unchanged),
             stencil,
-            writes_labels,
+            target,
         })
     };
     let face = |value: f32| Arc::new(Image::uniform(PixelFormat::Depth32F, [4, 4], &value.to_le_bytes()));
@@ -61,8 +61,13 @@ fn example() -> Capture {
         light_from_world: DMat4::from_translation(DVec3::new(0.1, -0.7, 1e-300)),
         clip_from_light: (0..6).map(|index| DMat4::from_rotation_x(f64::from(index) / 3.0)).collect(),
     };
-    let lit =
-        |position: DVec4, map| CapturedLight { position, shadow: Some(padded(PixelFormat::U8, 1)), map, truth: None };
+    let textures = CapturedMap {
+        faces: (0..3).map(|index| Arc::new(Image::uniform(PixelFormat::Rgba8, [4, 4], &[index, 20, 30, 40]))).collect(),
+        light_from_world: DMat4::IDENTITY,
+        clip_from_light: (0..3).map(|index| DMat4::from_rotation_y(f64::from(index))).collect(),
+    };
+    let unlit = |position: DVec4, map| CapturedLight { position, shadow: None, count: None, map, truth: None };
+    let lit = |position: DVec4, map| CapturedLight { shadow: Some(padded(PixelFormat::U8, 1)), ..unlit(position, map) };
     let truth = CapturedTruth {
         labels: padded(PixelFormat::U8, 0),
         findings: padded(PixelFormat::U8, 2),
@@ -85,16 +90,21 @@ fn example() -> Capture {
             far: None,
         },
         steps: vec![
-            step("ambient", None, frame(Some(aspect(&cleared, true)), false, false)),
+            step("ambient", None, frame(Some(aspect(&cleared, true)), false, FrameTarget::Picture)),
             step("light 0 map +x", Some(0), Snapshot::Map { light: 0, face: 3 }),
-            step("volumes", Some(0), frame(Some(aspect(&stencil, false)), true, false)),
-            step("mask", Some(0), frame(Some(aspect(&stencil, true)), true, true)),
-            step("no stencil", Some(1), frame(None, true, false)),
+            step("volumes", Some(0), frame(Some(aspect(&stencil, false)), true, FrameTarget::Picture)),
+            step("mask", Some(0), frame(Some(aspect(&stencil, true)), true, FrameTarget::Labels)),
+            step("no stencil", Some(1), frame(None, true, FrameTarget::Picture)),
+            step("texture 1", Some(2), Snapshot::Map { light: 2, face: 1 }),
+            step("counts", Some(2), frame(None, true, FrameTarget::Count)),
         ],
         lights: vec![
             CapturedLight { truth: Some(truth), ..lit(DVec4::new(1.0, 2.0, 3.0, 1.0), Some(cube)) },
             lit(DVec4::new(0.0, 1.0, 0.0, 0.0), None),
-            CapturedLight { position: DVec4::new(0.5, 0.0, 0.0, 1.0), shadow: None, map: None, truth: None },
+            CapturedLight {
+                count: Some(padded(PixelFormat::Count32F, 7)),
+                ..unlit(DVec4::new(0.5, 0.0, 0.0, 1.0), Some(textures))
+            },
         ],
         left_out: vec![LeftOut::new("caps", "torus 2", "outside the near-clip volume")],
         timing: Timing { frame_ms: Some(9.1), captured_ms: None, write_ms: None, setup_ms: Some(0.3) },
