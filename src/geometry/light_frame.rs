@@ -12,6 +12,8 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 
 /// Half the widest cone that one map covers, in degrees.
 const WIDEST_HALF_ANGLE: f64 = 60.0;
+/// How much of its picture a silhouette fills.
+const SILHOUETTE_FILL: f64 = 0.98;
 /// Room around the casters, in texels, so that no edge falls on the border.
 const BORDER_TEXELS: f64 = 2.0;
 
@@ -130,6 +132,45 @@ fn orthographic(casters: &[[DVec3; 3]], towards: DVec3, border: f64, is_reversed
     frame(origin, rotation, vec![clip])
 }
 
+/// Clip space from world space of a picture that a caster's silhouette fills, with room around it
+/// so that the picture's edge stays clear. `None` where a part of it is behind the light or level
+/// with it. All that is ahead of the light is at one depth.
+#[must_use]
+pub fn fit_silhouette(caster: &[DVec3], light: DVec4) -> Option<DMat4> {
+    let from_light: Vec<DVec3> = caster.iter().map(|point| *point * light.w - light.truncate()).collect();
+    let forward = from_light.iter().sum::<DVec3>().try_normalize()?;
+    // Across the axis that the direction has least of.
+    let axis =
+        [DVec3::X, DVec3::Y, DVec3::Z].into_iter().min_by(|a, b| along(forward, *a).total_cmp(&along(forward, *b)))?;
+    let right = forward.cross(axis).normalize();
+    let up = right.cross(forward);
+    let (origin, distance) = match light.w == 0.0 {
+        true => (DVec3::ZERO, DVec4::W),
+        false => (light.truncate(), forward.extend(-forward.dot(light.truncate()))),
+    };
+    let slopes =
+        |side: DVec3| caster.iter().map(move |point| side.dot(*point - origin) / distance.dot(point.extend(1.0)));
+    if caster.iter().any(|point| distance.dot(point.extend(1.0)) <= 0.0) {
+        return None;
+    }
+    // A point light's frame is symmetric about its axis; a directional light's is a box.
+    let row = |side: DVec3| {
+        let (low, high) =
+            slopes(side).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s), high.max(s)));
+        let (middle, half) =
+            if light.w == 0.0 { ((low + high) / 2.0, (high - low) / 2.0) } else { (0.0, high.max(-low)) };
+        let scale = SILHOUETTE_FILL / half.max(f64::MIN_POSITIVE);
+        side.extend(-side.dot(origin) - middle * f64::from(light.w == 0.0)) * scale
+    };
+    let rows = [row(right), row(up), distance * 0.5, distance];
+    let is_usable = rows.iter().all(|row| row.is_finite());
+    is_usable.then(|| DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose())
+}
+
+fn along(direction: DVec3, axis: DVec3) -> f64 {
+    direction.dot(axis).abs()
+}
+
 fn frame(origin: DVec3, rotation: DMat3, clip_from_light: Vec<DMat4>) -> LightFrame {
     let light_from_relative = DMat4::from_mat3(rotation);
     let light_from_world = light_from_relative * DMat4::from_translation(-origin);
@@ -229,6 +270,25 @@ mod tests {
         }
         let lower = project(&frame, 0, DVec3::new(7.0, -50.0, 1.0));
         assert!(lower.z < 0.0, "receivers beyond the box lie behind every caster");
+    }
+
+    #[test]
+    fn a_silhouette_fills_its_picture_but_for_the_border() {
+        let caster: Vec<DVec3> = quad(DVec3::new(1.0, 0.5, -2.0), 0.5).into_iter().flatten().collect();
+        for light in [DVec4::new(0.0, 5.0, 1.0, 1.0), DVec4::new(0.3, 1.0, -0.2, 0.0)] {
+            let clip_from_world = fit_silhouette(&caster, light).expect("a picture");
+            let seen: Vec<DVec4> = caster.iter().map(|point| clip_from_world * point.extend(1.0)).collect();
+            for axis in 0..2 {
+                let widest = seen.iter().map(|clip| (clip[axis] / clip.w).abs()).fold(0.0, f64::max);
+                assert!((widest - 0.98).abs() < 1e-12, "{widest}");
+            }
+            assert!(seen.iter().all(|clip| clip.w > 0.0 && clip.z == clip.w / 2.0));
+            // A point and its shadow are in one place.
+            let away = if light.w == 0.0 { -light.truncate() } else { caster[0] - light.truncate() };
+            let shadow = clip_from_world * (caster[0] + away * 3.0).extend(1.0);
+            assert!((shadow.truncate() / shadow.w - seen[0].truncate() / seen[0].w).length() < 1e-12);
+        }
+        assert_eq!(fit_silhouette(&caster, DVec4::new(1.0, 0.5, -2.0, 1.0)), None, "the light is within it");
     }
 
     #[test]

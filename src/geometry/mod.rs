@@ -7,11 +7,13 @@ mod cache;
 mod edges;
 pub mod light_frame;
 pub mod planar;
+mod receiver_texture;
 pub mod relative;
 mod silhouette;
 mod volume;
 
 pub use cache::GeometryCache;
 pub use edges::{Edge, EdgeList};
+pub use receiver_texture::Parallelogram;
 pub use silhouette::{facing, multiplicities};
 pub use volume::{Volume, VolumeParts};

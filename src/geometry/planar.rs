@@ -9,7 +9,9 @@
 
 use super::EdgeList;
 use crate::math::Plane;
+use crate::scene::Pose;
 use glam::{DVec3, DVec4};
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Distance from a plane, as a part of the mesh's size, up to which a vertex counts as on it.
 const COPLANAR: f64 = 1e-9;
@@ -110,11 +112,50 @@ fn receiver(world: &[DVec3], triangles: &[[u32; 3]], members: Vec<u32>) -> Optio
     Some(Receiver { plane: Plane::through(middle, normal), triangles: members, area })
 }
 
+/// What of a caster is flattened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Clip {
+    /// What lies between plane and light.
+    BetweenPlaneAndLight,
+    /// All of it, as if there were no such limits: what is beyond the light gives an anti-shadow,
+    /// what is below the plane a false one.
+    Off,
+}
+
+/// What a flattened caster depends on.
+#[derive(Debug, Clone, Copy)]
+pub struct Flattened {
+    /// Hash of the caster's mesh …
+    pub mesh: u64,
+    /// … and where it is placed.
+    pub pose: Pose,
+    /// What it is flattened onto.
+    pub plane: Plane,
+    /// Homogeneous.
+    pub light: DVec4,
+    /// How much of it.
+    pub clip: Clip,
+    /// The receiver is a part of the caster.
+    pub is_own: bool,
+}
+
+impl Flattened {
+    /// Equal for equal numbers, bit for bit.
+    #[must_use]
+    pub fn key(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        // Every number that these hold is printed in full.
+        format!("{self:?}").hash(&mut hasher);
+        hasher.finish()
+    }
+}
+
 /// Flattens casting triangles onto planes, one plane at a time.
 #[derive(Debug)]
 pub struct Flattener {
     plane: Plane,
     light: DVec4,
+    clip: Clip,
     /// Signed distance of the light (point) or its direction's normal part (directional); > 0.
     light_height: f64,
     /// Homogeneous world positions of the shadows so far, three a triangle.
@@ -124,10 +165,10 @@ pub struct Flattener {
 impl Flattener {
     /// Onto `plane`, turned towards the light; `None` where the light lies in the plane.
     #[must_use]
-    pub fn new(plane: Plane, light: DVec4) -> Option<Flattener> {
+    pub fn new(plane: Plane, light: DVec4, clip: Clip) -> Option<Flattener> {
         let plane = if plane.at(light) < 0.0 { plane.turned() } else { plane };
         let light_height = plane.at(light);
-        (light_height > 0.0).then(|| Flattener { plane, light, light_height, triangles: Vec::new() })
+        (light_height > 0.0).then(|| Flattener { plane, light, clip, light_height, triangles: Vec::new() })
     }
 
     /// Adds the shadow of a mesh. `on_plane` names vertices of the receiver itself: they are on its
@@ -135,13 +176,18 @@ impl Flattener {
     pub fn add(&mut self, world: &[DVec3], triangles: &[[u32; 3]], on_plane: &[u32]) {
         let mut heights: Vec<f64> = world.iter().map(|position| self.plane.at(position.extend(1.0))).collect();
         on_plane.iter().for_each(|vertex| heights[*vertex as usize] = 0.0);
-        if heights.iter().all(|height| *height <= 0.0) {
+        if self.clip == Clip::BetweenPlaneAndLight && heights.iter().all(|height| *height <= 0.0) {
             return;
         }
         for corners in triangles {
             let corners = corners.map(|vertex| (world[vertex as usize], heights[vertex as usize]));
-            if corners.iter().any(|(_, height)| *height > 0.0) {
-                self.add_triangle(corners);
+            match self.clip {
+                Clip::BetweenPlaneAndLight if corners.iter().any(|(_, height)| *height > 0.0) => {
+                    self.add_triangle(corners);
+                }
+                Clip::BetweenPlaneAndLight => {}
+                Clip::Off if corners.iter().all(|(_, height)| *height == 0.0) => {}
+                Clip::Off => self.triangles.push(corners.map(|(point, height)| self.projected(point, height))),
             }
         }
     }
@@ -162,6 +208,13 @@ impl Flattener {
     /// on the plane and exactly 0 for a corner that was cut level with the light.
     fn shadow(&self, point: DVec3, height: f64) -> DVec4 {
         point.extend(1.0) - self.light * (height / self.light_height)
+    }
+
+    /// The same, divided: a point beyond the light is carried back through it. A point level with the
+    /// light stays at infinity.
+    fn projected(&self, point: DVec3, height: f64) -> DVec4 {
+        let shadow = self.shadow(point, height);
+        if shadow.w == 0.0 { shadow } else { shadow / shadow.w }
     }
 
     /// The shadows: homogeneous world positions with `w ≥ 0`.
@@ -207,7 +260,8 @@ mod tests {
     }
 
     fn shadow_area(corners: [DVec3; 3], light: DVec4) -> f64 {
-        let mut flattener = Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), light).expect("a light above");
+        let mut flattener = Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), light, Clip::BetweenPlaneAndLight)
+            .expect("a light above");
         flattener.add(&corners, &[[0, 1, 2]], &[]);
         let area = |[a, b, c]: [DVec4; 3]| {
             let [a, b, c] = [a, b, c].map(|v| v.truncate() / v.w);
@@ -223,7 +277,7 @@ mod tests {
     fn a_shadow_is_where_the_ray_from_the_light_meets_the_plane() {
         let plane = Plane::through(DVec3::new(0.3, -1.0, 2.0), DVec3::new(0.2, 1.0, -0.1));
         for light in [DVec4::new(3.0, 7.0, -2.0, 1.0), DVec4::new(0.4, 1.0, 0.3, 0.0)] {
-            let flattener = Flattener::new(plane, light).expect("a light above");
+            let flattener = Flattener::new(plane, light, Clip::BetweenPlaneAndLight).expect("a light above");
             for point in [DVec3::new(0.0, 1.0, 0.0), DVec3::new(-4.0, 2.0, 5.0), DVec3::new(1.0, 0.5, 1.0)] {
                 let shadow = flattener.shadow(point, plane.at(point.extend(1.0)));
                 assert!(shadow.w > 0.0);
@@ -254,7 +308,8 @@ mod tests {
     #[test]
     fn a_triangle_that_reaches_past_the_light_throws_a_shadow_to_infinity() {
         let corners = [DVec3::new(1.0, 1.0, 0.0), DVec3::new(2.0, 1.0, 0.0), DVec3::new(1.0, 6.0, 0.5)];
-        let mut flattener = Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), LIGHT).expect("a light above");
+        let mut flattener = Flattener::new(Plane::through(DVec3::ZERO, DVec3::Y), LIGHT, Clip::BetweenPlaneAndLight)
+            .expect("a light above");
         flattener.add(&corners, &[[0, 1, 2]], &[]);
         let corners: Vec<DVec4> = flattener.finish().into_iter().flatten().collect();
         assert!(corners.iter().all(|corner| corner.w >= 0.0));

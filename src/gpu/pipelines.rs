@@ -134,7 +134,7 @@ impl Program {
         match self {
             Program::Position => 1,
             Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
-            Program::Light(_) | Program::Label(_) => 4,
+            Program::Light(_) | Program::Label(_) | Program::Through => 4,
         }
     }
 }

@@ -35,6 +35,9 @@ pub(super) fn source_of(program: Program) -> ProgramSource {
             (vec![file!("draw.wgsl"), file!("ambient.wgsl")], "vs_ambient", Some(fragment))
         }
         Program::Light(visibility) => (surface_files(file!("light.wgsl"), visibility), "vs_surface", Some("fs_light")),
+        Program::Through => {
+            (surface_files(file!("through.wgsl"), Visibility::Projected), "vs_surface", Some("fs_through"))
+        }
         Program::Label(visibility) => (surface_files(file!("label.wgsl"), visibility), "vs_surface", Some("fs_label")),
     };
     ProgramSource { source: [&[file!("shared.wgsl")], &files[..]].concat().join("\n"), vertex, fragment }

@@ -310,6 +310,8 @@ pub enum Program {
     },
     /// What the pass's light adds, as far as it arrives.
     Light(Visibility),
+    /// What the draw's layer of the light's map lets through, to darken what is there.
+    Through,
     /// Writes a label: 3 where the triangle faces away from the light, 1 where less than half of
     /// the light arrives, else the draw's `label`. Triangles run in reverse order, so that of
     /// surfaces at one depth the first drawn decides, as it did for the picture.
@@ -356,7 +358,7 @@ impl Program {
     #[must_use]
     pub fn all() -> Vec<Program> {
         let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
-        let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count];
+        let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
         let lit = Visibility::ALL.into_iter().flat_map(|how| [Program::Light(how), Program::Label(how)]);
         flat.into_iter().chain(unlit).chain(lit).collect()
     }
@@ -366,6 +368,7 @@ impl Program {
     pub fn visibility(self) -> Option<Visibility> {
         match self {
             Program::Light(visibility) | Program::Label(visibility) => Some(visibility),
+            Program::Through => Some(Visibility::Projected),
             Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => None,
         }
     }

@@ -86,6 +86,7 @@ impl FramePlan {
             Program::Ambient { from_near: true } => "ambient from the near plane on",
             Program::Light(_) => "light",
             Program::Label(_) => "label",
+            Program::Through => "darkened",
         };
         let by = match draw.program.visibility() {
             None | Some(Visibility::Everywhere) => "",

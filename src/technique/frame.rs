@@ -13,8 +13,9 @@ use crate::plan::{
     DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Pass, PlanLight, PlanView, Program, RasterState, StencilFace,
     ViewId, Visibility,
 };
-use crate::scene::{Object, Scene};
+use crate::scene::{Material, Object, Scene};
 use glam::{DMat4, DVec3};
+use std::ops::Range;
 use wgpu::{CompareFunction, StencilOperation, TextureFormat};
 
 /// Linear colour of pixels that show no surface.
@@ -53,10 +54,25 @@ pub struct Placed<'a> {
     pub surface: Option<MeshId>,
 }
 
+/// A part of a visible surface that is drawn by itself: one group of an object, or less.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    pub name: String,
+    /// Index into [`Frame::placed`].
+    pub object: usize,
+    pub material: Material,
+    pub mesh: MeshId,
+    pub triangles: Range<u32>,
+    /// The layer of each light's map that is its own.
+    pub layer: Option<u32>,
+}
+
 /// A plan in the making.
 pub struct Frame<'a> {
     pub job: Job<'a>,
     pub placed: Vec<Placed<'a>>,
+    /// All visible surfaces, in the order in which they are drawn.
+    pub pieces: Vec<Piece>,
     pub plan: FramePlan,
     color: AttachmentId,
     depth_stencil: AttachmentId,
@@ -84,9 +100,9 @@ impl Drawn {
         Drawn::label(SHADOW)
     }
 
-    /// Writes what the light's map says.
-    pub fn lit_or_shadow_by_map() -> Drawn {
-        Drawn { program: Program::Label(Visibility::Map), ..Drawn::label(LIT) }
+    /// Writes "in shadow" where less than half of the light arrives.
+    pub fn lit_by(how: Visibility) -> Drawn {
+        Drawn { program: Program::Label(how), ..Drawn::label(LIT) }
     }
 
     fn label(label: u32) -> Drawn {
@@ -130,6 +146,7 @@ impl<'a> Frame<'a> {
     /// Places objects and lights, and makes the attachments.
     pub fn new(job: Job<'a>, stencil: StencilUse) -> Result<Frame<'a>, PlanError> {
         let scene = job.scene;
+        job.cache.next_plan();
         scene.camera.check().map_err(|problem| PlanError::Unusable { problem: problem.to_owned() })?;
         if scene.lights.len() > MOST_LIGHTS {
             return Err(PlanError::TooManyLights { count: scene.lights.len() });
@@ -150,9 +167,9 @@ impl<'a> Frame<'a> {
             left_out: Vec::new(),
         };
         let no_target = AttachmentId(0);
-        let placed = Vec::new();
         let mut frame = Frame {
-            placed,
+            placed: Vec::new(),
+            pieces: Vec::new(),
             plan,
             color: no_target,
             depth_stencil: no_target,
@@ -191,14 +208,15 @@ impl<'a> Frame<'a> {
         if self.has_stencil { once } else { Drawn { raster: RasterState::visible_surface(ColorWrite::Add), ..once } }
     }
 
-    /// The same, through the light's map.
-    pub fn light_by_map(&self) -> Drawn {
-        Drawn { program: Program::Light(Visibility::Map), ..self.light_everywhere() }
+    /// The same, as far as it arrives.
+    pub fn light_by(&self, how: Visibility) -> Drawn {
+        Drawn { program: Program::Light(how), ..self.light_everywhere() }
     }
 
-    /// The same, where the light's labels say "lit".
-    pub fn light_by_labels(&self) -> Drawn {
-        Drawn { program: Program::Light(Visibility::Labels), ..self.light_everywhere() }
+    /// Darkens what is visible by one layer of a light's map.
+    pub fn darken_through(&self) -> Drawn {
+        let raster = RasterState::visible_surface(ColorWrite::Multiply);
+        Drawn { program: Program::Through, raster, label: LIT }
     }
 
     /// Names a light for people, counted from 1.
@@ -294,9 +312,30 @@ impl<'a> Frame<'a> {
         });
     }
 
+    /// Blends draws over the picture, and tests depth and stencil without changing them.
+    pub fn blend_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
+        let depth_stencil = self.depth_stencil_of(light);
+        self.plan.passes.push(Pass {
+            name: name.to_owned(),
+            image: None,
+            purpose: purpose.to_owned(),
+            light: Some(light),
+            timed: true,
+            view: ViewId(0),
+            color: Some(ColorTarget { attachment: self.color, layer: 0, clear: None }),
+            depth_stencil: Some(depth_stencil),
+            draws,
+        });
+    }
+
     /// Writes the light's labels, later layers over earlier ones. Triangles and draws run in
     /// reverse, so that of surfaces at one depth the first drawn decides here too.
     pub fn mask_pass(&mut self, light: LightId, layers: &[Drawn]) {
+        self.mask_pass_with(light, layers, Vec::new());
+    }
+
+    /// The same, and after the surfaces `over` them.
+    pub fn mask_pass_with(&mut self, light: LightId, layers: &[Drawn], over: Vec<Draw>) {
         let mut draws = Vec::new();
         let unshadowed = Drawn::lit();
         for (index, layer) in layers.iter().enumerate() {
@@ -308,6 +347,7 @@ impl<'a> Frame<'a> {
             of_layer.reverse();
             draws.extend(of_layer);
         }
+        draws.extend(over);
         let purpose = "Writes what this technique says of the light at every pixel: lit, in shadow, or facing away. \
                        It is not part of the frame; it is how techniques are compared.";
         self.plan.passes.push(Pass {
@@ -327,28 +367,33 @@ impl<'a> Frame<'a> {
         });
     }
 
-    /// One draw a group of every visible object, as `look` says for the object.
-    fn surface_draws<'d>(&self, look: impl Fn(&Object) -> Option<&'d Drawn>) -> Vec<Draw> {
-        let mut draws = Vec::new();
-        for placed in &self.placed {
-            let (Some(mesh), Some(drawn)) = (placed.surface, look(placed.object)) else { continue };
-            for group in placed.object.mesh.groups() {
-                let object = &placed.object.name;
-                let name = if group.name.is_empty() { object.clone() } else { format!("{object} · {}", group.name) };
-                let material = group.material.unwrap_or(placed.object.material);
-                draws.push(Draw {
-                    name,
-                    caster: Some(object.clone()),
-                    part: Part::Surface,
-                    program: drawn.program,
-                    raster: drawn.raster.clone(),
-                    mesh,
-                    triangles: group.triangles.start as u32..group.triangles.end as u32,
-                    constants: DrawConstants { material, label: drawn.label, ..DrawConstants::default() },
-                });
-            }
-        }
+    /// What is visible and receives, darkened by one layer of the light's map; but the layer's own pieces.
+    pub fn draws_through(&self, layer: usize) -> Vec<Draw> {
+        let drawn = self.darken_through();
+        let mut draws = self.surface_draws(|object| object.receives.then_some(&drawn));
+        draws.retain(|draw| draw.constants.layer != Some(layer as u32));
+        draws.iter_mut().for_each(|draw| draw.constants.layer = Some(layer as u32));
         draws
+    }
+
+    /// One draw a piece of every visible object, as `look` says for the object.
+    fn surface_draws<'d>(&self, look: impl Fn(&Object) -> Option<&'d Drawn>) -> Vec<Draw> {
+        let draw = |piece: &Piece| {
+            let object = self.placed[piece.object].object;
+            let drawn = look(object)?;
+            let (material, layer) = (piece.material, piece.layer);
+            Some(Draw {
+                name: piece.name.clone(),
+                caster: Some(object.name.clone()),
+                part: Part::Surface,
+                program: drawn.program,
+                raster: drawn.raster.clone(),
+                mesh: piece.mesh,
+                triangles: piece.triangles.clone(),
+                constants: DrawConstants { material, label: drawn.label, layer, ..DrawConstants::default() },
+            })
+        };
+        self.pieces.iter().filter_map(draw).collect()
     }
 
     /// The picture's depth-stencil target for a pass of `light`: what another light has left in the
@@ -447,10 +492,26 @@ impl<'a> Frame<'a> {
             }
             let drawn = object.visible && !object.mesh.triangles().is_empty();
             let surface = drawn.then(|| self.add_mesh(surfaces::draw_mesh(object, &world, self.job.scene)));
+            self.pieces.extend(surface.into_iter().flat_map(|mesh| pieces_of(object, self.placed.len(), mesh)));
             self.placed.push(Placed { object, world, surface });
         }
         Ok(())
     }
+}
+
+/// One piece a group.
+fn pieces_of(object: &Object, index: usize, mesh: MeshId) -> impl Iterator<Item = Piece> {
+    object.mesh.groups().iter().map(move |group| Piece {
+        name: match group.name.as_str() {
+            "" => object.name.clone(),
+            group => format!("{} · {group}", object.name),
+        },
+        object: index,
+        material: group.material.unwrap_or(object.material),
+        mesh,
+        triangles: group.triangles.start as u32..group.triangles.end as u32,
+        layer: None,
+    })
 }
 
 fn camera_view(scene: &Scene, size: [u32; 2], depth: &DepthCurve) -> PlanView {

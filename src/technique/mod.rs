@@ -4,12 +4,17 @@
 //! name and summary, a line in [`plan`], and its settings as data (`settings.rs`). What they share is in `frame.rs`: the
 //! camera, surfaces, and the ambient, light and mask passes.
 
+mod casters;
 mod frame;
 mod none;
 mod planar;
+mod planar_texture;
+mod projective;
 mod ray_traced;
+mod receivers;
 mod settings;
 mod shadow_map;
+mod silhouettes;
 mod surfaces;
 mod volume;
 
@@ -26,8 +31,10 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     match job.choice.technique() {
         Technique::None => none::plan(job),
         Technique::Planar => planar::plan(job),
+        Technique::PlanarTexture => planar_texture::plan(job),
         Technique::ZPass | Technique::ZFail => volume::plan(job),
         Technique::ShadowMap => shadow_map::plan(job),
+        Technique::Projective => projective::plan(job),
         Technique::RayTraced => ray_traced::plan(job),
     }
 }
@@ -56,24 +63,30 @@ pub enum Technique {
     None,
     /// Casters flattened onto planes.
     Planar,
+    /// Casters drawn into a texture of every flat receiver.
+    PlanarTexture,
     /// Shadow volumes counted in front of the surface.
     ZPass,
     /// Shadow volumes counted behind the surface.
     ZFail,
     /// Depth from the light, compared at every pixel.
     ShadowMap,
+    /// Casters' silhouettes projected over the scene.
+    Projective,
     /// Rays from eye and light: the ground truth.
     RayTraced,
 }
 
 impl Technique {
     /// All that exist, in teaching order.
-    pub const ALL: [Technique; 6] = [
+    pub const ALL: [Technique; 8] = [
         Technique::None,
         Technique::Planar,
+        Technique::PlanarTexture,
         Technique::ZPass,
         Technique::ZFail,
         Technique::ShadowMap,
+        Technique::Projective,
         Technique::RayTraced,
     ];
 
@@ -83,9 +96,11 @@ impl Technique {
         match self {
             Technique::None => "none",
             Technique::Planar => "planar",
+            Technique::PlanarTexture => "planar-texture",
             Technique::ZPass => "z-pass",
             Technique::ZFail => "z-fail",
             Technique::ShadowMap => "shadow-map",
+            Technique::Projective => "projective",
             Technique::RayTraced => "ray-traced",
         }
     }
@@ -98,6 +113,9 @@ impl Technique {
             Technique::Planar => {
                 "Casters are flattened onto every flat receiver, and the stencil keeps their shadow on it."
             }
+            Technique::PlanarTexture => {
+                "Draws the casters into a texture of every flat receiver, through the box that the light's pyramid becomes."
+            }
             Technique::ZPass => {
                 "Counts the shadow volumes that the view ray is inside of when it reaches the surface, from the eye on."
             }
@@ -105,6 +123,9 @@ impl Technique {
                 "Counts the same volumes from infinity back to the surface, so the eye may be inside one."
             }
             Technique::ShadowMap => "Stores the depth of what the light sees, and darkens what lies behind it.",
+            Technique::Projective => {
+                "Throws a picture of each caster's silhouette over the scene like a slide: no depths are compared."
+            }
             Technique::RayTraced => {
                 "Follows rays from the eye and the light on the CPU: what the other techniques are measured against."
             }

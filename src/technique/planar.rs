@@ -1,111 +1,170 @@
 //! Planar shadows: casters flattened onto every flat receiver.
 //!
 //! A pass marks each receiver's visible pixels with an even number of its own in the stencil; the
-//! next draws the casters, flattened onto the receiver's plane, without a depth test: where the
-//! stencil has the receiver's mark it goes up by one, so an odd number means shadow and no pixel
-//! can be darkened twice. The light pass then skips odd pixels. Surfaces that are not flat get no
-//! shadow.
+//! next draws the casters, flattened onto the receiver's plane: where the stencil has the
+//! receiver's mark it goes up by one, so an odd number means shadow and no pixel can be darkened
+//! twice. The light pass then skips odd pixels. Surfaces that are not flat get no shadow.
+//!
+//! With the stencil off, or with shadows blended twice, the older way is shown: the scene is lit
+//! first, and the flattened casters darken it.
 
 use super::frame::{Drawn, Frame, Job, StencilUse};
-use super::settings::ONE_ROW;
+use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
+use super::settings::Choice;
 use super::{PlanError, ReportRows};
-use crate::geometry::{planar, relative};
-use crate::math::{Sign, side_of_triangle};
+use crate::geometry::planar::{Clip, Flattened, Flattener};
+use crate::geometry::relative;
 use crate::plan::{
     Blob, ColorWrite, Draw, DrawConstants, DrawMesh, FramePlan, LightId, Part, Program, RasterState, StencilFace,
 };
-use wgpu::{CompareFunction, StencilOperation};
+use std::sync::Arc;
+use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
-/// The largest are served; each costs a draw a caster. (Marks are even and shadows one more, so a
-/// byte would hold 127.)
-const MOST_RECEIVERS: usize = 64;
+/// What is left of the light behind a shadow that is blended over it.
+const BLENDED: f32 = 0.4;
+/// Towards the eye, in steps of depth and in depth slopes a pixel: enough for a plane that is
+/// projected apart from the surface that lies in it.
+const OFFSET: DepthBiasState = DepthBiasState { constant: 64, slope_scale: 2.0, clamp: 0.0 };
 
-/// A receiver that can show shadows: where it is, and its mark.
+/// What a report compares: the defaults, and what each of the classic omissions costs.
+pub(super) const REPORT_ROWS: ReportRows =
+    &[&[], &[("stencil", "off")], &[("z-fighting", "polygon-offset")], &[("z-fighting", "none")], &[("clip", "off")]];
+
+/// How shadows are drawn.
+#[derive(Debug, Clone, Copy)]
+struct Options {
+    /// Receivers are marked first.
+    marks: bool,
+    /// The stencil keeps pixels from being darkened twice.
+    blends_once: bool,
+    clip: Clip,
+    depth_compare: CompareFunction,
+    depth_bias: DepthBiasState,
+    /// Flattened casters are kept between plans.
+    keeps: bool,
+}
+
+/// A receiver that can show shadows, and its mark.
 struct Marked {
-    object: usize,
-    receiver: planar::Receiver,
+    receiver: FlatReceiver,
     mark: u8,
 }
 
-/// What a report compares: the defaults.
-pub(super) const REPORT_ROWS: ReportRows = ONE_ROW;
-
 /// Plans planar shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let mut frame = Frame::new(job, StencilUse::Always)?;
+    let options = Options::of(job.choice);
+    let stencil = if options.marks { StencilUse::Always } else { StencilUse::ToLightOnce };
+    let mut frame = Frame::new(job, stencil)?;
     frame.ambient_pass();
-    let receivers = all_receivers(&mut frame);
+    let receivers = receivers::all(&mut frame);
     for light in frame.light_ids() {
         let marked = marked_receivers(&mut frame, &receivers, light);
-        if marked.is_empty() {
-            frame.leave_out("planar shadows", &Frame::light_name(light), "no flat receiver shows its lit side");
+        if options.marks && options.blends_once {
+            counted_shadows(&mut frame, &marked, light, options);
         } else {
-            let draws = mark_draws(&mut frame, &marked);
-            let purpose = "Marks the visible pixels of each flat receiver with an even number of its own, so that no \
-                           shadow can leave its receiver.";
-            frame.stencil_pass(light, "receivers", purpose, draws);
-            shadow_pass(&mut frame, &marked, light);
+            blended_shadows(&mut frame, &marked, light, options);
         }
-        let odd = Drawn::shadow().where_stencil(1, 1);
-        frame.mask_pass(light, &[Drawn::lit(), odd]);
-        let purpose = "Adds the light where the stencil is even: odd numbers are shadows. It makes lit numbers odd, so \
-                       that no pixel is lit twice.";
-        frame.light_pass(light, purpose, &Drawn::light_once_where_zero(1));
     }
     Ok(frame.finish())
 }
 
-/// The receivers of every object that is drawn and receives, with the object's index.
-fn all_receivers(frame: &mut Frame) -> Vec<(usize, planar::Receiver)> {
-    let mut all = Vec::new();
-    for (index, placed) in frame.placed.iter().enumerate() {
-        if !placed.object.receives || placed.surface.is_none() {
-            continue;
+impl Options {
+    fn of(choice: &Choice) -> Options {
+        let (depth_compare, depth_bias) = match choice.word("z-fighting") {
+            "polygon-offset" => (CompareFunction::GreaterEqual, OFFSET),
+            "none" => (CompareFunction::GreaterEqual, DepthBiasState::default()),
+            _ => (CompareFunction::Always, DepthBiasState::default()),
+        };
+        Options {
+            marks: choice.word("stencil") != "off",
+            blends_once: choice.word("blend") != "twice",
+            clip: if choice.word("clip") == "off" { Clip::Off } else { Clip::BetweenPlaneAndLight },
+            depth_compare,
+            depth_bias,
+            keeps: choice.word("cache") != "off",
         }
-        let mesh = &placed.object.mesh;
-        let edges = frame.job.cache.edges(mesh);
-        let found = planar::receivers(mesh.positions(), &placed.world, mesh.triangles(), &edges);
-        all.extend(found.into_iter().map(|receiver| (index, receiver)));
     }
-    all
+
+    /// Of a draw of flattened casters, before stencil and colour.
+    fn raster(&self, color: ColorWrite) -> RasterState {
+        let Options { depth_compare, depth_bias, .. } = *self;
+        RasterState { depth_compare, depth_bias, depth_write: false, color, ..RasterState::surface() }
+    }
+}
+
+/// Shadows counted in the stencil: an odd number is in shadow.
+fn counted_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options: Options) {
+    mark_pass(frame, marked, light);
+    let purpose = "Draws every caster, flattened onto each receiver's plane. Where the stencil still has the \
+                   receiver's mark it goes up by one: overlapping triangles can't darken a pixel twice.";
+    let once = StencilFace {
+        compare: CompareFunction::Equal,
+        pass_op: StencilOperation::IncrementClamp,
+        ..StencilFace::IGNORE
+    };
+    let raster = |mark| options.raster(ColorWrite::None).with_stencil(once, mark);
+    let draws = shadow_draws(frame, marked, light, options, &|mark| (Program::Position, raster(mark)));
+    if !draws.is_empty() {
+        frame.stencil_pass(light, "shadows", purpose, draws);
+    }
+    let odd = Drawn::shadow().where_stencil(1, 1);
+    frame.mask_pass(light, &[Drawn::lit(), odd]);
+    let purpose = "Adds the light where the stencil is even: odd numbers are shadows. It makes lit numbers odd, so \
+                   that no pixel is lit twice.";
+    frame.light_pass(light, purpose, &Drawn::light_once_where_zero(1));
+}
+
+/// Shadows blended over the lit picture, on their receivers only where those are marked.
+fn blended_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options: Options) {
+    let purpose = "Adds the light everywhere: shadows are blended over it afterwards.";
+    frame.light_pass(light, purpose, &frame.light_everywhere());
+    if options.marks {
+        mark_pass(frame, marked, light);
+    } else if options.blends_once {
+        let because = "without the stencil nothing keeps a pixel from being darkened twice";
+        frame.leave_out("blending once", &Frame::light_name(light), because);
+    }
+    let on_mark = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
+    let raster = |color, mark| match options.marks {
+        true => options.raster(color).with_stencil(on_mark, mark),
+        false => options.raster(color),
+    };
+    let darken = |mark| (Program::Flat, raster(ColorWrite::Multiply, mark));
+    let draws = shadow_draws(frame, marked, light, options, &darken);
+    let label = |mark| (Program::FlatLabel, raster(ColorWrite::Replace, mark));
+    let labels = shadow_draws(frame, marked, light, options, &label);
+    if !draws.is_empty() {
+        let purpose = "Draws every caster, flattened onto each receiver's plane, and darkens what is there: once for \
+                       every triangle that covers a pixel, and what other lights gave as well.";
+        frame.blend_pass(light, "shadows", purpose, draws);
+    }
+    frame.mask_pass_with(light, &[Drawn::lit()], labels);
 }
 
 /// The largest receivers whose lit side the eye sees: any other shows no shadow of this light.
-fn marked_receivers(frame: &mut Frame, all: &[(usize, planar::Receiver)], light: LightId) -> Vec<Marked> {
-    let (eye, light_position) = (frame.eye().extend(1.0), frame.light_position(light));
-    let shows_lit_side = |(object, receiver): &&(usize, planar::Receiver)| {
-        let placed = &frame.placed[*object];
-        receiver.triangles.iter().any(|triangle| {
-            let corners = placed.object.mesh.triangles()[*triangle as usize].map(|v| placed.world[v as usize]);
-            let side = side_of_triangle(corners, eye);
-            side != Sign::Zero && side == side_of_triangle(corners, light_position)
-        })
-    };
-    let mut shown: Vec<_> = all.iter().filter(shows_lit_side).collect();
-    shown.sort_by(|a, b| b.1.area.total_cmp(&a.1.area));
+fn marked_receivers(frame: &mut Frame, all: &[FlatReceiver], light: LightId) -> Vec<Marked> {
+    let shown: Vec<_> = all.iter().filter(|receiver| receiver.shows_lit_side(frame, light)).collect();
     let name = Frame::light_name(light);
-    if shown.len() < all.len() {
+    if shown.is_empty() {
+        frame.leave_out("planar shadows", &name, "no flat receiver shows its lit side");
+    } else if shown.len() < all.len() {
         let because = "light and eye are on different sides of them, so shading alone darkens them";
         frame.leave_out(&format!("{} flat receivers", all.len() - shown.len()), &name, because);
     }
-    if shown.len() > MOST_RECEIVERS {
-        let because = "the 64 largest are kept: every one costs a draw for each caster";
-        frame.leave_out(&format!("{} small flat receivers", shown.len() - MOST_RECEIVERS), &name, because);
-    }
+    receivers::leave_out_small(frame, shown.len(), &name);
+    // Marks are even and shadows one more: a byte would hold 127.
     let mark = |index: usize| (index as u8 + 1) * 2;
     let marked = shown.into_iter().take(MOST_RECEIVERS).enumerate();
-    marked
-        .map(|(index, (object, receiver))| Marked { object: *object, receiver: receiver.clone(), mark: mark(index) })
-        .collect()
+    marked.map(|(index, receiver)| Marked { receiver: receiver.clone(), mark: mark(index) }).collect()
 }
 
-fn mark_draws(frame: &mut Frame, marked: &[Marked]) -> Vec<Draw> {
+fn mark_pass(frame: &mut Frame, marked: &[Marked], light: LightId) {
     let mut draws = Vec::new();
     for one in marked {
-        let placed = &frame.placed[one.object];
+        let FlatReceiver { object, receiver, name } = &one.receiver;
+        let placed = &frame.placed[*object];
         let Some(surface) = placed.surface else { continue };
-        let corners = one.receiver.triangles.iter().flat_map(|t| placed.object.mesh.triangles()[*t as usize]).collect();
-        let name = one.name(frame);
+        let corners = receiver.triangles.iter().flat_map(|t| placed.object.mesh.triangles()[*t as usize]).collect();
         let caster = Some(placed.object.name.clone());
         let vertices = frame.plan.meshes[surface.0].vertices.clone();
         let mesh =
@@ -113,65 +172,85 @@ fn mark_draws(frame: &mut Frame, marked: &[Marked]) -> Vec<Draw> {
         let replace =
             StencilFace { compare: CompareFunction::Always, pass_op: StencilOperation::Replace, ..StencilFace::IGNORE };
         draws.push(Draw {
-            name,
+            name: name.clone(),
             caster,
             part: Part::Receiver,
             program: Program::Position,
             raster: RasterState::visible_surface(ColorWrite::None).with_stencil(replace, one.mark),
             mesh,
-            triangles: 0..one.receiver.triangles.len() as u32,
+            triangles: 0..receiver.triangles.len() as u32,
             constants: DrawConstants::default(),
         });
     }
-    draws
-}
-
-impl Marked {
-    fn name(&self, frame: &Frame) -> String {
-        let object = &frame.placed[self.object].object.name;
-        format!("{object}, flat piece {}", self.mark / 2)
+    if !draws.is_empty() {
+        let purpose = "Marks the visible pixels of each flat receiver with an even number of its own, so that no \
+                       shadow can leave its receiver.";
+        frame.stencil_pass(light, "receivers", purpose, draws);
     }
 }
 
-fn shadow_pass(frame: &mut Frame, marked: &[Marked], light: LightId) {
+/// Every caster flattened onto every receiver, drawn as `look` says for the receiver's mark.
+fn shadow_draws(
+    frame: &mut Frame,
+    marked: &[Marked],
+    light: LightId,
+    options: Options,
+    look: &dyn Fn(u8) -> (Program, RasterState),
+) -> Vec<Draw> {
     let mut draws = Vec::new();
     for one in marked {
         for caster in 0..frame.placed.len() {
             if frame.placed[caster].object.casts {
-                draws.extend(shadow_draw(frame, one, caster, light));
+                let (program, raster) = look(one.mark);
+                draws.extend(shadow_draw(frame, one, caster, light, options).map(|draw| Draw {
+                    program,
+                    raster,
+                    ..draw
+                }));
             }
         }
     }
-    if draws.is_empty() {
-        frame.leave_out(
-            "planar shadows",
-            &Frame::light_name(light),
-            "no caster is between the light and a flat receiver",
-        );
-        return;
+    if draws.is_empty() && !marked.is_empty() {
+        let because = "no caster is between the light and a flat receiver";
+        frame.leave_out("planar shadows", &Frame::light_name(light), because);
     }
-    let purpose = "Draws every caster, flattened onto each receiver's plane. Where the stencil still has the \
-                   receiver's mark it goes up by one: overlapping triangles can't darken a pixel twice.";
-    frame.stencil_pass(light, "shadows", purpose, draws);
+    draws
 }
 
 /// A caster flattened onto one receiver; `None` where no part of it is between plane and light.
-fn shadow_draw(frame: &mut Frame, one: &Marked, caster: usize, light: LightId) -> Option<Draw> {
-    let placed = &frame.placed[caster];
+fn shadow_draw(frame: &mut Frame, one: &Marked, caster: usize, light: LightId, options: Options) -> Option<Draw> {
+    let light_position = frame.light_position(light);
+    let (placed, receiver) = (&frame.placed[caster], &one.receiver.receiver);
     let mesh = &placed.object.mesh;
-    let mut flattener = planar::Flattener::new(one.receiver.plane, frame.light_position(light))?;
-    let own = one.receiver.triangles.iter().filter(|_| caster == one.object);
-    let on_plane: Vec<u32> = own.flat_map(|triangle| mesh.triangles()[*triangle as usize]).collect();
-    flattener.add(&placed.world, mesh.triangles(), &on_plane);
-    let triangles = flattener.finish();
+    let is_own = caster == one.receiver.object;
+    let flattened = Flattened {
+        mesh: mesh.content_hash(),
+        pose: placed.object.pose,
+        plane: receiver.plane,
+        light: light_position,
+        clip: options.clip,
+        is_own,
+    };
+    let flatten = || {
+        let own = receiver.triangles.iter().filter(|_| is_own);
+        let on_plane: Vec<u32> = own.flat_map(|triangle| mesh.triangles()[*triangle as usize]).collect();
+        Flattener::new(receiver.plane, light_position, options.clip).map_or_else(Vec::new, |mut flattener| {
+            flattener.add(&placed.world, mesh.triangles(), &on_plane);
+            flattener.finish()
+        })
+    };
+    let triangles = match options.keeps {
+        true => frame.job.cache.flattened(&flattened, flatten),
+        false => Arc::new(flatten()),
+    };
     if triangles.is_empty() {
         return None;
     }
     let eye = frame.eye();
     let vertices = triangles.as_flattened().iter().map(|vertex| relative::homogeneous(*vertex, eye)).collect();
     let count = triangles.len() as u32;
-    let name = format!("shadow of {} on {}", placed.object.name, one.name(frame));
-    let caster = Some(placed.object.name.clone());
+    let name = format!("shadow of {} on {}", frame.placed[caster].object.name, one.receiver.name);
+    let caster = Some(frame.placed[caster].object.name.clone());
     let mesh = frame.add_mesh(DrawMesh {
         name: name.clone(),
         vertices: Blob::new(vertices),
@@ -183,24 +262,9 @@ fn shadow_draw(frame: &mut Frame, one: &Marked, caster: usize, light: LightId) -
         caster,
         part: Part::PlanarShadow,
         program: Program::Position,
-        raster: darken_once(one.mark),
+        raster: options.raster(ColorWrite::None),
         mesh,
         triangles: 0..count,
-        constants: DrawConstants::default(),
+        constants: DrawConstants { label: 1, flat: [BLENDED, BLENDED, BLENDED, 1.0], ..DrawConstants::default() },
     })
-}
-
-fn darken_once(mark: u8) -> RasterState {
-    let once = StencilFace {
-        compare: CompareFunction::Equal,
-        pass_op: StencilOperation::IncrementClamp,
-        ..StencilFace::IGNORE
-    };
-    let anywhere = RasterState {
-        depth_compare: CompareFunction::Always,
-        depth_write: false,
-        color: ColorWrite::None,
-        ..RasterState::surface()
-    };
-    anywhere.with_stencil(once, mark)
 }

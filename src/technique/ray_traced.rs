@@ -7,7 +7,7 @@
 use super::frame::{Frame, Job, StencilUse};
 use super::settings::ONE_ROW;
 use super::{PlanError, ReportRows};
-use crate::plan::{ColorTarget, CpuImage, FramePlan, LightId, MakeImage, Pass, ViewId};
+use crate::plan::{ColorTarget, CpuImage, FramePlan, LightId, MakeImage, Pass, ViewId, Visibility};
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::truth::Tracer;
@@ -41,7 +41,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     for light in frame.light_ids() {
         ray_pass(&mut frame, light, LightRays { tracer: tracer.clone(), light });
         let purpose = "Adds the light where its rays arrived.";
-        frame.light_pass(light, purpose, &frame.light_by_labels());
+        frame.light_pass(light, purpose, &frame.light_by(Visibility::Labels));
     }
     Ok(frame.finish())
 }

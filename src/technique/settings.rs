@@ -4,7 +4,7 @@
 //! one line here and its use in the technique. Only what works is listed: a value that is not
 //! there yet is refused, not ignored.
 
-use super::{Technique, none, planar, ray_traced, shadow_map, volume};
+use super::{Technique, none, planar, planar_texture, projective, ray_traced, shadow_map, volume};
 use crate::math::depth::DepthMapping;
 use crate::scene::{TechniqueRequest, suggestion};
 use std::collections::BTreeMap;
@@ -118,17 +118,22 @@ const fn word(key: &'static str, values: &'static [&'static str], meaning: &'sta
     SettingSpec { key, values: SettingValues::OneOf(values), default: values[0], meaning }
 }
 
+const fn size(default: &'static str, most: i64, meaning: &'static str) -> SettingSpec {
+    SettingSpec { key: "size", values: SettingValues::Integer(1, most), default, meaning }
+}
+
 /// Settings that are planned, but not built.
-const TO_COME: [&str; 2] = ["cache", "leave-out"];
+const TO_COME: [&str; 1] = ["leave-out"];
 const NONE: &[SettingSpec] = &[DEPTH, EPSILON, DIFFUSE];
 const PLANAR: &[SettingSpec] = &[
     DEPTH,
     EPSILON,
     DIFFUSE,
-    word("stencil", &["on"], "keeps shadows on their receiver"),
-    word("blend", &["once"], "overlapping triangles darken a pixel once"),
-    word("clip", &["on"], "drops what is beyond the light or below the receiver"),
-    word("z-fighting", &["depth-off"], "how a shadow wins over the surface it lies on"),
+    word("stencil", &["on", "off"], "keeps shadows on their receiver"),
+    word("blend", &["once", "twice"], "how often overlapping triangles darken a pixel"),
+    word("clip", &["on", "off"], "drops what is beyond the light or below the receiver"),
+    word("z-fighting", &["depth-off", "polygon-offset", "none"], "how a shadow wins over the surface it lies on"),
+    word("cache", &["on", "off"], "keeps flattened casters until plane, caster or light change"),
 ];
 const VOLUME: &[SettingSpec] = &[
     DEPTH,
@@ -142,16 +147,21 @@ const VOLUME: &[SettingSpec] = &[
     word("light-caps", &["tested"], "how the caps nearest the light are drawn"),
     word("silhouette", &["adjacency"], "how shared edges are found"),
 ];
+const PLANAR_TEXTURE: &[SettingSpec] =
+    &[DEPTH, EPSILON, DIFFUSE, size("256", 4096, "texels along each side of a receiver's texture")];
+const PROJECTIVE: &[SettingSpec] = &[
+    DEPTH,
+    EPSILON,
+    DIFFUSE,
+    size("512", 4096, "texels along each side of a silhouette's picture"),
+    word("passes", &["single", "multi"], "silhouettes are read while lighting, or darken the lit picture one by one"),
+    word("reverse", &["off", "on"], "silhouettes also fall on what is behind the light"),
+];
 const SHADOW_MAP: &[SettingSpec] = &[
     DEPTH,
     EPSILON,
     DIFFUSE,
-    SettingSpec {
-        key: "size",
-        values: SettingValues::Integer(1, 8192),
-        default: "1024",
-        meaning: "texels along each side of the map",
-    },
+    size("1024", 8192, "texels along each side of the map"),
     SettingSpec {
         key: "bias-constant",
         values: SettingValues::Integer(-1_000_000, 1_000_000),
@@ -188,8 +198,10 @@ impl Technique {
         match self {
             Technique::None | Technique::RayTraced => NONE,
             Technique::Planar => PLANAR,
+            Technique::PlanarTexture => PLANAR_TEXTURE,
             Technique::ZPass | Technique::ZFail => VOLUME,
             Technique::ShadowMap => SHADOW_MAP,
+            Technique::Projective => PROJECTIVE,
         }
     }
 }
@@ -208,8 +220,10 @@ impl Technique {
         match self {
             Technique::None => none::REPORT_ROWS,
             Technique::Planar => planar::REPORT_ROWS,
+            Technique::PlanarTexture => planar_texture::REPORT_ROWS,
             Technique::ZPass | Technique::ZFail => volume::REPORT_ROWS,
             Technique::ShadowMap => shadow_map::REPORT_ROWS,
+            Technique::Projective => projective::REPORT_ROWS,
             Technique::RayTraced => ray_traced::REPORT_ROWS,
         }
     }

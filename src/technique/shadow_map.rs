@@ -5,20 +5,17 @@
 //! where the map holds something nearer to the light. Casters behind which nothing lies that
 //! could be darkened are left out: a floor under everything would only widen the map.
 
+use super::casters;
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::{PlanError, ReportRows};
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
     Attachment, AttachmentRole, Blob, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh, FramePlan,
-    LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState, ViewId,
+    LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState, ViewId, Visibility,
 };
 use glam::{DMat4, DVec3};
 use wgpu::{DepthBiasState, TextureFormat};
-
-/// Objects of more triangles are taken to darken something without looking: the look is
-/// triangles times vertices, and what it finds (floors, walls, rooms) is small.
-const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
 
 /// A caster in a light's map.
 struct MapCaster {
@@ -52,7 +49,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     for light in frame.light_ids() {
         let has_map = frame.plan.lights[light.0].map.is_some();
         let (label, drawn) = match has_map {
-            true => (Drawn::lit_or_shadow_by_map(), frame.light_by_map()),
+            true => (Drawn::lit_by(Visibility::Map), frame.light_by(Visibility::Map)),
             false => (Drawn::lit(), frame.light_everywhere()),
         };
         frame.mask_pass(light, &[label]);
@@ -66,7 +63,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
 fn add_map(frame: &mut Frame, light: LightId) {
     let size = frame.job.choice.number("size") as u32;
     let indices = darkening_casters(frame, light);
-    let triangles: Vec<Vec<[DVec3; 3]>> = indices.iter().map(|index| world_triangles(frame, *index)).collect();
+    let triangles: Vec<Vec<[DVec3; 3]>> = indices.iter().map(|index| casters::world_triangles(frame, *index)).collect();
     let storage = MapStorage { size, depth: frame.depth_mapping(), epsilon: frame.job.choice.number("epsilon") };
     let Some(light_frame) = light_frame::fit(&triangles.concat(), frame.light_position(light), &storage) else {
         frame.leave_out("shadow map", &Frame::light_name(light), "nothing casts a shadow on anything");
@@ -122,7 +119,7 @@ fn darkening_casters(frame: &mut Frame, light: LightId) -> Vec<usize> {
         if !object.casts || object.mesh.triangles().is_empty() {
             continue;
         }
-        if can_darken(frame, index, light) {
+        if casters::can_darken(frame, index, light) {
             darkening.push(index);
         } else {
             frame.leave_out(
@@ -133,22 +130,6 @@ fn darkening_casters(frame: &mut Frame, light: LightId) -> Vec<usize> {
         }
     }
     darkening
-}
-
-fn can_darken(frame: &Frame, index: usize, light: LightId) -> bool {
-    let triangles = world_triangles(frame, index);
-    let receivers = || {
-        let receiving = frame.placed.iter().filter(|placed| placed.object.receives && placed.surface.is_some());
-        receiving.flat_map(|placed| placed.world.iter().copied())
-    };
-    let light = frame.light_position(light);
-    triangles.len() > MOST_TRIANGLES_TO_LOOK_AT
-        || triangles.iter().any(|corners| light_frame::can_darken(*corners, light, receivers()))
-}
-
-fn world_triangles(frame: &Frame, index: usize) -> Vec<[DVec3; 3]> {
-    let placed = &frame.placed[index];
-    placed.object.mesh.triangles().iter().map(|corners| corners.map(|v| placed.world[v as usize])).collect()
 }
 
 fn add_caster_mesh(frame: &mut Frame, index: usize, origin: DVec3) -> MeshId {

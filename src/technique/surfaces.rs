@@ -87,3 +87,23 @@ fn averaged_normals(mesh: &Mesh, face_normals: &[DVec3]) -> Vec<DVec3> {
     }
     sums
 }
+
+/// Some triangles of a surface, with the same vertices, so that their depths are bit-equal.
+pub fn subset(mesh: &DrawMesh, name: &str, triangles: &[u32]) -> DrawMesh {
+    fn pick<T: bytemuck::Pod>(blob: &Blob<T>, triangles: &[u32], per_triangle: usize) -> Blob<T> {
+        let of = |triangle: &u32| {
+            let start = *triangle as usize * per_triangle;
+            blob.data()[start..start + per_triangle].iter().copied()
+        };
+        Blob::new(triangles.iter().flat_map(of).collect())
+    }
+    DrawMesh {
+        name: name.to_owned(),
+        vertices: mesh.vertices.clone(),
+        indices: pick(&mesh.indices, triangles, 3),
+        surface: mesh.surface.as_ref().map(|surface| SurfaceData {
+            normals: pick(&surface.normals, triangles, 3),
+            sides: pick(&surface.sides, triangles, 1),
+        }),
+    }
+}

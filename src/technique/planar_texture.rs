@@ -1,0 +1,130 @@
+//! Receiver textures: each flat receiver gets a picture of the light that arrives on it.
+//!
+//! The pyramid from the light to a receiver is mapped to a box whose x and y are the receiver's
+//! own (Heckbert and Herf 1997), so drawing the casters through it leaves their shadow in the
+//! receiver's texture; what is beyond the light or behind the receiver is clipped. The light pass
+//! reads the texture. Ambient light has a pass of its own. Surfaces that are not flat get no
+//! shadow, and edges are as coarse as the texture.
+
+use super::frame::{Drawn, Frame, Job, Piece, StencilUse};
+use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
+use super::silhouettes::{self, LayerPass};
+use super::surfaces;
+use super::{PlanError, ReportRows};
+use crate::geometry::Parallelogram;
+use crate::math::Plane;
+use crate::plan::{FramePlan, LightId, Visibility};
+use glam::{DMat4, DVec3, DVec4};
+use std::collections::HashSet;
+
+/// Sizes of textures.
+pub(super) const REPORT_ROWS: ReportRows =
+    &[&[("size", "64")], &[("size", "128")], &[("size", "256")], &[("size", "512")], &[("size", "1024")]];
+
+/// Plans receiver textures.
+pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+    let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
+    let mut receivers = receivers::all(&mut frame);
+    receivers::leave_out_small(&mut frame, receivers.len(), "the frame");
+    receivers.truncate(MOST_RECEIVERS);
+    frame.pieces = split_at(&mut frame, &receivers);
+    for light in frame.light_ids() {
+        add_textures(&mut frame, &receivers, light);
+    }
+    frame.ambient_pass();
+    for light in frame.light_ids() {
+        let has_textures = frame.plan.lights[light.0].map.is_some();
+        let (label, drawn) = match has_textures {
+            true => (Drawn::lit_by(Visibility::ReceiverTexture), frame.light_by(Visibility::ReceiverTexture)),
+            false => (Drawn::lit(), frame.light_everywhere()),
+        };
+        frame.mask_pass(light, &[label]);
+        let purpose = "Adds the light as far as the receiver's texture lets it through. Surfaces that are not flat \
+                       have none, and are lit as if nothing stood between.";
+        frame.light_pass(light, purpose, &drawn);
+    }
+    Ok(frame.finish())
+}
+
+/// The frame's pieces with each receiver a piece of its own, so that it can read its own layer.
+fn split_at(frame: &mut Frame, receivers: &[FlatReceiver]) -> Vec<Piece> {
+    let mut split = Vec::new();
+    for piece in std::mem::take(&mut frame.pieces) {
+        let count = frame.placed[piece.object].object.mesh.triangles().len();
+        let mut layer_of = vec![None; count];
+        for (layer, receiver) in receivers.iter().enumerate().filter(|(_, receiver)| receiver.object == piece.object) {
+            receiver.receiver.triangles.iter().for_each(|triangle| layer_of[*triangle as usize] = Some(layer as u32));
+        }
+        let mut layers: Vec<Option<u32>> = piece.triangles.clone().map(|t| layer_of[t as usize]).collect();
+        layers.sort_unstable();
+        layers.dedup();
+        for layer in layers {
+            let own: Vec<u32> = piece.triangles.clone().filter(|t| layer_of[*t as usize] == layer).collect();
+            let name = layer.map_or_else(|| piece.name.clone(), |layer| receivers[layer as usize].name.clone());
+            let mesh = surfaces::subset(&frame.plan.meshes[piece.mesh.0], &name, &own);
+            let mesh = frame.add_mesh(mesh);
+            split.push(Piece { name, mesh, triangles: 0..own.len() as u32, layer, ..piece.clone() });
+        }
+    }
+    split
+}
+
+fn add_textures(frame: &mut Frame, receivers: &[FlatReceiver], light: LightId) {
+    let light_position = frame.light_position(light);
+    let shapes: Vec<Option<DMat4>> =
+        receivers.iter().map(|receiver| clip_from_world(frame, receiver, light_position)).collect();
+    let mut passes = Vec::new();
+    for (layer, (receiver, shape)) in receivers.iter().zip(&shapes).enumerate() {
+        if shape.is_none() {
+            continue;
+        }
+        if !receiver.shows_lit_side(frame, light) {
+            let because = "light and eye are on different sides of it, so shading alone darkens it";
+            frame.leave_out(&format!("texture of {}", receiver.name), &Frame::light_name(light), because);
+            continue;
+        }
+        let towards_light = receiver.receiver.plane;
+        let towards_light = if towards_light.at(light_position) < 0.0 { towards_light.turned() } else { towards_light };
+        let mut draws = Vec::new();
+        for caster in 0..frame.placed.len() {
+            let triangles = caster_triangles(frame, receiver, towards_light, caster);
+            draws.extend(silhouettes::draws(frame, caster, &triangles));
+        }
+        if draws.is_empty() {
+            let because = "no caster is between it and the light";
+            frame.leave_out(&format!("texture of {}", receiver.name), &Frame::light_name(light), because);
+            continue;
+        }
+        passes.push(LayerPass { layer, name: format!("texture of {}", receiver.name), draws });
+    }
+    if passes.is_empty() {
+        frame.leave_out("textures", &Frame::light_name(light), "no flat receiver has a shadow that shows");
+        return;
+    }
+    let purpose = "Draws the casters between this receiver and the light through the box that the light's pyramid \
+                   over the receiver becomes: their picture is the shadow on it.";
+    let size = frame.job.choice.number("size") as u32;
+    let shapes = shapes.into_iter().map(|shape| shape.unwrap_or(DMat4::IDENTITY)).collect();
+    silhouettes::add_map(frame, light, size, shapes, passes, purpose);
+}
+
+fn clip_from_world(frame: &Frame, receiver: &FlatReceiver, light: DVec4) -> Option<DMat4> {
+    let placed = &frame.placed[receiver.object];
+    Parallelogram::around(&receiver.receiver, &placed.world, placed.object.mesh.triangles()).clip_from_world(light)
+}
+
+/// The triangles of a caster that are drawn into a receiver's texture: all but the receiver's own,
+/// and none of a caster that lies wholly behind it.
+fn caster_triangles(frame: &Frame, receiver: &FlatReceiver, towards_light: Plane, caster: usize) -> Vec<u32> {
+    let placed = &frame.placed[caster];
+    let triangles = placed.object.mesh.triangles();
+    let own = if caster == receiver.object { &receiver.receiver.triangles[..] } else { &[] };
+    let on_plane: HashSet<u32> = own.iter().flat_map(|triangle| triangles[*triangle as usize]).collect();
+    let is_above = |(vertex, position): (usize, &DVec3)| {
+        towards_light.at(position.extend(1.0)) > 0.0 && !on_plane.contains(&(vertex as u32))
+    };
+    if !placed.object.casts || !placed.world.iter().enumerate().any(is_above) {
+        return Vec::new();
+    }
+    (0..triangles.len() as u32).filter(|triangle| own.binary_search(triangle).is_err()).collect()
+}

@@ -1,0 +1,114 @@
+//! Projective shadow textures: the casters' silhouettes, thrown over the scene like slides.
+//!
+//! Each caster has a picture of what it lets through, seen from the light in a frame that fits it;
+//! the light passes through all of them on its way to a surface. No depths are compared: what lies
+//! between light and caster is darkened like what lies behind it, and a caster can't darken itself.
+//! Casters may be translucent.
+
+use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::silhouettes::{self, LayerPass};
+use super::{PlanError, ReportRows, casters};
+use crate::geometry::light_frame;
+use crate::plan::{FramePlan, LightId, PlanMap, Visibility};
+use glam::DMat4;
+
+/// Sizes of pictures.
+pub(super) const REPORT_ROWS: ReportRows = &[&[("size", "128")], &[("size", "512")], &[("size", "2048")]];
+
+/// Plans projective shadow textures.
+pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+    let is_single = job.choice.word("passes") != "multi";
+    let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
+    let layers = casting_objects(&mut frame);
+    for piece in &mut frame.pieces {
+        piece.layer = layers.iter().position(|object| *object == piece.object).map(|layer| layer as u32);
+    }
+    for light in frame.light_ids() {
+        add_silhouettes(&mut frame, light, &layers);
+    }
+    frame.ambient_pass();
+    for light in frame.light_ids() {
+        let drawn_layers: Vec<usize> = match &frame.plan.lights[light.0].map {
+            Some(map) => (0..map.faces.len()).filter(|layer| map.faces[*layer].is_some()).collect(),
+            None => Vec::new(),
+        };
+        let how = if drawn_layers.is_empty() { Visibility::Everywhere } else { Visibility::Projected };
+        if is_single || drawn_layers.is_empty() {
+            frame.mask_pass(light, &[Drawn::lit_by(how)]);
+            let purpose = "Adds the light, as far as the silhouettes on its way let it through.";
+            frame.light_pass(light, purpose, &frame.light_by(how));
+        } else {
+            multi_pass(&mut frame, light, &layers, &drawn_layers);
+        }
+    }
+    Ok(frame.finish())
+}
+
+/// Lit first, then darkened by one silhouette after another.
+fn multi_pass(frame: &mut Frame, light: LightId, layers: &[usize], drawn_layers: &[usize]) {
+    let purpose = "Adds the light everywhere: silhouettes darken it afterwards.";
+    frame.light_pass(light, purpose, &frame.light_everywhere());
+    for layer in drawn_layers {
+        let purpose = "Draws what is visible again and darkens it where this silhouette falls, with what ambient and \
+                       other lights gave as well.";
+        let name = format!("projection of {}", frame.placed[layers[*layer]].object.name);
+        let draws = frame.draws_through(*layer);
+        if !draws.is_empty() {
+            frame.blend_pass(light, &name, purpose, draws);
+        }
+    }
+    frame.mask_pass(light, &[Drawn::lit_by(Visibility::Projected)]);
+}
+
+/// The objects that cast and can darken anything under any light: as many as fit.
+fn casting_objects(frame: &mut Frame) -> Vec<usize> {
+    let casts = |index: &usize| {
+        let object = frame.placed[*index].object;
+        let darkens = |light| casters::can_darken(frame, *index, light);
+        object.casts && !object.mesh.triangles().is_empty() && frame.light_ids().any(darkens)
+    };
+    let mut objects: Vec<usize> = (0..frame.placed.len()).filter(casts).collect();
+    if objects.len() > PlanMap::MOST_FACES {
+        let count = objects.len() - PlanMap::MOST_FACES;
+        let because = "a light passes through 64 silhouettes at most";
+        frame.leave_out(&format!("silhouettes of the last {count} objects"), "the frame", because);
+        objects.truncate(PlanMap::MOST_FACES);
+    }
+    objects
+}
+
+fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize]) {
+    let mut matrices = vec![DMat4::IDENTITY; layers.len()];
+    let mut passes = Vec::new();
+    for (layer, object) in layers.iter().enumerate() {
+        let name = frame.placed[*object].object.name.clone();
+        let what = format!("silhouette of {name}");
+        if !casters::can_darken(frame, *object, light) {
+            let because = "everything that receives lies on the light's side of its triangles";
+            frame.leave_out(&what, &Frame::light_name(light), because);
+            continue;
+        }
+        let Some(clip_from_world) =
+            light_frame::fit_silhouette(&frame.placed[*object].world, frame.light_position(light))
+        else {
+            let because = "it reaches behind the light or into its plane, so no picture holds it: it casts nothing";
+            frame.leave_out(&what, &Frame::light_name(light), because);
+            continue;
+        };
+        matrices[layer] = clip_from_world;
+        let all: Vec<u32> = (0..frame.placed[*object].object.mesh.triangles().len() as u32).collect();
+        let draws = silhouettes::draws(frame, *object, &all);
+        passes.push(LayerPass { layer, name: what, draws });
+    }
+    if passes.is_empty() {
+        return;
+    }
+    let purpose = "Draws the caster as the light sees it, in a frame that fits it: not how far it is, but how much \
+                   light it lets through.";
+    let size = frame.job.choice.number("size") as u32;
+    silhouettes::add_map(frame, light, size, matrices, passes, purpose);
+    let reverses = frame.job.choice.word("reverse") == "on";
+    if let Some(map) = &mut frame.plan.lights[light.0].map {
+        map.projects_backwards = reverses;
+    }
+}

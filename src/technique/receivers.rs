@@ -1,0 +1,58 @@
+//! The flat receivers of a scene, for techniques that give each its own shadow.
+
+use super::frame::Frame;
+use crate::geometry::planar;
+use crate::math::{Sign, side_of_triangle};
+use crate::plan::LightId;
+
+/// The largest are served; each costs a draw a caster.
+pub const MOST_RECEIVERS: usize = 64;
+
+/// A flat piece of an object that is drawn and receives.
+#[derive(Debug, Clone)]
+pub struct FlatReceiver {
+    /// Index of its object in [`Frame::placed`].
+    pub object: usize,
+    pub receiver: planar::Receiver,
+    /// For people: its object, and which of all pieces it is, from 1.
+    pub name: String,
+}
+
+/// Every flat receiver, the largest first.
+pub fn all(frame: &mut Frame) -> Vec<FlatReceiver> {
+    let mut all = Vec::new();
+    for (index, placed) in frame.placed.iter().enumerate() {
+        if !placed.object.receives || placed.surface.is_none() {
+            continue;
+        }
+        let mesh = &placed.object.mesh;
+        let edges = frame.job.cache.edges(mesh);
+        let found = planar::receivers(mesh.positions(), &placed.world, mesh.triangles(), &edges);
+        all.extend(found.into_iter().map(|receiver| (index, receiver)));
+    }
+    all.sort_by(|a, b| b.1.area.total_cmp(&a.1.area));
+    let name = |object: usize, place: usize| format!("{}, flat piece {}", frame.placed[object].object.name, place + 1);
+    let named = all.into_iter().enumerate();
+    named.map(|(place, (object, receiver))| FlatReceiver { object, receiver, name: name(object, place) }).collect()
+}
+
+impl FlatReceiver {
+    /// Does the eye see it from the side that a light is on? Any other shows no shadow of that light.
+    pub fn shows_lit_side(&self, frame: &Frame, light: LightId) -> bool {
+        let (eye, light) = (frame.eye().extend(1.0), frame.light_position(light));
+        let placed = &frame.placed[self.object];
+        self.receiver.triangles.iter().any(|triangle| {
+            let corners = placed.object.mesh.triangles()[*triangle as usize].map(|v| placed.world[v as usize]);
+            let side = side_of_triangle(corners, eye);
+            side != Sign::Zero && side == side_of_triangle(corners, light)
+        })
+    }
+}
+
+/// Says how many receivers a light has more than fit.
+pub fn leave_out_small(frame: &mut Frame, count: usize, of: &str) {
+    if count > MOST_RECEIVERS {
+        let because = "the 64 largest are kept: every one costs a draw for each caster";
+        frame.leave_out(&format!("{} small flat receivers", count - MOST_RECEIVERS), of, because);
+    }
+}

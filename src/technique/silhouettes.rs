@@ -1,0 +1,122 @@
+//! Pictures of what casters let through, one layer a receiver or a caster of a light.
+
+use super::frame::Frame;
+use crate::geometry::relative;
+use crate::plan::{
+    Attachment, AttachmentRole, Blob, ColorTarget, ColorWrite, Draw, DrawConstants, DrawMesh, LightId, Part, Pass,
+    PlanMap, PlanView, Program, RasterState, ViewId,
+};
+use crate::scene::Material;
+use glam::{DMat4, Mat4};
+use wgpu::{CompareFunction, TextureFormat};
+
+/// All of the light.
+const ALL_OF_IT: [f64; 4] = [1.0; 4];
+
+/// The pass that draws one layer.
+pub struct LayerPass {
+    pub layer: usize,
+    pub name: String,
+    pub draws: Vec<Draw>,
+}
+
+/// Gives a light a map of so many layers as there are matrices, each clip space from world space,
+/// and a pass for each layer that is drawn. In the others all of the light arrives.
+pub fn add_map(
+    frame: &mut Frame,
+    light: LightId,
+    size: u32,
+    clip_from_world: Vec<DMat4>,
+    passes: Vec<LayerPass>,
+    purpose: &str,
+) {
+    let attachment = frame.add_attachment(Attachment {
+        name: format!("{} textures", Frame::light_name(light)),
+        role: AttachmentRole::Map(light),
+        format: TextureFormat::Rgba8Unorm,
+        size: [size; 2],
+        layers: clip_from_world.len() as u32,
+    });
+    let world_from_relative = DMat4::from_translation(frame.eye());
+    let clip_from_relative: Vec<Mat4> =
+        clip_from_world.iter().map(|clip| (*clip * world_from_relative).as_mat4()).collect();
+    let mut faces = vec![None; clip_from_world.len()];
+    for LayerPass { layer, name, draws } in passes {
+        frame.plan.views.push(PlanView {
+            name: format!("{} {name}", Frame::light_name(light)),
+            origin: frame.eye(),
+            clip_from_relative: clip_from_relative[layer],
+        });
+        let view = ViewId(frame.plan.views.len() - 1);
+        faces[layer] = Some(view);
+        frame.plan.passes.push(Pass {
+            name,
+            image: None,
+            purpose: purpose.to_owned(),
+            light: Some(light),
+            timed: true,
+            view,
+            color: Some(ColorTarget { attachment, layer: layer as u32, clear: Some(ALL_OF_IT) }),
+            depth_stencil: None,
+            draws,
+        });
+    }
+    frame.plan.lights[light.0].map = Some(PlanMap {
+        attachment,
+        faces,
+        light_from_world: DMat4::IDENTITY,
+        clip_from_light: clip_from_world,
+        clip_from_relative,
+        lookup: None,
+        projects_backwards: false,
+    });
+}
+
+/// Draws of some triangles of a caster, one a material.
+pub fn draws(frame: &mut Frame, caster: usize, of: &[u32]) -> Vec<Draw> {
+    let placed = &frame.placed[caster];
+    let (object, triangles) = (placed.object, placed.object.mesh.triangles());
+    let eye = frame.eye();
+    let vertices = match placed.surface {
+        Some(mesh) => frame.plan.meshes[mesh.0].vertices.clone(),
+        None => Blob::new(placed.world.iter().map(|position| relative::point(*position, eye)).collect()),
+    };
+    let mut draws = Vec::new();
+    for group in object.mesh.groups() {
+        let is_of_group = |triangle: &u32| group.triangles.contains(&(*triangle as usize));
+        let own: Vec<u32> = of.iter().copied().filter(is_of_group).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let indices = Blob::new(own.iter().flat_map(|triangle| triangles[*triangle as usize]).collect());
+        let name = format!("silhouette of {}", object.name);
+        let mesh = frame.add_mesh(DrawMesh { name, vertices: vertices.clone(), indices, surface: None });
+        draws.push(Draw {
+            name: object.name.clone(),
+            caster: Some(object.name.clone()),
+            part: Part::Map,
+            program: Program::Flat,
+            raster: RasterState {
+                depth_compare: CompareFunction::Always,
+                depth_write: false,
+                color: ColorWrite::Replace,
+                ..RasterState::surface()
+            },
+            mesh,
+            triangles: 0..own.len() as u32,
+            constants: DrawConstants {
+                flat: let_through(&group.material.unwrap_or(object.material)),
+                ..DrawConstants::default()
+            },
+        });
+    }
+    draws
+}
+
+/// How much of each colour of light a material lets through, and how much for labels, which count
+/// translucent casters as opaque.
+fn let_through(material: &Material) -> [f32; 4] {
+    let brightest = material.color.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+    let [r, g, b] = material.color.map(|channel| (1.0 - material.opacity) * channel / brightest);
+    [r, g, b, 0.0]
+}
