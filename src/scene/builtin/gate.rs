@@ -29,7 +29,7 @@ pub fn build() -> Result<Scene, MeshError> {
     Ok(Scene {
         name: "gate".to_owned(),
         ambient: [0.15, 0.15, 0.16],
-        camera: camera([1.9, 2.0, 6.6], [0.55, 1.35, -0.6], 42.0),
+        camera: camera([1.9, 2.0, 6.6], [0.3, 1.25, -0.6], 38.0),
         lights: vec![Light { color: [1.0, 0.95, 0.87], ..Light::point(DVec3::new(-3.6, 2.9, 3.8)) }],
         objects: vec![
             Object {

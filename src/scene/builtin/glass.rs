@@ -16,25 +16,26 @@ const WOOD: [f32; 3] = [0.33, 0.20, 0.11];
 
 /// A pane on the floor: colour, where it stands, and how it is turned.
 const PANES: [(&str, [f32; 3], [f64; 2], f64); 3] = [
-    ("red pane", [0.80, 0.10, 0.06], [-1.25, 0.35], 24.0),
-    ("yellow pane", [0.90, 0.72, 0.05], [-0.45, -0.25], 24.0),
-    ("blue pane", [0.07, 0.33, 0.82], [0.35, 0.5], 24.0),
+    ("red pane", [0.80, 0.10, 0.06], [-1.6, 0.5], 8.0),
+    ("yellow pane", [0.90, 0.72, 0.05], [-0.55, -0.1], 8.0),
+    ("blue pane", [0.07, 0.33, 0.82], [0.5, 0.4], 8.0),
 ];
-const PANE_SIZE: [f64; 3] = [1.15, 1.5, 0.04];
+const PANE_SIZE: [f64; 3] = [0.95, 1.3, 0.04];
 /// How much of what is behind a pane it hides.
 const PANE_OPACITY: f32 = 0.4;
 
-/// The wall is at z = −1.8; the light stands in front to the left, so that the casters fit one cone.
+/// The wall is at z = −1.8; the light stands in front to the left, so that the casters fit one
+/// cone and their shadows are thrown to the right, where the eye sees them.
 pub fn build() -> Result<Scene, MeshError> {
-    let floor = Arc::new(shapes::quad([9.0, 6.0])?);
-    let wall = Arc::new(shapes::parallelogram(DVec3::new(-4.5, 0.0, -1.8), [DVec3::X * 9.0, DVec3::Y * 3.4])?);
+    let floor = Arc::new(shapes::quad([10.0, 6.0])?);
+    let wall = Arc::new(shapes::parallelogram(DVec3::new(-5.0, 0.0, -1.8), [DVec3::X * 10.0, DVec3::Y * 3.4])?);
     let ball = Arc::new(shapes::sphere(0.32, 48, 24)?);
     let stand = Arc::new(shapes::cylinder(0.3, 0.5, 48)?);
     let mut objects = vec![
         placed("floor", &floor, matte(FLOOR), DVec3::new(0.0, 0.0, 1.2)),
         Object::new("wall", wall, matte(WALL)),
-        placed("stand", &stand, matte(WOOD), DVec3::new(1.35, 0.25, 0.2)),
-        placed("ball", &ball, glossy(BALL), DVec3::new(1.35, 0.81, 0.2)),
+        placed("stand", &stand, matte(WOOD), DVec3::new(1.75, 0.25, -0.2)),
+        placed("ball", &ball, glossy(BALL), DVec3::new(1.75, 0.81, -0.2)),
     ];
     let pane = Arc::new(shapes::cuboid(PANE_SIZE)?);
     objects.extend(PANES.iter().map(|(name, color, [x, z], degrees)| {
@@ -48,8 +49,8 @@ pub fn build() -> Result<Scene, MeshError> {
     Ok(Scene {
         name: "glass".to_owned(),
         ambient: [0.15, 0.15, 0.16],
-        camera: camera([2.1, 2.2, 5.2], [0.2, 0.75, -0.4], 40.0),
-        lights: vec![Light { color: [1.0, 0.96, 0.9], ..Light::point(DVec3::new(-2.6, 2.9, 3.4)) }],
+        camera: camera([2.7, 2.9, 4.8], [0.3, 0.7, -0.6], 38.0),
+        lights: vec![Light { color: [1.0, 0.96, 0.9], ..Light::point(DVec3::new(-2.1, 2.0, 3.2)) }],
         objects,
         technique: None,
     })

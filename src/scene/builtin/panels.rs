@@ -49,7 +49,7 @@ pub fn build() -> Result<Scene, MeshError> {
     Ok(Scene {
         name: "panels".to_owned(),
         ambient: [0.12, 0.12, 0.13],
-        camera: Camera { near: 5.0, ..camera([0.0, 0.0, -200.0], [0.0, -2.0, -420.0], 62.0) },
+        camera: Camera { near: 5.0, ..camera([0.0, 4.0, -250.0], [0.0, -6.0, -420.0], 62.0) },
         lights: vec![Light { color: [1.0, 0.95, 0.87], ..Light::point(DVec3::new(70.0, 70.0, -320.0)) }],
         objects,
         technique: None,

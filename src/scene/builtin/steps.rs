@@ -16,8 +16,8 @@ const BRICK: [f32; 3] = [0.48, 0.20, 0.12];
 const BALLS: [(&str, [f32; 3], [f64; 3]); 4] = [
     ("blue ball", [0.09, 0.40, 0.78], [0.62, 0.60, 0.45]),
     ("green ball", [0.02, 0.36, 0.20], [1.37, 1.20, -0.5]),
-    ("orange ball", [0.78, 0.35, 0.02], [-0.35, 0.30, -0.65]),
-    ("yellow ball", [0.85, 0.68, 0.06], [-1.05, 0.30, 1.75]),
+    ("orange ball", [0.78, 0.35, 0.02], [-1.0, 0.30, 0.3]),
+    ("yellow ball", [0.85, 0.68, 0.06], [-0.6, 0.30, 1.75]),
 ];
 const BALL_RADIUS: f64 = 0.3;
 
@@ -25,11 +25,11 @@ const BALL_RADIUS: f64 = 0.3;
 pub fn build() -> Result<Scene, MeshError> {
     let floor = Arc::new(shapes::quad([9.0, 8.0])?);
     let flight = Arc::new(shapes::stairs(8, 0.2, 0.32, 2.4)?);
-    let small_flight = Arc::new(shapes::stairs(5, 0.2, 0.22, 0.9)?);
+    let small_flight = Arc::new(shapes::stairs(5, 0.22, 0.2, 0.8)?);
     let wall = Arc::new(shapes::cuboid([0.3, 2.9, 5.4])?);
     let ball = Arc::new(shapes::sphere(BALL_RADIUS, 48, 24)?);
-    let mut small = placed("small flight", &small_flight, matte(STONE), DVec3::new(-1.15, 0.0, -1.6));
-    small.pose.rotate_degrees.y = 150.0;
+    let mut small = placed("small flight", &small_flight, matte(STONE), DVec3::new(-1.75, 0.0, -1.35));
+    small.pose.rotate_degrees.y = -18.0;
     let mut objects = vec![
         placed("floor", &floor, matte(FLOOR), DVec3::ZERO),
         placed("flight", &flight, matte(STONE), DVec3::ZERO),
@@ -42,7 +42,7 @@ pub fn build() -> Result<Scene, MeshError> {
     Ok(Scene {
         name: "steps".to_owned(),
         ambient: [0.14, 0.14, 0.15],
-        camera: camera([-4.1, 3.4, 4.6], [0.45, 0.55, -0.1], 42.0),
+        camera: camera([-4.0, 3.3, 4.5], [0.55, 0.62, -0.05], 38.0),
         lights: vec![Light { color: [1.0, 0.95, 0.86], ..Light::point(DVec3::new(-3.4, 3.8, -2.6)) }],
         objects,
         technique: None,

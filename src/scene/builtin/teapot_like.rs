@@ -1,7 +1,7 @@
 //! `teapot-like`: a pot that is an open sheet, with a spout and a handle that run through its wall.
 //!
-//! The pot is a turned line without thickness and without a bottom edge to close it; lid, spout and
-//! handle are open, too, and cut the body. A silhouette of the faces towards the light is wrong
+//! The pot is a turned line without thickness and without a bottom; lid, spout and handle are
+//! open, too, and cut the body. A silhouette of the faces towards the light is wrong
 //! here. Multiplicities of all triangles, turned towards the light, are not: an edge of the sheet's
 //! border counts once, one inside the sheet twice or not at all.
 

@@ -4,8 +4,8 @@
 //! went on a walkway above and looked down through the bars. Metres; the corridor runs along z, the
 //! walkway over it, stairs lead up at its near end. Every wall is an object with thickness.
 //!
-//! The light hangs below a shade, so bars throw their stripes into the cells and the planks theirs
-//! into the corridor, and all of them move when the lamp does.
+//! The light hangs below a shade, so bars throw their stripes into the cells, rails and planks
+//! theirs into the corridor, and all of them move when the lamp does.
 
 use super::{camera, matte, placed, shapes};
 use crate::scene::{Camera, Light, Material, Mesh, MeshError, Motion, Object, Scene, Swing};
@@ -23,7 +23,7 @@ const ENAMEL: [f32; 3] = [0.05, 0.22, 0.16];
 const CELLS: u32 = 6;
 const CELL_PITCH: f64 = 1.8;
 /// From the corridor's middle to the cells' fronts, and on to the outer wall.
-const CORRIDOR_HALF: f64 = 1.0;
+const CORRIDOR_HALF: f64 = 1.1;
 const CELL_DEPTH: f64 = 2.5;
 const CELL_HEIGHT: f64 = 2.4;
 const DOOR: [f64; 2] = [0.8, 2.0];
@@ -36,12 +36,13 @@ const HALF_LENGTH: f64 = CELLS as f64 * CELL_PITCH / 2.0;
 const LANDING: f64 = 3.2;
 /// The walkway's upper side.
 const DECK: f64 = 2.6;
+const DECK_HALF: f64 = 0.55;
 
 const PIVOT: DVec3 = DVec3::new(0.0, ROOF, -0.6);
 /// Under the pivot.
-const CORD: f64 = 0.85;
+const CORD: f64 = 0.8;
 /// As an ideal pendulum of that length swings.
-const SWING: Swing = Swing { pivot: PIVOT, axis: DVec3::new(0.35, 0.0, 1.0), degrees: 16.0, period_seconds: 2.0 };
+const SWING: Swing = Swing { pivot: PIVOT, axis: DVec3::new(0.35, 0.0, 1.0), degrees: 20.0, period_seconds: 1.8 };
 
 /// The floor is at height 0, the origin in the middle of the cells.
 pub fn build() -> Result<Scene, MeshError> {
@@ -51,15 +52,16 @@ pub fn build() -> Result<Scene, MeshError> {
     let lamp = lamp()?;
     let bulb = Light {
         color: [1.0, 0.86, 0.62],
-        intensity: 1.25,
+        intensity: 1.5,
+        range: Some(14.0),
         motion: Motion { swing: Some(SWING), ..Motion::default() },
         ..Light::point(PIVOT - DVec3::Y * (CORD + 0.17))
     };
     objects.push(lamp);
     Ok(Scene {
         name: "tiger-cage".to_owned(),
-        ambient: [0.10, 0.105, 0.12],
-        camera: Camera { near: 0.1, ..camera([0.35, 4.25, 4.6], [-0.35, 2.35, -1.4], 62.0) },
+        ambient: [0.13, 0.135, 0.15],
+        camera: Camera { near: 0.1, ..camera([0.65, 1.6, 3.6], [-1.2, 1.35, 0.4], 66.0) },
         lights: vec![bulb],
         objects,
         technique: None,
@@ -136,9 +138,9 @@ fn cell_fronts() -> Result<Mesh, MeshError> {
 
 /// The ceiling of a cell: bars along the corridor, let into the partitions, and one across.
 fn bars() -> Result<Mesh, MeshError> {
-    const SPACING: f64 = 0.16;
-    const COUNT: u32 = 14;
-    let bar = shapes::cuboid([0.045, 0.045, CELL_PITCH - WALL + 0.1])?;
+    const SPACING: f64 = 0.19;
+    const COUNT: u32 = 12;
+    let bar = shapes::cuboid([0.035, 0.035, CELL_PITCH - WALL + 0.1])?;
     let across = shapes::cuboid([CELL_DEPTH - WALL + 0.1, 0.03, 0.06])?;
     let offset = |index: u32| DVec3::X * SPACING * (f64::from(index) - f64::from(COUNT - 1) / 2.0);
     let along = (0..COUNT).map(|index| (&bar, offset(index)));
@@ -146,20 +148,23 @@ fn bars() -> Result<Mesh, MeshError> {
     shapes::joined(along.chain([(&across, DVec3::Y * -0.04)]))
 }
 
-/// Planks with gaps, rails on posts, and the stairs up.
+/// Planks with gaps on beams over the corridor, narrower than it; rails on posts, and the stairs up.
 fn walkway() -> Result<Vec<Object>, MeshError> {
-    const PLANK: f64 = 0.3;
-    const GAP: f64 = 0.06;
+    const PLANK: f64 = 0.28;
+    const GAP: f64 = 0.07;
     let [far, near] = [-HALF_LENGTH, HALF_LENGTH];
     let count = ((near - far + GAP) / (PLANK + GAP)).floor() as u32;
-    let plank = shapes::cuboid([2.0 * (CORRIDOR_HALF + WALL), 0.06, PLANK])?;
+    let plank = shapes::cuboid([2.0 * DECK_HALF, 0.06, PLANK])?;
     let planks = (0..count).map(|index| DVec3::Z * (near - PLANK / 2.0 - f64::from(index) * (PLANK + GAP)));
     let deck = shapes::joined(planks.map(|offset| (&plank, offset)))?;
 
-    let post = shapes::cylinder(0.03, 0.95, 8)?;
-    let rail = shapes::cuboid([0.06, 0.05, near - far])?;
+    let post = shapes::cylinder(0.022, 0.95, 8)?;
+    let rail = shapes::cuboid([0.045, 0.04, near - far])?;
     let posts =
         (0..=CELLS).map(|index| DVec3::Z * (far + 0.06 + f64::from(index) * (near - far - 0.12) / f64::from(CELLS)));
+    let beam = shapes::cuboid([2.0 * CORRIDOR_HALF + WALL, 0.14, 0.12])?;
+    let beams = (0..=CELLS).map(|index| DVec3::Z * (near - CELL_PITCH * f64::from(index)));
+    let beams = shapes::joined(beams.map(|offset| (&beam, offset)))?;
     let railing = shapes::joined(
         posts.map(|offset| (&post, offset)).chain([(&rail, DVec3::Y * 0.48), (&rail, DVec3::Y * 0.05)]),
     )?;
@@ -173,8 +178,9 @@ fn walkway() -> Result<Vec<Object>, MeshError> {
     stairs.pose.rotate_degrees.y = 90.0;
     Ok(vec![
         placed("walkway", &Arc::new(deck), matte(WOOD), DVec3::new(0.0, DECK - 0.03, 0.0)),
-        placed("left railing", &railing, iron, DVec3::new(-CORRIDOR_HALF - 0.05, rail_height, 0.0)),
-        placed("right railing", &railing, iron, DVec3::new(CORRIDOR_HALF + 0.05, rail_height, 0.0)),
+        placed("beams", &Arc::new(beams), matte(WOOD), DVec3::new(0.0, DECK - 0.14, 0.0)),
+        placed("left railing", &railing, iron, DVec3::new(-DECK_HALF + 0.04, rail_height, 0.0)),
+        placed("right railing", &railing, iron, DVec3::new(DECK_HALF - 0.04, rail_height, 0.0)),
         stairs,
     ])
 }
