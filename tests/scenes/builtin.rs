@@ -16,7 +16,7 @@ const SIZE: [u32; 2] = [160, 120];
 const ASPECT: f64 = 160.0 / 120.0;
 
 /// What is a sheet and not a solid.
-const OPEN: [(&str, &[&str]); 10] = [
+const OPEN: [(&str, &[&str]); 8] = [
     ("rings", &["plane"]),
     (
         "panels",
@@ -38,8 +38,6 @@ const OPEN: [(&str, &[&str]); 10] = [
     ("teapot-like", &["pot", "cup"]),
     ("gate", &["floor", "wall"]),
     ("tiger-cage", &["floor", "lamp"]),
-    ("tori", &[]),
-    ("table", &[]),
 ];
 /// Scenes whose eye starts in a shadow.
 const IN_SHADE: [&str; 2] = ["inside", "tiger-cage"];
@@ -186,30 +184,39 @@ fn builtin_scenes_show_their_shadows_and_z_fail_is_right() {
     assert!(z_pass_views >= 16, "{z_pass_views} of 24 views have the eye in the light");
 }
 
-/// From three places around what is looked at, near and far, some of them in walls or outside.
+/// From three places around what is looked at, near and far, where light and shadow can be seen.
 #[test]
 fn z_fail_is_right_in_every_builtin_scene_from_anywhere() {
     let mut session = session();
     for builtin in ALL {
         let mut random = Random::new(11);
-        let start = named(builtin.name);
-        let reach = start.camera.eye.distance(start.camera.target);
-        for view in 0..3 {
-            let mut scene = start.at(random.unit() * 10.0);
-            let height = random.unit() * 0.8 + 0.2;
-            let around = random.within(1.0).with_y(height).normalize();
-            scene.camera.eye = start.camera.target + around * reach * (0.3 + 0.8 * random.unit());
-            scene.camera.near = reach * (0.002 + 0.05 * random.unit());
+        let (mut views, mut tries) = (0, 0);
+        while views < 3 {
+            tries += 1;
+            assert!(tries <= 40, "{}: {views} of {tries} views show light and shadow", builtin.name);
+            let scene = from_anywhere(&named(builtin.name), &mut random);
             let capture = judged(&mut session, &scene, Technique::ZFail, SIZE);
+            assert_z_fail_holds(&scene, &capture, &format!("{:?}", scene.camera));
+            // Walls seen from behind say little.
             let labels: Vec<[u64; 4]> = (0..scene.lights.len()).map(|light| seen(&capture, light)).collect();
-            println!("{}, view {view}: {labels:?}", scene.name);
-            assert_z_fail_holds(&scene, &capture, &format!("view {view} {:?}", scene.camera));
+            views += u32::from(labels.iter().all(|labels| labels[0] >= 300 && labels[1] >= 100));
             if is_eye_lit(&scene, ASPECT) && scene.name != "gate" {
                 let capture = judged(&mut session, &scene, Technique::ZPass, SIZE);
-                assert_eq!(wrong(&capture), 0, "{}, view {view}: {}", scene.name, worst(&capture));
+                assert_eq!(wrong(&capture), 0, "{}, {:?}: {}", scene.name, scene.camera, worst(&capture));
             }
         }
     }
+}
+
+/// Some moment of the scene, seen from somewhere else.
+fn from_anywhere(start: &Scene, random: &mut Random) -> Scene {
+    let mut scene = start.at(random.unit() * 10.0);
+    let reach = start.camera.eye.distance(start.camera.target);
+    let height = random.unit() * 0.8 + 0.2;
+    let around = random.within(1.0).with_y(height).normalize();
+    scene.camera.eye = start.camera.target + around * reach * (0.3 + 0.8 * random.unit());
+    scene.camera.near = reach * (0.002 + 0.05 * random.unit());
+    scene
 }
 
 /// The eye is in the volume of one slat, the near plane cuts those of its neighbours.

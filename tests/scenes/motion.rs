@@ -142,7 +142,7 @@ fn z_fail_is_right_whatever_is_mirrored_stretched_turned_and_moved() {
         assert_eq!(error.wrong(), 0, "{seconds} s: {error:?}");
         for light in &capture.lights {
             let labels = light.truth.as_ref().expect("judged").labels.histogram();
-            assert!(labels[0] >= 300 && labels[1] >= 200, "{seconds} s: {labels:?}");
+            assert!(labels[0] >= 300 && labels[1] >= 100, "{seconds} s: {:?}", &labels[..4]);
         }
     }
 }

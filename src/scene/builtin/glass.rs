@@ -27,15 +27,15 @@ const PANE_OPACITY: f32 = 0.4;
 /// The wall is at z = −1.8; the light stands in front to the left, so that the casters fit one
 /// cone and their shadows are thrown to the right, where the eye sees them.
 pub fn build() -> Result<Scene, MeshError> {
-    let floor = Arc::new(shapes::quad([10.0, 6.0])?);
-    let wall = Arc::new(shapes::parallelogram(DVec3::new(-5.0, 0.0, -1.8), [DVec3::X * 10.0, DVec3::Y * 3.4])?);
+    let floor = Arc::new(shapes::quad([13.0, 6.0])?);
+    let wall = Arc::new(shapes::parallelogram(DVec3::new(-6.5, 0.0, -1.8), [DVec3::X * 13.0, DVec3::Y * 3.4])?);
     let ball = Arc::new(shapes::sphere(0.32, 48, 24)?);
     let stand = Arc::new(shapes::cylinder(0.3, 0.5, 48)?);
     let mut objects = vec![
         placed("floor", &floor, matte(FLOOR), DVec3::new(0.0, 0.0, 1.2)),
         Object::new("wall", wall, matte(WALL)),
-        placed("stand", &stand, matte(WOOD), DVec3::new(1.75, 0.25, -0.2)),
-        placed("ball", &ball, glossy(BALL), DVec3::new(1.75, 0.81, -0.2)),
+        placed("stand", &stand, matte(WOOD), DVec3::new(1.6, 0.25, -0.2)),
+        placed("ball", &ball, glossy(BALL), DVec3::new(1.6, 0.81, -0.2)),
     ];
     let pane = Arc::new(shapes::cuboid(PANE_SIZE)?);
     objects.extend(PANES.iter().map(|(name, color, [x, z], degrees)| {
@@ -49,7 +49,7 @@ pub fn build() -> Result<Scene, MeshError> {
     Ok(Scene {
         name: "glass".to_owned(),
         ambient: [0.15, 0.15, 0.16],
-        camera: camera([2.7, 2.9, 4.8], [0.3, 0.7, -0.6], 38.0),
+        camera: camera([2.7, 2.9, 4.8], [0.4, 0.72, -0.6], 39.0),
         lights: vec![Light { color: [1.0, 0.96, 0.9], ..Light::point(DVec3::new(-2.1, 2.0, 3.2)) }],
         objects,
         technique: None,

@@ -133,7 +133,7 @@ pub fn stairs(steps: u32, rise: f64, run: f64, width: f64) -> Result<Mesh, MeshE
     let on_side = |[x, y]: [f64; 2], side: f64| DVec3::new(x, y, side * width / 2.0);
     for (index, from) in outline.iter().enumerate() {
         let to = outline[(index + 1) % outline.len()];
-        add_quad(&mut builder, [on_side(*from, 1.0), on_side(*from, -1.0), on_side(to, -1.0), on_side(to, 1.0)]);
+        add_quad(&mut builder, [on_side(*from, 1.0), on_side(to, 1.0), on_side(to, -1.0), on_side(*from, -1.0)]);
     }
     // The lowest corner at the back sees the whole outline, which runs clockwise seen from +z.
     for pair in outline[1..].windows(2) {
