@@ -219,6 +219,18 @@ fn from_anywhere(start: &Scene, random: &mut Random) -> Scene {
     scene
 }
 
+/// Flattening serves every flat receiver of a scene, and no other.
+#[test]
+fn planar_shadows_are_right_on_panels_and_not_enough_on_steps() {
+    let mut session = session();
+    let mut wrong_in = |name: &str| wrong(&judged(&mut session, &named(name), Technique::Planar, SIZE));
+    for name in ["rings", "panels", "tetrahedron"] {
+        assert_eq!(wrong_in(name), 0, "{name}");
+    }
+    let on_balls = wrong_in("steps");
+    assert!(on_balls >= 100, "{on_balls}");
+}
+
 /// The eye is in the volume of one slat, the near plane cuts those of its neighbours.
 #[test]
 fn inside_is_inside_one_volume_and_cuts_two_others() {

@@ -27,8 +27,8 @@ const PANE_OPACITY: f32 = 0.4;
 /// The wall is at z = −1.8; the light stands in front to the left, so that the casters fit one
 /// cone and their shadows are thrown to the right, where the eye sees them.
 pub fn build() -> Result<Scene, MeshError> {
-    let floor = Arc::new(shapes::quad([13.0, 6.0])?);
-    let wall = Arc::new(shapes::parallelogram(DVec3::new(-6.5, 0.0, -1.8), [DVec3::X * 13.0, DVec3::Y * 3.4])?);
+    let floor = Arc::new(shapes::quad([15.0, 6.0])?);
+    let wall = Arc::new(shapes::parallelogram(DVec3::new(-7.5, 0.0, -1.8), [DVec3::X * 15.0, DVec3::Y * 3.4])?);
     let ball = Arc::new(shapes::sphere(0.32, 48, 24)?);
     let stand = Arc::new(shapes::cylinder(0.3, 0.5, 48)?);
     let mut objects = vec![

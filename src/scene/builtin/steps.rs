@@ -12,12 +12,13 @@ const FLOOR: [f32; 3] = [0.50, 0.48, 0.45];
 const STONE: [f32; 3] = [0.60, 0.55, 0.47];
 const BRICK: [f32; 3] = [0.48, 0.20, 0.12];
 
-/// Balls on the floor and on steps of the flight that receives.
-const BALLS: [(&str, [f32; 3], [f64; 3]); 4] = [
+/// Balls on the floor and on steps; orange and yellow are partly in the shadow of a flight.
+const BALLS: [(&str, [f32; 3], [f64; 3]); 5] = [
     ("blue ball", [0.09, 0.40, 0.78], [0.62, 0.60, 0.45]),
     ("green ball", [0.02, 0.36, 0.20], [1.37, 1.20, -0.5]),
-    ("orange ball", [0.78, 0.35, 0.02], [-1.0, 0.30, 0.3]),
-    ("yellow ball", [0.85, 0.68, 0.06], [-0.6, 0.30, 1.75]),
+    ("orange ball", [0.78, 0.35, 0.02], [-0.35, 0.30, -0.78]),
+    ("yellow ball", [0.85, 0.68, 0.06], [1.75, 0.30, 1.62]),
+    ("purple ball", [0.60, 0.19, 0.38], [-0.75, 0.30, 1.2]),
 ];
 const BALL_RADIUS: f64 = 0.3;
 
