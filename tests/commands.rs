@@ -72,7 +72,7 @@ fn broken_input_is_refused_in_one_line_with_the_mend() {
         ("missing.toml", &["missing.toml", "no such file"]),
         ("technique.toml", &["planer", "did you mean `planar`?"]),
         ("tory", &["tory", "did you mean `tori`?"]),
-        ("nothing-like-it", &["choose one of tori, table"]),
+        ("nothing-like-it", &["choose one of tori, rings"]),
     ];
     for (scene, words) in cases {
         assert_fails(&["capture", scene, "-o", "out"], 2, words);
@@ -207,7 +207,7 @@ fn scenes_lists_names_first_and_as_json() {
     let output = run(folder.path(), &["scenes"]);
     let lines = text(&output.stdout);
     let first_words: Vec<&str> = lines.lines().filter_map(|line| line.split_whitespace().next()).collect();
-    assert_eq!(first_words[..2], ["tori", "table"]);
+    assert_eq!(first_words[..2], ["tori", "rings"]);
     assert_eq!(run(folder.path(), &["scenes", "--json", "list.json"]).status.code(), Some(0));
     let json: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(folder.path().join("list.json")).expect("a file")).expect("JSON");

@@ -1,9 +1,12 @@
 //! Shapes and built-in scenes: what techniques rely on.
 
+mod builtin;
+mod motion;
+
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
-use stencilscope::scene::builtin::{self, shapes};
-use stencilscope::scene::{Mesh, MeshBuilder, OpenSpec, Scene, model_scene, open};
+use stencilscope::scene::builtin::shapes;
+use stencilscope::scene::{Camera, Light, Mesh, MeshBuilder, Object, OpenSpec, Scene, model_scene, open};
 
 /// How often each directed edge is used, less how often its reverse is: all zero when closed.
 fn open_edges(mesh: &Mesh) -> usize {
@@ -25,6 +28,7 @@ fn volume(mesh: &Mesh) -> f64 {
 #[test]
 fn closed_shapes_are_watertight_and_face_outward() {
     use std::f64::consts::PI;
+    let opening = |column, row| [(1, 0), (2, 1)].contains(&(column, row));
     let shapes = [
         ("box", shapes::cuboid([1.0, 2.0, 3.0]), 6.0, 1e-12),
         ("room", shapes::room([1.0, 2.0, 3.0]), -6.0, 1e-12),
@@ -33,12 +37,49 @@ fn closed_shapes_are_watertight_and_face_outward() {
         ("sphere", shapes::sphere(2.0, 96, 48), 4.0 / 3.0 * PI * 8.0, 0.1),
         ("torus", shapes::torus(1.0, 0.25, 96, 48), 2.0 * PI * PI * 0.0625, 0.01),
         ("cylinder", shapes::cylinder(1.0, 3.0, 96), 3.0 * PI, 0.01),
+        // 4 + 3 + 2 + 1 blocks of 0.5 × 0.2 × 3.
+        ("stairs", shapes::stairs(4, 0.2, 0.5, 3.0), 3.0, 1e-12),
+        // Four by three, less a window of 2 × 1 and a door of 1 × 1.
+        ("plate", shapes::plate(&[0.0, 1.0, 2.0, 4.0], &[0.0, 1.0, 2.0, 3.0], 0.5, opening), 4.5, 1e-12),
     ];
     for (name, mesh, expected, tolerance) in shapes {
         let mesh = mesh.expect(name);
         assert_eq!(open_edges(&mesh), 0, "{name}");
         assert!((volume(&mesh) - expected).abs() <= tolerance, "{name}: {}", volume(&mesh));
         assert_eq!(mesh.dropped_triangles(), 0, "{name}");
+    }
+}
+
+#[test]
+fn open_shapes_face_where_they_say() {
+    let normal = |mesh: &Mesh, triangle: usize| {
+        let [a, b, c] = mesh.triangles()[triangle].map(|vertex| mesh.positions()[vertex as usize]);
+        (b - a).cross(c - a).normalize()
+    };
+    let corner = DVec3::new(1.0, 2.0, 3.0);
+    let wall = shapes::parallelogram(corner, [DVec3::X * 2.0, DVec3::Y * 3.0]).expect("a parallelogram");
+    assert_eq!((normal(&wall, 0), normal(&wall, 1)), (DVec3::Z, DVec3::Z));
+    assert_eq!(wall.bounds(), Some((corner, corner + DVec3::new(2.0, 3.0, 0.0))));
+    // A quarter of a ring, thinner towards its end.
+    let bend = |step: u32| DVec2::from_angle(f64::from(step) * 0.2).extend(0.0);
+    let path: Vec<(DVec3, f64)> = (0..8).map(|step| (bend(step), 0.2 - 0.01 * f64::from(step))).collect();
+    let tube = shapes::tube(&path, 12).expect("a tube");
+    assert_eq!((tube.triangles().len(), open_edges(&tube)), (7 * 12 * 2, 2 * 12));
+    for (index, corners) in tube.triangles().iter().enumerate() {
+        let middle = corners.map(|vertex| tube.positions()[vertex as usize]).into_iter().sum::<DVec3>() / 3.0;
+        let on_path = path.iter().map(|(point, _)| middle - *point);
+        let outward = on_path.min_by(|a, b| a.length().total_cmp(&b.length())).expect("a point");
+        assert!(normal(&tube, index).dot(outward) > 0.0, "triangle {index}");
+    }
+}
+
+/// Two boxes side by side share their corners, two apart share none.
+#[test]
+fn joined_meshes_are_welded_where_they_touch() {
+    let one = shapes::cuboid([1.0; 3]).expect("a box");
+    for (offset, corners) in [(1.0, 12), (1.5, 16)] {
+        let both = shapes::joined([(&one, DVec3::ZERO), (&one, DVec3::X * offset)]).expect("two boxes");
+        assert_eq!((both.positions().len(), both.triangles().len(), open_edges(&both)), (corners, 24, 0));
     }
 }
 
@@ -61,56 +102,62 @@ fn crosses(from: DVec3, to: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
     u >= 0.0 && v >= 0.0 && u + v <= 1.0 && (0.0..=1.0).contains(&t)
 }
 
-/// Nothing that casts stands between the light and the eye or the near plane, and nothing is cut
-/// by the near plane.
-fn assert_eye_is_clear(scene: &Scene) {
-    let camera = &scene.camera;
-    assert_eq!(camera.check(), Ok(()), "{}", scene.name);
+/// How many triangles of the object the segment crosses.
+fn crossings(object: &Object, from: DVec3, to: DVec3) -> usize {
+    let world = object.world_positions();
+    let crossed = |corners: &&[u32; 3]| crosses(from, to, corners.map(|vertex| world[vertex as usize]));
+    object.mesh.triangles().iter().filter(crossed).count()
+}
+
+/// The light, or a point far towards it.
+fn place_of(light: &Light) -> DVec3 {
+    if light.is_directional() { light.position.truncate().normalize() * 1e4 } else { light.position.truncate() }
+}
+
+/// 9 × 9 points of the near rectangle of a picture so much wider than high, and the eye.
+fn near_points(camera: &Camera, aspect: f64) -> Vec<DVec3> {
     let forward = (camera.target - camera.eye).normalize();
     let right = forward.cross(camera.up).normalize();
     let up = right.cross(forward);
     let half = camera.near * (camera.fov_y_degrees.to_radians() / 2.0).tan();
-    let steps = [-1.0, -0.5, 0.0, 0.5, 1.0];
-    let on_near_plane = |x: f64, y: f64| camera.eye + forward * camera.near + (right * x * 16.0 / 9.0 + up * y) * half;
+    let steps = || (-4..=4).map(|step| f64::from(step) / 4.0);
+    let on_near_plane = |x: f64, y: f64| camera.eye + forward * camera.near + (right * x * aspect + up * y) * half;
     let mut points = vec![camera.eye];
-    points.extend(steps.iter().flat_map(|x| steps.iter().map(move |y| on_near_plane(*x, *y))));
-    for object in &scene.objects {
-        let world = object.world_positions();
-        for corners in object.mesh.triangles() {
-            let triangle = corners.map(|vertex| world[vertex as usize]);
-            for point in &points {
-                let light = scene.lights[0].position.truncate();
-                assert!(
-                    !object.casts || !crosses(light, *point, triangle),
-                    "{}: {} shadows the eye",
-                    scene.name,
-                    object.name
-                );
-                assert!(!crosses(camera.eye, *point, triangle), "{}: {} is cut", scene.name, object.name);
-            }
-        }
-    }
+    points.extend(steps().flat_map(|x| steps().map(move |y| (x, y))).map(|(x, y)| on_near_plane(x, y)));
+    points
 }
 
-#[test]
-fn builtin_scenes_start_with_a_clear_eye() {
-    for builtin in builtin::ALL {
-        let scene = builtin.scene().expect(builtin.name);
-        assert_eq!(scene.name, builtin.name);
-        assert_eye_is_clear(&scene);
-        let mut names: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
-        names.sort_unstable();
-        names.dedup();
-        assert_eq!(names.len(), scene.objects.len(), "names are unique");
+/// Nothing that casts stands between a light and the eye or the near plane.
+fn is_eye_lit(scene: &Scene, aspect: f64) -> bool {
+    let points = near_points(&scene.camera, aspect);
+    scene.objects.iter().filter(|object| object.casts).all(|object| {
+        let lit = |light: &Light| points.iter().all(|point| crossings(object, place_of(light), *point) == 0);
+        scene.lights.iter().all(lit)
+    })
+}
+
+/// Nothing is cut by the near plane, and the eye is in no solid.
+fn assert_eye_is_free(scene: &Scene) {
+    assert_eq!(scene.camera.check(), Ok(()), "{}", scene.name);
+    let eye = scene.camera.eye;
+    for object in &scene.objects {
+        for point in near_points(&scene.camera, 16.0 / 9.0) {
+            assert_eq!(crossings(object, eye, point), 0, "{}: {} is cut", scene.name, object.name);
+        }
+        // In no particular direction, so that it meets no edge.
+        let away = eye + DVec3::new(0.317, 0.841, -0.439) * 1e4;
+        let is_solid = open_edges(&object.mesh) == 0 && volume(&object.mesh) > 0.0;
+        let is_outside = crossings(object, eye, away).is_multiple_of(2);
+        assert!(!is_solid || is_outside, "{}: the eye is in {}", scene.name, object.name);
     }
-    assert!(open(&OpenSpec::new("tori")).expect("tori").is_animated());
 }
 
 #[test]
 fn a_model_gets_a_floor_a_light_and_a_camera_from_its_bounds() {
     let mesh = shapes::cuboid([1.0, 2.0, 3.0]).expect("a box");
     let scene = model_scene("box", mesh.clone(), true).expect("a scene");
-    assert_eye_is_clear(&scene);
+    assert_eye_is_free(&scene);
+    assert!(is_eye_lit(&scene, 16.0 / 9.0));
     let (low, high) = scene.objects[1].mesh.bounds().expect("a floor");
     // The extents' sum is 6.
     assert_eq!(low, DVec3::new(-30.0, -1.06, -30.0));

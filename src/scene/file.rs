@@ -3,6 +3,18 @@
 //! The text becomes plain tables (`tables`) that know where each value stands; those are
 //! checked and become a [`Scene`] (`build`), meshes by `shape`. Whatever is wrong ends as one
 //! line: file, line, what, mend.
+//!
+//! Objects and lights move by keys of their tables, all optional. A lamp that hangs and swings is
+//! an object and a light with the same `swing`:
+//!
+//! ```toml
+//! spin_degrees_per_second = [0, 20, 0]                                    # objects only
+//! orbit = { center = [0, 1, 0], axis = [0, 1, 0], degrees_per_second = 30 }
+//! swing = { pivot = [0, 5, 0], axis = [0, 0, 1], degrees = 12, period_seconds = 2.4 }
+//! ```
+//!
+//! An orbit carries a thing along a circle without turning it; a swing turns it with its cord, as
+//! far as `degrees` to either side, from rest at second 0.
 
 mod build;
 mod problem;

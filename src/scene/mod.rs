@@ -25,7 +25,7 @@ pub use light::Light;
 pub use material::{Material, Shading};
 pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
 pub use model_scene::model_scene;
-pub use object::{Motion, Object, Orbit, Pose};
+pub use object::{Motion, Object, Orbit, Pose, Swing};
 pub use open::{OpenSpec, open};
 pub use suggestion::suggestion;
 
@@ -59,8 +59,8 @@ pub struct TechniqueRequest {
 }
 
 impl Scene {
-    /// The scene `seconds` after its start: objects spun and lights and objects moved along
-    /// their orbits. Motions are kept, so `scene.at(a)` is not the start of `at(b)`: always
+    /// The scene `seconds` after its start: objects spun, and lights and objects moved along
+    /// their orbits and on their pendulums. Motions are kept, so `scene.at(a)` is not the start of `at(b)`: always
     /// call it on the scene as loaded.
     #[must_use]
     pub fn at(&self, seconds: f64) -> Scene {

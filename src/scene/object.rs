@@ -1,7 +1,8 @@
 //! One placed mesh, and how placed things move.
 
 use super::{Material, Mesh};
-use glam::{DMat4, DQuat, DVec3, DVec4};
+use glam::{DMat4, DQuat, DVec3, DVec4, EulerRot};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// A mesh placed in the world. One object is one caster, whatever groups its mesh has: groups
@@ -74,19 +75,36 @@ impl Pose {
     /// The matrix of this pose.
     #[must_use]
     pub fn world_from_object(&self) -> DMat4 {
+        DMat4::from_scale_rotation_translation(self.scale, self.rotation(), self.translate)
+    }
+
+    fn rotation(&self) -> DQuat {
         let [x, y, z] = self.rotate_degrees.to_array().map(f64::to_radians);
-        let rotation = DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
-        DMat4::from_scale_rotation_translation(self.scale, rotation, self.translate)
+        DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x)
+    }
+
+    /// The same scale, turned and moved as one rigid thing about a point.
+    fn turned_about(&self, pivot: DVec3, turn: DQuat) -> Pose {
+        // About fixed x, then y, then z is the same as about moving z, then y, then x.
+        let (z, y, x) = (turn * self.rotation()).to_euler(EulerRot::ZYX);
+        Pose {
+            translate: pivot + turn * (self.translate - pivot),
+            rotate_degrees: DVec3::new(x, y, z).map(f64::to_degrees),
+            scale: self.scale,
+        }
     }
 }
 
-/// How an object or a light moves. Still by default.
+/// How an object or a light moves. Still by default. An object spins, then runs along its orbit,
+/// then swings; a light only has a position.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Motion {
     /// Added to [`Pose::rotate_degrees`] every second.
     pub spin_degrees_per_second: DVec3,
-    /// A circle that the position runs along.
+    /// A circle that the position runs along; the object does not turn with it.
     pub orbit: Option<Orbit>,
+    /// To and fro about an axis, as a pendulum does; the object turns with it.
+    pub swing: Option<Swing>,
 }
 
 /// A circle about an axis.
@@ -100,11 +118,27 @@ pub struct Orbit {
     pub degrees_per_second: f64,
 }
 
+/// A pendulum: what hangs on it at second 0 hangs at rest then, and moves fastest. Its angle is a
+/// sine of time, which is what a pendulum's is as long as it stays small.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Swing {
+    /// A point of the axis, world units: where the cord is fixed.
+    pub pivot: DVec3,
+    /// Direction of the axis, not zero.
+    pub axis: DVec3,
+    /// The largest angle on either side; first counter-clockwise seen from the axis' tip.
+    pub degrees: f64,
+    /// Seconds for once to and fro, > 0.
+    pub period_seconds: f64,
+}
+
 impl Motion {
-    /// Neither spins nor orbits.
+    /// Neither spins nor orbits nor swings.
     #[must_use]
     pub fn is_still(&self) -> bool {
-        self.spin_degrees_per_second == DVec3::ZERO && self.orbit.is_none_or(|o| o.degrees_per_second == 0.0)
+        self.spin_degrees_per_second == DVec3::ZERO
+            && self.orbit.is_none_or(|orbit| orbit.degrees_per_second == 0.0)
+            && self.swing.is_none_or(|swing| swing.degrees == 0.0)
     }
 
     /// The pose `seconds` later.
@@ -112,17 +146,30 @@ impl Motion {
     pub fn apply(&self, pose: &Pose, seconds: f64) -> Pose {
         let translate = self.orbit.map_or(pose.translate, |orbit| orbit.point_at(pose.translate, seconds));
         let rotate_degrees = pose.rotate_degrees + self.spin_degrees_per_second * seconds;
-        Pose { translate, rotate_degrees, ..*pose }
+        let moved = Pose { translate, rotate_degrees, ..*pose };
+        match self.turn_of_swing(seconds) {
+            Some((pivot, turn)) => moved.turned_about(pivot, turn),
+            None => moved,
+        }
     }
 
     /// The homogeneous light position `seconds` later; a direction turns about the axis.
     #[must_use]
     pub fn apply_to_light(&self, position: DVec4, seconds: f64) -> DVec4 {
-        let Some(orbit) = self.orbit else { return position };
-        if position.w == 0.0 {
-            return (orbit.rotation_at(seconds) * position.truncate()).extend(0.0);
+        let orbited = self.orbit.map_or(position, |orbit| orbit.light_at(position, seconds));
+        let Some((pivot, turn)) = self.turn_of_swing(seconds) else { return orbited };
+        if orbited.w == 0.0 {
+            return (turn * orbited.truncate()).extend(0.0);
         }
-        orbit.point_at(position.truncate(), seconds).extend(position.w)
+        (pivot + turn * (orbited.truncate() - pivot)).extend(orbited.w)
+    }
+
+    /// Pivot and rotation; `None` at rest, so that what does not move keeps its very bits.
+    fn turn_of_swing(&self, seconds: f64) -> Option<(DVec3, DQuat)> {
+        let swing = self.swing?;
+        let degrees = swing.degrees * (TAU * seconds / swing.period_seconds).sin();
+        let turn = || DQuat::from_axis_angle(swing.axis.normalize(), degrees.to_radians());
+        (degrees != 0.0).then(|| (swing.pivot, turn()))
     }
 }
 
@@ -136,5 +183,12 @@ impl Orbit {
             return start;
         }
         self.center + self.rotation_at(seconds) * (start - self.center)
+    }
+
+    fn light_at(&self, position: DVec4, seconds: f64) -> DVec4 {
+        if position.w == 0.0 {
+            return (self.rotation_at(seconds) * position.truncate()).extend(0.0);
+        }
+        self.point_at(position.truncate(), seconds).extend(position.w)
     }
 }

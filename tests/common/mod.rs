@@ -10,6 +10,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use stencilscope::capture::Capture;
+use stencilscope::progress::Progress;
 use stencilscope::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::{Choice, Technique};
@@ -82,4 +83,11 @@ pub fn names(folder: &Path) -> Vec<String> {
         entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
     names.sort();
     names
+}
+
+/// A capture held against the ground truth.
+pub fn judged(session: &mut Session, scene: &Scene, technique: Technique, size: [u32; 2]) -> Capture {
+    let mut capture = session.capture(scene, &request(technique, size)).expect("a capture");
+    session.judge(scene, &mut capture, &Progress::default()).expect("a truth");
+    capture
 }

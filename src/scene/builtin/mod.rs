@@ -1,10 +1,20 @@
 //! Scenes made by code, each small and for one lesson.
 
+mod gate;
+mod glass;
+mod inside;
+mod panels;
+mod rings;
 pub mod shapes;
+mod steps;
 mod table;
+mod teapot_like;
+mod tetrahedron;
+mod tiger_cage;
 mod tori;
+mod two_lights;
 
-use super::{Material, Mesh, MeshError, Motion, Object, Pose, Scene, SceneError};
+use super::{Camera, Material, Mesh, MeshError, Motion, Object, Pose, Scene, SceneError, Shading};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -26,9 +36,59 @@ pub const ALL: &[Builtin] = &[
         build: tori::build,
     },
     Builtin {
+        name: "rings",
+        lesson: "three tori and a plane: planar shadows, and the anti-shadow and false shadow that clipping prevents",
+        build: rings::build,
+    },
+    Builtin {
+        name: "panels",
+        lesson: "four slanted panels in a box room: nine parallelograms, each a receiver with a texture of its own",
+        build: panels::build,
+    },
+    Builtin {
+        name: "tetrahedron",
+        lesson: "a turning tetrahedron in a shaft: the smallest closed caster, and every side of its shadow volume",
+        build: tetrahedron::build,
+    },
+    Builtin {
         name: "table",
         lesson: "a torus and four spheres over a slab: shadow maps with their acne, peter-panning and aliasing",
         build: table::build,
+    },
+    Builtin {
+        name: "glass",
+        lesson: "coloured panes and a solid ball: projective shadow textures, which carry colour and compare no depth",
+        build: glass::build,
+    },
+    Builtin {
+        name: "steps",
+        lesson: "stairs, balls and a wall that shadow each other: receivers that are not flat, where planar is not enough",
+        build: steps::build,
+    },
+    Builtin {
+        name: "inside",
+        lesson: "the eye in a pergola's shadow, whose volumes the near plane cuts: z-pass fails, z-fail holds",
+        build: inside::build,
+    },
+    Builtin {
+        name: "teapot-like",
+        lesson: "an open pot whose spout and handle run through its wall: casters that are not closed, and multiplicity",
+        build: teapot_like::build,
+    },
+    Builtin {
+        name: "gate",
+        lesson: "150 boxes in each other: 300 volumes deep, so that a count of 256 reads 0 and light shines where it can't",
+        build: gate::build,
+    },
+    Builtin {
+        name: "two-lights",
+        lesson: "a lamp and the sun, with shadows that cross: the steps repeat for each light",
+        build: two_lights::build,
+    },
+    Builtin {
+        name: "tiger-cage",
+        lesson: "a prison block with barred cells under a swinging lamp: an interior to walk through with every technique",
+        build: tiger_cage::build,
     },
 ];
 
@@ -52,4 +112,20 @@ impl Builtin {
 fn placed(name: &str, mesh: &Arc<Mesh>, material: Material, translate: DVec3) -> Object {
     let pose = Pose { translate, ..Pose::default() };
     Object { pose, motion: Motion::default(), ..Object::new(name, Arc::clone(mesh), material) }
+}
+
+/// A dull surface with one normal a triangle.
+fn matte(color: [f32; 3]) -> Material {
+    Material { color, ..Material::default() }
+}
+
+/// A smooth surface with a highlight.
+fn glossy(color: [f32; 3]) -> Material {
+    Material { color, specular: 0.25, shininess: 40.0, shading: Shading::Phong, opacity: 1.0 }
+}
+
+/// An eye that looks at a target, up being up, with a vertical field of view in degrees.
+fn camera(eye: [f64; 3], target: [f64; 3], fov_y_degrees: f64) -> Camera {
+    let [eye, target] = [eye, target].map(DVec3::from_array);
+    Camera { eye, target, up: DVec3::Y, fov_y_degrees, near: 0.05, far: None }
 }

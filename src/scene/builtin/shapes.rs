@@ -108,6 +108,120 @@ pub fn revolve(profile: &[DVec2], closed: bool, around: u32) -> Result<Mesh, Mes
     builder.build()
 }
 
+/// A parallelogram with a corner there and these two edges; it faces along their cross product.
+///
+/// # Errors
+/// As [`quad`].
+pub fn parallelogram(corner: DVec3, edges: [DVec3; 2]) -> Result<Mesh, MeshError> {
+    let [x, y] = edges;
+    let mut builder = MeshBuilder::default();
+    add_quad(&mut builder, [corner, corner + x, corner + x + y, corner + y]);
+    builder.build()
+}
+
+/// Closed solid stairs: from the origin `steps` up and along x, each `rise` high and `run` deep, and
+/// `width` wide with the origin's z in the middle.
+///
+/// # Errors
+/// As [`quad`].
+pub fn stairs(steps: u32, rise: f64, run: f64, width: f64) -> Result<Mesh, MeshError> {
+    let tread = |step: u32, x: u32| [f64::from(x) * run, f64::from(step + 1) * rise];
+    let treads = (0..steps).flat_map(|step| [tread(step, step), tread(step, step + 1)]);
+    let mut outline = vec![[f64::from(steps) * run, 0.0], [0.0, 0.0]];
+    outline.extend(treads);
+    let mut builder = MeshBuilder::default();
+    let on_side = |[x, y]: [f64; 2], side: f64| DVec3::new(x, y, side * width / 2.0);
+    for (index, from) in outline.iter().enumerate() {
+        let to = outline[(index + 1) % outline.len()];
+        add_quad(&mut builder, [on_side(*from, 1.0), on_side(to, 1.0), on_side(to, -1.0), on_side(*from, -1.0)]);
+    }
+    // The lowest corner at the back sees the whole outline, which runs clockwise seen from +z.
+    for pair in outline[1..].windows(2) {
+        add_triangle(&mut builder, [outline[0], pair[1], pair[0]].map(|point| on_side(point, 1.0)));
+        add_triangle(&mut builder, [outline[0], pair[0], pair[1]].map(|point| on_side(point, -1.0)));
+    }
+    builder.build()
+}
+
+/// A closed upright plate with openings: its faces are cut into a grid by the lines at `xs` and
+/// `ys`, both rising, and the cells that `is_open(column, row)` names are left out. `thickness`
+/// along z, the origin's z in the middle.
+///
+/// # Errors
+/// As [`quad`].
+pub fn plate(
+    xs: &[f64],
+    ys: &[f64],
+    thickness: f64,
+    is_open: impl Fn(usize, usize) -> bool,
+) -> Result<Mesh, MeshError> {
+    let corner = |x: usize, y: usize, side: f64| DVec3::new(xs[x], ys[y], side * thickness / 2.0);
+    let [columns, rows] = [xs, ys].map(|lines| lines.len().saturating_sub(1));
+    let is_solid = |column: Option<usize>, row: Option<usize>| {
+        column.zip(row).is_some_and(|(x, y)| x < columns && y < rows && !is_open(x, y))
+    };
+    let mut builder = MeshBuilder::default();
+    for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))) {
+        if is_open(x, y) {
+            continue;
+        }
+        let around = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
+        add_quad(&mut builder, around.map(|(x, y)| corner(x, y, 1.0)));
+        add_quad(&mut builder, [0, 3, 2, 1].map(|at| corner(around[at].0, around[at].1, -1.0)));
+        // Below, right, above, left: where no solid follows, the plate has an edge.
+        let neighbours =
+            [(Some(x), y.checked_sub(1)), (Some(x + 1), Some(y)), (Some(x), Some(y + 1)), (x.checked_sub(1), Some(y))];
+        for (side, (column, row)) in neighbours.into_iter().enumerate() {
+            let [from, to] = [around[side], around[(side + 1) % 4]];
+            if !is_solid(column, row) {
+                let along = [(from, 1.0), (from, -1.0), (to, -1.0), (to, 1.0)];
+                add_quad(&mut builder, along.map(|((x, y), side)| corner(x, y, side)));
+            }
+        }
+    }
+    builder.build()
+}
+
+/// A tube around a path in a plane of constant z, with its radius at each point; both ends are
+/// open. `around` segments, of which the first faces +z.
+///
+/// # Errors
+/// As [`quad`].
+pub fn tube(path: &[(DVec3, f64)], around: u32) -> Result<Mesh, MeshError> {
+    let mut builder = MeshBuilder::default();
+    for (index, (point, radius)) in path.iter().enumerate() {
+        let before = path[index.saturating_sub(1)].0;
+        let after = path[(index + 1).min(path.len() - 1)].0;
+        let outward = (after - before).normalize_or_zero().cross(DVec3::Z);
+        builder.positions.extend((0..around).map(|step| {
+            let (sin, cos) = (TAU * f64::from(step) / f64::from(around)).sin_cos();
+            *point + (DVec3::Z * cos + outward * sin) * *radius
+        }));
+    }
+    let vertex = |ring: u32, step: u32| ring * around + step % around;
+    for (ring, step) in (1..path.len() as u32).flat_map(|ring| (0..around).map(move |step| (ring, step))) {
+        let [a, b] = [vertex(ring - 1, step), vertex(ring - 1, step + 1)];
+        let [c, d] = [vertex(ring, step + 1), vertex(ring, step)];
+        builder.triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    builder.build()
+}
+
+/// Several meshes as one, each moved by an offset. Where they meet in the same vertices they are
+/// joined.
+///
+/// # Errors
+/// As [`quad`].
+pub fn joined<'a>(parts: impl IntoIterator<Item = (&'a Mesh, DVec3)>) -> Result<Mesh, MeshError> {
+    let mut builder = MeshBuilder::default();
+    for (mesh, offset) in parts {
+        let first = builder.positions.len() as u32;
+        builder.positions.extend(mesh.positions().iter().map(|position| *position + offset));
+        builder.triangles.extend(mesh.triangles().iter().map(|corners| corners.map(|vertex| first + vertex)));
+    }
+    builder.build()
+}
+
 /// Points and triangles as given.
 ///
 /// # Errors
@@ -115,6 +229,18 @@ pub fn revolve(profile: &[DVec2], closed: bool, around: u32) -> Result<Mesh, Mes
 pub fn triangles(points: Vec<[f64; 3]>, indices: Vec<[u32; 3]>) -> Result<Mesh, MeshError> {
     let positions = points.into_iter().map(DVec3::from_array).collect();
     MeshBuilder { positions, triangles: indices, ..MeshBuilder::default() }.build()
+}
+
+/// Corners counter-clockwise; equal ones are welded when the mesh is built.
+fn add_quad(builder: &mut MeshBuilder, [a, b, c, d]: [DVec3; 4]) {
+    add_triangle(builder, [a, b, c]);
+    add_triangle(builder, [a, c, d]);
+}
+
+fn add_triangle(builder: &mut MeshBuilder, corners: [DVec3; 3]) {
+    let first = builder.positions.len() as u32;
+    builder.positions.extend(corners);
+    builder.triangles.push([first, first + 1, first + 2]);
 }
 
 fn cuboid_builder(size: [f64; 3]) -> MeshBuilder {

@@ -104,7 +104,8 @@ impl Orbiting {
         let mut object = placed(self.name, mesh, material, start);
         object.pose.rotate_degrees = self.rotate_degrees;
         let orbit = Orbit { center: LIGHT, axis: DVec3::Y, degrees_per_second: self.degrees_per_second };
-        object.motion = Motion { spin_degrees_per_second: self.spin_degrees_per_second, orbit: Some(orbit) };
+        object.motion =
+            Motion { spin_degrees_per_second: self.spin_degrees_per_second, orbit: Some(orbit), ..Motion::default() };
         object
     }
 }

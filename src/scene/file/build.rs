@@ -3,13 +3,14 @@
 use super::problem::Problem;
 use super::shape;
 use super::tables::{
-    CameraTable, LightTable, MaterialTable, MeshSource, Number, ObjectTable, OrbitTable, SceneTable, TechniqueTable,
-    Text, Triple,
+    CameraTable, LightTable, MaterialTable, MeshSource, Number, ObjectTable, OrbitTable, SceneTable, SwingTable,
+    TechniqueTable, Text, Triple,
 };
 use crate::scene::placement::Surroundings;
 use crate::scene::suggestion;
 use crate::scene::{
-    Camera, Light, Material, Mesh, Motion, Object, Orbit, Pose, Scene, Shading, TechniqueRequest, obj, open::stem,
+    Camera, Light, Material, Mesh, Motion, Object, Orbit, Pose, Scene, Shading, Swing, TechniqueRequest, obj,
+    open::stem,
 };
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -107,20 +108,55 @@ fn light(table: &LightTable) -> Result<Light, Problem> {
         color: table.color.as_ref().map_or(Ok(default.color), |rgb| color(rgb, f64::MAX))?,
         intensity: table.intensity.as_ref().map_or(Ok(1.0), |value| within(value, 0.0, f64::from(f32::MAX)))?,
         range: table.range.as_ref().map(positive).transpose()?,
-        motion: Motion { orbit: table.orbit.as_ref().map(orbit).transpose()?, ..Motion::default() },
+        motion: motion(DVec3::ZERO, table.orbit.as_ref(), table.swing.as_ref())?,
         ..default
     };
     light.check().map_err(|reason| Problem::new(place.span(), format!("{reason}: correct it")))?;
     Ok(light)
 }
 
+fn motion(
+    spin_degrees_per_second: DVec3,
+    orbit: Option<&OrbitTable>,
+    swing: Option<&SwingTable>,
+) -> Result<Motion, Problem> {
+    Ok(Motion {
+        spin_degrees_per_second,
+        orbit: orbit.map(self::orbit).transpose()?,
+        swing: swing.map(self::swing).transpose()?,
+    })
+}
+
 fn orbit(table: &OrbitTable) -> Result<Orbit, Problem> {
-    let axis = finite(&table.axis)?;
-    if axis.try_normalize().is_none() {
-        return Err(Problem::new(table.axis.span(), "the axis of an orbit has no direction: correct it"));
-    }
+    let axis = axis(&table.axis, "an orbit")?;
     let degrees_per_second = finite_number(&table.degrees_per_second)?;
     Ok(Orbit { center: finite(&table.center)?, axis, degrees_per_second })
+}
+
+fn swing(table: &SwingTable) -> Result<Swing, Problem> {
+    Ok(Swing {
+        pivot: finite(&table.pivot)?,
+        axis: axis(&table.axis, "a swing")?,
+        degrees: finite_number(&table.degrees)?,
+        period_seconds: period(&table.period_seconds)?,
+    })
+}
+
+/// At least a millisecond: moments counted in far shorter periods have no phase.
+fn period(value: &Number) -> Result<f64, Problem> {
+    let seconds = finite_number(value)?;
+    if seconds >= 0.001 {
+        return Ok(seconds);
+    }
+    Err(Problem::new(value.span(), "a period is at least 0.001 seconds: correct it"))
+}
+
+fn axis(value: &Triple, of: &str) -> Result<DVec3, Problem> {
+    let axis = finite(value)?;
+    match axis.try_normalize() {
+        Some(_) => Ok(axis),
+        None => Err(Problem::new(value.span(), format!("the axis of {of} has no direction: correct it"))),
+    }
 }
 
 fn technique(table: &TechniqueTable) -> Result<TechniqueRequest, Problem> {
@@ -156,10 +192,11 @@ impl ObjectBuilder<'_> {
                 rotate_degrees: triple(&table.rotate_degrees, DVec3::ZERO)?,
                 scale: scale(table.scale.as_ref())?,
             },
-            motion: Motion {
-                spin_degrees_per_second: triple(&table.spin_degrees_per_second, DVec3::ZERO)?,
-                orbit: table.orbit.as_ref().map(orbit).transpose()?,
-            },
+            motion: motion(
+                triple(&table.spin_degrees_per_second, DVec3::ZERO)?,
+                table.orbit.as_ref(),
+                table.swing.as_ref(),
+            )?,
             casts: table.casts.unwrap_or(true),
             receives: table.receives.unwrap_or(true),
             visible: table.visible.unwrap_or(true),

@@ -48,6 +48,7 @@ pub struct LightTable {
     pub intensity: Option<Number>,
     pub range: Option<Number>,
     pub orbit: Option<OrbitTable>,
+    pub swing: Option<SwingTable>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -60,6 +61,15 @@ pub struct OrbitTable {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub struct SwingTable {
+    pub pivot: Triple,
+    pub axis: Triple,
+    pub degrees: Number,
+    pub period_seconds: Number,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ObjectTable {
     pub name: Option<Text>,
     pub mesh: Spanned<MeshSource>,
@@ -68,6 +78,7 @@ pub struct ObjectTable {
     pub scale: Option<Triple>,
     pub spin_degrees_per_second: Option<Triple>,
     pub orbit: Option<OrbitTable>,
+    pub swing: Option<SwingTable>,
     pub casts: Option<bool>,
     pub receives: Option<bool>,
     pub visible: Option<bool>,

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::{Light, Shading};
+use crate::scene::{Light, Motion, Shading, Swing};
 use glam::DVec3;
 
 const SCENE: &str = r#"name = "two shapes"
@@ -19,6 +19,7 @@ orbit = { center = [0, 0, 0], axis = [1, 0, 0], degrees_per_second = 30 }
 [[objects]]
 mesh = { shape = "torus", major = 0.5, minor = 0.2, segments = [8, 6] }
 scale = [1.0, -1.0, 1.0]
+swing = { pivot = [0, 2, 0], axis = [0, 0, 2], degrees = 15, period_seconds = 2.5 }
 material = { color = [0.8, 0.3, 0.2], shading = "phong" }
 [[objects]]
 mesh = { shape = "torus" }
@@ -53,6 +54,8 @@ fn every_table_reaches_the_scene() {
     assert_eq!((first.name.as_str(), second.name.as_str()), ("torus", "torus 2"));
     assert_eq!(first.mesh.triangles().len(), 2 * 8 * 6);
     assert_eq!(first.pose.scale, DVec3::new(1.0, -1.0, 1.0));
+    let swing = Swing { pivot: DVec3::Y * 2.0, axis: DVec3::Z * 2.0, degrees: 15.0, period_seconds: 2.5 };
+    assert_eq!(first.motion, Motion { swing: Some(swing), ..Motion::default() });
     assert_eq!(first.material.shading, Shading::Phong);
     assert!(first.casts && !second.casts);
     let request = scene.technique.expect("a technique");
@@ -107,14 +110,18 @@ fn errors_name_the_line_and_the_mend() {
         ("towards = [0.0, 1.0, 0.0]", "towards = [0, 0, 0]", 13, "direction"),
         ("axis = [1, 0, 0]", "axis = [0, 0, 0]", 14, "axis"),
         ("axis = [1, 0, 0]", "axes = [1, 0, 0]", 14, "did you mean `axis`?"),
+        ("axis = [0, 0, 2]", "axis = [0, 0, 0]", 18, "the axis of a swing"),
+        ("degrees = 15", "degrees = nan", 18, "finite"),
+        ("degrees = 15", "angle = 15", 18, "unknown key `angle`"),
+        ("period_seconds = 2.5", "period_seconds = 0", 18, "at least 0.001"),
         ("\"torus\", major", "\"tours\", major", 16, "did you mean `torus`?"),
         ("major = 0.5", "radius = 0.5", 16, "a torus has no `radius`"),
         ("major = 0.5", "mayor = 0.5", 16, "did you mean `major`?"),
         ("minor = 0.2", "minor = inf", 16, "greater than 0"),
         ("segments = [8, 6]", "segments = 8", 16, "two whole numbers"),
         ("segments = [8, 6]", "segments = [8, 2]", 16, "from 3 to"),
-        ("{ shape = \"torus\" }", "\"missing.obj\"", 20, "missing.obj: there is no such file"),
-        ("{ shape = \"torus\" }", "7", 20, "the path of a model or a table with a shape"),
+        ("{ shape = \"torus\" }", "\"missing.obj\"", 21, "missing.obj: there is no such file"),
+        ("{ shape = \"torus\" }", "7", 21, "the path of a model or a table with a shape"),
         ("scale = [1.0, -1.0, 1.0]", "scale = [1.0, 0.0, 1.0]", 17, "other than 0"),
         ("scale = [1.0, -1.0, 1.0]", "translate = [1e308, 1e308, inf]", 17, "finite"),
         (
@@ -123,10 +130,10 @@ fn errors_name_the_line_and_the_mend() {
             19,
             "another name",
         ),
-        ("color = [0.8, 0.3, 0.2]", "color = [1.8, 0.3, 0.2]", 18, "from 0 to 1"),
-        ("\"phong\"", "\"fong\"", 18, "did you mean `phong`?"),
-        ("casts = false", "casts = \"no\"", 21, "expected true or false"),
-        ("size = 512", "size = [512]", 25, "a text or a number"),
+        ("color = [0.8, 0.3, 0.2]", "color = [1.8, 0.3, 0.2]", 19, "from 0 to 1"),
+        ("\"phong\"", "\"fong\"", 19, "did you mean `phong`?"),
+        ("casts = false", "casts = \"no\"", 22, "expected true or false"),
+        ("size = 512", "size = [512]", 26, "a text or a number"),
         ("[camera]", "[camera", 3, "correct it"),
     ];
     for (from, to, line, words) in cases {

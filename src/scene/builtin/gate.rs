@@ -1,0 +1,54 @@
+//! `gate`: 150 closed boxes, each inside the last, so that up to 300 shadow volumes overlap.
+//!
+//! When every triangle casts, a closed shell counts twice: behind all 150 boxes the count is 300,
+//! which eight bits keep as 44, still a shadow. Behind exactly 128 of them it is 256, which they
+//! keep as 0: a bright frame inside the shadow, where no light can be. The sizes leave room between
+//! the 125th, the 128th and the last box, so that counts of 250, 256 and 300 are all wide enough to
+//! be seen.
+
+use super::{camera, matte, shapes};
+use crate::scene::{Light, Mesh, MeshError, Object, Pose, Scene};
+use glam::DVec3;
+use std::sync::Arc;
+
+const FLOOR: [f32; 3] = [0.55, 0.52, 0.47];
+const WALL: [f32; 3] = [0.44, 0.47, 0.53];
+const GATE: [f32; 3] = [0.62, 0.23, 0.10];
+
+/// Of the outermost box.
+const SIZE: [f64; 3] = [1.7, 2.6, 0.5];
+/// How many boxes, from which to which size relative to the outermost, from outside to inside.
+const GROUPS: [(u32, f64, f64); 3] = [(125, 1.0, 0.95), (3, 0.8, 0.79), (22, 0.6, 0.55)];
+
+/// The floor is at height 0, the wall behind the gate at z = −1.6.
+pub fn build() -> Result<Scene, MeshError> {
+    let floor = shapes::quad([14.0, 10.0])?;
+    let wall = shapes::parallelogram(DVec3::new(-7.0, 0.0, -1.6), [DVec3::X * 14.0, DVec3::Y * 5.0])?;
+    let boxes = Object::new("nested boxes", Arc::new(nested_boxes()?), matte(GATE));
+    let upright = Pose { translate: DVec3::new(-0.9, 1.34, 0.5), ..Pose::default() };
+    Ok(Scene {
+        name: "gate".to_owned(),
+        ambient: [0.15, 0.15, 0.16],
+        camera: camera([1.9, 2.0, 6.6], [0.3, 1.25, -0.6], 38.0),
+        lights: vec![Light { color: [1.0, 0.95, 0.87], ..Light::point(DVec3::new(-3.6, 2.9, 3.8)) }],
+        objects: vec![
+            Object {
+                pose: Pose { translate: DVec3::new(0.0, 0.0, 3.4), ..Pose::default() },
+                ..Object::new("floor", Arc::new(floor), matte(FLOOR))
+            },
+            Object::new("wall", Arc::new(wall), matte(WALL)),
+            Object { pose: upright, ..boxes },
+        ],
+        technique: None,
+    })
+}
+
+/// One mesh, the outermost box first: one caster of 150 closed shells.
+fn nested_boxes() -> Result<Mesh, MeshError> {
+    let sizes = GROUPS.iter().flat_map(|(count, outer, inner)| {
+        let step = (outer - inner) / f64::from(count - 1);
+        (0..*count).map(move |index| outer - step * f64::from(index))
+    });
+    let boxes = sizes.map(|scale| shapes::cuboid(SIZE.map(|n| n * scale))).collect::<Result<Vec<Mesh>, _>>()?;
+    shapes::joined(boxes.iter().map(|one| (one, DVec3::ZERO)))
+}
