@@ -7,6 +7,7 @@ mod common;
 #[cfg(feature = "inspector")]
 mod inspector;
 mod layering;
+mod options;
 mod plan;
 mod ray_cast;
 mod report;

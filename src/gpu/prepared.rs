@@ -58,6 +58,7 @@ impl<'a> Prepared<'a> {
         check_size(device, plan)?;
         buffers.next_plan();
         let textures: Vec<Texture> = plan.attachments.iter().map(|attachment| create(device, attachment)).collect();
+        clear_left_out_faces(context, plan, &textures);
         let views = uniforms::views(device, plan);
         let draws = uniforms::draws(device, plan);
         let lights = uniforms::lights(device, plan);
@@ -166,15 +167,47 @@ fn create(device: &Device, attachment: &Attachment) -> Texture {
     })
 }
 
+/// Faces of maps that no pass draws are cleared once: new textures are zero, which says "dark" in all
+/// but reversed shadow maps.
+fn clear_left_out_faces(context: &Context, plan: &FramePlan, textures: &[Texture]) {
+    let mut encoder = context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    for map in plan.lights.iter().filter_map(|light| light.map.as_ref()) {
+        let left_out = (0..).zip(&map.faces).filter(|(_, view)| view.is_none());
+        for (layer, _) in left_out {
+            let view = layer_view(&textures[map.attachment.0], layer);
+            let store = wgpu::StoreOp::Store;
+            let color = map.lookup.is_none().then(|| wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::WHITE), store },
+            });
+            let depth_stencil_attachment = map.lookup.map(|lookup| wgpu::RenderPassDepthStencilAttachment {
+                view: &view,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(lookup.clear_depth), store }),
+                stencil_ops: None,
+            });
+            drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("left-out face"),
+                color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
+                depth_stencil_attachment,
+                ..wgpu::RenderPassDescriptor::default()
+            }));
+        }
+    }
+    context.queue.submit([encoder.finish()]);
+}
+
+fn layer_view(texture: &Texture, layer: u32) -> TextureView {
+    texture.create_view(&TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::D2),
+        base_array_layer: layer,
+        array_layer_count: Some(1),
+        ..TextureViewDescriptor::default()
+    })
+}
+
 fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> PreparedPass {
-    let layer_view = |texture: &Texture, layer: u32| {
-        texture.create_view(&TextureViewDescriptor {
-            dimension: Some(TextureViewDimension::D2),
-            base_array_layer: layer,
-            array_layer_count: Some(1),
-            ..TextureViewDescriptor::default()
-        })
-    };
     let target = pass.depth_stencil.as_ref();
     PreparedPass {
         color: pass.color.as_ref().map(|target| layer_view(&textures[target.attachment.0], target.layer)),

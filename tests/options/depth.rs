@@ -1,0 +1,76 @@
+//! Depth mappings: five ways to store distance, and what each loses.
+
+use super::{SIZE, capture, over_floor, unseen, wrong};
+use crate::common::{from_above, label_counts, session, square};
+use stencilscope::math::depth::DepthMapping;
+use stencilscope::technique::Technique;
+
+/// All techniques that are exact on a square over a floor, and what makes the textures fine enough.
+const EXACT: [(Technique, &[(&str, &str)]); 6] = [
+    (Technique::Planar, &[]),
+    (Technique::PlanarTexture, &[("size", "1024")]),
+    (Technique::ZPass, &[]),
+    (Technique::ZFail, &[]),
+    (Technique::ShadowMap, &[]),
+    (Technique::Projective, &[]),
+];
+
+/// Of half-width 1 at height 2, halfway to the light: a shadow of half-width 2, 40 × 40 pixels. A far
+/// plane just behind the floor leaves of the floor's own volume only the light cap, which counts
+/// −1 everywhere.
+#[test]
+fn labels_do_not_depend_on_the_mapping_but_for_volumes_that_far_clips() {
+    let mut session = session();
+    let scene = over_floor(12.0, vec![unseen(square("caster", 0.0, 1.0), [0.0, 2.0, 0.0])]);
+    for (technique, settings) in EXACT {
+        for mapping in DepthMapping::ALL {
+            let settings = [settings, &[("depth", mapping.name())]].concat();
+            let counts = label_counts(&capture(&mut session, &scene, technique, &settings));
+            let is_clipped = technique == Technique::ZFail && mapping == DepthMapping::StandardFinite;
+            let expected = if is_clipped { [0, 40_000, 0, 0] } else { [38_400, 1600, 0, 0] };
+            assert_eq!(counts, expected, "{technique:?} {mapping:?}");
+        }
+    }
+}
+
+/// What lies between eye and near plane is not drawn, also where clamped depth clips nothing there.
+#[test]
+fn nothing_nearer_than_the_near_plane_is_drawn() {
+    let mut session = session();
+    let near_eye = square("near", 9.95, 0.02);
+    let scene = from_above(vec![near_eye]);
+    let [plain, clamped] = ["reversed-infinite", "standard-finite-clamp"].map(|depth| {
+        let capture = capture(&mut session, &scene, Technique::None, &[("depth", depth)]);
+        let frame = capture.frame_at(0).expect("a frame").clone();
+        let distance = |[x, y]: [u32; 2]| capture.depth.distance(frame.depth.image.depth_at([x, y]).expect("a depth"));
+        [[100, 100], [20, 30]].map(|at| distance(at).expect("a surface"))
+    });
+    for (plain, clamped) in plain.into_iter().zip(clamped) {
+        assert!((plain - 10.0).abs() < 1e-4 && (clamped - 10.0).abs() < 1e-3, "{plain} {clamped}");
+    }
+}
+
+/// The far plane that a finite mapping is given cuts surfaces as well.
+#[test]
+fn a_far_plane_of_the_camera_hides_what_is_beyond_it() {
+    let mut session = session();
+    let mut scene = from_above(vec![square("caster", 2.0, 1.0)]);
+    scene.camera.far = Some(9.0);
+    let counts = |session: &mut _, depth| label_counts(&capture(session, &scene, Technique::None, &[("depth", depth)]));
+    assert_eq!(counts(&mut session, "standard-finite")[2], u64::from(SIZE[0] * SIZE[1]) - 625);
+    assert_eq!(counts(&mut session, "standard-infinite")[2], 0);
+}
+
+/// The tweaked mapping stores infinity just before the end of depth; surfaces keep their order
+/// whatever the epsilon.
+#[test]
+fn labels_do_not_depend_on_the_epsilon() {
+    let mut session = session();
+    let scene = from_above(vec![square("caster", 2.0, 1.0)]);
+    for epsilon in ["0", "2.4e-7", "0.1"] {
+        let settings = [("depth", "standard-infinite-epsilon"), ("epsilon", epsilon)];
+        assert_eq!(wrong(&mut session, &scene, Technique::ZFail, &settings), [0, 0], "{epsilon}");
+        let found = capture(&mut session, &scene, Technique::ZFail, &settings);
+        assert_eq!(found.depth.offset, 1.0 - epsilon.parse::<f64>().expect("a number"));
+    }
+}

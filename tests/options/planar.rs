@@ -1,0 +1,84 @@
+//! Planar shadows without the stencil, blended twice, unclipped, and fighting with their plane.
+
+use super::{as_bright_as, brightness, capture, over_floor, shadow_pixels, unseen, wrong};
+use crate::common::{from_above, session, square};
+use glam::DVec3;
+use stencilscope::technique::Technique;
+
+/// Shadows of 40 × 40 and 20 × 20 pixels that share 10 × 20.
+#[test]
+fn overlapping_shadows_darken_twice_unless_the_stencil_keeps_them_from_it() {
+    let mut session = session();
+    let casters = vec![unseen(square("a", 0.0, 1.0), [0.0, 2.0, 0.0]), unseen(square("b", 0.0, 0.75), [1.5, 1.0, 0.0])];
+    let mut scene = from_above(casters);
+    scene.ambient = [1.0; 3];
+    scene.lights[0].color = [0.0; 3];
+    let twice = capture(&mut session, &scene, Technique::Planar, &[("blend", "twice")]);
+    let pixels = brightness(&twice);
+    // A floor of reflectance 0.75 in ambient light, left at 0.4 and at 0.16 of that.
+    assert_eq!(as_bright_as(&pixels, 0.75 * 0.16), 200);
+    assert_eq!(as_bright_as(&pixels, 0.75 * 0.4), 1600 + 400 - 2 * 200);
+    assert_eq!(as_bright_as(&pixels, 0.75), 40_000 - 1800);
+    assert_eq!(shadow_pixels(&twice), 1800, "labels count a pixel once");
+    let once = capture(&mut session, &scene, Technique::Planar, &[]);
+    assert_eq!(shadow_pixels(&once), 1800);
+    assert_eq!(as_bright_as(&brightness(&once), 0.75), 40_000, "without light nothing is left to take away");
+}
+
+/// The shadow reaches from 1 to 5 along x, the floor to 3.
+#[test]
+fn without_the_stencil_a_shadow_runs_off_its_receiver() {
+    let mut session = session();
+    let scene = over_floor(3.0, vec![unseen(square("caster", 0.0, 1.0), [1.5, 2.0, 0.0])]);
+    let shadow =
+        |session: &mut _, stencil| shadow_pixels(&capture(session, &scene, Technique::Planar, &[("stencil", stencil)]));
+    assert_eq!(shadow(&mut session, "on"), 20 * 40);
+    assert_eq!(shadow(&mut session, "off"), 40 * 40);
+}
+
+/// Two below the light a square throws one twice as large; two beyond it an anti-shadow as large.
+#[test]
+fn without_clipping_what_is_beyond_the_light_throws_an_anti_shadow() {
+    let mut session = session();
+    let scene = from_above(vec![unseen(square("caster", 0.0, 1.0), [0.0, 8.0, 0.0])]);
+    assert_eq!(wrong(&mut session, &scene, Technique::Planar, &[]), [0, 0]);
+    // From 4 beyond the light to 4 below it: its own size. What lies on the floor's diagonal, where
+    // the visible triangle changes, is excused.
+    assert_eq!(wrong(&mut session, &scene, Technique::Planar, &[("clip", "off")]), [400 - 20, 0]);
+}
+
+/// A square of half-width 1.5 at 2 under the floor, seen from a light 4 above: scaled by 4 / 6.
+#[test]
+fn without_clipping_what_is_below_the_plane_throws_a_false_shadow() {
+    let mut session = session();
+    let scene = from_above(vec![unseen(square("caster", 0.0, 1.5), [0.0, -2.0, 0.0])]);
+    assert_eq!(wrong(&mut session, &scene, Technique::Planar, &[]), [0, 0]);
+    assert_eq!(wrong(&mut session, &scene, Technique::Planar, &[("clip", "off")]), [400 - 20, 0]);
+}
+
+/// On a tilted floor the flattened caster and the floor round apart.
+#[test]
+fn a_shadow_tested_against_its_own_plane_fights_with_it() {
+    let mut session = session();
+    let mut scene = from_above(vec![unseen(square("caster", 0.0, 1.0), [0.3, 3.0, 0.2])]);
+    scene.objects[0].pose.rotate_degrees = DVec3::new(17.0, 0.0, 11.0);
+    let mut missing = |way| wrong(&mut session, &scene, Technique::Planar, &[("z-fighting", way)]);
+    assert_eq!(missing("depth-off"), [0, 0]);
+    assert_eq!(missing("polygon-offset"), [0, 0]);
+    let [false_shadow, fighting] = missing("none");
+    assert!(false_shadow == 0 && fighting > 500, "{fighting}");
+}
+
+#[test]
+fn kept_casters_give_the_same_frame_and_moved_ones_are_flattened_again() {
+    let mut session = session();
+    let mut scene = from_above(vec![square("caster", 2.0, 1.0)]);
+    for x in [0.0, 0.0, 1.0] {
+        scene.objects[1].pose.translate.x = x;
+        let [kept, made] =
+            ["on", "off"].map(|cache| capture(&mut session, &scene, Technique::Planar, &[("cache", cache)]));
+        assert_eq!(kept.lights[0].shadow, made.lights[0].shadow);
+        let frames = kept.steps.iter().zip(&made.steps).filter(|(kept, made)| kept.snapshot == made.snapshot);
+        assert_eq!((frames.count(), made.steps.len()), (kept.steps.len(), kept.steps.len()));
+    }
+}
