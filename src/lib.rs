@@ -28,7 +28,7 @@
 //! ```
 //!
 //! World space is right-handed with Y up, in `f64`; positions go to the GPU relative to the eye.
-//! Depth is reversed and infinite: 1 at the near plane, 0 at infinity. Front faces are
+//! Depth is reversed and infinite unless set otherwise: 1 at the near plane, 0 at infinity. Front faces are
 //! counter-clockwise. Row 0 of a picture is at the top. See [`math`] for the names of transforms.
 
 pub mod accuracy;
