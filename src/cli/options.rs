@@ -13,7 +13,7 @@ const LARGEST: u32 = 16_384;
 /// Used where neither the command line nor the scene names a technique.
 const DEFAULT_TECHNIQUE: &str = "z-fail";
 /// Techniques that are planned, but not built.
-const TECHNIQUES_TO_COME: [&str; 4] = ["planar-texture", "z-pass-plus", "auto", "projective"];
+const TECHNIQUES_TO_COME: [&str; 3] = ["planar-texture", "auto", "projective"];
 /// How often a frame is timed with and without snapshots.
 const TIMING_RUNS: usize = 5;
 

@@ -105,5 +105,25 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id) ->
             let response = ui.add(widget).labelled_by(label).on_hover_text(spec.meaning);
             response.changed().then(|| value.to_string())
         }
+        SettingValues::WordOrNumber { word, prefix, low, high } => {
+            let number = current.strip_prefix(prefix).and_then(|number| number.parse::<f64>().ok());
+            ui.horizontal(|ui| {
+                let mut is_word = number.is_none();
+                let first = ui.checkbox(&mut is_word, word).labelled_by(label).on_hover_text(spec.meaning);
+                if first.changed() {
+                    // Far enough to look right until the light comes close.
+                    return Some(if is_word {
+                        word.to_owned()
+                    } else {
+                        format!("{prefix}{}", 100f64.clamp(low, high))
+                    });
+                }
+                let mut value = number?;
+                let widget = DragValue::new(&mut value).range(low..=high).speed(0.05).update_while_editing(false);
+                let response = ui.add(widget.prefix(prefix)).labelled_by(label).on_hover_text(spec.meaning);
+                response.changed().then(|| format!("{prefix}{value}"))
+            })
+            .inner
+        }
     }
 }

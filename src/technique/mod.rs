@@ -26,7 +26,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     match job.choice.technique() {
         Technique::None => none::plan(job),
         Technique::Planar => planar::plan(job),
-        Technique::ZPass | Technique::ZFail => volume::plan(job),
+        Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => volume::plan(job),
         Technique::ShadowMap => shadow_map::plan(job),
         Technique::RayTraced => ray_traced::plan(job),
     }
@@ -60,6 +60,8 @@ pub enum Technique {
     ZPass,
     /// Shadow volumes counted behind the surface.
     ZFail,
+    /// Shadow volumes counted in front of the surface, from the near plane's own count on.
+    ZPassPlus,
     /// Depth from the light, compared at every pixel.
     ShadowMap,
     /// Rays from eye and light: the ground truth.
@@ -68,11 +70,12 @@ pub enum Technique {
 
 impl Technique {
     /// All that exist, in teaching order.
-    pub const ALL: [Technique; 6] = [
+    pub const ALL: [Technique; 7] = [
         Technique::None,
         Technique::Planar,
         Technique::ZPass,
         Technique::ZFail,
+        Technique::ZPassPlus,
         Technique::ShadowMap,
         Technique::RayTraced,
     ];
@@ -85,6 +88,7 @@ impl Technique {
             Technique::Planar => "planar",
             Technique::ZPass => "z-pass",
             Technique::ZFail => "z-fail",
+            Technique::ZPassPlus => "z-pass-plus",
             Technique::ShadowMap => "shadow-map",
             Technique::RayTraced => "ray-traced",
         }
@@ -103,6 +107,9 @@ impl Technique {
             }
             Technique::ZFail => {
                 "Counts the same volumes from infinity back to the surface, so the eye may be inside one."
+            }
+            Technique::ZPassPlus => {
+                "Counts the near plane's volumes from the light first, then as z-pass: the eye may be inside one."
             }
             Technique::ShadowMap => "Stores the depth of what the light sees, and darkens what lies behind it.",
             Technique::RayTraced => {

@@ -30,6 +30,17 @@ pub enum SettingValues {
     Integer(i64, i64),
     /// A finite number in this range, ends included.
     Number(f64, f64),
+    /// A word, or `PREFIX:N` with a finite number N in this range, ends included.
+    WordOrNumber {
+        /// The word, without a number.
+        word: &'static str,
+        /// What stands before the number, colon included.
+        prefix: &'static str,
+        /// The smallest number.
+        low: f64,
+        /// The largest.
+        high: f64,
+    },
 }
 
 /// Why a request for a technique can't be met.
@@ -111,13 +122,19 @@ const PLANAR: &[SettingSpec] = &[
 const VOLUME: &[SettingSpec] = &[
     DEPTH,
     DIFFUSE,
-    word("casters", &["all"], "which triangles cast"),
-    word("extrusion", &["infinite"], "how far volumes reach"),
-    word("faces", &["two-sided"], "both faces in one draw"),
-    word("operations", &["wrap"], "what counts do beyond 0 and 255"),
+    word("casters", &["all", "by-topology", "light-facing", "light-back-facing"], "which triangles cast"),
+    SettingSpec {
+        key: "extrusion",
+        // Farther, single precision loses the silhouette; nearer than not at all makes no sense.
+        values: SettingValues::WordOrNumber { word: "infinite", prefix: "finite:", low: 0.0, high: 1e6 },
+        default: "infinite",
+        meaning: "how far volumes reach: without end, or K times a vertex's distance from the light",
+    },
+    word("faces", &["two-sided", "two-pass"], "front and back faces in one draw, or in passes of their own"),
+    word("operations", &["wrap", "clamp"], "what counts do beyond 0 and 255"),
     word("counter", &["stencil"], "where counts are kept"),
-    word("light-caps", &["tested"], "how the caps nearest the light are drawn"),
-    word("silhouette", &["adjacency"], "how shared edges are found"),
+    word("light-caps", &["tested", "never"], "caps nearest the light pass the depth test, or never do"),
+    word("silhouette", &["adjacency", "edge-list"], "how shared edges are found: built once, or searched each time"),
 ];
 const SHADOW_MAP: &[SettingSpec] = &[
     DEPTH,
@@ -152,7 +169,7 @@ impl Technique {
         match self {
             Technique::None | Technique::RayTraced => NONE,
             Technique::Planar => PLANAR,
-            Technique::ZPass | Technique::ZFail => VOLUME,
+            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => VOLUME,
             Technique::ShadowMap => SHADOW_MAP,
         }
     }
@@ -172,7 +189,7 @@ impl Technique {
         match self {
             Technique::None => none::REPORT_ROWS,
             Technique::Planar => planar::REPORT_ROWS,
-            Technique::ZPass | Technique::ZFail => volume::REPORT_ROWS,
+            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => volume::REPORT_ROWS,
             Technique::ShadowMap => shadow_map::REPORT_ROWS,
             Technique::RayTraced => ray_traced::REPORT_ROWS,
         }
@@ -255,6 +272,18 @@ impl Choice {
         &self.settings
     }
 
+    /// The value of a setting; empty where the technique has none of that name.
+    #[must_use]
+    pub(super) fn word(&self, key: &str) -> &str {
+        self.settings.get(key).map_or("", String::as_str)
+    }
+
+    /// The number of a [`SettingValues::WordOrNumber`]; `None` where it is the word.
+    #[must_use]
+    pub(super) fn number_after(&self, key: &str, prefix: &str) -> Option<f64> {
+        self.word(key).strip_prefix(prefix).and_then(|number| number.parse().ok())
+    }
+
     /// The value of a setting as a number; 0 where the technique has no such number.
     #[must_use]
     pub(super) fn number(&self, key: &str) -> f64 {
@@ -268,6 +297,10 @@ impl SettingValues {
             SettingValues::OneOf(words) => words.contains(&value),
             SettingValues::Integer(low, high) => value.parse().is_ok_and(|n: i64| (low..=high).contains(&n)),
             SettingValues::Number(low, high) => value.parse().is_ok_and(|n: f64| (low..=high).contains(&n)),
+            SettingValues::WordOrNumber { word, prefix, low, high } => {
+                let is_number = |n: &str| n.parse().is_ok_and(|n: f64| (low..=high).contains(&n));
+                value == word || value.strip_prefix(prefix).is_some_and(is_number)
+            }
         };
         if in_range { Ok(()) } else { Err(self.to_string()) }
     }
@@ -280,6 +313,9 @@ impl std::fmt::Display for SettingValues {
             SettingValues::OneOf(words) => write!(f, "choose one of {}", words.join(", ")),
             SettingValues::Integer(low, high) => write!(f, "choose a whole number from {low} to {high}"),
             SettingValues::Number(low, high) => write!(f, "choose a number from {low} to {high}"),
+            SettingValues::WordOrNumber { word, prefix, low, high } => {
+                write!(f, "choose {word}, or {prefix}K with a number K from {low} to {high}")
+            }
         }
     }
 }

@@ -1,0 +1,117 @@
+//! Where volume faces count, and the raster state that makes them.
+
+use super::{Options, Part, RasterState};
+use crate::plan::{ColorWrite, LightId, StencilFace};
+use crate::technique::Technique;
+use crate::technique::frame::Frame;
+use wgpu::{CompareFunction, Face, StencilOperation};
+
+/// Where a volume face counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Counting {
+    /// In front of the surface.
+    ZPass,
+    /// In front of the surface, on top of what the near plane's count began with.
+    ZPassPlus,
+    /// Behind the surface.
+    ZFail,
+}
+
+/// Which faces one pass draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// All, with an operation each.
+    BothFaces,
+    /// Those that add.
+    Adding,
+    /// Those that take away.
+    TakingAway,
+}
+
+impl Step {
+    /// The passes of one light, in order. What adds comes first: a clamped count then only fails
+    /// beyond 255.
+    pub fn all(two_pass: bool) -> &'static [Step] {
+        if two_pass { &[Step::Adding, Step::TakingAway] } else { &[Step::BothFaces] }
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Step::BothFaces => "volumes",
+            Step::Adding => "volumes, adding",
+            Step::TakingAway => "volumes, taking away",
+        }
+    }
+}
+
+impl Counting {
+    pub fn of(technique: Technique) -> Counting {
+        match technique {
+            Technique::ZPass => Counting::ZPass,
+            Technique::ZPassPlus => Counting::ZPassPlus,
+            _ => Counting::ZFail,
+        }
+    }
+
+    pub fn purpose(self, light: LightId, step: Step) -> String {
+        let light = Frame::light_name(light);
+        let [adds, takes] = match self {
+            Counting::ZPass | Counting::ZPassPlus => {
+                ["a front face nearer than the surface adds 1", "a back face nearer than it takes 1 away"]
+            }
+            Counting::ZFail => ["a back face hidden by the surface adds 1", "a hidden front face takes 1 away"],
+        };
+        let what = match self {
+            Counting::ZPass | Counting::ZPassPlus => format!("the shadow volumes of {light} in front of each surface"),
+            Counting::ZFail => format!("the shadow volumes of {light} behind each surface"),
+        };
+        let left = match self {
+            Counting::ZPass => "What is left contains the surface, if the eye itself is in none.",
+            Counting::ZPassPlus => {
+                "With what the near plane began with, what is left contains the surface, wherever the eye is."
+            }
+            Counting::ZFail => "What is left contains the surface, wherever the eye is.",
+        };
+        match step {
+            Step::BothFaces => format!("Counts {what}: {adds}, {takes}. {left}"),
+            Step::Adding => {
+                format!("Counts {what}, first half: {adds}. The other faces follow in a pass of their own.")
+            }
+            Step::TakingAway => format!("Counts {what}, second half: {takes}. {left}"),
+        }
+    }
+
+    /// The state for triangles that face outwards (`turned`: inwards).
+    pub fn raster(self, part: Part, turned: bool, options: &Options, step: Step) -> RasterState {
+        let (add, take) = operations(options);
+        let adds_in_front = (self != Counting::ZFail) != turned;
+        let (front, back) = if adds_in_front { (add, take) } else { (take, add) };
+        let surface = RasterState::surface();
+        let is_never = options.light_caps_never_pass && part == Part::LightCap;
+        let depth_compare = if is_never { CompareFunction::Never } else { surface.depth_compare };
+        let state = RasterState { depth_compare, depth_write: false, color: ColorWrite::None, ..surface };
+        let state = state.with_faces(self.face(front), self.face(back), 0);
+        let drawn = match (step, adds_in_front) {
+            (Step::BothFaces, _) => return state,
+            (Step::Adding, true) | (Step::TakingAway, false) => Face::Front,
+            (Step::Adding, false) | (Step::TakingAway, true) => Face::Back,
+        };
+        RasterState { cull: Some(if drawn == Face::Front { Face::Back } else { Face::Front }), ..state }
+    }
+
+    fn face(self, operation: StencilOperation) -> StencilFace {
+        let keep = StencilFace { compare: CompareFunction::Always, ..StencilFace::IGNORE };
+        match self {
+            Counting::ZPass | Counting::ZPassPlus => StencilFace { pass_op: operation, ..keep },
+            Counting::ZFail => StencilFace { depth_fail_op: operation, ..keep },
+        }
+    }
+}
+
+/// What adds 1 and what takes 1 away.
+pub fn operations(options: &Options) -> (StencilOperation, StencilOperation) {
+    match options.clamp {
+        false => (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap),
+        true => (StencilOperation::IncrementClamp, StencilOperation::DecrementClamp),
+    }
+}
