@@ -6,7 +6,12 @@
 //! new light only sums signs over it.
 //!
 //! Nearly every edge has one triangle or two: those sit beside the edge, so that a new light reads
-//! 8 bytes an edge. The rest ("fans") are kept apart.
+//! 8 bytes an edge. The rest ("fans") are kept apart. A new light looks closely only where
+//! triangles face different ways: of every 32 edges it is known which runs of triangles they touch,
+//! and where all of those face alike and each edge is run once either way, nothing is unbalanced.
+
+use super::facing::{Facings, MIXED, RUN};
+use std::ops::Range;
 
 /// An edge between two vertices, `low < high`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -27,7 +32,17 @@ pub struct EdgeList {
     fans: Vec<Fan>,
     fan_incidents: Vec<Incident>,
     none: Incident,
+    neighbourhoods: Vec<Neighbourhood>,
 }
+
+/// Edges that are passed over together.
+const BLOCK: usize = 32;
+/// Runs of triangles that a block's edges may touch and be passed over.
+const MOST_RUNS: usize = 8;
+
+/// The runs of triangles that the edges of a block touch, repeated to fill; `None` where they are too
+/// many, or where some edge is not run once either way.
+type Neighbourhood = Option<[u32; MOST_RUNS]>;
 
 /// An edge of more than two triangles: `fan_incidents[start..end]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,6 +84,7 @@ impl EdgeList {
             fans: Vec::new(),
             fan_incidents: Vec::new(),
             none,
+            neighbourhoods: Vec::new(),
         };
         for low in 0..vertex_count {
             let bucket = &mut buckets.half_edges[buckets.start[low] as usize..buckets.start[low + 1] as usize];
@@ -83,6 +99,7 @@ impl EdgeList {
                 list.pairs.push(pair);
             }
         }
+        list.neighbourhoods = list.pairs.chunks(BLOCK).map(|pairs| neighbourhood(pairs, none)).collect();
         list
     }
 
@@ -113,29 +130,62 @@ impl EdgeList {
         &self.fan_incidents[fan.start as usize..fan.end as usize]
     }
 
-    /// Calls `visit` with the index and multiplicity of the edges in `range` whose triangles' signed
-    /// facings do not cancel, in order of edges.
+    /// Calls `visit` with the index and multiplicity of the edges of some blocks whose triangles'
+    /// signed facings do not cancel, in order of edges.
     pub(super) fn for_each_unbalanced(
         &self,
-        range: std::ops::Range<usize>,
-        signs_and_none: &[i8],
+        blocks: Range<usize>,
+        facings: &Facings,
         mut visit: impl FnMut(usize, i32),
     ) {
-        let mut fans =
-            self.fans[self.fans.partition_point(|fan| (fan.edge as usize) < range.start)..].iter().peekable();
-        let pairs = &self.pairs[range.clone()];
-        for (index, [one, other]) in range.zip(pairs) {
-            let mut sum = one.of(signs_and_none) + other.of(signs_and_none);
-            if *one == self.none
-                && let Some(fan) = fans.next_if(|fan| fan.edge as usize == index)
-            {
-                sum = self.of_fan(*fan).iter().map(|incident| incident.of(signs_and_none)).sum();
+        let (signs, runs) = (facings.signs_and_none(), facings.runs());
+        let first = |block: usize| (block * BLOCK) as u32;
+        let mut fans = self.fans[self.fans.partition_point(|fan| fan.edge < first(blocks.start))..].iter().peekable();
+        for block in blocks {
+            if let Some(touched) = &self.neighbourhoods[block] {
+                let sign = runs[touched[0] as usize];
+                if sign != MIXED && touched.iter().all(|run| runs[*run as usize] == sign) {
+                    continue;
+                }
             }
-            if sum != 0 {
-                visit(index, sum);
+            let edges = block * BLOCK..self.pairs.len().min((block + 1) * BLOCK);
+            for (index, [one, other]) in edges.clone().zip(&self.pairs[edges]) {
+                let mut sum = one.of(signs) + other.of(signs);
+                if *one == self.none
+                    && let Some(fan) = fans.next_if(|fan| fan.edge as usize == index)
+                {
+                    sum = self.of_fan(*fan).iter().map(|incident| incident.of(signs)).sum();
+                }
+                if sum != 0 {
+                    visit(index, sum);
+                }
             }
         }
     }
+
+    /// How many blocks of edges there are.
+    pub(super) fn blocks(&self) -> usize {
+        self.neighbourhoods.len()
+    }
+}
+
+fn neighbourhood(pairs: &[[Incident; 2]], none: Incident) -> Neighbourhood {
+    let mut touched = [u32::MAX; MOST_RUNS];
+    let mut count = 0;
+    for pair in pairs {
+        if pair.contains(&none) || pair[0].direction() == pair[1].direction() {
+            return None;
+        }
+        for run in pair.map(|incident| (incident.triangle() / RUN) as u32) {
+            if !touched[..count].contains(&run) {
+                *touched.get_mut(count)? = run;
+                count += 1;
+            }
+        }
+    }
+    let first = touched[0];
+    touched[count..].fill(first);
+    Some(touched)
 }
 
 struct Buckets {
@@ -172,6 +222,7 @@ fn for_each_half_edge(triangles: &[[u32; 3]], mut visit: impl FnMut(u32, u32, In
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Sign;
 
     #[test]
     fn a_tetrahedron_has_six_edges_each_run_once_either_way() {
@@ -192,19 +243,26 @@ mod tests {
         assert_eq!(list.edges().len(), 7);
     }
 
+    /// A strip of triangles, long enough for many blocks, with a fin on one edge.
     #[test]
     fn any_part_of_the_list_finds_its_unbalanced_edges() {
-        let list = EdgeList::new(&[[0, 1, 2], [0, 1, 3], [1, 0, 4]], 5);
-        let unbalanced = |range| {
+        let count = 500;
+        let mut triangles: Vec<[u32; 3]> =
+            (0..count).map(|i| if i % 2 == 0 { [i, i + 1, i + 2] } else { [i + 1, i, i + 2] }).collect();
+        triangles.push([100, 101, count + 2]);
+        let list = EdgeList::new(&triangles, count as usize + 3);
+        let signs = (0..triangles.len()).map(|i| if i < 300 { Sign::Positive } else { Sign::Negative });
+        let facings = Facings::from_signs(signs);
+        let unbalanced = |blocks| {
             let mut found = Vec::new();
-            list.for_each_unbalanced(range, &[1, 1, 1, 0], |edge, sum| found.push((list.edges()[edge], sum)));
+            list.for_each_unbalanced(blocks, &facings, |edge, sum| found.push((edge, sum)));
             found
         };
-        let all = unbalanced(0..7);
-        assert!(all.contains(&(Edge { low: 0, high: 1 }, 1)), "{all:?}");
-        assert_eq!(all.len(), 7);
-        for middle in 0..=7 {
-            assert_eq!([unbalanced(0..middle), unbalanced(middle..7)].concat(), all);
+        let of_edge = |index| list.incident(index).map(|(t, d)| d * i32::from(facings.signs()[t])).sum::<i32>();
+        let expected = (0..list.edges().len()).map(|index| (index, of_edge(index))).filter(|(_, sum)| *sum != 0);
+        let expected: Vec<(usize, i32)> = expected.collect();
+        for middle in 0..=list.blocks() {
+            assert_eq!([unbalanced(0..middle), unbalanced(middle..list.blocks())].concat(), expected);
         }
     }
 }

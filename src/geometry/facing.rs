@@ -19,6 +19,10 @@ use rayon::prelude::*;
 
 /// Triangles whose values are computed side by side.
 const LANES: usize = 64;
+/// Triangles whose common facing is noted, so that what hangs on them can be passed over.
+pub(super) const RUN: usize = 16;
+/// A run of triangles that do not all face the same way.
+pub(super) const MIXED: i8 = 2;
 /// Triangles a thread takes at once.
 const SHARE: usize = 256 * LANES;
 /// Relative rounding of one `f32` operation.
@@ -45,6 +49,8 @@ struct Block {
 pub struct Facings {
     /// 1 towards the light, −1 away, 0 edge-on; one more 0 at the end stands for "no triangle".
     signs: Vec<i8>,
+    /// The common sign of every [`RUN`] triangles, or [`MIXED`].
+    runs: Vec<i8>,
     towards: usize,
     away: usize,
 }
@@ -55,10 +61,16 @@ impl Facings {
     pub fn from_signs(signs: impl IntoIterator<Item = Sign>) -> Facings {
         let mut facings = Facings::default();
         facings.signs.extend(signs.into_iter().map(|sign| sign.value() as i8));
-        facings.towards = facings.signs.iter().filter(|sign| **sign > 0).count();
-        facings.away = facings.signs.iter().filter(|sign| **sign < 0).count();
+        facings.note_runs();
         facings.signs.push(0);
         facings
+    }
+
+    fn note_runs(&mut self) {
+        let Facings { signs, runs, towards, away } = self;
+        runs.clear();
+        runs.extend(signs[..].chunks(RUN).map(run_sign));
+        (*towards, *away) = (signs.iter().filter(|sign| **sign > 0).count(), signs.iter().filter(|s| **s < 0).count());
     }
 
     /// One a triangle: 1, −1 or 0.
@@ -70,6 +82,11 @@ impl Facings {
     /// The same with a last 0 that stands for a missing triangle.
     pub(super) fn signs_and_none(&self) -> &[i8] {
         &self.signs
+    }
+
+    /// The common sign of every [`RUN`] triangles, or [`MIXED`].
+    pub(super) fn runs(&self) -> &[i8] {
+        &self.runs
     }
 
     /// How many triangles face the light.
@@ -86,18 +103,24 @@ impl Facings {
 
     /// Triangles that do not cast become edge-on, so that nobody downstream needs to know.
     pub fn keep_casting(&mut self, casters: Casters) {
-        match casters {
-            Casters::All => {}
-            Casters::LightFacing => {
-                self.signs.iter_mut().for_each(|sign| *sign = (*sign).max(0));
-                self.away = 0;
-            }
-            Casters::LightBackFacing => {
-                self.signs.iter_mut().for_each(|sign| *sign = (*sign).min(0));
-                self.towards = 0;
-            }
+        let keep = |sign: i8| match casters {
+            Casters::All => sign,
+            Casters::LightFacing => sign.max(0),
+            Casters::LightBackFacing => sign.min(0),
+        };
+        if casters != Casters::All {
+            self.signs.iter_mut().for_each(|sign| *sign = keep(*sign));
+            let none = self.signs.pop();
+            self.note_runs();
+            self.signs.extend(none);
         }
     }
+}
+
+/// The sign that all have in common, or [`MIXED`].
+fn run_sign(signs: &[i8]) -> i8 {
+    let first = signs.first().copied().unwrap_or(MIXED);
+    if signs.iter().fold(0, |different, sign| different | (sign ^ first)) == 0 { first } else { MIXED }
 }
 
 impl Planes {
@@ -129,27 +152,33 @@ impl Planes {
         if out.signs.len() != triangles.len() + 1 {
             out.signs.clear();
             out.signs.resize(triangles.len() + 1, 0);
+            out.runs.resize(triangles.len().div_ceil(RUN), MIXED);
         }
         let signs = &mut out.signs[..triangles.len()];
-        let share = |(index, signs): (usize, &mut [i8])| {
+        let share = |(index, (signs, runs)): (usize, (&mut [i8], &mut [i8]))| {
             let (mut sum, mut clear) = (0, 0);
-            for (index, signs) in (index * (SHARE / LANES)..).zip(signs.chunks_mut(LANES)) {
+            let blocks = signs.chunks_mut(LANES).zip(runs.chunks_mut(LANES / RUN));
+            for (index, (signs, runs)) in (index * (SHARE / LANES)..).zip(blocks) {
                 let exact = |lane: usize| {
                     let corners = triangles[index * LANES + lane].map(|vertex| world[vertex as usize]);
                     side_of_triangle(corners, light).value() as i8
                 };
                 let (block_sum, block_clear) = view.block(&self.blocks[index], signs, exact);
+                signs.chunks(RUN).zip(runs).for_each(|(signs, run)| *run = run_sign(signs));
                 sum += block_sum;
                 clear += block_clear;
             }
             (sum, clear)
         };
         let add = |a: (i64, i64), b: (i64, i64)| (a.0 + b.0, a.1 + b.1);
+        let runs = &mut out.runs;
         let (sum, clear) = match triangles.len() <= 2 * SHARE {
-            true => signs.chunks_mut(SHARE).enumerate().map(share).fold((0, 0), add),
-            false => signs.par_chunks_mut(SHARE).enumerate().map(share).reduce(|| (0, 0), add),
+            true => signs.chunks_mut(SHARE).zip(runs.chunks_mut(SHARE / RUN)).enumerate().map(share).fold((0, 0), add),
+            false => {
+                let shares = signs.par_chunks_mut(SHARE).zip(runs.par_chunks_mut(SHARE / RUN)).enumerate();
+                shares.map(share).reduce(|| (0, 0), add)
+            }
         };
-        // Counting once more costs less than it would to count two kinds on the way.
         out.towards = ((clear + sum) / 2) as usize;
         out.away = ((clear - sum) / 2) as usize;
     }

@@ -4,9 +4,10 @@ use super::{Edge, EdgeList, Facings};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// Edges a thread takes at once; fewer are not worth waking another for.
-const SHARE: usize = 32 * 1024;
+/// Blocks of edges a thread takes at once; fewer are not worth waking another for.
+const SHARE: usize = 4 * 1024;
 /// Beyond so many triangles, searching all edges for each one's reverse takes seconds.
 pub const MOST_TO_SEARCH: usize = 20_000;
 
@@ -47,13 +48,12 @@ pub fn facing(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> Vec<Sign
 /// that follow from it always close.
 pub fn silhouette(edges: &EdgeList, facings: &Facings, out: &mut Vec<SilhouetteEdge>) {
     out.clear();
-    let signs = facings.signs_and_none();
-    let found = |range: std::ops::Range<usize>, out: &mut Vec<SilhouetteEdge>| {
-        edges.for_each_unbalanced(range, signs, |index, multiplicity| {
+    let found = |blocks: Range<usize>, out: &mut Vec<SilhouetteEdge>| {
+        edges.for_each_unbalanced(blocks, facings, |index, multiplicity| {
             out.push(SilhouetteEdge { edge: edges.edges()[index], multiplicity });
         });
     };
-    let count = edges.edges().len();
+    let count = edges.blocks();
     if count <= 2 * SHARE {
         return found(0..count, out);
     }

@@ -8,12 +8,14 @@
 //! - *light cap*: the casting triangles in the surface's own vertex order, so that their depths
 //!   are bit-equal to the surface's; those that face the light first (unturned), then those that
 //!   had to be turned, which are drawn with front and back operations swapped.
-//! - *dark cap*: the same triangles carried away, turned to face away from the light. Where all
-//!   far vertices are one point, it is left out.
+//! - *dark cap*: the same triangles carried away, turned to face away from the light: of those that
+//!   face the light, the light cap read backwards; of the others, the light cap as it is. Where
+//!   all far vertices are one point, it is left out.
 //!
 //! Where each run begins follows from the counts of facings alone, so indices are written once, into
 //! a buffer that may be kept, by several threads where there are many.
 
+use super::facing::{MIXED, RUN};
 use super::{Facings, SilhouetteEdge};
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
@@ -21,8 +23,6 @@ use std::ops::Range;
 
 /// Triangles of a cap that one thread writes at once.
 const SHARE: usize = 16 * 1024;
-/// Triangles of one facing that are copied together.
-const RUN: usize = 8;
 
 /// How far volumes reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -140,12 +140,14 @@ pub fn write_indices(
     let (dark_towards, dark_away) = dark.split_at_mut(if is_one_point { 0 } else { facings.towards() });
     let caps = Caps { light: [light_towards, light_away], dark: [dark_towards, dark_away], far };
     if triangles.len() <= 2 * SHARE {
-        caps.write(triangles, facings.signs());
+        caps.write(triangles, facings.signs(), facings.runs());
     } else {
-        let shares = triangles.chunks(SHARE).zip(facings.signs().chunks(SHARE));
+        let runs = facings.runs().chunks(SHARE / RUN);
+        let shares = triangles.chunks(SHARE).zip(facings.signs().chunks(SHARE)).zip(runs);
         let mut rest = caps;
-        let tasks: Vec<_> = shares.map(|(triangles, signs)| (rest.split_off_front(signs), triangles, signs)).collect();
-        tasks.into_par_iter().for_each(|(caps, triangles, signs)| caps.write(triangles, signs));
+        let with_room = |((triangles, signs), runs)| (rest.split_off(signs), triangles, signs, runs);
+        let tasks: Vec<_> = shares.map(with_room).collect();
+        tasks.into_par_iter().for_each(|(caps, triangles, signs, runs)| caps.write(triangles, signs, runs));
     }
     parts
 }
@@ -172,66 +174,73 @@ struct Caps<'a> {
 }
 
 impl<'a> Caps<'a> {
-    /// The room that triangles with these signs take; the rest stays.
-    fn split_off_front(&mut self, signs: &[i8]) -> Caps<'a> {
+    /// The room that the next triangles take, with these signs; the rest stays.
+    fn split_off(&mut self, signs: &[i8]) -> Caps<'a> {
         let towards = signs.iter().filter(|sign| **sign > 0).count();
         let away = signs.iter().filter(|sign| **sign < 0).count();
-        let mut split = |which: usize, count: usize| {
-            let dark_count = if self.far.is_one_point { 0 } else { count };
-            let (light, dark) = (&mut self.light[which], &mut self.dark[which]);
-            let front = std::mem::take(light).split_at_mut(count);
-            let dark_front = std::mem::take(dark).split_at_mut(dark_count);
-            (*light, *dark) = (front.1, dark_front.1);
-            (front.0, dark_front.0)
-        };
-        let [(light, dark), (light_away, dark_away)] = [split(0, towards), split(1, away)];
-        Caps { light: [light, light_away], dark: [dark, dark_away], far: self.far }
+        let light_towards = front(&mut self.light[0], towards);
+        let light_away = front(&mut self.light[1], away);
+        let has_dark = !self.far.is_one_point;
+        let dark_towards = back(&mut self.dark[0], if has_dark { towards } else { 0 });
+        let dark_away = front(&mut self.dark[1], if has_dark { away } else { 0 });
+        Caps { light: [light_towards, light_away], dark: [dark_towards, dark_away], far: self.far }
     }
 
-    fn write(self, triangles: &[[u32; 3]], signs: &[i8]) {
-        let mut at = [0; 2];
-        let [light_towards, light_away] = self.light;
-        let [dark_towards, dark_away] = self.dark;
-        let mut push = |which: usize, run: &[[u32; 3]]| {
-            let to = at[which]..at[which] + run.len();
-            at[which] = to.end;
-            let first = self.far.first;
-            if which == 0 {
-                light_towards[to.clone()].copy_from_slice(run);
-                if !self.far.is_one_point {
-                    let carried = run.iter().map(|[a, b, c]| [a + first, c + first, b + first]);
-                    dark_towards[to].iter_mut().zip(carried).for_each(|(out, carried)| *out = carried);
+    fn write(mut self, triangles: &[[u32; 3]], signs: &[i8], runs: &[i8]) {
+        // Neighbours mostly face the same way: whole stretches are copied at once.
+        let mut start = 0;
+        for stretch in runs.chunk_by(|one, other| one == other) {
+            let end = triangles.len().min(start + stretch.len() * RUN);
+            match stretch[0] {
+                MIXED => {
+                    let signs = signs[start..end].chunk_by(|one, other| one == other);
+                    for same in signs {
+                        self.push(&triangles[start..start + same.len()], same[0]);
+                        start += same.len();
+                    }
                 }
-            } else {
-                light_away[to.clone()].copy_from_slice(run);
-                if !self.far.is_one_point {
-                    let carried = run.iter().map(|corners| corners.map(|vertex| vertex + first));
-                    dark_away[to].iter_mut().zip(carried).for_each(|(out, carried)| *out = carried);
-                }
+                sign => self.push(&triangles[start..end], sign),
             }
-        };
-        // Neighbours mostly face the same way: whole runs are copied at once.
-        let (sign_runs, last_signs) = signs.as_chunks::<RUN>();
-        let (runs, last) = triangles.as_chunks::<RUN>();
-        for (run, signs) in runs.iter().zip(sign_runs) {
-            match *signs {
-                [1, 1, 1, 1, 1, 1, 1, 1] => push(0, run),
-                [-1, -1, -1, -1, -1, -1, -1, -1] => push(1, run),
-                _ => push_each(run, signs, &mut push),
-            }
+            start = end;
         }
-        push_each(last, last_signs, &mut push);
+    }
+
+    /// Writes triangles that all face the same way.
+    fn push(&mut self, triangles: &[[u32; 3]], sign: i8) {
+        let which = match sign {
+            1 => 0,
+            -1 => 1,
+            _ => return,
+        };
+        front(&mut self.light[which], triangles.len()).copy_from_slice(triangles);
+        if self.far.is_one_point {
+            return;
+        }
+        let first = self.far.first;
+        let carried = triangles.as_flattened().iter().map(|vertex| vertex + first);
+        if which == 0 {
+            let room = back(&mut self.dark[0], triangles.len()).as_flattened_mut();
+            room.iter_mut().zip(carried.rev()).for_each(|(out, vertex)| *out = vertex);
+        } else {
+            let room = front(&mut self.dark[1], triangles.len()).as_flattened_mut();
+            room.iter_mut().zip(carried).for_each(|(out, vertex)| *out = vertex);
+        }
     }
 }
 
-fn push_each(triangles: &[[u32; 3]], signs: &[i8], push: &mut impl FnMut(usize, &[[u32; 3]])) {
-    for (triangle, sign) in triangles.iter().zip(signs) {
-        match sign {
-            1 => push(0, std::slice::from_ref(triangle)),
-            -1 => push(1, std::slice::from_ref(triangle)),
-            _ => {}
-        }
-    }
+/// Takes the first `count` places of `room`.
+fn front<'a>(room: &mut &'a mut [[u32; 3]], count: usize) -> &'a mut [[u32; 3]] {
+    let (taken, rest) = std::mem::take(room).split_at_mut(count);
+    *room = rest;
+    taken
+}
+
+/// Takes the last `count` places of `room`.
+fn back<'a>(room: &mut &'a mut [[u32; 3]], count: usize) -> &'a mut [[u32; 3]] {
+    let whole = std::mem::take(room);
+    let (rest, taken) = whole.split_at_mut(whole.len() - count);
+    *room = rest;
+    taken
 }
 
 fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: Far) {
@@ -386,7 +395,9 @@ mod tests {
         assert_eq!(written[..parts.light_cap_turned.end], expected);
         let first = count + 2;
         let carried = |[a, b, c]: [u32; 3]| [a + first, b + first, c + first];
-        let dark = of(Sign::Positive).map(|[a, b, c]| carried([a, c, b])).chain(of(Sign::Negative).map(carried));
-        assert_eq!(written[parts.dark_cap], dark.collect::<Vec<_>>());
+        let mut dark: Vec<[u32; 3]> = of(Sign::Positive).map(|[a, b, c]| carried([c, b, a])).collect();
+        dark.reverse();
+        dark.extend(of(Sign::Negative).map(carried));
+        assert!(written[parts.dark_cap] == dark);
     }
 }
