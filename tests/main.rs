@@ -14,3 +14,4 @@ mod scenes;
 mod stencil_machine;
 mod techniques;
 mod truth;
+mod volumes;

@@ -24,7 +24,7 @@ pub(super) const RUN: usize = 16;
 /// A run of triangles that do not all face the same way.
 pub(super) const MIXED: i8 = 2;
 /// Triangles a thread takes at once.
-const SHARE: usize = 256 * LANES;
+const SHARE: usize = 1024 * LANES;
 /// Relative rounding of one `f32` operation.
 const ROUNDING: f64 = 1.0 / (1 << 24) as f64;
 

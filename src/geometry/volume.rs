@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Triangles of a cap that one thread writes at once.
-const SHARE: usize = 16 * 1024;
+const SHARE: usize = 64 * 1024;
 
 /// How far volumes reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
