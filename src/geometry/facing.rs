@@ -3,8 +3,9 @@
 //! Each triangle's plane is kept once a caster, in `f32`, scaled so that one bound on rounding holds
 //! for all of them. For a new light a plane is evaluated in four multiplications; outside the bound
 //! the sign is certain, inside it (for a 70 000-triangle mesh: hardly one triangle) the exact test
-//! decides. So the result equals the exact sign on every triangle, at the speed of reading
-//! 16 bytes each.
+//! decides. Of every 16 triangles the extremes of their planes are kept too: neighbours mostly face
+//! the same way, and then the extremes tell it for all of them at once. So the result equals the
+//! exact sign on every triangle, for the reading of 2 bytes a triangle, or 18 near the silhouette.
 //!
 //! ```text
 //! plane      n = N / s, d = N·(o − a) / (s·r)       N the normal of triangle a b c, s its largest
@@ -17,8 +18,10 @@ use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
-/// Triangles whose values are computed side by side.
+/// Triangles of a block of planes.
 const LANES: usize = 64;
+/// Runs of such a block.
+const RUNS: usize = LANES / RUN;
 /// Triangles whose common facing is noted, so that what hangs on them can be passed over.
 pub(super) const RUN: usize = 16;
 /// A run of triangles that do not all face the same way.
@@ -32,6 +35,7 @@ const ROUNDING: f64 = 1.0 / (1 << 24) as f64;
 #[derive(Debug, Clone, Default)]
 pub struct Planes {
     blocks: Vec<Block>,
+    extremes: Vec<Extremes>,
     middle: DVec3,
     /// At least the distance of any corner from `middle` along any axis.
     reach: f64,
@@ -42,6 +46,14 @@ pub struct Planes {
 struct Block {
     normal: [[f32; LANES]; 3],
     offset: [f32; LANES],
+}
+
+/// The smallest and largest components of the planes of [`RUNS`] runs: x, y, z and offset of
+/// either; NaN where one of the planes is uncertain.
+#[derive(Debug, Clone)]
+struct Extremes {
+    low: [[f32; RUNS]; 4],
+    high: [[f32; RUNS]; 4],
 }
 
 /// How all triangles of a caster face one light, and how many do so either way.
@@ -69,7 +81,7 @@ impl Facings {
     fn note_runs(&mut self) {
         let Facings { signs, runs, towards, away } = self;
         runs.clear();
-        runs.extend(signs[..].chunks(RUN).map(run_sign));
+        runs.extend(signs.chunks(RUN).map(sign_of_run));
         (*towards, *away) = (signs.iter().filter(|sign| **sign > 0).count(), signs.iter().filter(|s| **s < 0).count());
     }
 
@@ -118,7 +130,7 @@ impl Facings {
 }
 
 /// The sign that all have in common, or [`MIXED`].
-fn run_sign(signs: &[i8]) -> i8 {
+fn sign_of_run(signs: &[i8]) -> i8 {
     let first = signs.first().copied().unwrap_or(MIXED);
     if signs.iter().fold(0, |different, sign| different | (sign ^ first)) == 0 { first } else { MIXED }
 }
@@ -142,7 +154,10 @@ impl Planes {
             }
             block
         };
-        Planes { blocks: triangles.par_chunks(LANES).with_min_len(64).map(block).collect(), middle, reach }
+        let blocks: Vec<Block> = triangles.par_chunks(LANES).with_min_len(64).map(block).collect();
+        let counts = triangles.chunks(LANES).map(<[_]>::len);
+        let extremes = blocks.iter().zip(counts).map(|(block, count)| Extremes::of(block, count)).collect();
+        Planes { blocks, extremes, middle, reach }
     }
 
     /// The exact facing of every triangle, into buffers that are kept. `world` and `triangles` are
@@ -163,8 +178,23 @@ impl Planes {
                     let corners = triangles[index * LANES + lane].map(|vertex| world[vertex as usize]);
                     side_of_triangle(corners, light).value() as i8
                 };
-                let (block_sum, block_clear) = view.block(&self.blocks[index], signs, exact);
-                signs.chunks(RUN).zip(runs).for_each(|(signs, run)| *run = run_sign(signs));
+                let known = view.runs(&self.extremes[index]);
+                let mut block_sum = 0;
+                let mut block_clear = 0;
+                let each = signs.chunks_mut(RUN).zip(runs).zip(known).enumerate();
+                for (run, ((signs, run_sign), known)) in each {
+                    let (run_sum, run_clear) = if known == MIXED {
+                        let found = view.run(&self.blocks[index], run, signs, exact);
+                        *run_sign = sign_of_run(signs);
+                        found
+                    } else {
+                        signs.fill(known);
+                        *run_sign = known;
+                        (i64::from(known) * signs.len() as i64, signs.len() as i64)
+                    };
+                    block_sum += run_sum;
+                    block_clear += run_clear;
+                }
                 sum += block_sum;
                 clear += block_clear;
             }
@@ -206,28 +236,64 @@ impl View {
         View { light: relative.to_array().map(|part| part as f32), w: f32::from(u8::from(light.w != 0.0)), bound }
     }
 
-    /// Signs of a block; returns their sum and how many are not zero.
-    fn block(&self, block: &Block, out: &mut [i8], exact: impl Fn(usize) -> i8) -> (i64, i64) {
-        let mut signs = [0i8; LANES];
+    /// The sign of each run, or [`MIXED`] where its planes' extremes do not tell.
+    fn runs(&self, extremes: &Extremes) -> [i8; RUNS] {
+        let mut signs = [MIXED; RUNS];
+        let light = [self.light[0], self.light[1], self.light[2], self.w];
+        let (mut low, mut high) = ([0.0; RUNS], [0.0; RUNS]);
+        for (axis, part) in light.into_iter().enumerate() {
+            let (of_low, of_high) = match part >= 0.0 {
+                true => (&extremes.low[axis], &extremes.high[axis]),
+                false => (&extremes.high[axis], &extremes.low[axis]),
+            };
+            for run in 0..RUNS {
+                low[run] += of_low[run] * part;
+                high[run] += of_high[run] * part;
+            }
+        }
+        for (run, sign) in signs.iter_mut().enumerate() {
+            if low[run] > self.bound {
+                *sign = 1;
+            } else if high[run] < -self.bound {
+                *sign = -1;
+            }
+        }
+        signs
+    }
+
+    /// Signs of a run; returns their sum and how many are not zero.
+    fn run(&self, block: &Block, run: usize, out: &mut [i8], exact: impl Fn(usize) -> i8) -> (i64, i64) {
         let [x, y, z] = self.light;
         let [nx, ny, nz] = &block.normal;
-        for lane in 0..LANES {
-            let value = nx[lane] * x + ny[lane] * y + nz[lane] * z + block.offset[lane] * self.w;
-            signs[lane] = i8::from(value > self.bound) - i8::from(value < -self.bound);
+        let first = run * RUN;
+        let mut signs = [0i8; RUN];
+        for (lane, sign) in signs.iter_mut().enumerate() {
+            let at = first + lane;
+            let value = nx[at] * x + ny[at] * y + nz[at] * z + block.offset[at] * self.w;
+            *sign = i8::from(value > self.bound) - i8::from(value < -self.bound);
         }
-        // 64 signs fit an i8's sum twice over but for −128; i16 is as quick.
-        let mut clear: i16 = signs.iter().map(|sign| i16::from(sign & 1)).sum();
-        if clear < LANES as i16 {
-            for (lane, sign) in signs.iter_mut().enumerate().take(out.len()) {
-                if *sign == 0 {
-                    *sign = exact(lane);
-                    clear += i16::from(*sign & 1);
+        for (lane, (out, sign)) in out.iter_mut().zip(signs).enumerate() {
+            *out = if sign == 0 { exact(first + lane) } else { sign };
+        }
+        (out.iter().map(|sign| i64::from(*sign)).sum(), out.iter().map(|sign| i64::from(sign & 1)).sum())
+    }
+}
+
+impl Extremes {
+    /// Of the first `count` planes of a block.
+    fn of(block: &Block, count: usize) -> Extremes {
+        let mut extremes = Extremes { low: [[f32::NAN; RUNS]; 4], high: [[f32::NAN; RUNS]; 4] };
+        let [x, y, z] = &block.normal;
+        for (axis, parts) in [x, y, z, &block.offset].into_iter().enumerate() {
+            for (run, parts) in parts[..count].chunks(RUN).enumerate() {
+                // `min` and `max` would pass over NaN.
+                if !parts.iter().any(|part| part.is_nan()) {
+                    extremes.low[axis][run] = parts.iter().copied().fold(f32::INFINITY, f32::min);
+                    extremes.high[axis][run] = parts.iter().copied().fold(f32::NEG_INFINITY, f32::max);
                 }
             }
         }
-        let sum: i16 = signs.iter().map(|sign| i16::from(*sign)).sum();
-        out.copy_from_slice(&signs[..out.len()]);
-        (i64::from(sum), i64::from(clear))
+        extremes
     }
 }
 
