@@ -37,7 +37,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     frame.ambient_pass();
     for light in frame.light_ids() {
         let volumes = volumes(&mut frame, light, counting, &options);
-        if counting == Counting::ZPassPlus {
+        if counting == Counting::InFrontPlus {
             near_count::pass(&mut frame, light, &options, &volumes);
         }
         for step in Step::all(options.two_pass) {
@@ -107,10 +107,7 @@ fn volumes(frame: &mut Frame, light: LightId, counting: Counting, options: &Opti
         }
         let casters = who_casts(frame, light, index, options);
         let (mesh, parts) = make(frame, light, index, casters, options);
-        let has_triangles = parts.dark_cap.end > 0;
-        let mut needed = needed_parts(frame, light, counting, options, &parts, object);
-        needed.retain(|part| !part.triangles.is_empty());
-        if !has_triangles {
+        if parts.light_cap_turned.end == 0 {
             let because = match casters {
                 Casters::All => "every triangle is edge-on to the light",
                 Casters::LightFacing => "no triangle faces the light",
@@ -119,6 +116,8 @@ fn volumes(frame: &mut Frame, light: LightId, counting: Counting, options: &Opti
             frame.leave_out("volume", &object.name, because);
             continue;
         }
+        let mut needed = needed_parts(frame, light, counting, options, &parts, object);
+        needed.retain(|part| !part.triangles.is_empty());
         let mesh = frame.add_mesh(mesh);
         volumes.push(Volume { caster: object.name.clone(), mesh, parts, needed });
     }
@@ -185,7 +184,7 @@ fn needed_parts(
     let light_caps =
         [part(Part::LightCap, false, &parts.light_cap), part(Part::LightCap, true, &parts.light_cap_turned)];
     let mut needed = vec![part(Part::Side, false, &parts.sides)];
-    if counting == Counting::ZFail || !caster.visible {
+    if counting == Counting::Behind || !caster.visible {
         // In z-pass the view ray enters the volume of an undrawn caster through its light cap.
         needed.extend(light_caps);
     } else {
@@ -193,7 +192,7 @@ fn needed_parts(
         frame.leave_out("caps", &caster.name, because);
     }
     // A finite volume ends in front of whatever lies beyond it.
-    if counting == Counting::ZFail || options.extrusion != Extrusion::Infinite {
+    if counting == Counting::Behind || options.extrusion != Extrusion::Infinite {
         needed.push(part(Part::DarkCap, false, &parts.dark_cap));
         if parts.dark_cap.is_empty() && frame.light_position(light).w == 0.0 {
             let because = "a directional light's volume closes in one point at infinity";

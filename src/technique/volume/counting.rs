@@ -10,11 +10,11 @@ use wgpu::{CompareFunction, StencilOperation};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Counting {
     /// In front of the surface.
-    ZPass,
+    InFront,
     /// In front of the surface, on top of what the near plane's count began with.
-    ZPassPlus,
+    InFrontPlus,
     /// Behind the surface.
-    ZFail,
+    Behind,
 }
 
 /// Which faces one pass draws.
@@ -47,30 +47,32 @@ impl Step {
 impl Counting {
     pub fn of(technique: Technique) -> Counting {
         match technique {
-            Technique::ZPass => Counting::ZPass,
-            Technique::ZPassPlus => Counting::ZPassPlus,
-            _ => Counting::ZFail,
+            Technique::ZPass => Counting::InFront,
+            Technique::ZPassPlus => Counting::InFrontPlus,
+            _ => Counting::Behind,
         }
     }
 
     pub fn purpose(self, light: LightId, step: Step) -> String {
         let light = Frame::light_name(light);
         let [adds, takes] = match self {
-            Counting::ZPass | Counting::ZPassPlus => {
+            Counting::InFront | Counting::InFrontPlus => {
                 ["a front face nearer than the surface adds 1", "a back face nearer than it takes 1 away"]
             }
-            Counting::ZFail => ["a back face hidden by the surface adds 1", "a hidden front face takes 1 away"],
+            Counting::Behind => ["a back face hidden by the surface adds 1", "a hidden front face takes 1 away"],
         };
         let what = match self {
-            Counting::ZPass | Counting::ZPassPlus => format!("the shadow volumes of {light} in front of each surface"),
-            Counting::ZFail => format!("the shadow volumes of {light} behind each surface"),
+            Counting::InFront | Counting::InFrontPlus => {
+                format!("the shadow volumes of {light} in front of each surface")
+            }
+            Counting::Behind => format!("the shadow volumes of {light} behind each surface"),
         };
         let left = match self {
-            Counting::ZPass => "What is left contains the surface, if the eye itself is in none.",
-            Counting::ZPassPlus => {
+            Counting::InFront => "What is left contains the surface, if the eye itself is in none.",
+            Counting::InFrontPlus => {
                 "With what the near plane began with, what is left contains the surface, wherever the eye is."
             }
-            Counting::ZFail => "What is left contains the surface, wherever the eye is.",
+            Counting::Behind => "What is left contains the surface, wherever the eye is.",
         };
         match step {
             Step::BothFaces => format!("Counts {what}: {adds}, {takes}. {left}"),
@@ -84,7 +86,7 @@ impl Counting {
     /// The state for triangles that face outwards (`turned`: inwards).
     pub fn raster(self, part: Part, turned: bool, options: &Options, step: Step) -> RasterState {
         let (add, take) = operations(options);
-        let adds_in_front = (self != Counting::ZFail) != turned;
+        let adds_in_front = (self != Counting::Behind) != turned;
         let (front, back) = if adds_in_front { (add, take) } else { (take, add) };
         let surface = RasterState::surface();
         let is_never = options.light_caps_never_pass && part == Part::LightCap;
@@ -105,8 +107,8 @@ impl Counting {
     fn face(self, operation: StencilOperation) -> StencilFace {
         let keep = StencilFace { compare: CompareFunction::Always, ..StencilFace::IGNORE };
         match self {
-            Counting::ZPass | Counting::ZPassPlus => StencilFace { pass_op: operation, ..keep },
-            Counting::ZFail => StencilFace { depth_fail_op: operation, ..keep },
+            Counting::InFront | Counting::InFrontPlus => StencilFace { pass_op: operation, ..keep },
+            Counting::Behind => StencilFace { depth_fail_op: operation, ..keep },
         }
     }
 }
