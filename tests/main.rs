@@ -15,3 +15,4 @@ mod scenes;
 mod stencil_machine;
 mod techniques;
 mod truth;
+mod volumes;

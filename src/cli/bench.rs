@@ -3,23 +3,27 @@
 use super::options::{FrameOptions, SceneOptions};
 use super::{CliError, output};
 use crate::scene::builtin::shapes;
-use crate::scene::{MeshBuilder, Scene, SceneError, model_scene};
-use crate::session::{CaptureCost, Session, TruthCost, median_ms, truth_cost};
+use crate::scene::{Mesh, MeshBuilder, Scene, SceneError, model_scene};
+use crate::session::{CaptureCost, Session, TruthCost, VolumeCost, median_ms, truth_cost, volume_cost};
 use clap::Args;
 use glam::DVec3;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 /// The benchmarks that exist.
-const BENCHMARKS: [&str; 2] = ["capture", "truth"];
+const BENCHMARKS: [&str; 3] = ["capture", "volumes", "truth"];
 /// Benchmarks that are planned, but not built.
-const BENCHMARKS_TO_COME: [&str; 3] = ["volumes", "history", "panels"];
+const BENCHMARKS_TO_COME: [&str; 2] = ["history", "panels"];
 /// Frames of each kind that are timed.
 const RUNS: usize = 15;
+/// What the benchmarks' own model is called.
+const BUMPY: &str = "bumpy sphere";
+/// Lights for which volumes are timed; each takes less than a millisecond.
+const LIGHTS: usize = 80;
 
 #[derive(Debug, Args)]
 pub struct BenchArguments {
-    /// What to measure: capture, truth
+    /// What to measure: capture, volumes, truth
     #[arg(value_name = "NAME", default_value = "capture")]
     names: Vec<String>,
     /// A scene in place of the benchmark's own; repeatable
@@ -40,6 +44,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
     for name in &arguments.names {
         match name.as_str() {
             "truth" => truth(arguments)?,
+            "volumes" => volumes(arguments)?,
             _ => capture(arguments)?,
         }
     }
@@ -103,10 +108,61 @@ fn scenes(
     if arguments.scene.is_empty() { own() } else { arguments.scene.iter().map(open).collect() }
 }
 
+/// The geometry of shadow volumes: what a mesh costs once, and what each new light costs.
+fn volumes(arguments: &BenchArguments) -> Result<(), CliError> {
+    if arguments.scene.is_empty() {
+        let small = bumpy_mesh(264, 133)?;
+        let large = bumpy_mesh(1000, 501)?;
+        let (small_cost, large_cost) = (volume_cost(&small, LIGHTS), volume_cost(&large, LIGHTS));
+        output::print(&volume_lines("bumpy sphere", &small_cost))?;
+        output::print(&volume_lines("bumpy sphere", &large_cost))?;
+        let ratio = |times: fn(&VolumeCost) -> &[Duration]| {
+            let per_triangle = |cost: &VolumeCost| median_ms(times(cost)).unwrap_or(f64::NAN) / cost.triangles as f64;
+            per_triangle(&large_cost) / per_triangle(&small_cost)
+        };
+        return output::print(&format!(
+            "large against small, a triangle: edge list {:.2}, new light {:.2}\n",
+            ratio(|cost| &cost.edge_list),
+            ratio(|cost| &cost.new_light),
+        ));
+    }
+    for scene in scenes(arguments, || Ok(Vec::new()))? {
+        for object in scene.objects.iter().filter(|object| object.casts) {
+            let title = format!("{}, {}", scene.name, object.name);
+            output::print(&volume_lines(&title, &volume_cost(&object.mesh, LIGHTS)))?;
+        }
+    }
+    Ok(())
+}
+
+fn volume_lines(title: &str, cost: &VolumeCost) -> String {
+    let line = |what: &str, times: &[Duration]| {
+        let fastest = times.iter().min().map_or(f64::NAN, |time| time.as_secs_f64() * 1e3);
+        format!("  {what}_ms {:.3} (fastest {fastest:.3})\n", median_ms(times).unwrap_or(f64::NAN))
+    };
+    format!(
+        "{title}: {} triangles, {} edges; last light: {} silhouette edges, {} triangles of its volume\n{}{}{}{}{}{}{}",
+        cost.triangles,
+        cost.edges,
+        cost.silhouette_edges,
+        cost.volume_triangles,
+        line("edge_list", &cost.edge_list),
+        line("planes", &cost.planes),
+        line("facing", &cost.facing),
+        line("multiplicities", &cost.multiplicities),
+        line("indices", &cost.indices),
+        line("new_light", &cost.new_light),
+        line("hashing", &cost.hashing),
+    )
+}
+
 /// A closed model of about twice `around` times `up` triangles on a floor, as uneven as a scanned one.
 fn bumpy_model(around: u32, up: u32) -> Result<Scene, SceneError> {
-    const NAME: &str = "bumpy sphere";
-    let fail = |source| SceneError::Mesh { name: NAME.to_owned(), source };
+    model_scene(BUMPY, bumpy_mesh(around, up)?, true)
+}
+
+fn bumpy_mesh(around: u32, up: u32) -> Result<Mesh, SceneError> {
+    let fail = |source| SceneError::Mesh { name: BUMPY.to_owned(), source };
     let smooth = shapes::sphere(1.0, around, up).map_err(fail)?;
     let bump = |p: &DVec3| *p * (1.0 + 0.12 * (5.0 * p.x).sin() * (4.0 * p.y + 1.0).sin() * (6.0 * p.z).cos());
     let builder = MeshBuilder {
@@ -114,7 +170,7 @@ fn bumpy_model(around: u32, up: u32) -> Result<Scene, SceneError> {
         triangles: smooth.triangles().to_vec(),
         ..MeshBuilder::default()
     };
-    model_scene(NAME, builder.build().map_err(fail)?, true)
+    builder.build().map_err(fail)
 }
 
 /// Times, what snapshots add, and how long copying as many bytes takes in plain memory.

@@ -13,7 +13,7 @@ const LARGEST: u32 = 16_384;
 /// Used where neither the command line nor the scene names a technique.
 const DEFAULT_TECHNIQUE: &str = "z-fail";
 /// Techniques that are planned, but not built.
-const TECHNIQUES_TO_COME: [&str; 2] = ["z-pass-plus", "auto"];
+const TECHNIQUES_TO_COME: [&str; 1] = ["auto"];
 /// How often a frame is timed with and without snapshots.
 const TIMING_RUNS: usize = 5;
 

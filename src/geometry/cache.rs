@@ -1,22 +1,54 @@
-//! What geometry is worth keeping between plans: edge lists, by the mesh's content.
+//! What geometry is worth keeping between plans: edge lists by the mesh's content, planes by the
+//! mesh and its place, and buffers.
 
-use super::EdgeList;
 use super::planar::Flattened;
-use crate::scene::Mesh;
-use glam::DVec4;
+use super::{
+    Casters, EdgeList, Extruder, Facings, Planes, SilhouetteEdge, Topology, VolumeParts, silhouette,
+    silhouette_by_search, solid, write_indices,
+};
+use crate::scene::{Mesh, Pose};
+use glam::{DVec3, DVec4};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Edge lists kept at once; a scene of more meshes starts over.
-const MOST_KEPT: usize = 256;
+/// Triangles kept at once (about 60 bytes each); a scene of more starts over with each mesh.
+const MOST_TRIANGLES_KEPT: usize = 8_000_000;
 
-/// Edge lists of the meshes planned so far. Planning with a full or an empty cache gives the same
-/// plan.
+/// What was found out about the meshes planned so far. Planning with a full or an empty cache
+/// gives the same plan.
 #[derive(Debug, Default)]
 pub struct GeometryCache {
     edges: HashMap<u64, Arc<EdgeList>>,
     /// By their keys, with whether the newest plan has asked for them.
     flattened: HashMap<u64, (Arc<Vec<[DVec4; 3]>>, bool)>,
+    planes: HashMap<(u64, PoseBits), Arc<Planes>>,
+    topologies: HashMap<u64, Arc<Topology>>,
+    solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
+    triangles_kept: usize,
+    facings: Facings,
+    silhouette: Vec<SilhouetteEdge>,
+}
+
+type PoseBits = [u64; 9];
+
+/// How a volume's silhouette is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SilhouetteBy {
+    /// By the mesh's edge list, built once.
+    Adjacency,
+    /// By searching a list for every edge's reverse, anew for each light.
+    Search,
+}
+
+/// One caster: a mesh and where it is.
+#[derive(Debug, Clone, Copy)]
+pub struct Caster<'a> {
+    /// Its triangles.
+    pub mesh: &'a Mesh,
+    /// Its place.
+    pub pose: &'a Pose,
+    /// The mesh's vertices so placed.
+    pub world: &'a [DVec3],
 }
 
 impl GeometryCache {
@@ -34,10 +66,87 @@ impl GeometryCache {
 
     /// The edges of `mesh`, built on first use.
     pub fn edges(&mut self, mesh: &Mesh) -> Arc<EdgeList> {
-        if self.edges.len() >= MOST_KEPT && !self.edges.contains_key(&mesh.content_hash()) {
-            self.edges.clear();
+        if let Some(edges) = self.edges.get(&mesh.content_hash()) {
+            return edges.clone();
         }
-        let build = || Arc::new(EdgeList::new(mesh.triangles(), mesh.positions().len()));
-        self.edges.entry(mesh.content_hash()).or_insert_with(build).clone()
+        self.make_room(mesh);
+        let edges = Arc::new(EdgeList::new(mesh.triangles(), mesh.positions().len()));
+        self.edges.insert(mesh.content_hash(), edges.clone());
+        edges
     }
+
+    /// The planes of a caster's triangles, made on first use.
+    pub fn planes(&mut self, caster: Caster) -> Arc<Planes> {
+        let key = (caster.mesh.content_hash(), pose_bits(caster.pose));
+        if let Some(planes) = self.planes.get(&key) {
+            return planes.clone();
+        }
+        self.make_room(caster.mesh);
+        let planes = Arc::new(Planes::new(caster.world, caster.mesh.triangles()));
+        self.planes.insert(key, planes.clone());
+        planes
+    }
+
+    /// Writes the indices of a caster's volume for a light into `out`: facings, silhouette and
+    /// [`write_indices`] in buffers that are kept.
+    pub fn volume_indices(
+        &mut self,
+        caster: Caster,
+        light: DVec4,
+        casters: Casters,
+        by: SilhouetteBy,
+        extruder: &Extruder,
+        out: &mut Vec<u32>,
+    ) -> VolumeParts {
+        let triangles = caster.mesh.triangles();
+        let planes = self.planes(caster);
+        let edges = (by == SilhouetteBy::Adjacency).then(|| self.edges(caster.mesh));
+        planes.facings(caster.world, triangles, light, &mut self.facings);
+        self.facings.keep_casting(casters);
+        match edges {
+            Some(edges) => silhouette(&edges, &self.facings, &mut self.silhouette),
+            None => silhouette_by_search(triangles, &self.facings, &mut self.silhouette),
+        }
+        let one_point = extruder.is_one_point();
+        write_indices(triangles, caster.world.len(), &self.facings, &self.silhouette, one_point, out)
+    }
+
+    /// How `mesh` hangs together, found out on first use.
+    pub fn topology(&mut self, mesh: &Mesh) -> Arc<Topology> {
+        let edges = self.edges(mesh);
+        let build = || Arc::new(Topology::new(mesh, &edges));
+        self.topologies.entry(mesh.content_hash()).or_insert_with(build).clone()
+    }
+
+    /// Do the triangles that face the light cast the shadow of the whole mesh? The mesh is looked at
+    /// once a place, the light each time.
+    ///
+    /// # Errors
+    /// What speaks against it, or is not proven.
+    pub fn light_facing_suffices(&mut self, caster: Caster, light: DVec4) -> Result<(), String> {
+        let (mesh, topology) = (caster.mesh, self.topology(caster.mesh));
+        let key = (mesh.content_hash(), pose_bits(caster.pose));
+        let check = || solid::check(caster.world, mesh.triangles(), &topology);
+        self.solids.entry(key).or_insert_with(check).clone().map_err(|doubt| doubt.to_string())?;
+        match solid::light_is_outside(caster.world, mesh.triangles(), light) {
+            true => Ok(()),
+            false => Err("the light is inside it, or on it".to_owned()),
+        }
+    }
+
+    fn make_room(&mut self, mesh: &Mesh) {
+        self.triangles_kept += mesh.triangles().len();
+        if self.triangles_kept > MOST_TRIANGLES_KEPT {
+            self.edges.clear();
+            self.planes.clear();
+            self.topologies.clear();
+            self.solids.clear();
+            self.triangles_kept = mesh.triangles().len();
+        }
+    }
+}
+
+fn pose_bits(pose: &Pose) -> PoseBits {
+    let [t, r, s] = [pose.translate, pose.rotate_degrees, pose.scale].map(|part| part.to_array().map(f64::to_bits));
+    [t[0], t[1], t[2], r[0], r[1], r[2], s[0], s[1], s[2]]
 }

@@ -5,15 +5,25 @@
 
 mod cache;
 mod edges;
+mod facing;
+mod intersection;
 pub mod light_frame;
+pub mod near_view;
 pub mod planar;
 mod receiver_texture;
 pub mod relative;
 mod silhouette;
+pub mod solid;
+pub mod topology;
 mod volume;
+mod winding;
 
-pub use cache::GeometryCache;
+pub use cache::{Caster, GeometryCache, SilhouetteBy};
 pub use edges::{Edge, EdgeList};
+pub use facing::{Facings, Planes};
+pub use intersection::self_meeting;
 pub use receiver_texture::Parallelogram;
-pub use silhouette::{facing, multiplicities};
-pub use volume::{Volume, VolumeParts};
+pub use silhouette::{Casters, MOST_TO_SEARCH, SilhouetteEdge, facing, silhouette, silhouette_by_search};
+pub use topology::Topology;
+pub use volume::{Extruder, Extrusion, VolumeParts, write_indices};
+pub use winding::winding_number;

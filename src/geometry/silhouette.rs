@@ -1,23 +1,135 @@
 //! Which way triangles face a light, and how often each edge bounds the shadow.
 
-use super::EdgeList;
+use super::{Edge, EdgeList, Facings};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Blocks of edges a thread takes at once; fewer are not worth waking another for.
+const SHARE: usize = 4 * 1024;
+/// Beyond so many triangles, searching all edges for each one's reverse takes seconds.
+pub const MOST_TO_SEARCH: usize = 20_000;
+
+/// Which triangles cast.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Casters {
+    /// Every triangle, turned towards the light: right for any triangle soup.
+    All,
+    /// Those that face the light, as textbooks have it: right only for a closed mesh with its
+    /// outside out and the light outside it.
+    LightFacing,
+    /// Those that face away from the light, turned: right under the same conditions.
+    LightBackFacing,
+}
+
+/// An edge that bounds a shadow: the turned triangles around it run from low to high
+/// `multiplicity` times more often than back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SilhouetteEdge {
+    /// Which edge.
+    pub edge: Edge,
+    /// Never 0.
+    pub multiplicity: i32,
+}
 
 /// The one facing of each triangle: the exact sign of the light's side. Caps and edges both read
-/// it, so a volume can't open. Zero: edge-on, the triangle casts nothing.
+/// it, so a volume can't open. Zero: edge-on, the triangle casts nothing. The plain way that
+/// [`super::Planes`] must agree with.
 #[must_use]
 pub fn facing(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> Vec<Sign> {
     triangles.iter().map(|corners| side_of_triangle(corners.map(|i| world[i as usize]), light)).collect()
 }
 
-/// How often each edge bounds the shadow when every triangle is turned towards the light: the
-/// sum over its triangles of +1 where the turned triangle runs from low to high and −1 where it
-/// runs back. 0: inside the lit sheet, no side. Right for any triangle soup (techniques.md,
-/// section 5): the sides and caps that follow from it always close.
-#[must_use]
-pub fn multiplicities(edges: &EdgeList, facing: &[Sign]) -> Vec<i32> {
-    (0..edges.edges().len())
-        .map(|edge| edges.incident(edge).map(|(triangle, direction)| direction * facing[triangle].value()).sum())
-        .collect()
+/// The edges that bound the shadow when every casting triangle is turned towards the light, in
+/// order of (low, high): those where the sum over their triangles of +1 where the turned triangle
+/// runs from low to high and −1 where it runs back is not 0. Elsewhere the lit sheet goes on, and
+/// there is no side. Right for any triangle soup (techniques.md, section 5): the sides and caps
+/// that follow from it always close.
+pub fn silhouette(edges: &EdgeList, facings: &Facings, out: &mut Vec<SilhouetteEdge>) {
+    out.clear();
+    let found = |blocks: Range<usize>, out: &mut Vec<SilhouetteEdge>| {
+        edges.for_each_unbalanced(blocks, facings, |index, multiplicity| {
+            out.push(SilhouetteEdge { edge: edges.edges()[index], multiplicity });
+        });
+    };
+    let count = edges.blocks();
+    if count <= 2 * SHARE {
+        return found(0..count, out);
+    }
+    let share = |index: usize| {
+        let mut part = Vec::new();
+        found(index * SHARE..count.min((index + 1) * SHARE), &mut part);
+        part
+    };
+    let parts: Vec<Vec<SilhouetteEdge>> = (0..count.div_ceil(SHARE)).into_par_iter().map(share).collect();
+    parts.iter().for_each(|part| out.extend_from_slice(part));
+}
+
+/// The same edges without an edge list: every side of every casting triangle goes into a list,
+/// unless its reverse is found there, which then leaves it. What stays bounds the shadow. The
+/// search makes it quadratic in the number of triangles, anew for each light; it is here for its
+/// lesson.
+pub fn silhouette_by_search(triangles: &[[u32; 3]], facings: &Facings, out: &mut Vec<SilhouetteEdge>) {
+    let mut list: Vec<[u32; 2]> = Vec::new();
+    for (&[a, b, c], sign) in triangles.iter().zip(facings.signs()) {
+        let turned = match sign {
+            1 => [a, b, c],
+            -1 => [a, c, b],
+            _ => continue,
+        };
+        for side in 0..3 {
+            let (from, to) = (turned[side], turned[(side + 1) % 3]);
+            match list.iter().position(|other| *other == [to, from]) {
+                Some(reverse) => {
+                    list.swap_remove(reverse);
+                }
+                None => list.push([from, to]),
+            }
+        }
+    }
+    out.clear();
+    out.extend(list.iter().map(|&[from, to]| SilhouetteEdge {
+        edge: Edge { low: from.min(to), high: from.max(to) },
+        multiplicity: if from < to { 1 } else { -1 },
+    }));
+    out.sort_unstable();
+    out.dedup_by(|next, kept| {
+        let is_same = next.edge == kept.edge;
+        kept.multiplicity += if is_same { next.multiplicity } else { 0 };
+        is_same
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Fins, doubled and turned triangles among few vertices.
+    #[test]
+    fn searching_and_adjacency_find_the_same_edges() {
+        let mut state = 5u64;
+        let mut next = |below: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % below
+        };
+        for round in 0..400 {
+            let vertex_count = 4 + round % 9;
+            let triangles: Vec<[u32; 3]> = (0..1 + round * 2 % 61)
+                .map(|_| {
+                    let start = next(vertex_count);
+                    let step = 1 + next(vertex_count - 2);
+                    let jump = 1 + next(vertex_count - 1 - step);
+                    [start, start + step, start + step + jump].map(|v| (v % vertex_count) as u32)
+                })
+                .collect();
+            let signs = [Sign::Negative, Sign::Zero, Sign::Positive];
+            let facings = Facings::from_signs(triangles.iter().map(|_| signs[next(3) as usize]));
+            let edges = EdgeList::new(&triangles, vertex_count as usize);
+            let (mut by_adjacency, mut by_search) = (Vec::new(), Vec::new());
+            silhouette(&edges, &facings, &mut by_adjacency);
+            silhouette_by_search(&triangles, &facings, &mut by_search);
+            assert_eq!(by_adjacency, by_search, "{round}");
+        }
+    }
 }

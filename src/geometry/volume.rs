@@ -1,119 +1,298 @@
 //! Shadow volumes of any triangle soup: sides and two caps that close exactly.
 //!
-//! Vertices are the caster's own, followed by the same carried to infinity away from the light:
-//! one each for a point light, a single one for a directional light. Indices:
+//! Vertices are the caster's own, followed by the same carried away from the light ([`Extruder`]):
+//! to infinity, where a directional light needs only one point, or by a finite factor. Indices:
 //!
+//! - *sides*: |m| quads an edge of multiplicity m, directed by its sign and split along a
+//!   diagonal that depends only on vertex indices. Where all far vertices are one point, triangles.
 //! - *light cap*: the casting triangles in the surface's own vertex order, so that their depths
 //!   are bit-equal to the surface's; those that face the light first (unturned), then those that
 //!   had to be turned, which are drawn with front and back operations swapped.
-//! - *dark cap*: the same triangles at infinity, turned to face away from the light. With a
-//!   directional light it is one point and is left out.
-//! - *sides*: |m| quads an edge of multiplicity m, directed by its sign and split along a
-//!   diagonal that depends only on vertex indices. With a directional light, triangles.
+//! - *dark cap*: the same triangles carried away, turned to face away from the light: of those that
+//!   face the light, the light cap read backwards; of the others, the light cap as it is. Where
+//!   all far vertices are one point, it is left out.
+//!
+//! Where each run begins follows from the counts of facings alone, so indices are written once, into
+//! a buffer that may be kept, by several threads where there are many.
 
-use super::{EdgeList, facing, multiplicities};
-use crate::math::Sign;
+use super::facing::{MIXED, RUN};
+use super::{Facings, SilhouetteEdge};
 use glam::{DVec3, DVec4};
+use rayon::prelude::*;
 use std::ops::Range;
 
-/// Vertices and triangles of one caster's shadow volume for one light.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Volume {
-    /// Homogeneous world positions: the caster's, then those at infinity (`w = 0`).
-    pub vertices: Vec<DVec4>,
-    /// Into `vertices`, front faces outwards but for turned light-cap triangles.
-    pub triangles: Vec<[u32; 3]>,
-    /// Where each part lies in `triangles`.
-    pub parts: VolumeParts,
+/// Triangles of a cap that one thread writes at once.
+const SHARE: usize = 64 * 1024;
+
+/// How far volumes reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Extrusion {
+    /// Far vertices are directions, `V·L.w − L` with `w = 0`: nothing lies beyond.
+    Infinite,
+    /// Far vertices are points: `V + K·(V − L)` for a point light, `V − K·s·D/|D|` for a directional
+    /// one, with `s` the length of the caster's bounding box's diagonal. What lies beyond is lit:
+    /// a point light close to its caster moves vertices hardly at all.
+    Finite(f64),
+}
+
+/// Carries a caster's vertices away from a light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extruder {
+    light: DVec4,
+    extrusion: Extrusion,
+    /// Of the bounding box's diagonal.
+    size: f64,
+}
+
+impl Extruder {
+    /// For a caster with these `world` positions.
+    #[must_use]
+    pub fn new(world: &[DVec3], light: DVec4, extrusion: Extrusion) -> Extruder {
+        let size = match (extrusion, light.w == 0.0) {
+            (Extrusion::Finite(_), true) => {
+                let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+                let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+                (high - low).length()
+            }
+            _ => 0.0,
+        };
+        Extruder { light, extrusion, size }
+    }
+
+    /// All vertices go to one point: a directional light's point at infinity.
+    #[must_use]
+    pub fn is_one_point(&self) -> bool {
+        self.light.w == 0.0 && self.extrusion == Extrusion::Infinite
+    }
+
+    /// Where a vertex goes.
+    #[must_use]
+    pub fn carry(&self, position: DVec3) -> DVec4 {
+        let light = self.light.truncate();
+        match self.extrusion {
+            Extrusion::Infinite => (position * self.light.w - light).extend(0.0),
+            Extrusion::Finite(factor) if self.light.w == 0.0 => {
+                // The largest component first: a light's direction may have any length.
+                let direction = (light / light.abs().max_element()).normalize();
+                (position - direction * (factor * self.size)).extend(1.0)
+            }
+            Extrusion::Finite(factor) => (position + (position - light) * factor).extend(1.0),
+        }
+    }
+
+    /// The caster's vertices, then the far ones.
+    pub fn vertices(&self, world: &[DVec3]) -> impl Iterator<Item = DVec4> {
+        let far = if self.is_one_point() { &world[..1.min(world.len())] } else { world };
+        world.iter().map(|position| position.extend(1.0)).chain(far.iter().map(|position| self.carry(*position)))
+    }
 }
 
 /// Runs of a volume's triangles.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct VolumeParts {
-    /// Quads from the silhouette to infinity.
+    /// Quads from the silhouette to the far vertices.
     pub sides: Range<usize>,
     /// Casting triangles that face the light as they are.
     pub light_cap: Range<usize>,
     /// Casting triangles that face away and count as turned, in their own vertex order.
     pub light_cap_turned: Range<usize>,
-    /// At infinity.
+    /// The casting triangles carried away.
     pub dark_cap: Range<usize>,
 }
 
-impl Volume {
-    /// The volume that a caster with welded `world` positions throws away from `light`.
-    #[must_use]
-    pub fn new(world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList, light: DVec4) -> Volume {
-        let facing = facing(world, triangles, light);
-        let infinity = Infinity { first: world.len() as u32, is_one_point: light.w == 0.0 };
-        let mut out = Vec::new();
-        push_sides(&mut out, edges, &multiplicities(edges, &facing), infinity);
-        let sides = 0..out.len();
-        out.extend(casting(triangles, &facing, Sign::Positive));
-        let light_cap = sides.end..out.len();
-        out.extend(casting(triangles, &facing, Sign::Negative));
-        let light_cap_turned = light_cap.end..out.len();
-        if !infinity.is_one_point {
-            let carried = |corners: [u32; 3]| corners.map(|vertex| infinity.of(vertex));
-            out.extend(casting(triangles, &facing, Sign::Positive).map(|[a, b, c]| carried([a, c, b])));
-            out.extend(casting(triangles, &facing, Sign::Negative).map(carried));
+impl VolumeParts {
+    fn new(sides: usize, facings: &Facings, has_dark_cap: bool) -> VolumeParts {
+        let [towards, away] = [sides + facings.towards(), sides + facings.towards() + facings.away()];
+        let dark = if has_dark_cap { facings.towards() + facings.away() } else { 0 };
+        VolumeParts {
+            sides: 0..sides,
+            light_cap: sides..towards,
+            light_cap_turned: towards..away,
+            dark_cap: away..away + dark,
         }
-        let dark_cap = light_cap_turned.end..out.len();
-        let parts = VolumeParts { sides, light_cap, light_cap_turned, dark_cap };
-        Volume { vertices: vertices(world, light), triangles: out, parts }
     }
 }
 
-/// Where vertices at infinity are.
+/// Writes the indices of the volume of a caster of `vertex_count` vertices: three a triangle, into
+/// the vertices of [`Extruder::vertices`], front faces outwards but for turned light-cap
+/// triangles. Whatever `out` held is overwritten.
+pub fn write_indices(
+    triangles: &[[u32; 3]],
+    vertex_count: usize,
+    facings: &Facings,
+    silhouette: &[SilhouetteEdge],
+    is_one_point: bool,
+    out: &mut Vec<u32>,
+) -> VolumeParts {
+    let far = Far { first: vertex_count as u32, is_one_point };
+    let quads: usize = silhouette.iter().map(|edge| edge.multiplicity.unsigned_abs() as usize).sum();
+    let parts = VolumeParts::new(if is_one_point { quads } else { 2 * quads }, facings, !is_one_point);
+    let length = parts.dark_cap.end * 3;
+    if out.capacity() < length {
+        *out = vec![0; length]; // zeroed by the system, not by us
+    } else {
+        out.resize(length, 0);
+    }
+    let (sides, caps) = out.as_chunks_mut().0.split_at_mut(parts.sides.end);
+    write_sides(sides, silhouette, far);
+    let (light, dark) = caps.split_at_mut(facings.towards() + facings.away());
+    let (light_towards, light_away) = light.split_at_mut(facings.towards());
+    let (dark_towards, dark_away) = dark.split_at_mut(if is_one_point { 0 } else { facings.towards() });
+    let caps = Caps { light: [light_towards, light_away], dark: [dark_towards, dark_away], far };
+    if triangles.len() <= 2 * SHARE {
+        caps.write(triangles, facings.signs(), facings.runs());
+    } else {
+        let runs = facings.runs().chunks(SHARE / RUN);
+        let shares = triangles.chunks(SHARE).zip(facings.signs().chunks(SHARE)).zip(runs);
+        let mut rest = caps;
+        let with_room = |((triangles, signs), runs)| (rest.split_off(signs), triangles, signs, runs);
+        let tasks: Vec<_> = shares.map(with_room).collect();
+        tasks.into_par_iter().for_each(|(caps, triangles, signs, runs)| caps.write(triangles, signs, runs));
+    }
+    parts
+}
+
+/// Where far vertices are.
 #[derive(Clone, Copy)]
-struct Infinity {
+struct Far {
     first: u32,
     is_one_point: bool,
 }
 
-impl Infinity {
+impl Far {
     fn of(self, vertex: u32) -> u32 {
         if self.is_one_point { self.first } else { self.first + vertex }
     }
 }
 
-/// Near positions, then the directions in which they go away from the light: V·L.w − L.
-fn vertices(world: &[DVec3], light: DVec4) -> Vec<DVec4> {
-    let away = |position: DVec3| (position * light.w - light.truncate()).extend(0.0);
-    let near = world.iter().map(|position| position.extend(1.0));
-    if light.w == 0.0 {
-        return near.chain([away(DVec3::ZERO)]).collect();
+/// Room for the caps' triangles: of those that face the light, and of those that are turned.
+struct Caps<'a> {
+    light: [&'a mut [[u32; 3]]; 2],
+    /// Empty where there is no dark cap.
+    dark: [&'a mut [[u32; 3]]; 2],
+    far: Far,
+}
+
+impl<'a> Caps<'a> {
+    /// The room that the next triangles take, with these signs; the rest stays.
+    fn split_off(&mut self, signs: &[i8]) -> Caps<'a> {
+        let towards = signs.iter().filter(|sign| **sign > 0).count();
+        let away = signs.iter().filter(|sign| **sign < 0).count();
+        let light_towards = front(&mut self.light[0], towards);
+        let light_away = front(&mut self.light[1], away);
+        let has_dark = !self.far.is_one_point;
+        let dark_towards = back(&mut self.dark[0], if has_dark { towards } else { 0 });
+        let dark_away = front(&mut self.dark[1], if has_dark { away } else { 0 });
+        Caps { light: [light_towards, light_away], dark: [dark_towards, dark_away], far: self.far }
     }
-    near.chain(world.iter().map(|position| away(*position))).collect()
+
+    fn write(mut self, triangles: &[[u32; 3]], signs: &[i8], runs: &[i8]) {
+        // Neighbours mostly face the same way: whole stretches are copied at once.
+        let mut start = 0;
+        for stretch in runs.chunk_by(|one, other| one == other) {
+            let end = triangles.len().min(start + stretch.len() * RUN);
+            match stretch[0] {
+                MIXED => {
+                    let signs = signs[start..end].chunk_by(|one, other| one == other);
+                    for same in signs {
+                        self.push(&triangles[start..start + same.len()], same[0]);
+                        start += same.len();
+                    }
+                }
+                sign => self.push(&triangles[start..end], sign),
+            }
+            start = end;
+        }
+    }
+
+    /// Writes triangles that all face the same way.
+    fn push(&mut self, triangles: &[[u32; 3]], sign: i8) {
+        let which = match sign {
+            1 => 0,
+            -1 => 1,
+            _ => return,
+        };
+        front(&mut self.light[which], triangles.len()).copy_from_slice(triangles);
+        if self.far.is_one_point {
+            return;
+        }
+        let first = self.far.first;
+        let carried = triangles.as_flattened().iter().map(|vertex| vertex + first);
+        if which == 0 {
+            let room = back(&mut self.dark[0], triangles.len()).as_flattened_mut();
+            room.iter_mut().zip(carried.rev()).for_each(|(out, vertex)| *out = vertex);
+        } else {
+            let room = front(&mut self.dark[1], triangles.len()).as_flattened_mut();
+            room.iter_mut().zip(carried).for_each(|(out, vertex)| *out = vertex);
+        }
+    }
 }
 
-fn casting<'a>(triangles: &'a [[u32; 3]], facing: &'a [Sign], sign: Sign) -> impl Iterator<Item = [u32; 3]> + 'a {
-    triangles.iter().zip(facing).filter(move |(_, facing)| **facing == sign).map(|(corners, _)| *corners)
+/// Takes the first `count` places of `room`.
+fn front<'a>(room: &mut &'a mut [[u32; 3]], count: usize) -> &'a mut [[u32; 3]] {
+    let (taken, rest) = std::mem::take(room).split_at_mut(count);
+    *room = rest;
+    taken
 }
 
-fn push_sides(out: &mut Vec<[u32; 3]>, edges: &EdgeList, multiplicities: &[i32], infinity: Infinity) {
-    for (edge, &multiplicity) in edges.edges().iter().zip(multiplicities) {
+/// Takes the last `count` places of `room`.
+fn back<'a>(room: &mut &'a mut [[u32; 3]], count: usize) -> &'a mut [[u32; 3]] {
+    let whole = std::mem::take(room);
+    let (rest, taken) = whole.split_at_mut(whole.len() - count);
+    *room = rest;
+    taken
+}
+
+fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: Far) {
+    let mut room = out.iter_mut();
+    for &SilhouetteEdge { edge, multiplicity } in silhouette {
         // The turned triangle runs from `low` to `high` where the multiplicity is positive; the
         // side beside it must run back along the edge for the volume to close.
         let (p, q) = (edge.low, edge.high);
-        let (p_away, q_away) = (infinity.of(p), infinity.of(q));
-        let quad = match (multiplicity > 0, infinity.is_one_point) {
-            (true, true) => [Some([q, p, p_away]), None],
-            (false, true) => [Some([p, q, p_away]), None],
-            // Both directions are split along the diagonal from p to q's infinity.
-            (true, false) => [Some([q, p, q_away]), Some([p, p_away, q_away])],
-            (false, false) => [Some([p, q, q_away]), Some([p, q_away, p_away])],
+        let (p_away, q_away) = (far.of(p), far.of(q));
+        let (first, second) = match (multiplicity > 0, far.is_one_point) {
+            (true, true) => ([q, p, p_away], None),
+            (false, true) => ([p, q, p_away], None),
+            // Both directions are split along the diagonal from p to q's far vertex.
+            (true, false) => ([q, p, q_away], Some([p, p_away, q_away])),
+            (false, false) => ([p, q, q_away], Some([p, q_away, p_away])),
         };
         for _ in 0..multiplicity.unsigned_abs() {
-            out.extend(quad.iter().flatten());
+            let triangles = std::iter::once(first).chain(second);
+            triangles.zip(&mut room).for_each(|(triangle, out)| *out = triangle);
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Casters, EdgeList, Planes, silhouette};
     use super::*;
+    use crate::math::Sign;
     use std::collections::BTreeMap;
+
+    struct Volume {
+        vertices: Vec<DVec4>,
+        triangles: Vec<[u32; 3]>,
+        parts: VolumeParts,
+    }
+
+    impl Volume {
+        fn new(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> Volume {
+            Volume::of(world, triangles, light, Casters::All, Extrusion::Infinite)
+        }
+
+        fn of(world: &[DVec3], corners: &[[u32; 3]], light: DVec4, casters: Casters, extrusion: Extrusion) -> Volume {
+            let (mut facings, mut edges, mut indices) = (Facings::default(), Vec::new(), Vec::new());
+            Planes::new(world, corners).facings(world, corners, light, &mut facings);
+            facings.keep_casting(casters);
+            silhouette(&EdgeList::new(corners, world.len()), &facings, &mut edges);
+            let extruder = Extruder::new(world, light, extrusion);
+            let one_point = extruder.is_one_point();
+            let parts = write_indices(corners, world.len(), &facings, &edges, one_point, &mut indices);
+            Volume { vertices: extruder.vertices(world).collect(), triangles: indices.as_chunks().0.to_vec(), parts }
+        }
+    }
 
     /// Every edge of a closed surface is run equally often either way. Turned light-cap triangles
     /// count as turned.
@@ -147,9 +326,17 @@ mod tests {
     fn volumes_of_random_soups_close() {
         for seed in 0..300 {
             let (world, triangles) = soup(seed, 1 + seed as usize % 20);
-            let edges = EdgeList::new(&triangles, world.len());
-            assert_closed(&Volume::new(&world, &triangles, &edges, DVec4::new(3.0, 20.0, 2.0, 1.0)));
-            assert_closed(&Volume::new(&world, &triangles, &edges, DVec4::new(1.0, 2.0, 2.0, 1.0)));
+            assert_closed(&Volume::new(&world, &triangles, DVec4::new(3.0, 20.0, 2.0, 1.0)));
+            for light in [DVec4::new(1.0, 2.0, 2.0, 1.0), DVec4::new(1.0, 2.0, 0.5, 0.0)] {
+                for casters in [Casters::All, Casters::LightFacing, Casters::LightBackFacing] {
+                    let finite = Volume::of(&world, &triangles, light, casters, Extrusion::Finite(3.0));
+                    assert_closed(&finite);
+                    assert!(finite.vertices.iter().all(|vertex| vertex.w == 1.0));
+                    if light.w == 1.0 {
+                        assert_closed(&Volume::of(&world, &triangles, light, casters, Extrusion::Infinite));
+                    }
+                }
+            }
         }
     }
 
@@ -158,8 +345,7 @@ mod tests {
     fn a_single_triangle_turned_away_casts_like_one_turned_towards() {
         let world = [DVec3::ZERO, DVec3::X, DVec3::Y];
         for (corners, is_turned) in [([0, 1, 2], false), ([0, 2, 1], true)] {
-            let edges = EdgeList::new(&[corners], 3);
-            let volume = Volume::new(&world, &[corners], &edges, DVec4::new(0.2, 0.2, 4.0, 1.0));
+            let volume = Volume::new(&world, &[corners], DVec4::new(0.2, 0.2, 4.0, 1.0));
             assert_eq!(volume.parts.sides.len(), 6);
             assert_eq!(volume.parts.light_cap.len(), usize::from(!is_turned));
             assert_eq!(volume.parts.light_cap_turned.len(), usize::from(is_turned));
@@ -177,10 +363,41 @@ mod tests {
     #[test]
     fn a_directional_light_needs_no_dark_cap_and_half_the_sides() {
         let world = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        let edges = EdgeList::new(&[[0, 1, 2]], 3);
-        let volume = Volume::new(&world, &[[0, 1, 2]], &edges, DVec4::new(0.0, 0.0, 1.0, 0.0));
+        let volume = Volume::new(&world, &[[0, 1, 2]], DVec4::new(0.0, 0.0, 1.0, 0.0));
         assert_eq!(volume.parts.sides.len(), 3);
         assert!(volume.parts.dark_cap.is_empty());
         assert_eq!(volume.vertices.len(), 4);
+    }
+
+    #[test]
+    fn finite_extrusion_carries_points_and_not_directions() {
+        let world = [DVec3::ZERO, DVec3::new(3.0, 0.0, 4.0)];
+        let point = Extruder::new(&world, DVec4::new(0.0, 2.0, 0.0, 1.0), Extrusion::Finite(100.0));
+        assert_eq!(point.carry(DVec3::X), DVec4::new(101.0, -200.0, 0.0, 1.0));
+        // The bounding box's diagonal is 5.
+        let sun = Extruder::new(&world, DVec4::new(0.0, 7.0, 0.0, 0.0), Extrusion::Finite(2.0));
+        assert_eq!(sun.carry(DVec3::X), DVec4::new(1.0, -10.0, 0.0, 1.0));
+        assert!(!sun.is_one_point());
+    }
+
+    /// Many triangles, so that several threads write; the same runs as one by one.
+    #[test]
+    fn caps_keep_the_order_of_their_triangles() {
+        let count = 3 * SHARE as u32 + 5;
+        let triangles: Vec<[u32; 3]> = (0..count).map(|i| [i, i + 1, i + 2]).collect();
+        let sign_of = |i: u32| [Sign::Positive, Sign::Negative, Sign::Zero][(i / 40 % 7 % 3) as usize];
+        let facings = Facings::from_signs((0..count).map(sign_of));
+        let mut indices = vec![9; 7];
+        let parts = write_indices(&triangles, count as usize + 2, &facings, &[], false, &mut indices);
+        let of = |sign: Sign| triangles.iter().zip(0..count).filter(move |(_, i)| sign_of(*i) == sign).map(|(t, _)| *t);
+        let written = indices.as_chunks::<3>().0;
+        let expected: Vec<[u32; 3]> = of(Sign::Positive).chain(of(Sign::Negative)).collect();
+        assert_eq!(written[..parts.light_cap_turned.end], expected);
+        let first = count + 2;
+        let carried = |[a, b, c]: [u32; 3]| [a + first, b + first, c + first];
+        let mut dark: Vec<[u32; 3]> = of(Sign::Positive).map(|[a, b, c]| carried([c, b, a])).collect();
+        dark.reverse();
+        dark.extend(of(Sign::Negative).map(carried));
+        assert!(written[parts.dark_cap] == dark);
     }
 }

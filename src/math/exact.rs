@@ -7,8 +7,8 @@
 //! tell is it summed exactly, as an expansion (Shewchuk 1997, "Adaptive Precision Floating-Point
 //! Arithmetic and Fast Robust Geometric Predicates").
 
-use glam::{DVec3, DVec4};
-use robust::{Coord3D, orient3d};
+use glam::{DVec2, DVec3, DVec4};
+use robust::{Coord, Coord3D, orient2d, orient3d};
 
 /// The sign of an exactly decided quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -38,14 +38,20 @@ impl Sign {
         if self == Sign::Zero { other() } else { self }
     }
 
-    fn of(value: f64) -> Sign {
-        if value > 0.0 {
+    /// Of `to − from`, however close they are.
+    #[must_use]
+    pub fn between(from: f64, to: f64) -> Sign {
+        if to > from {
             Sign::Positive
-        } else if value < 0.0 {
+        } else if to < from {
             Sign::Negative
         } else {
             Sign::Zero
         }
+    }
+
+    fn of(value: f64) -> Sign {
+        Sign::between(0.0, value)
     }
 }
 
@@ -60,6 +66,14 @@ pub fn side_of_triangle([a, b, c]: [DVec3; 3], point: DVec4) -> Sign {
     let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     // Shewchuk's sign is positive for a point below, from where the corners run clockwise.
     Sign::of(-orient3d(coord(a), coord(b), coord(c), coord(point.truncate())))
+}
+
+/// Positive where `point` is to the left of the line from `a` to `b`. Exact, but for overflow and
+/// underflow of products of two coordinates.
+#[must_use]
+pub fn side_of_line([a, b]: [DVec2; 2], point: DVec2) -> Sign {
+    let coord = |p: DVec2| Coord { x: p.x, y: p.y };
+    Sign::of(orient2d(coord(a), coord(b), coord(point)))
 }
 
 /// The exact sign of a sum of products of two numbers each, but for overflow and underflow.

@@ -10,5 +10,5 @@ mod exact;
 mod plane;
 pub mod projection;
 
-pub use exact::{Sign, side_of_triangle, sign_of_sum};
+pub use exact::{Sign, side_of_line, side_of_triangle, sign_of_sum};
 pub use plane::Plane;

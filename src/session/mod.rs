@@ -6,10 +6,12 @@
 mod measure;
 mod report;
 mod truth;
+mod volumes;
 
 pub use measure::{Measured, Measurement};
 pub use report::report_rows;
 pub use truth::{TruthCost, truth_cost};
+pub use volumes::{VolumeCost, volume_cost};
 
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::GeometryCache;

@@ -262,6 +262,38 @@ impl<'a> Frame<'a> {
         });
     }
 
+    /// Gives a light a float target to count its volumes in.
+    pub fn add_count(&mut self, light: LightId) {
+        let count = self.add_attachment(Attachment {
+            name: format!("{} count", Frame::light_name(light)),
+            role: AttachmentRole::Count(light),
+            format: TextureFormat::R32Float,
+            size: self.job.size,
+            layers: 1,
+        });
+        self.plan.lights[light.0].count = Some(count);
+    }
+
+    /// A pass of a light that adds to its count, over the camera's depth. The first clears it.
+    pub fn count_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
+        let Some(attachment) = self.plan.lights[light.0].count else { return };
+        let is_same = |pass: &Pass| pass.color.as_ref().is_some_and(|target| target.attachment == attachment);
+        let is_first = !self.plan.passes.iter().any(is_same);
+        let depth_stencil = self.depth_stencil_of(light);
+        self.stencil_of = Some(light);
+        self.plan.passes.push(Pass {
+            name: name.to_owned(),
+            image: None,
+            purpose: purpose.to_owned(),
+            light: Some(light),
+            timed: true,
+            view: ViewId(0),
+            color: Some(ColorTarget { attachment, layer: 0, clear: is_first.then_some([0.0; 4]) }),
+            depth_stencil: Some(depth_stencil),
+            draws,
+        });
+    }
+
     /// Depth of all surfaces, and their colour under ambient light.
     pub fn ambient_pass(&mut self) {
         // Depth that is clamped lets through what lies between eye and near plane.

@@ -32,7 +32,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         Technique::None => none::plan(job),
         Technique::Planar => planar::plan(job),
         Technique::PlanarTexture => planar_texture::plan(job),
-        Technique::ZPass | Technique::ZFail => volume::plan(job),
+        Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => volume::plan(job),
         Technique::ShadowMap => shadow_map::plan(job),
         Technique::Projective => projective::plan(job),
         Technique::RayTraced => ray_traced::plan(job),
@@ -69,6 +69,8 @@ pub enum Technique {
     ZPass,
     /// Shadow volumes counted behind the surface.
     ZFail,
+    /// Shadow volumes counted in front of the surface, from the near plane's own count on.
+    ZPassPlus,
     /// Depth from the light, compared at every pixel.
     ShadowMap,
     /// Casters' silhouettes projected over the scene.
@@ -79,12 +81,13 @@ pub enum Technique {
 
 impl Technique {
     /// All that exist, in teaching order.
-    pub const ALL: [Technique; 8] = [
+    pub const ALL: [Technique; 9] = [
         Technique::None,
         Technique::Planar,
         Technique::PlanarTexture,
         Technique::ZPass,
         Technique::ZFail,
+        Technique::ZPassPlus,
         Technique::ShadowMap,
         Technique::Projective,
         Technique::RayTraced,
@@ -99,6 +102,7 @@ impl Technique {
             Technique::PlanarTexture => "planar-texture",
             Technique::ZPass => "z-pass",
             Technique::ZFail => "z-fail",
+            Technique::ZPassPlus => "z-pass-plus",
             Technique::ShadowMap => "shadow-map",
             Technique::Projective => "projective",
             Technique::RayTraced => "ray-traced",
@@ -121,6 +125,9 @@ impl Technique {
             }
             Technique::ZFail => {
                 "Counts the same volumes from infinity back to the surface, so the eye may be inside one."
+            }
+            Technique::ZPassPlus => {
+                "Counts the near plane's volumes from the light first, then as z-pass: the eye may be inside one."
             }
             Technique::ShadowMap => "Stores the depth of what the light sees, and darkens what lies behind it.",
             Technique::Projective => {

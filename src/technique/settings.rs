@@ -139,13 +139,19 @@ const VOLUME: &[SettingSpec] = &[
     DEPTH,
     EPSILON,
     DIFFUSE,
-    word("casters", &["all"], "which triangles cast"),
-    word("extrusion", &["infinite"], "how far volumes reach"),
-    word("faces", &["two-sided"], "both faces in one draw"),
-    word("operations", &["wrap"], "what counts do beyond 0 and 255"),
-    word("counter", &["stencil"], "where counts are kept"),
-    word("light-caps", &["tested"], "how the caps nearest the light are drawn"),
-    word("silhouette", &["adjacency"], "how shared edges are found"),
+    word("casters", &["all", "by-topology", "light-facing", "light-back-facing"], "which triangles cast"),
+    SettingSpec {
+        key: "extrusion",
+        // Farther, single precision loses the silhouette; nearer than not at all makes no sense.
+        values: SettingValues::WordOr { words: &["infinite"], prefix: "finite:", low: 0.0, high: 1e6, whole: false },
+        default: "infinite",
+        meaning: "how far volumes reach: without end, or K times a vertex's distance from the light",
+    },
+    word("faces", &["two-sided", "two-pass"], "front and back faces in one draw, or in passes of their own"),
+    word("operations", &["wrap", "clamp"], "what counts do beyond 0 and 255"),
+    word("counter", &["stencil", "float"], "where counts are kept: in eight bits, or signed in a float a pixel"),
+    word("light-caps", &["tested", "never"], "caps nearest the light pass the depth test, or never do"),
+    word("silhouette", &["adjacency", "edge-list"], "how shared edges are found: built once, or searched each time"),
 ];
 const PLANAR_TEXTURE: &[SettingSpec] =
     &[DEPTH, EPSILON, DIFFUSE, size("256", 4096, "texels along each side of a receiver's texture")];
@@ -199,7 +205,7 @@ impl Technique {
             Technique::None | Technique::RayTraced => NONE,
             Technique::Planar => PLANAR,
             Technique::PlanarTexture => PLANAR_TEXTURE,
-            Technique::ZPass | Technique::ZFail => VOLUME,
+            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => VOLUME,
             Technique::ShadowMap => SHADOW_MAP,
             Technique::Projective => PROJECTIVE,
         }
@@ -221,7 +227,7 @@ impl Technique {
             Technique::None => none::REPORT_ROWS,
             Technique::Planar => planar::REPORT_ROWS,
             Technique::PlanarTexture => planar_texture::REPORT_ROWS,
-            Technique::ZPass | Technique::ZFail => volume::REPORT_ROWS,
+            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => volume::REPORT_ROWS,
             Technique::ShadowMap => shadow_map::REPORT_ROWS,
             Technique::Projective => projective::REPORT_ROWS,
             Technique::RayTraced => ray_traced::REPORT_ROWS,

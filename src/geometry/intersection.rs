@@ -1,0 +1,222 @@
+//! Does a mesh meet itself? Decided by exact signs.
+//!
+//! A hierarchy of boxes gives the pairs of triangles that may touch. Triangles that share an edge or
+//! a corner touch there, and may nowhere else; others may not at all. Every answer is a sign of
+//! an orientation determinant, in space or, for triangles in one plane, along the axis that shows
+//! them best. Whatever is left open counts as a meeting: the answer "no" is a proof.
+
+use crate::math::{Sign, side_of_line, side_of_triangle};
+use glam::{DVec2, DVec3, Vec3A};
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2;
+use rayon::prelude::*;
+use std::time::Duration;
+
+/// Two triangles that meet elsewhere than in what they share, or are not proven not to.
+#[must_use]
+pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2]> {
+    if triangles.is_empty() {
+        return None;
+    }
+    let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
+    let boxes: Vec<Aabb> = (0..triangles.len()).map(|triangle| outer_box(corners(triangle))).collect();
+    let hierarchy = build_bvh2(&boxes, BvhBuildParams::very_fast_build(), &mut Duration::default());
+    let first_of = |one: usize| {
+        let mut met = None;
+        hierarchy.aabb_traverse(boxes[one], |hierarchy: &Bvh2, node| {
+            let node = &hierarchy.nodes[node as usize];
+            let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
+            for other in hierarchy.primitive_indices[leaf].iter().map(|index| *index as usize) {
+                if other > one
+                    && boxes[one].intersect_aabb(&boxes[other])
+                    && meet(world, triangles[one], triangles[other])
+                {
+                    met = Some([one, other]);
+                }
+            }
+            met.is_none()
+        });
+        met
+    };
+    (0..triangles.len()).into_par_iter().with_min_len(256).find_map_first(first_of)
+}
+
+/// In `f32`, rounded outwards.
+fn outer_box([a, b, c]: [DVec3; 3]) -> Aabb {
+    let round = |p: DVec3, towards: fn(f32) -> f32| Vec3A::from_array(p.to_array().map(|x| towards(x as f32)));
+    Aabb { min: round(a.min(b).min(c), f32::next_down), max: round(a.max(b).max(c), f32::next_up) }
+}
+
+/// Do two triangles meet in more than the corners and edges that they share?
+fn meet(world: &[DVec3], one: [u32; 3], other: [u32; 3]) -> bool {
+    let at = |corners: [u32; 3]| corners.map(|vertex| world[vertex as usize]);
+    let shared: Vec<usize> = (0..3).filter(|corner| other.contains(&one[*corner])).collect();
+    let rotated = |corners: [u32; 3], first: usize| [0, 1, 2].map(|step| corners[(first + step) % 3]);
+    match shared[..] {
+        [] => meet_apart(at(one), at(other)),
+        [corner] => {
+            let apex = other.iter().position(|vertex| *vertex == one[corner]).unwrap_or_default();
+            meet_at_corner(at(rotated(one, corner)), at(rotated(other, apex)))
+        }
+        [_, _] => {
+            let opposite = |corners: [u32; 3], than: [u32; 3]| {
+                corners.iter().position(|vertex| !than.contains(vertex)).unwrap_or_default()
+            };
+            let [tip, from, to] = at(rotated(one, opposite(one, other)));
+            let [other_tip, ..] = at(rotated(other, opposite(other, one)));
+            meet_at_edge([from, to], tip, other_tip)
+        }
+        _ => true,
+    }
+}
+
+fn side(plane: [DVec3; 3], point: DVec3) -> Sign {
+    side_of_triangle(plane, point.extend(1.0))
+}
+
+fn opposite(one: Sign, other: Sign) -> bool {
+    one.value() * other.value() < 0
+}
+
+/// A triangle and points of its plane in two dimensions, along an axis from which it has an area.
+struct Flat {
+    axis: usize,
+    corners: [DVec2; 3],
+    /// Which way its corners run.
+    turn: Sign,
+}
+
+impl Flat {
+    /// `None` where the corners are collinear.
+    fn of(triangle: [DVec3; 3]) -> Option<Flat> {
+        (0..3).find_map(|axis| {
+            let corners = triangle.map(|corner| flat(corner, axis));
+            let turn = side_of_line([corners[0], corners[1]], corners[2]);
+            (turn != Sign::Zero).then_some(Flat { axis, corners, turn })
+        })
+    }
+
+    fn flat(&self, point: DVec3) -> DVec2 {
+        flat(point, self.axis)
+    }
+
+    /// Positive where the point is on the inner side of the edge that begins at `corner`.
+    fn inside_of(&self, corner: usize, point: DVec2) -> i32 {
+        let edge = [self.corners[corner], self.corners[(corner + 1) % 3]];
+        side_of_line(edge, point).value() * self.turn.value()
+    }
+
+    /// Is some edge a line with the triangle on one side and all of `points` on the other?
+    fn keeps_out(&self, points: &[DVec2]) -> bool {
+        (0..3).any(|corner| points.iter().all(|point| self.inside_of(corner, *point) < 0))
+    }
+
+    /// Is the direction from corner 0 to `point` strictly outside the wedge of the edges there?
+    fn wedge_keeps_out(&self, point: DVec2) -> bool {
+        self.inside_of(0, point) < 0 || self.inside_of(2, point) < 0
+    }
+}
+
+fn flat(point: DVec3, axis: usize) -> DVec2 {
+    DVec2::new(point[(axis + 1) % 3], point[(axis + 2) % 3])
+}
+
+/// Triangles (from, to, tip) and (from, to, other tip): they meet beyond the edge only folded onto
+/// each other.
+fn meet_at_edge([from, to]: [DVec3; 2], tip: DVec3, other_tip: DVec3) -> bool {
+    if side([from, to, tip], other_tip) != Sign::Zero {
+        return false;
+    }
+    let Some(flat) = Flat::of([from, to, tip]) else { return true };
+    flat.inside_of(0, flat.flat(other_tip)) >= 0
+}
+
+/// Triangles with corner 0 in common.
+fn meet_at_corner(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
+    let (Some(flat_one), Some(flat_other)) = (Flat::of(one), Flat::of(other)) else { return true };
+    let of_other = [side(one, other[1]), side(one, other[2])];
+    let of_one = [side(other, one[1]), side(other, one[2])];
+    let same_side = |signs: [Sign; 2]| signs[0] != Sign::Zero && signs[0] == signs[1];
+    if same_side(of_other) || same_side(of_one) {
+        return false;
+    }
+    match of_other {
+        [Sign::Zero, Sign::Zero] => !wedges_are_apart(&flat_one, [other[1], other[2]]),
+        // One edge of the other lies in this plane; all else of it is on one side.
+        [Sign::Zero, _] => !flat_one.wedge_keeps_out(flat_one.flat(other[1])),
+        [_, Sign::Zero] => !flat_one.wedge_keeps_out(flat_one.flat(other[2])),
+        _ => match of_one {
+            [Sign::Zero, _] => !flat_other.wedge_keeps_out(flat_other.flat(one[1])),
+            [_, Sign::Zero] => !flat_other.wedge_keeps_out(flat_other.flat(one[2])),
+            // Both cross the line that their planes share, each on one side of the corner. With
+            // A = |a c d| and C = |a b c| for corners v a b and v c d, those sides are the same where
+            // A and C have different signs.
+            [a_to_other, _] => {
+                let a_c_d = a_to_other;
+                let a_b_c = of_other[0];
+                opposite(a_c_d, a_b_c)
+            }
+        },
+    }
+}
+
+/// Wedges of one plane with a common apex: does a line along an edge of either part them?
+fn wedges_are_apart(one: &Flat, other: [DVec3; 2]) -> bool {
+    let apex = one.corners[0];
+    let [c, d] = other.map(|point| one.flat(point));
+    let turn = side_of_line([apex, c], d);
+    let other = Flat { axis: one.axis, corners: [apex, c, d], turn };
+    // Wedges that overlap do so up to an edge of one in the other.
+    let [_, a, b] = one.corners;
+    turn != Sign::Zero
+        && [c, d].iter().all(|p| one.wedge_keeps_out(*p))
+        && [a, b].iter().all(|p| other.wedge_keeps_out(*p))
+}
+
+/// Triangles with nothing in common.
+fn meet_apart(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
+    let (Some(flat_one), Some(flat_other)) = (Flat::of(one), Flat::of(other)) else { return true };
+    let of_other = other.map(|corner| side(one, corner));
+    let of_one = one.map(|corner| side(other, corner));
+    let one_side = |signs: [Sign; 3]| signs[0] != Sign::Zero && signs[0] == signs[1] && signs[1] == signs[2];
+    if one_side(of_other) || one_side(of_one) {
+        return false;
+    }
+    if of_other == [Sign::Zero; 3] {
+        return !flat_one.keeps_out(&other.map(|corner| flat_one.flat(corner)))
+            && !flat_along(other, flat_one.axis).keeps_out(&flat_one.corners);
+    }
+    let pierces = |plane: [DVec3; 3], flat: &Flat, points: [DVec3; 3], sides: [Sign; 3]| {
+        (0..3).any(|i| {
+            let next = (i + 1) % 3;
+            segment_meets(plane, flat, [points[i], points[next]], [sides[i], sides[next]])
+        })
+    };
+    pierces(one, &flat_one, other, of_other) || pierces(other, &flat_other, one, of_one)
+}
+
+/// A triangle along a given axis; it has an area there, since it lies in a plane that has.
+fn flat_along(triangle: [DVec3; 3], axis: usize) -> Flat {
+    let corners = triangle.map(|corner| flat(corner, axis));
+    Flat { axis, corners, turn: side_of_line([corners[0], corners[1]], corners[2]) }
+}
+
+/// Does a segment meet a closed triangle? `sides` are those of its ends.
+fn segment_meets(triangle: [DVec3; 3], flat: &Flat, [from, to]: [DVec3; 2], sides: [Sign; 2]) -> bool {
+    if sides[0] == sides[1] {
+        // In the plane: apart if an edge of the triangle keeps both ends out, or the segment's line
+        // all corners.
+        let ends = [flat.flat(from), flat.flat(to)];
+        let line = flat.corners.map(|corner| side_of_line(ends, corner));
+        let is_beside = line[0] != Sign::Zero && line[0] == line[1] && line[1] == line[2];
+        return sides[0] == Sign::Zero && !is_beside && !flat.keeps_out(&ends);
+    }
+    let [a, b, c] = triangle;
+    let passes = [[a, b], [b, c], [c, a]].map(|[p, q]| side([from, p, q], to));
+    !passes.iter().any(|one| passes.iter().any(|other| opposite(*one, *other)))
+}
+
+#[cfg(test)]
+mod tests;

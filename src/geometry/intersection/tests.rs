@@ -1,0 +1,121 @@
+use super::*;
+
+fn p(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+/// Two triangles over welded points; the answer must not depend on their order or corners.
+fn meets(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
+    let mut world: Vec<DVec3> = Vec::new();
+    let mut index_of = |point: DVec3| {
+        let known = world.iter().position(|known| *known == point);
+        known.unwrap_or_else(|| {
+            world.push(point);
+            world.len() - 1
+        }) as u32
+    };
+    let (one, other) = (one.map(&mut index_of), other.map(&mut index_of));
+    let answer = meet(&world, one, other);
+    let variants = |[a, b, c]: [u32; 3]| [[a, b, c], [b, c, a], [c, a, b], [a, c, b], [c, b, a], [b, a, c]];
+    for x in variants(one) {
+        for y in variants(other) {
+            assert_eq!(meet(&world, x, y), answer, "{x:?} {y:?}");
+            assert_eq!(meet(&world, y, x), answer, "{y:?} {x:?}");
+        }
+    }
+    answer
+}
+
+#[test]
+fn triangles_apart_or_through_each_other() {
+    let floor = [p(0.0, 0.0, 0.0), p(4.0, 0.0, 0.0), p(0.0, 4.0, 0.0)];
+    let moved = |by: DVec3| floor.map(|corner| corner + by);
+    let standing = |x: f64, y: f64, low: f64| [p(x, y, low), p(x + 0.1, y, 1.0), p(x, y + 0.2, 1.0)];
+    assert!(!meets(floor, moved(p(0.0, 0.0, 1.0))), "parallel");
+    assert!(!meets(floor, moved(p(9.0, 0.0, 0.0))), "beside in the plane");
+    assert!(meets(floor, moved(p(0.5, 0.5, 0.0))), "overlapping in the plane");
+    assert!(
+        !meets(floor, [p(2.1, 2.1, 0.0), p(3.0, 3.0, 0.0), p(2.1, 5.0, 0.0)]),
+        "bounds overlap, the triangles do not"
+    );
+    assert!(meets(floor, standing(1.0, 1.0, -1.0)), "through");
+    assert!(meets(floor, standing(1.0, 1.0, 0.0)), "a corner on it");
+    assert!(!meets(floor, standing(1.0, 1.0, f64::MIN_POSITIVE)), "a corner as near as can be");
+    assert!(!meets(floor, standing(3.0, 3.0, -1.0)), "past it");
+    assert!(meets(floor, [p(2.0, -1.0, 0.0), p(2.0, 1.0, 0.0), p(2.0, 0.0, 1.0)]), "an edge in its plane, into it");
+    assert!(!meets(floor, [p(5.0, -1.0, 0.0), p(5.0, 1.0, 0.0), p(5.0, 0.0, 1.0)]), "an edge in its plane, beside");
+    assert!(meets(floor, [p(1.0, 1.0, 0.0), p(1.0, 1.0, 1.0), p(1.0, 1.0, 2.0)]), "no area: not proven apart");
+}
+
+#[test]
+fn triangles_with_a_common_edge() {
+    let floor = [p(0.0, 0.0, 0.0), p(4.0, 0.0, 0.0), p(0.0, 4.0, 0.0)];
+    let beside = |tip: DVec3| [floor[1], floor[0], tip];
+    assert!(!meets(floor, beside(p(1.0, -3.0, 0.0))), "flat on");
+    assert!(!meets(floor, beside(p(1.0, 1.0, 1e-300))), "folded nearly shut");
+    assert!(meets(floor, beside(p(1.0, 1.0, 0.0))), "folded shut");
+    assert!(meets(floor, beside(p(9.0, 9.0, 0.0))), "folded shut, larger");
+    assert!(meets(floor, floor), "twice the same");
+}
+
+#[test]
+fn triangles_with_a_common_corner() {
+    let o = DVec3::ZERO;
+    let floor = [o, p(4.0, 0.0, 0.0), p(0.0, 4.0, 0.0)];
+    assert!(!meets(floor, [o, p(-4.0, 0.0, 0.0), p(0.0, -4.0, 0.0)]), "opposite in the plane");
+    assert!(!meets(floor, [o, p(-1.0, 4.0, 0.0), p(-4.0, 0.0, 0.0)]), "beside in the plane");
+    assert!(meets(floor, [o, p(1.0, 1.0, 0.0), p(-4.0, 0.0, 0.0)]), "overlapping wedges");
+    assert!(meets(floor, [o, p(1.0, 2.0, 0.0), p(2.0, 1.0, 0.0)]), "a wedge inside a wedge");
+    assert!(meets(floor, [o, p(-1.0, 4.0, 0.0), p(4.0, -1.0, 0.0)]), "a wedge around a wedge");
+    assert!(meets(floor, [o, p(1.0, 0.0, 0.0), p(1.0, -1.0, 0.0)]), "part of an edge in common");
+    assert!(!meets(floor, [o, p(1.0, 1.0, 1.0), p(1.0, 2.0, 1.0)]), "above");
+    assert!(!meets(floor, [o, p(1.0, -1.0, 0.0), p(1.0, 1.0, 1.0)]), "an edge in its plane, outside the wedge");
+    assert!(meets(floor, [o, p(1.0, 1.0, 0.0), p(1.0, 1.0, 1.0)]), "an edge in its plane, inside the wedge");
+    assert!(meets(floor, [o, p(1.0, 1.0, 1.0), p(1.0, 1.0, -1.0)]), "through");
+    assert!(!meets(floor, [o, p(-1.0, -1.0, 1.0), p(-1.0, -1.0, -1.0)]), "through the plane on the other side");
+    assert!(!meets(floor, [o, p(1.0, -3.0, 1.0), p(1.0, -3.0, -1.0)]), "through the plane beside");
+}
+
+/// Held against points of both triangles: where some of them coincide in fine steps, they meet.
+#[test]
+fn random_pairs_agree_with_points_sampled_on_them() {
+    let mut state = 3u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 33) % 5) as f64
+    };
+    let mut answers = [0; 2];
+    for _ in 0..4000 {
+        let mut triangle = || [0; 3].map(|_| p(next(), next(), next()));
+        let (one, other) = (triangle(), triangle());
+        let is_flat = |t: [DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]) == DVec3::ZERO;
+        if is_flat(one) || is_flat(other) || one.iter().any(|corner| other.contains(corner)) {
+            continue;
+        }
+        // The distance of the closest pair of an edge and a triangle, where one pierces the other.
+        let pierced = |edges: [DVec3; 3], [a, b, c]: [DVec3; 3]| {
+            let normal = (b - a).cross(c - a);
+            (0..3).any(|i| {
+                let (from, to) = (edges[i], edges[(i + 1) % 3]);
+                let [h, k] = [from, to].map(|end| normal.dot(end - a));
+                let at = from + (to - from) * (h / (h - k));
+                let inside = [[a, b], [b, c], [c, a]].map(|[p, q]| normal.dot((q - p).cross(at - p)));
+                h * k < 0.0 && inside.iter().all(|side| *side > 1e-9)
+            })
+        };
+        let answer = meets(one, other);
+        answers[usize::from(answer)] += 1;
+        assert!(answer || !(pierced(one, other) || pierced(other, one)), "{one:?} {other:?}");
+    }
+    assert!(answers.iter().all(|count| *count > 300), "{answers:?}");
+}
+
+#[test]
+fn a_closed_surface_does_not_meet_itself_until_it_is_bent_through() {
+    use crate::scene::builtin::shapes;
+    let torus = shapes::torus(1.0, 0.4, 40, 20).expect("a torus");
+    assert_eq!(self_meeting(torus.positions(), torus.triangles()), None);
+    let mut bent = torus.positions().to_vec();
+    bent[7] = -bent[7];
+    assert!(self_meeting(&bent, torus.triangles()).is_some());
+}

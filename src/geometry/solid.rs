@@ -1,0 +1,211 @@
+//! Proof that the triangles that face a light cast the shadow of the whole mesh.
+//!
+//! They do where the mesh bounds solids with their outside out: closed, consistently wound, with a
+//! winding number that is nowhere negative, and the light where it is 0. The winding number is
+//! constant on either side of a connected surface that does not meet itself, and every region of
+//! space borders on some component; so one look at either side of one triangle a component
+//! settles it. All of it is decided by exact signs of world positions, so that a mirrored pose or
+//! its rounding can't deceive; what can't be decided counts as not proven.
+
+use super::intersection::self_meeting;
+use super::topology::Topology;
+use super::winding::{crossings, winding_number};
+use crate::math::{Sign, side_of_triangle};
+use glam::{DVec3, DVec4};
+
+/// Components times triangles that are looked at.
+const MOST_WORK: usize = 200_000_000;
+/// How often the looks from either side are moved closer to the triangle.
+const TRIES: i32 = 4;
+
+/// Why a mesh is not proven to bound solids with their outside out. The mend is `casters = all`,
+/// which needs no proof.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NotSolid {
+    /// Edges of one triangle or more than two.
+    #[error("it is not closed: {open} open edges, {non_manifold} of more than two triangles")]
+    NotClosed {
+        /// Edges of one triangle.
+        open: usize,
+        /// Edges of more than two.
+        non_manifold: usize,
+    },
+    /// Neighbours disagree on which side is out.
+    #[error("its triangles are wound inconsistently along {edges} edges")]
+    NotOriented {
+        /// How many.
+        edges: usize,
+    },
+    /// Triangles meet, or are not proven not to.
+    #[error("it meets itself, as at triangles {0} and {1}")]
+    MeetsItself(usize, usize),
+    /// The winding number is negative somewhere.
+    #[error("part {component} is inside out: the winding number beside it is {winding}")]
+    InsideOut {
+        /// Counted from 0.
+        component: usize,
+        /// Less than 0.
+        winding: i32,
+    },
+    /// No look at a component could be decided.
+    #[error("no look at part {component} could be decided")]
+    Undecided {
+        /// Counted from 0.
+        component: usize,
+    },
+    /// Too many parts to look at.
+    #[error("{components} parts of {triangles} triangles are too many to look at")]
+    TooMany {
+        /// How many.
+        components: usize,
+        /// Of the mesh.
+        triangles: usize,
+    },
+}
+
+/// Does a placed mesh bound solids with their outside out?
+///
+/// # Errors
+/// What speaks against it, or is not proven.
+pub fn check(world: &[DVec3], triangles: &[[u32; 3]], topology: &Topology) -> Result<(), NotSolid> {
+    if !topology.is_closed() {
+        let (open, non_manifold) = (topology.open_edges.count, topology.non_manifold_edges.count);
+        return Err(NotSolid::NotClosed { open, non_manifold });
+    }
+    if !topology.is_oriented() {
+        return Err(NotSolid::NotOriented { edges: topology.inconsistent_edges.count });
+    }
+    if topology.components.saturating_mul(triangles.len()) > MOST_WORK {
+        return Err(NotSolid::TooMany { components: topology.components, triangles: triangles.len() });
+    }
+    if let Some([one, other]) = self_meeting(world, triangles) {
+        return Err(NotSolid::MeetsItself(one, other));
+    }
+    let mut largest: Vec<Option<(f64, usize)>> = vec![None; topology.components];
+    for (triangle, corners) in triangles.iter().enumerate() {
+        let area = normal(corners.map(|vertex| world[vertex as usize])).length_squared();
+        let best = &mut largest[topology.component_of(triangle)];
+        if best.is_none_or(|(known, _)| area > known) {
+            *best = Some((area, triangle));
+        }
+    }
+    for (component, triangle) in largest.iter().enumerate() {
+        let sides = triangle.and_then(|(_, triangle)| windings_beside(world, triangles, triangle));
+        let winding = sides.ok_or(NotSolid::Undecided { component })?.into_iter().fold(0, i32::min);
+        if winding < 0 {
+            return Err(NotSolid::InsideOut { component, winding });
+        }
+    }
+    Ok(())
+}
+
+/// Is a light outside a closed mesh? Exactly, and `false` where it is on the surface. A directional
+/// light is outside anything.
+#[must_use]
+pub fn light_is_outside(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> bool {
+    light.w == 0.0 || winding_number(world, triangles, light.truncate()) == Some(0)
+}
+
+/// Winding numbers on both sides of a triangle: at points so near to it that, of all triangles on
+/// the line through them, they are on different sides of this one alone.
+fn windings_beside(world: &[DVec3], triangles: &[[u32; 3]], triangle: usize) -> Option<[i32; 2]> {
+    let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
+    let [a, b, c] = corners(triangle);
+    let normal = normal([a, b, c]).abs();
+    let axis = (0..3).max_by(|i, j| normal[*i].total_cmp(&normal[*j]))?;
+    let middle = (a + b + c) / 3.0;
+    let size = (b - a).length().max((c - a).length());
+    (0..TRIES).find_map(|attempt| {
+        let mut points = [middle; 2];
+        let step = size * 1e-3f64.powi(attempt + 1);
+        points[0][axis] -= step;
+        points[1][axis] += step;
+        let met = crossings(world, triangles, middle, axis);
+        let side = |of: usize, point: DVec3| side_of_triangle(corners(of), point.extend(1.0));
+        let between = met.iter().filter(|met| side(met.triangle, points[0]) != side(met.triangle, points[1]));
+        let is_alone = between.map(|met| met.triangle).eq([triangle]);
+        let is_clear = met.iter().all(|met| points.iter().all(|point| side(met.triangle, *point) != Sign::Zero));
+        (is_alone && is_clear).then(|| {
+            points.map(|point| {
+                let ahead = met.iter().filter(|met| side(met.triangle, point).value() == -met.direction);
+                ahead.map(|met| met.direction).sum()
+            })
+        })
+    })
+}
+
+fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::EdgeList;
+    use super::*;
+    use crate::scene::Mesh;
+    use crate::scene::builtin::shapes;
+
+    fn checked(mesh: &Mesh, place: impl Fn(DVec3) -> DVec3) -> Result<(), NotSolid> {
+        let world: Vec<DVec3> = mesh.positions().iter().map(|p| place(*p)).collect();
+        let edges = EdgeList::new(mesh.triangles(), world.len());
+        check(&world, mesh.triangles(), &Topology::new(mesh, &edges))
+    }
+
+    /// Spheres of the given radii around one point, those with a negative radius turned inside out.
+    fn shells(radii: &[f64]) -> Mesh {
+        let mut builder = crate::scene::MeshBuilder::default();
+        for radius in radii {
+            let sphere = shapes::sphere(1.0, 16, 8).expect("a sphere");
+            let first = builder.positions.len() as u32;
+            builder.positions.extend(sphere.positions().iter().map(|p| *p * radius.abs()));
+            let turned = |&[a, b, c]: &[u32; 3]| if *radius < 0.0 { [a, c, b] } else { [a, b, c] };
+            let triangles = sphere.triangles().iter().map(|corners| turned(corners).map(|v| v + first));
+            builder.triangles.extend(triangles);
+        }
+        builder.build().expect("a mesh")
+    }
+
+    #[test]
+    fn solids_are_proven_and_inside_out_ones_are_not() {
+        let stay = |p: DVec3| p;
+        for radii in [&[1.0][..], &[1.0, 2.0], &[3.0, -2.0], &[3.0, -2.0, 1.0], &[3.0, 2.0, -1.0]] {
+            assert_eq!(checked(&shells(radii), stay), Ok(()), "{radii:?}");
+        }
+        assert_eq!(checked(&shells(&[-1.0]), stay), Err(NotSolid::InsideOut { component: 0, winding: -1 }));
+        assert!(matches!(checked(&shells(&[1.0, -2.0]), stay), Err(NotSolid::InsideOut { .. })));
+        assert!(matches!(checked(&shells(&[3.0, -2.0, -1.0]), stay), Err(NotSolid::InsideOut { component: 2, .. })));
+        assert!(matches!(checked(&shells(&[1.0, 1.01]), |p| p * DVec3::new(1.0, 2.0, 0.5)), Ok(())));
+    }
+
+    #[test]
+    fn mirroring_turns_a_solid_inside_out() {
+        let mirror = |p: DVec3| p * DVec3::new(-1.0, 1.0, 1.0);
+        assert!(matches!(checked(&shells(&[1.0]), mirror), Err(NotSolid::InsideOut { .. })));
+        assert_eq!(checked(&shells(&[-1.0]), mirror), Ok(()));
+    }
+
+    #[test]
+    fn what_meets_itself_is_not_proven() {
+        let mut two = shells(&[1.0]);
+        assert_eq!(checked(&two, |p| p), Ok(()));
+        let moved: Vec<DVec3> = two.positions().iter().map(|p| *p + DVec3::new(0.7, 0.1, 0.2)).collect();
+        let first = two.positions().len() as u32;
+        let builder = crate::scene::MeshBuilder {
+            positions: [two.positions(), &moved].concat(),
+            triangles: [two.triangles().to_vec(), two.triangles().iter().map(|t| t.map(|v| v + first)).collect()]
+                .concat(),
+            ..Default::default()
+        };
+        two = builder.build().expect("a mesh");
+        assert!(matches!(checked(&two, |p| p), Err(NotSolid::MeetsItself(..))));
+    }
+
+    #[test]
+    fn a_light_is_inside_or_outside_and_the_sun_is_always_outside() {
+        let mesh = shells(&[1.0]);
+        let outside = |light: DVec4| light_is_outside(mesh.positions(), mesh.triangles(), light);
+        assert!(outside(DVec4::new(0.0, 3.0, 0.0, 1.0)) && outside(DVec4::new(0.0, 1.0, 0.0, 0.0)));
+        assert!(!outside(DVec4::new(0.0, 0.0, 0.0, 1.0)));
+        assert!(!outside(mesh.positions()[0].extend(1.0)), "on the surface is not proven outside");
+    }
+}
