@@ -1,7 +1,9 @@
 //! Every option is a lesson: the right form beside the famous wrong one, each counted on scenes
 //! whose answers are known in closed form.
 
+mod counts;
 mod depth;
+mod exact;
 mod maps;
 mod planar;
 mod shading;

@@ -216,6 +216,7 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
     }
     if let Some(count) = &light.count {
         entry.count = Some(count_file(index));
+        entry.wrapped_pixels = light.wrapped_pixels();
         files::write_image(&folder.join(count_file(index)), count)?;
     }
     if let Some(truth) = &light.truth {

@@ -97,6 +97,9 @@ pub(super) struct LightEntry {
     pub shadow: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<String>,
+    /// Pixels whose count eight bits read as 0, though it is not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wrapped_pixels: Option<u64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -214,6 +217,7 @@ impl LightEntry {
             towards,
             shadow: None,
             count: None,
+            wrapped_pixels: None,
             map: None,
             matrices: None,
             truth: None,

@@ -17,6 +17,9 @@ use crate::plan::{LeftOut, Part};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// The label of pixels that show no surface; beyond it, of those that face away.
+const BACKGROUND: u8 = 2;
+
 /// A frame with a snapshot after every pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Capture {
@@ -148,6 +151,19 @@ pub struct CapturedLight {
     pub map: Option<CapturedMap>,
     /// The ground truth, where it was asked for.
     pub truth: Option<CapturedTruth>,
+}
+
+impl CapturedLight {
+    /// Pixels of surfaces that face the light whose count is a multiple of 256 other than 0, which
+    /// eight bits read as 0; `None` where the count is not known.
+    #[must_use]
+    pub fn wrapped_pixels(&self) -> Option<u64> {
+        let (count, labels) = (self.count.as_ref()?, self.shadow.as_ref()?);
+        let counts = count.rows().flat_map(|row| row.chunks_exact(4)).map(bytemuck::pod_read_unaligned::<f32>);
+        let faces_light = labels.rows().flatten().map(|label| *label < BACKGROUND);
+        let wraps = |(count, faces_light): &(f32, bool)| *faces_light && *count != 0.0 && count % 256.0 == 0.0;
+        Some(counts.zip(faces_light).filter(wraps).count() as u64)
+    }
 }
 
 /// The ground truth of a light, and how the technique differs from it.

@@ -98,6 +98,18 @@ impl<'a> Job<'a> {
     }
 }
 
+/// Counts that eight bits can't tell from none; nothing where there are none.
+fn wrapped_line(capture: &Capture) -> String {
+    let pixels: u64 = capture.lights.iter().filter_map(crate::capture::CapturedLight::wrapped_pixels).sum();
+    if pixels == 0 || capture.settings.get("counter").is_none_or(|counter| counter == "float") {
+        return String::new();
+    }
+    format!(
+        "counts: at {pixels} pixels a multiple of 256 volumes contain the surface, and eight bits read that as none: \
+         --set counter=float counts on\n"
+    )
+}
+
 fn summary(capture: &Capture, folder: &Path) -> String {
     let [width, height] = capture.size;
     let (scene, technique, passes) = (&capture.scene, &capture.technique, capture.steps.len());
@@ -112,5 +124,6 @@ fn summary(capture: &Capture, folder: &Path) -> String {
             error.edge_band,
         )
     });
-    format!("{}: {scene}, {technique}, {width}x{height}, {passes} passes\n{judged}", folder.display())
+    let wrapped = wrapped_line(capture);
+    format!("{}: {scene}, {technique}, {width}x{height}, {passes} passes\n{judged}{wrapped}", folder.display())
 }

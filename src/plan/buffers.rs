@@ -1,6 +1,7 @@
 //! Vertices and indices of draws, named by the hash of their content.
 
-use std::hash::{DefaultHasher, Hasher};
+use foldhash::quality::FixedState;
+use std::hash::{BuildHasher, Hasher};
 use std::sync::Arc;
 
 /// Shared data with its hash: the executor uploads equal data once and keeps it while it is used.
@@ -14,7 +15,7 @@ impl<T: bytemuck::Pod> Blob<T> {
     /// Hashes `data`.
     #[must_use]
     pub fn new(data: Vec<T>) -> Blob<T> {
-        let mut hasher = DefaultHasher::new();
+        let mut hasher = FixedState::default().build_hasher();
         hasher.write(bytemuck::cast_slice(&data));
         Blob { hash: hasher.finish(), data: data.into() }
     }

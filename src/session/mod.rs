@@ -3,6 +3,7 @@
 //! A session owns the GPU and what is worth keeping between runs (pipelines, buffers, edge
 //! lists). Commands, the window and tests all go through it.
 
+mod counts;
 mod measure;
 mod report;
 mod truth;
@@ -18,7 +19,7 @@ use crate::geometry::GeometryCache;
 use crate::gpu::{Context, Executor, GpuError, Output, Prepared};
 use crate::plan::FramePlan;
 use crate::scene::Scene;
-use crate::technique::{self, Choice, Job, PlanError};
+use crate::technique::{self, Choice, ChoiceError, Job, PlanError};
 use crate::truth::TruthError;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -48,6 +49,9 @@ impl CaptureRequest {
 /// Why nothing came out.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
+    /// The settings of a capture are not those of its technique.
+    #[error(transparent)]
+    Choice(#[from] ChoiceError),
     /// The scene can't be drawn.
     #[error(transparent)]
     Plan(#[from] PlanError),

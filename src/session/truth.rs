@@ -68,7 +68,8 @@ impl Session {
             let labels = image(traced.truth.labels[index].clone());
             light.truth = Some(CapturedTruth { labels, findings: image(findings), error: counts, worst });
         }
-        Ok(())
+        // Where eight bits read a count of 256 as none, the truth alone would not say why.
+        self.count(scene, capture)
     }
 
     /// The truth of a scene, traced unless it is the last one traced.

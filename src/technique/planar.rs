@@ -28,7 +28,7 @@ const OFFSET: DepthBiasState = DepthBiasState { constant: 64, slope_scale: 2.0, 
 
 /// What a report compares: the defaults, and what each of the classic omissions costs.
 pub(super) const REPORT_ROWS: ReportRows =
-    &[&[], &[("stencil", "off")], &[("z-fighting", "polygon-offset")], &[("z-fighting", "none")], &[("clip", "off")]];
+    &[&[], &[("z-fighting", "polygon-offset")], &[("z-fighting", "none")], &[("clip", "off")]];
 
 /// How shadows are drawn.
 #[derive(Debug, Clone, Copy)]

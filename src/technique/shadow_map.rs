@@ -25,7 +25,8 @@ struct MapCaster {
     triangles: Vec<[DVec3; 3]>,
 }
 
-/// Sizes with the default bias, and with so little that surfaces darken themselves.
+/// Sizes with the default bias, and with so little that surfaces darken themselves; other ways to
+/// keep them from it; and a soft edge.
 pub(super) const REPORT_ROWS: ReportRows = &[
     &[("size", "256")],
     &[("size", "512")],
@@ -37,6 +38,10 @@ pub(super) const REPORT_ROWS: ReportRows = &[
     &[("size", "1024"), ("bias-slope", "0")],
     &[("size", "2048"), ("bias-slope", "0")],
     &[("size", "4096"), ("bias-slope", "0")],
+    &[("bias-slope", "0"), ("cull", "front")],
+    &[("bias-slope", "0"), ("bias-normal", "1.5")],
+    &[("bias-slope", "1"), ("bias-receiver-plane", "on"), ("bias-constant", "64")],
+    &[("filter", "pcf:3")],
 ];
 
 /// Plans a frame with shadow maps.

@@ -27,8 +27,20 @@ use counting::{Counting, Step};
 use options::{Options, WhoCasts};
 use std::ops::Range;
 
-/// What a report compares: the defaults.
+/// What a report compares of z-pass and z-pass-plus: the defaults.
 pub(super) const REPORT_ROWS: ReportRows = ONE_ROW;
+
+/// Of z-fail also each way to count, cast and store depth that costs or saves something.
+pub(super) const Z_FAIL_REPORT_ROWS: ReportRows = &[
+    &[],
+    &[("casters", "light-facing")],
+    &[("casters", "by-topology")],
+    &[("faces", "two-pass")],
+    &[("counter", "float")],
+    &[("extrusion", "finite:100")],
+    &[("depth", "standard-infinite")],
+    &[("depth", "standard-finite")],
+];
 
 /// Plans z-pass, z-fail or z-pass-plus.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

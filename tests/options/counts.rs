@@ -1,0 +1,97 @@
+//! Counts beyond eight bits, in a float target.
+
+use super::{capture, wrong};
+use crate::common::{from_above, judged, label_counts, session, square};
+use glam::DVec3;
+use std::sync::Arc;
+use stencilscope::capture::{Capture, Image, Snapshot};
+use stencilscope::scene::builtin::{Builtin, shapes};
+use stencilscope::scene::{Light, Material, Object, Scene};
+use stencilscope::technique::Technique;
+
+const VOLUMES: [Technique; 3] = [Technique::ZPass, Technique::ZFail, Technique::ZPassPlus];
+const FLOAT: [(&str, &str); 1] = [("counter", "float")];
+
+fn counts(capture: &Capture) -> Vec<f32> {
+    let count: &Arc<Image> = capture.lights[0].count.as_ref().expect("a count");
+    count.rows().flat_map(|row| bytemuck::pod_collect_to_vec::<u8, f32>(row)).collect()
+}
+
+/// The stencil before the mask, which reads it.
+fn stencil(capture: &Capture) -> Vec<u8> {
+    let mask = capture.steps.iter().position(|step| step.name == "mask").expect("a mask");
+    let Snapshot::Frame(frame) = &capture.steps[mask - 1].snapshot else { panic!("a frame") };
+    frame.stencil.as_ref().expect("a stencil").image.rows().flatten().copied().collect()
+}
+
+/// An open, twisted caster with the eye outside and inside its volume, drawn and undrawn, and a sun.
+fn scenes() -> Vec<Scene> {
+    let torus = shapes::torus(1.0, 0.4, 20, 10).expect("a torus");
+    let mut scenes = Vec::new();
+    for (eye, visible, light) in [
+        (10.0, true, Light::point(DVec3::new(0.3, 4.0, 0.2))),
+        (0.9, true, Light::point(DVec3::new(0.3, 4.0, 0.2))),
+        (10.0, false, Light::point(DVec3::new(0.3, 4.0, 0.2))),
+        (10.0, true, Light::directional(DVec3::new(0.3, 1.0, 0.1))),
+    ] {
+        let mut caster = Object::new("torus", Arc::new(torus.clone()), Material::default());
+        caster.pose.translate.y = 2.0;
+        caster.pose.rotate_degrees.x = 25.0;
+        caster.visible = visible;
+        let mut scene = from_above(vec![caster, square("plate", 1.5, 0.7)]);
+        scene.camera.eye.y = eye;
+        scene.lights = vec![light];
+        scenes.push(scene);
+    }
+    scenes
+}
+
+#[test]
+fn a_float_counts_what_the_stencil_counts() {
+    let mut session = session();
+    for scene in scenes() {
+        for technique in VOLUMES {
+            for extra in [&[][..], &[("extrusion", "finite:3")], &[("light-caps", "never")]] {
+                let in_stencil = capture(&mut session, &scene, technique, extra);
+                let in_float = capture(&mut session, &scene, technique, &[&FLOAT[..], extra].concat());
+                let counted: Vec<u8> = counts(&in_float).iter().map(|count| *count as i32 as u8).collect();
+                assert!(counted == stencil(&in_stencil), "{technique:?} {extra:?}");
+                assert_eq!(in_float.lights[0].shadow, in_stencil.lights[0].shadow, "{technique:?} {extra:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn no_stencil_is_kept_where_a_float_counts() {
+    let found = capture(&mut session(), &scenes()[0], Technique::ZFail, &FLOAT);
+    let has_stencil = |snapshot: &Snapshot| matches!(snapshot, Snapshot::Frame(frame) if frame.stencil.is_some());
+    assert!(found.steps.iter().all(|step| !has_stencil(&step.snapshot)));
+    assert!(found.left_out.iter().any(|left| left.what == "stencil buffer"));
+}
+
+/// Under `casters = all` each of 128 closed shells counts twice: 256 reads 0 in eight bits.
+#[test]
+fn counts_of_256_are_right_in_a_float_and_noticed_where_the_stencil_wraps() {
+    let mut session = session();
+    let gate = Builtin::named("gate").expect("gate").scene().expect("a scene");
+    let size = [160, 120];
+    let wrapped = judged(&mut session, &gate, Technique::ZFail, size);
+    let error = wrapped.error().expect("an error");
+    assert!(error.missing_shadow > 500 && error.false_shadow == 0, "{error:?}");
+    let noticed = wrapped.lights[0].wrapped_pixels().expect("counts");
+    assert_eq!(noticed, error.missing_shadow + error.edge_band, "{error:?}");
+    assert!(counts(&wrapped).contains(&300.0), "the count goes on beyond 256");
+    assert_eq!(wrong(&mut session, &gate, Technique::ZFail, &FLOAT), [0, 0]);
+    assert_eq!(wrong(&mut session, &gate, Technique::ZPass, &FLOAT), [0, 0]);
+}
+
+#[test]
+fn what_a_float_can_not_do_is_said() {
+    let mut session = session();
+    let scene = from_above(vec![square("caster", 2.0, 1.0)]);
+    let settings = [("counter", "float"), ("faces", "two-pass"), ("operations", "clamp")];
+    let found = capture(&mut session, &scene, Technique::ZFail, &settings);
+    assert_eq!(label_counts(&found)[1], 975);
+    assert!(found.left_out.iter().any(|left| left.what == "two passes and clamping"));
+}
