@@ -85,7 +85,7 @@ fn pictures_of_textures_silhouettes_and_counts_can_be_drawn() {
     let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
     let mut session = common::session();
     for Example { scene, technique, settings, pick, views } in EXAMPLES {
-        let scene = open(&OpenSpec::new(scene)).expect("a built-in scene");
+        let scene = open(&OpenSpec::new(*scene)).expect("a built-in scene");
         let mut request = common::request(*technique, [1280, 720]);
         settings.iter().for_each(|(key, value)| request.choice.set(key, value).expect("a setting"));
         let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
