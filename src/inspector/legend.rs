@@ -5,6 +5,7 @@ use super::counts;
 use super::depth::DepthMeasure;
 use super::findings;
 use super::format;
+use super::layers::MapContent;
 use super::palette;
 use super::picture;
 use super::state::State;
@@ -115,7 +116,9 @@ fn signed_counts(ui: &mut Ui, state: &mut State, shown: &Shown) {
 
 /// What white, black and colours mean where a picture holds what light comes through.
 fn let_through(ui: &mut Ui, state: &mut State, shown: &Shown) {
-    theme::heading(ui, "Light let through");
+    let content = state.capture.as_ref().and_then(|capture| MapContent::of_capture(capture));
+    let arrives = content == Some(MapContent::Textures);
+    theme::heading(ui, if arrives { "Light that arrives" } else { "Light let through" });
     let mut total = Shares::default();
     for image in &shown.images {
         let shares = state.cache.shares(image);
@@ -123,11 +126,11 @@ fn let_through(ui: &mut Ui, state: &mut State, shown: &Shown) {
         total.none += shares.none;
         total.part += shares.part;
     }
-    entry(ui, Color32::WHITE, "all arrives", total.all).on_hover_text("White: nothing is in the light's way");
-    entry(ui, Color32::BLACK, "none arrives", total.none).on_hover_text("Black: an opaque caster is in its way");
+    entry(ui, Color32::WHITE, "all of it", total.all).on_hover_text("White: nothing is in the light's way");
+    entry(ui, Color32::BLACK, "none of it", total.none).on_hover_text("Black: an opaque caster is in its way");
     let part = "A colour: so much of the light's red, green and blue comes through a translucent caster. Stored are \
                 linear shares; they are encoded for the screen";
-    let line = entry_with(ui, "a part arrives", total.part, |ui| {
+    let line = entry_with(ui, "a part", total.part, |ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
         let third = rect.width() / 3.0;
         for (place, color) in [Color32::RED, Color32::GREEN, Color32::BLUE].into_iter().enumerate() {

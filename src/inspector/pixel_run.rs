@@ -3,11 +3,15 @@
 use super::counts;
 use super::depth::DepthMeasure;
 use super::format;
+use super::layers::MapContent;
 use super::palette;
 use super::state::State;
 use super::theme;
 use crate::capture::{Capture, FrameSnapshot, Snapshot};
 use egui::{Color32, CornerRadius, RichText, Ui};
+
+/// Letters of a pass's name where it has the most room.
+const MOST_LETTERS: usize = 24;
 
 /// A value in the table, with the colour that stands for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,11 +37,14 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     let has_stencil = capture.frame_at(last).is_some_and(|frame| frame.stencil.is_some());
     let has_count = capture.lights.iter().any(|light| light.count.is_some());
     let has = [has_stencil, has_count];
+    // The columns beside it keep their place.
+    let longest = MOST_LETTERS - 9 * has.into_iter().filter(|has| *has).count();
+    let of_map = MapContent::of_capture(capture).map_or("map", MapContent::one);
     egui::Grid::new("pixel over the steps").num_columns(5).spacing([12.0, 2.0]).min_row_height(20.0).show(ui, |ui| {
         head(ui, has);
         let mut before: Option<Values> = None;
         for (index, step) in capture.steps.iter().enumerate() {
-            if pass_cell(ui, index, &step.name, index == state.step) {
+            if pass_cell(ui, index, &step.name, longest, index == state.step) {
                 selected = Some(index);
             }
             match &step.snapshot {
@@ -47,7 +54,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
                     before = Some(now);
                 }
                 Snapshot::Map { .. } => {
-                    ui.label(RichText::new("map only").size(theme::SMALL_SIZE).color(theme::FAINT));
+                    ui.label(RichText::new(format!("{of_map} only")).size(theme::SMALL_SIZE).color(theme::FAINT));
                 }
             }
             ui.end_row();
@@ -69,12 +76,16 @@ fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
     ui.end_row();
 }
 
-/// Number and name of a pass; true when it is clicked.
-fn pass_cell(ui: &mut Ui, index: usize, name: &str, is_selected: bool) -> bool {
+/// Number and name of a pass, shortened to so many letters; true when it is clicked.
+fn pass_cell(ui: &mut Ui, index: usize, name: &str, longest: usize, is_selected: bool) -> bool {
     let color = if is_selected { theme::TEXT } else { theme::DIM };
-    let text = RichText::new(format!("{} {name}", index + 1)).size(theme::SMALL_SIZE).color(color);
+    let short: String = match name.char_indices().nth(longest) {
+        Some(_) => name.chars().take(longest - 1).chain(['…']).collect(),
+        None => name.to_owned(),
+    };
+    let text = RichText::new(format!("{} {short}", index + 1)).size(theme::SMALL_SIZE).color(color);
     let button = egui::Button::selectable(is_selected, text).corner_radius(CornerRadius::same(2));
-    ui.add(button).on_hover_text("Go to this step").clicked()
+    ui.add(button).on_hover_text(format!("Go to step {}, {name}", index + 1)).clicked()
 }
 
 fn values(capture: &Capture, step: usize, frame: &FrameSnapshot, at: [u32; 2]) -> Values {

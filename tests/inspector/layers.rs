@@ -20,9 +20,9 @@ fn textures_are_colours_and_nothing_speaks_of_shadow_maps_or_metres() {
     click_button(&mut harness, "Textures");
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Map));
     harness.get_by_label("textures of light 1 · 16×16 · Rgba8Unorm");
-    harness.get_by_label("Light let through");
+    harness.get_by_label("Light that arrives");
     // White: half of the first and the whole third; tinted: half a row; black: the rest.
-    for (name, texels) in [("all arrives", "384"), ("none arrives", "376"), ("a part arrives", "8")] {
+    for (name, texels) in [("all of it", "384"), ("none of it", "376"), ("a part", "8")] {
         harness.get_by_label(name);
         harness.get_by_label(texels);
     }

@@ -123,7 +123,19 @@ const EXAMPLES: &[Example] = &[
             ("colour", |_| ()),
             ("all", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
             ("one", first_layer),
+            ("meshes", |harness| {
+                click(harness, "Settings");
+                harness.get_by_label("Meshes").scroll_to_me();
+                harness.run_steps(4);
+            }),
         ],
+    },
+    Example {
+        scene: "gate",
+        technique: Technique::ZFail,
+        settings: &[("counter", "float")],
+        pick: [640, 360],
+        views: &[("count", |harness| click_button(harness, "Count"))],
     },
     Example {
         scene: "glass",
