@@ -69,20 +69,34 @@ fn stencil(ui: &mut Ui, state: &mut State, shown: &Shown) {
     let are_counts = state.capture.as_ref().is_some_and(|capture| counts::are_made_by(&capture.technique));
     theme::heading(ui, if are_counts { "Stencil count" } else { "Stencil value" });
     // 0, 1, 2 … and then −1, −2 …: the order in which people think of them.
-    let values = (0..=127).chain((128..=255).rev()).filter(|value| histogram[usize::from(*value)] > 0);
-    let values: Vec<u8> = values.collect();
-    for value in values.iter().take(MOST_VALUES) {
-        entry(ui, palette::stencil(*value), &palette::signed(*value), histogram[usize::from(*value)]);
+    let values = (0..=127).chain((128..=255).rev()).map(|value: u8| (value, histogram[usize::from(value)]));
+    let (listed, rest) = most_frequent(values.filter(|(_, pixels)| *pixels > 0).collect(), MOST_VALUES);
+    for (value, pixels) in listed {
+        entry(ui, palette::stencil(value), &palette::signed(value), pixels);
     }
-    let rest = values.iter().skip(MOST_VALUES).map(|value| histogram[usize::from(*value)]);
-    more_values(ui, rest);
+    more_values(ui, &rest);
 }
 
-fn more_values(ui: &mut Ui, pixels: impl ExactSizeIterator<Item = u64>) {
-    let more = pixels.len();
-    if more > 0 {
-        let pixels = format::count(pixels.sum());
-        ui.label(theme::note(format!("{} · {pixels}", format::counted(more as u64, "more value"))));
+/// Values with how many pixels have each.
+type Counted<V> = Vec<(V, u64)>;
+
+/// As many values as are listed, those of the most pixels, and the rest; both in the order given.
+fn most_frequent<V>(values: Counted<V>, most: usize) -> (Counted<V>, Counted<V>) {
+    let mut by_pixels: Vec<usize> = (0..values.len()).collect();
+    by_pixels.sort_by_key(|index| std::cmp::Reverse(values[*index].1));
+    let listed: std::collections::BTreeSet<usize> = by_pixels.into_iter().take(most).collect();
+    let (listed, rest): (Vec<_>, Vec<_>) =
+        values.into_iter().enumerate().partition(|(index, _)| listed.contains(index));
+    let value = |(_, value): (usize, (V, u64))| value;
+    (listed.into_iter().map(value).collect(), rest.into_iter().map(value).collect())
+}
+
+fn more_values<V>(ui: &mut Ui, rest: &[(V, u64)]) {
+    if !rest.is_empty() {
+        let pixels = format::count(rest.iter().map(|(_, pixels)| pixels).sum());
+        let more = format::counted(rest.len() as u64, "more value");
+        ui.label(theme::note(format!("{more} · {pixels}")))
+            .on_hover_text("Those above have the most pixels; any other shows its number in the picture, when large");
     }
 }
 
@@ -90,28 +104,23 @@ fn more_values(ui: &mut Ui, pixels: impl ExactSizeIterator<Item = u64>) {
 fn signed_counts(ui: &mut Ui, state: &mut State, shown: &Shown) {
     let tally = state.cache.tally(&shown.images[0]);
     theme::heading(ui, &title(shown));
-    let (misread, read): (Vec<i64>, Vec<i64>) =
-        (tally.range(0..).chain(tally.range(..0).rev()).map(|(count, _)| *count))
-            .partition(|count| counts::reads_zero_in_eight_bits(*count as f32));
-    let line = |ui: &mut Ui, count: i64| {
-        let exact = count as f32;
-        let hover = format!("In eight bits it would read {}", counts::in_eight_bits(exact));
-        entry(ui, counts::color(exact), &counts::text(exact), tally[&count]).on_hover_text(hover);
+    let in_order = tally.range(0..).chain(tally.range(..0).rev()).map(|(count, pixels)| (*count as f32, *pixels));
+    let (misread, read): (Vec<_>, Vec<_>) = in_order.partition(|(count, _)| counts::reads_zero_in_eight_bits(*count));
+    let list = |ui: &mut Ui, values, most| {
+        let (listed, rest) = most_frequent(values, most);
+        for (count, pixels) in listed {
+            let hover = format!("In eight bits it would read {}", counts::in_eight_bits(count));
+            entry(ui, counts::color(count), &counts::text(count), pixels).on_hover_text(hover);
+        }
+        more_values(ui, &rest);
     };
-    for count in read.iter().take(MOST_VALUES) {
-        line(ui, *count);
+    list(ui, read, MOST_VALUES);
+    if !misread.is_empty() {
+        ui.add_space(4.0);
+        ui.label(theme::note("would read 0 in eight bits"))
+            .on_hover_text("Multiples of 256: a stencil buffer would take these pixels for lit");
+        list(ui, misread, MOST_MISREAD);
     }
-    more_values(ui, read.iter().skip(MOST_VALUES).map(|count| tally[count]));
-    if misread.is_empty() {
-        return;
-    }
-    ui.add_space(4.0);
-    ui.label(theme::note("would read 0 in eight bits"))
-        .on_hover_text("Multiples of 256: a stencil buffer would take these pixels for lit");
-    for count in misread.iter().take(MOST_MISREAD) {
-        line(ui, *count);
-    }
-    more_values(ui, misread.iter().skip(MOST_MISREAD).map(|count| tally[count]));
 }
 
 /// What white, black and colours mean where a picture holds what light comes through.

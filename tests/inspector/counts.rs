@@ -5,6 +5,8 @@ use super::{Seen, click_button, harness, harness_of, inspector, press};
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use std::sync::Arc;
+use stencilscope::capture::{Image, PixelFormat};
 use stencilscope::inspector::{Inspector, PictureKind};
 
 fn picked(at: [u32; 2]) -> Harness<'static, Seen> {
@@ -29,10 +31,10 @@ fn the_legend_counts_signed_values_and_says_what_eight_bits_would_miss() {
 fn whoever_looks_at_the_stencil_sees_the_counts_where_there_is_none() {
     let mut harness = harness(super::z_fail(super::SIZE));
     click_button(&mut harness, "Stencil");
-    harness.state_mut().inspector.set_capture(std::sync::Arc::new(counted_in_floats()));
+    harness.state_mut().inspector.set_capture(Arc::new(counted_in_floats()));
     harness.run_steps(3);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Count));
-    harness.state_mut().inspector.set_capture(std::sync::Arc::new(super::z_fail(super::SIZE)));
+    harness.state_mut().inspector.set_capture(Arc::new(super::z_fail(super::SIZE)));
     harness.run_steps(3);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Stencil));
 }
@@ -60,4 +62,18 @@ fn before_the_volumes_nobody_knows_the_count() {
     press(&mut harness, Key::Home);
     assert_eq!(harness.query_all_by_label("300").count(), 3);
     assert!(harness.query_by_label_contains("in eight bits").is_none());
+}
+
+#[test]
+fn of_many_counts_the_legend_lists_those_of_the_most_pixels() {
+    let mut capture = counted_in_floats();
+    // A pixel each of 2 to 41 in the first row, and 500 everywhere else.
+    let texels = (0..40 * 30).map(|index| if index < 40 { index as f32 + 2.0 } else { 500.0_f32 });
+    let bytes: Vec<u8> = texels.flat_map(f32::to_le_bytes).collect();
+    capture.lights[0].count = Some(Arc::new(Image::packed(PixelFormat::Count32F, super::SIZE, bytes)));
+    let mut harness = harness(capture);
+    click_button(&mut harness, "Count");
+    harness.get_by_label("500");
+    harness.get_by_label("1\u{2009}160");
+    harness.get_by_label("29 more values · 29");
 }
