@@ -326,6 +326,15 @@ mod tests {
     }
 
     #[test]
+    fn after_the_first_frame_the_meshes_are_told() {
+        let (_worker, _frame, news) = started();
+        let meshes = wait(&news, |news| if let News::Meshes { meshes, .. } = news { Some(meshes) } else { None });
+        let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+        let names = |of: &[ObjectMesh]| of.iter().map(|mesh| mesh.object.clone()).collect::<Vec<_>>();
+        assert_eq!(names(&meshes), scene.objects.iter().map(|object| object.name.clone()).collect::<Vec<_>>());
+    }
+
+    #[test]
     fn the_last_frame_is_judged_and_keeps_its_truth_when_it_is_timed() {
         let (tell, news) = channel();
         let request = CaptureRequest::new(Choice::new(Technique::Planar), [64, 36]);
