@@ -34,7 +34,10 @@ const MAY_USE: [(&str, &[&str]); 17] = [
             "report",
         ],
     ),
-    ("inspector", &["math", "scene", "plan", "technique", "capture", "stencil_machine", "accuracy", "report"]),
+    (
+        "inspector",
+        &["math", "scene", "geometry", "plan", "technique", "capture", "stencil_machine", "accuracy", "report"],
+    ),
     ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report"]),
     ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app", "progress", "report"]),
     ("main", &["cli"]),

@@ -1,7 +1,7 @@
 //! What wakes the window: news of the worker, a chosen file, a wish to repaint.
 
 use crate::capture::Capture;
-use crate::inspector::RunRequest;
+use crate::inspector::{ObjectMesh, RunRequest};
 use crate::report::Report;
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -22,6 +22,13 @@ pub enum News {
         scene: Box<Scene>,
         /// Its first run.
         request: Box<RunRequest>,
+    },
+    /// How the meshes of a scene hang together.
+    Meshes {
+        /// The scene that is meant.
+        generation: u64,
+        /// One an object.
+        meshes: Vec<ObjectMesh>,
     },
     /// A capture folder was opened.
     OpenedFolder(Arc<Capture>),

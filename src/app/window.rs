@@ -93,6 +93,7 @@ impl App {
                 self.generation = generation;
                 self.inspector.set_scene(&scene, *request);
             }
+            News::Meshes { generation, meshes } if generation == self.generation => self.inspector.set_meshes(meshes),
             News::OpenedFolder(capture) => {
                 self.jobs.stop_judging();
                 self.inspector.set_job(None);
@@ -113,8 +114,8 @@ impl App {
                 self.jobs.stop_judging();
                 self.inspector.set_truth(TruthState::Failed(reason));
             }
-            // Of a frame that is shown no more.
-            News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
+            // Of a scene or frame that is shown no more.
+            News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
             News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
             News::Failed(reason) => self.inspector.push_error(reason),
         }

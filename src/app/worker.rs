@@ -10,7 +10,7 @@ use super::news::News;
 use super::orders::{Measure, Order, Waiting};
 use super::{AppError, ViewSource};
 use crate::capture::{Capture, disk};
-use crate::inspector::RunRequest;
+use crate::inspector::{ObjectMesh, RunRequest};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::scene::{OpenSpec, Scene};
@@ -178,7 +178,18 @@ impl Bench {
         self.scene = Some(scene.clone());
         self.last = None;
         (self.tell)(News::Opened { generation: self.generation, scene, request: Box::new(request.clone()) });
-        self.run(&request)
+        let done = self.run(&request);
+        self.look_at_meshes();
+        done
+    }
+
+    /// Tells how the open scene's meshes hang together: after the first frame, which must not wait.
+    fn look_at_meshes(&mut self) {
+        let (Some(session), Some(scene)) = (&mut self.session, &self.scene) else { return };
+        (self.tell)(News::Busy("looking at meshes".to_owned()));
+        let mesh = |(object, topology)| ObjectMesh { object, topology };
+        let meshes = session.topologies(scene).into_iter().map(mesh).collect();
+        (self.tell)(News::Meshes { generation: self.generation, meshes });
     }
 
     fn run(&mut self, request: &RunRequest) -> Result<(), String> {
@@ -312,6 +323,15 @@ mod tests {
 
     fn judge(worker: &Worker, frame: u64, progress: &Progress) {
         assert!(worker.order(Order::Judge { frame, progress: progress.clone() }));
+    }
+
+    #[test]
+    fn after_the_first_frame_the_meshes_are_told() {
+        let (_worker, _frame, news) = started();
+        let meshes = wait(&news, |news| if let News::Meshes { meshes, .. } = news { Some(meshes) } else { None });
+        let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+        let names = |of: &[ObjectMesh]| of.iter().map(|mesh| mesh.object.clone()).collect::<Vec<_>>();
+        assert_eq!(names(&meshes), scene.objects.iter().map(|object| object.name.clone()).collect::<Vec<_>>());
     }
 
     #[test]

@@ -20,7 +20,7 @@ const MOST_TRIANGLES_KEPT: usize = 8_000_000;
 pub struct GeometryCache {
     edges: HashMap<u64, Arc<EdgeList>>,
     /// By their keys, with whether the newest plan has asked for them.
-    flattened: HashMap<u64, (Arc<Vec<[DVec4; 3]>>, bool)>,
+    flattened: HashMap<u64, (FlattenedTriangles, bool)>,
     planes: HashMap<(u64, PoseBits), Arc<Planes>>,
     topologies: HashMap<u64, Arc<Topology>>,
     solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
@@ -28,6 +28,9 @@ pub struct GeometryCache {
     facings: Facings,
     silhouette: Vec<SilhouetteEdge>,
 }
+
+/// Homogeneous world positions of a caster's shadow on a plane.
+type FlattenedTriangles = Arc<Vec<[DVec4; 3]>>;
 
 type PoseBits = [u64; 9];
 
@@ -58,7 +61,7 @@ impl GeometryCache {
     }
 
     /// A flattened caster: made again only if plane, caster or light changed.
-    pub fn flattened(&mut self, what: &Flattened, make: impl FnOnce() -> Vec<[DVec4; 3]>) -> Arc<Vec<[DVec4; 3]>> {
+    pub fn flattened(&mut self, what: &Flattened, make: impl FnOnce() -> Vec<[DVec4; 3]>) -> FlattenedTriangles {
         let (triangles, used) = self.flattened.entry(what.key()).or_insert_with(|| (Arc::new(make()), true));
         *used = true;
         triangles.clone()

@@ -176,7 +176,7 @@ fn clear_left_out_faces(context: &Context, plan: &FramePlan, textures: &[Texture
         for (layer, _) in left_out {
             let view = layer_view(&textures[map.attachment.0], layer);
             let store = wgpu::StoreOp::Store;
-            let color = map.lookup.is_none().then(|| wgpu::RenderPassColorAttachment {
+            let color = map.lookup.is_none().then_some(wgpu::RenderPassColorAttachment {
                 view: &view,
                 depth_slice: None,
                 resolve_target: None,

@@ -139,7 +139,7 @@ fn numbers(ui: &Ui, rect: Rect, image: &Image, coloring: Coloring, placement: Pl
 /// Draws a texel's number into its cell, as large as fits, in black or white.
 pub fn texel_number(painter: &egui::Painter, image: &Image, coloring: Coloring, at: [u32; 2], cell: Rect) {
     let Some(color) = coloring.color_at(image, at) else { return };
-    let lines = if coloring == Coloring::Srgb { 3.0 } else { 1.0 };
+    let lines = if matches!(coloring, Coloring::Srgb | Coloring::Linear) { 3.0 } else { 1.0 };
     let size = (cell.height() * 0.38).min(cell.height() * 0.86 / (lines * 1.2)).clamp(6.0, 13.0);
     // A character of the monospaced face is 0.6 of its size wide.
     let columns = (cell.width() * 0.94 / (size * 0.6)) as usize;

@@ -1,18 +1,25 @@
 //! What the texels of a picture mean: their colour, and their number where they are large.
 
+use super::counts;
 use super::depth::DepthScale;
 use super::findings;
 use super::palette;
 use crate::capture::Image;
 use egui::Color32;
+use egui::ecolor::gamma_u8_from_linear_f32;
+use std::sync::LazyLock;
 
 /// What the texels of a picture mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coloring {
     /// sRGB bytes.
     Srgb,
+    /// Bytes of linear shares of light.
+    Linear,
     /// Stencil counts.
     Stencil,
+    /// Signed counts in floats.
+    Count,
     /// Labels of a light.
     Labels,
     /// Findings of an error picture.
@@ -27,7 +34,9 @@ impl Coloring {
     pub fn color_at(self, image: &Image, at: [u32; 2]) -> Option<Color32> {
         match self {
             Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| Color32::from_rgb(r, g, b)),
+            Coloring::Linear => image.rgba_at(at).map(linear),
             Coloring::Stencil => image.byte_at(at).map(palette::stencil),
+            Coloring::Count => image.count_at(at).map(counts::color),
             Coloring::Labels => image.byte_at(at).map(palette::label),
             Coloring::Findings => image.byte_at(at).map(findings::color),
             Coloring::Depth(scale) => image.depth_at(at).map(|depth| scale.color(depth)),
@@ -39,16 +48,28 @@ impl Coloring {
     #[must_use]
     pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
         match self {
-            Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
+            Coloring::Srgb | Coloring::Linear => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
             Coloring::Stencil | Coloring::Labels | Coloring::Findings => {
                 image.byte_at(at).map(|value| value.to_string())
             }
+            Coloring::Count => image.count_at(at).map(counts::text),
             Coloring::Depth(scale) => image.depth_at(at).map(|depth| match scale.measure.value(depth) {
                 Some(value) => fitted(value, columns),
                 None => "∞".to_owned(),
             }),
         }
     }
+}
+
+/// sRGB bytes of linear ones.
+static ENCODED: LazyLock<[u8; 256]> =
+    LazyLock::new(|| std::array::from_fn(|linear| gamma_u8_from_linear_f32(linear as f32 / 255.0)));
+
+/// How a share of light, linear bytes, is shown on the screen.
+#[must_use]
+pub fn linear([r, g, b, _]: [u8; 4]) -> Color32 {
+    let encoded = |share: u8| ENCODED[usize::from(share)];
+    Color32::from_rgb(encoded(r), encoded(g), encoded(b))
 }
 
 /// As many digits of `value` as fit into `columns` characters.
@@ -69,6 +90,11 @@ fn fitted(value: f64, columns: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn half_of_the_light_is_brighter_than_half_of_the_byte() {
+        assert_eq!(linear([0, 255, 128, 0]), Color32::from_rgb(0, 255, 188));
+    }
 
     #[test]
     fn numbers_fit_their_cell() {

@@ -61,6 +61,13 @@ pub fn depth(value: f32) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.7}") }
 }
 
+/// Shares of red, green and blue light: `20 % 0 % 100 %`.
+#[must_use]
+pub fn shares([red, green, blue, _]: [u8; 4]) -> String {
+    let share = |byte: u8| format!("{:.0} %", f32::from(byte) / 2.55);
+    [red, green, blue].map(share).join("  ")
+}
+
 /// The name of a light for people: lights count from 1.
 #[must_use]
 pub fn light(index: usize) -> String {

@@ -1,12 +1,15 @@
 //! The legend over the picture's upper right corner: what its colours mean, with counts, and the
 //! range of depths.
 
+use super::counts;
 use super::depth::DepthMeasure;
 use super::findings;
 use super::format;
+use super::layers::MapContent;
 use super::palette;
 use super::picture;
 use super::state::State;
+use super::texture::Shares;
 use super::theme;
 use super::view::{PictureKind, Shown};
 use crate::accuracy::Finding;
@@ -18,11 +21,13 @@ const WIDTH: f32 = 168.0;
 const WIDE: f32 = 224.0;
 /// Stencil values that are listed one by one.
 const MOST_VALUES: usize = 12;
+/// Counts that eight bits would take for zero, listed one by one.
+const MOST_MISREAD: usize = 4;
 
 /// What the legend takes of a picture of this size, points.
 #[must_use]
-pub fn room(rect: Rect, kind: PictureKind) -> f32 {
-    if fits(rect, kind) { width(kind) + 12.0 } else { 0.0 }
+pub fn room(rect: Rect, shown: &Shown) -> f32 {
+    if fits(rect, shown.kind) { width(shown.kind) + 12.0 } else { 0.0 }
 }
 
 fn fits(rect: Rect, kind: PictureKind) -> bool {
@@ -49,6 +54,8 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, range: [f64
             ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
             match shown.kind {
                 PictureKind::Stencil => stencil(ui, state, shown),
+                PictureKind::Count => signed_counts(ui, state, shown),
+                PictureKind::Map if shown.is_let_through() => let_through(ui, state, shown),
                 PictureKind::Mask | PictureKind::Truth => labels(ui, state, shown),
                 PictureKind::Error => findings(ui, state, shown),
                 _ => depth(ui, state, shown, range),
@@ -59,19 +66,95 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, range: [f64
 
 fn stencil(ui: &mut Ui, state: &mut State, shown: &Shown) {
     let histogram = state.cache.histogram(&shown.images[0]);
-    let counts =
-        state.capture.as_ref().is_some_and(|capture| matches!(capture.technique.as_str(), "z-pass" | "z-fail"));
-    theme::heading(ui, if counts { "Stencil count" } else { "Stencil value" });
+    let are_counts = state.capture.as_ref().is_some_and(|capture| counts::are_made_by(&capture.technique));
+    theme::heading(ui, if are_counts { "Stencil count" } else { "Stencil value" });
     // 0, 1, 2 … and then −1, −2 …: the order in which people think of them.
-    let values = (0..=127).chain((128..=255).rev()).filter(|value| histogram[usize::from(*value)] > 0);
-    let values: Vec<u8> = values.collect();
-    for value in values.iter().take(MOST_VALUES) {
-        entry(ui, palette::stencil(*value), &palette::signed(*value), histogram[usize::from(*value)]);
+    let values = (0..=127).chain((128..=255).rev()).map(|value: u8| (value, histogram[usize::from(value)]));
+    let (listed, rest) = most_frequent(values.filter(|(_, pixels)| *pixels > 0).collect(), MOST_VALUES);
+    for (value, pixels) in listed {
+        entry(ui, palette::stencil(value), &palette::signed(value), pixels);
     }
-    if values.len() > MOST_VALUES {
-        let pixels: u64 = values[MOST_VALUES..].iter().map(|value| histogram[usize::from(*value)]).sum();
-        let more = values.len() - MOST_VALUES;
-        ui.label(theme::note(format!("{more} more values · {}", format::count(pixels))));
+    more_values(ui, &rest);
+}
+
+/// Values with how many pixels have each.
+type Counted<V> = Vec<(V, u64)>;
+
+/// As many values as are listed, those of the most pixels, and the rest; both in the order given.
+fn most_frequent<V>(values: Counted<V>, most: usize) -> (Counted<V>, Counted<V>) {
+    let mut by_pixels: Vec<usize> = (0..values.len()).collect();
+    by_pixels.sort_by_key(|index| std::cmp::Reverse(values[*index].1));
+    let listed: std::collections::BTreeSet<usize> = by_pixels.into_iter().take(most).collect();
+    let (listed, rest): (Vec<_>, Vec<_>) =
+        values.into_iter().enumerate().partition(|(index, _)| listed.contains(index));
+    let value = |(_, value): (usize, (V, u64))| value;
+    (listed.into_iter().map(value).collect(), rest.into_iter().map(value).collect())
+}
+
+fn more_values<V>(ui: &mut Ui, rest: &[(V, u64)]) {
+    if !rest.is_empty() {
+        let pixels = format::count(rest.iter().map(|(_, pixels)| pixels).sum());
+        let more = format::counted(rest.len() as u64, "more value");
+        ui.label(theme::note(format!("{more} · {pixels}")))
+            .on_hover_text("Those above have the most pixels; any other shows its number in the picture, when large");
+    }
+}
+
+/// Signed counts; those that eight bits would take for zero apart.
+fn signed_counts(ui: &mut Ui, state: &mut State, shown: &Shown) {
+    let tally = state.cache.tally(&shown.images[0]);
+    theme::heading(ui, &title(shown));
+    let in_order = tally.range(0..).chain(tally.range(..0).rev()).map(|(count, pixels)| (*count as f32, *pixels));
+    let (misread, read): (Vec<_>, Vec<_>) = in_order.partition(|(count, _)| counts::reads_zero_in_eight_bits(*count));
+    let list = |ui: &mut Ui, values, most| {
+        let (listed, rest) = most_frequent(values, most);
+        for (count, pixels) in listed {
+            let hover = format!("In eight bits it would read {}", counts::in_eight_bits(count));
+            entry(ui, counts::color(count), &counts::text(count), pixels).on_hover_text(hover);
+        }
+        more_values(ui, &rest);
+    };
+    list(ui, read, MOST_VALUES);
+    if !misread.is_empty() {
+        ui.add_space(4.0);
+        ui.label(theme::note("would read 0 in eight bits"))
+            .on_hover_text("Multiples of 256: a stencil buffer would take these pixels for lit");
+        list(ui, misread, MOST_MISREAD);
+    }
+}
+
+/// What white, black and colours mean where a picture holds what light comes through.
+fn let_through(ui: &mut Ui, state: &mut State, shown: &Shown) {
+    let content = state.capture.as_ref().and_then(|capture| MapContent::of_capture(capture));
+    let arrives = content == Some(MapContent::Textures);
+    theme::heading(ui, if arrives { "Light that arrives" } else { "Light let through" });
+    let mut total = Shares::default();
+    for image in &shown.images {
+        let shares = state.cache.shares(image);
+        total.all += shares.all;
+        total.none += shares.none;
+        total.part += shares.part;
+    }
+    entry(ui, Color32::WHITE, "all of it", total.all).on_hover_text("White: nothing is in the light's way");
+    entry(ui, Color32::BLACK, "none of it", total.none).on_hover_text("Black: an opaque caster is in its way");
+    let part = "A colour: so much of the light's red, green and blue comes through a translucent caster. Stored are \
+                linear shares; they are encoded for the screen";
+    let line = entry_with(ui, "a part", total.part, |ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+        let third = rect.width() / 3.0;
+        for (place, color) in [Color32::RED, Color32::GREEN, Color32::BLUE].into_iter().enumerate() {
+            let corner = pos2(rect.left() + place as f32 * third, rect.top());
+            let slice = Rect::from_min_size(corner, vec2(third, rect.height()));
+            ui.painter().rect_filled(slice, CornerRadius::ZERO, color.lerp_to_gamma(Color32::GRAY, 0.4));
+        }
+        let outline = egui::Stroke::new(1.0, theme::FAINT);
+        ui.painter().rect_stroke(rect, CornerRadius::same(2), outline, egui::StrokeKind::Inside);
+    });
+    line.on_hover_text(part);
+    if let [layer] = &shown.layers[..]
+        && let Some(note) = layer.note
+    {
+        ui.add(egui::Label::new(theme::note(note)).wrap());
     }
 }
 
@@ -91,7 +174,13 @@ fn labels(ui: &mut Ui, state: &mut State, shown: &Shown) {
 /// `Mask, light 1`.
 fn title(shown: &Shown) -> String {
     let of = shown.title.split_once(" of ").map_or(shown.title.as_str(), |(_, of)| of);
-    format!("{}, {of}", shown.kind.name())
+    let kind = match shown.kind {
+        PictureKind::Count => "Count",
+        PictureKind::Mask => "Mask",
+        PictureKind::Truth => "Truth",
+        _ => "Error",
+    };
+    format!("{kind}, {of}")
 }
 
 /// One sentence, the way to the largest wrong patch, then the counts.
@@ -156,8 +245,12 @@ pub fn hatched(ui: &mut Ui, style: findings::Style) {
 
 /// A line of the legend: colour, value, how many.
 fn entry(ui: &mut Ui, color: Color32, name: &str, pixels: u64) -> egui::Response {
+    entry_with(ui, name, pixels, |ui| theme::swatch(ui, color))
+}
+
+fn entry_with(ui: &mut Ui, name: &str, pixels: u64, swatch: impl FnOnce(&mut Ui)) -> egui::Response {
     let line = ui.horizontal(|ui| {
-        theme::swatch(ui, color);
+        swatch(ui);
         ui.label(theme::number(name).color(theme::TEXT));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(theme::number(format::count(pixels)).color(theme::DIM));

@@ -38,6 +38,9 @@ pub fn ui(ui: &Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Color
         }
     }
     let middle = Rect::from_center_size(inset.center(), vec2(CELL, CELL));
-    painter.rect_stroke(middle, CornerRadius::ZERO, Stroke::new(2.0, Color32::WHITE), StrokeKind::Middle);
+    // Light on dark, so that it shows on any texel.
+    for (width, color) in [(5.0, Color32::from_black_alpha(170)), (2.0, Color32::WHITE)] {
+        painter.rect_stroke(middle, CornerRadius::ZERO, Stroke::new(width, color), StrokeKind::Middle);
+    }
     painter.rect_stroke(inset.expand(1.0), CornerRadius::same(4), Stroke::new(1.0, theme::FAINT), StrokeKind::Outside);
 }

@@ -10,20 +10,25 @@
 //! state.rs     what is remembered, and its rules   view.rs       which picture is shown
 //! depth.rs     what a stored depth means           placement.rs  where it is on the screen
 //! coloring.rs  what a texel means                  texture.rs    pictures as textures, cached
+//! layers.rs    maps, textures and silhouettes      counts.rs     counts beyond eight bits
 //! findings.rs  the error picture's hatching        truth_note.rs while there is no truth
 //! ```
 
 mod action;
 mod canvas;
 mod coloring;
+mod counts;
 mod depth;
 mod dock;
 mod draws;
+mod face_grid;
 mod findings;
 mod format;
 mod keys;
+mod layers;
 mod legend;
 mod magnifier;
+mod meshes;
 mod messages;
 mod open_dialog;
 mod palette;
@@ -36,6 +41,7 @@ mod report;
 mod report_plot;
 mod report_table;
 mod settings;
+mod settings_off;
 mod settings_scene;
 mod state;
 mod status_bar;
@@ -48,6 +54,7 @@ mod verdict;
 mod view;
 
 pub use action::{Action, RunRequest};
+pub use meshes::ObjectMesh;
 pub use report::{ReportProgress, ReportView};
 pub use state::SceneEntry;
 pub use truth_note::TruthState;
@@ -113,6 +120,11 @@ impl Inspector {
     /// Another scene is open, to be run as `draft` says.
     pub fn set_scene(&mut self, scene: &Scene, draft: RunRequest) {
         self.state.set_scene(Some((scene, draft)));
+    }
+
+    /// Tells how the meshes of the open scene hang together.
+    pub fn set_meshes(&mut self, meshes: Vec<ObjectMesh>) {
+        self.state.meshes = Some(meshes);
     }
 
     /// What is open can't be run again: a capture folder.

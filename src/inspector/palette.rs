@@ -82,6 +82,9 @@ pub fn near_far(place: f32) -> Color32 {
     Color32::from_gray(gray as u8)
 }
 
+/// A count that is not zero, but a multiple of 256: eight bits would take it for zero.
+pub const READS_ZERO: Color32 = Color32::from_rgb(0xff, 0x2b, 0xf2);
+
 /// Nothing was drawn here: the depth buffer's clear value.
 pub const NO_SURFACE: Color32 = STENCIL_ZERO;
 

@@ -2,6 +2,7 @@
 //! selected one, what was left out, and why the selected pass is there.
 
 use super::coloring::Coloring;
+use super::counts;
 use super::depth::{DepthMeasure, DepthScale};
 use super::draws;
 use super::format;
@@ -9,7 +10,7 @@ use super::state::{State, StepSearch};
 use super::texture::TextureSize;
 use super::theme;
 use super::transport;
-use crate::capture::{Capture, FrameSnapshot, FrameTarget, Image, Snapshot, Step};
+use crate::capture::{Capture, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
 use egui::{
     Color32, CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
@@ -108,7 +109,7 @@ fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize
     }
     paint_row_background(ui, rect, is_selected, response.hovered(), response.has_focus());
     let thumbnail = Rect::from_min_size(rect.min + vec2(8.0, 6.0), vec2(52.0, 32.0));
-    paint_thumbnail(ui, state, capture, step, thumbnail);
+    paint_thumbnail(ui, state, capture, index, thumbnail);
     let time = format::milliseconds(step.gpu_ms);
     let font = TextStyle::Monospace.resolve(ui.style());
     let time_rect = ui.painter().text(
@@ -120,9 +121,9 @@ fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize
     );
     let left = thumbnail.right() + 8.0;
     let room = time_rect.left() - left - 4.0;
-    text_line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, theme::TEXT);
+    theme::line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, theme::TEXT);
     let room = rect.right() - 8.0 - left;
-    text_line(ui, pos2(left, rect.top() + 23.0), room, &summary(step), TextStyle::Small, theme::DIM);
+    theme::line(ui, pos2(left, rect.top() + 23.0), room, &summary(step), TextStyle::Small, theme::DIM);
 }
 
 fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool, has_focus: bool) {
@@ -139,14 +140,6 @@ fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool
     }
 }
 
-/// One line of text, cut off with an ellipsis where there is no room.
-fn text_line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: TextStyle, color: Color32) {
-    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), style.resolve(ui.style()), color);
-    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(8.0));
-    let galley = ui.painter().layout_job(job);
-    ui.painter().galley(at, galley, color);
-}
-
 fn summary(step: &Step) -> String {
     if step.draws.is_empty() {
         return "no draws".to_owned();
@@ -156,14 +149,21 @@ fn summary(step: &Step) -> String {
 }
 
 /// What a step changed, as a picture with its colouring.
-fn changed_picture(state: &mut State, capture: &Capture, step: &Step) -> Option<(Arc<Image>, Coloring)> {
+fn changed_picture(state: &mut State, capture: &Capture, index: usize) -> Option<(Arc<Image>, Coloring)> {
+    let step = capture.steps.get(index)?;
     match &step.snapshot {
         Snapshot::Map { light, face } => {
             let map = capture.lights.get(*light)?.map.as_ref()?;
             let image = map.faces.get(*face)?.clone();
+            if image.format() == PixelFormat::Rgba8 {
+                return Some((image, Coloring::Linear));
+            }
             let measure = DepthMeasure::of_map(capture, *light, *face).unwrap_or(DepthMeasure::Raw);
             let range = state.cache.depth_range(&image, measure).unwrap_or([0.0, 1.0]);
             Some((image, Coloring::Depth(DepthScale { measure, range })))
+        }
+        Snapshot::Frame(frame) if frame.target == FrameTarget::Count => {
+            counts::finished_by(capture, index).map(|(_, count)| (count.clone(), Coloring::Count))
         }
         Snapshot::Frame(frame) => changed_aspect(state, capture, step, frame),
     }
@@ -175,10 +175,8 @@ fn changed_aspect(
     step: &Step,
     frame: &FrameSnapshot,
 ) -> Option<(Arc<Image>, Coloring)> {
-    match frame.target {
-        FrameTarget::Picture => {}
-        FrameTarget::Labels => return Some((capture.lights.get(step.light?)?.shadow.clone()?, Coloring::Labels)),
-        FrameTarget::Count => return Some((capture.lights.get(step.light?)?.count.clone()?, Coloring::Stencil)),
+    if frame.target == FrameTarget::Labels {
+        return Some((capture.lights.get(step.light?)?.shadow.clone()?, Coloring::Labels));
     }
     if !frame.color.unchanged {
         return Some((frame.color.image.clone(), Coloring::Srgb));
@@ -194,10 +192,10 @@ fn changed_aspect(
     None
 }
 
-fn paint_thumbnail(ui: &Ui, state: &mut State, capture: &Capture, step: &Step, rect: Rect) {
+fn paint_thumbnail(ui: &Ui, state: &mut State, capture: &Capture, index: usize, rect: Rect) {
     let painter = ui.painter();
     painter.rect_filled(rect, CornerRadius::ZERO, theme::BACKGROUND);
-    if let Some((image, coloring)) = changed_picture(state, capture, step) {
+    if let Some((image, coloring)) = changed_picture(state, capture, index) {
         let texture = state.cache.texture(ui.ctx(), &image, coloring, TextureSize::Thumbnail);
         let size = texture.size_vec2();
         let fitted = size * (rect.width() / size.x).min(rect.height() / size.y);

@@ -3,20 +3,19 @@
 use super::action::Action;
 use super::canvas;
 use super::coloring::Coloring;
-use super::depth::{DepthMeasure, DepthScale};
+use super::depth::DepthScale;
+use super::face_grid;
 use super::format;
+use super::layers::{self, MapContent};
 use super::legend;
 use super::magnifier;
-use super::placement::Placement;
-use super::state::{Hover, State};
-use super::texture::TextureSize;
+use super::state::State;
 use super::theme;
 use super::top_bar::segments;
 use super::truth_note;
-use super::view::{CUBE_FACES, DepthMode, FaceChoice, PictureKind, Shown, Zoom, available};
-use crate::capture::{Capture, Image};
-use egui::{Align2, CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
-use std::sync::Arc;
+use super::view::{DepthMode, FaceChoice, PictureKind, Shown, Zoom, available};
+use crate::capture::Capture;
+use egui::{Align2, CornerRadius, Margin, Rect, Ui, vec2};
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
@@ -41,7 +40,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         let placement = canvas::ui(ui, state, rect, &shown, coloring);
         magnifier::ui(ui, state, rect, &shown, coloring, placement);
     } else {
-        faces(ui, state, rect, &shown, coloring);
+        face_grid::ui(ui, state, rect, &shown, coloring);
     }
     legend::ui(ui, state, rect, &shown, range);
     truth_note::ui(ui, state, rect, &shown, actions);
@@ -69,8 +68,10 @@ pub fn coloring_of(shown: &Shown, range: [f64; 2]) -> Coloring {
     match shown.kind {
         PictureKind::Color => Coloring::Srgb,
         PictureKind::Stencil => Coloring::Stencil,
+        PictureKind::Count => Coloring::Count,
         PictureKind::Mask | PictureKind::Truth => Coloring::Labels,
         PictureKind::Error => Coloring::Findings,
+        PictureKind::Map if shown.is_let_through() => Coloring::Linear,
         PictureKind::Depth | PictureKind::Map => Coloring::Depth(DepthScale { measure: shown.measure, range }),
     }
 }
@@ -82,7 +83,7 @@ fn shown_range(state: &mut State, shown: &Shown) -> [f64; 2] {
 
 /// The smallest and largest depth of all shown pictures; `[0, 1]` where there is none.
 pub fn full_range(state: &mut State, shown: &Shown) -> [f64; 2] {
-    if !matches!(shown.kind, PictureKind::Depth | PictureKind::Map) {
+    if !matches!(coloring_of(shown, [0.0, 1.0]), Coloring::Depth(_)) {
         return [0.0, 1.0];
     }
     let ranges = shown.images.iter().filter_map(|image| state.cache.depth_range(image, shown.measure));
@@ -95,14 +96,17 @@ fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
             kinds(ui, state, capture);
             let kind = state.view.shown(capture, state.step).map(|shown| shown.kind);
             match kind {
+                Some(PictureKind::Count) => lights(ui, state, capture, |light| light.count.is_some()),
                 Some(PictureKind::Mask) => lights(ui, state, capture, |light| light.shadow.is_some()),
                 Some(PictureKind::Truth | PictureKind::Error) => {
                     lights(ui, state, capture, |light| light.shadow.is_some() || light.truth.is_some());
                 }
                 Some(PictureKind::Map) => {
                     lights(ui, state, capture, |light| light.map.is_some());
-                    cube_faces(ui, state, capture);
-                    depth_mode(ui, state);
+                    map_layers(ui, state, capture);
+                    if MapContent::of_capture(capture) == Some(MapContent::Depth) {
+                        depth_mode(ui, state);
+                    }
                 }
                 Some(PictureKind::Depth) => depth_mode(ui, state),
                 _ => {}
@@ -115,7 +119,7 @@ fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
 /// A button for each kind of picture that exists at this step.
 fn kinds(ui: &mut Ui, state: &mut State, capture: &Capture) {
     let kinds = available(capture, state.step);
-    let labels: Vec<(&str, &str)> = kinds.iter().map(|kind| (kind.name(), kind.meaning())).collect();
+    let labels: Vec<(&str, &str)> = kinds.iter().map(|kind| (kind.name(capture), kind.meaning(capture))).collect();
     // What was chosen, even while its truth is not known yet.
     let is_asked_for = state.view.kind.needs_truth() && kinds.contains(&state.view.kind);
     let shown = || state.view.shown(capture, state.step).map(|shown| shown.kind);
@@ -147,23 +151,49 @@ fn lights(
     combo.response.accessible_name("Light of the picture");
 }
 
-/// Which face of a cube map, or all.
-fn cube_faces(ui: &mut Ui, state: &mut State, capture: &Capture) {
-    let light = state.view.light_with(capture, |light| light.map.is_some());
-    let faces = light.and_then(|light| Some(capture.lights.get(light)?.map.as_ref()?.faces.len())).unwrap_or(0);
-    if faces < 2 {
+/// Which layer of a map, or all.
+fn map_layers(ui: &mut Ui, state: &mut State, capture: &Capture) {
+    let Some(light) = state.view.light_with(capture, |light| light.map.is_some()) else { return };
+    let layers = layers::layers(capture, light);
+    if layers.len() < 2 {
         return;
     }
-    let mut labels = vec![("All", "All faces of the cube")];
-    labels.extend(CUBE_FACES.iter().take(faces).map(|name| (*name, "One face of the cube")));
     let chosen = match state.view.face {
-        FaceChoice::Grid => 0,
-        FaceChoice::One(face) => face + 1,
+        FaceChoice::One(layer) if layer < layers.len() => layer + 1,
+        _ => 0,
     };
-    if let Some(index) = segments(ui, &labels, Some(chosen)) {
+    let choice = if MapContent::of(capture, light) == Some(MapContent::Depth) {
+        let mut labels = vec![("All", "All faces of the cube")];
+        labels.extend(layers.iter().map(|layer| (layer.name.as_str(), "One face of the cube")));
+        segments(ui, &labels, Some(chosen))
+    } else {
+        layer_list(ui, &layers, chosen)
+    };
+    if let Some(index) = choice {
         state.view.face = index.checked_sub(1).map_or(FaceChoice::Grid, FaceChoice::One);
         state.map_pick = None;
     }
+}
+
+/// Names too long and too many for buttons.
+fn layer_list(ui: &mut Ui, layers: &[layers::Layer], mut chosen: usize) -> Option<usize> {
+    let before = chosen;
+    let all = format!("All {}", layers.len());
+    let current = chosen.checked_sub(1).map_or(all.as_str(), |layer| &layers[layer].name);
+    let combo = egui::ComboBox::new("picture layer", "").width(112.0).selected_text(current).truncate();
+    let combo = combo.show_ui(ui, |ui| {
+        ui.selectable_value(&mut chosen, 0, all.as_str());
+        for (index, layer) in layers.iter().enumerate() {
+            let ink = if layer.note.is_some() { theme::DIM } else { theme::TEXT };
+            let text = egui::RichText::new(&layer.full_name).color(ink);
+            let response = ui.selectable_value(&mut chosen, index + 1, text);
+            if let Some(note) = layer.note {
+                response.on_hover_text(note);
+            }
+        }
+    });
+    combo.response.accessible_name("Layer of the picture");
+    (chosen != before).then_some(chosen)
 }
 
 fn depth_mode(ui: &mut Ui, state: &mut State) {
@@ -198,51 +228,5 @@ fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
             state.view.center = size.map(|side| f64::from(side) / 2.0);
         }
         state.view.zoom = Zoom::Pixels(1.0);
-    }
-}
-
-/// The six faces of a cube map, named; a click shows one of them large. They leave room for the
-/// legend.
-fn faces(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Coloring) {
-    let area = Rect::from_min_max(rect.min, rect.max - vec2(legend::room(rect, shown.kind), 0.0)).shrink(8.0);
-    let caption = 24.0;
-    let side_of = |columns: usize| {
-        let rows = shown.images.len().div_ceil(columns).max(1);
-        (area.width() / columns as f32 - 8.0).min(area.height() / rows as f32 - caption).max(1.0)
-    };
-    // As large as they get.
-    let columns = [2, 3, 6].into_iter().max_by(|a, b| side_of(*a).total_cmp(&side_of(*b))).unwrap_or(3);
-    let side = side_of(columns);
-    for (index, image) in shown.images.iter().enumerate() {
-        let cell = vec2((index % columns) as f32 * (side + 8.0), (index / columns) as f32 * (side + caption));
-        let square = Rect::from_min_size(area.min + cell + vec2(0.0, caption - 4.0), vec2(side, side));
-        face(ui, state, index, image, coloring, square);
-    }
-}
-
-fn face(ui: &mut Ui, state: &mut State, index: usize, image: &Arc<Image>, coloring: Coloring, square: Rect) {
-    let name = CUBE_FACES.get(index).copied().unwrap_or("?");
-    let response = ui.interact(square, ui.scope_id().with(("face", index)), Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Face {name}")));
-    let texture = state.cache.texture(ui.ctx(), image, coloring, TextureSize::Full);
-    let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-    ui.painter().image(texture.id(), square, uv, egui::Color32::WHITE);
-    let outline = if response.hovered() || response.has_focus() { theme::FOCUS } else { theme::LINE };
-    ui.painter().rect_stroke(square, CornerRadius::ZERO, Stroke::new(1.0, outline), StrokeKind::Outside);
-    let clear = state.capture.as_ref().map_or(0.0, |capture| capture.depth.mapping.clear_depth());
-    let any_distance = DepthMeasure::Parallel { near: 0.0, length: 1.0, clear };
-    let sees_nothing = state.cache.depth_range(image, any_distance).is_none();
-    let (caption, ink) =
-        if sees_nothing { (format!("{name} sees no caster"), theme::FAINT) } else { (name.to_owned(), theme::TEXT) };
-    let font = theme::number_font(theme::SMALL_SIZE);
-    ui.painter().text(square.left_top() - vec2(0.0, 3.0), Align2::LEFT_BOTTOM, caption, font, ink);
-    if let Some(at) = response.hover_pos() {
-        let scale = square.width() / image.size()[0].max(1) as f32;
-        let placement = Placement { origin: square.min, scale, size: image.size() };
-        state.hover = placement.texel(at).map(|at| Hover { image: index, at });
-    }
-    if response.on_hover_text(format!("Show face {name} large")).clicked() {
-        state.view.face = FaceChoice::One(index);
-        state.view.zoom = Zoom::Fit;
     }
 }

@@ -1,8 +1,11 @@
 //! The picked pixel: one sentence, then its values at the selected step, then how they came to be.
 
+use super::coloring;
+use super::counts;
 use super::depth::{DepthMeasure, FIXED_BITS};
 use super::findings;
 use super::format;
+use super::layers::MapContent;
 use super::legend;
 use super::palette;
 use super::pixel_run;
@@ -62,7 +65,10 @@ fn values(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2]) {
     egui::Grid::new("pixel values").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
         row(ui, "pixel", &format!("{}, {}", at[0], at[1]));
         match capture.frame_at(state.step) {
-            Some(frame) => frame_values(ui, capture, frame, at),
+            Some(frame) => {
+                frame_values(ui, capture, frame, at);
+                count_row(ui, state, capture, at);
+            }
             None => row(ui, "picture", "not begun yet"),
         }
         if let (Some(texel), true) = (state.map_pick, state.view.kind == PictureKind::Map) {
@@ -93,6 +99,7 @@ fn frame_values(ui: &mut Ui, capture: &Capture, frame: &FrameSnapshot, at: [u32;
     match frame.stencil.as_ref().map(|stencil| stencil.image.byte_at(at)) {
         Some(Some(stencil)) => stencil_row(ui, stencil),
         Some(None) => {}
+        None if capture.lights.iter().any(|light| light.count.is_some()) => {}
         None => row(ui, "stencil", "no buffer"),
     }
 }
@@ -107,9 +114,47 @@ fn stencil_row(ui: &mut Ui, stencil: u8) {
     ui.end_row();
 }
 
-/// The picked texel of the shadow map that is shown.
+/// The signed count of the light in question, where it is known after the step.
+fn count_row(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2]) {
+    let Some((light, image)) = counts::to_show(capture, state) else { return };
+    let Some(count) = image.count_at(at) else { return };
+    let is_only = capture.lights.iter().filter(|light| light.count.is_some()).count() < 2;
+    let name = if is_only { "count".to_owned() } else { format!("count, {}", format::light(light)) };
+    ui.label(theme::note(name));
+    ui.horizontal(|ui| {
+        theme::swatch(ui, counts::color(count));
+        ui.label(theme::number(counts::text(count)).color(theme::TEXT));
+        let read = counts::in_eight_bits(count);
+        if f32::from(read) != count {
+            ui.label(theme::number(format!("would read {read} in eight bits")).color(theme::DIM));
+        }
+    });
+    ui.end_row();
+}
+
+/// The picked texel of a picture of what light comes through.
+fn let_through_values(ui: &mut Ui, what: &str, layer: &str, texel: [u32; 2], [r, g, b, a]: [u8; 4]) {
+    row(ui, what, layer);
+    row(ui, "texel", &format!("{}, {}", texel[0], texel[1]));
+    ui.label(theme::note("lets through")).on_hover_text("Linear shares of the light's red, green and blue");
+    ui.horizontal(|ui| {
+        theme::swatch(ui, coloring::linear([r, g, b, a]));
+        ui.label(theme::number(format::shares([r, g, b, a])).color(theme::TEXT));
+    });
+    ui.end_row();
+    row(ui, "stored", &format!("{r} {g} {b}, alpha {a}"));
+    ui.label(theme::note("for labels")).on_hover_text("Alpha: below a half, labels take the light for blocked");
+    ui.label(theme::number(if a < 128 { "blocked" } else { "arrives" }).color(theme::TEXT));
+    ui.end_row();
+}
+
+/// The picked texel of the map that is shown.
 fn map_values(ui: &mut Ui, state: &State, capture: &Capture, texel: [u32; 2]) {
     let Some(shown) = state.view.shown(capture, state.step).filter(|shown| shown.images.len() == 1) else { return };
+    if let (Some(bytes), Some(layer)) = (shown.images[0].rgba_at(texel), shown.layers.first()) {
+        let what = MapContent::of_capture(capture).map_or("map", MapContent::one);
+        return let_through_values(ui, what, &layer.name, texel, bytes);
+    }
     let Some(depth) = shown.images[0].depth_at(texel) else { return };
     row(ui, "map texel", &format!("{}, {}", texel[0], texel[1]));
     row(ui, "map depth", &format::depth(depth));

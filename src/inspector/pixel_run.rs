@@ -1,12 +1,17 @@
 //! How the picked pixel's values ran over the steps: what each pass changed here, and what it left.
 
+use super::counts;
 use super::depth::DepthMeasure;
 use super::format;
+use super::layers::MapContent;
 use super::palette;
 use super::state::State;
 use super::theme;
 use crate::capture::{Capture, FrameSnapshot, Snapshot};
 use egui::{Color32, CornerRadius, RichText, Ui};
+
+/// Letters of a pass's name where it has the most room.
+const MOST_LETTERS: usize = 24;
 
 /// A value in the table, with the colour that stands for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +24,7 @@ struct Value {
 #[derive(Debug, Clone, PartialEq)]
 struct Values {
     stencil: Option<Value>,
+    count: Option<Value>,
     color: Option<Value>,
     depth: Option<Value>,
 }
@@ -29,21 +35,26 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     let mut selected = None;
     let last = capture.steps.len().saturating_sub(1);
     let has_stencil = capture.frame_at(last).is_some_and(|frame| frame.stencil.is_some());
-    egui::Grid::new("pixel over the steps").num_columns(4).spacing([12.0, 2.0]).min_row_height(20.0).show(ui, |ui| {
-        head(ui, has_stencil);
+    let has_count = capture.lights.iter().any(|light| light.count.is_some());
+    let has = [has_stencil, has_count];
+    // The columns beside it keep their place.
+    let longest = MOST_LETTERS - 9 * has.into_iter().filter(|has| *has).count();
+    let of_map = MapContent::of_capture(capture).map_or("map", MapContent::one);
+    egui::Grid::new("pixel over the steps").num_columns(5).spacing([12.0, 2.0]).min_row_height(20.0).show(ui, |ui| {
+        head(ui, has);
         let mut before: Option<Values> = None;
         for (index, step) in capture.steps.iter().enumerate() {
-            if pass_cell(ui, index, &step.name, index == state.step) {
+            if pass_cell(ui, index, &step.name, longest, index == state.step) {
                 selected = Some(index);
             }
             match &step.snapshot {
                 Snapshot::Frame(frame) => {
-                    let now = values(capture, frame, at);
-                    row(ui, &now, before.as_ref(), has_stencil);
+                    let now = values(capture, index, frame, at);
+                    row(ui, &now, before.as_ref(), has);
                     before = Some(now);
                 }
                 Snapshot::Map { .. } => {
-                    ui.label(RichText::new("map only").size(theme::SMALL_SIZE).color(theme::FAINT));
+                    ui.label(RichText::new(format!("{of_map} only")).size(theme::SMALL_SIZE).color(theme::FAINT));
                 }
             }
             ui.end_row();
@@ -55,26 +66,34 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     }
 }
 
-fn head(ui: &mut Ui, has_stencil: bool) {
-    let columns = ["pass", "stencil", "colour", "distance"];
-    for name in columns.into_iter().filter(|name| has_stencil || *name != "stencil") {
+/// `has`: a stencil, counts in floats.
+fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
+    let columns =
+        [("pass", true), ("stencil", has_stencil), ("count", has_count), ("colour", true), ("distance", true)];
+    for (name, _) in columns.into_iter().filter(|(_, is_shown)| *is_shown) {
         ui.label(theme::note(name));
     }
     ui.end_row();
 }
 
-/// Number and name of a pass; true when it is clicked.
-fn pass_cell(ui: &mut Ui, index: usize, name: &str, is_selected: bool) -> bool {
+/// Number and name of a pass, shortened to so many letters; true when it is clicked.
+fn pass_cell(ui: &mut Ui, index: usize, name: &str, longest: usize, is_selected: bool) -> bool {
     let color = if is_selected { theme::TEXT } else { theme::DIM };
-    let text = RichText::new(format!("{} {name}", index + 1)).size(theme::SMALL_SIZE).color(color);
+    let short: String = match name.char_indices().nth(longest) {
+        Some(_) => name.chars().take(longest - 1).chain(['…']).collect(),
+        None => name.to_owned(),
+    };
+    let text = RichText::new(format!("{} {short}", index + 1)).size(theme::SMALL_SIZE).color(color);
     let button = egui::Button::selectable(is_selected, text).corner_radius(CornerRadius::same(2));
-    ui.add(button).on_hover_text("Go to this step").clicked()
+    ui.add(button).on_hover_text(format!("Go to step {}, {name}", index + 1)).clicked()
 }
 
-fn values(capture: &Capture, frame: &FrameSnapshot, at: [u32; 2]) -> Values {
+fn values(capture: &Capture, step: usize, frame: &FrameSnapshot, at: [u32; 2]) -> Values {
+    let count = counts::known_after(capture, step).and_then(|(_, image)| image.count_at(at));
     let stencil = frame.stencil.as_ref().and_then(|aspect| aspect.image.byte_at(at));
     Values {
         stencil: stencil.map(|value| Value { text: palette::signed(value), color: Some(palette::stencil(value)) }),
+        count: count.map(|count| Value { text: counts::text(count), color: Some(counts::color(count)) }),
         color: frame.color.image.rgba_at(at).map(|[red, green, blue, _]| Value {
             text: format!("{red} {green} {blue}"),
             color: Some(Color32::from_rgb(red, green, blue)),
@@ -87,9 +106,12 @@ fn distance(capture: &Capture, depth: f32) -> String {
     DepthMeasure::of_camera(capture).value(depth).map_or_else(|| "–".to_owned(), format::metres)
 }
 
-fn row(ui: &mut Ui, now: &Values, before: Option<&Values>, has_stencil: bool) {
+fn row(ui: &mut Ui, now: &Values, before: Option<&Values>, [has_stencil, has_count]: [bool; 2]) {
     if has_stencil {
         cell(ui, now.stencil.as_ref(), before.and_then(|before| before.stencil.as_ref()));
+    }
+    if has_count {
+        cell(ui, now.count.as_ref(), before.and_then(|before| before.count.as_ref()));
     }
     cell(ui, now.color.as_ref(), before.and_then(|before| before.color.as_ref()));
     cell(ui, now.depth.as_ref(), before.and_then(|before| before.depth.as_ref()));

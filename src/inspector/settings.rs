@@ -1,6 +1,8 @@
 //! The settings: technique with its settings, lights, camera, picture. Every change asks for a run.
 
 use super::action::Action;
+use super::meshes;
+use super::settings_off;
 use super::settings_scene;
 use super::state::State;
 use super::theme;
@@ -34,6 +36,8 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
             let text = RichText::new(format!("× Not run: {problem}")).color(theme::ERROR);
             ui.add(egui::Label::new(text).wrap());
         }
+        ui.add_space(12.0);
+        meshes::ui(ui, state.meshes.as_deref());
         ui.add_space(16.0);
     });
 }
@@ -63,8 +67,11 @@ fn technique_settings(ui: &mut Ui, state: &mut State) -> bool {
     ui.add_space(8.0);
     egui::Grid::new("technique settings").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
         for spec in scene.draft.choice.technique().settings() {
-            let label = ui.label(theme::note(spec.key)).on_hover_text(spec.meaning);
-            if let Some(value) = setting(ui, &scene.draft.choice, spec, label.id) {
+            let off = settings_off::reason(&scene.draft.choice, spec.key);
+            let ink = if off.is_some() { theme::FAINT } else { theme::DIM };
+            let label = ui.label(theme::note(spec.key).color(ink)).on_hover_text(hover(spec, off));
+            let value = ui.add_enabled_ui(off.is_none(), |ui| setting(ui, &scene.draft.choice, spec, label.id, off));
+            if let Some(value) = value.inner {
                 changed |= scene.draft.choice.set(spec.key, &value).is_ok();
             }
             ui.end_row();
@@ -73,28 +80,43 @@ fn technique_settings(ui: &mut Ui, state: &mut State) -> bool {
     changed
 }
 
-/// The widget of one setting; its new value when it changed.
-fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id) -> Option<String> {
+/// What a setting does, and why it does nothing now.
+fn hover(spec: &SettingSpec, off: Option<&str>) -> String {
+    let mut letters = spec.meaning.chars();
+    let meaning: String =
+        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect());
+    off.map_or_else(|| meaning.clone(), |reason| format!("{meaning}\n\n{reason}"))
+}
+
+/// The widget of one setting; its new value when it changed. It tells on hover why it is `off`.
+fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, off: Option<&str>) -> Option<String> {
+    let hover = hover(spec, off);
+    let explained = |response: egui::Response| response.on_hover_text(&hover).on_disabled_hover_text(&hover);
     let current = choice.settings().get(spec.key).map_or(spec.default, String::as_str);
     match spec.values {
         // Nothing to choose: a fact, not a widget.
         SettingValues::OneOf([_] | []) => {
-            ui.label(theme::number(current).color(theme::FAINT)).on_hover_text(spec.meaning);
+            explained(ui.label(theme::number(current).color(theme::FAINT)));
             None
         }
-        SettingValues::OneOf(words) => choose(ui, spec, words, current, label),
+        SettingValues::OneOf(words) => {
+            let (response, chosen) = choose(ui, spec.key, words, current);
+            explained(response.labelled_by(label));
+            chosen
+        }
         SettingValues::WordOr { words, prefix, low, high, whole } => {
             let number = current.strip_prefix(prefix).and_then(|number| number.parse::<f64>().ok());
             let numbered = prefix.trim_end_matches(':');
             let options: Vec<&str> = words.iter().copied().chain([numbered]).collect();
             ui.horizontal(|ui| {
-                let chosen = choose(ui, spec, &options, number.map_or(current, |_| numbered), label);
+                let (response, chosen) = choose(ui, spec.key, &options, number.map_or(current, |_| numbered));
+                explained(response.labelled_by(label));
                 let chosen =
                     chosen.map(|word| if word == numbered { format!("{prefix}{}", low.max(3.0)) } else { word });
                 let Some(mut value) = number else { return chosen };
                 let widget = DragValue::new(&mut value).range(low..=high).update_while_editing(false);
-                let widget = if whole { widget.fixed_decimals(0) } else { widget };
-                let response = ui.add(widget).accessible_name(format!("{} {numbered}", spec.key));
+                let widget = if whole { widget.fixed_decimals(0) } else { any_size(widget, current) };
+                let response = explained(ui.add(widget).accessible_name(format!("{} {numbered}", spec.key)));
                 let number = response.changed().then(|| format!("{prefix}{value}"));
                 chosen.or(number)
             })
@@ -103,27 +125,33 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id) ->
         SettingValues::Integer(low, high) => {
             let mut value: i64 = current.parse().unwrap_or(low);
             let widget = DragValue::new(&mut value).range(low..=high).update_while_editing(false);
-            let response = ui.add(widget).labelled_by(label).on_hover_text(spec.meaning);
-            response.changed().then(|| value.to_string())
+            explained(ui.add(widget).labelled_by(label)).changed().then(|| value.to_string())
         }
         SettingValues::Number(low, high) => {
             let mut value: f64 = current.parse().unwrap_or(low);
-            let widget = DragValue::new(&mut value).range(low..=high).speed(0.05).update_while_editing(false);
-            let response = ui.add(widget).labelled_by(label).on_hover_text(spec.meaning);
-            response.changed().then(|| value.to_string())
+            let widget = any_size(DragValue::new(&mut value).range(low..=high), current);
+            explained(ui.add(widget).labelled_by(label)).changed().then(|| value.to_string())
         }
     }
 }
 
-/// One of several words; the new one when it changed.
-fn choose(ui: &mut Ui, spec: &SettingSpec, words: &[&str], current: &str, label: egui::Id) -> Option<String> {
+/// A number that may be tiny: it moves by a part of itself, and a power of ten says how small it is.
+fn any_size<'a>(widget: DragValue<'a>, current: &str) -> DragValue<'a> {
+    let size = current.rsplit(':').next().and_then(|number| number.parse::<f64>().ok()).map_or(0.0, f64::abs);
+    if size == 0.0 || size >= 1e-3 {
+        return widget.speed(0.05).update_while_editing(false);
+    }
+    widget.speed(size * 0.02).update_while_editing(false).custom_formatter(|value, _| format!("{value:.1e}"))
+}
+
+/// One of several words: its widget, and the new word when it changed.
+fn choose(ui: &mut Ui, key: &str, words: &[&str], current: &str) -> (egui::Response, Option<String>) {
     let mut value = current.to_owned();
-    let combo = egui::ComboBox::from_id_salt(spec.key).selected_text(current);
+    let combo = egui::ComboBox::from_id_salt(key).selected_text(current);
     let combo = combo.show_ui(ui, |ui| {
         for word in words {
             ui.selectable_value(&mut value, (*word).to_owned(), *word);
         }
     });
-    combo.response.labelled_by(label).on_hover_text(spec.meaning);
-    (value != current).then_some(value)
+    (combo.response, (value != current).then_some(value))
 }

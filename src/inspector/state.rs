@@ -1,6 +1,7 @@
 //! What the panels show and remember, and how it changes. No widget is drawn here.
 
 use super::action::{Action, RunRequest};
+use super::meshes::ObjectMesh;
 use super::report::ReportState;
 use super::texture::PictureCache;
 use super::truth_note::TruthState;
@@ -74,6 +75,8 @@ pub struct State {
     pub capture: Option<Arc<Capture>>,
     /// What can be changed; `None` for a capture folder.
     pub scene: Option<OpenScene>,
+    /// How its meshes hang together; `None` while that is not known.
+    pub meshes: Option<Vec<ObjectMesh>>,
     /// Built-in scenes.
     pub scenes: Vec<SceneEntry>,
     /// Index of the selected step.
@@ -192,6 +195,7 @@ impl State {
 
     /// Another scene is open; `None` for a capture folder, which can't be run again.
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>) {
+        self.meshes = None;
         self.scene = scene.map(|(scene, draft)| OpenScene {
             name: scene.name.clone(),
             animated: scene.is_animated(),

@@ -1,6 +1,7 @@
 //! The bar at the bottom: the picture's facts, what the pointer is over, what a frame costs.
 
-use super::coloring::Coloring;
+use super::coloring::{self, Coloring};
+use super::counts;
 use super::format;
 use super::palette;
 use super::state::State;
@@ -37,13 +38,23 @@ fn picture(ui: &mut Ui, state: &State, capture: &Capture, shown: &Shown) {
             let metres = depth.and_then(|depth| scale.measure.value(depth)).map_or_else(String::new, format::digits);
             ui.label(theme::number(format!("texel {x}, {y}   depth {value}   {metres}")));
         }
-        _ => frame_values(ui, capture, state.step, hover.at),
+        Coloring::Linear => {
+            let layer = shown.layers.get(hover.image).filter(|_| shown.layers.len() > 1);
+            if let Some(layer) = layer {
+                ui.label(theme::note(layer.name.as_str()));
+            }
+            if let Some(texel) = shown.images.get(hover.image).and_then(|image| image.rgba_at(hover.at)) {
+                theme::swatch(ui, coloring::linear(texel));
+                ui.label(theme::number(format!("texel {x}, {y}   lets through {}", format::shares(texel))));
+            }
+        }
+        _ => frame_values(ui, capture, state, hover.at),
     }
 }
 
-fn frame_values(ui: &mut Ui, capture: &Capture, step: usize, at: [u32; 2]) {
+fn frame_values(ui: &mut Ui, capture: &Capture, state: &State, at: [u32; 2]) {
     let [x, y] = at;
-    let Some(frame) = capture.frame_at(step) else { return };
+    let Some(frame) = capture.frame_at(state.step) else { return };
     if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
         theme::swatch(ui, egui::Color32::from_rgb(red, green, blue));
         ui.label(theme::number(format!("{x}, {y}   colour {red} {green} {blue}")));
@@ -53,6 +64,9 @@ fn frame_values(ui: &mut Ui, capture: &Capture, step: usize, at: [u32; 2]) {
     }
     if let Some(stencil) = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(at)) {
         ui.label(theme::number(format!("stencil {}", palette::signed(stencil))));
+    }
+    if let Some(count) = counts::to_show(capture, state).and_then(|(_, image)| image.count_at(at)) {
+        ui.label(theme::number(format!("count {}", counts::text(count))));
     }
 }
 

@@ -4,7 +4,8 @@
 //! shows in the next frame. Images are told apart by their `Arc`, which the cache keeps alive,
 //! so that a new image can't be taken for an old one at the same address.
 
-use super::coloring::Coloring;
+use super::coloring::{self, Coloring};
+use super::counts::{self, Tally};
 use super::depth::DepthMeasure;
 use super::findings;
 use super::palette;
@@ -22,8 +23,21 @@ const THUMBNAIL_SIDE: u32 = 112;
 pub struct PictureCache {
     textures: Vec<CachedTexture>,
     histograms: Vec<(Arc<Image>, Box<[u64; 256]>)>,
+    tallies: Vec<(Arc<Image>, Arc<Tally>)>,
+    shares: Vec<(Arc<Image>, Shares)>,
     ranges: Vec<(Arc<Image>, DepthMeasure, Option<[f64; 2]>)>,
     clock: u64,
+}
+
+/// How many texels let all of the light through, none of it, or a part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Shares {
+    /// White.
+    pub all: u64,
+    /// Black.
+    pub none: u64,
+    /// Any other colour.
+    pub part: u64,
 }
 
 /// How large a texture is needed.
@@ -64,15 +78,21 @@ impl PictureCache {
         let own_uses = |image: &Arc<Image>| {
             let textures = self.textures.iter().filter(|texture| Arc::ptr_eq(&texture.image, image)).count();
             let histograms = self.histograms.iter().filter(|(of, _)| Arc::ptr_eq(of, image)).count();
+            let tallies = self.tallies.iter().filter(|(of, _)| Arc::ptr_eq(of, image)).count();
+            let shares = self.shares.iter().filter(|(of, _)| Arc::ptr_eq(of, image)).count();
             let ranges = self.ranges.iter().filter(|(of, _, _)| Arc::ptr_eq(of, image)).count();
-            textures + histograms + ranges
+            textures + histograms + tallies + shares + ranges
         };
         let is_used = |image: &Arc<Image>| Arc::strong_count(image) > own_uses(image);
         let textures: Vec<bool> = self.textures.iter().map(|texture| is_used(&texture.image)).collect();
         let histograms: Vec<bool> = self.histograms.iter().map(|(image, _)| is_used(image)).collect();
+        let tallies: Vec<bool> = self.tallies.iter().map(|(image, _)| is_used(image)).collect();
+        let shares: Vec<bool> = self.shares.iter().map(|(image, _)| is_used(image)).collect();
         let ranges: Vec<bool> = self.ranges.iter().map(|(image, _, _)| is_used(image)).collect();
         keep_where(&mut self.textures, &textures);
         keep_where(&mut self.histograms, &histograms);
+        keep_where(&mut self.tallies, &tallies);
+        keep_where(&mut self.shares, &shares);
         keep_where(&mut self.ranges, &ranges);
     }
 
@@ -125,6 +145,26 @@ impl PictureCache {
         histogram
     }
 
+    /// How many texels of a picture of counts have each.
+    pub fn tally(&mut self, image: &Arc<Image>) -> Arc<Tally> {
+        if let Some((_, tally)) = self.tallies.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
+            return tally.clone();
+        }
+        let tally = Arc::new(counts::tally(image));
+        self.tallies.push((Arc::clone(image), tally.clone()));
+        tally
+    }
+
+    /// How many texels of a picture of linear colours are white, black, or neither.
+    pub fn shares(&mut self, image: &Arc<Image>) -> Shares {
+        if let Some((_, shares)) = self.shares.iter().find(|(of, _)| Arc::ptr_eq(of, image)) {
+            return *shares;
+        }
+        let shares = shares_of(image);
+        self.shares.push((Arc::clone(image), shares));
+        shares
+    }
+
     /// The smallest and largest value of a depth picture.
     pub fn depth_range(&mut self, image: &Arc<Image>, measure: DepthMeasure) -> Option<[f64; 2]> {
         let known = self.ranges.iter().find(|(of, by, _)| Arc::ptr_eq(of, image) && *by == measure);
@@ -151,8 +191,8 @@ fn keep_where<T>(items: &mut Vec<T>, keep: &[bool]) {
 /// Exact texels when magnified; counts and labels stay exact when made smaller, too.
 fn options(coloring: Coloring) -> TextureOptions {
     let minification = match coloring {
-        Coloring::Stencil | Coloring::Labels | Coloring::Findings => TextureFilter::Nearest,
-        Coloring::Srgb | Coloring::Depth(_) => TextureFilter::Linear,
+        Coloring::Stencil | Coloring::Count | Coloring::Labels | Coloring::Findings => TextureFilter::Nearest,
+        Coloring::Srgb | Coloring::Linear | Coloring::Depth(_) => TextureFilter::Linear,
     };
     TextureOptions { magnification: TextureFilter::Nearest, minification, ..TextureOptions::NEAREST }
 }
@@ -175,6 +215,12 @@ fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
     for row in image.rows().step_by(step) {
         match coloring {
             Coloring::Srgb => pixels.extend(texels(row, 4, step).map(|t| Color32::from_rgb(t[0], t[1], t[2]))),
+            Coloring::Linear => {
+                pixels.extend(texels(row, 4, step).map(|t| coloring::linear([t[0], t[1], t[2], t[3]])));
+            }
+            Coloring::Count => {
+                pixels.extend(texels(row, 4, step).map(|t| counts::color(bytemuck::pod_read_unaligned(t))));
+            }
             Coloring::Stencil => pixels.extend(row.iter().step_by(step).map(|value| palette::stencil(*value))),
             Coloring::Labels => pixels.extend(row.iter().step_by(step).map(|value| palette::label(*value))),
             Coloring::Findings => pixels.extend(row.iter().step_by(step).map(|value| findings::color(*value))),
@@ -184,6 +230,20 @@ fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
         }
     }
     ColorImage::new(size, pixels)
+}
+
+fn shares_of(image: &Image) -> Shares {
+    let mut shares = Shares::default();
+    for row in image.rows() {
+        for texel in row.chunks_exact(4) {
+            match texel[..3] {
+                [255, 255, 255] => shares.all += 1,
+                [0, 0, 0] => shares.none += 1,
+                _ => shares.part += 1,
+            }
+        }
+    }
+    shares
 }
 
 fn texels(row: &[u8], bytes: usize, step: usize) -> impl Iterator<Item = &[u8]> {

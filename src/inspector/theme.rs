@@ -139,6 +139,14 @@ pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
     response
 }
 
+/// One line of text, cut off with an ellipsis where there is no room.
+pub fn line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: TextStyle, color: Color32) {
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), style.resolve(ui.style()), color);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(8.0));
+    let galley = ui.painter().layout_job(job);
+    ui.painter().galley(at, galley, color);
+}
+
 /// A card on a panel.
 pub fn card() -> egui::Frame {
     egui::Frame::new()

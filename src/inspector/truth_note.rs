@@ -36,7 +36,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, actions: &m
     if !state.view.kind.needs_truth() || is_known {
         return;
     }
-    let width = WIDTH.min(rect.width() - 24.0 - legend::room(rect, shown.kind)).max(96.0);
+    let width = WIDTH.min(rect.width() - 24.0 - legend::room(rect, shown)).max(96.0);
     let place = Rect::from_min_size(pos2(rect.left() + 12.0, rect.top() + 12.0), vec2(width, rect.height()));
     // Senses clicks, so that they do not reach the picture underneath.
     let builder = UiBuilder::new().max_rect(place).sense(Sense::click_and_drag()).id_salt("truth note");

@@ -3,6 +3,7 @@
 //! It tells what a light's label is and why, as far as labels, stencil and technique say so; it
 //! claims nothing about geometry, which the capture does not know.
 
+use super::counts;
 use super::format;
 use super::palette;
 use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot};
@@ -46,7 +47,7 @@ fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verd
     let name = format::light(light);
     let title = if is_dark { format!("Dark under {name}") } else { format!("Lit by {name}") };
     let reason = match (capture.technique.as_str(), is_dark) {
-        ("z-pass" | "z-fail", _) => return counted(capture, light, at, is_dark, &title),
+        (technique, _) if counts::are_made_by(technique) => return counted(capture, light, at, is_dark, &title),
         ("shadow-map", true) => {
             "The light's map holds something nearer to the light here, so the light pass adds nothing."
         }
@@ -55,6 +56,18 @@ fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verd
         ("planar", false) => {
             "No flattened caster covers the pixel. Planar shadows fall on flat receivers only, so nothing else is asked."
         }
+        ("planar-texture", true) => {
+            "The texture of this flat receiver lets less than half of the light through here: a caster between it and \
+             the light was drawn there."
+        }
+        ("planar-texture", false) => {
+            "No caster was drawn here into this receiver's texture. Surfaces that are not flat have none, and are lit."
+        }
+        ("projective", true) => {
+            "The silhouette of another object falls here. Nobody asks whether that object is nearer to the light, and \
+             translucent ones count as opaque for the mask."
+        }
+        ("projective", false) => "No silhouette of another object falls here; an object's own is never asked.",
         ("none", false) => "This technique makes no shadows: the light reaches every surface that faces it.",
         (_, true) => "The technique's mask says that something lies between the surface and the light.",
         (_, false) => "The technique's mask says that nothing lies between the surface and the light.",
@@ -64,6 +77,9 @@ fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verd
 
 /// Shadow volumes: the count that the light pass tested.
 fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: &str) -> Verdict {
+    if let Some(count) = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at)) {
+        return counted_in_float(capture, count, is_dark, title);
+    }
     let Some(count) = tested_count(capture, light, at) else {
         return Verdict {
             title: format!("{title}."),
@@ -72,7 +88,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: 
     };
     let shown = palette::signed(count);
     let title = format!("{title}: its stencil count is {shown}.");
-    let side = if capture.technique == "z-pass" { "in front of" } else { "behind" };
+    let side = counted_side(capture);
     let reason = match (is_dark, count) {
         (true, 1..=127) => {
             format!("The volume faces {side} the surface leave {shown}, not 0, so the light pass skips this pixel.")
@@ -88,10 +104,42 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: 
     Verdict { title, reason }
 }
 
+fn counted_side(capture: &Capture) -> &'static str {
+    if capture.technique == "z-fail" { "behind" } else { "in front of" }
+}
+
+/// The same where the count is kept in a float: it has a sign, and no limits.
+fn counted_in_float(capture: &Capture, count: f32, is_dark: bool, title: &str) -> Verdict {
+    let (shown, side) = (counts::text(count), counted_side(capture));
+    let title = format!("{title}: its count is {shown}.");
+    let reason = match is_dark {
+        true if counts::reads_zero_in_eight_bits(count) => format!(
+            "The volume faces {side} the surface leave {shown}, so the light pass adds nothing. Eight bits would read 0 \
+             and light this pixel."
+        ),
+        true if count > 0.0 => {
+            format!("The volume faces {side} the surface leave {shown}, not 0, so the light pass adds nothing.")
+        }
+        true if count < 0.0 => format!(
+            "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it adds \
+             nothing."
+        ),
+        false if count == 0.0 => {
+            format!("The volume faces {side} the surface cancel out, so the light pass adds the light.")
+        }
+        // Label and count disagree: say so, and do not explain it away.
+        _ => format!("The mask does not match the count {shown} that the light pass read."),
+    };
+    Verdict { title, reason }
+}
+
 fn count_note(capture: &Capture, light: usize, at: [u32; 2]) -> String {
-    let counts = matches!(capture.technique.as_str(), "z-pass" | "z-fail");
-    let count = tested_count(capture, light, at).filter(|_| counts);
-    count.map_or_else(String::new, |count| format!(" Its count is {}.", palette::signed(count)))
+    if !counts::are_made_by(&capture.technique) {
+        return String::new();
+    }
+    let in_float = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at)).map(counts::text);
+    let count = in_float.or_else(|| tested_count(capture, light, at).map(palette::signed));
+    count.map_or_else(String::new, |count| format!(" Its count is {count}."))
 }
 
 /// The stencil value at `at` when the labels of `light` were decided.

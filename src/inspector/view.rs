@@ -1,11 +1,12 @@
 //! Which picture is shown and how: its kind, what a texel's value means, zoom and place.
 //!
-//! A capture holds up to seven kinds of picture. [`PictureView::shown`] finds the one wished for
+//! A capture holds up to eight kinds of picture. [`PictureView::shown`] finds the one wished for
 //! at a step, or what is shown while there is none. Truth and error may be wished for before they
 //! are there: until then those of the frame before stay, or else the picture before them.
 
 use super::depth::DepthMeasure;
 use super::format;
+use super::layers::{Layer, MapContent};
 use crate::capture::{Capture, CapturedLight, CapturedTruth, Image, Snapshot};
 use std::sync::Arc;
 
@@ -16,6 +17,8 @@ pub enum PictureKind {
     Color,
     /// Counts and marks.
     Stencil,
+    /// A light's signed counts, where they are not in the stencil.
+    Count,
     /// How far the surfaces are.
     Depth,
     /// A technique's answer for one light.
@@ -24,15 +27,16 @@ pub enum PictureKind {
     Truth,
     /// Where the two differ.
     Error,
-    /// Depth as a light sees it.
+    /// What a light sees: depth, or what casters let through.
     Map,
 }
 
 impl PictureKind {
     /// All, in the order of their buttons.
-    pub const ALL: [PictureKind; 7] = [
+    pub const ALL: [PictureKind; 8] = [
         PictureKind::Color,
         PictureKind::Stencil,
+        PictureKind::Count,
         PictureKind::Depth,
         PictureKind::Mask,
         PictureKind::Truth,
@@ -40,31 +44,33 @@ impl PictureKind {
         PictureKind::Map,
     ];
 
-    /// On its button.
+    /// On its button over a capture.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub fn name(self, capture: &Capture) -> &'static str {
         match self {
             PictureKind::Color => "Colour",
             PictureKind::Stencil => "Stencil",
+            PictureKind::Count => "Count",
             PictureKind::Depth => "Depth",
             PictureKind::Mask => "Mask",
             PictureKind::Truth => "Truth",
             PictureKind::Error => "Error",
-            PictureKind::Map => "Shadow map",
+            PictureKind::Map => MapContent::of_capture(capture).unwrap_or(MapContent::Depth).name(),
         }
     }
 
     /// What one sees in it.
     #[must_use]
-    pub fn meaning(self) -> &'static str {
+    pub fn meaning(self, capture: &Capture) -> &'static str {
         match self {
             PictureKind::Color => "The picture so far",
             PictureKind::Stencil => "The stencil count of every pixel",
+            PictureKind::Count => "How many shadow volumes of a light contain the surface at every pixel",
             PictureKind::Depth => "How far the surface at every pixel is",
             PictureKind::Mask => "Where the technique says that a light is blocked",
             PictureKind::Truth => "Where rays say that a light is blocked",
             PictureKind::Error => "Where the technique and the truth differ",
-            PictureKind::Map => "Depth as the light sees it",
+            PictureKind::Map => MapContent::of_capture(capture).unwrap_or(MapContent::Depth).meaning(),
         }
     }
 
@@ -75,10 +81,10 @@ impl PictureKind {
     }
 }
 
-/// Which face of a cube map is shown.
+/// Which layer of a light's map is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FaceChoice {
-    /// All six, small.
+    /// All, small.
     #[default]
     Grid,
     /// One.
@@ -115,7 +121,7 @@ pub struct PictureView {
     pub kind: PictureKind,
     /// Whose mask or map.
     pub light: usize,
-    /// Which face of a cube map.
+    /// Which layer of a map.
     pub face: FaceChoice,
     /// Size of a texel.
     pub zoom: Zoom,
@@ -155,8 +161,10 @@ impl Default for PictureView {
 pub struct Shown {
     /// Its kind: the one wished for, or what exists instead.
     pub kind: PictureKind,
-    /// One, or the six faces of a cube.
+    /// One, or all layers of a light's map.
     pub images: Vec<Arc<Image>>,
+    /// What each image is, where they are layers of a light's map.
+    pub layers: Vec<Layer>,
     /// How depths are measured; [`DepthMeasure::Raw`] for other kinds.
     pub measure: DepthMeasure,
     /// For the status bar: `stencil after step 4`.
@@ -211,8 +219,8 @@ impl PictureView {
                     self.kind_before_map = Some(before);
                 }
                 self.light = *light;
-                let is_cube = capture.lights.get(*light).and_then(|light| light.map.as_ref());
-                if is_cube.is_some_and(|map| map.faces.len() > 1) {
+                let map = capture.lights.get(*light).and_then(|light| light.map.as_ref());
+                if map.is_some_and(|map| map.faces.len() > 1) {
                     self.face = FaceChoice::One(*face);
                 }
             }
@@ -237,7 +245,13 @@ impl PictureView {
         } else {
             self.kind
         };
-        let kind = if kinds.contains(&wished) { wished } else { *kinds.iter().find(|kind| !kind.needs_truth())? };
+        let twin = match wished {
+            PictureKind::Stencil => PictureKind::Count,
+            PictureKind::Count => PictureKind::Stencil,
+            other => other,
+        };
+        let wished = [wished, twin].into_iter().find(|kind| kinds.contains(kind));
+        let kind = wished.or_else(|| kinds.iter().copied().find(|kind| !kind.needs_truth()))?;
         let frame = capture.frame_at(step);
         let after = |what: &str| format!("{what} after step {}", step + 1);
         let depth_format = if has_stencil(capture) { "Depth32FloatStencil8" } else { "Depth32Float" };
@@ -247,6 +261,11 @@ impl PictureView {
             PictureKind::Color => (frame?.color.image.clone(), raw, after("colour"), "Rgba8UnormSrgb"),
             PictureKind::Stencil => (frame?.stencil.as_ref()?.image.clone(), raw, after("stencil"), depth_format),
             PictureKind::Depth => (frame?.depth.image.clone(), camera(), after("depth"), depth_format),
+            PictureKind::Count => {
+                let light = self.light_with(capture, |light| light.count.is_some())?;
+                let title = format!("count of {}", format::light(light));
+                (capture.lights.get(light)?.count.clone()?, raw, title, "R32Float")
+            }
             PictureKind::Mask => {
                 let light = self.light_with(capture, |light| light.shadow.is_some())?;
                 let title = format!("mask of {}", format::light(light));
@@ -255,7 +274,7 @@ impl PictureView {
             PictureKind::Truth | PictureKind::Error => return self.shown_truth(capture, kind),
             PictureKind::Map => return self.shown_map(capture),
         };
-        Some(Shown { kind, images: vec![image], measure, title, format, is_older: false })
+        Some(Shown { kind, images: vec![image], layers: Vec::new(), measure, title, format, is_older: false })
     }
 
     fn shown_truth(&self, capture: &Capture, kind: PictureKind) -> Option<Shown> {
@@ -265,6 +284,7 @@ impl PictureView {
         Some(Shown {
             kind,
             images: vec![image.clone()],
+            layers: Vec::new(),
             measure: DepthMeasure::Raw,
             title: format!("{word} of {}", format::light(light)),
             format: "R8Uint",
@@ -283,26 +303,7 @@ impl PictureView {
         older(self.light).or_else(|| (0..self.older_truth.len()).find_map(older))
     }
 
-    fn shown_map(&self, capture: &Capture) -> Option<Shown> {
-        let light = self.light_with(capture, |light| light.map.is_some())?;
-        let map = capture.lights.get(light)?.map.as_ref()?;
-        let title = format!("shadow map of {}", format::light(light));
-        let (images, measure, title) = match self.face {
-            FaceChoice::One(face) if map.faces.len() > 1 && face < map.faces.len() => {
-                let name = CUBE_FACES.get(face).copied().unwrap_or("?");
-                (
-                    vec![map.faces[face].clone()],
-                    DepthMeasure::of_map(capture, light, face),
-                    format!("{title}, face {name}"),
-                )
-            }
-            _ => (map.faces.clone(), DepthMeasure::of_map(capture, light, 0), title),
-        };
-        let measure = self.measure_or_raw(measure);
-        Some(Shown { kind: PictureKind::Map, images, measure, title, format: "Depth32Float", is_older: false })
-    }
-
-    fn measure_or_raw(&self, linear: Option<DepthMeasure>) -> DepthMeasure {
+    pub(super) fn measure_or_raw(&self, linear: Option<DepthMeasure>) -> DepthMeasure {
         linear.filter(|_| self.depth_mode == DepthMode::Linear).unwrap_or(DepthMeasure::Raw)
     }
 
@@ -326,6 +327,7 @@ pub fn available(capture: &Capture, step: usize) -> Vec<PictureKind> {
     let exists = |kind: &PictureKind| match kind {
         PictureKind::Color | PictureKind::Depth => frame.is_some(),
         PictureKind::Stencil => frame.is_some_and(|frame| frame.stencil.is_some()),
+        PictureKind::Count => capture.lights.iter().any(|light| light.count.is_some()),
         PictureKind::Mask => capture.lights.iter().any(|light| light.shadow.is_some()),
         PictureKind::Truth | PictureKind::Error => {
             capture.lights.iter().any(|light| light.shadow.is_some() || light.truth.is_some())

@@ -15,10 +15,10 @@ pub use truth::{TruthCost, truth_cost};
 pub use volumes::{VolumeCost, volume_cost};
 
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
-use crate::geometry::GeometryCache;
+use crate::geometry::{GeometryCache, Topology};
 use crate::gpu::{Context, Executor, GpuError, Output, Prepared};
 use crate::plan::FramePlan;
-use crate::scene::Scene;
+use crate::scene::{Object, Scene};
 use crate::technique::{self, Choice, ChoiceError, Job, PlanError};
 use crate::truth::TruthError;
 use std::sync::Arc;
@@ -116,6 +116,12 @@ impl Session {
     pub fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
         let job = Job { scene, size: request.size, choice: &request.choice, cache: &mut self.geometry };
         Ok(technique::plan(job)?)
+    }
+
+    /// How the mesh of each object hangs together, with the object's name.
+    pub fn topologies(&mut self, scene: &Scene) -> Vec<(String, Arc<Topology>)> {
+        let one = |object: &Object| (object.name.clone(), self.geometry.topology(&object.mesh));
+        scene.objects.iter().map(one).collect()
     }
 
     /// Renders `scene` and keeps every attachment after every pass.

@@ -151,3 +151,60 @@ pub fn cube_map() -> Capture {
     });
     capture
 }
+
+/// Textures of three flat pieces, of which the first two are drawn, or silhouettes of as many
+/// casters. The first layer has a black half, a tinted row in it, and is white elsewhere.
+pub fn layered(technique: &str, what: &str) -> Capture {
+    let mut capture = z_fail(SIZE);
+    technique.clone_into(&mut capture.technique);
+    capture.steps.drain(1..3);
+    for step in &mut capture.steps {
+        if let Snapshot::Frame(frame) = &mut step.snapshot {
+            frame.stencil = None;
+        }
+    }
+    for (face, of) in [(1, "wall, flat piece 2"), (0, "floor, flat piece 1")] {
+        let draws = vec![draw("box", Part::Map, 12)];
+        let map = Snapshot::Map { light: 0, face };
+        capture.steps.insert(0, step(&format!("{what} of {of}"), Some(0), draws, map));
+    }
+    let first = image_of(PixelFormat::Rgba8, [16, 16], |x, y| match (x, y) {
+        (8.., _) => [255; 4],
+        (_, 3) => [51, 0, 0, 0],
+        _ => [0; 4],
+    });
+    let second = Arc::new(Image::uniform(PixelFormat::Rgba8, [16, 16], &[0; 4]));
+    let third = Arc::new(Image::uniform(PixelFormat::Rgba8, [16, 16], &[255; 4]));
+    capture.lights[0].map = Some(CapturedMap {
+        faces: vec![first, second, third],
+        light_from_world: DMat4::IDENTITY,
+        clip_from_light: vec![DMat4::IDENTITY; 3],
+    });
+    capture
+}
+
+/// Z-fail by hand with its counts in floats: 1 in the left half, but −1, 256 and 300 in the first three
+/// pixels.
+pub fn counted_in_floats() -> Capture {
+    let mut capture = z_fail(SIZE);
+    let count = image_of(PixelFormat::Count32F, SIZE, |x, y| {
+        let count = match (x, y) {
+            (0, 0) => -1.0,
+            (1, 0) => 256.0,
+            (2, 0) => 300.0,
+            (x, _) if x < SIZE[0] / 2 => 1.0,
+            _ => 0.0_f32,
+        };
+        count.to_le_bytes()
+    });
+    for step in &mut capture.steps {
+        if let Snapshot::Frame(frame) = &mut step.snapshot {
+            frame.stencil = None;
+            if step.name == "volumes" {
+                frame.target = FrameTarget::Count;
+            }
+        }
+    }
+    capture.lights[0].count = Some(count);
+    capture
+}

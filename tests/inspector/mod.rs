@@ -1,8 +1,11 @@
 //! The panels, driven by the names of their widgets, over a frame made by hand.
 
 mod by_hand;
+mod counts;
+mod layers;
 mod pictures;
 mod report;
+mod settings;
 mod truth;
 
 use crate::common;

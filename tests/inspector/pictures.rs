@@ -1,15 +1,16 @@
 //! Pictures of the panels over real frames, for people to look at.
 
-use super::{Seen, click, harness_of};
+use super::{Seen, click, click_button, harness_of, mouse, place_of, press};
 use crate::common;
 use crate::common::report::{one_scene, three_scenes};
+use egui::{Key, PointerButton};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stencilscope::capture::Capture;
 use stencilscope::inspector::{
-    Inspector, PictureKind, ReportProgress, ReportView, RunRequest, SceneEntry, TruthState, Zoom,
+    Inspector, ObjectMesh, PictureKind, ReportProgress, ReportView, RunRequest, SceneEntry, TruthState, Zoom,
 };
 use stencilscope::progress::Progress;
 use stencilscope::scene::{OpenSpec, Scene, open};
@@ -26,7 +27,7 @@ const PICK: [u32; 2] = [689, 142];
 #[test]
 fn pictures_of_the_panels_can_be_drawn() {
     let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
-    let sizes: &[[u32; 2]] = if folder.is_some() { &[[1280, 800], [1440, 900], [1920, 1080]] } else { &[[640, 400]] };
+    let sizes = sizes(folder.is_some());
     let scene = open(&OpenSpec::new("tori")).expect("tori");
     let mut session = common::session();
     for technique in [Technique::ZFail, Technique::ShadowMap, Technique::Planar] {
@@ -39,22 +40,18 @@ fn pictures_of_the_panels_can_be_drawn() {
         let views = VIEWS.iter().map(|view| (view, &capture)).chain(JUDGED_VIEWS.iter().map(|view| (view, &judged)));
         for ((name, view), capture) in views {
             for size in sizes {
-                let inspector = inspector(&scene, &request, capture);
+                let inspector = inspector(&scene, &request, capture, PICK);
                 let outer = size.map(|side| (side + 2 * MARGIN) as f32);
                 let mut harness = harness_of(inspector, outer);
                 view(&mut harness);
                 harness.run_steps(2);
-                let picture = harness.render().expect("a picture");
-                if let Some(folder) = &folder {
-                    let file = format!("{}-{name}-{}.png", technique.name(), size[0]);
-                    save(&folder.join(file), picture.as_raw(), *size);
-                }
+                draw(&mut harness, folder.as_deref(), &format!("{}-{name}", technique.name()), *size);
             }
         }
     }
 }
 
-fn inspector(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>) -> Inspector {
+fn inspector(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>, pick: [u32; 2]) -> Inspector {
     let entry = SceneEntry { name: "tori".to_owned(), lesson: "four tori".to_owned() };
     let mut inspector = Inspector::new(vec![entry]);
     let draft = RunRequest {
@@ -66,8 +63,112 @@ fn inspector(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>) ->
     };
     inspector.set_scene(scene, draft);
     inspector.set_capture(capture.clone());
-    inspector.pick(PICK);
+    inspector.pick(pick);
     inspector
+}
+
+fn sizes(are_kept: bool) -> &'static [[u32; 2]] {
+    if are_kept { &[[1280, 800], [1440, 900], [1920, 1080]] } else { &[[640, 400]] }
+}
+
+fn draw(harness: &mut Harness<Seen>, folder: Option<&Path>, name: &str, size: [u32; 2]) {
+    let picture = harness.render().expect("a picture");
+    if let Some(folder) = folder {
+        save(&folder.join(format!("{name}-{}.png", size[0])), picture.as_raw(), size);
+    }
+}
+
+/// What only some techniques have: textures, silhouettes, counts in floats; and what meshes and
+/// settings look like there.
+#[test]
+fn pictures_of_textures_silhouettes_and_counts_can_be_drawn() {
+    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
+    let mut session = common::session();
+    for Example { scene, technique, settings, pick, views } in EXAMPLES {
+        let scene = open(&OpenSpec::new(*scene)).expect("a built-in scene");
+        let mut request = common::request(*technique, [1280, 720]);
+        settings.iter().for_each(|(key, value)| request.choice.set(key, value).expect("a setting"));
+        let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
+        let mesh = |(object, topology)| ObjectMesh { object, topology };
+        let meshes: Vec<ObjectMesh> = session.topologies(&scene).into_iter().map(mesh).collect();
+        for (name, view) in *views {
+            for size in sizes(folder.is_some()) {
+                let mut inspector = inspector(&scene, &request, &capture, *pick);
+                inspector.set_meshes(meshes.clone());
+                let mut harness = harness_of(inspector, size.map(|side| (side + 2 * MARGIN) as f32));
+                view(&mut harness);
+                harness.run_steps(2);
+                draw(&mut harness, folder.as_deref(), &format!("{}-{}-{name}", technique.name(), scene.name), *size);
+            }
+        }
+    }
+}
+
+/// A frame and what is looked at in it.
+struct Example {
+    scene: &'static str,
+    technique: Technique,
+    settings: &'static [(&'static str, &'static str)],
+    pick: [u32; 2],
+    views: &'static [(&'static str, View)],
+}
+
+const EXAMPLES: &[Example] = &[
+    Example {
+        scene: "panels",
+        technique: Technique::PlanarTexture,
+        settings: &[],
+        pick: [640, 600],
+        views: &[
+            ("colour", |_| ()),
+            ("all", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
+            ("one", first_layer),
+            ("meshes", |harness| {
+                click(harness, "Settings");
+                harness.get_by_label("Meshes").scroll_to_me();
+                harness.run_steps(4);
+            }),
+        ],
+    },
+    Example {
+        scene: "gate",
+        technique: Technique::ZFail,
+        settings: &[("counter", "float")],
+        pick: [640, 360],
+        views: &[("count", |harness| click_button(harness, "Count"))],
+    },
+    Example {
+        scene: "glass",
+        technique: Technique::Projective,
+        settings: &[],
+        pick: [640, 600],
+        views: &[
+            ("colour", |_| ()),
+            ("all", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
+            ("one", first_layer),
+            ("settings", |harness| click(harness, "Settings")),
+        ],
+    },
+    Example {
+        scene: "tori",
+        technique: Technique::ZFail,
+        settings: &[("counter", "float")],
+        pick: PICK,
+        views: &[
+            ("count", |harness| click_button(harness, "Count")),
+            ("count-step", |harness| harness.state_mut().inspector.select_step(1)),
+            ("settings", |harness| click(harness, "Settings")),
+        ],
+    },
+];
+
+/// The first layer that is drawn, with a texel picked.
+fn first_layer(harness: &mut Harness<Seen>) {
+    press(harness, Key::Home);
+    let capture = harness.state().inspector.capture().cloned().expect("a capture");
+    let size = capture.lights[0].map.as_ref().expect("a map").faces[0].size();
+    let at = place_of(harness, size.map(|side| side / 2), size);
+    mouse(harness, at, PointerButton::Secondary);
 }
 
 /// Writes the picture without its margin.

@@ -1,0 +1,130 @@
+//! Settings by their widgets: a word or a number, what has no effect, and the meshes.
+
+use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, z_fail};
+use crate::common;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::sync::Arc;
+use stencilscope::geometry::{EdgeList, Topology};
+use stencilscope::inspector::{Action, ObjectMesh};
+use stencilscope::scene::Mesh;
+
+fn settings_of(technique: &str) -> Harness<'static, Seen> {
+    let mut harness = harness(z_fail(SIZE));
+    if technique != "z-fail" {
+        click_button(&mut harness, technique);
+    }
+    click(&mut harness, "Settings");
+    harness
+}
+
+fn set(harness: &Harness<Seen>, key: &str) -> Option<String> {
+    match harness.state().actions.last() {
+        Some(Action::Run(request)) => request.choice.settings().get(key).cloned(),
+        _ => None,
+    }
+}
+
+fn choose(harness: &mut Harness<Seen>, key: &str, word: &str) {
+    harness.get_by_role_and_label(Role::ComboBox, key).click();
+    harness.run_steps(2);
+    let option = harness.get_all_by_role_and_label(Role::Button, word).last().expect("the word in the list");
+    option.click();
+    harness.run_steps(2);
+}
+
+fn is_off(harness: &Harness<Seen>, key: &str) -> bool {
+    harness.get_by_role_and_label(Role::ComboBox, key).accesskit_node().is_disabled()
+}
+
+#[test]
+fn a_filter_is_chosen_its_number_changed_and_taken_back() {
+    let mut harness = settings_of("shadow-map");
+    assert!(harness.query_by_label("filter pcf").is_none(), "no number where none is asked for");
+    choose(&mut harness, "filter", "pcf");
+    assert_eq!(set(&harness, "filter").as_deref(), Some("pcf:3"));
+    harness.get_by_label("filter pcf").set_value_accesskit(5.0);
+    harness.run_steps(2);
+    assert_eq!(set(&harness, "filter").as_deref(), Some("pcf:5"));
+    choose(&mut harness, "filter", "none");
+    assert_eq!(set(&harness, "filter").as_deref(), Some("none"));
+    assert!(harness.query_by_label("filter pcf").is_none());
+}
+
+#[test]
+fn an_extrusion_has_a_fraction() {
+    let mut harness = settings_of("z-fail");
+    choose(&mut harness, "extrusion", "finite");
+    assert_eq!(set(&harness, "extrusion").as_deref(), Some("finite:3"));
+    harness.get_by_label("extrusion finite").set_value_accesskit(2.5);
+    harness.run_steps(2);
+    assert_eq!(set(&harness, "extrusion").as_deref(), Some("finite:2.5"));
+}
+
+#[test]
+fn what_another_setting_switches_off_is_dimmed_and_says_why() {
+    let mut harness = settings_of("planar");
+    assert!(!is_off(&harness, "blend"));
+    choose(&mut harness, "stencil", "off");
+    assert!(is_off(&harness, "blend"));
+    harness.get_by_role_and_label(Role::ComboBox, "blend").hover();
+    harness.run_steps(8);
+    harness.get_by_label_contains("without the stencil nothing keeps a pixel from being darkened twice");
+    choose(&mut harness, "stencil", "on");
+    assert!(!is_off(&harness, "blend"));
+}
+
+#[test]
+fn epsilon_waits_for_its_mapping_and_tells_how_small_it_is() {
+    let mut harness = settings_of("z-fail");
+    let epsilon = |harness: &Harness<Seen>| harness.get_by_role_and_label(Role::SpinButton, "epsilon").rect();
+    assert!(harness.get_by_role_and_label(Role::SpinButton, "epsilon").accesskit_node().is_disabled());
+    assert!(epsilon(&harness).is_positive());
+    choose(&mut harness, "depth", "standard-infinite-epsilon");
+    let node = harness.get_by_role_and_label(Role::SpinButton, "epsilon");
+    assert!(!node.accesskit_node().is_disabled());
+    assert_eq!(node.accesskit_node().value().as_deref(), Some("2.4e-7"));
+}
+
+#[test]
+fn a_setting_says_on_hover_what_it_does() {
+    let mut harness = settings_of("z-fail");
+    harness.get_by_role_and_label(Role::ComboBox, "operations").hover();
+    harness.run_steps(8);
+    harness.get_by_label("What counts do beyond 0 and 255");
+}
+
+fn object(name: &str, mesh: &Mesh) -> ObjectMesh {
+    let edges = EdgeList::new(mesh.triangles(), mesh.positions().len());
+    ObjectMesh { object: name.to_owned(), topology: Arc::new(Topology::new(mesh, &edges)) }
+}
+
+#[test]
+fn each_mesh_has_a_line_and_says_what_it_means() {
+    let mut inspector = inspector(z_fail(SIZE));
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let turned = common::mesh(&corners, &[[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+    inspector.set_meshes(vec![
+        object("box", &common::cuboid("box", [0.0; 3], [1.0; 3]).mesh),
+        object("floor", &common::square("floor", 0.0, 1.0).mesh),
+        object("turned", &turned),
+    ]);
+    let mut harness = harness_of(inspector, [1280.0, 1200.0]);
+    click(&mut harness, "Settings");
+    harness.get_by_label("closed");
+    harness.get_by_label("closed, 3 inconsistently wound edges");
+    harness.get_by_label("4 open edges").hover();
+    harness.run_steps(8);
+    harness.get_by_label_contains("Under light-facing, triangles that face away and have nothing before them");
+}
+
+#[test]
+fn meshes_of_another_scene_are_not_known_yet() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.set_meshes(vec![object("floor", &common::square("floor", 0.0, 1.0).mesh)]);
+    inspector.set_scene(&super::scene(), super::run_request(stencilscope::technique::Technique::ZFail));
+    let mut harness = harness_of(inspector, [1280.0, 1200.0]);
+    click(&mut harness, "Settings");
+    harness.get_by_label("They are looked at once the first frame is captured.");
+}
