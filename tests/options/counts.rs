@@ -14,7 +14,7 @@ const FLOAT: [(&str, &str); 1] = [("counter", "float")];
 
 fn counts(capture: &Capture) -> Vec<f32> {
     let count: &Arc<Image> = capture.lights[0].count.as_ref().expect("a count");
-    count.rows().flat_map(|row| bytemuck::pod_collect_to_vec::<u8, f32>(row)).collect()
+    count.rows().flat_map(bytemuck::pod_collect_to_vec::<u8, f32>).collect()
 }
 
 /// The stencil before the mask, which reads it.

@@ -68,7 +68,7 @@ fn nested_boxes() {
     let found = capture(&mut session(), &scene, Technique::ZFail, &[("counter", "float")]);
     let count = found.lights[0].count.as_ref().expect("a count");
     let how_often = |wanted: f32| {
-        let texels = count.rows().flat_map(|row| bytemuck::pod_collect_to_vec::<u8, f32>(row));
+        let texels = count.rows().flat_map(bytemuck::pod_collect_to_vec::<u8, f32>);
         texels.filter(|found| *found == wanted).count()
     };
     // Half-widths of the shadows: 2, 0.8 · 4 / 2.5 = 1.28 and 0.6 · 4 / 3 = 0.8.
