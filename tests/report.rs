@@ -33,7 +33,9 @@ fn a_report_is_written_in_every_form() {
         assert!(row.frame_ms.median <= row.frame_ms.max && row.setup_ms > 0.0, "{row:?}");
         assert!(row.compared > 1000 && row.bytes > 80 * 60 * 8 && row.triangles >= 3, "{row:?}");
         assert_eq!(row.frame_ms.runs, 2);
-        let is_exact = ["z-pass", "z-fail", "ray-traced"].contains(&row.technique.as_str());
+        // Light-facing triangles alone are wrong for an open mesh, a far plane for every mesh.
+        let is_wrong_form = row.label.contains("light-facing") || row.label.contains("standard-finite");
+        let is_exact = ["z-pass", "z-fail", "ray-traced"].contains(&row.technique.as_str()) && !is_wrong_form;
         assert!(!is_exact || row.wrong() == 0, "{row:?}");
     }
     let none = report.rows.iter().find(|row| row.technique == "none").expect("none");
@@ -41,15 +43,15 @@ fn a_report_is_written_in_every_form() {
     assert!(report.rows.iter().any(|row| row.pareto && row.wrong() == 0));
     assert!(file("r.svg").contains("<svg") && file("r.svg").contains("shadow-map 4096"));
 
-    let one = [&SMALL[..], &["-t", "z-fail", "-t", "none"][..]].concat();
+    let one = [&SMALL[..], &["-t", "z-pass", "-t", "none"][..]].concat();
     let csv = run(folder.path(), &[&one[..], &["--csv"][..]].concat());
     assert_eq!(text(&csv.stdout).lines().count(), 3, "{}", text(&csv.stdout));
     let markdown = run(folder.path(), &[&one[..], &["--markdown", "r.md", "--plot", "r.png"][..]].concat());
     assert_eq!(markdown.status.code(), Some(0), "{}", text(&markdown.stderr));
-    assert!(file("r.md").contains("z-fail"));
+    assert!(file("r.md").contains("z-pass"));
     assert!(fs::read(folder.path().join("r.png")).expect("a picture").starts_with(b"\x89PNG"));
     let table = run(folder.path(), &one);
-    assert!(text(&table.stdout).contains("z-fail") && !text(&table.stdout).contains("planar"));
+    assert!(text(&table.stdout).contains("z-pass") && !text(&table.stdout).contains("planar"));
 }
 
 /// Two models of one name are two scenes: neither hides the other's front.
@@ -70,8 +72,17 @@ fn settings_narrow_the_grid() {
     let options = ["-t", "shadow-map", "--set", "size=64", "--set", "bias-slope=1.5", "--json"];
     let output = run(folder.path(), &[&SMALL[..], &options[..]].concat());
     let report = Report::from_json(&text(&output.stdout)).expect("a report");
-    let [row] = &report.rows[..] else { panic!("{report:?}") };
-    assert_eq!((row.settings["size"].as_str(), row.settings["bias-slope"].as_str()), ("64", "1.5"));
+    // Rows that differ in size or slope alone are one row now.
+    let grid = Choice::report_grid().expect("a grid");
+    let ways = grid.iter().filter(|choice| choice.technique() == Technique::ShadowMap).map(|choice| {
+        let mut settings = choice.settings().clone();
+        settings.retain(|key, _| key != "size" && key != "bias-slope");
+        settings
+    });
+    assert_eq!(report.rows.len(), ways.collect::<BTreeSet<_>>().len());
+    for row in &report.rows {
+        assert_eq!((row.settings["size"].as_str(), row.settings["bias-slope"].as_str()), ("64", "1.5"));
+    }
 }
 
 #[test]

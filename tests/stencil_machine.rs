@@ -115,6 +115,7 @@ fn draw(raster: RasterState, mesh: usize, triangles: std::ops::Range<u32>) -> Dr
         raster,
         mesh: MeshId(mesh),
         triangles,
+        base_vertex: 0,
         constants: DrawConstants::default(),
     }
 }

@@ -221,7 +221,7 @@ fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &
     } else {
         pass.set_vertex_buffer(0, ready.vertices.slice(..));
         pass.set_index_buffer(ready.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(corners, 0, 0..1);
+        pass.draw_indexed(corners, draw.base_vertex as i32, 0..1);
     }
 }
 

@@ -66,6 +66,14 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<St
     problems
 }
 
+/// Does the mesh have every vertex that the draw's moved indices ask for?
+fn base_fits(mesh: &DrawMesh, draw: &Draw) -> bool {
+    let corners = draw.triangles.start as usize * 3..draw.triangles.end as usize * 3;
+    let count = mesh.vertices.data().len();
+    let exists = |index: &u32| (*index as usize + draw.base_vertex as usize) < count;
+    draw.base_vertex == 0 || mesh.indices.data().get(corners).is_some_and(|indices| indices.iter().all(exists))
+}
+
 fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> Vec<String> {
     let mut problems = Vec::new();
     let mut demand = |holds: bool, problem: &str| {
@@ -78,6 +86,7 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
     };
     demand(draw.triangles.start < draw.triangles.end, "it draws nothing: leave it out");
     demand(draw.triangles.end as usize * 3 <= mesh.indices.data().len(), "it runs past the end of its mesh");
+    demand(base_fits(mesh, draw), "its first vertex puts an index of its mesh out of range");
     demand(has_stencil || !draw.raster.stencil.is_enabled(), "it tests a stencil that its pass does not have");
     let writes_color = draw.raster.color != super::ColorWrite::None;
     demand(

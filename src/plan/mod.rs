@@ -246,6 +246,8 @@ pub struct Draw {
     pub mesh: MeshId,
     /// Which triangles of the mesh's index list.
     pub triangles: Range<u32>,
+    /// Added to every index: a dark cap is its light cap at the far vertices.
+    pub base_vertex: u32,
     /// Values for the shader.
     pub constants: DrawConstants,
 }

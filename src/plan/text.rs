@@ -104,6 +104,9 @@ impl FramePlan {
             draw.part.name(),
             draw.mesh.0
         )?;
+        if draw.base_vertex > 0 {
+            writeln!(f, "    {} added to every index", draw.base_vertex)?;
+        }
         let DrawConstants { label, flat, count, layer, .. } = draw.constants;
         match draw.program {
             Program::Label(_) | Program::FlatLabel => writeln!(f, "    label {label}")?,

@@ -69,7 +69,7 @@ pub fn volume_cost(mesh: &Mesh, runs: usize) -> VolumeCost {
             cost.new_light.push(new_light);
         }
         cost.silhouette_edges = edges_found.len();
-        cost.volume_triangles = parts.dark_cap.end;
+        cost.volume_triangles = parts.triangles();
     }
     // Apart, since it would push everything above out of the processor's caches.
     for run in 0..=runs.div_ceil(8) {

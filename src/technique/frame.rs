@@ -422,6 +422,7 @@ impl<'a> Frame<'a> {
                 raster: drawn.raster.clone(),
                 mesh: piece.mesh,
                 triangles: piece.triangles.clone(),
+                base_vertex: 0,
                 constants: DrawConstants { material, label: drawn.label, layer, ..DrawConstants::default() },
             })
         };

@@ -179,6 +179,7 @@ fn mark_pass(frame: &mut Frame, marked: &[Marked], light: LightId) {
             raster: RasterState::visible_surface(ColorWrite::None).with_stencil(replace, one.mark),
             mesh,
             triangles: 0..receiver.triangles.len() as u32,
+            base_vertex: 0,
             constants: DrawConstants::default(),
         });
     }
@@ -265,6 +266,7 @@ fn shadow_draw(frame: &mut Frame, one: &Marked, caster: usize, light: LightId, o
         raster: options.raster(ColorWrite::None),
         mesh,
         triangles: 0..count,
+        base_vertex: 0,
         constants: DrawConstants { label: 1, flat: [BLENDED, BLENDED, BLENDED, 1.0], ..DrawConstants::default() },
     })
 }

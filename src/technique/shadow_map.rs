@@ -224,6 +224,7 @@ fn map_draw(caster: &MapCaster, raster: &RasterState) -> Draw {
         raster: raster.clone(),
         mesh: caster.mesh,
         triangles: 0..caster.triangles.len() as u32,
+        base_vertex: 0,
         constants: DrawConstants::default(),
     }
 }

@@ -132,7 +132,9 @@ impl Volume {
             (Part::Side, _) => "sides",
             (Part::LightCap, false) => "light cap",
             (Part::LightCap, true) => "turned light cap",
-            _ => "dark cap",
+            // What faces the light faces inwards at the far end.
+            (_, true) => "dark cap",
+            (_, false) => "turned dark cap",
         };
         Draw {
             name: format!("{what} of {}", self.caster),
@@ -142,6 +144,7 @@ impl Volume {
             raster,
             mesh: self.mesh,
             triangles: triangles.start as u32..triangles.end as u32,
+            base_vertex: self.parts.dark_cap_base.filter(|_| part == Part::DarkCap).unwrap_or(0),
             constants: DrawConstants::default(),
         }
     }
@@ -165,7 +168,7 @@ fn volumes(frame: &mut Frame, light: LightId, counting: Counting, options: &Opti
             frame.leave_out("volume", &object.name, because);
             continue;
         }
-        let mut needed = needed_parts(frame, light, counting, options, &parts, object);
+        let mut needed = needed_parts(frame, counting, options, &parts, object);
         needed.retain(|part| !part.triangles.is_empty());
         let mesh = frame.add_mesh(mesh);
         volumes.push(Volume { caster: object.name.clone(), mesh, parts, needed });
@@ -223,7 +226,6 @@ fn make(
 
 fn needed_parts(
     frame: &mut Frame,
-    light: LightId,
     counting: Counting,
     options: &Options,
     parts: &VolumeParts,
@@ -242,8 +244,10 @@ fn needed_parts(
     }
     // A finite volume ends in front of whatever lies beyond it.
     if counting == Counting::Behind || options.extrusion != Extrusion::Infinite {
-        needed.push(part(Part::DarkCap, false, &parts.dark_cap));
-        if parts.dark_cap.is_empty() && frame.light_position(light).w == 0.0 {
+        if parts.dark_cap_base.is_some() {
+            needed.push(part(Part::DarkCap, true, &parts.light_cap));
+            needed.push(part(Part::DarkCap, false, &parts.light_cap_turned));
+        } else {
             let because = "a directional light's volume closes in one point at infinity";
             frame.leave_out("dark cap", &caster.name, because);
         }
