@@ -18,8 +18,7 @@ use glam::{DMat4, DVec3, DVec4};
 use std::collections::HashSet;
 
 /// Sizes of textures.
-pub(super) const REPORT_ROWS: ReportRows =
-    &[&[("size", "64")], &[("size", "128")], &[("size", "256")], &[("size", "512")], &[("size", "1024")]];
+pub(super) const REPORT_ROWS: ReportRows = &[&[("size", "64")], &[("size", "256")], &[("size", "1024")]];
 
 /// Plans receiver textures.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
