@@ -2,6 +2,9 @@
 
 @fragment
 fn fs_label(surface: Surface) -> @location(0) u32 {
+    if is_beyond_far(surface) {
+        discard;
+    }
     let label = select(draw.label, SHADOW, arriving(surface).a < 0.5);
     return select(label, AWAY, faces_away(surface.sides));
 }

@@ -2,6 +2,9 @@
 
 @fragment
 fn fs_light(surface: Surface) -> @location(0) vec4f {
+    if is_beyond_far(surface) {
+        discard;
+    }
     return vec4f(added(surface) * arriving(surface).rgb, 0.0);
 }
 

@@ -71,6 +71,11 @@ fn vs_surface(@builtin(vertex_index) vertex_index: u32) -> Surface {
     return out;
 }
 
+// Clamped depth is 1 beyond the far plane, which is also what nothing was drawn at.
+fn is_beyond_far(surface: Surface) -> bool {
+    return surface.clip.z > 1.0;
+}
+
 fn faces_away(surface_sides: u32) -> bool {
     return (surface_sides & (1u << light.index)) != 0u;
 }

@@ -141,7 +141,7 @@ fn write_files(capture: &Capture, folder: &Path) -> Result<f64, CaptureError> {
     let mut manifest = Manifest::new(capture);
     let mut written = BTreeMap::new();
     for (index, step) in capture.steps.iter().enumerate() {
-        let entry = write_step(folder, index, step, &mut written)?;
+        let entry = write_step(folder, index, step, capture, &mut written)?;
         manifest.passes.push(entry);
     }
     for (index, light) in capture.lights.iter().enumerate() {
@@ -160,6 +160,7 @@ fn write_step(
     folder: &Path,
     index: usize,
     step: &Step,
+    capture: &Capture,
     written: &mut BTreeMap<&'static str, (Arc<Image>, String)>,
 ) -> Result<PassEntry, CaptureError> {
     let mut entry = PassEntry {
@@ -176,8 +177,12 @@ fn write_step(
     };
     let frame = match &step.snapshot {
         Snapshot::Map { light, face } => {
-            entry.map = Some(map_file(*light));
-            entry.map_face = Some(*face);
+            let map = capture.lights.get(*light).and_then(|light| light.map.as_ref());
+            if map.is_some_and(CapturedMap::holds_colors) {
+                (entry.textures, entry.texture_layer) = (Some(textures_file(*light)), Some(*face));
+            } else {
+                (entry.map, entry.map_face) = (Some(map_file(*light)), Some(*face));
+            }
             return Ok(entry);
         }
         Snapshot::Frame(frame) => frame,
@@ -230,8 +235,9 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
         entry.worst_region = truth.worst.as_ref().map(Into::into);
     }
     if let Some(map) = &light.map {
-        entry.map = Some(map_file(index));
-        files::write_layers(&folder.join(map_file(index)), &map.faces)?;
+        let file = if map.holds_colors() { textures_file(index) } else { map_file(index) };
+        files::write_layers(&folder.join(&file), &map.faces)?;
+        *(if map.holds_colors() { &mut entry.textures } else { &mut entry.map }) = Some(file);
         entry.matrices = Some(Matrices {
             light_from_world: manifest::rows(map.light_from_world),
             clip_from_light: map.clip_from_light.iter().copied().map(manifest::rows).collect(),
@@ -250,6 +256,10 @@ fn count_file(light: usize) -> String {
 
 fn map_file(light: usize) -> String {
     format!("light{light}.map.npy")
+}
+
+fn textures_file(light: usize) -> String {
+    format!("light{light}.textures.npy")
 }
 
 /// Letters, digits, `+` and `-` of a name; the rest becomes `-`.
@@ -376,8 +386,8 @@ impl Reader<'_> {
             draw.to_summary().ok_or_else(|| self.wrong(MANIFEST, "it names a part of a draw that is not known"))
         });
         let draws = draws.collect::<Result<_, _>>()?;
-        let snapshot = match (&pass.map, pass.light) {
-            (Some(_), Some(light)) => Snapshot::Map { light, face: pass.map_face.unwrap_or(0) },
+        let snapshot = match (pass.map.as_ref().or(pass.textures.as_ref()), pass.light) {
+            (Some(_), Some(light)) => Snapshot::Map { light, face: pass.map_face.or(pass.texture_layer).unwrap_or(0) },
             _ => Snapshot::Frame(self.frame(pass)?),
         };
         Ok(Step {
@@ -437,7 +447,7 @@ impl Reader<'_> {
         let position = entry.homogeneous().ok_or_else(|| self.wrong(MANIFEST, "a light has no place"))?;
         let shadow = entry.shadow.as_ref().map(|file| self.image(file, PixelFormat::U8)).transpose()?;
         let count = entry.count.as_ref().map(|file| self.image(file, PixelFormat::Count32F)).transpose()?;
-        let map = match (&entry.map, &entry.matrices) {
+        let map = match (entry.map.as_ref().or(entry.textures.as_ref()), &entry.matrices) {
             (Some(file), Some(matrices)) => {
                 let faces = files::read_layers(&self.path(file)?)?;
                 if faces.len() != matrices.clip_from_light.len() {

@@ -71,6 +71,11 @@ pub(super) struct PassEntry {
     /// Which face of the map it drew.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map_face: Option<usize>,
+    /// The same of textures that hold what light passes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub textures: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texture_layer: Option<usize>,
     pub draws: usize,
     pub triangles: u64,
     pub gpu_ms: Option<f64>,
@@ -102,6 +107,9 @@ pub(super) struct LightEntry {
     pub wrapped_pixels: Option<u64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
+    /// What light passes of each receiver's texture or caster's silhouette: (layers, size, size, 4).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub textures: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub matrices: Option<Matrices>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -219,6 +227,7 @@ impl LightEntry {
             count: None,
             wrapped_pixels: None,
             map: None,
+            textures: None,
             matrices: None,
             truth: None,
             error: None,

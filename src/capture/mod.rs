@@ -153,6 +153,14 @@ pub struct CapturedLight {
     pub truth: Option<CapturedTruth>,
 }
 
+impl CapturedMap {
+    /// Does it hold colours that light passes, and not depths?
+    #[must_use]
+    pub fn holds_colors(&self) -> bool {
+        self.faces.first().is_some_and(|face| face.format() == PixelFormat::Rgba8)
+    }
+}
+
 impl CapturedLight {
     /// Pixels of surfaces that face the light whose count is a multiple of 256 other than 0, which
     /// eight bits read as 0; `None` where the count is not known.

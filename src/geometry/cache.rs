@@ -153,3 +153,39 @@ fn pose_bits(pose: &Pose) -> PoseBits {
     let [t, r, s] = [pose.translate, pose.rotate_degrees, pose.scale].map(|part| part.to_array().map(f64::to_bits));
     [t[0], t[1], t[2], r[0], r[1], r[2], s[0], s[1], s[2]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::planar::Clip;
+    use crate::math::Plane;
+
+    #[test]
+    fn a_caster_is_flattened_again_only_if_something_changed() {
+        let mut cache = GeometryCache::default();
+        let what = Flattened {
+            mesh: 7,
+            pose: Pose::default(),
+            plane: Plane::through(DVec3::ZERO, DVec3::Y),
+            light: DVec4::new(0.0, 4.0, 0.0, 1.0),
+            clip: Clip::BetweenPlaneAndLight,
+            own: None,
+        };
+        let mut made = 0;
+        let mut ask = |what: &Flattened, is_next_plan: bool| {
+            if is_next_plan {
+                cache.next_plan();
+            }
+            cache.flattened(what, || {
+                made += 1;
+                Vec::new()
+            });
+            made
+        };
+        assert_eq!([ask(&what, true), ask(&what, false), ask(&what, true)], [1, 1, 1]);
+        let moved = Flattened { light: DVec4::new(0.0, 4.0, 1e-12, 1.0), ..what };
+        assert_eq!([ask(&moved, true), ask(&Flattened { own: Some(0), ..what }, false)], [2, 3]);
+        // Not asked for by one plan, it is forgotten by the next.
+        assert_eq!([ask(&moved, true), ask(&what, true)], [3, 4]);
+    }
+}

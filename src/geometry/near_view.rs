@@ -15,14 +15,16 @@ const IN_PLANE: f64 = 1e-6;
 const NEAREST: f64 = 1.0 / (1 << 20) as f64;
 
 /// Clip space, with depth from 0 (near plane) to 1 (towards the light), from positions relative to
-/// the eye. `points` are those that may cast, world space, `aspect` is width over height. `None`
-/// where the light lies in the near plane.
+/// the eye. `points` are those that may cast, world space, `aspect` is width over height.
+///
+/// # Errors
+/// Why there is no such view: the light lies in the near plane, or nothing lies between.
 pub fn through_near_rectangle<'a>(
     camera: &Camera,
     aspect: f64,
     light: DVec4,
     points: impl Iterator<Item = &'a DVec3>,
-) -> Option<DMat4> {
+) -> Result<DMat4, &'static str> {
     let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
     // A direction's length means nothing.
     let scale = if light.w == 0.0 { light.truncate().abs().max_element() } else { 1.0 };
@@ -30,7 +32,7 @@ pub fn through_near_rectangle<'a>(
     let near_plane = DVec4::new(0.0, 0.0, -1.0, -camera.near);
     let height = near_plane.dot(light);
     if height.abs() <= IN_PLANE * (light.truncate().length() + camera.near * light.w) {
-        return None;
+        return Err("the light lies in the near plane and sees it as a line");
     }
     // Divided by the height, so that what lies between plane and light has a share from 0 to 1
     // of the way, whichever side the light is on.
@@ -44,12 +46,15 @@ pub fn through_near_rectangle<'a>(
         true => {
             let share_of = |point: &DVec3| share.dot((rotation * (*point - camera.eye)).extend(1.0));
             let farthest = points.map(share_of).fold(0.0, f64::max);
-            camera.near * 0.5 / farthest.max(f64::MIN_POSITIVE.sqrt())
+            if farthest <= 0.0 {
+                return Err("nothing that casts lies between it and the near plane");
+            }
+            camera.near * 0.5 / farthest
         }
         false => camera.near * NEAREST,
     };
     let clip_from_view = DMat4::from_cols(x, y, share * depth_per_share, w).transpose();
-    Some(clip_from_view * DMat4::from_mat3(rotation))
+    Ok(clip_from_view * DMat4::from_mat3(rotation))
 }
 
 #[cfg(test)]
@@ -109,7 +114,10 @@ mod tests {
         let camera = camera();
         let forward = (camera.target - camera.eye).normalize();
         let in_plane = camera.eye + forward * camera.near + forward.cross(DVec3::Y) * 3.0;
-        assert_eq!(through_near_rectangle(&camera, 1.0, in_plane.extend(1.0), [].iter()), None);
-        assert_eq!(through_near_rectangle(&camera, 1.0, forward.cross(DVec3::Y).extend(0.0), [].iter()), None);
+        assert!(through_near_rectangle(&camera, 1.0, in_plane.extend(1.0), [].iter()).is_err());
+        let across = through_near_rectangle(&camera, 1.0, forward.cross(DVec3::Y).extend(0.0), [].iter());
+        assert!(across.is_err_and(|because| because.contains("lies in the near plane")));
+        let nothing_between = through_near_rectangle(&camera, 1.0, DVec4::Y, [].iter());
+        assert!(nothing_between.is_err_and(|because| because.contains("nothing that casts")));
     }
 }

@@ -135,8 +135,8 @@ pub struct Flattened {
     pub light: DVec4,
     /// How much of it.
     pub clip: Clip,
-    /// The receiver is a part of the caster.
-    pub is_own: bool,
+    /// The receiver's first triangle, where it is a part of the caster.
+    pub own: Option<u32>,
 }
 
 impl Flattened {
@@ -174,7 +174,7 @@ impl Flattener {
     /// Adds the shadow of a mesh. `on_plane` names vertices of the receiver itself: they are on its
     /// plane whatever rounding says.
     pub fn add(&mut self, world: &[DVec3], triangles: &[[u32; 3]], on_plane: &[u32]) {
-        let mut heights: Vec<f64> = world.iter().map(|position| self.plane.at(position.extend(1.0))).collect();
+        let mut heights: Vec<f64> = world.iter().map(|position| self.plane.height(*position)).collect();
         on_plane.iter().for_each(|vertex| heights[*vertex as usize] = 0.0);
         if self.clip == Clip::BetweenPlaneAndLight && heights.iter().all(|height| *height <= 0.0) {
             return;

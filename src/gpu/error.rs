@@ -23,7 +23,9 @@ pub enum GpuError {
         reason: String,
     },
     /// The picture or a map is more than the adapter can hold.
-    #[error("{what} is too large: {needed} asked for, {most} fit; choose a smaller size")]
+    #[error(
+        "{what} is too large: {needed} asked for, {most} fit; choose a smaller size (--size, or the setting `size` of the technique)"
+    )]
     TooLarge {
         /// The attachment or buffer.
         what: String,

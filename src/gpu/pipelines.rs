@@ -140,16 +140,17 @@ impl Program {
 }
 
 fn color_target(format: TextureFormat, write: ColorWrite) -> ColorTargetState {
-    let both = |src_factor, dst_factor| {
-        let component = BlendComponent { src_factor, dst_factor, operation: BlendOperation::Add };
+    let blend = |src_factor, dst_factor, operation| {
+        let component = BlendComponent { src_factor, dst_factor, operation };
         Some(BlendState { color: component, alpha: component })
     };
     ColorTargetState {
         format,
         blend: match write {
             ColorWrite::None | ColorWrite::Replace => None,
-            ColorWrite::Add => both(BlendFactor::One, BlendFactor::One),
-            ColorWrite::Multiply => both(BlendFactor::Dst, BlendFactor::Zero),
+            ColorWrite::Add => blend(BlendFactor::One, BlendFactor::One, BlendOperation::Add),
+            ColorWrite::Multiply => blend(BlendFactor::Dst, BlendFactor::Zero, BlendOperation::Add),
+            ColorWrite::Minimum => blend(BlendFactor::One, BlendFactor::One, BlendOperation::Min),
         },
         write_mask: ColorWrites::ALL,
     }

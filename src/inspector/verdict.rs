@@ -77,7 +77,9 @@ fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verd
 
 /// Shadow volumes: the count that the light pass tested.
 fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: &str) -> Verdict {
-    if let Some(count) = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at)) {
+    let in_float = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at));
+    let decides = capture.settings.get("counter").is_some_and(|counter| counter == "float");
+    if let Some(count) = in_float.filter(|_| decides) {
         return counted_in_float(capture, count, is_dark, title);
     }
     let Some(count) = tested_count(capture, light, at) else {
@@ -97,6 +99,10 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: 
             "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it skips \
              this pixel."
         ),
+        (false, 0) if in_float.is_some_and(|count| count != 0.0) => {
+            let count = in_float.unwrap_or_default();
+            format!("{count} volumes contain the surface, which eight bits read as 0: the light pass adds the light.")
+        }
         (false, 0) => format!("The volume faces {side} the surface cancel out, so the light pass adds the light."),
         // Label and count disagree: say so, and do not explain it away.
         (_, count) => format!("The mask does not match the count {count} that the light pass tested."),

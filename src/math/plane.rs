@@ -25,6 +25,15 @@ impl Plane {
         self.normal.dot(point.truncate()) + self.offset * point.w
     }
 
+    /// Signed distance of a point, and 0 where rounding can't tell it from the plane: what lies in one
+    /// plane with others must not be above them by a unit in the last place.
+    #[must_use]
+    pub fn height(&self, point: DVec3) -> f64 {
+        let height = self.at(point.extend(1.0));
+        let products = (self.normal * point).abs().element_sum() + self.offset.abs();
+        if height.abs() > 16.0 * f64::EPSILON * products { height } else { 0.0 }
+    }
+
     /// The same plane with its normal turned round.
     #[must_use]
     pub fn turned(&self) -> Plane {

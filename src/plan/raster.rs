@@ -38,6 +38,8 @@ pub enum ColorWrite {
     Add,
     /// Multiply with it.
     Multiply,
+    /// Keep the smaller of both, channel by channel.
+    Minimum,
 }
 
 impl RasterState {

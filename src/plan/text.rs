@@ -148,6 +148,7 @@ impl Display for RasterState {
             ColorWrite::Replace => writeln!(f, "    color replaced"),
             ColorWrite::Add => writeln!(f, "    color added"),
             ColorWrite::Multiply => writeln!(f, "    color multiplied"),
+            ColorWrite::Minimum => writeln!(f, "    the smaller color kept"),
         }
     }
 }

@@ -74,6 +74,9 @@ pub struct Frame<'a> {
     /// All visible surfaces, in the order in which they are drawn.
     pub pieces: Vec<Piece>,
     pub plan: FramePlan,
+    /// Clamped depth clips volumes at the near plane all the same: what counts in front of surfaces
+    /// must not begin before them.
+    pub clips_volumes: bool,
     color: AttachmentId,
     depth_stencil: AttachmentId,
     has_stencil: bool,
@@ -171,6 +174,7 @@ impl<'a> Frame<'a> {
             placed: Vec::new(),
             pieces: Vec::new(),
             plan,
+            clips_volumes: false,
             color: no_target,
             depth_stencil: no_target,
             has_stencil: stencil == StencilUse::Always,
@@ -463,7 +467,8 @@ impl<'a> Frame<'a> {
             }
             let is_of_camera = pass.view == ViewId(0);
             for draw in &mut pass.draws {
-                draw.raster.unclipped_depth = is_of_camera && mapping.clamps();
+                let is_clipped = self.clips_volumes && draw.part != Part::Surface;
+                draw.raster.unclipped_depth = is_of_camera && mapping.clamps() && !is_clipped;
                 if !mapping.is_reversed() {
                     draw.raster = draw.raster.clone().for_standard_depth();
                 }

@@ -49,7 +49,7 @@ pub enum PlanError {
         problem: String,
     },
     /// More lights than bits in a word.
-    #[error("{count} lights are too many: at most {MOST_LIGHTS} fit")]
+    #[error("{count} lights are too many: leave out {}, at most {MOST_LIGHTS} fit", count - MOST_LIGHTS)]
     TooManyLights {
         /// How many the scene has.
         count: usize,

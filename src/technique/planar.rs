@@ -229,7 +229,7 @@ fn shadow_draw(frame: &mut Frame, one: &Marked, caster: usize, light: LightId, o
         plane: receiver.plane,
         light: light_position,
         clip: options.clip,
-        is_own,
+        own: receiver.triangles.first().copied().filter(|_| is_own),
     };
     let flatten = || {
         let own = receiver.triangles.iter().filter(|_| is_own);

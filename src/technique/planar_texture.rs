@@ -14,7 +14,7 @@ use super::{PlanError, ReportRows};
 use crate::geometry::Parallelogram;
 use crate::math::Plane;
 use crate::plan::{FramePlan, LightId, Visibility};
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec4};
 use std::collections::HashSet;
 
 /// Sizes of textures.
@@ -75,6 +75,8 @@ fn add_textures(frame: &mut Frame, receivers: &[FlatReceiver], light: LightId) {
     let mut passes = Vec::new();
     for (layer, (receiver, shape)) in receivers.iter().zip(&shapes).enumerate() {
         if shape.is_none() {
+            let because = "the light lies in its plane";
+            frame.leave_out(&format!("texture of {}", receiver.name), &Frame::light_name(light), because);
             continue;
         }
         if !receiver.shows_lit_side(frame, light) {
@@ -112,18 +114,19 @@ fn clip_from_world(frame: &Frame, receiver: &FlatReceiver, light: DVec4) -> Opti
     Parallelogram::around(&receiver.receiver, &placed.world, placed.object.mesh.triangles()).clip_from_world(light)
 }
 
-/// The triangles of a caster that are drawn into a receiver's texture: all but the receiver's own,
-/// and none of a caster that lies wholly behind it.
+/// The triangles of a caster that are drawn into a receiver's texture: those that reach above its
+/// plane, on the light's side.
 fn caster_triangles(frame: &Frame, receiver: &FlatReceiver, towards_light: Plane, caster: usize) -> Vec<u32> {
     let placed = &frame.placed[caster];
     let triangles = placed.object.mesh.triangles();
     let own = if caster == receiver.object { &receiver.receiver.triangles[..] } else { &[] };
     let on_plane: HashSet<u32> = own.iter().flat_map(|triangle| triangles[*triangle as usize]).collect();
-    let is_above = |(vertex, position): (usize, &DVec3)| {
-        towards_light.at(position.extend(1.0)) > 0.0 && !on_plane.contains(&(vertex as u32))
-    };
-    if !placed.object.casts || !placed.world.iter().enumerate().any(is_above) {
+    let is_above =
+        |vertex: &u32| !on_plane.contains(vertex) && towards_light.height(placed.world[*vertex as usize]) > 0.0;
+    if !placed.object.casts {
         return Vec::new();
     }
-    (0..triangles.len() as u32).filter(|triangle| own.binary_search(triangle).is_err()).collect()
+    let above: Vec<bool> = (0..placed.world.len() as u32).map(|vertex| is_above(&vertex)).collect();
+    let reaches_above = |triangle: &u32| triangles[*triangle as usize].iter().any(|vertex| above[*vertex as usize]);
+    (0..triangles.len() as u32).filter(reaches_above).collect()
 }

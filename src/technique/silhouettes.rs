@@ -99,7 +99,8 @@ pub fn draws(frame: &mut Frame, caster: usize, of: &[u32]) -> Vec<Draw> {
             raster: RasterState {
                 depth_compare: CompareFunction::Always,
                 depth_write: false,
-                color: ColorWrite::Replace,
+                // Whichever is drawn first, and however many of its faces: a caster lets through once.
+                color: ColorWrite::Minimum,
                 ..RasterState::surface()
             },
             mesh,
@@ -117,7 +118,9 @@ pub fn draws(frame: &mut Frame, caster: usize, of: &[u32]) -> Vec<Draw> {
 /// How much of each colour of light a material lets through, and how much for labels, which count
 /// translucent casters as opaque.
 fn let_through(material: &Material) -> [f32; 4] {
-    let brightest = material.color.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
-    let [r, g, b] = material.color.map(|channel| (1.0 - material.opacity) * channel / brightest);
+    let brightest = material.color.iter().copied().fold(0.0, f32::max);
+    // Black has no colour to give: it takes of all alike.
+    let tint = |channel: f32| if brightest > 0.0 { channel / brightest } else { 1.0 };
+    let [r, g, b] = material.color.map(|channel| (1.0 - material.opacity) * tint(channel));
     [r, g, b, 0.0]
 }

@@ -49,6 +49,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     options.check(job.scene)?;
     let stencil = if options.counts_in_float { StencilUse::ToLightOnce } else { StencilUse::Always };
     let mut frame = Frame::new(job, stencil)?;
+    frame.clips_volumes = counting != Counting::Behind;
     frame.ambient_pass();
     for light in frame.light_ids() {
         let volumes = volumes(&mut frame, light, counting, &options);

@@ -3,13 +3,15 @@
 use super::{SIZE, capture, over_floor, unseen, wrong};
 use crate::common::{from_above, label_counts, session, square};
 use stencilscope::math::depth::DepthMapping;
+use stencilscope::scene::builtin::Builtin;
 use stencilscope::technique::Technique;
 
 /// All techniques that are exact on a square over a floor, and what makes the textures fine enough.
-const EXACT: [(Technique, &[(&str, &str)]); 6] = [
+const EXACT: [(Technique, &[(&str, &str)]); 7] = [
     (Technique::Planar, &[]),
     (Technique::PlanarTexture, &[("size", "1024")]),
     (Technique::ZPass, &[]),
+    (Technique::ZPassPlus, &[]),
     (Technique::ZFail, &[]),
     (Technique::ShadowMap, &[]),
     (Technique::Projective, &[]),
@@ -57,7 +59,9 @@ fn a_far_plane_of_the_camera_hides_what_is_beyond_it() {
     let mut scene = from_above(vec![square("caster", 2.0, 1.0)]);
     scene.camera.far = Some(9.0);
     let counts = |session: &mut _, depth| label_counts(&capture(session, &scene, Technique::None, &[("depth", depth)]));
-    assert_eq!(counts(&mut session, "standard-finite")[2], u64::from(SIZE[0] * SIZE[1]) - 625);
+    for depth in ["standard-finite", "standard-finite-clamp"] {
+        assert_eq!(counts(&mut session, depth)[2], u64::from(SIZE[0] * SIZE[1]) - 625, "{depth}");
+    }
     assert_eq!(counts(&mut session, "standard-infinite")[2], 0);
 }
 
@@ -72,5 +76,17 @@ fn labels_do_not_depend_on_the_epsilon() {
         assert_eq!(wrong(&mut session, &scene, Technique::ZFail, &settings), [0, 0], "{epsilon}");
         let found = capture(&mut session, &scene, Technique::ZFail, &settings);
         assert_eq!(found.depth.offset, 1.0 - epsilon.parse::<f64>().expect("a number"));
+    }
+}
+
+/// The count at the near plane and the count from there on must begin at one place, also where
+/// clamped depth lets volumes reach nearer.
+#[test]
+fn z_pass_plus_holds_with_the_eye_inside_a_volume_under_every_mapping() {
+    let mut session = session();
+    let scene = Builtin::named("inside").expect("inside").scene().expect("a scene");
+    for mapping in DepthMapping::ALL {
+        let settings = [("depth", mapping.name())];
+        assert_eq!(wrong(&mut session, &scene, Technique::ZPassPlus, &settings), [0, 0], "{mapping:?}");
     }
 }

@@ -19,7 +19,7 @@ fn plate() -> Scene {
 }
 
 #[test]
-fn each_bias_alone_takes_most_of_the_acne_away() {
+fn each_bias_takes_most_of_the_acne_away() {
     let mut session = session();
     let scene = plate();
     let mut acne = |settings: &[(&str, &str)]| {

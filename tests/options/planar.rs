@@ -1,8 +1,9 @@
 //! Planar shadows without the stencil, blended twice, unclipped, and fighting with their plane.
 
 use super::{as_bright_as, brightness, capture, over_floor, shadow_pixels, unseen, wrong};
-use crate::common::{from_above, session, square};
+use crate::common::{from_above, mesh, session, square};
 use glam::DVec3;
+use stencilscope::scene::{Material, Object};
 use stencilscope::technique::Technique;
 
 /// Shadows of 40 × 40 and 20 × 20 pixels that share 10 × 20.
@@ -80,5 +81,31 @@ fn kept_casters_give_the_same_frame_and_moved_ones_are_flattened_again() {
         assert_eq!(kept.lights[0].shadow, made.lights[0].shadow);
         let frames = kept.steps.iter().zip(&made.steps).filter(|(kept, made)| kept.snapshot == made.snapshot);
         assert_eq!((frames.count(), made.steps.len()), (kept.steps.len(), kept.steps.len()));
+    }
+}
+
+/// Quads that lie in one plane neither darken themselves nor each other, whatever rounding makes of
+/// the plane: two pieces of one object, and two objects, at heights that are not exact.
+#[test]
+fn what_lies_in_one_plane_with_a_receiver_does_not_darken_it() {
+    let mut session = session();
+    let pieces = |y: f64| {
+        let at = |x: f64| [[x, y, -1.0], [x, y, 1.0], [x + 2.0, y, 1.0], [x + 2.0, y, -1.0]];
+        let corners = [at(-2.5), at(0.5)].concat();
+        let quads = mesh(&corners, &[[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]);
+        Object::new("pieces", quads, Material::default())
+    };
+    for y in [0.1, 0.123, 1.1] {
+        for objects in [vec![pieces(y)], vec![square("rug", y, 2.0), square("poster", y, 1.0)]] {
+            let mut scene = from_above([objects, vec![unseen(square("caster", 0.0, 0.3), [0.3, 2.5, 0.2])]].concat());
+            scene.objects.remove(0);
+            for (technique, settings) in [
+                (Technique::Planar, &[][..]),
+                (Technique::Planar, &[("cache", "off")]),
+                (Technique::PlanarTexture, &[("size", "1024")]),
+            ] {
+                assert_eq!(wrong(&mut session, &scene, technique, settings), [0, 0], "{technique:?} {settings:?} {y}");
+            }
+        }
     }
 }

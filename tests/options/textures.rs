@@ -113,6 +113,36 @@ fn light_through_a_translucent_caster_takes_its_colour() {
     }
 }
 
+/// An opaque square under a translucent one keeps all light away, whichever is drawn first.
+#[test]
+fn an_opaque_caster_stays_opaque_beside_a_translucent_one() {
+    let mut session = session();
+    let opaque = unseen(square("opaque", 0.0, 0.5), [0.0, 1.0, 0.0]);
+    let mut pane = unseen(square("pane", 0.0, 1.0), [0.0, 2.0, 0.0]);
+    pane.material.opacity = 0.2;
+    for casters in [vec![opaque.clone(), pane.clone()], vec![pane, opaque]] {
+        let mut scene = over_floor(12.0, casters);
+        scene.ambient = [0.0; 3];
+        scene.lights = vec![Light::directional(DVec3::Y)];
+        for (technique, settings) in [(Technique::Projective, &[][..]), (Technique::PlanarTexture, &FINE[..])] {
+            let pixels = brightness(&capture(&mut session, &scene, technique, settings));
+            assert_eq!(as_bright_as(&pixels, 0.0), 100, "{technique:?}");
+            assert_eq!(as_bright_as(&pixels, 0.75 * 0.8), 400 - 100, "{technique:?}");
+        }
+    }
+}
+
+/// However small its picture, a silhouette ends at its frame.
+#[test]
+fn a_picture_of_one_texel_darkens_its_own_frame_only() {
+    let mut session = session();
+    let scene = over_floor(12.0, vec![unseen(square("caster", 0.0, 1.0), [0.0, 2.0, 0.0])]);
+    for size in ["1", "16", "49"] {
+        let shadow = shadow_pixels(&capture(&mut session, &scene, Technique::Projective, &[("size", size)]));
+        assert!((1500..1800).contains(&shadow), "{size}: {shadow}");
+    }
+}
+
 /// One light, no ambient: darkening afterwards is the same picture but for rounding.
 #[test]
 fn single_and_multi_pass_agree_where_there_is_one_light_only() {
@@ -122,11 +152,18 @@ fn single_and_multi_pass_agree_where_there_is_one_light_only() {
         unseen(square("b", 0.0, 0.75), [1.5, 1.0, 0.0]),
     ]);
     scene.ambient = [0.0; 3];
-    let [single, multi] =
-        ["single", "multi"].map(|passes| capture(&mut session, &scene, Technique::Projective, &[("passes", passes)]));
-    assert_eq!(single.lights[0].shadow, multi.lights[0].shadow);
-    let differ = brightness(&single).into_iter().zip(brightness(&multi)).filter(|(a, b)| (a - b).abs() > 0.01).count();
-    assert_eq!(differ, 0);
+    let mut tilted = square("tilted", 0.0, 2.0);
+    tilted.pose.translate = DVec3::new(-5.0, 2.0, 0.0);
+    tilted.pose.rotate_degrees.z = 80.0;
+    scene.objects.push(tilted);
+    for diffuse in ["lambert", "wrapped"] {
+        let [single, multi] = ["single", "multi"].map(|passes| {
+            capture(&mut session, &scene, Technique::Projective, &[("passes", passes), ("diffuse", diffuse)])
+        });
+        assert_eq!(single.lights[0].shadow, multi.lights[0].shadow);
+        let pairs = brightness(&single).into_iter().zip(brightness(&multi));
+        assert_eq!(pairs.filter(|(a, b)| (a - b).abs() > 0.01).count(), 0, "{diffuse}");
+    }
     // With a second light the silhouettes of the first darken it too.
     scene.lights.push(Light::point(DVec3::new(3.0, 4.0, 0.0)));
     let [single, multi] = ["single", "multi"].map(|passes| {

@@ -154,7 +154,7 @@ fn the_folder_is_laid_out_as_promised() {
         "light0.truth.npy",
         "light1.shadow.npy",
         "light2.count.npy",
-        "light2.map.npy",
+        "light2.textures.npy",
         MANIFEST,
         "plan.txt",
     ];
@@ -174,7 +174,7 @@ fn the_folder_is_laid_out_as_promised() {
     assert_eq!(passes[3]["stencil"], "002-volumes.stencil.npy");
     assert_eq!(passes[3]["labels"], "light0.shadow.npy");
     assert!(passes[4].get("stencil").is_none());
-    assert_eq!((&passes[5]["map"], &passes[5]["map_face"]), (&"light2.map.npy".into(), &1.into()));
+    assert_eq!((&passes[5]["textures"], &passes[5]["texture_layer"]), (&"light2.textures.npy".into(), &1.into()));
     assert_eq!(passes[6]["count"], "light2.count.npy");
     assert_eq!(manifest["lights"][1]["kind"], "directional");
     assert_eq!(manifest["lights"][1]["towards"], serde_json::json!([0.0, 1.0, 0.0]));

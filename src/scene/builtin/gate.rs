@@ -18,7 +18,7 @@ const GATE: [f32; 3] = [0.62, 0.23, 0.10];
 /// Of the outermost box.
 const SIZE: [f64; 3] = [1.7, 2.6, 0.5];
 /// How many boxes, from which to which size relative to the outermost, from outside to inside.
-const GROUPS: [(u32, f64, f64); 3] = [(125, 1.0, 0.95), (3, 0.8, 0.79), (22, 0.6, 0.55)];
+const GROUPS: [(u32, f64, f64); 3] = [(125, 1.0, 0.85), (3, 0.8, 0.79), (22, 0.6, 0.55)];
 
 /// The floor is at height 0, the wall behind the gate at z = −1.6.
 pub fn build() -> Result<Scene, MeshError> {

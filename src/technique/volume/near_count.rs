@@ -26,10 +26,13 @@ pub fn pass(frame: &mut Frame, light: LightId, options: &Options, volumes: &[Vol
     let position = frame.light_position(light);
     let points = frame.placed.iter().filter(|placed| placed.object.casts).flat_map(|placed| &placed.world);
     let [width, height] = frame.job.size.map(f64::from);
-    let Some(matrix) = near_view::through_near_rectangle(&frame.job.scene.camera, width / height, position, points)
-    else {
-        frame.leave_out("count at the near plane", &name, "the light lies in the near plane and sees it as a line");
-        return;
+    let matrix = near_view::through_near_rectangle(&frame.job.scene.camera, width / height, position, points);
+    let matrix = match matrix {
+        Ok(matrix) => matrix,
+        Err(because) => {
+            frame.leave_out("count at the near plane", &name, because);
+            return;
+        }
     };
     let raster = raster(options);
     let draws: Vec<_> = volumes
