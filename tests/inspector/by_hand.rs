@@ -187,6 +187,7 @@ pub fn layered(technique: &str, what: &str) -> Capture {
 /// pixels.
 pub fn counted_in_floats() -> Capture {
     let mut capture = z_fail(SIZE);
+    capture.settings.insert("counter".to_owned(), "float".to_owned());
     let count = image_of(PixelFormat::Count32F, SIZE, |x, y| {
         let count = match (x, y) {
             (0, 0) => -1.0,
