@@ -1,6 +1,6 @@
 //! Which objects can darken anything.
 
-use super::frame::Frame;
+use super::frame::{Frame, Placed};
 use crate::geometry::light_frame;
 use crate::plan::LightId;
 use glam::DVec3;
@@ -9,13 +9,26 @@ use glam::DVec3;
 /// triangles times vertices, and what it finds (floors, walls, rooms) is small.
 const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
 
-/// Can an object darken anything that is drawn? No, where all that receives lies on the light's side
-/// of its triangles.
-pub fn can_darken(frame: &Frame, index: usize, light: LightId) -> bool {
+/// What an object may darken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Darkened {
+    /// Anything, itself included.
+    All,
+    /// Other objects only.
+    Others,
+}
+
+/// Can an object darken any of these that is drawn? No, where all that receives lies on the light's
+/// side of its triangles.
+pub fn can_darken(frame: &Frame, index: usize, light: LightId, what: Darkened) -> bool {
     let triangles = world_triangles(frame, index);
     let receivers = || {
-        let receiving = frame.placed.iter().filter(|placed| placed.object.receives && placed.surface.is_some());
-        receiving.flat_map(|placed| placed.world.iter().copied())
+        let receives = |(other, placed): &(usize, &Placed)| {
+            let is_asked = what == Darkened::All || *other != index;
+            is_asked && placed.object.receives && placed.surface.is_some()
+        };
+        let receiving = frame.placed.iter().enumerate().filter(receives);
+        receiving.flat_map(|(_, placed)| placed.world.iter().copied())
     };
     let light = frame.light_position(light);
     triangles.len() > MOST_TRIANGLES_TO_LOOK_AT

@@ -5,9 +5,10 @@
 //! between light and caster is darkened like what lies behind it, and a caster can't darken itself.
 //! Casters may be translucent.
 
+use super::casters::{self, Darkened};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::silhouettes::{self, LayerPass};
-use super::{PlanError, ReportRows, casters};
+use super::{PlanError, ReportRows};
 use crate::geometry::light_frame;
 use crate::plan::{FramePlan, LightId, PlanMap, Visibility};
 use glam::DMat4;
@@ -64,7 +65,7 @@ fn multi_pass(frame: &mut Frame, light: LightId, layers: &[usize], drawn_layers:
 fn casting_objects(frame: &mut Frame) -> Vec<usize> {
     let casts = |index: &usize| {
         let object = frame.placed[*index].object;
-        let darkens = |light| casters::can_darken(frame, *index, light);
+        let darkens = |light| casters::can_darken(frame, *index, light, Darkened::Others);
         object.casts && !object.mesh.triangles().is_empty() && frame.light_ids().any(darkens)
     };
     let mut objects: Vec<usize> = (0..frame.placed.len()).filter(casts).collect();
@@ -83,8 +84,8 @@ fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize]) {
     for (layer, object) in layers.iter().enumerate() {
         let name = frame.placed[*object].object.name.clone();
         let what = format!("silhouette of {name}");
-        if !casters::can_darken(frame, *object, light) {
-            let because = "everything that receives lies on the light's side of its triangles";
+        if !casters::can_darken(frame, *object, light, Darkened::Others) {
+            let because = "every other object that receives lies on the light's side of its triangles";
             frame.leave_out(&what, &Frame::light_name(light), because);
             continue;
         }

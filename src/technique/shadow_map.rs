@@ -5,7 +5,7 @@
 //! where the map holds something nearer to the light. Casters behind which nothing lies that
 //! could be darkened are left out: a floor under everything would only widen the map.
 
-use super::casters;
+use super::casters::{self, Darkened};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::{PlanError, ReportRows};
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
@@ -124,7 +124,7 @@ fn darkening_casters(frame: &mut Frame, light: LightId) -> Vec<usize> {
         if !object.casts || object.mesh.triangles().is_empty() {
             continue;
         }
-        if casters::can_darken(frame, index, light) {
+        if casters::can_darken(frame, index, light, Darkened::All) {
             darkening.push(index);
         } else {
             frame.leave_out(
