@@ -251,6 +251,12 @@ impl<'a> Frame<'a> {
         if self.stencil_of.is_none() {
             self.leave_out("stencil clear", &Frame::light_name(light), "nothing has written the stencil before");
         }
+        self.push_pass(light, name, purpose, None, draws);
+    }
+
+    /// A timed pass of a light, seen by the camera. The first one of a light clears what another has left
+    /// in the stencil.
+    fn push_pass(&mut self, light: LightId, name: &str, purpose: &str, color: Option<ColorTarget>, draws: Vec<Draw>) {
         let depth_stencil = self.depth_stencil_of(light);
         self.stencil_of = Some(light);
         self.plan.passes.push(Pass {
@@ -260,10 +266,15 @@ impl<'a> Frame<'a> {
             light: Some(light),
             timed: true,
             view: ViewId(0),
-            color: None,
+            color,
             depth_stencil: Some(depth_stencil),
             draws,
         });
+    }
+
+    /// The picture, as it is.
+    fn kept_color(&self) -> ColorTarget {
+        ColorTarget { attachment: self.color, layer: 0, clear: None }
     }
 
     /// Gives a light a float target to count its volumes in.
@@ -283,19 +294,8 @@ impl<'a> Frame<'a> {
         let Some(attachment) = self.plan.lights[light.0].count else { return };
         let is_same = |pass: &Pass| pass.color.as_ref().is_some_and(|target| target.attachment == attachment);
         let is_first = !self.plan.passes.iter().any(is_same);
-        let depth_stencil = self.depth_stencil_of(light);
-        self.stencil_of = Some(light);
-        self.plan.passes.push(Pass {
-            name: name.to_owned(),
-            image: None,
-            purpose: purpose.to_owned(),
-            light: Some(light),
-            timed: true,
-            view: ViewId(0),
-            color: Some(ColorTarget { attachment, layer: 0, clear: is_first.then_some([0.0; 4]) }),
-            depth_stencil: Some(depth_stencil),
-            draws,
-        });
+        let target = ColorTarget { attachment, layer: 0, clear: is_first.then_some([0.0; 4]) };
+        self.push_pass(light, name, purpose, Some(target), draws);
     }
 
     /// Depth of all surfaces, and their colour under ambient light.
@@ -333,35 +333,12 @@ impl<'a> Frame<'a> {
             label: LIT,
         };
         let draws = self.surface_draws(|object| Some(if object.receives { shadowed } else { &unshadowed }));
-        let depth_stencil = self.depth_stencil_of(light);
-        self.stencil_of = Some(light);
-        self.plan.passes.push(Pass {
-            name: "light".to_owned(),
-            image: None,
-            purpose: purpose.to_owned(),
-            light: Some(light),
-            timed: true,
-            view: ViewId(0),
-            color: Some(ColorTarget { attachment: self.color, layer: 0, clear: None }),
-            depth_stencil: Some(depth_stencil),
-            draws,
-        });
+        self.push_pass(light, "light", purpose, Some(self.kept_color()), draws);
     }
 
     /// Blends draws over the picture, and tests depth and stencil without changing them.
     pub fn blend_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
-        let depth_stencil = self.depth_stencil_of(light);
-        self.plan.passes.push(Pass {
-            name: name.to_owned(),
-            image: None,
-            purpose: purpose.to_owned(),
-            light: Some(light),
-            timed: true,
-            view: ViewId(0),
-            color: Some(ColorTarget { attachment: self.color, layer: 0, clear: None }),
-            depth_stencil: Some(depth_stencil),
-            draws,
-        });
+        self.push_pass(light, name, purpose, Some(self.kept_color()), draws);
     }
 
     /// Writes the light's labels, later layers over earlier ones. Triangles and draws run in
