@@ -38,9 +38,11 @@ pub mod capture;
 pub mod cli;
 pub mod geometry;
 pub mod gpu;
+pub mod history;
 #[cfg(feature = "inspector")]
 pub mod inspector;
 pub mod math;
+pub mod numbers;
 pub mod plan;
 pub mod progress;
 pub mod report;

@@ -5,9 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 17] = [
+const MAY_USE: [(&str, &[&str]); 19] = [
     ("math", &[]),
     ("progress", &[]),
+    ("numbers", &[]),
     ("scene", &["math"]),
     ("truth", &["math", "scene", "progress"]),
     ("accuracy", &["truth"]),
@@ -17,7 +18,8 @@ const MAY_USE: [(&str, &[&str]); 17] = [
     ("capture", &["math", "scene", "plan", "accuracy"]),
     ("stencil_machine", &["plan"]),
     ("gpu", &["math", "scene", "plan", "capture"]),
-    ("report", &["capture"]),
+    ("history", &["math", "numbers", "plan", "capture", "gpu", "stencil_machine"]),
+    ("report", &["capture", "numbers"]),
     (
         "session",
         &[
@@ -32,11 +34,24 @@ const MAY_USE: [(&str, &[&str]); 17] = [
             "accuracy",
             "progress",
             "report",
+            "history",
         ],
     ),
     (
         "inspector",
-        &["math", "scene", "geometry", "plan", "technique", "capture", "stencil_machine", "accuracy", "report"],
+        &[
+            "math",
+            "scene",
+            "geometry",
+            "plan",
+            "technique",
+            "capture",
+            "stencil_machine",
+            "accuracy",
+            "report",
+            "numbers",
+            "history",
+        ],
     ),
     ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report"]),
     ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app", "progress", "report"]),

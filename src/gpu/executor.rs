@@ -1,6 +1,7 @@
 //! Runs a prepared plan: one command buffer, with copies between passes where snapshots are wanted.
 
 use super::buffers::Buffers;
+use super::fragment_log::LogKeeper;
 use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
 use super::readback::{self, Change, StagedPass, color_change, depth_change, stencil_change};
@@ -14,9 +15,10 @@ use wgpu::{CommandEncoder, LoadOp, Operations, QuerySet, RenderPass, StoreOp};
 /// Runs plans; keeps pipelines and buffers between them.
 #[derive(Debug)]
 pub struct Executor {
-    context: Context,
-    pipelines: Pipelines,
+    pub(super) context: Context,
+    pub(super) pipelines: Pipelines,
     buffers: Buffers,
+    pub(super) log: LogKeeper,
 }
 
 /// What a captured frame left behind.
@@ -47,7 +49,12 @@ impl Executor {
     /// On a context of its own.
     #[must_use]
     pub fn new(context: Context) -> Executor {
-        Executor { pipelines: Pipelines::new(&context.device), buffers: Buffers::default(), context }
+        Executor {
+            pipelines: Pipelines::new(&context.device),
+            buffers: Buffers::default(),
+            log: LogKeeper::default(),
+            context,
+        }
     }
 
     /// Where it runs.
@@ -60,6 +67,7 @@ impl Executor {
     pub fn forget(&mut self) {
         self.pipelines = Pipelines::new(&self.context.device);
         self.buffers = Buffers::default();
+        self.log = LogKeeper::default();
     }
 
     /// Uploads what a plan needs and makes its pipelines.
@@ -70,7 +78,7 @@ impl Executor {
         if let Some(error) = lint::check(plan).into_iter().next() {
             return Err(GpuError::Plan(error));
         }
-        let Executor { context, pipelines, buffers } = self;
+        let Executor { context, pipelines, buffers, .. } = self;
         context.guarded(|| Prepared::new(context, pipelines, buffers, plan))
     }
 

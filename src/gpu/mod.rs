@@ -5,6 +5,7 @@
 //! Pipelines    shaders and pipelines, interned by description
 //! Buffers      vertices and indices, by the hash of their content
 //! Executor     a plan → prepared textures, bind groups and draws → one command buffer
+//! fragment_log every fragment of one pixel, tests or no tests
 //! readback     snapshots: copies recorded between passes, mapped, never copied again
 //! ```
 
@@ -12,6 +13,7 @@ mod buffers;
 mod context;
 mod error;
 mod executor;
+mod fragment_log;
 mod pipelines;
 mod prepared;
 mod readback;
@@ -21,5 +23,6 @@ mod uniforms;
 pub use context::Context;
 pub use error::GpuError;
 pub use executor::{Executor, Output};
+pub use fragment_log::{FragmentLog, LoggedFragment};
 pub use prepared::Prepared;
 pub use shaders::shader_sources;

@@ -198,7 +198,7 @@ fn clear_left_out_faces(context: &Context, plan: &FramePlan, textures: &[Texture
     context.queue.submit([encoder.finish()]);
 }
 
-fn layer_view(texture: &Texture, layer: u32) -> TextureView {
+pub(super) fn layer_view(texture: &Texture, layer: u32) -> TextureView {
     texture.create_view(&TextureViewDescriptor {
         dimension: Some(TextureViewDimension::D2),
         base_array_layer: layer,

@@ -55,8 +55,14 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
     vec![file!("draw.wgsl"), file!("surface.wgsl"), arriving, own]
 }
 
+/// The log of a pixel's fragments.
+pub(super) fn fragment_log() -> String {
+    [file!("shared.wgsl"), file!("fragment_log.wgsl")].join("\n")
+}
+
 /// Name and WGSL text of every program, to be validated without a GPU.
 #[must_use]
 pub fn shader_sources() -> Vec<(String, String)> {
-    Program::all().into_iter().map(|program| (format!("{program:?}"), source_of(program).source)).collect()
+    let programs = Program::all().into_iter().map(|program| (format!("{program:?}"), source_of(program).source));
+    programs.chain([("FragmentLog".to_owned(), fragment_log())]).collect()
 }

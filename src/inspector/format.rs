@@ -1,6 +1,6 @@
 //! Numbers as text: thousands with a thin space, units always.
 
-pub use crate::report::numbers::count;
+pub use crate::numbers::{count, depth, digits, light, metres};
 
 /// `count(value)` with the word in the right number: `1 draw`, `2 draws`.
 #[must_use]
@@ -30,48 +30,11 @@ pub fn bytes(value: u64) -> String {
     }
 }
 
-/// A length in metres with about four digits; very small and very large ones with a power of ten.
-#[must_use]
-pub fn metres(value: f64) -> String {
-    format!("{} m", digits(value))
-}
-
-/// About four digits of a number.
-#[must_use]
-pub fn digits(value: f64) -> String {
-    let size = value.abs();
-    if !value.is_finite() {
-        if value > 0.0 { "∞".to_owned() } else { value.to_string() }
-    } else if size == 0.0 {
-        "0".to_owned()
-    } else if !(1e-3..1e5).contains(&size) {
-        format!("{value:.1e}")
-    } else if size < 0.999_95 {
-        format!("{value:.4}")
-    } else if size < 99.999_5 {
-        format!("{value:.3}")
-    } else {
-        format!("{value:.1}")
-    }
-}
-
-/// A stored depth with enough digits to tell neighbours apart.
-#[must_use]
-pub fn depth(value: f32) -> String {
-    if value == 0.0 { "0".to_owned() } else { format!("{value:.7}") }
-}
-
 /// Shares of red, green and blue light: `20 % 0 % 100 %`.
 #[must_use]
 pub fn shares([red, green, blue, _]: [u8; 4]) -> String {
     let share = |byte: u8| format!("{:.0} %", f32::from(byte) / 2.55);
     [red, green, blue].map(share).join("  ")
-}
-
-/// The name of a light for people: lights count from 1.
-#[must_use]
-pub fn light(index: usize) -> String {
-    format!("light {}", index + 1)
 }
 
 #[cfg(test)]

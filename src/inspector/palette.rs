@@ -3,6 +3,7 @@
 //! Hues are Okabe and Ito's (2008), safe for the common kinds of colour blindness; the number
 //! itself is always shown too, in the legend and on large texels.
 
+pub use crate::numbers::signed;
 use egui::Color32;
 
 /// Labels of `techniques.md` section 2, by value.
@@ -67,12 +68,6 @@ pub fn stencil(value: u8) -> Color32 {
 #[must_use]
 pub fn label(value: u8) -> Color32 {
     LABELS.get(usize::from(value)).map_or_else(|| stencil(value), |label| label.color)
-}
-
-/// A stencil value as people read it: 255 is `−1 (255)`.
-#[must_use]
-pub fn signed(value: u8) -> String {
-    if value < 128 { value.to_string() } else { format!("−{} ({value})", 256 - u32::from(value)) }
 }
 
 /// Grey for a place between near (0) and far (1): near is light.

@@ -3,8 +3,9 @@
 use super::action::Action;
 use super::state::State;
 use super::{format, report, report_plot, theme};
+use crate::numbers;
+use crate::report::Row;
 use crate::report::plot::{style_of, text_width};
-use crate::report::{Row, numbers};
 use egui::{Align2, CornerRadius, Pos2, Rect, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 /// Widths of what stands before a name: its sign.

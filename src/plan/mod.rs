@@ -13,6 +13,7 @@
 //! ```
 
 mod buffers;
+mod coverage;
 mod image;
 mod left_out;
 pub mod lint;
@@ -21,6 +22,7 @@ mod split;
 pub mod text;
 
 pub use buffers::{Blob, DrawMesh, SurfaceData};
+pub use coverage::{Clip, Coverage, Covering, Face};
 pub use image::{CpuImage, MakeImage};
 pub use left_out::LeftOut;
 pub use raster::{ColorWrite, RasterState, StencilFace};
@@ -363,6 +365,17 @@ impl Program {
         let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
         let lit = Visibility::ALL.into_iter().flat_map(|how| [Program::Light(how), Program::Label(how)]);
         flat.into_iter().chain(unlit).chain(lit).collect()
+    }
+
+    /// Which side of the range of depths a fragment lies on that the shader throws away: where depth
+    /// is clamped, nothing else clips at near and far (`discard` in the shaders' files).
+    #[must_use]
+    pub fn drops(self, depth: f32) -> Option<Clip> {
+        match self {
+            Program::Ambient { from_near: true } if depth < 0.0 => Some(Clip::Near),
+            Program::Light(_) | Program::Label(_) | Program::Through if depth > 1.0 => Some(Clip::Far),
+            _ => None,
+        }
     }
 
     /// What it asks how much light arrives; `None` for programs that do not light.

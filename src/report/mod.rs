@@ -9,7 +9,6 @@
 //! Nothing here measures, opens a file or knows a GPU: a report is data, and so is its plot.
 
 mod csv;
-pub mod numbers;
 pub mod plot;
 mod png;
 mod svg;
@@ -19,6 +18,7 @@ mod table;
 mod tests;
 
 use crate::capture::AdapterInfo;
+use crate::numbers;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

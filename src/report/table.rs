@@ -1,7 +1,7 @@
 //! The report as text: a table for the terminal, and one in Markdown.
 
-use super::numbers::{count, mebibytes, per_hundred};
 use super::{Report, Row};
+use crate::numbers::{count, mebibytes, per_hundred};
 
 /// Between columns.
 const GAP: &str = "  ";

@@ -4,6 +4,7 @@
 //! lists). Commands, the window and tests all go through it.
 
 mod counts;
+mod history;
 mod measure;
 mod report;
 mod truth;
@@ -61,6 +62,14 @@ pub enum SessionError {
     /// No ray can be followed through the scene.
     #[error(transparent)]
     Truth(#[from] TruthError),
+    /// A pixel that the picture does not have.
+    #[error("pixel {},{} is outside the picture of {}x{}: choose one from 0,0 to {},{}", pixel[0], pixel[1], size[0], size[1], size[0].saturating_sub(1), size[1].saturating_sub(1))]
+    NoSuchPixel {
+        /// Column and row.
+        pixel: [u32; 2],
+        /// Of the picture.
+        size: [u32; 2],
+    },
     /// It was asked to stop.
     #[error("cancelled")]
     Cancelled,
@@ -129,6 +138,18 @@ impl Session {
     /// # Errors
     /// A scene that the technique can't draw, a picture larger than the adapter allows, a lost GPU.
     pub fn capture(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<Capture, SessionError> {
+        Ok(self.capture_with_plan(scene, request)?.0)
+    }
+
+    /// The same, with the plan that it ran: what [`Session::history`] asks about.
+    ///
+    /// # Errors
+    /// As [`Session::capture`].
+    pub fn capture_with_plan(
+        &mut self,
+        scene: &Scene,
+        request: &CaptureRequest,
+    ) -> Result<(Capture, FramePlan), SessionError> {
         let start = Instant::now();
         let plan = self.plan(scene, request)?;
         let prepared = self.executor.prepare(&plan)?;
@@ -140,7 +161,7 @@ impl Session {
             timing.captured_ms = median_ms(&cost.captured);
         }
         let output = self.executor.capture(prepared, request.external_capture)?;
-        Ok(self.assemble(scene, &plan, output, timing))
+        Ok((self.assemble(scene, &plan, output, timing), plan))
     }
 
     /// Runs an already made plan, such as a good one with one thing changed, and keeps what it

@@ -5,7 +5,8 @@ use super::scale::{self, Log};
 use super::{
     Anchor, Chart, Ink, Line, RADIUS, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of, text_width,
 };
-use crate::report::{Report, Row, numbers};
+use crate::numbers;
+use crate::report::{Report, Row};
 use std::collections::BTreeMap;
 
 /// Above the area: title and caption of the axis that goes up, points; in one line where compact.

@@ -1,4 +1,5 @@
-//! Numbers as text for tables and plots: thousands with a thin space, two digits of a share.
+//! Numbers as text, alike in tables, plots, stories and panels: thousands with a thin space, two
+//! digits of a share, lengths with their unit, and stencil counts with their sign.
 
 /// A count, its thousands apart by a thin space: `47 425`.
 #[must_use]
@@ -56,6 +57,49 @@ pub fn milliseconds(value: f64) -> String {
 pub fn mebibytes(bytes: u64) -> String {
     let value = bytes as f64 / f64::from(1 << 20);
     if value < 100.0 { format!("{value:.1}") } else { count(value.round() as u64) }
+}
+
+/// A length in metres with about four digits; very small and very large ones with a power of ten.
+#[must_use]
+pub fn metres(value: f64) -> String {
+    format!("{} m", digits(value))
+}
+
+/// About four digits of a number.
+#[must_use]
+pub fn digits(value: f64) -> String {
+    let size = value.abs();
+    if !value.is_finite() {
+        if value > 0.0 { "∞".to_owned() } else { value.to_string() }
+    } else if size == 0.0 {
+        "0".to_owned()
+    } else if !(1e-3..1e5).contains(&size) {
+        format!("{value:.1e}")
+    } else if size < 0.999_95 {
+        format!("{value:.4}")
+    } else if size < 99.999_5 {
+        format!("{value:.3}")
+    } else {
+        format!("{value:.1}")
+    }
+}
+
+/// A stored depth with enough digits to tell neighbours apart.
+#[must_use]
+pub fn depth(value: f32) -> String {
+    if value == 0.0 { "0".to_owned() } else { format!("{value:.7}") }
+}
+
+/// The name of a light for people: lights count from 1.
+#[must_use]
+pub fn light(index: usize) -> String {
+    format!("light {}", index + 1)
+}
+
+/// A stencil value as people read it: 255 is `−1 (255)`.
+#[must_use]
+pub fn signed(value: u8) -> String {
+    if value < 128 { value.to_string() } else { format!("−{} ({value})", 256 - u32::from(value)) }
 }
 
 #[cfg(test)]

@@ -1,0 +1,131 @@
+//! Holds a history against what the GPU stored, and against itself: a list with an event dropped,
+//! doubled or moved is found out.
+
+use super::{CapturedAfter, Event, EventKind, Fate, Held, PixelHistory};
+use crate::numbers;
+use crate::stencil_machine::Stored;
+use std::fmt;
+
+/// Where a history is wrong: a bug of this program, or of the driver.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Disagreement {
+    /// The GPU made a fragment where geometry says there can be none, or none where there must be one.
+    Geometry {
+        /// Index of the pass.
+        pass: usize,
+        /// Name of the draw.
+        draw: String,
+        /// Which of its triangles.
+        primitive: u32,
+        /// There must be one, and is none.
+        is_missing: bool,
+    },
+    /// There are not as many fragments as the GPU counted.
+    Counted {
+        /// By the GPU.
+        counted: u32,
+        /// In the list.
+        listed: u32,
+    },
+    /// An event is not after the one before it in the order of the API.
+    Order {
+        /// Its index.
+        event: usize,
+    },
+    /// An event does not begin with what the one before it left.
+    Chain {
+        /// Its index.
+        event: usize,
+    },
+    /// After a pass the GPU stored something else than the events make.
+    Stored {
+        /// Index of the pass.
+        pass: usize,
+        /// What the events make.
+        computed: Held,
+        /// What the GPU stored.
+        captured: CapturedAfter,
+    },
+}
+
+impl fmt::Display for Disagreement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Disagreement::Geometry { pass, draw, primitive, is_missing } => {
+                let what =
+                    if *is_missing { "left no fragment, but covers the pixel" } else { "left a fragment, but can't" };
+                write!(f, "pass {}, {draw}: triangle {} {what}", pass + 1, primitive + 1)
+            }
+            Disagreement::Counted { counted, listed } => {
+                write!(f, "the GPU counted {counted} fragments, and {listed} are listed")
+            }
+            Disagreement::Order { event } => write!(f, "event {} is out of order", event + 1),
+            Disagreement::Chain { event } => {
+                write!(f, "event {} does not begin with what the one before it left", event + 1)
+            }
+            Disagreement::Stored { pass, computed, captured } => {
+                let Stored { depth, stencil } = captured.stored;
+                write!(
+                    f,
+                    "after pass {} the events make depth {:?} and stencil {}",
+                    pass + 1,
+                    computed.depth,
+                    numbers::signed(computed.stencil)
+                )?;
+                if let Some(count) = captured.count {
+                    return write!(
+                        f,
+                        ", count {}; the GPU stored {depth:?}, {} and {count}",
+                        computed.count,
+                        numbers::signed(stencil)
+                    );
+                }
+                write!(f, "; the GPU stored {depth:?} and {}", numbers::signed(stencil))
+            }
+        }
+    }
+}
+
+impl PixelHistory {
+    /// Everything that is wrong with it; empty where it agrees with the GPU.
+    #[must_use]
+    pub fn disagreements(&self) -> Vec<Disagreement> {
+        let mut found = self.contradictions.clone();
+        let is_fragment = |fate: Fate| matches!(fate, Fate::Tested { .. } | Fate::Dropped(_));
+        let listed = self.triangles().filter(|(_, one)| is_fragment(one.fate)).count() as u32;
+        if listed != self.counted {
+            found.push(Disagreement::Counted { counted: self.counted, listed });
+        }
+        for (index, pair) in self.events.windows(2).enumerate() {
+            let event = index + 1;
+            if place(&pair[0]) >= place(&pair[1]) {
+                found.push(Disagreement::Order { event });
+            }
+            if pair[0].after != pair[1].before {
+                found.push(Disagreement::Chain { event });
+            }
+        }
+        found.extend(self.captured_after.iter().filter_map(|captured| self.differs(captured)));
+        found
+    }
+
+    fn differs(&self, captured: &CapturedAfter) -> Option<Disagreement> {
+        let last = self.events.iter().rev().find(|event| event.pass <= captured.pass);
+        let computed = last.map_or(super::replay::NEW, |event| event.after);
+        let same_depth = computed.depth.to_bits() == captured.stored.depth.to_bits();
+        let same_stencil = !self.has_stencil || computed.stencil == captured.stored.stencil;
+        let same_count = captured.count.is_none_or(|count| count == computed.count);
+        let differs = !(same_depth && same_stencil && same_count);
+        differs.then_some(Disagreement::Stored { pass: captured.pass, computed, captured: *captured })
+    }
+}
+
+/// Pass, what comes first in it, draw, triangle.
+fn place(event: &Event) -> (usize, u8, usize, u32) {
+    match &event.kind {
+        EventKind::ClearDepth => (event.pass, 0, 0, 0),
+        EventKind::ClearStencil => (event.pass, 1, 0, 0),
+        EventKind::ClearCount => (event.pass, 2, 0, 0),
+        EventKind::Triangle(one) => (event.pass, 3, one.draw, one.primitive),
+    }
+}

@@ -1,0 +1,129 @@
+//! `pixel --json`, field by field as `spec/commands.md` has it. Names are a contract with scripts.
+
+use super::{Event, EventKind, Fate, PixelHistory, Test, operation_name};
+use crate::plan::Clip;
+use serde::Serialize;
+
+/// A pixel's history as JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PixelDocument {
+    pixel: [u32; 2],
+    events: Vec<EventEntry>,
+    #[serde(rename = "final")]
+    computed: Stored,
+    captured: Option<Stored>,
+    agrees: bool,
+    /// What is wrong, where something is.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    disagreements: Vec<String>,
+    /// Why each light does or does not arrive; null where no volume or flattened caster tells.
+    why: Vec<Option<String>>,
+    milliseconds: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Stored {
+    stencil: Option<u8>,
+    depth: f32,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct EventEntry {
+    pass: usize,
+    draw: Option<usize>,
+    name: String,
+    light: Option<usize>,
+    caster: Option<String>,
+    part: Option<&'static str>,
+    primitive: Option<u32>,
+    front_facing: Option<bool>,
+    depth: Option<f32>,
+    depth_test: Option<&'static str>,
+    stencil_test: Option<&'static str>,
+    operation: Option<&'static str>,
+    stencil_before: Option<u8>,
+    stencil_after: Option<u8>,
+    depth_before: f32,
+    depth_after: f32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    count_before: Option<f32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    count_after: Option<f32>,
+    note: Option<String>,
+}
+
+impl PixelDocument {
+    /// Of a history of a frame with so many lights, which took so long to find out.
+    #[must_use]
+    pub fn new(history: &PixelHistory, lights: usize, milliseconds: f64) -> PixelDocument {
+        let stored = |depth, stencil| Stored { stencil: history.has_stencil.then_some(stencil), depth };
+        let disagreements: Vec<String> = history.disagreements().iter().map(ToString::to_string).collect();
+        PixelDocument {
+            pixel: history.pixel,
+            events: history.events.iter().map(|event| entry(history, event)).collect(),
+            computed: stored(history.computed.depth, history.computed.stencil),
+            captured: history.captured.map(|captured| stored(captured.depth, captured.stencil)),
+            agrees: disagreements.is_empty(),
+            disagreements,
+            why: (0..lights).map(|light| history.why(light).map(|why| why.to_string())).collect(),
+            milliseconds,
+        }
+    }
+}
+
+fn entry(history: &PixelHistory, event: &Event) -> EventEntry {
+    let one = event.triangle();
+    let counts = event.before.count != event.after.count || event.kind == EventKind::ClearCount;
+    let tests = match one.map(|one| one.fate) {
+        Some(Fate::Tested { stencil, depth, operation }) => Some((stencil, depth, operation)),
+        _ => None,
+    };
+    let stencil = |value| history.has_stencil.then_some(value);
+    let operation = tests.and_then(|(_, _, operation)| operation);
+    EventEntry {
+        pass: event.pass,
+        draw: one.map(|one| one.draw),
+        name: match &event.kind {
+            EventKind::ClearDepth => "clear depth".to_owned(),
+            EventKind::ClearStencil => "clear stencil".to_owned(),
+            EventKind::ClearCount => "clear count".to_owned(),
+            EventKind::Triangle(_) => event.pass_name.clone(),
+        },
+        light: event.light,
+        caster: one.and_then(|one| one.caster.clone()),
+        part: one.map(|one| one.part.name()),
+        primitive: one.map(|one| one.primitive),
+        front_facing: one.map(|one| one.is_front),
+        depth: one.map(|one| one.depth),
+        depth_test: tests.and_then(|(_, depth, _)| word(depth)),
+        // Without a stencil test there is nothing that could pass or fail.
+        stencil_test: tests.filter(|_| operation.is_some()).and_then(|(stencil, ..)| word(stencil)),
+        operation: operation.map(operation_name),
+        stencil_before: stencil(event.before.stencil),
+        stencil_after: stencil(event.after.stencil),
+        depth_before: event.before.depth,
+        depth_after: event.after.depth,
+        count_before: counts.then_some(event.before.count),
+        count_after: counts.then_some(event.after.count),
+        note: one.and_then(|one| one.fate.note()).map(str::to_owned),
+    }
+}
+
+fn word(test: Test) -> Option<&'static str> {
+    test.passed().map(|passed| if passed { "pass" } else { "fail" })
+}
+
+impl Fate {
+    /// Why a triangle left no fragment, in words; `None` where it did.
+    #[must_use]
+    pub fn note(self) -> Option<&'static str> {
+        match self {
+            Fate::Tested { .. } => None,
+            Fate::Culled => Some("culled: the draw shows only the other side of triangles"),
+            Fate::Clipped(Clip::Near) => Some("clipped: it is nearer than the near plane"),
+            Fate::Clipped(Clip::Far) => Some("clipped: it is beyond the far plane"),
+            Fate::Dropped(Clip::Near) => Some("dropped by the shader: it is nearer than the near plane"),
+            Fate::Dropped(Clip::Far) => Some("dropped by the shader: it is beyond the far plane"),
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! The view ray through a pixel with the shadow-volume faces on it, nearest first, and the count as
+//! it runs: from infinity towards the surface where faces behind it count (z-fail), else from the
+//! eye.
+
+use super::{Event, PixelHistory};
+use crate::math::depth::DepthCurve;
+
+/// The faces of one light's volumes along the ray of a pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ladder {
+    /// Distance of the visible surface along the view axis in metres; `None` for the background.
+    pub surface: Option<f64>,
+    /// Faces count from infinity inwards, and not from the eye outwards.
+    pub is_from_infinity: bool,
+    /// What the count began with: volumes that contain the near plane, where that was counted.
+    pub start: i32,
+    /// What it ended with.
+    pub count: i32,
+    /// Nearest first.
+    pub rungs: Vec<Rung>,
+}
+
+/// One face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rung {
+    /// Index into the history's events.
+    pub event: usize,
+    /// Along the view axis in metres; infinite where it is at infinity.
+    pub distance: f64,
+    /// What it added: 1, −1, or 0 where it did not count.
+    pub added: i32,
+    /// The count once it was added, as it runs along the ray.
+    pub running: i32,
+}
+
+impl PixelHistory {
+    /// The ladder of a light; `None` where none of its volumes' faces is on the ray. `curve` is the
+    /// capture's.
+    #[must_use]
+    pub fn ladder(&self, light: usize, curve: &DepthCurve) -> Option<Ladder> {
+        let of_light = |event: &&Event| event.light == Some(light) && event.is_of_volume();
+        let near = self.events.iter().filter(of_light).filter(|event| !event.is_from_camera);
+        let start = near.map(Event::counted).sum();
+        let faces = || self.events.iter().enumerate().filter(|(_, event)| of_light(event) && event.is_from_camera);
+        let (_, first) = faces().next()?;
+        let mut rungs: Vec<Rung> = faces()
+            .filter_map(|(event, face)| {
+                let depth = face.triangle()?.depth;
+                let distance = curve.distance(depth).filter(|distance| *distance >= 0.0).unwrap_or(f64::INFINITY);
+                Some(Rung { event, distance, added: face.counted(), running: 0 })
+            })
+            .collect();
+        rungs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let is_from_infinity = self.counts_behind(light).unwrap_or(false);
+        let mut count = start;
+        let mut run = |rung: &mut Rung| {
+            count += rung.added;
+            rung.running = count;
+        };
+        if is_from_infinity {
+            rungs.iter_mut().rev().for_each(&mut run)
+        } else {
+            rungs.iter_mut().for_each(&mut run)
+        }
+        Some(Ladder { surface: curve.distance(first.before.depth), is_from_infinity, start, count, rungs })
+    }
+}

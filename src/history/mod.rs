@@ -1,0 +1,284 @@
+//! What happened to one pixel: every fragment in the order of the API, and what it did.
+//!
+//! ```text
+//! FramePlan::covering ─► gpu's fragment log ─┐
+//!        FramePlan (tests, operations) ──────┼─► stencil machine ─► PixelHistory ─► story, ladder
+//!        Capture (what the GPU stored) ──────┘                          └─► disagreements
+//! ```
+//!
+//! The log tells which triangles left a fragment, how deep, and of which side. The stencil machine
+//! takes them through the tests one by one, so what was before and after each is known, which no
+//! buffer keeps. What comes out is held against the capture after every pass, bit for bit. Triangles
+//! that cover the pixel and were culled or clipped are in the list too: they explain what is missing.
+//!
+//! Limits: depth, stencil and float counts are followed, colours are not; a pass of a shadow map has
+//! texels of its own and is not part of a pixel's history.
+
+mod check;
+mod json;
+mod ladder;
+mod replay;
+mod story;
+mod why;
+
+pub use check::Disagreement;
+pub use json::PixelDocument;
+pub use ladder::{Ladder, Rung};
+pub use story::operation_name;
+pub use why::{Faces, Why};
+
+use crate::capture::{Capture, FrameTarget, Snapshot};
+use crate::plan::{Clip, FramePlan, Part};
+use crate::stencil_machine::Stored;
+use wgpu::StencilOperation;
+
+/// One pixel's history.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PixelHistory {
+    /// Column and row, from the top left.
+    pub pixel: [u32; 2],
+    /// Does the technique use a stencil buffer?
+    pub has_stencil: bool,
+    /// Is greater depth nearer?
+    pub is_reversed: bool,
+    /// In the order in which they happened.
+    pub events: Vec<Event>,
+    /// What the events leave.
+    pub computed: Held,
+    /// What the GPU stored by the end of the frame; `None` where the capture has no picture.
+    pub captured: Option<Stored>,
+    /// What the GPU stored after each pass of the picture.
+    pub captured_after: Vec<CapturedAfter>,
+    /// Fragments that the GPU counted here.
+    pub counted: u32,
+    /// Where the log and geometry contradict each other.
+    pub contradictions: Vec<Disagreement>,
+}
+
+/// What a pixel holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Held {
+    /// As in the depth buffer.
+    pub depth: f32,
+    /// Eight bits; 0 where there is no stencil buffer.
+    pub stencil: u8,
+    /// The count of the volumes of the pass's light, where it is kept in a float; else 0.
+    pub count: f32,
+}
+
+/// What the GPU stored at the pixel by the end of a pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CapturedAfter {
+    /// Index of the pass.
+    pub pass: usize,
+    /// Depth and stencil; 0 where there is no stencil buffer.
+    pub stored: Stored,
+    /// The float count of the pass's light, where this was the last pass to add to it.
+    pub count: Option<f32>,
+}
+
+impl Held {
+    fn stored(self) -> Stored {
+        Stored { depth: self.depth, stencil: self.stencil }
+    }
+}
+
+/// One thing that happened.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// Index of the pass, as in the capture.
+    pub pass: usize,
+    /// Its name.
+    pub pass_name: String,
+    /// The light it belongs to.
+    pub light: Option<usize>,
+    /// The pass is seen from the camera: depths are the picture's.
+    pub is_from_camera: bool,
+    /// What happened.
+    pub kind: EventKind,
+    /// What the pixel held.
+    pub before: Held,
+    /// What it holds now.
+    pub after: Held,
+}
+
+/// What can happen to a pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EventKind {
+    /// The pass begins by clearing depth.
+    ClearDepth,
+    /// The pass begins by clearing the stencil.
+    ClearStencil,
+    /// The pass begins by clearing the float count.
+    ClearCount,
+    /// A triangle that covers the pixel.
+    Triangle(Box<TriangleEvent>),
+}
+
+/// A triangle that covers the pixel, and what became of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TriangleEvent {
+    /// Index of the draw in its pass.
+    pub draw: usize,
+    /// Name of the draw.
+    pub draw_name: String,
+    /// The object it shows or whose shadow it makes.
+    pub caster: Option<String>,
+    /// Which part of the object or of its shadow.
+    pub part: Part,
+    /// Index among the draw's triangles in the order in which they are drawn.
+    pub primitive: u32,
+    /// Index in the mesh's triangle list.
+    pub triangle: u32,
+    /// Corners, homogeneous and relative to the origin of the pass's view.
+    pub corners: [[f32; 4]; 3],
+    /// Its front is seen.
+    pub is_front: bool,
+    /// As the depth test sees it; outside 0 to 1 where it was clipped.
+    pub depth: f32,
+    /// What became of it.
+    pub fate: Fate,
+}
+
+/// What became of a triangle at a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fate {
+    /// Its fragment went through the tests.
+    Tested {
+        /// The stencil test.
+        stencil: Test,
+        /// The depth test.
+        depth: Test,
+        /// The operation that ran on the stencil; `None` where the draw tests no stencil.
+        operation: Option<StencilOperation>,
+    },
+    /// The shader threw its fragment away.
+    Dropped(Clip),
+    /// The draw shows only the other side of triangles.
+    Culled,
+    /// It lies before the near or behind the far plane.
+    Clipped(Clip),
+}
+
+/// How a test went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Test {
+    /// It passed.
+    Passed,
+    /// It failed.
+    Failed,
+    /// It passed whatever the values, as its function is `Always` or it is off.
+    Always,
+    /// The test before it failed.
+    NotReached,
+}
+
+impl Test {
+    /// Did it let the fragment through? `None` where it was not asked.
+    #[must_use]
+    pub fn passed(self) -> Option<bool> {
+        match self {
+            Test::Passed | Test::Always => Some(true),
+            Test::Failed => Some(false),
+            Test::NotReached => None,
+        }
+    }
+}
+
+impl Fate {
+    /// Did the fragment pass all tests, and reach the colour target?
+    #[must_use]
+    pub fn passed(self) -> bool {
+        matches!(self, Fate::Tested { depth, .. } if depth.passed() == Some(true))
+    }
+}
+
+impl Event {
+    /// The triangle, where it was one.
+    #[must_use]
+    pub fn triangle(&self) -> Option<&TriangleEvent> {
+        match &self.kind {
+            EventKind::Triangle(triangle) => Some(triangle),
+            _ => None,
+        }
+    }
+
+    /// How much it added to the count of shadow volumes, in the stencil or in a float: a step round
+    /// the end of eight bits counts as one.
+    #[must_use]
+    pub fn counted(&self) -> i32 {
+        let in_stencil = self.after.stencil.wrapping_sub(self.before.stencil) as i8;
+        i32::from(in_stencil) + (self.after.count - self.before.count) as i32
+    }
+
+    /// It is a face of a shadow volume.
+    #[must_use]
+    pub fn is_of_volume(&self) -> bool {
+        self.triangle().is_some_and(|one| matches!(one.part, Part::Side | Part::LightCap | Part::DarkCap))
+    }
+}
+
+impl PixelHistory {
+    /// Do the events make what the GPU stored, after every pass and bit for bit, and are they whole
+    /// and in order? If not, it is a bug of ours; [`PixelHistory::disagreements`] tells where.
+    #[must_use]
+    pub fn agrees(&self) -> bool {
+        self.disagreements().is_empty()
+    }
+
+    /// The triangles with their events, in order.
+    pub fn triangles(&self) -> impl Iterator<Item = (&Event, &TriangleEvent)> {
+        self.events.iter().filter_map(|event| Some((event, event.triangle()?)))
+    }
+
+    /// Do a light's volume faces count where they lie behind the visible surface, and not in front of
+    /// it? `None` where it has none here that would tell.
+    #[must_use]
+    pub fn counts_behind(&self, light: usize) -> Option<bool> {
+        let is_behind = |event: &Event| {
+            let depth = event.triangle()?.depth;
+            let is_behind = if self.is_reversed { depth <= event.before.depth } else { depth >= event.before.depth };
+            Some((event.counted() != 0, is_behind))
+        };
+        let faces = self.events.iter().filter(|event| event.light == Some(light) && event.is_from_camera);
+        let seen: Vec<(bool, bool)> = faces.filter(|event| event.is_of_volume()).filter_map(is_behind).collect();
+        // Where none has counted, those that lie here are on the side that does not.
+        let counting = seen.iter().find(|(counts, _)| *counts).map(|(_, is_behind)| *is_behind);
+        counting.or_else(|| seen.first().map(|(_, is_behind)| !is_behind))
+    }
+
+    /// Does an event of a pass change what the pixel holds, or reach its colour?
+    #[must_use]
+    pub fn is_touched_by(&self, pass: usize) -> bool {
+        let touches =
+            |event: &Event| event.before != event.after || event.triangle().is_some_and(|one| one.fate.passed());
+        self.events.iter().filter(|event| event.pass == pass).any(touches)
+    }
+}
+
+/// What the GPU stored at a pixel after each pass of the picture.
+fn captured_after(plan: &FramePlan, capture: &Capture, pixel: [u32; 2]) -> Vec<CapturedAfter> {
+    let frame = |index: usize| match &capture.steps.get(index)?.snapshot {
+        Snapshot::Frame(frame) => Some((index, frame)),
+        Snapshot::Map { .. } => None,
+    };
+    let mut after = Vec::new();
+    for (pass, frame) in (0..plan.passes.len()).filter_map(frame) {
+        let stencil = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(pixel)).unwrap_or(0);
+        let Some(depth) = frame.depth.image.depth_at(pixel) else { continue };
+        let counts = |index: usize| frame_counts(plan, capture, index);
+        let light =
+            counts(pass).filter(|light| !(pass + 1..plan.passes.len()).any(|later| counts(later) == Some(*light)));
+        let count = light.and_then(|light| capture.lights.get(light)?.count.as_ref()?.count_at(pixel));
+        after.push(CapturedAfter { pass, stored: Stored { depth, stencil }, count });
+    }
+    after
+}
+
+/// The light whose float count a pass adds to.
+fn frame_counts(plan: &FramePlan, capture: &Capture, pass: usize) -> Option<usize> {
+    match &capture.steps.get(pass)?.snapshot {
+        Snapshot::Frame(frame) if frame.target == FrameTarget::Count => plan.passes[pass].light.map(|light| light.0),
+        _ => None,
+    }
+}

@@ -1,0 +1,170 @@
+//! Takes the fragments of a log through the tests of their draws.
+
+use super::{Disagreement, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent, captured_after};
+use crate::capture::Capture;
+use crate::gpu::FragmentLog;
+use crate::plan::{AttachmentRole, ColorWrite, Coverage, Covering, Draw, Face, FramePlan, Pass, Program, ViewId};
+use crate::stencil_machine::{self, Fragment};
+use wgpu::CompareFunction;
+
+/// wgpu clears new textures to zero.
+pub(super) const NEW: Held = Held { depth: 0.0, stencil: 0, count: 0.0 };
+
+impl PixelHistory {
+    /// The history of `pixel` in the frame of `plan`, which left `capture`: `covering` are the
+    /// triangles over it, and `log` the fragments that the GPU made of them.
+    #[must_use]
+    pub fn new(
+        plan: &FramePlan,
+        capture: &Capture,
+        pixel: [u32; 2],
+        covering: &[Covering],
+        log: &FragmentLog,
+    ) -> PixelHistory {
+        let mut replay = Replay { plan, held: NEW, events: Vec::new(), contradictions: Vec::new() };
+        let mut fragments = log.fragments.iter().peekable();
+        let mut covering = covering.iter().enumerate().peekable();
+        for (index, pass) in plan.passes.iter().enumerate().filter(|(_, pass)| plan.is_of_picture(pass)) {
+            replay.clear(index, pass);
+            while let Some((id, one)) = covering.next_if(|(_, one)| one.pass == index) {
+                let mut has_fragment = false;
+                while let Some(fragment) = fragments.next_if(|fragment| fragment.covering == id) {
+                    has_fragment = true;
+                    replay.test(pass, one, fragment.is_front, fragment.depth);
+                }
+                replay.compare(pass, one, has_fragment);
+            }
+        }
+        let captured_after = captured_after(plan, capture, pixel);
+        PixelHistory {
+            pixel,
+            has_stencil: plan.attachments.iter().any(|attachment| {
+                attachment.role == AttachmentRole::DepthStencil && attachment.format.has_stencil_aspect()
+            }),
+            is_reversed: plan.depth.mapping.is_reversed(),
+            computed: replay.held,
+            events: replay.events,
+            captured: captured_after.last().map(|captured| captured.stored),
+            captured_after,
+            counted: log.counted,
+            contradictions: replay.contradictions,
+        }
+    }
+}
+
+struct Replay<'a> {
+    plan: &'a FramePlan,
+    held: Held,
+    events: Vec<Event>,
+    contradictions: Vec<Disagreement>,
+}
+
+impl Replay<'_> {
+    fn push(&mut self, index: usize, kind: EventKind, after: Held) {
+        let pass = &self.plan.passes[index];
+        self.events.push(Event {
+            pass: index,
+            pass_name: pass.name.clone(),
+            light: pass.light.map(|light| light.0),
+            is_from_camera: pass.view == ViewId(0),
+            kind,
+            before: self.held,
+            after,
+        });
+        self.held = after;
+    }
+
+    /// What a pass clears as it begins.
+    fn clear(&mut self, index: usize, pass: &Pass) {
+        if let Some(target) = &pass.depth_stencil {
+            if let Some(depth) = target.clear_depth {
+                self.push(index, EventKind::ClearDepth, Held { depth, ..self.held });
+            }
+            if let Some(stencil) = target.clear_stencil {
+                self.push(index, EventKind::ClearStencil, Held { stencil, ..self.held });
+            }
+        }
+        if let Some(clear) = pass.color.as_ref().and_then(|target| target.clear).filter(|_| self.counts(pass)) {
+            self.push(index, EventKind::ClearCount, Held { count: clear[0] as f32, ..self.held });
+        }
+    }
+
+    /// Does a pass draw into a float count?
+    fn counts(&self, pass: &Pass) -> bool {
+        let role = |target: &crate::plan::ColorTarget| self.plan.attachment(target.attachment).role;
+        pass.color.as_ref().is_some_and(|target| matches!(role(target), AttachmentRole::Count(_)))
+    }
+
+    fn test(&mut self, pass: &Pass, one: &Covering, is_front: bool, depth: f32) {
+        let draw = &pass.draws[one.draw];
+        if let Some(clip) = draw.program.drops(depth) {
+            self.push(one.pass, triangle(draw, one, Face { is_front, depth }, Fate::Dropped(clip)), self.held);
+            return;
+        }
+        let depth = if draw.raster.unclipped_depth { depth.clamp(0.0, 1.0) } else { depth };
+        let outcome =
+            stencil_machine::test(&draw.raster, Fragment { depth, front_facing: is_front }, self.held.stored());
+        let side = if is_front { &draw.raster.stencil.front } else { &draw.raster.stencil.back };
+        let has_test = draw.raster.stencil.is_enabled();
+        let fate = Fate::Tested {
+            stencil: test_of(Some(outcome.stencil_passed), side.compare),
+            depth: test_of(outcome.depth_passed, draw.raster.depth_compare),
+            operation: has_test.then_some(outcome.operation),
+        };
+        let added = if outcome.passed() && self.counts(pass) { count_of(draw, is_front) } else { 0.0 };
+        let after = Held { depth: outcome.after.depth, stencil: outcome.after.stencil, count: self.held.count + added };
+        self.push(one.pass, triangle(draw, one, Face { is_front, depth }, fate), after);
+    }
+
+    /// What geometry says of the triangle, against whether the GPU made a fragment of it.
+    fn compare(&mut self, pass: &Pass, one: &Covering, has_fragment: bool) {
+        let draw = &pass.draws[one.draw];
+        let (face, fate) = match (one.coverage, has_fragment) {
+            (Coverage::Doubtful, _) | (Coverage::Sure, true) => return,
+            (Coverage::Culled(face), false) => (face, Fate::Culled),
+            (Coverage::Clipped(face, clip), false) => (face, Fate::Clipped(clip)),
+            (coverage, _) => {
+                let (pass, draw, primitive) = (one.pass, draw.name.clone(), one.primitive);
+                let is_missing = coverage == Coverage::Sure;
+                self.contradictions.push(Disagreement::Geometry { pass, draw, primitive, is_missing });
+                return;
+            }
+        };
+        self.push(one.pass, triangle(draw, one, face, fate), self.held);
+    }
+}
+
+fn triangle(draw: &Draw, one: &Covering, face: Face, fate: Fate) -> EventKind {
+    EventKind::Triangle(Box::new(TriangleEvent {
+        draw: one.draw,
+        draw_name: draw.name.clone(),
+        caster: draw.caster.clone(),
+        part: draw.part,
+        primitive: one.primitive,
+        triangle: one.triangle,
+        corners: one.corners,
+        is_front: face.is_front,
+        depth: face.depth,
+        fate,
+    }))
+}
+
+fn test_of(passed: Option<bool>, function: CompareFunction) -> Test {
+    match passed {
+        None => Test::NotReached,
+        Some(true) if function == CompareFunction::Always => Test::Always,
+        Some(true) => Test::Passed,
+        Some(false) => Test::Failed,
+    }
+}
+
+/// What a draw into a float count adds.
+fn count_of(draw: &Draw, is_front: bool) -> f32 {
+    match (draw.raster.color, draw.program) {
+        (ColorWrite::None, _) => 0.0,
+        (_, Program::Count) if is_front => draw.constants.count,
+        (_, Program::Count) => -draw.constants.count,
+        (_, Program::Flat) => draw.constants.flat[0],
+        _ => 0.0,
+    }
+}

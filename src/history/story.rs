@@ -1,0 +1,133 @@
+//! A history as text that a student can follow: pass by pass, a line an event.
+
+use super::{Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
+use crate::math::depth::DepthCurve;
+use crate::numbers;
+use crate::plan::Part;
+use std::fmt::Write;
+use wgpu::StencilOperation;
+
+/// The name of a stencil operation in JSON and text.
+#[must_use]
+pub fn operation_name(operation: StencilOperation) -> &'static str {
+    match operation {
+        StencilOperation::Keep => "keep",
+        StencilOperation::Zero => "zero",
+        StencilOperation::Replace => "replace",
+        StencilOperation::Invert => "invert",
+        StencilOperation::IncrementClamp => "increment-clamp",
+        StencilOperation::DecrementClamp => "decrement-clamp",
+        StencilOperation::IncrementWrap => "increment-wrap",
+        StencilOperation::DecrementWrap => "decrement-wrap",
+    }
+}
+
+impl PixelHistory {
+    /// The whole history in lines; passes, lights and triangles count from 1. `curve` is the
+    /// capture's, and turns depths into metres.
+    #[must_use]
+    pub fn story(&self, curve: &DepthCurve) -> String {
+        let mut text = format!("pixel {},{}: {}\n", self.pixel[0], self.pixel[1], self.result(curve));
+        let lights: std::collections::BTreeSet<usize> = self.events.iter().filter_map(|event| event.light).collect();
+        for light in lights {
+            if let Some(why) = self.why(light) {
+                // Writing to a string can't fail.
+                let _ = writeln!(text, "  {}: {why}", numbers::light(light));
+            }
+        }
+        let mut pass = None;
+        for event in &self.events {
+            if pass.replace(event.pass) != Some(event.pass) {
+                let of = event.light.map_or_else(String::new, |light| format!(" of {}", numbers::light(light)));
+                let _ = writeln!(text, "\npass {}, {}{of}", event.pass + 1, event.pass_name);
+            }
+            let _ = writeln!(text, "  {}", self.line(event, curve));
+        }
+        for disagreement in self.disagreements() {
+            let _ = writeln!(text, "\nTHIS HISTORY IS WRONG, which is a bug of stencilscope: {disagreement}");
+        }
+        text
+    }
+
+    /// What the pixel ends with, and whether the GPU stored the same.
+    fn result(&self, curve: &DepthCurve) -> String {
+        let Held { depth, stencil, .. } = self.computed;
+        let surface = match curve.distance(depth) {
+            Some(distance) => format!("a surface {} away (depth {})", numbers::metres(distance), numbers::depth(depth)),
+            None => format!("no surface (depth {})", numbers::depth(depth)),
+        };
+        let stencil = if self.has_stencil { format!(", stencil {}", numbers::signed(stencil)) } else { String::new() };
+        let agrees = match (self.agrees(), self.captured) {
+            (true, Some(_)) => "as the GPU stored it",
+            (true, None) => "not captured",
+            (false, _) => "NOT as the GPU stored it",
+        };
+        format!("{surface}{stencil}, {agrees}")
+    }
+
+    /// One event in a line.
+    #[must_use]
+    pub fn line(&self, event: &Event, curve: &DepthCurve) -> String {
+        match &event.kind {
+            EventKind::ClearDepth => format!("clear depth to {}", numbers::depth(event.after.depth)),
+            EventKind::ClearStencil => format!("clear stencil to {}", event.after.stencil),
+            EventKind::ClearCount => format!("clear count to {}", event.after.count),
+            EventKind::Triangle(one) => {
+                let who = who(one);
+                let side = if one.is_front { "front" } else { "back" };
+                let distance = match curve.distance(one.depth).filter(|_| event.is_from_camera) {
+                    Some(distance) if distance >= 0.0 => format!(", at {}", numbers::metres(distance)),
+                    Some(_) => ", beyond infinity".to_owned(),
+                    None if event.is_from_camera => ", at infinity".to_owned(),
+                    None => String::new(),
+                };
+                format!("{who}, {side}{distance}: {}", self.what_became(event, one))
+            }
+        }
+    }
+
+    fn what_became(&self, event: &Event, one: &TriangleEvent) -> String {
+        let Fate::Tested { stencil, depth, operation } = one.fate else {
+            return one.fate.note().unwrap_or_default().to_owned();
+        };
+        let tests = match (stencil, depth) {
+            (Test::Failed, _) => "fails the stencil test",
+            (_, Test::Failed) => "fails the depth test",
+            (Test::Passed, Test::Passed) => "passes stencil and depth test",
+            (Test::Passed, _) => "passes the stencil test",
+            (_, Test::Passed) => "passes the depth test",
+            _ => "no test stops it",
+        };
+        let mut text = tests.to_owned();
+        let [before, after] = [event.before, event.after];
+        if before.depth != after.depth {
+            text.push_str(", and its depth is stored");
+        }
+        if let Some(operation) = operation.filter(|operation| *operation != StencilOperation::Keep) {
+            let (name, after_value) = (operation_name(operation), numbers::signed(after.stencil));
+            let _ = if before.stencil == after.stencil {
+                write!(text, "; {name}: stencil stays {after_value}")
+            } else {
+                write!(text, "; {name}: stencil {} → {after_value}", numbers::signed(before.stencil))
+            };
+        }
+        if before.count != after.count {
+            let _ = write!(text, "; count {} → {}", before.count, after.count);
+        }
+        text
+    }
+}
+
+/// `side of torus 2, triangle 18`.
+fn who(one: &TriangleEvent) -> String {
+    let part = match one.part {
+        Part::Surface => one.draw_name.clone(),
+        Part::Receiver => format!("receiver {}", one.draw_name),
+        Part::PlanarShadow => format!("flattened {}", one.caster.as_ref().unwrap_or(&one.draw_name)),
+        other => {
+            let caster = one.caster.as_ref().unwrap_or(&one.draw_name);
+            format!("{} of {caster}", other.name().replace('-', " "))
+        }
+    };
+    format!("{part}, triangle {}", one.triangle + 1)
+}

@@ -1,0 +1,175 @@
+//! Why a light does or does not arrive at a pixel, in one sentence, from what its history counts.
+
+use super::{Event, EventKind, PixelHistory};
+use crate::numbers;
+use crate::plan::Part;
+use std::collections::BTreeSet;
+use std::fmt;
+
+/// How many faces of each side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Faces {
+    /// Seen from the front.
+    pub front: u32,
+    /// Seen from the back.
+    pub back: u32,
+}
+
+/// What decided about a light at a pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Why {
+    /// Faces of shadow volumes were counted.
+    Counted {
+        /// Faces behind the surface count, as their depth test fails; else those in front of it.
+        is_behind: bool,
+        /// Those that counted.
+        faces: Faces,
+        /// Volumes that contain the near plane, where that was asked.
+        near: Option<i32>,
+        /// What was left, as the light pass reads it.
+        count: Count,
+        /// The light pass let the surface through.
+        is_lit: bool,
+    },
+    /// Casters were flattened onto receivers.
+    Flattened {
+        /// Names of the casters whose flattened triangles passed all tests here.
+        casters: Vec<String>,
+        /// Their triangles that cover the pixel and failed a test.
+        failed: u32,
+        /// The light pass let the surface through, where it comes after the shadows.
+        is_lit: bool,
+    },
+}
+
+/// A count as it was kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Count {
+    /// In the stencil.
+    Stencil(u8),
+    /// In a float.
+    Float(f32),
+}
+
+impl fmt::Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Count::Stencil(count) => f.write_str(&numbers::signed(*count)),
+            Count::Float(count) if *count < 0.0 => write!(f, "−{}", -count),
+            Count::Float(count) => write!(f, "{count}"),
+        }
+    }
+}
+
+impl PixelHistory {
+    /// What decided about a light; `None` where neither volumes nor flattened casters were drawn for
+    /// it over this pixel, and no surface is there to be lit.
+    #[must_use]
+    pub fn why(&self, light: usize) -> Option<Why> {
+        let of_light = || self.events.iter().filter(move |event| event.light == Some(light));
+        let is_lit = of_light()
+            .any(|event| event.pass_name == LIGHT_PASS && event.triangle().is_some_and(|one| one.fate.passed()));
+        let flattened: Vec<&Event> = of_light().filter(|event| part(event) == Some(Part::PlanarShadow)).collect();
+        if !flattened.is_empty() {
+            return Some(why_flattened(&flattened, is_lit));
+        }
+        let volume: Vec<&Event> = of_light().filter(|event| event.is_of_volume()).collect();
+        let last = volume.last()?;
+        let mut faces = Faces::default();
+        for event in volume.iter().filter(|event| event.is_from_camera && event.counted() != 0) {
+            let is_front = event.triangle().is_some_and(|one| one.is_front);
+            *(if is_front { &mut faces.front } else { &mut faces.back }) += 1;
+        }
+        let is_behind = self.counts_behind(light).unwrap_or(false);
+        let near = volume.iter().filter(|event| !event.is_from_camera);
+        let near = near.clone().next().map(|_| near.map(|event| event.counted()).sum());
+        let in_float = self.events.iter().any(|event| event.kind == EventKind::ClearCount);
+        let count = if in_float { Count::Float(last.after.count) } else { Count::Stencil(last.after.stencil) };
+        Some(Why::Counted { is_behind, faces, near, count, is_lit })
+    }
+}
+
+/// What techniques call the pass that adds a light.
+const LIGHT_PASS: &str = "light";
+
+fn part(event: &Event) -> Option<Part> {
+    event.triangle().map(|one| one.part)
+}
+
+fn why_flattened(events: &[&Event], is_lit: bool) -> Why {
+    let passed = |event: &&&Event| event.triangle().is_some_and(|one| one.fate.passed());
+    let name = |event: &&Event| event.triangle().and_then(|one| one.caster.clone());
+    let casters: BTreeSet<String> = events.iter().filter(passed).filter_map(name).collect();
+    let failed = events.iter().filter(|event| !passed(event)).count() as u32;
+    Why::Flattened { casters: casters.into_iter().collect(), failed, is_lit }
+}
+
+impl fmt::Display for Why {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Why::Counted { is_behind, faces, near, count, is_lit } => {
+                if let Some(near) = near {
+                    write!(f, "the near plane is in {}; ", counted(*near as u32, "volume"))?;
+                }
+                let side = if *is_behind { "behind" } else { "in front of" };
+                let all = faces.front + faces.back;
+                if all == 0 {
+                    write!(f, "no volume face {side} it counts")?;
+                } else {
+                    let s = if all == 1 { "s" } else { "" };
+                    let [front, back] = [faces.front, faces.back];
+                    // A float is counted by draws whose tests are the other way round.
+                    let are_counted = match (count, is_behind) {
+                        (Count::Stencil(_), true) => format!("fail{s} the depth test"),
+                        (Count::Stencil(_), false) => {
+                            format!("pass{} the depth test", if all == 1 { "es" } else { "" })
+                        }
+                        (Count::Float(_), _) => {
+                            if all == 1 {
+                                "is counted".to_owned()
+                            } else {
+                                "are counted".to_owned()
+                            }
+                        }
+                    };
+                    write!(f, "{} {side} it {are_counted}: ", counted(all, "volume face"))?;
+                    if *is_behind {
+                        write!(f, "{back} back, {front} front")?
+                    } else {
+                        write!(f, "{front} front, {back} back")?
+                    }
+                }
+                let then = if *is_lit { "adds the light" } else { "skips it" };
+                write!(f, "; count {count}, so the light pass {then}")
+            }
+            Why::Flattened { casters, failed, is_lit } => {
+                if casters.is_empty() {
+                    let tests = if *failed == 1 { "its test fails" } else { "their tests fail" };
+                    write!(
+                        f,
+                        "{} cover{} it, but {tests}",
+                        counted(*failed, "flattened triangle"),
+                        if *failed == 1 { "s" } else { "" }
+                    )?;
+                } else {
+                    write!(f, "the flattened shadow of {} falls on its receiver here", casters.join(" and "))?;
+                }
+                write!(
+                    f,
+                    ", so {}",
+                    if *is_lit && casters.is_empty() {
+                        "the light arrives"
+                    } else if *is_lit {
+                        "it is darkened after the light pass"
+                    } else {
+                        "the light pass skips it"
+                    }
+                )
+            }
+        }
+    }
+}
+
+fn counted(count: u32, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}

@@ -1,0 +1,245 @@
+//! Which triangles of a frame lie over one pixel, from geometry alone.
+//!
+//! Every corner goes through the pass's matrix. A first sieve keeps triangles that are not wholly
+//! on one side of a small square round the pixel's centre: four planes through the eye, so it holds
+//! for corners behind the eye and at infinity too. What is left is looked at in `f64`: seen from
+//! the eye, three signed areas say whether the centre is inside (Olano and Greer 1997, "Triangle
+//! scan conversion using 2D homogeneous coordinates"), and weigh the corners' depths.
+//!
+//! A rasterizer rounds corners to parts of a pixel, so near an edge only the GPU can tell. This
+//! tells what it must be asked about, what it must say yes to, and what it never sees: triangles
+//! that are culled, or clipped away at the near or far plane.
+
+use super::{Draw, FramePlan, MeshId, Pass, Program, ViewId};
+use crate::math::depth::DepthMapping;
+use glam::{DVec2, DVec3, DVec4, Mat4, Vec4};
+use std::collections::BTreeMap;
+
+/// Half the side of the square round the centre within which a triangle is asked about, pixels.
+const DOUBT: f64 = 1.0;
+/// A centre this far inside of every edge is covered, however corners are rounded, pixels.
+const SAFE: f64 = 1.0 / 16.0;
+/// Depths this near to 0 and 1 may round out of the range.
+const SAFE_DEPTH: f64 = 1e-6;
+/// How far `f32` may miss a corner's place in clip space, in parts of the largest term of its sum.
+const ROUNDING: f32 = 1e-6;
+
+/// A triangle over a pixel, or near it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Covering {
+    /// Index of the pass.
+    pub pass: usize,
+    /// Index of the draw in its pass.
+    pub draw: usize,
+    /// Index among the draw's triangles in the order in which they are drawn.
+    pub primitive: u32,
+    /// Index in the mesh's triangle list.
+    pub triangle: u32,
+    /// Corners as the mesh has them: homogeneous, relative to the origin of the pass's view.
+    pub corners: [[f32; 4]; 3],
+    /// What geometry says.
+    pub coverage: Coverage,
+}
+
+/// What geometry says of a triangle and a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Coverage {
+    /// It leaves a fragment there.
+    Sure,
+    /// The pixel's centre is too near to an edge, or the triangle too thin, to tell.
+    Doubtful,
+    /// It covers the pixel, but the draw throws this side of triangles away.
+    Culled(Face),
+    /// It covers the pixel, but lies outside the depths that are drawn there.
+    Clipped(Face, Clip),
+}
+
+/// The side of a triangle that is seen, and how deep it is at the pixel's centre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Face {
+    /// The front: corners run counterclockwise on the screen.
+    pub is_front: bool,
+    /// Depth as it would be stored; outside 0 to 1 where clipped.
+    pub depth: f32,
+}
+
+/// Which plane clipped a triangle away.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Clip {
+    /// It is nearer than the near plane.
+    Near,
+    /// It is beyond the far plane.
+    Far,
+}
+
+impl FramePlan {
+    /// Does a pass draw into the picture, or test against its depth and stencil? Passes of shadow
+    /// maps and textures have pixels of their own.
+    #[must_use]
+    pub fn is_of_picture(&self, pass: &Pass) -> bool {
+        let is_map = |id| matches!(self.attachment(id).role, super::AttachmentRole::Map(_));
+        let color = pass.color.iter().map(|target| target.attachment);
+        let depth = pass.depth_stencil.iter().map(|target| target.attachment);
+        !color.chain(depth).any(is_map)
+    }
+
+    /// Every triangle of every pass of the picture that lies over the centre of `pixel` or within a
+    /// pixel of it, in the order in which the GPU draws them.
+    #[must_use]
+    pub fn covering(&self, pixel: [u32; 2]) -> Vec<Covering> {
+        let mut search = Search { plan: self, pixel, sieves: BTreeMap::new(), found: BTreeMap::new() };
+        let mut covering = Vec::new();
+        for (pass_index, pass) in self.passes.iter().enumerate().filter(|(_, pass)| self.is_of_picture(pass)) {
+            for (draw_index, draw) in pass.draws.iter().enumerate() {
+                search.add(pass_index, pass.view, draw_index, draw, &mut covering);
+            }
+        }
+        covering
+    }
+}
+
+/// Triangles of a mesh are looked through once, however many draws show them.
+type Searched = (MeshId, ViewId, u32, u32, u32);
+
+struct Search<'a> {
+    plan: &'a FramePlan,
+    pixel: [u32; 2],
+    /// For each vertex of a mesh in a view, which of the four planes it is outside of.
+    sieves: BTreeMap<(MeshId, ViewId), Vec<u8>>,
+    found: BTreeMap<Searched, Vec<u32>>,
+}
+
+impl Search<'_> {
+    fn add(&mut self, pass: usize, view: ViewId, draw_index: usize, draw: &Draw, covering: &mut Vec<Covering>) {
+        let mesh = &self.plan.meshes[draw.mesh.0];
+        let (vertices, indices) = (mesh.vertices.data(), mesh.indices.data());
+        let matrix = self.plan.views[view.0].clip_from_relative;
+        let square = Square::new(self.pixel, self.plan.size);
+        let sieve = self.sieves.entry((draw.mesh, view)).or_insert_with(|| square.sieve(matrix, vertices));
+        let base = draw.base_vertex as usize;
+        let corners_of = |triangle: u32| {
+            let corners = indices.get(triangle as usize * 3..)?.get(..3)?;
+            Some([corners[0] as usize + base, corners[1] as usize + base, corners[2] as usize + base])
+        };
+        let range = draw.triangles.clone();
+        let found =
+            self.found.entry((draw.mesh, view, range.start, range.end, draw.base_vertex)).or_insert_with(|| {
+                let is_near = |triangle: &u32| {
+                    let outside = |corner: usize| sieve.get(corner).copied().unwrap_or(u8::MAX);
+                    corners_of(*triangle).is_some_and(|[a, b, c]| outside(a) & outside(b) & outside(c) == 0)
+                };
+                range.filter(is_near).collect()
+            });
+        let mut look = |triangle: u32, primitive: u32| {
+            let corners = corners_of(triangle).map(|corners| corners.map(|corner| vertices[corner]));
+            let found = corners.and_then(|corners| Some((corners, square.look(matrix, corners)?)));
+            let Some((corners, seen)) = found else { return };
+            let coverage = self.plan.coverage(draw, seen);
+            covering.push(Covering { pass, draw: draw_index, primitive, triangle, corners, coverage });
+        };
+        if matches!(draw.program, Program::Label(_)) {
+            // Labels run in reverse order.
+            found.iter().rev().for_each(|triangle| look(*triangle, draw.triangles.end - 1 - triangle));
+        } else {
+            found.iter().for_each(|triangle| look(*triangle, triangle - draw.triangles.start));
+        }
+    }
+}
+
+impl FramePlan {
+    fn coverage(&self, draw: &Draw, seen: Seen) -> Coverage {
+        let Seen::Inside { face, depth, is_safe } = seen else { return Coverage::Doubtful };
+        let is_culled = match draw.raster.cull {
+            Some(wgpu::Face::Front) => face.is_front,
+            Some(wgpu::Face::Back) => !face.is_front,
+            None => false,
+        };
+        let is_reversed = self.depth.mapping == DepthMapping::ReversedInfinite;
+        let outside = [(depth < -SAFE_DEPTH, !is_reversed), (depth > 1.0 + SAFE_DEPTH, is_reversed)];
+        let clip = outside.into_iter().find(|(is_outside, _)| *is_outside && !draw.raster.unclipped_depth);
+        let is_between = (SAFE_DEPTH..=1.0 - SAFE_DEPTH).contains(&depth);
+        match clip {
+            _ if !is_safe => Coverage::Doubtful,
+            Some((_, is_near)) => Coverage::Clipped(face, if is_near { Clip::Near } else { Clip::Far }),
+            None if is_culled => Coverage::Culled(face),
+            None if is_between || draw.raster.unclipped_depth => Coverage::Sure,
+            None => Coverage::Doubtful,
+        }
+    }
+}
+
+/// A pixel's centre and the square round it, in normalized device coordinates.
+struct Square {
+    center: DVec2,
+    /// Half of a pixel's sides.
+    half_pixel: DVec2,
+}
+
+/// How a triangle lies to the centre.
+enum Seen {
+    Inside { face: Face, depth: f64, is_safe: bool },
+    Near,
+}
+
+impl Square {
+    fn new(pixel: [u32; 2], size: [u32; 2]) -> Square {
+        let size = DVec2::new(f64::from(size[0]), f64::from(size[1]));
+        let center = (DVec2::new(f64::from(pixel[0]), f64::from(pixel[1])) + 0.5) / size;
+        Square { center: DVec2::new(center.x * 2.0 - 1.0, 1.0 - center.y * 2.0), half_pixel: 1.0 / size }
+    }
+
+    /// Four bits for each vertex: right of, left of, above and below the square, as far as `f32` can
+    /// tell for sure.
+    fn sieve(&self, clip_from_relative: Mat4, vertices: &[[f32; 4]]) -> Vec<u8> {
+        let clip = clip_from_relative.as_dmat4();
+        let reach = self.half_pixel * (2.0 * DOUBT);
+        let [x, y, w] = [clip.row(0), clip.row(1), clip.row(3)];
+        let planes = [
+            x - w * (self.center.x + reach.x),
+            w * (self.center.x - reach.x) - x,
+            y - w * (self.center.y + reach.y),
+            w * (self.center.y - reach.y) - y,
+        ];
+        let planes = glam::DMat4::from_cols(planes[0], planes[1], planes[2], planes[3]).transpose();
+        let largest = planes.to_cols_array().into_iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        let (planes, rounding) = (planes.as_mat4(), ROUNDING * 4.0 * largest as f32);
+        let outside = |vertex: &[f32; 4]| {
+            let vertex = Vec4::from_array(*vertex);
+            let bound = vertex.abs().max_element() * rounding;
+            (planes * vertex).cmpgt(Vec4::splat(bound)).bitmask() as u8
+        };
+        vertices.iter().map(outside).collect()
+    }
+
+    /// `None` where the triangle is farther from the centre than doubt reaches.
+    fn look(&self, clip_from_relative: Mat4, corners: [[f32; 4]; 3]) -> Option<Seen> {
+        let matrix = clip_from_relative.as_dmat4();
+        let clip = corners.map(|corner| matrix * DVec4::from_array(corner.map(f64::from)));
+        // The centre becomes the axis: a corner on the ray through it has x = y = 0.
+        let seen = clip.map(|corner| {
+            let offset = (corner.truncate().truncate() - self.center * corner.w) / (2.0 * self.half_pixel);
+            DVec3::new(offset.x, offset.y, corner.w)
+        });
+        let edges = [seen[1].cross(seen[2]), seen[2].cross(seen[0]), seen[0].cross(seen[1])];
+        // Pixels from the centre to the line of each edge, positive on one side.
+        let distances = edges.map(|edge| edge.z / edge.truncate().length());
+        let (least, most) = (
+            distances.into_iter().fold(f64::INFINITY, f64::min),
+            distances.into_iter().fold(f64::NEG_INFINITY, f64::max),
+        );
+        if least < -DOUBT && most > DOUBT {
+            return None;
+        }
+        let weights = DVec3::new(edges[0].z, edges[1].z, edges[2].z);
+        let sum = weights.element_sum();
+        let interpolated = |values: [f64; 3]| weights.dot(DVec3::from_array(values)) / sum;
+        let w = interpolated(clip.map(|corner| corner.w));
+        let is_inside = (least > 0.0 || most < 0.0) && w > 0.0;
+        if !is_inside {
+            return Some(Seen::Near);
+        }
+        let depth = interpolated(clip.map(|corner| corner.z)) / w;
+        let is_safe = least > SAFE || most < -SAFE;
+        Some(Seen::Inside { face: Face { is_front: sum > 0.0, depth: depth as f32 }, depth, is_safe })
+    }
+}
