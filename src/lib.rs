@@ -1,7 +1,7 @@
 //! An interactive visual debugger for stencil shadows and shadow maps.
 //!
 //! ```text
-//! scene ──► technique ──► FramePlan ──► gpu::Executor ──► Capture ──┬─► cli, inspector
+//! scene ──► technique ──► FramePlan ──► gpu::Executor ──► Capture ──┬─► history ──► cli, inspector, testing
 //!    └────► truth ──────────────────────────────────► accuracy ◄─────┴─► report
 //! ```
 //!
@@ -50,4 +50,5 @@ pub mod scene;
 pub mod session;
 pub mod stencil_machine;
 pub mod technique;
+pub mod testing;
 pub mod truth;

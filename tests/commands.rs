@@ -106,11 +106,59 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
     }
     assert_fails(&["capture", "tori"], 2, &["--output"]);
     assert_fails(&["captur", "tori"], 2, &["did you mean `capture`?"]);
-    for command in ["pixel", "diagnose", "diff", "stress"] {
+    for command in ["diagnose", "diff", "stress"] {
         assert_fails(&[command, "tori"], 2, &[command, "not there yet"]);
     }
+    assert_fails(&["pixel", "tori"], 2, &["--at"]);
+    assert_fails(&["pixel", "tori", "--at", "3"], 2, &["give X,Y"]);
+    assert_fails(
+        &["pixel", "tori", "--size", "16x9", "--at", "1,1", "--at", "16,0"],
+        2,
+        &["pixel 16,0", "0,0 to 15,8"],
+    );
+    assert_fails(&["pixel", "tori", "--at", "1,1", "--json", "models"], 2, &["models", "can't be written"]);
     assert_fails(&["bench", "panels"], 2, &["not there yet", "capture"]);
     assert_fails(&["bench", "nothing"], 2, &["choose capture"]);
+}
+
+/// Field by field as `spec/commands.md` has it.
+#[test]
+fn pixel_tells_its_history_as_text_and_as_json() {
+    let folder = folder();
+    let arguments = ["pixel", "tetrahedron", "--size", "320x240", "-t", "z-fail", "--at", "160,120"];
+    let output = run(folder.path(), &arguments);
+    let story = text(&output.stdout);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    for words in
+        ["pixel 160,120: a surface 3.395 m away", "as the GPU stored it", "pass 2, volumes of light 1", "0 → 1"]
+    {
+        assert!(story.contains(words), "`{words}` is not in\n{story}");
+    }
+    let json = |more: &[&str]| -> serde_json::Value {
+        let output = run(folder.path(), &[&arguments, more].concat());
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    let one = json(&["--json"]);
+    assert_eq!(one["pixel"], serde_json::json!([160, 120]));
+    assert_eq!((&one["agrees"], &one["final"]), (&true.into(), &one["captured"]));
+    assert!(one["milliseconds"].as_f64().is_some_and(|ms| ms > 0.0));
+    let events = one["events"].as_array().expect("events");
+    assert_eq!((&events[0]["name"], &events[0]["primitive"]), (&"clear depth".into(), &serde_json::Value::Null));
+    let side = events.iter().find(|event| event["part"] == "side").expect("a side");
+    let expected = serde_json::json!({
+        "pass": 1, "draw": 0, "name": "volumes", "caster": "tetrahedron", "part": "side", "front_facing": false,
+        "depth_test": "fail", "stencil_test": "pass", "operation": "increment-wrap", "stencil_before": 0,
+        "stencil_after": 1, "note": null,
+    });
+    for (key, value) in expected.as_object().expect("an object") {
+        assert_eq!(&side[key], value, "{key}");
+    }
+    assert!(side["primitive"].is_u64() && side["depth"].is_f64());
+    let two = json(&["--at", "0,0", "--json"]);
+    assert_eq!(two.as_array().map(Vec::len), Some(2), "several pixels are a list");
+    run(folder.path(), &[&arguments[..], &["--json", "history.json"]].concat());
+    let written = fs::read_to_string(folder.path().join("history.json")).expect("a file");
+    assert!(written.contains("increment-wrap"));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 19] = [
+const MAY_USE: [(&str, &[&str]); 20] = [
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
@@ -54,7 +54,8 @@ const MAY_USE: [(&str, &[&str]); 19] = [
         ],
     ),
     ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report"]),
-    ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app", "progress", "report"]),
+    ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers"]),
+    ("cli", &["math", "scene", "plan", "technique", "capture", "history", "session", "app", "progress", "report"]),
     ("main", &["cli"]),
 ];
 

@@ -11,11 +11,13 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 /// The benchmarks that exist.
-const BENCHMARKS: [&str; 3] = ["capture", "volumes", "truth"];
+const BENCHMARKS: [&str; 4] = ["capture", "volumes", "truth", "history"];
 /// Benchmarks that are planned, but not built.
-const BENCHMARKS_TO_COME: [&str; 2] = ["history", "panels"];
+const BENCHMARKS_TO_COME: [&str; 1] = ["panels"];
 /// Frames of each kind that are timed.
 const RUNS: usize = 15;
+/// Pixels whose history is timed.
+const PIXELS: usize = 200;
 /// What the benchmarks' own model is called.
 const BUMPY: &str = "bumpy sphere";
 /// Lights for which volumes are timed; each takes less than a millisecond.
@@ -23,7 +25,7 @@ const LIGHTS: usize = 80;
 
 #[derive(Debug, Args)]
 pub struct BenchArguments {
-    /// What to measure: capture, volumes, truth
+    /// What to measure: capture, volumes, truth, history
     #[arg(value_name = "NAME", default_value = "capture")]
     names: Vec<String>,
     /// A scene in place of the benchmark's own; repeatable
@@ -45,6 +47,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
         match name.as_str() {
             "truth" => truth(arguments)?,
             "volumes" => volumes(arguments)?,
+            "history" => history(arguments)?,
             _ => capture(arguments)?,
         }
     }
@@ -95,6 +98,39 @@ fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
             rays as f64 / follow / 1e3,
             rays as f64 / (sort + follow) / 1e3,
             sort / follow,
+        ))?;
+    }
+    Ok(())
+}
+
+/// The history of single pixels, against the frame that made them.
+fn history(arguments: &BenchArguments) -> Result<(), CliError> {
+    for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
+        let request = arguments.frame.request(&scene)?;
+        let mut session = Session::new(arguments.frame.adapter.as_deref())?;
+        let cost = session.history_cost(&scene, &request, PIXELS)?;
+        let triangles: usize = scene.objects.iter().map(|object| object.mesh.triangles().len()).sum();
+        let frame = median_ms(&cost.frames).unwrap_or(f64::NAN);
+        let line = |what: &str, times: &[Duration]| {
+            let slowest = times.iter().max().map_or(f64::NAN, |time| time.as_secs_f64() * 1e3);
+            format!("  {what}_ms {:.2} (slowest {slowest:.2})\n", median_ms(times).unwrap_or(f64::NAN))
+        };
+        output::print(&format!(
+            "{}, {triangles} triangles, {}, {}x{}: {} pixels, {} events on average, {} at most; all agree: {}\n  \
+             frame_ms {frame:.2}\n  first_ms {:.2}\n{}{}{}  history/frame {:.3}\n",
+            scene.name,
+            request.choice.technique().name(),
+            request.size[0],
+            request.size[1],
+            cost.histories.len(),
+            cost.events / cost.histories.len().max(1),
+            cost.most_events,
+            cost.all_agree,
+            cost.first.as_secs_f64() * 1e3,
+            line("history", &cost.histories),
+            line("geometry", &cost.geometry),
+            line("log", &cost.logs),
+            median_ms(&cost.histories).unwrap_or(f64::NAN) / frame,
         ))?;
     }
     Ok(())

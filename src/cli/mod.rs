@@ -9,6 +9,7 @@ mod capture;
 mod error;
 mod options;
 mod output;
+mod pixel;
 mod progress;
 mod report;
 mod scenes;
@@ -23,9 +24,9 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// The commands that exist.
-const COMMANDS: [&str; 6] = ["view", "capture", "report", "scenes", "bench", "help"];
+const COMMANDS: [&str; 7] = ["view", "capture", "pixel", "report", "scenes", "bench", "help"];
 /// Commands that are planned, but not built.
-const COMMANDS_TO_COME: [&str; 4] = ["pixel", "diagnose", "diff", "stress"];
+const COMMANDS_TO_COME: [&str; 3] = ["diagnose", "diff", "stress"];
 
 /// An interactive visual debugger for stencil shadows and shadow maps
 #[derive(Debug, Parser)]
@@ -41,6 +42,8 @@ enum Command {
     View(Box<view::ViewArguments>),
     /// Render without a window and write every pass to a folder
     Capture(Box<capture::CaptureArguments>),
+    /// Tell the history of a pixel, fragment by fragment
+    Pixel(Box<pixel::PixelArguments>),
     /// Measure how wrong each technique is, and what it costs
     Report(Box<report::ReportArguments>),
     /// List the built-in scenes
@@ -57,7 +60,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
     let arguments = with_command(arguments.into_iter().collect());
     let first = arguments.get(1).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
     if COMMANDS_TO_COME.contains(&first.as_str()) {
-        let instead = "use view, capture, report, scenes or bench".to_owned();
+        let instead = "use view, capture, pixel, report, scenes or bench".to_owned();
         return Err(CliError::NotThereYet { what: format!("`{first}`"), instead });
     }
     let second = arguments.get(2).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
@@ -71,6 +74,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
     match command_line.command {
         Command::View(arguments) => view::run(&arguments),
         Command::Capture(arguments) => capture::run(&arguments),
+        Command::Pixel(arguments) => pixel::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

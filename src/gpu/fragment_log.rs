@@ -8,7 +8,7 @@
 //! machine's business.
 //!
 //! The vertex shader is the frame's, so depths have the same bits. The buffer has room for a
-//! fragment a triangle, the shader counts on when it is full, and a replay with more room follows:
+//! fragment a triangle at first, the shader counts on when it is full, and a replay with more room follows:
 //! nothing is lost in silence. Its cost is that of the triangles over one pixel, not of the frame.
 
 use super::prepared::layer_view;
@@ -86,7 +86,7 @@ const CORNER_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0
 
 impl Executor {
     /// Draws the triangles of `covering` again, behind a scissor of `pixel`, and writes down their
-    /// fragments there.
+    /// fragments there. There is `room` for so many at first, and more where they are more.
     ///
     /// # Errors
     /// A driver that fails.
@@ -95,17 +95,18 @@ impl Executor {
         plan: &FramePlan,
         pixel: [u32; 2],
         covering: &[Covering],
+        room: u32,
     ) -> Result<FragmentLog, GpuError> {
         if covering.is_empty() {
             return Ok(FragmentLog::default());
         }
-        let mut room = covering.len() as u64;
+        let mut room = room.max(1);
         loop {
-            let log = self.replay(plan, pixel, covering, room)?;
-            if u64::from(log.counted) <= room {
+            let log = self.replay(plan, pixel, covering, u64::from(room))?;
+            if log.counted <= room {
                 return Ok(log);
             }
-            room = u64::from(log.counted);
+            room = log.counted;
         }
     }
 

@@ -27,6 +27,13 @@ pub enum Disagreement {
         /// In the list.
         listed: u32,
     },
+    /// There are not as many events without a fragment as plan and geometry ask for.
+    WithoutFragment {
+        /// Clears, culled and clipped triangles that there must be.
+        expected: u32,
+        /// In the list.
+        listed: u32,
+    },
     /// An event is not after the one before it in the order of the API.
     Order {
         /// Its index.
@@ -58,6 +65,9 @@ impl fmt::Display for Disagreement {
             }
             Disagreement::Counted { counted, listed } => {
                 write!(f, "the GPU counted {counted} fragments, and {listed} are listed")
+            }
+            Disagreement::WithoutFragment { expected, listed } => {
+                write!(f, "there are {expected} clears, culled and clipped triangles, and {listed} are listed")
             }
             Disagreement::Order { event } => write!(f, "event {} is out of order", event + 1),
             Disagreement::Chain { event } => {
@@ -95,6 +105,10 @@ impl PixelHistory {
         let listed = self.triangles().filter(|(_, one)| is_fragment(one.fate)).count() as u32;
         if listed != self.counted {
             found.push(Disagreement::Counted { counted: self.counted, listed });
+        }
+        let without = self.events.len() as u32 - listed;
+        if without != self.without_fragment {
+            found.push(Disagreement::WithoutFragment { expected: self.without_fragment, listed: without });
         }
         for (index, pair) in self.events.windows(2).enumerate() {
             let event = index + 1;

@@ -49,8 +49,13 @@ pub struct PixelHistory {
     pub captured: Option<Stored>,
     /// What the GPU stored after each pass of the picture.
     pub captured_after: Vec<CapturedAfter>,
+    /// What the technique says of each light here, as in its mask; `None` where it has none.
+    pub labels: Vec<Option<u8>>,
     /// Fragments that the GPU counted here.
     pub counted: u32,
+    /// Events without a fragment that there must be: clears that the plan asks for, and triangles
+    /// that geometry says were culled or clipped.
+    pub without_fragment: u32,
     /// Where the log and geometry contradict each other.
     pub contradictions: Vec<Disagreement>,
 }
@@ -78,7 +83,9 @@ pub struct CapturedAfter {
 }
 
 impl Held {
-    fn stored(self) -> Stored {
+    /// Depth and stencil.
+    #[must_use]
+    pub fn stored(self) -> Stored {
         Stored { depth: self.depth, stencil: self.stencil }
     }
 }

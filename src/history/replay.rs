@@ -22,6 +22,8 @@ impl PixelHistory {
         log: &FragmentLog,
     ) -> PixelHistory {
         let mut replay = Replay { plan, held: NEW, events: Vec::new(), contradictions: Vec::new() };
+        let is_hidden = |one: &&Covering| matches!(one.coverage, Coverage::Culled(_) | Coverage::Clipped(..));
+        let hidden = covering.iter().filter(is_hidden).count() as u32;
         let mut fragments = log.fragments.iter().peekable();
         let mut covering = covering.iter().enumerate().peekable();
         for (index, pass) in plan.passes.iter().enumerate().filter(|(_, pass)| plan.is_of_picture(pass)) {
@@ -46,7 +48,9 @@ impl PixelHistory {
             events: replay.events,
             captured: captured_after.last().map(|captured| captured.stored),
             captured_after,
+            labels: capture.lights.iter().map(|light| light.shadow.as_ref()?.byte_at(pixel)).collect(),
             counted: log.counted,
+            without_fragment: clears(plan) + hidden,
             contradictions: replay.contradictions,
         }
     }
@@ -84,15 +88,11 @@ impl Replay<'_> {
                 self.push(index, EventKind::ClearStencil, Held { stencil, ..self.held });
             }
         }
-        if let Some(clear) = pass.color.as_ref().and_then(|target| target.clear).filter(|_| self.counts(pass)) {
+        if let Some(clear) =
+            pass.color.as_ref().and_then(|target| target.clear).filter(|_| self.plan.counts_in_float(pass))
+        {
             self.push(index, EventKind::ClearCount, Held { count: clear[0] as f32, ..self.held });
         }
-    }
-
-    /// Does a pass draw into a float count?
-    fn counts(&self, pass: &Pass) -> bool {
-        let role = |target: &crate::plan::ColorTarget| self.plan.attachment(target.attachment).role;
-        pass.color.as_ref().is_some_and(|target| matches!(role(target), AttachmentRole::Count(_)))
     }
 
     fn test(&mut self, pass: &Pass, one: &Covering, is_front: bool, depth: f32) {
@@ -111,7 +111,7 @@ impl Replay<'_> {
             depth: test_of(outcome.depth_passed, draw.raster.depth_compare),
             operation: has_test.then_some(outcome.operation),
         };
-        let added = if outcome.passed() && self.counts(pass) { count_of(draw, is_front) } else { 0.0 };
+        let added = if outcome.passed() && self.plan.counts_in_float(pass) { count_of(draw, is_front) } else { 0.0 };
         let after = Held { depth: outcome.after.depth, stencil: outcome.after.stencil, count: self.held.count + added };
         self.push(one.pass, triangle(draw, one, Face { is_front, depth }, fate), after);
     }
@@ -132,6 +132,19 @@ impl Replay<'_> {
         };
         self.push(one.pass, triangle(draw, one, face, fate), self.held);
     }
+}
+
+/// Clears of depth, stencil and float counts that a plan asks for in passes of the picture.
+fn clears(plan: &FramePlan) -> u32 {
+    let of_pass = |pass: &Pass| {
+        let target = pass.depth_stencil.as_ref();
+        let depth = target.and_then(|target| target.clear_depth).is_some();
+        let stencil = target.and_then(|target| target.clear_stencil).is_some();
+        let count =
+            pass.color.as_ref().filter(|_| plan.counts_in_float(pass)).and_then(|target| target.clear).is_some();
+        u32::from(depth) + u32::from(stencil) + u32::from(count)
+    };
+    plan.passes.iter().filter(|pass| plan.is_of_picture(pass)).map(of_pass).sum()
 }
 
 fn triangle(draw: &Draw, one: &Covering, face: Face, fate: Fate) -> EventKind {

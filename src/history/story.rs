@@ -65,6 +65,40 @@ impl PixelHistory {
         format!("{surface}{stencil}, {agrees}")
     }
 
+    /// One event in a few words, the same on every machine: for lists that tests compare, such as
+    /// `volumes: side of box, back, fails depth, stencil 0 to 1`.
+    #[must_use]
+    pub fn brief(&self, event: &Event) -> String {
+        let change = match event {
+            Event { before, after, .. } if before.count != after.count => {
+                format!(", count {} to {}", before.count, after.count)
+            }
+            Event { before, after, .. } if before.stencil != after.stencil => {
+                format!(", stencil {} to {}", before.stencil, after.stencil)
+            }
+            Event { before, after, .. } if before.depth != after.depth => ", stores depth".to_owned(),
+            _ => String::new(),
+        };
+        let pass = &event.pass_name;
+        match &event.kind {
+            EventKind::ClearDepth => format!("{pass}: clear depth"),
+            EventKind::ClearStencil => format!("{pass}: clear stencil"),
+            EventKind::ClearCount => format!("{pass}: clear count"),
+            EventKind::Triangle(one) => {
+                let side = if one.is_front { "front" } else { "back" };
+                let fate = match one.fate {
+                    Fate::Tested { stencil: Test::Failed, .. } => "fails stencil",
+                    Fate::Tested { depth: Test::Failed, .. } => "fails depth",
+                    Fate::Tested { .. } => "passes",
+                    Fate::Dropped(_) => "dropped",
+                    Fate::Culled => "culled",
+                    Fate::Clipped(_) => "clipped",
+                };
+                format!("{pass}: {}, {side}, {fate}{change}", who(one))
+            }
+        }
+    }
+
     /// One event in a line.
     #[must_use]
     pub fn line(&self, event: &Event, curve: &DepthCurve) -> String {
@@ -81,8 +115,20 @@ impl PixelHistory {
                     None if event.is_from_camera => ", at infinity".to_owned(),
                     None => String::new(),
                 };
-                format!("{who}, {side}{distance}: {}", self.what_became(event, one))
+                let triangle = one.triangle + 1;
+                format!("{who}, triangle {triangle}, {side}{distance}: {}", self.what_became(event, one))
             }
+        }
+    }
+
+    /// Where a volume's face lies, seen from the eye.
+    fn place(&self, event: &Event, one: &TriangleEvent) -> &'static str {
+        let [face, surface] =
+            [one.depth, event.before.depth].map(|depth| if self.is_reversed { -depth } else { depth });
+        match face.total_cmp(&surface) {
+            std::cmp::Ordering::Less => "in front of the surface, ",
+            std::cmp::Ordering::Equal => "on the surface, ",
+            std::cmp::Ordering::Greater => "behind the surface, ",
         }
     }
 
@@ -90,6 +136,7 @@ impl PixelHistory {
         let Fate::Tested { stencil, depth, operation } = one.fate else {
             return one.fate.note().unwrap_or_default().to_owned();
         };
+        let place = if event.is_of_volume() && event.is_from_camera { self.place(event, one) } else { "" };
         let tests = match (stencil, depth) {
             (Test::Failed, _) => "fails the stencil test",
             (_, Test::Failed) => "fails the depth test",
@@ -98,7 +145,7 @@ impl PixelHistory {
             (_, Test::Passed) => "passes the depth test",
             _ => "no test stops it",
         };
-        let mut text = tests.to_owned();
+        let mut text = format!("{place}{tests}");
         let [before, after] = [event.before, event.after];
         if before.depth != after.depth {
             text.push_str(", and its depth is stored");
@@ -118,16 +165,15 @@ impl PixelHistory {
     }
 }
 
-/// `side of torus 2, triangle 18`.
+/// `side of torus 2`.
 fn who(one: &TriangleEvent) -> String {
-    let part = match one.part {
+    match one.part {
         Part::Surface => one.draw_name.clone(),
         Part::Receiver => format!("receiver {}", one.draw_name),
-        Part::PlanarShadow => format!("flattened {}", one.caster.as_ref().unwrap_or(&one.draw_name)),
+        Part::PlanarShadow => format!("flattened {}", one.draw_name),
         other => {
             let caster = one.caster.as_ref().unwrap_or(&one.draw_name);
             format!("{} of {caster}", other.name().replace('-', " "))
         }
-    };
-    format!("{part}, triangle {}", one.triangle + 1)
+    }
 }

@@ -13,6 +13,8 @@ pub struct Faces {
     pub front: u32,
     /// Seen from the back.
     pub back: u32,
+    /// Of both, those that took one away; the others added one.
+    pub taking: u32,
 }
 
 /// What decided about a light at a pixel.
@@ -30,13 +32,17 @@ pub enum Why {
         count: Count,
         /// The light pass let the surface through.
         is_lit: bool,
+        /// The surface faces away from the light, so that it stays dark either way.
+        faces_away: bool,
     },
     /// Casters were flattened onto receivers.
     Flattened {
         /// Names of the casters whose flattened triangles passed all tests here.
         casters: Vec<String>,
-        /// Their triangles that cover the pixel and failed a test.
+        /// Flattened triangles that cover the pixel and failed a test.
         failed: u32,
+        /// The pixel is marked as one of a receiver.
+        is_marked: bool,
         /// The light pass let the surface through, where it comes after the shadows.
         is_lit: bool,
     },
@@ -77,6 +83,7 @@ impl PixelHistory {
         let last = volume.last()?;
         let mut faces = Faces::default();
         for event in volume.iter().filter(|event| event.is_from_camera && event.counted() != 0) {
+            faces.taking += u32::from(event.counted() < 0);
             let is_front = event.triangle().is_some_and(|one| one.is_front);
             *(if is_front { &mut faces.front } else { &mut faces.back }) += 1;
         }
@@ -85,10 +92,13 @@ impl PixelHistory {
         let near = near.clone().next().map(|_| near.map(|event| event.counted()).sum());
         let in_float = self.events.iter().any(|event| event.kind == EventKind::ClearCount);
         let count = if in_float { Count::Float(last.after.count) } else { Count::Stencil(last.after.stencil) };
-        Some(Why::Counted { is_behind, faces, near, count, is_lit })
+        let faces_away = self.labels.get(light).copied().flatten() == Some(FACES_AWAY);
+        Some(Why::Counted { is_behind, faces, near, count, is_lit, faces_away })
     }
 }
 
+/// The label of surfaces that face away.
+const FACES_AWAY: u8 = 3;
 /// What techniques call the pass that adds a light.
 const LIGHT_PASS: &str = "light";
 
@@ -101,13 +111,14 @@ fn why_flattened(events: &[&Event], is_lit: bool) -> Why {
     let name = |event: &&Event| event.triangle().and_then(|one| one.caster.clone());
     let casters: BTreeSet<String> = events.iter().filter(passed).filter_map(name).collect();
     let failed = events.iter().filter(|event| !passed(event)).count() as u32;
-    Why::Flattened { casters: casters.into_iter().collect(), failed, is_lit }
+    let is_marked = events.first().is_some_and(|event| event.before.stencil != 0);
+    Why::Flattened { casters: casters.into_iter().collect(), failed, is_marked, is_lit }
 }
 
 impl fmt::Display for Why {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Why::Counted { is_behind, faces, near, count, is_lit } => {
+            Why::Counted { is_behind, faces, near, count, is_lit, faces_away } => {
                 if let Some(near) = near {
                     write!(f, "the near plane is in {}; ", counted(*near as u32, "volume"))?;
                 }
@@ -139,32 +150,44 @@ impl fmt::Display for Why {
                         write!(f, "{front} front, {back} back")?
                     }
                 }
-                let then = if *is_lit { "adds the light" } else { "skips it" };
+                // Behind the surface a back face adds, before it a front face: caps that are turned do not.
+                let adding = if *is_behind { faces.back } else { faces.front };
+                if adding + faces.taking != all {
+                    let [more, taking] = [all - faces.taking, faces.taking];
+                    let verb = |count, word: &str| format!("{count} {word}{}", if count == 1 { "s" } else { "" });
+                    write!(f, " ({}, {} away)", verb(more, "add"), verb(taking, "take"))?;
+                }
+                let then = match (is_lit, faces_away) {
+                    (true, true) => "would light it, but it faces away from the light",
+                    (true, false) => "adds the light",
+                    (false, _) => "skips it",
+                };
                 write!(f, "; count {count}, so the light pass {then}")
             }
-            Why::Flattened { casters, failed, is_lit } => {
-                if casters.is_empty() {
-                    let tests = if *failed == 1 { "its test fails" } else { "their tests fail" };
-                    write!(
-                        f,
-                        "{} cover{} it, but {tests}",
-                        counted(*failed, "flattened triangle"),
-                        if *failed == 1 { "s" } else { "" }
-                    )?;
-                } else {
-                    write!(f, "the flattened shadow of {} falls on its receiver here", casters.join(" and "))?;
-                }
-                write!(
-                    f,
-                    ", so {}",
-                    if *is_lit && casters.is_empty() {
-                        "the light arrives"
-                    } else if *is_lit {
-                        "it is darkened after the light pass"
-                    } else {
-                        "the light pass skips it"
+            Why::Flattened { casters, failed, is_marked, is_lit } => {
+                let s = if *failed == 1 { "s" } else { "" };
+                match (casters.is_empty(), is_marked) {
+                    (false, _) => {
+                        write!(f, "the flattened shadow of {} falls on its receiver here", casters.join(" and "))?;
                     }
-                )
+                    (true, false) => {
+                        let triangles = counted(*failed, "flattened triangle");
+                        write!(
+                            f,
+                            "it is on no marked receiver, so {triangles} that cover{s} it fail{s} the stencil test"
+                        )?;
+                    }
+                    (true, true) => {
+                        let triangles = counted(*failed, "flattened triangle");
+                        write!(f, "{triangles} cover{s} it, but on the planes of other receivers")?;
+                    }
+                }
+                f.write_str(match (casters.is_empty(), is_lit) {
+                    (true, true) => ": the light arrives",
+                    (true, false) => ": the light pass skips it all the same",
+                    (false, true) => ": it is darkened after the light pass",
+                    (false, false) => ", so the light pass skips it",
+                })
             }
         }
     }

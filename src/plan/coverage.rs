@@ -83,6 +83,13 @@ impl FramePlan {
         !color.chain(depth).any(is_map)
     }
 
+    /// Does a pass draw into a float count?
+    #[must_use]
+    pub fn counts_in_float(&self, pass: &Pass) -> bool {
+        let role = pass.color.as_ref().map(|target| self.attachment(target.attachment).role);
+        matches!(role, Some(super::AttachmentRole::Count(_)))
+    }
+
     /// Every triangle of every pass of the picture that lies over the centre of `pixel` or within a
     /// pixel of it, in the order in which the GPU draws them.
     #[must_use]

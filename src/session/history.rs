@@ -1,9 +1,32 @@
 //! The history of a pixel: geometry, the GPU's log and the stencil machine, joined.
 
-use super::{Session, SessionError};
+use super::{CaptureRequest, Session, SessionError};
 use crate::capture::Capture;
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
+use crate::scene::Scene;
+use std::time::{Duration, Instant};
+
+/// What histories of pixels cost.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct HistoryCost {
+    /// Plain frames, for comparison.
+    pub frames: Vec<Duration>,
+    /// The first history, with all that is made once.
+    pub first: Duration,
+    /// The others, one a pixel.
+    pub histories: Vec<Duration>,
+    /// Of each: finding the triangles over the pixel.
+    pub geometry: Vec<Duration>,
+    /// Of each: the GPU's log of their fragments.
+    pub logs: Vec<Duration>,
+    /// Events of those together.
+    pub events: usize,
+    /// Events of the longest.
+    pub most_events: usize,
+    /// Did all of them agree with what the GPU stored?
+    pub all_agree: bool,
+}
 
 impl Session {
     /// Everything that happened to `pixel` in the frame of `plan`, which left `capture`.
@@ -16,12 +39,63 @@ impl Session {
         capture: &Capture,
         pixel: [u32; 2],
     ) -> Result<PixelHistory, SessionError> {
+        Ok(self.timed_history(plan, capture, pixel)?.0)
+    }
+
+    /// Times the histories of `count` pixels, spread evenly over the picture; at least one.
+    ///
+    /// # Errors
+    /// As [`Session::capture`].
+    pub fn history_cost(
+        &mut self,
+        scene: &Scene,
+        request: &CaptureRequest,
+        count: usize,
+    ) -> Result<HistoryCost, SessionError> {
+        let frames = self.capture_cost(scene, request, 5)?.frames;
+        let (capture, plan) = self.capture_with_plan(scene, &CaptureRequest { timing_runs: 0, ..request.clone() })?;
+        let mut cost = HistoryCost { frames, all_agree: true, ..HistoryCost::default() };
+        for index in 0..=count {
+            let start = Instant::now();
+            let (history, [geometry, log]) = self.timed_history(&plan, &capture, spread(index, plan.size))?;
+            let took = start.elapsed();
+            cost.all_agree &= history.agrees();
+            if index == 0 {
+                cost.first = took;
+                continue;
+            }
+            cost.events += history.events.len();
+            cost.most_events = cost.most_events.max(history.events.len());
+            cost.histories.push(took);
+            cost.geometry.push(geometry);
+            cost.logs.push(log);
+        }
+        Ok(cost)
+    }
+
+    /// With the times of geometry and of the log.
+    fn timed_history(
+        &mut self,
+        plan: &FramePlan,
+        capture: &Capture,
+        pixel: [u32; 2],
+    ) -> Result<(PixelHistory, [Duration; 2]), SessionError> {
         let [width, height] = plan.size;
         if pixel[0] >= width || pixel[1] >= height {
             return Err(SessionError::NoSuchPixel { pixel, size: plan.size });
         }
+        let start = Instant::now();
         let covering = plan.covering(pixel);
-        let log = self.executor.log_fragments(plan, pixel, &covering)?;
-        Ok(PixelHistory::new(plan, capture, pixel, &covering, &log))
+        let geometry = start.elapsed();
+        let log = self.executor.log_fragments(plan, pixel, &covering, covering.len() as u32)?;
+        let times = [geometry, start.elapsed() - geometry];
+        Ok((PixelHistory::new(plan, capture, pixel, &covering, &log), times))
     }
+}
+
+/// Pixels without a pattern that a picture could have too (Roberts 2018, the plastic number's
+/// sequence).
+fn spread(index: usize, size: [u32; 2]) -> [u32; 2] {
+    let at = |step: f64, pixels: u32| (((0.5 + step * index as f64).fract()) * f64::from(pixels)) as u32;
+    [at(0.754_877_666_246_692_8, size[0]), at(0.569_840_290_998_053_2, size[1])]
 }

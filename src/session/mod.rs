@@ -10,6 +10,7 @@ mod report;
 mod truth;
 mod volumes;
 
+pub use history::HistoryCost;
 pub use measure::{Measured, Measurement};
 pub use report::report_rows;
 pub use truth::{TruthCost, truth_cost};

@@ -1,0 +1,65 @@
+//! `stencilscope pixel`: what happened to a pixel, fragment by fragment.
+
+use super::options::{FrameOptions, SceneOptions, pixel};
+use super::{CliError, output};
+use crate::history::PixelDocument;
+use crate::session::{Session, SessionError};
+use clap::Args;
+use std::time::Instant;
+
+#[derive(Debug, Args)]
+pub struct PixelArguments {
+    /// A built-in scene, a scene file (.toml) or a model (.obj)
+    scene: String,
+    /// Column and row from the top left; repeatable
+    #[arg(long, value_name = "X,Y", value_parser = pixel, required = true)]
+    at: Vec<[u32; 2]>,
+    #[command(flatten)]
+    scene_options: SceneOptions,
+    #[command(flatten)]
+    frame: FrameOptions,
+    /// Machine-readable, to a file or to standard output in place of the text
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    json: Option<Option<String>>,
+}
+
+/// Renders the scene once and tells the history of each pixel.
+///
+/// # Errors
+/// A scene, option or pixel that can't be used; no GPU; a file that can't be written.
+pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
+    let scene = arguments.scene_options.open(&arguments.scene)?;
+    let mut request = arguments.frame.request(&scene)?;
+    request.timing_runs = 0;
+    let size = request.size;
+    if let Some(pixel) = arguments.at.iter().find(|[x, y]| *x >= size[0] || *y >= size[1]) {
+        return Err(SessionError::NoSuchPixel { pixel: *pixel, size }.into());
+    }
+    let file = arguments.json.as_ref().and_then(Option::as_deref);
+    file.map_or(Ok(()), output::check_target)?;
+    let mut session = Session::new(arguments.frame.adapter.as_deref())?;
+    let (capture, plan) = session.capture_with_plan(&scene, &request)?;
+    let mut stories = vec![format!("{}, {}, {}x{}\n", scene.name, capture.technique, size[0], size[1])];
+    let mut documents = Vec::with_capacity(arguments.at.len());
+    for pixel in &arguments.at {
+        let start = Instant::now();
+        let history = session.history(&plan, &capture, *pixel)?;
+        let took = start.elapsed().as_secs_f64() * 1e3;
+        for disagreement in history.disagreements() {
+            output::note(&format!("pixel {},{}: {disagreement}: a bug of stencilscope", pixel[0], pixel[1]));
+        }
+        stories.push(history.story(&capture.depth));
+        documents.push(PixelDocument::new(&history, scene.lights.len(), took));
+    }
+    match (&arguments.json, &documents[..]) {
+        (None, _) => output::print(&stories.join("\n")),
+        (Some(_), [only]) => output::deliver(&json(only)?, file),
+        (Some(_), all) => output::deliver(&json(all)?, file),
+    }
+}
+
+fn json<T: serde::Serialize + ?Sized>(value: &T) -> Result<String, CliError> {
+    let text = serde_json::to_string_pretty(value);
+    let failed = |error: serde_json::Error| CliError::Output { path: "the history".to_owned(), source: error.into() };
+    Ok(text.map_err(failed)? + "\n")
+}

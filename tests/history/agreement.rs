@@ -1,0 +1,134 @@
+//! What the events make against what the GPU stored, and tampered histories.
+
+use super::{SIZE, builtin, choice, frame, nested_boxes};
+use crate::common::random::Random;
+use crate::common::session;
+use stencilscope::gpu::{Context, Executor};
+use stencilscope::history::PixelHistory;
+use stencilscope::scene::Scene;
+use stencilscope::session::{CaptureRequest, Session};
+use stencilscope::technique::Technique;
+
+/// Histories of random pixels, every one of which must agree with the GPU; how many of them have
+/// two or more events of volumes.
+fn agreeing(
+    session: &mut Session,
+    scene: &Scene,
+    technique: Technique,
+    settings: &[(&str, &str)],
+    pixels: usize,
+) -> usize {
+    const PICTURE: [u32; 2] = [320, 240];
+    let (capture, plan) = frame(session, scene, technique, settings, PICTURE);
+    let mut random = Random::new(7);
+    let mut with_volumes = 0;
+    for _ in 0..pixels {
+        let at = PICTURE.map(|pixels| (random.unit() * f64::from(pixels)) as u32);
+        let history = session.history(&plan, &capture, at).expect("a history");
+        let what = format!("{} {technique:?} {settings:?}", scene.name);
+        assert!(history.agrees(), "{what}: {:?}\n{}", history.disagreements(), history.story(&capture.depth));
+        assert_eq!(history.computed.stored(), history.captured.expect("a picture"), "{what}");
+        with_volumes += usize::from(history.events.iter().filter(|event| event.is_of_volume()).count() >= 2);
+    }
+    with_volumes
+}
+
+#[test]
+fn two_hundred_pixels_of_each_scene_agree_by_volumes_and_by_flattening() {
+    let mut session = session();
+    for name in ["tori", "inside", "gate"] {
+        let scene = builtin(name);
+        for technique in [Technique::ZPass, Technique::ZFail, Technique::ZPassPlus, Technique::Planar] {
+            let with_volumes = agreeing(&mut session, &scene, technique, &[], 200);
+            assert!(technique == Technique::Planar || with_volumes >= 50, "{name} {technique:?}: {with_volumes}");
+        }
+    }
+}
+
+#[test]
+fn pixels_agree_by_every_technique_and_setting_that_draws_otherwise() {
+    let mut session = session();
+    let forms: &[(&str, Technique, &[(&str, &str)])] = &[
+        ("table", Technique::Planar, &[("z-fighting", "polygon-offset")]),
+        ("table", Technique::Planar, &[("z-fighting", "none"), ("blend", "twice"), ("stencil", "off")]),
+        ("table", Technique::PlanarTexture, &[]),
+        ("tori", Technique::ShadowMap, &[]),
+        ("tori", Technique::Projective, &[("passes", "multi")]),
+        ("tori", Technique::RayTraced, &[]),
+        ("glass", Technique::None, &[]),
+        ("two-lights", Technique::ZFail, &[]),
+        ("two-lights", Technique::ZPassPlus, &[("counter", "float")]),
+        ("gate", Technique::ZFail, &[("counter", "float")]),
+        ("inside", Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]),
+        ("steps", Technique::ZFail, &[("depth", "standard-infinite")]),
+        ("steps", Technique::ZFail, &[("depth", "standard-finite")]),
+        ("steps", Technique::ZFail, &[("depth", "standard-finite-clamp")]),
+        ("steps", Technique::ZPassPlus, &[("depth", "standard-infinite-epsilon"), ("extrusion", "finite:20")]),
+        ("tiger-cage", Technique::ZFail, &[("casters", "by-topology"), ("light-caps", "never")]),
+    ];
+    for (name, technique, settings) in forms {
+        agreeing(&mut session, &builtin(name), *technique, settings, 30);
+    }
+}
+
+/// Not a sample: edges, corners and the background too.
+#[test]
+fn every_pixel_of_a_small_picture_agrees() {
+    let mut session = session();
+    let size = [32, 24];
+    let (capture, plan) = frame(&mut session, &builtin("tetrahedron"), Technique::ZFail, &[], size);
+    for at in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y])) {
+        let history = session.history(&plan, &capture, at).expect("a history");
+        assert!(history.agrees(), "{:?}\n{}", history.disagreements(), history.story(&capture.depth));
+    }
+}
+
+fn history_of_nested_boxes() -> PixelHistory {
+    let mut session = session();
+    let (capture, plan) = frame(&mut session, &nested_boxes(), Technique::ZFail, &[], SIZE);
+    session.history(&plan, &capture, [103, 95]).expect("a history")
+}
+
+#[test]
+fn a_history_with_an_event_dropped_doubled_or_swapped_does_not_agree() {
+    let whole = history_of_nested_boxes();
+    assert!(whole.agrees() && whole.events.len() == 18);
+    for index in 0..whole.events.len() {
+        let mut dropped = whole.clone();
+        dropped.events.remove(index);
+        assert!(!dropped.agrees(), "without event {index}");
+        let mut doubled = whole.clone();
+        doubled.events.insert(index, whole.events[index].clone());
+        assert!(!doubled.agrees(), "event {index} twice");
+        let other = (index + 1) % whole.events.len();
+        let mut swapped = whole.clone();
+        swapped.events.swap(index, other);
+        assert!(!swapped.agrees(), "events {index} and {other} swapped");
+    }
+}
+
+#[test]
+fn a_value_that_the_gpu_did_not_store_is_found_out() {
+    let whole = history_of_nested_boxes();
+    let mut depth = whole.clone();
+    let last = depth.captured_after.last_mut().expect("a pass");
+    last.stored.depth = f32::from_bits(last.stored.depth.to_bits() + 1);
+    assert!(!depth.agrees(), "one bit of depth");
+    let mut stencil = whole.clone();
+    stencil.captured_after[1].stored.stencil ^= 1;
+    assert!(!stencil.agrees(), "a stencil in the middle of the frame");
+}
+
+/// A log that is too small counts on, and is made again with room for all.
+#[test]
+fn a_full_log_grows() {
+    let mut session = session();
+    let scene = nested_boxes();
+    let plan = session.plan(&scene, &CaptureRequest::new(choice(Technique::ZFail, &[]), SIZE)).expect("a plan");
+    let mut executor = Executor::new(Context::new(None).expect("an adapter"));
+    let covering = plan.covering([103, 95]);
+    let log = executor.log_fragments(&plan, [103, 95], &covering, covering.len() as u32).expect("a log");
+    assert_eq!((log.counted, log.fragments.len()), (16, 16));
+    let grown = executor.log_fragments(&plan, [103, 95], &covering, 1).expect("a log");
+    assert_eq!(log, grown);
+}
