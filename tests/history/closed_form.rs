@@ -171,7 +171,10 @@ fn a_triangle_that_is_culled_or_clipped_says_why() {
     scene.camera.far = Some(9.5);
     for (depth, fates) in [
         ("standard-finite", ["floor, front, clipped", "box, back, passes, stores depth", "box, front, clipped"]),
-        ("standard-finite-clamp", ["floor, front, fails depth", "box, back, passes, stores depth", "box, front, dropped"]),
+        (
+            "standard-finite-clamp",
+            ["floor, front, fails depth", "box, back, passes, stores depth", "box, front, dropped"],
+        ),
     ] {
         let (capture, plan) = frame(&mut session, &scene, Technique::ZFail, &[("depth", depth)], SIZE);
         let history = session.history(&plan, &capture, INSIDE).expect("a history");
