@@ -97,7 +97,7 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
         (&["--set", "fases=two-sided"], &["did you mean `faces`?"]),
         (&["--set", "faces=three"], &["three"]),
         (&["--set", "faces"], &["KEY=VALUE"]),
-        (&["--every", "draw"], &["not there yet", "--every pass"]),
+        (&["--every", "frame"], &["`pass` or `draw`"]),
         (&["--plot", "a.svg"], &["--plot"]),
         (&["--bogus"], &["--bogus"]),
     ];

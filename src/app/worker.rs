@@ -14,7 +14,7 @@ use crate::inspector::{ObjectMesh, RunRequest};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::scene::{OpenSpec, Scene};
-use crate::session::{CaptureRequest, Measurement, Session, SessionError, median_ms, report_rows};
+use crate::session::{CaptureRequest, Every, Measurement, Session, SessionError, median_ms, report_rows};
 use crate::technique::Choice;
 use std::path::Path;
 use std::sync::Arc;
@@ -81,6 +81,7 @@ struct Bench {
     /// How the next scene is rendered, unless it says otherwise.
     choice: Choice,
     size: [u32; 2],
+    every: Every,
     /// How many frames were captured.
     frames: u64,
     /// The frame that the window shows; `None` for a folder's.
@@ -99,8 +100,8 @@ struct Done {
 
 impl Bench {
     fn new(adapter: Option<String>, capture: &CaptureRequest, tell: Box<dyn Fn(News) + Send>) -> Bench {
-        let (choice, size) = (capture.choice.clone(), capture.size);
-        Bench { adapter, session: None, scene: None, generation: 0, choice, size, frames: 0, last: None, tell }
+        let CaptureRequest { choice, size, every, .. } = capture.clone();
+        Bench { adapter, session: None, scene: None, generation: 0, choice, size, every, frames: 0, last: None, tell }
     }
 
     /// The first thing to show.
@@ -204,12 +205,7 @@ impl Bench {
     }
 
     fn capture(&mut self, scene: Scene, request: &RunRequest) -> Result<(), SessionError> {
-        let request = CaptureRequest {
-            choice: request.choice.clone(),
-            size: request.size,
-            timing_runs: 0,
-            external_capture: false,
-        };
+        let request = CaptureRequest { every: self.every, ..CaptureRequest::new(request.choice.clone(), request.size) };
         let session = match &mut self.session {
             Some(session) => session,
             none => {

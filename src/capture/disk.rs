@@ -3,10 +3,10 @@
 //! The folder is written beside its place and renamed into it, so it is there whole or not at
 //! all; a folder that it replaces is moved aside until then.
 
-use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, RegionEntry};
+use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, RegionEntry, StateFiles};
 use super::{
-    Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, FrameSnapshot, FrameTarget, Image, PixelFormat,
-    Snapshot, Step, files,
+    Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, FrameTarget, Image,
+    PixelFormat, Snapshot, Step, files,
 };
 use crate::accuracy::Finding;
 use crate::math::depth::DepthMapping;
@@ -16,6 +16,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
+
+mod draws;
 
 const MANIFEST: &str = "manifest.json";
 const PLAN: &str = "plan.txt";
@@ -139,7 +141,7 @@ fn write_files(capture: &Capture, folder: &Path) -> Result<f64, CaptureError> {
     let start = Instant::now();
     fs::create_dir_all(folder).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
     let mut manifest = Manifest::new(capture);
-    let mut written = BTreeMap::new();
+    let mut written = Written::default();
     for (index, step) in capture.steps.iter().enumerate() {
         let entry = write_step(folder, index, step, capture, &mut written)?;
         manifest.passes.push(entry);
@@ -161,56 +163,78 @@ fn write_step(
     index: usize,
     step: &Step,
     capture: &Capture,
-    written: &mut BTreeMap<&'static str, (Arc<Image>, String)>,
+    written: &mut Written,
 ) -> Result<PassEntry, CaptureError> {
-    let mut entry = PassEntry {
+    let stem = format!("{index:03}-{}", slug(&step.name));
+    let files = match &step.snapshot {
+        Snapshot::Map { light, face } => map_files(capture, *light, *face),
+        Snapshot::Frame(frame) => StateFiles {
+            labels: step.light.filter(|_| frame.target == FrameTarget::Labels).map(shadow_file),
+            count: step.light.filter(|_| frame.target == FrameTarget::Count).map(count_file),
+            ..frame_files(folder, &stem, frame, written)?
+        },
+    };
+    Ok(PassEntry {
         index,
         name: step.name.clone(),
         purpose: step.purpose.clone(),
         light: step.light,
         caster: step.caster().map(ToOwned::to_owned),
+        files,
         draws: step.draws.len(),
         triangles: step.triangles(),
         gpu_ms: step.gpu_ms,
         draw_list: step.draws.iter().map(Into::into).collect(),
-        ..PassEntry::default()
-    };
-    let frame = match &step.snapshot {
-        Snapshot::Map { light, face } => {
-            let map = capture.lights.get(*light).and_then(|light| light.map.as_ref());
-            if map.is_some_and(CapturedMap::holds_colors) {
-                (entry.textures, entry.texture_layer) = (Some(textures_file(*light)), Some(*face));
-            } else {
-                (entry.map, entry.map_face) = (Some(map_file(*light)), Some(*face));
-            }
-            return Ok(entry);
-        }
-        Snapshot::Frame(frame) => frame,
-    };
+        // After the pass's own files, which the last draw names again.
+        draws_captured: draws::write(folder, &stem, step, capture, written)?,
+    })
+}
+
+/// The light's map holds what a pass left in it.
+fn map_files(capture: &Capture, light: usize, face: usize) -> StateFiles {
+    let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
+    if map.is_some_and(CapturedMap::holds_colors) {
+        StateFiles { textures: Some(textures_file(light)), texture_layer: Some(face), ..StateFiles::default() }
+    } else {
+        StateFiles { map: Some(map_file(light)), map_face: Some(face), ..StateFiles::default() }
+    }
+}
+
+/// Writes the picture's aspects, as far as no earlier file has them.
+fn frame_files(
+    folder: &Path,
+    stem: &str,
+    frame: &FrameSnapshot,
+    written: &mut Written,
+) -> Result<StateFiles, CaptureError> {
     let mut unchanged = Vec::new();
     let mut put = |name: &'static str, ending: &str, aspect: &Aspect| {
         if aspect.unchanged {
             unchanged.push(name.to_owned());
         }
-        if let Some((image, file)) = written.get(name)
-            && Arc::ptr_eq(image, &aspect.image)
-        {
-            return Ok(Some(file.clone()));
-        }
-        let file = format!("{index:03}-{}.{name}.{ending}", slug(&step.name));
-        files::write_image(&folder.join(&file), &aspect.image)?;
-        written.insert(name, (aspect.image.clone(), file.clone()));
-        Ok(Some(file))
+        written.put(folder, format!("{stem}.{name}.{ending}"), &aspect.image).map(Some)
     };
-    entry.color = put("color", "png", &frame.color)?;
-    entry.depth = put("depth", "npy", &frame.depth)?;
-    if let Some(stencil) = &frame.stencil {
-        entry.stencil = put("stencil", "npy", stencil)?;
+    let color = put("color", "png", &frame.color)?;
+    let depth = put("depth", "npy", &frame.depth)?;
+    let stencil = frame.stencil.as_ref().map_or(Ok(None), |stencil| put("stencil", "npy", stencil))?;
+    Ok(StateFiles { color, depth, stencil, unchanged: Some(unchanged), ..StateFiles::default() })
+}
+
+/// The pictures that have a file. The capture holds all of them, so each is known by its place in
+/// memory.
+#[derive(Default)]
+struct Written(BTreeMap<*const Image, String>);
+
+impl Written {
+    /// Writes a picture to `file` unless it has one; the file that it has.
+    fn put(&mut self, folder: &Path, file: String, image: &Arc<Image>) -> Result<String, CaptureError> {
+        if let Some(earlier) = self.0.get(&Arc::as_ptr(image)) {
+            return Ok(earlier.clone());
+        }
+        files::write_image(&folder.join(&file), image)?;
+        self.0.insert(Arc::as_ptr(image), file.clone());
+        Ok(file)
     }
-    entry.unchanged = Some(unchanged);
-    entry.labels = step.light.filter(|_| frame.target == FrameTarget::Labels).map(shadow_file);
-    entry.count = step.light.filter(|_| frame.target == FrameTarget::Count).map(count_file);
-    Ok(entry)
 }
 
 fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<LightEntry, CaptureError> {
@@ -283,8 +307,8 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
         return Err(wrong(format!("its picture is {}x{}", manifest.size[0], manifest.size[1])));
     }
     let mut reader = Reader { folder, size: manifest.size, images: BTreeMap::new() };
-    let lights = manifest.lights.iter().map(|light| reader.light(light)).collect::<Result<_, _>>()?;
-    let steps = manifest.passes.iter().map(|pass| reader.step(pass)).collect::<Result<_, _>>()?;
+    let lights = manifest.lights.iter().map(|light| reader.light(light)).collect::<Result<Vec<_>, _>>()?;
+    let steps = manifest.passes.iter().map(|pass| reader.step(pass, &lights)).collect::<Result<_, _>>()?;
     let capture = Capture {
         scene: manifest.scene,
         technique: manifest.technique,
@@ -358,14 +382,18 @@ impl Reader<'_> {
     }
 
     fn image(&mut self, file: &str, format: PixelFormat) -> Result<Arc<Image>, CaptureError> {
+        self.image_of_size(file, format, self.size)
+    }
+
+    fn image_of_size(&mut self, file: &str, format: PixelFormat, size: [u32; 2]) -> Result<Arc<Image>, CaptureError> {
         if let Some(image) = self.images.get(file) {
-            let is_same_kind = image.format() == format;
+            let is_same_kind = image.format() == format && image.size() == size;
             return is_same_kind
                 .then(|| image.clone())
                 .ok_or_else(|| self.wrong(file, "it is named as two kinds of picture"));
         }
         let image = files::read_image(&self.path(file)?, format)?;
-        if image.size() != self.size {
+        if image.size() != size {
             return Err(self.wrong(file, "its size is not the manifest's"));
         }
         let image = Arc::new(image);
@@ -381,15 +409,21 @@ impl Reader<'_> {
         Ok(self.folder.join(file))
     }
 
-    fn step(&mut self, pass: &PassEntry) -> Result<Step, CaptureError> {
+    fn step(&mut self, pass: &PassEntry, lights: &[CapturedLight]) -> Result<Step, CaptureError> {
         let draws = pass.draw_list.iter().map(|draw| {
             draw.to_summary().ok_or_else(|| self.wrong(MANIFEST, "it names a part of a draw that is not known"))
         });
-        let draws = draws.collect::<Result<_, _>>()?;
-        let snapshot = match (pass.map.as_ref().or(pass.textures.as_ref()), pass.light) {
-            (Some(_), Some(light)) => Snapshot::Map { light, face: pass.map_face.or(pass.texture_layer).unwrap_or(0) },
-            _ => Snapshot::Frame(self.frame(pass)?),
+        let mut draws = draws.collect::<Result<Vec<DrawSummary>, _>>()?;
+        let files = &pass.files;
+        let snapshot = match (files.map.as_ref().or(files.textures.as_ref()), pass.light) {
+            (Some(_), Some(light)) => {
+                Snapshot::Map { light, face: files.map_face.or(files.texture_layer).unwrap_or(0) }
+            }
+            _ => Snapshot::Frame(self.frame(files)?),
         };
+        if let Some(captured) = &pass.draws_captured {
+            self.draw_states(captured, &snapshot, lights, &mut draws)?;
+        }
         Ok(Step {
             name: pass.name.clone(),
             purpose: pass.purpose.clone(),
@@ -400,18 +434,19 @@ impl Reader<'_> {
         })
     }
 
-    fn frame(&mut self, pass: &PassEntry) -> Result<FrameSnapshot, CaptureError> {
-        let unchanged = pass.unchanged.clone().unwrap_or_default();
+    fn frame(&mut self, files: &StateFiles) -> Result<FrameSnapshot, CaptureError> {
+        let unchanged = files.unchanged.clone().unwrap_or_default();
         let mut aspect = |name: &str, file: &Option<String>, format| {
-            let file = file.as_ref().ok_or_else(|| self.wrong(MANIFEST, &format!("a pass lacks its {name}")))?;
+            let file =
+                file.as_ref().ok_or_else(|| self.wrong(MANIFEST, &format!("a pass or draw lacks its {name}")))?;
             let unchanged = unchanged.iter().any(|aspect| aspect == name);
             Ok(Aspect { image: self.image(file, format)?, unchanged })
         };
-        let color = aspect("color", &pass.color, PixelFormat::Rgba8Srgb)?;
-        let depth = aspect("depth", &pass.depth, PixelFormat::Depth32F)?;
-        let has_stencil = pass.stencil.is_some();
-        let stencil = has_stencil.then(|| aspect("stencil", &pass.stencil, PixelFormat::U8)).transpose()?;
-        let target = match (&pass.labels, &pass.count) {
+        let color = aspect("color", &files.color, PixelFormat::Rgba8Srgb)?;
+        let depth = aspect("depth", &files.depth, PixelFormat::Depth32F)?;
+        let has_stencil = files.stencil.is_some();
+        let stencil = has_stencil.then(|| aspect("stencil", &files.stencil, PixelFormat::U8)).transpose()?;
+        let target = match (&files.labels, &files.count) {
             (Some(_), _) => FrameTarget::Labels,
             (None, Some(_)) => FrameTarget::Count,
             (None, None) => FrameTarget::Picture,

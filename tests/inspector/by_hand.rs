@@ -25,7 +25,7 @@ fn image_of<const N: usize>(format: PixelFormat, size: [u32; 2], texel: impl Fn(
 }
 
 fn draw(name: &str, part: Part, triangles: u64) -> DrawSummary {
-    DrawSummary { name: name.to_owned(), caster: Some("box".to_owned()), part, triangles }
+    DrawSummary { name: name.to_owned(), caster: Some("box".to_owned()), part, triangles, after: None }
 }
 
 fn step(name: &str, light: Option<usize>, draws: Vec<DrawSummary>, snapshot: Snapshot) -> Step {

@@ -29,8 +29,13 @@ fn aspect(image: &Arc<Image>, unchanged: bool) -> Aspect {
 }
 
 fn step(name: &str, light: Option<usize>, snapshot: Snapshot) -> Step {
-    let draw =
-        DrawSummary { name: "sides of bunny".into(), caster: Some("bunny".into()), part: Part::Side, triangles: 7 };
+    let draw = DrawSummary {
+        name: "sides of bunny".into(),
+        caster: Some("bunny".into()),
+        part: Part::Side,
+        triangles: 7,
+        after: None,
+    };
     Step {
         name: name.to_owned(),
         purpose: "To be seen.".to_owned(),
