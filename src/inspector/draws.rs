@@ -8,7 +8,7 @@ use super::moment::Moment;
 use super::passes;
 use super::state::State;
 use super::theme;
-use crate::capture::{Capture, FrameTarget, Image, Snapshot};
+use crate::capture::{Capture, DrawState, DrawSummary, FrameTarget, Image, Snapshot};
 use crate::plan::LeftOut;
 use egui::{CornerRadius, Rect, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::collections::BTreeMap;
@@ -18,8 +18,12 @@ use std::sync::Arc;
 const LISTED: usize = 16;
 /// Height of a draw, points.
 const HEIGHT: f32 = 24.0;
-/// Where a draw begins that has no thumbnail, points from the left.
-const INDENT: f32 = 34.0;
+/// Where a draw's thumbnail is, points from the row's corners.
+const THUMBNAIL: [f32; 2] = [12.0, 3.0];
+/// How wide it is.
+const THUMBNAIL_WIDTH: f32 = 32.0;
+/// Where a draw's swatch is.
+const INDENT: f32 = THUMBNAIL[0] + THUMBNAIL_WIDTH + 8.0;
 
 /// The draws of the selected step: part, name and triangles, and a thumbnail where the state after
 /// each is known. Many are folded away until all are wished for, or one of them is selected.
@@ -47,11 +51,15 @@ pub fn of_step(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>) {
     }
 }
 
+/// One draw: it can be selected, and says so while its state is being fetched.
 fn row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize) {
     let draw = &capture.steps[state.step].draws[index];
     let is_selected = state.draw == Some(index);
+    let is_missing = is_selected && !state.selected().is_held(capture);
+    let is_fetched = is_missing && state.scene.is_some() && !matches!(state.draws, DrawsState::Failed(..));
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
-    response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &draw.name));
+    let name = if is_fetched { format!("{}, being fetched", draw.name) } else { draw.name.clone() };
+    response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &name));
     state.tree_widgets.push(response.id);
     keys::keep_arrows(ui, &response);
     if is_selected && state.scroll_to_step {
@@ -64,41 +72,51 @@ fn row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize) {
     if !ui.is_rect_visible(rect) {
         return;
     }
-    let changes_nothing = draw.after.as_ref().is_some_and(|after| after.changes_nothing());
-    let hover = format!("{}: {}", draw.part.name(), draw.name);
-    let changes = if changes_nothing { "\nIt changed nothing" } else { "" };
-    let (is_hovered, has_focus) = (response.hovered(), response.has_focus());
-    response.on_hover_text(format!("{hover}{changes}"));
-    passes::paint_row_background(ui, rect, is_selected, is_hovered, has_focus);
-    let mut left = rect.left() + INDENT;
+    passes::paint_row_background(ui, rect, is_selected, response.hovered(), response.has_focus());
     if capture.holds_draws(state.step) {
-        // It ends where those of the passes do.
-        left = rect.left() + 8.0 + passes::THUMBNAIL_WIDTH + 8.0;
-        let place = Rect::from_min_max(pos2(left - 40.0, rect.top() + 3.0), pos2(left - 8.0, rect.bottom() - 3.0));
-        let changed = changed_picture(state, capture, index);
-        passes::paint_thumbnail(ui, state, changed, place);
-        if changes_nothing {
-            let font = TextStyle::Monospace.resolve(ui.style());
-            ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, "=", font, theme::FAINT);
-        }
+        paint_change(ui, state, capture, index, rect);
     }
+    let right = if is_fetched { "fetching …".to_owned() } else { format::count(draw.triangles) };
+    paint_words(ui, draw, is_selected, &right, rect);
+    let changes = if changes_nothing(draw) { "\nIt changed nothing" } else { "" };
+    response.on_hover_text(format!("{}: {}{changes}", draw.part.name(), draw.name));
+}
+
+fn changes_nothing(draw: &DrawSummary) -> bool {
+    draw.after.as_ref().is_some_and(DrawState::changes_nothing)
+}
+
+/// A thumbnail of what the draw changed, or that it changed nothing.
+fn paint_change(ui: &Ui, state: &mut State, capture: &Capture, index: usize, row: Rect) {
+    let size = vec2(THUMBNAIL_WIDTH, HEIGHT - 2.0 * THUMBNAIL[1]);
+    let place = Rect::from_min_size(row.min + vec2(THUMBNAIL[0], THUMBNAIL[1]), size);
+    let changed = changed_picture(state, capture, index);
+    passes::paint_thumbnail(ui, state, changed, place);
+    if changes_nothing(&capture.steps[state.step].draws[index]) {
+        let font = TextStyle::Monospace.resolve(ui.style());
+        ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, "=", font, theme::FAINT);
+    }
+}
+
+/// The part's swatch, the draw's name, and at the right its triangles.
+fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, right: &str, row: Rect) {
+    let left = row.left() + INDENT;
     if let Some(color) = theme::part_color(draw.part) {
-        let swatch = Rect::from_center_size(pos2(left + 5.0, rect.center().y), vec2(10.0, 10.0));
+        let swatch = Rect::from_center_size(pos2(left + 5.0, row.center().y), vec2(10.0, 10.0));
         let outline = Stroke::new(1.0, theme::FAINT);
         ui.painter().rect(swatch, CornerRadius::same(2), color, outline, StrokeKind::Inside);
     }
-    left += 18.0;
-    let at = pos2(rect.right() - 8.0, rect.center().y);
+    let left = left + 18.0;
+    let at = pos2(row.right() - 8.0, row.center().y);
     let font = TextStyle::Monospace.resolve(ui.style());
-    let triangles = format::count(draw.triangles);
-    let triangles = ui.painter().text(at, egui::Align2::RIGHT_CENTER, triangles, font, theme::DIM);
-    let color = match (is_selected, changes_nothing) {
+    let right = ui.painter().text(at, egui::Align2::RIGHT_CENTER, right, font, theme::DIM);
+    let color = match (is_selected, changes_nothing(draw)) {
         (true, _) => theme::TEXT,
         (false, true) => theme::FAINT,
         (false, false) => theme::DIM,
     };
-    let room = triangles.left() - left - 8.0;
-    theme::line(ui, pos2(left, rect.center().y - 7.0), room, &draw.name, TextStyle::Small, color);
+    let room = right.left() - left - 8.0;
+    theme::line(ui, pos2(left, row.center().y - 7.0), room, &draw.name, TextStyle::Small, color);
 }
 
 /// What a draw changed, as a picture with its colouring.
@@ -115,7 +133,7 @@ fn changed_picture(state: &mut State, capture: &Capture, index: usize) -> Option
     }
 }
 
-/// Under a selected draw whose state is not there: that it comes, or why it does not.
+/// Under a selected draw whose state is not there and does not come: why.
 fn note(ui: &mut Ui, state: &State, capture: &Capture) {
     if state.selected().is_held(capture) {
         return;
@@ -127,9 +145,8 @@ fn note(ui: &mut Ui, state: &State, capture: &Capture) {
             (text.to_owned(), theme::TEXT)
         }
         DrawsState::Failed(_, reason) => (format!("× The state after this draw is not known: {reason}"), theme::ERROR),
-        DrawsState::Fetching(_) | DrawsState::NotAsked => {
-            ("The state after this draw is being fetched …".to_owned(), theme::DIM)
-        }
+        // The row says so, so that nothing moves when it comes.
+        DrawsState::Fetching(_) | DrawsState::NotAsked => return,
     };
     ui.horizontal(|ui| {
         ui.add_space(INDENT);

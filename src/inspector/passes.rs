@@ -17,9 +17,6 @@ use egui::{
 };
 use std::sync::Arc;
 
-/// Width of a pass's thumbnail, points.
-pub const THUMBNAIL_WIDTH: f32 = 52.0;
-
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State) {
     state.tree_widgets.clear();
@@ -109,7 +106,7 @@ fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize
         return;
     }
     paint_row_background(ui, rect, is_selected, response.hovered(), response.has_focus());
-    let thumbnail = Rect::from_min_size(rect.min + vec2(8.0, 6.0), vec2(THUMBNAIL_WIDTH, 32.0));
+    let thumbnail = Rect::from_min_size(rect.min + vec2(8.0, 6.0), vec2(52.0, 32.0));
     let changed = changed_picture(state, capture, index);
     paint_thumbnail(ui, state, changed, thumbnail);
     let time = format::milliseconds(step.gpu_ms);

@@ -60,9 +60,7 @@ impl Session {
         {
             draw.after = by_draw.after.map(|state| sharing(state, &known));
         }
-        if capture.bytes() > MOST_FILLED_BYTES {
-            drop_draws_but_of(capture, step);
-        }
+        make_room(capture, step, MOST_FILLED_BYTES);
         Ok(())
     }
 
@@ -78,8 +76,11 @@ impl Session {
     }
 }
 
-/// Only the shown pass's draws stay.
-fn drop_draws_but_of(capture: &mut Capture, step: usize) {
+/// Where a capture holds more than `most` bytes, only the draw states of one step stay.
+fn make_room(capture: &mut Capture, step: usize, most: u64) {
+    if capture.bytes() <= most {
+        return;
+    }
     let others = capture.steps.iter_mut().enumerate().filter(|(index, _)| *index != step);
     others.flat_map(|(_, step)| &mut step.draws).for_each(|draw| draw.after = None);
 }
@@ -237,4 +238,27 @@ fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: Output) -> O
         place.into_iter().for_each(|place| place.clone_from(&image));
     }
     joined
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::OpenSpec;
+    use crate::technique::{Choice, Technique};
+
+    #[test]
+    fn draws_of_other_passes_go_only_where_there_is_no_room_for_all() {
+        let scene = crate::scene::open(&OpenSpec::new("tetrahedron")).expect("a built-in scene");
+        let request = CaptureRequest::new(Choice::new(Technique::ZFail), [32, 24]);
+        let request = CaptureRequest { every: Every::Draw, ..request };
+        let mut capture = Session::new(None).and_then(|mut session| session.capture(&scene, &request)).expect("draws");
+        let (bytes, steps) = (capture.bytes(), capture.steps.clone());
+        make_room(&mut capture, 1, bytes);
+        assert_eq!(capture.steps, steps);
+        make_room(&mut capture, 1, bytes - 1);
+        for (index, step) in capture.steps.iter().enumerate() {
+            assert_eq!(capture.holds_draws(index), index == 1 || step.draws.is_empty(), "{}", step.name);
+        }
+        assert_eq!(capture.steps[1], steps[1]);
+    }
 }

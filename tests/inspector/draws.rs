@@ -121,7 +121,7 @@ fn a_draw_whose_state_is_not_there_is_asked_for_once_and_the_picture_stays() {
     click(&mut harness, "sides of box");
     harness.run_steps(4);
     assert_eq!((asked(&harness), ones(&harness)), (vec![1], 599));
-    harness.get_by_label("The state after this draw is being fetched …");
+    harness.get_by_label("sides of box, being fetched");
     harness.get_by_label_contains("stencil after step 2");
     // The same frame was timed meanwhile.
     update(&mut harness, z_fail(SIZE));

@@ -6,7 +6,8 @@
 
 use super::super::manifest::{DrawStateEntry, StateFiles};
 use super::super::{Aspect, Capture, CapturedLight, DrawState, DrawSummary, FrameTarget, PixelFormat, Snapshot, Step};
-use super::{CaptureError, MANIFEST, Reader, Written, count_file, frame_files, map_files, shadow_file};
+use super::reader::Reader;
+use super::{CaptureError, MANIFEST, Written, count_file, frame_files, map_files, shadow_file};
 use std::path::Path;
 use std::sync::Arc;
 

@@ -6,6 +6,7 @@ use crate::capture::{
     AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, Image,
     PixelFormat, Snapshot, Step, Timing,
 };
+use crate::math::depth::DepthMapping;
 use crate::plan::{LeftOut, Part};
 use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
