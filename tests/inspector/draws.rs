@@ -203,7 +203,7 @@ fn stepping_reaches_draws_that_are_folded_away() {
     assert!(harness.query_by_label("volume 38").is_none());
     click_button(&mut harness, "Previous draw");
     assert_eq!(at(&harness), (1, Some(38)));
-    harness.get_by_label("volume 38");
+    harness.get_by_label("volume 38, being fetched");
 }
 
 #[test]
