@@ -53,7 +53,7 @@ const MAY_USE: [(&str, &[&str]); 19] = [
             "history",
         ],
     ),
-    ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report"]),
+    ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report", "history"]),
     ("cli", &["math", "scene", "plan", "technique", "capture", "session", "app", "progress", "report"]),
     ("main", &["cli"]),
 ];

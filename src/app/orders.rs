@@ -23,6 +23,13 @@ pub enum Order {
         /// Watched and stopped by the window.
         progress: Progress,
     },
+    /// The history of a pixel of the frame that was captured last.
+    History {
+        /// The frame that is meant.
+        frame: u64,
+        /// Column and row.
+        at: [u32; 2],
+    },
     /// Techniques measured on the open scene, as it was captured last.
     Measure(Measure),
 }
@@ -46,6 +53,7 @@ pub struct Measure {
 #[derive(Debug, Default)]
 pub struct Waiting {
     picture: Option<Order>,
+    history: Option<Order>,
     judge: Option<Order>,
     measure: Option<Order>,
 }
@@ -54,6 +62,7 @@ impl Waiting {
     /// One more.
     pub fn add(&mut self, order: Order) {
         match order {
+            Order::History { .. } => self.history = Some(order),
             Order::Judge { .. } => self.judge = Some(order),
             Order::Measure(_) => self.measure = Some(order),
             Order::Open(_) | Order::Run { .. } => {
@@ -67,7 +76,8 @@ impl Waiting {
 
     /// The next to obey: what is seen first, what is known of it later.
     pub fn next(&mut self) -> Option<Order> {
-        self.picture.take().or_else(|| self.judge.take()).or_else(|| self.measure.take())
+        let quick = self.picture.take().or_else(|| self.history.take());
+        quick.or_else(|| self.judge.take()).or_else(|| self.measure.take())
     }
 }
 
@@ -123,6 +133,15 @@ mod tests {
     fn opening_is_not_lost_to_a_run_of_the_scene_before() {
         let order = waiting([run(1), Order::Open("table".to_owned()), run(2)]).next();
         assert!(matches!(order, Some(Order::Open(name)) if name == "table"));
+    }
+
+    #[test]
+    fn of_a_dragged_pick_only_the_newest_pixel_is_asked_about_and_before_all_long_work() {
+        let history = |x: u32| Order::History { frame: 1, at: [x, 0] };
+        let mut waiting = waiting([judge(1), history(1), history(2), history(3)]);
+        assert!(matches!(waiting.next(), Some(Order::History { at: [3, 0], .. })));
+        assert!(matches!(waiting.next(), Some(Order::Judge { .. })));
+        assert!(waiting.next().is_none());
     }
 
     #[test]

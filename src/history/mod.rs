@@ -211,6 +211,13 @@ impl Event {
         i32::from(in_stencil) + (self.after.count - self.before.count) as i32
     }
 
+    /// It changed what the pixel holds, or reached its colour: faces of shadow volumes have none.
+    #[must_use]
+    pub fn does_something(&self) -> bool {
+        let has_passed = self.triangle().is_some_and(|one| one.fate.passed());
+        self.before != self.after || (has_passed && !self.is_of_volume())
+    }
+
     /// It is a face of a shadow volume.
     #[must_use]
     pub fn is_of_volume(&self) -> bool {
@@ -250,9 +257,7 @@ impl PixelHistory {
     /// Does an event of a pass change what the pixel holds, or reach its colour?
     #[must_use]
     pub fn is_touched_by(&self, pass: usize) -> bool {
-        let touches =
-            |event: &Event| event.before != event.after || event.triangle().is_some_and(|one| one.fate.passed());
-        self.events.iter().filter(|event| event.pass == pass).any(touches)
+        self.events.iter().filter(|event| event.pass == pass).any(Event::does_something)
     }
 }
 

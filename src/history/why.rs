@@ -109,7 +109,9 @@ impl fmt::Display for Why {
         match self {
             Why::Counted { is_behind, faces, near, count, is_lit } => {
                 if let Some(near) = near {
-                    write!(f, "the near plane is in {}; ", counted(*near as u32, "volume"))?;
+                    // More back than front faces in it leave less than none.
+                    let sign = if *near < 0 { "−" } else { "" };
+                    write!(f, "the near plane is in {sign}{}; ", counted(near.unsigned_abs(), "volume"))?;
                 }
                 let side = if *is_behind { "behind" } else { "in front of" };
                 let all = faces.front + faces.back;

@@ -12,6 +12,7 @@
 //! coloring.rs  what a texel means                  texture.rs    pictures as textures, cached
 //! layers.rs    maps, textures and silhouettes      counts.rs     counts beyond eight bits
 //! findings.rs  the error picture's hatching        truth_note.rs while there is no truth
+//! history.rs   the pick's history, asked for       history_rows.rs, ladder.rs, outline.rs show it
 //! ```
 
 mod action;
@@ -24,13 +25,19 @@ mod draws;
 mod face_grid;
 mod findings;
 mod format;
+mod history;
+mod history_row;
+mod history_rows;
 mod keys;
+mod ladder;
+mod ladder_layout;
 mod layers;
 mod legend;
 mod magnifier;
 mod meshes;
 mod messages;
 mod open_dialog;
+mod outline;
 mod palette;
 mod passes;
 mod picture;
@@ -61,6 +68,7 @@ pub use truth_note::TruthState;
 pub use view::{PictureKind, Zoom};
 
 use crate::capture::Capture;
+use crate::history::PixelHistory;
 use crate::scene::Scene;
 use crate::technique::Choice;
 use state::State;
@@ -107,6 +115,7 @@ impl Inspector {
         self.dock.ui(ui, &mut self.state, &mut actions);
         open_dialog::ui(ui.ctx(), &mut self.state, &mut actions);
         self.state.ask_for_truth(&mut actions);
+        self.state.ask_for_history(ui.ctx(), &mut actions);
         actions
     }
 
@@ -146,6 +155,20 @@ impl Inspector {
     /// Tells how far the truth of the shown frame is.
     pub fn set_truth(&mut self, truth: TruthState) {
         self.state.set_truth(truth);
+    }
+
+    /// Tells what happened to pixel `at` of the shown frame, or why that can't be told. An answer
+    /// about another pixel than the picked one is dropped.
+    pub fn set_history(&mut self, at: [u32; 2], history: Result<Arc<PixelHistory>, String>) {
+        if self.state.pick == Some(at) {
+            self.state.history.answer(at, history);
+        }
+    }
+
+    /// Index of the selected event in the history of the picked pixel.
+    #[must_use]
+    pub fn selected_event(&self) -> Option<usize> {
+        self.state.history.selected_in(self.state.history.of(self.state.pick?)?)
     }
 
     /// Makes shadows of the open scene as `choice` says; what has to be done for it.

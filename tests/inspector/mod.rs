@@ -2,6 +2,8 @@
 
 mod by_hand;
 mod counts;
+mod history;
+mod history_by_hand;
 mod layers;
 mod pictures;
 mod report;
