@@ -391,7 +391,7 @@ mod tests {
     #[test]
     fn a_pixel_of_the_last_frame_tells_its_history_and_of_another_frame_why_not() {
         let (worker, frame, news) = started();
-        let mut ask = |frame, at| {
+        let ask = |frame, at| {
             assert!(worker.order(Order::History { frame, at }));
             wait(&news, |news| match news {
                 News::History { frame, at, history } => Some((frame, at, history)),

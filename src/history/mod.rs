@@ -185,6 +185,24 @@ impl Test {
     }
 }
 
+impl TriangleEvent {
+    /// Is the outside of what it belongs to seen? Caps are runs of the caster's own triangles, and
+    /// so may face into their volume: a dark cap does, unless its draw is called turned, and a light
+    /// cap where it is. Those draws count the other way round.
+    #[must_use]
+    pub fn shows_outside(&self) -> bool {
+        let is_turned = match self.part {
+            Part::LightCap => self.draw_name.starts_with(TURNED),
+            Part::DarkCap => !self.draw_name.starts_with(TURNED),
+            _ => false,
+        };
+        self.is_front != is_turned
+    }
+}
+
+/// What the names of draws begin with whose triangles face the other way than their part's mostly do.
+const TURNED: &str = "turned ";
+
 impl Fate {
     /// Did the fragment pass all tests, and reach the colour target?
     #[must_use]

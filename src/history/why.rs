@@ -1,12 +1,12 @@
 //! Why a light does or does not arrive at a pixel, in one sentence, from what its history counts.
 
-use super::{Event, EventKind, PixelHistory};
+use super::{Event, EventKind, PixelHistory, TriangleEvent};
 use crate::numbers;
 use crate::plan::Part;
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// How many faces of each side.
+/// How many faces of each side, of the outside of their volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faces {
     /// Seen from the front.
@@ -77,7 +77,7 @@ impl PixelHistory {
         let last = volume.last()?;
         let mut faces = Faces::default();
         for event in volume.iter().filter(|event| event.is_from_camera && event.counted() != 0) {
-            let is_front = event.triangle().is_some_and(|one| one.is_front);
+            let is_front = event.triangle().is_some_and(TriangleEvent::shows_outside);
             *(if is_front { &mut faces.front } else { &mut faces.back }) += 1;
         }
         let is_behind = self.counts_behind(light).unwrap_or(false);

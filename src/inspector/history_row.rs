@@ -99,6 +99,12 @@ impl Cells {
     }
 }
 
+/// The whole event in words; the face that words are set in has no arrow.
+#[must_use]
+pub fn line(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> String {
+    history.line(event, curve).replace('→', "to")
+}
+
 /// The part of a face and the object it belongs to: `dark cap` and `torus 2`.
 #[must_use]
 pub fn named(one: &TriangleEvent) -> (String, String) {
@@ -111,10 +117,10 @@ pub fn named(one: &TriangleEvent) -> (String, String) {
     }
 }
 
-/// Which side of a triangle is seen.
+/// Which side of what a triangle belongs to is seen.
 #[must_use]
 pub fn side(one: &TriangleEvent) -> &'static str {
-    if one.is_front { "front" } else { "back" }
+    if one.shows_outside() { "front" } else { "back" }
 }
 
 fn outcome(fate: Fate) -> Outcome {

@@ -1,7 +1,7 @@
 //! "History" in the Pixel panel: one row an event, in the order in which they happened.
 
 use super::format;
-use super::history_row::{Cells, Outcome, short, sign};
+use super::history_row::{Cells, Outcome, line, short, sign};
 use super::state::State;
 use super::theme;
 use crate::capture::Capture;
@@ -108,7 +108,8 @@ fn table(ui: &mut Ui, state: &mut State, capture: &Capture, history: &Arc<PixelH
     let mut area = egui::ScrollArea::vertical().id_salt("history rows").max_height(height).auto_shrink([false, true]);
     let selected = || state.history.selected_in(history).and_then(|event| shown.iter().position(|one| *one == event));
     if let Some(place) = state.history.scroll_to_selected.then(selected).flatten() {
-        area = area.vertical_scroll_offset((ROW * (place as f32 + 0.5) - height / 2.0).max(0.0));
+        let most = ROW * shown.len() as f32 - height;
+        area = area.vertical_scroll_offset((ROW * (place as f32 + 0.5) - height / 2.0).clamp(0.0, most));
     }
     state.history.scroll_to_selected = false;
     area.show_rows(ui, ROW, shown.len(), |ui, rows| {
@@ -135,11 +136,11 @@ impl Columns {
     /// In a row; tests and operations of a stencil have columns only where there is one.
     fn of(row: Rect, has_stencil: bool) -> Columns {
         let change = row.right() - 6.0;
-        let operation = change - 88.0;
-        let stencil = operation - 44.0;
-        let depth = if has_stencil { stencil - 38.0 } else { operation - 6.0 };
-        let side = depth - 34.0;
-        let what = row.left() + 38.0;
+        let operation = change - 80.0;
+        let stencil = operation - 42.0;
+        let depth = if has_stencil { stencil - 37.0 } else { change - 100.0 };
+        let side = depth - 32.0;
+        let what = row.left() + 36.0;
         Columns {
             pass: row.left() + 20.0,
             what,
@@ -169,7 +170,7 @@ fn head(ui: &mut Ui, has_stencil: bool) {
         write(stencil, Align2::LEFT_CENTER, "stencil");
         write(columns.operation, Align2::LEFT_CENTER, "op");
     }
-    write(columns.change, Align2::RIGHT_CENTER, if has_stencil { "stencil" } else { "change" });
+    write(columns.change, Align2::RIGHT_CENTER, "change");
     let line = Stroke::new(1.0, theme::LINE);
     ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, line);
 }
@@ -194,7 +195,7 @@ fn row(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory
         let ink = if event.does_something() { theme::TEXT } else { theme::DIM };
         paint(ui, rect, &cells, history.has_stencil, ink);
     }
-    let line = history.line(event, &capture.depth);
+    let line = line(history, event, &capture.depth);
     response.on_hover_text(format!("pass {}, {}: {line}. Double-click to go there.", event.pass + 1, event.pass_name));
 }
 
@@ -258,7 +259,7 @@ fn selected(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHi
     let Some(event) = state.history.selected_in(history).and_then(|index| history.events.get(index)) else { return };
     theme::card().show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.add(egui::Label::new(theme::note(history.line(event, &capture.depth)).color(theme::TEXT)).wrap());
+        ui.add(egui::Label::new(theme::note(line(history, event, &capture.depth)).color(theme::TEXT)).wrap());
         let text = theme::note(format!("Go to step {}, {}", event.pass + 1, event.pass_name));
         if event.pass != state.step && ui.button(text).clicked() {
             state.playing = None;

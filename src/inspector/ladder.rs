@@ -3,7 +3,7 @@
 
 use super::counts;
 use super::format;
-use super::history_row::{named, side};
+use super::history_row::{line, named, side};
 use super::ladder_layout::{LINE, Mark, Placed, Stretch, place, stretches};
 use super::state::State;
 use super::theme;
@@ -94,7 +94,7 @@ impl Columns {
         let added = steps - 10.0;
         let distance = added - 34.0;
         let (ray, name) = (rect.left() + 20.0, rect.left() + 40.0);
-        Columns { ray, name, name_room: distance - 58.0 - name, distance, added, steps, count }
+        Columns { ray, name, name_room: distance - 50.0 - name, distance, added, steps, count }
     }
 }
 
@@ -144,7 +144,7 @@ fn rung(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistor
         response.scroll_to_me(None);
     }
     theme::row_background(ui, rect, is_selected, &response);
-    response.on_hover_text(history.line(event, &capture.depth));
+    response.on_hover_text(line(history, event, &capture.depth));
 }
 
 /// A rung in words.
@@ -262,13 +262,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
             painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, count, theme::number_font(size), ink);
         }
         Mark::Infinity => {
-            painter.text(
-                pos2(columns.ray, y + 7.0),
-                Align2::CENTER_CENTER,
-                "∞",
-                FontId::proportional(15.0),
-                theme::DIM,
-            );
+            painter.text(pos2(columns.ray, y + 7.0), Align2::CENTER_CENTER, "∞", theme::number_font(15.0), theme::DIM);
             words("infinity", theme::DIM);
             if ladder.start != 0 && ladder.is_from_infinity {
                 number(columns.count, signed(ladder.start), theme::TEXT);

@@ -5,7 +5,7 @@ use stencilscope::plan::Part;
 use stencilscope::stencil_machine::Stored;
 use wgpu::StencilOperation;
 
-/// A face of the one volume: its part, whether its front is seen, its distance in metres.
+/// A face of the one volume: its part, whether its outside is seen, its distance in metres.
 pub type Face = (Part, bool, f32);
 
 /// Five faces over the pixel: two before the surface, three behind it, of which one is left.
@@ -49,7 +49,8 @@ fn triangle(name: &str, part: Part, primitive: u32, is_front: bool, depth: f32, 
         primitive,
         triangle: primitive,
         corners: [[-0.1, -0.1, -NEAR / depth, 1.0], [0.1, -0.1, -NEAR / depth, 1.0], [0.0, 0.1, -NEAR / depth, 1.0]],
-        is_front,
+        // Triangles of a dark cap face into the volume.
+        is_front: is_front != (part == Part::DarkCap),
         depth,
         fate,
     }

@@ -4,6 +4,7 @@ mod by_hand;
 mod counts;
 mod history;
 mod history_by_hand;
+mod history_pictures;
 mod layers;
 mod pictures;
 mod report;
