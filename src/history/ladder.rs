@@ -35,15 +35,15 @@ pub struct Rung {
 }
 
 impl PixelHistory {
-    /// The ladder of a light; `None` where none of its volumes' faces is on the ray. `curve` is the
-    /// capture's.
+    /// The ladder of a light; `None` where none of its volumes' faces is on the ray, and the near
+    /// plane was not asked about here. `curve` is the capture's.
     #[must_use]
     pub fn ladder(&self, light: usize, curve: &DepthCurve) -> Option<Ladder> {
         let of_light = |event: &&Event| event.light == Some(light) && event.is_of_volume();
-        let near = self.events.iter().filter(of_light).filter(|event| !event.is_from_camera);
-        let start = near.map(Event::counted).sum();
+        let near = || self.events.iter().filter(of_light).filter(|event| !event.is_from_camera);
+        let start = near().map(Event::counted).sum();
         let faces = || self.events.iter().enumerate().filter(|(_, event)| of_light(event) && event.is_from_camera);
-        let (_, first) = faces().next()?;
+        let first = faces().map(|(_, event)| event).next().or_else(|| near().next())?;
         // In two passes every face is drawn twice, and counts in one of them: there it is a rung.
         let mut once: BTreeMap<(usize, u32), Rung> = BTreeMap::new();
         let all = faces().filter_map(|(event, face)| {

@@ -257,7 +257,7 @@ impl PixelHistory {
     }
 
     /// Do a light's volume faces count where they lie behind the visible surface, and not in front of
-    /// it? `None` where it has none here that would tell.
+    /// it? `None` where it has none here that would tell: what was clipped or culled counts nowhere.
     #[must_use]
     pub fn counts_behind(&self, light: usize) -> Option<bool> {
         let is_behind = |event: &Event| {
@@ -265,7 +265,9 @@ impl PixelHistory {
             let is_behind = if self.is_reversed { depth <= event.before.depth } else { depth >= event.before.depth };
             Some((event.counted() != 0, is_behind))
         };
+        let is_tested = |event: &&Event| event.triangle().is_some_and(|one| matches!(one.fate, Fate::Tested { .. }));
         let faces = self.events.iter().filter(|event| event.light == Some(light) && event.is_from_camera);
+        let faces = faces.filter(is_tested);
         let seen: Vec<(bool, bool)> = faces.filter(|event| event.is_of_volume()).filter_map(is_behind).collect();
         // Where none has counted, those that lie here are on the side that does not.
         let counting = seen.iter().find(|(counts, _)| *counts).map(|(_, is_behind)| *is_behind);

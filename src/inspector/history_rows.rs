@@ -6,6 +6,7 @@ use super::state::State;
 use super::theme;
 use crate::capture::Capture;
 use crate::history::{Event, PixelHistory, Test};
+use crate::plan::Part;
 use egui::{Align2, Color32, CornerRadius, FontId, Margin, Pos2, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo};
 use egui::{pos2, vec2};
 use std::sync::Arc;
@@ -14,6 +15,8 @@ use std::sync::Arc;
 const ROW: f32 = 22.0;
 /// Rows that are shown before they scroll.
 const MOST_ROWS: usize = 12;
+/// Contradictions that are listed.
+const MOST_WRONG: usize = 3;
 /// Where a history is not of what is picked.
 const GREYED: f32 = 0.4;
 
@@ -76,14 +79,20 @@ fn heading(ui: &mut Ui, state: &mut State, history: Option<&PixelHistory>, at: [
 
 /// A history that contradicts the GPU is a bug of this program, and must not be believed.
 fn wrong(ui: &mut Ui, wrong: &[String]) {
-    let Some(first) = wrong.first() else { return };
-    let more = if wrong.len() > 1 { format!(" (and {} more)", wrong.len() - 1) } else { String::new() };
+    if wrong.is_empty() {
+        return;
+    }
     let frame = theme::card().stroke(Stroke::new(1.0, theme::ERROR)).inner_margin(Margin::same(8));
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
         let title = RichText::new("× This history is wrong, which is our bug. Please report it.").color(theme::ERROR);
         ui.add(egui::Label::new(title).wrap());
-        ui.add(egui::Label::new(theme::note(format!("{first}{more}"))).wrap());
+        for one in wrong.iter().take(MOST_WRONG) {
+            ui.add(egui::Label::new(theme::note(one.as_str()).color(theme::TEXT)).wrap());
+        }
+        if wrong.len() > MOST_WRONG {
+            ui.label(theme::note(format!("and {} more", wrong.len() - MOST_WRONG)));
+        }
     });
     ui.add_space(4.0);
 }
@@ -105,11 +114,13 @@ fn table(ui: &mut Ui, state: &mut State, capture: &Capture, history: &Arc<PixelH
     ui.spacing_mut().item_spacing.y = 0.0;
     head(ui, history.has_stencil);
     let height = ROW * shown.len().min(MOST_ROWS) as f32;
-    let mut area = egui::ScrollArea::vertical().id_salt("history rows").max_height(height).auto_shrink([false, true]);
+    let area = egui::ScrollArea::vertical().id_salt("history rows").auto_shrink([false, true]);
+    // In the panel's own scroll area too it is not to shrink.
+    let mut area = area.max_height(height).min_scrolled_height(height);
     let selected = || state.history.selected_in(history).and_then(|event| shown.iter().position(|one| *one == event));
     if let Some(place) = state.history.scroll_to_selected.then(selected).flatten() {
-        let most = ROW * shown.len() as f32 - height;
-        area = area.vertical_scroll_offset((ROW * (place as f32 + 0.5) - height / 2.0).clamp(0.0, most));
+        let first = place.saturating_sub(MOST_ROWS / 2).min(shown.len().saturating_sub(MOST_ROWS));
+        area = area.vertical_scroll_offset(ROW * first as f32);
     }
     state.history.scroll_to_selected = false;
     area.show_rows(ui, ROW, shown.len(), |ui, rows| {
@@ -210,7 +221,9 @@ fn paint(ui: &Ui, rect: Rect, cells: &Cells, has_stencil: bool, ink: Color32) {
         let swatch = Rect::from_center_size(pos2(columns.pass + 10.0, middle), vec2(8.0, 8.0));
         painter.rect_filled(swatch, CornerRadius::same(2), color);
     }
-    theme::two_inks(ui, pos2(columns.what, middle), columns.what_room, [&cells.what, &cells.of], ink);
+    // Of both words more has to be seen than the first.
+    let what = if cells.part == Some(Part::PlanarShadow) { "flat" } else { cells.what.as_str() };
+    theme::two_inks(ui, pos2(columns.what, middle), columns.what_room, [what, &cells.of], ink);
     painter.text(pos2(columns.side, middle), Align2::LEFT_CENTER, cells.side, words.clone(), theme::DIM);
     match cells.outcome {
         Outcome::Cleared => {}

@@ -47,14 +47,15 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, light: usize) {
 
 /// Which way it counts, and from what.
 fn direction(ladder: &Ladder) -> String {
-    let way = if ladder.is_from_infinity {
-        "Counted from infinity towards the surface"
-    } else {
-        "Counted from the eye towards the surface"
+    let way = match (ladder.is_from_infinity, ladder.surface) {
+        (true, Some(_)) => "Counted from infinity towards the surface",
+        (true, None) => "Counted from infinity, and no surface ends it",
+        (false, Some(_)) => "Counted from the eye towards the surface",
+        (false, None) => "Counted from the eye, and no surface ends it",
     };
     let start = match ladder.start {
         0 => String::new(),
-        start => format!(", from {}: the near plane's", signed(start)),
+        start => format!(", starting at {}: the volumes that hold the near plane", signed(start)),
     };
     let all = ladder.rungs.len() as u64;
     let counted = ladder.rungs.iter().filter(|rung| rung.added != 0).count();

@@ -95,7 +95,9 @@ pub fn stretches(ladder: &Ladder, placed: &[Placed]) -> Vec<Stretch> {
     if ladder.is_from_infinity {
         placed.windows(2).rev().all(|pair| go(&pair[1], &pair[0]));
     } else {
-        placed.windows(2).all(|pair| go(&pair[0], &pair[1]));
+        // What lies before the near plane is not drawn.
+        let from_near = placed.iter().skip_while(|(mark, _)| *mark != Mark::Near).copied().collect::<Vec<_>>();
+        from_near.windows(2).all(|pair| go(&pair[0], &pair[1]));
     }
     stretches
 }
@@ -205,7 +207,7 @@ mod tests {
         (ladder.is_from_infinity, ladder.start) = (false, 1);
         ladder.rungs[0].running = 0;
         let stretches = stretches(&ladder, &place(&ladder, 0.1, None));
-        assert_eq!(stretches.iter().map(|one| one.count).collect::<Vec<_>>(), [1, 1, 0]);
+        assert_eq!(stretches.iter().map(|one| one.count).collect::<Vec<_>>(), [1, 0]);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use std::sync::Arc;
-use stencilscope::history::PixelHistory;
+use stencilscope::history::{Event, PixelHistory};
 use stencilscope::inspector::Action;
 use stencilscope::plan::Part;
 
@@ -247,7 +247,7 @@ fn a_history_that_contradicts_the_gpu_says_that_it_is_our_bug() {
     let mut harness = picked(DARK);
     answer(&mut harness, wrong);
     harness.get_by_label("× This history is wrong, which is our bug. Please report it.");
-    harness.get_by_label("the GPU counted 8 fragments, and 7 are listed (and 2 more)");
+    harness.get_by_label("the GPU counted 8 fragments, and 7 are listed");
     assert!(harness.query_by_label("· as the GPU stored it").is_none());
 }
 
@@ -269,4 +269,40 @@ fn of_600_events_only_rows_in_sight_are_drawn_and_a_rung_scrolls_to_its_row() {
     );
     let rungs = harness.query_all_by_role(Role::ListItem).filter_map(|rung| rung.accesskit_node().label());
     assert!(rungs.filter(|label| label.starts_with("rung: ")).count() <= 16);
+}
+
+#[test]
+fn what_the_near_plane_clipped_counts_nowhere_and_says_so() {
+    let mut faces = FACES.to_vec();
+    faces.insert(0, (Part::Side, true, 0.05));
+    let harness = answered(&faces);
+    assert!(rows(&harness).contains(&"pass 2: side of box, front; clipped at near; 0".to_owned()));
+    harness.get_by_label("rung: side of box, triangle 1, front, at 0.0500 m: not counted, count 1");
+    let clipped = history(DARK, &faces[..1]);
+    assert_eq!(clipped.counts_behind(0), None, "it does not tell which side counts");
+    assert!(clipped.agrees());
+}
+
+#[test]
+fn faces_that_are_drawn_in_two_passes_are_one_rung_each() {
+    let once = history(DARK, &FACES);
+    let mut twice = once.clone();
+    let second = once.events.iter().filter(|event| event.is_of_volume()).cloned();
+    twice.events.extend(second.map(|event| Event { pass: 2, before: event.after, ..event }));
+    let curve = z_fail(SIZE).depth;
+    assert_eq!(twice.ladder(0, &curve), once.ladder(0, &curve));
+}
+
+#[test]
+fn where_only_the_near_plane_counts_the_ladder_begins_and_ends_with_it() {
+    let mut inside = history(DARK, &[]);
+    let mut near = history(DARK, &FACES[4..]).events.remove(3);
+    near.is_from_camera = false;
+    inside.events.insert(3, near);
+    let mut harness = picked(DARK);
+    answer(&mut harness, inside);
+    harness.get_by_label(
+        "Counted from the eye towards the surface, starting at 1: the volumes that hold the near plane. 0 of 0 faces \
+         count: 1 in all.",
+    );
 }

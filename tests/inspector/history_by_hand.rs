@@ -1,7 +1,7 @@
 //! Histories of pixels of z-fail by hand: every event known.
 
 use stencilscope::history::{CapturedAfter, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
-use stencilscope::plan::Part;
+use stencilscope::plan::{Clip, Part};
 use stencilscope::stencil_machine::Stored;
 use wgpu::StencilOperation;
 
@@ -70,6 +70,11 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
     making.end_pass(0);
     for (index, (part, is_front, distance)) in faces.iter().enumerate() {
         let depth = NEAR / distance;
+        if *distance < NEAR {
+            let one = triangle("sides of box", *part, index as u32, *is_front, depth, Fate::Clipped(Clip::Near));
+            making.push(1, EventKind::Triangle(Box::new(one)), making.held);
+            continue;
+        }
         let passes = depth > surface;
         let (operation, stencil) = match (passes, is_front) {
             (true, _) => (StencilOperation::Keep, making.held.stencil),
@@ -98,7 +103,7 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
         computed: making.held,
         captured: making.after.last().map(|after| after.stored),
         captured_after: making.after,
-        counted: faces.len() as u32 + 3,
+        counted: faces.iter().filter(|(_, _, distance)| *distance >= NEAR).count() as u32 + 3,
         contradictions: Vec::new(),
         events: making.events,
     }

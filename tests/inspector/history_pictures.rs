@@ -1,6 +1,6 @@
 //! Pictures of the Pixel panel with histories of few, a dozen and 600 events, for people to look at.
 
-use super::history_by_hand::{Face, history};
+use super::history_by_hand::{FACES, Face, history};
 use super::pictures::{MARGIN, draw, inspector, sizes};
 use super::{Seen, harness_of, z_fail};
 use crate::common;
@@ -84,6 +84,9 @@ fn pictures_of_histories_can_be_drawn() {
     let scene = super::scene();
     let request = common::request(Technique::ZFail, [40, 30]);
     let capture: Arc<Capture> = Arc::new(z_fail([40, 30]));
+    let mut wrong = history([3, 4], &FACES);
+    wrong.events.remove(7);
+    gallery.draw("by-hand-wrong", || inspector(&scene, &request, &capture, [3, 4]), &wrong, None);
     for (name, faces) in [("by-hand-600", &faces[..]), ("by-hand-0", &[])] {
         let history = history([3, 4], faces);
         gallery.draw(
