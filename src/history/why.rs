@@ -175,3 +175,20 @@ impl fmt::Display for Why {
 fn counted(count: u32, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_near_plane_that_more_volumes_were_left_than_entered_has_a_sign() {
+        let faces = Faces { front: 2, back: 0 };
+        let (near, count) = (Some(-1), Count::Stencil(1));
+        let why = Why::Counted { is_behind: false, faces, near, count, is_lit: false };
+        assert_eq!(
+            why.to_string(),
+            "the near plane is in −1 volume; 2 volume faces in front of it pass the depth test: 2 front, 0 back; count \
+             1, so the light pass skips it"
+        );
+    }
+}

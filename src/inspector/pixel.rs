@@ -61,7 +61,8 @@ fn light_in_question(state: &State, capture: &Capture, at: [u32; 2]) -> usize {
 /// twice.
 fn sentence(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     let light = light_in_question(state, capture, at);
-    let history = state.history.of(at).cloned();
+    // One that is wrong explains nothing.
+    let history = state.history.of(at).filter(|_| state.history.wrong().is_empty()).cloned();
     let held = state.history.sentence.take().filter(|_| state.history.is_waiting() && !state.history.is_late());
     let verdict = held.unwrap_or_else(|| {
         let verdict = verdict(capture, light, at);

@@ -3,14 +3,18 @@
 
 use super::history_by_hand::{FACES, Face, history};
 use super::{SIZE, Seen, click, harness_of, inspector, press, z_fail};
+use crate::common;
 use egui::Key;
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use stencilscope::history::{Event, PixelHistory};
 use stencilscope::inspector::Action;
 use stencilscope::plan::Part;
+use stencilscope::scene::{OpenSpec, open};
+use stencilscope::technique::Technique;
 
 /// Inside the volume: its count is 1.
 const DARK: [u32; 2] = [3, 4];
@@ -305,4 +309,32 @@ fn where_only_the_near_plane_counts_the_ladder_begins_and_ends_with_it() {
         "Counted from the eye towards the surface, starting at 1: the volumes that hold the near plane. 0 of 0 faces \
          count: 1 in all.",
     );
+}
+
+/// Caps are drawn turned; what is called front and back is nonetheless what techniques say of it.
+#[test]
+fn behind_the_surface_back_faces_add_and_before_it_front_faces() {
+    let mut session = common::session();
+    let cases = [
+        ("tori", Technique::ZFail, -1),
+        ("tori", Technique::ZPass, 1),
+        ("inside", Technique::ZPassPlus, 1),
+        ("gate", Technique::ZFail, -1),
+    ];
+    for (scene, technique, front) in cases {
+        let scene = open(&OpenSpec::new(scene)).expect("a built-in scene");
+        let request = common::request(technique, [64, 36]);
+        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+        let mut parts = BTreeSet::new();
+        for at in (0..36).flat_map(|y| (0..64).step_by(3).map(move |x| [x, y])) {
+            let history = session.history(&plan, &capture, at).expect("a history");
+            let faces = history.triangles().filter(|(event, _)| event.is_of_volume() && event.is_from_camera);
+            for (event, one) in faces.filter(|(event, _)| event.counted() != 0) {
+                let expected = if one.shows_outside() { front } else { -front };
+                assert_eq!(event.counted(), expected, "{} {technique:?} {at:?}: {one:?}", scene.name);
+                parts.insert(one.part.name());
+            }
+        }
+        assert_eq!(parts.contains("dark-cap"), technique == Technique::ZFail, "{parts:?}");
+    }
 }

@@ -86,6 +86,17 @@ fn pictures_of_histories_can_be_drawn() {
     let capture: Arc<Capture> = Arc::new(z_fail([40, 30]));
     let mut wrong = history([3, 4], &FACES);
     wrong.events.remove(7);
+    gallery.draw(
+        "by-hand-late",
+        || {
+            let mut inspector = inspector(&scene, &request, &capture, [3, 4]);
+            inspector.set_history([3, 4], Ok(Arc::new(history([3, 4], &FACES))));
+            inspector.pick([9, 9]);
+            inspector
+        },
+        &wrong,
+        None,
+    );
     gallery.draw("by-hand-wrong", || inspector(&scene, &request, &capture, [3, 4]), &wrong, None);
     for (name, faces) in [("by-hand-600", &faces[..]), ("by-hand-0", &[])] {
         let history = history([3, 4], faces);
