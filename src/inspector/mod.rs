@@ -160,7 +160,8 @@ impl Inspector {
     /// Tells what happened to pixel `at` of the shown frame, or why that can't be told. An answer
     /// about another pixel than the picked one is dropped.
     pub fn set_history(&mut self, at: [u32; 2], history: Result<Arc<PixelHistory>, String>) {
-        if self.state.pick == Some(at) {
+        // One that was on its way when a folder was opened is of what was open before.
+        if self.state.pick == Some(at) && self.state.scene.is_some() {
             self.state.history.answer(at, history);
         }
     }

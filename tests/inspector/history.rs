@@ -237,8 +237,10 @@ fn a_folder_says_what_histories_need() {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.clear_scene();
     inspector.pick(DARK);
-    let harness = harness_of(inspector, TALL);
+    let mut harness = harness_of(inspector, TALL);
     assert_eq!(asked(&harness), [[0; 2]; 0]);
+    answer(&mut harness, history(DARK, &FACES));
+    assert!(rows(&harness).is_empty(), "an answer that was on its way");
     harness.get_by_label_contains("A capture folder holds pictures and no geometry");
     harness.get_by_label_contains("stencilscope pixel SCENE --at X,Y");
     assert!(harness.query_by_label("Ladder").is_none());
