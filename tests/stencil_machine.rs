@@ -116,6 +116,7 @@ fn draw(raster: RasterState, mesh: usize, triangles: std::ops::Range<u32>) -> Dr
         mesh: MeshId(mesh),
         triangles,
         base_vertex: 0,
+        faces_inwards: false,
         constants: DrawConstants::default(),
     }
 }

@@ -1,6 +1,7 @@
 //! What wakes the window: news of the worker, a chosen file, a wish to repaint.
 
 use crate::capture::Capture;
+use crate::history::PixelHistory;
 use crate::inspector::{ObjectMesh, RunRequest};
 use crate::report::Report;
 use crate::scene::Scene;
@@ -75,6 +76,15 @@ pub enum News {
         frame: u64,
         /// Why, with the mend.
         reason: String,
+    },
+    /// What happened to a pixel.
+    History {
+        /// The frame that is meant.
+        frame: u64,
+        /// Column and row.
+        at: [u32; 2],
+        /// Its history, or why there is none, with the mend.
+        history: Result<Arc<PixelHistory>, String>,
     },
     /// Techniques were measured, or could not be; not told of what was cancelled.
     Measured {

@@ -30,6 +30,13 @@ pub enum Order {
         /// Watched and stopped by the window.
         progress: Progress,
     },
+    /// The history of a pixel of the frame that was captured last.
+    History {
+        /// The frame that is meant.
+        frame: u64,
+        /// Column and row.
+        at: [u32; 2],
+    },
     /// Techniques measured on the open scene, as it was captured last.
     Measure(Measure),
 }
@@ -54,6 +61,7 @@ pub struct Measure {
 pub struct Waiting {
     picture: Option<Order>,
     draws: Option<Order>,
+    history: Option<Order>,
     judge: Option<Order>,
     measure: Option<Order>,
 }
@@ -63,6 +71,7 @@ impl Waiting {
     pub fn add(&mut self, order: Order) {
         match order {
             Order::Draws { .. } => self.draws = Some(order),
+            Order::History { .. } => self.history = Some(order),
             Order::Judge { .. } => self.judge = Some(order),
             Order::Measure(_) => self.measure = Some(order),
             Order::Open(_) | Order::Run { .. } => {
@@ -76,7 +85,7 @@ impl Waiting {
 
     /// The next to obey: what is seen first, what is known of it later.
     pub fn next(&mut self) -> Option<Order> {
-        let seen = self.picture.take().or_else(|| self.draws.take());
+        let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
         seen.or_else(|| self.judge.take()).or_else(|| self.measure.take())
     }
 }
@@ -140,6 +149,15 @@ mod tests {
         let draws = |step| Order::Draws { frame: 1, step };
         let mut waiting = waiting([judge(1), draws(1), draws(2)]);
         assert!(matches!(waiting.next(), Some(Order::Draws { step: 2, .. })));
+        assert!(matches!(waiting.next(), Some(Order::Judge { .. })));
+        assert!(waiting.next().is_none());
+    }
+
+    #[test]
+    fn of_a_dragged_pick_only_the_newest_pixel_is_asked_about_and_before_all_long_work() {
+        let history = |x: u32| Order::History { frame: 1, at: [x, 0] };
+        let mut waiting = waiting([judge(1), history(1), history(2), history(3)]);
+        assert!(matches!(waiting.next(), Some(Order::History { at: [3, 0], .. })));
         assert!(matches!(waiting.next(), Some(Order::Judge { .. })));
         assert!(waiting.next().is_none());
     }

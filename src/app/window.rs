@@ -119,9 +119,10 @@ impl App {
                 self.jobs.stop_judging();
                 self.inspector.set_truth(TruthState::Failed(reason));
             }
+            News::History { frame, at, history } if frame == self.frame => self.inspector.set_history(at, history),
             // Of a scene or frame that is shown no more.
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
-            News::Draws { .. } | News::NoDraws { .. } => {}
+            News::Draws { .. } | News::NoDraws { .. } | News::History { .. } => {}
             News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
             News::Failed(reason) => self.inspector.push_error(reason),
         }
@@ -165,6 +166,7 @@ impl App {
                 self.inspector.set_truth(TruthState::Cancelled);
                 return self.redraw();
             }
+            Action::History { at } => Order::History { frame: self.frame, at },
             Action::RunReport => match self.jobs.measure(self.generation, &mut self.inspector) {
                 Some(measure) => Order::Measure(measure),
                 None => return self.redraw(),

@@ -11,6 +11,7 @@ use super::orders::{Measure, Order, Waiting};
 use super::{AppError, ViewSource};
 use crate::capture::{Capture, disk};
 use crate::inspector::{ObjectMesh, RunRequest};
+use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::scene::{OpenSpec, Scene};
@@ -89,12 +90,13 @@ struct Bench {
     tell: Box<dyn Fn(News) + Send>,
 }
 
-/// A frame that was captured: it may be timed and judged.
+/// A frame that was captured: it may be timed and judged, and asked about its pixels.
 struct Done {
     frame: u64,
     scene: Scene,
     request: CaptureRequest,
     capture: Arc<Capture>,
+    plan: FramePlan,
     wants_timing: bool,
 }
 
@@ -143,6 +145,7 @@ impl Bench {
             Order::Run { generation, request } if generation == self.generation => self.run(&request),
             Order::Draws { frame, step } => return self.fill_draws(frame, step),
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
+            Order::History { frame, at } => return self.history(frame, at),
             Order::Measure(what) if what.generation == self.generation => return self.measure(what),
             // Of a scene that is open no more.
             Order::Run { .. } | Order::Measure(_) => return,
@@ -216,11 +219,12 @@ impl Bench {
         };
         (self.tell)(News::Busy(format!("capturing {}", request.choice.technique().name())));
         let start = Instant::now();
-        let capture = Arc::new(session.capture(&scene, &request)?);
+        let (capture, plan) = session.capture_with_plan(&scene, &request)?;
+        let capture = Arc::new(capture);
         let wants_timing = start.elapsed() <= LONGEST_TIMED;
         self.frames += 1;
         (self.tell)(News::Captured { frame: self.frames, capture: Arc::clone(&capture) });
-        self.last = Some(Done { frame: self.frames, scene, request, capture, wants_timing });
+        self.last = Some(Done { frame: self.frames, scene, request, capture, plan, wants_timing });
         Ok(())
     }
 
@@ -284,6 +288,20 @@ impl Bench {
             Err(error) => (self.tell)(News::NotJudged { frame, reason: error.to_string() }),
         }
         (self.tell)(News::Idle);
+    }
+
+    /// Tells the history of a pixel of the frame that was captured last, if it is the one that is
+    /// meant: so quick that nothing has to say it is being done.
+    fn history(&mut self, frame: u64, at: [u32; 2]) {
+        let meant = self.last.as_ref().filter(|done| done.frame == frame);
+        let history = match (&mut self.session, meant) {
+            (Some(session), Some(done)) => {
+                let history = session.history(&done.plan, &done.capture, at);
+                history.map(Arc::new).map_err(|error| error.to_string())
+            }
+            _ => Err("the frame that is shown is of a scene that is open no more: mend what the error says".to_owned()),
+        };
+        (self.tell)(News::History { frame, at, history });
     }
 
     /// Measures the open scene as it was captured last.
@@ -401,6 +419,25 @@ mod tests {
         assert!(!is_judged);
         judge(&worker, frame, &Progress::default());
         wait(&news, |news| if let News::Judged { .. } = news { Some(()) } else { None });
+    }
+
+    #[test]
+    fn a_pixel_of_the_last_frame_tells_its_history_and_of_another_frame_why_not() {
+        let (worker, frame, news) = started();
+        let ask = |frame, at| {
+            assert!(worker.order(Order::History { frame, at }));
+            wait(&news, |news| match news {
+                News::History { frame, at, history } => Some((frame, at, history)),
+                _ => None,
+            })
+        };
+        let (of, at, history) = ask(frame, [32, 20]);
+        let history = history.expect("a history");
+        assert_eq!((of, at, history.pixel), (frame, [32, 20], [32, 20]));
+        assert!(history.agrees() && !history.events.is_empty());
+        let (.., outside) = ask(frame, [64, 0]);
+        assert!(outside.expect_err("no such pixel").contains("outside the picture"));
+        assert!(ask(frame + 1, [0, 0]).2.is_err());
     }
 
     #[test]

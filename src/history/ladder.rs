@@ -4,6 +4,7 @@
 
 use super::{Event, PixelHistory};
 use crate::math::depth::DepthCurve;
+use std::collections::BTreeMap;
 
 /// The faces of one light's volumes along the ray of a pixel.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,22 +35,31 @@ pub struct Rung {
 }
 
 impl PixelHistory {
-    /// The ladder of a light; `None` where none of its volumes' faces is on the ray. `curve` is the
-    /// capture's.
+    /// The ladder of a light; `None` where none of its volumes' faces is on the ray, and the near
+    /// plane was not asked about here. `curve` is the capture's.
     #[must_use]
     pub fn ladder(&self, light: usize, curve: &DepthCurve) -> Option<Ladder> {
         let of_light = |event: &&Event| event.light == Some(light) && event.is_of_volume();
-        let near = self.events.iter().filter(of_light).filter(|event| !event.is_from_camera);
-        let start = near.map(Event::counted).sum();
+        let near = || self.events.iter().filter(of_light).filter(|event| !event.is_from_camera);
+        let start = near().map(Event::counted).sum();
         let faces = || self.events.iter().enumerate().filter(|(_, event)| of_light(event) && event.is_from_camera);
-        let (_, first) = faces().next()?;
-        let mut rungs: Vec<Rung> = faces()
-            .filter_map(|(event, face)| {
-                let depth = face.triangle()?.depth;
-                let distance = curve.distance(depth).filter(|distance| *distance >= 0.0).unwrap_or(f64::INFINITY);
-                Some(Rung { event, distance, added: face.counted(), running: 0 })
-            })
-            .collect();
+        let first = faces().map(|(_, event)| event).next().or_else(|| near().next())?;
+        // In two passes every face is drawn twice, and counts in one of them: there it is a rung.
+        let mut once: BTreeMap<(usize, u32), Rung> = BTreeMap::new();
+        let all = faces().filter_map(|(event, face)| {
+            let triangle = face.triangle()?;
+            let distance = curve.distance(triangle.depth).filter(|distance| *distance >= 0.0);
+            let distance = distance.unwrap_or(f64::INFINITY);
+            let rung = Rung { event, distance, added: face.counted(), running: 0 };
+            Some(((triangle.draw, triangle.primitive), rung))
+        });
+        for (face, rung) in all {
+            let known = once.entry(face).or_insert(rung);
+            if known.added == 0 && rung.added != 0 {
+                *known = rung;
+            }
+        }
+        let mut rungs: Vec<Rung> = once.into_values().collect();
         rungs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let is_from_infinity = self.counts_behind(light).unwrap_or(false);
         let mut count = start;

@@ -141,6 +141,8 @@ pub struct TriangleEvent {
     pub corners: [[f32; 4]; 3],
     /// Its front is seen.
     pub is_front: bool,
+    /// It faces into the volume that it bounds.
+    pub faces_inwards: bool,
     /// As the depth test sees it; outside 0 to 1 where it was clipped.
     pub depth: f32,
     /// What became of it.
@@ -192,6 +194,15 @@ impl Test {
     }
 }
 
+impl TriangleEvent {
+    /// Is the outside of what it belongs to seen? What faces into its volume shows it from behind, and
+    /// counts the other way round.
+    #[must_use]
+    pub fn shows_outside(&self) -> bool {
+        self.is_front != self.faces_inwards
+    }
+}
+
 impl Fate {
     /// Did the fragment pass all tests, and reach the colour target?
     #[must_use]
@@ -218,6 +229,13 @@ impl Event {
         i32::from(in_stencil) + (self.after.count - self.before.count) as i32
     }
 
+    /// It changed what the pixel holds, or reached its colour: faces of shadow volumes have none.
+    #[must_use]
+    pub fn does_something(&self) -> bool {
+        let has_passed = self.triangle().is_some_and(|one| one.fate.passed());
+        self.before != self.after || (has_passed && !self.is_of_volume())
+    }
+
     /// It is a face of a shadow volume.
     #[must_use]
     pub fn is_of_volume(&self) -> bool {
@@ -239,7 +257,7 @@ impl PixelHistory {
     }
 
     /// Do a light's volume faces count where they lie behind the visible surface, and not in front of
-    /// it? `None` where it has none here that would tell.
+    /// it? `None` where it has none here that would tell: what was clipped or culled counts nowhere.
     #[must_use]
     pub fn counts_behind(&self, light: usize) -> Option<bool> {
         let is_behind = |event: &Event| {
@@ -247,7 +265,9 @@ impl PixelHistory {
             let is_behind = if self.is_reversed { depth <= event.before.depth } else { depth >= event.before.depth };
             Some((event.counted() != 0, is_behind))
         };
+        let is_tested = |event: &&Event| event.triangle().is_some_and(|one| matches!(one.fate, Fate::Tested { .. }));
         let faces = self.events.iter().filter(|event| event.light == Some(light) && event.is_from_camera);
+        let faces = faces.filter(is_tested);
         let seen: Vec<(bool, bool)> = faces.filter(|event| event.is_of_volume()).filter_map(is_behind).collect();
         // Where none has counted, those that lie here are on the side that does not.
         let counting = seen.iter().find(|(counts, _)| *counts).map(|(_, is_behind)| *is_behind);
@@ -257,9 +277,7 @@ impl PixelHistory {
     /// Does an event of a pass change what the pixel holds, or reach its colour?
     #[must_use]
     pub fn is_touched_by(&self, pass: usize) -> bool {
-        let touches =
-            |event: &Event| event.before != event.after || event.triangle().is_some_and(|one| one.fate.passed());
-        self.events.iter().filter(|event| event.pass == pass).any(touches)
+        self.events.iter().filter(|event| event.pass == pass).any(Event::does_something)
     }
 }
 

@@ -157,6 +157,7 @@ fn triangle(draw: &Draw, one: &Covering, face: Face, fate: Fate) -> EventKind {
         triangle: one.triangle,
         corners: one.corners,
         is_front: face.is_front,
+        faces_inwards: draw.faces_inwards,
         depth: face.depth,
         fate,
     }))

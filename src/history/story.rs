@@ -85,7 +85,7 @@ impl PixelHistory {
             EventKind::ClearStencil => format!("{pass}: clear stencil"),
             EventKind::ClearCount => format!("{pass}: clear count"),
             EventKind::Triangle(one) => {
-                let side = if one.is_front { "front" } else { "back" };
+                let side = if one.shows_outside() { "front" } else { "back" };
                 let fate = match one.fate {
                     Fate::Tested { stencil: Test::Failed, .. } => "fails stencil",
                     Fate::Tested { depth: Test::Failed, .. } => "fails depth",
@@ -108,7 +108,7 @@ impl PixelHistory {
             EventKind::ClearCount => format!("clear count to {}", event.after.count),
             EventKind::Triangle(one) => {
                 let who = who(one);
-                let side = if one.is_front { "front" } else { "back" };
+                let side = if one.shows_outside() { "front" } else { "back" };
                 let distance = match curve.distance(one.depth).filter(|_| event.is_from_camera) {
                     Some(distance) if distance >= 0.0 => format!(", at {}", numbers::metres(distance)),
                     Some(_) => ", beyond infinity".to_owned(),

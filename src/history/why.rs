@@ -1,20 +1,18 @@
 //! Why a light does or does not arrive at a pixel, in one sentence, from what its history counts.
 
-use super::{Event, EventKind, PixelHistory};
+use super::{Event, EventKind, PixelHistory, TriangleEvent};
 use crate::numbers;
 use crate::plan::Part;
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// How many faces of each side.
+/// How many faces of each side, of the outside of their volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Faces {
     /// Seen from the front.
     pub front: u32,
     /// Seen from the back.
     pub back: u32,
-    /// Of both, those that took one away; the others added one.
-    pub taking: u32,
 }
 
 /// What decided about a light at a pixel.
@@ -83,8 +81,7 @@ impl PixelHistory {
         let last = volume.last()?;
         let mut faces = Faces::default();
         for event in volume.iter().filter(|event| event.is_from_camera && event.counted() != 0) {
-            faces.taking += u32::from(event.counted() < 0);
-            let is_front = event.triangle().is_some_and(|one| one.is_front);
+            let is_front = event.triangle().is_some_and(TriangleEvent::shows_outside);
             *(if is_front { &mut faces.front } else { &mut faces.back }) += 1;
         }
         let is_behind = self.counts_behind(light).unwrap_or(false);
@@ -120,7 +117,9 @@ impl fmt::Display for Why {
         match self {
             Why::Counted { is_behind, faces, near, count, is_lit, faces_away } => {
                 if let Some(near) = near {
-                    write!(f, "the near plane is in {}; ", counted(*near as u32, "volume"))?;
+                    // More back than front faces in it leave less than none.
+                    let sign = if *near < 0 { "−" } else { "" };
+                    write!(f, "the near plane is in {sign}{}; ", counted(near.unsigned_abs(), "volume"))?;
                 }
                 let side = if *is_behind { "behind" } else { "in front of" };
                 let all = faces.front + faces.back;
@@ -149,13 +148,6 @@ impl fmt::Display for Why {
                     } else {
                         write!(f, "{front} front, {back} back")?
                     }
-                }
-                // Behind the surface a back face adds, before it a front face: caps that are turned do not.
-                let adding = if *is_behind { faces.back } else { faces.front };
-                if adding + faces.taking != all {
-                    let [more, taking] = [all - faces.taking, faces.taking];
-                    let verb = |count, word: &str| format!("{count} {word}{}", if count == 1 { "s" } else { "" });
-                    write!(f, " ({}, {} away)", verb(more, "add"), verb(taking, "take"))?;
                 }
                 let then = match (is_lit, faces_away) {
                     (true, true) => "would light it, but it faces away from the light",
@@ -195,4 +187,21 @@ impl fmt::Display for Why {
 
 fn counted(count: u32, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_near_plane_that_more_volumes_were_left_than_entered_has_a_sign() {
+        let faces = Faces { front: 2, back: 0 };
+        let (near, count) = (Some(-1), Count::Stencil(1));
+        let why = Why::Counted { is_behind: false, faces, near, count, is_lit: false, faces_away: false };
+        assert_eq!(
+            why.to_string(),
+            "the near plane is in −1 volume; 2 volume faces in front of it pass the depth test: 2 front, 0 back; count \
+             1, so the light pass skips it"
+        );
+    }
 }

@@ -22,6 +22,11 @@ pub enum Action {
     },
     /// Stop tracing.
     CancelJudge,
+    /// Tell the history of a pixel of the frame that is shown.
+    History {
+        /// Column and row.
+        at: [u32; 2],
+    },
     /// Measure every technique on the open scene.
     RunReport,
     /// Stop measuring; the rows so far stay.

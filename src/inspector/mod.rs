@@ -13,6 +13,7 @@
 //! layers.rs    maps, textures and silhouettes      counts.rs     counts beyond eight bits
 //! findings.rs  the error picture's hatching        truth_note.rs while there is no truth
 //! moment.rs    after a step, or after a draw       draw_level.rs selecting and fetching draws
+//! history.rs   the pick's history, asked for       history_rows.rs, ladder.rs, outline.rs show it
 //! ```
 
 mod action;
@@ -26,7 +27,12 @@ mod draws;
 mod face_grid;
 mod findings;
 mod format;
+mod history;
+mod history_row;
+mod history_rows;
 mod keys;
+mod ladder;
+mod ladder_layout;
 mod layers;
 mod legend;
 mod magnifier;
@@ -34,6 +40,7 @@ mod meshes;
 mod messages;
 mod moment;
 mod open_dialog;
+mod outline;
 mod palette;
 mod passes;
 mod picture;
@@ -65,6 +72,7 @@ pub use truth_note::TruthState;
 pub use view::{PictureKind, Zoom};
 
 use crate::capture::Capture;
+use crate::history::PixelHistory;
 use crate::scene::Scene;
 use crate::technique::Choice;
 use state::State;
@@ -112,6 +120,7 @@ impl Inspector {
         open_dialog::ui(ui.ctx(), &mut self.state, &mut actions);
         self.state.ask_for_truth(&mut actions);
         self.state.ask_for_draws(&mut actions);
+        self.state.ask_for_history(ui.ctx(), &mut actions);
         actions
     }
 
@@ -156,6 +165,21 @@ impl Inspector {
     /// Tells why there are no states after the draws of a step of the shown frame.
     pub fn set_draws_failed(&mut self, step: usize, reason: String) {
         self.state.set_draws_failed(step, reason);
+    }
+
+    /// Tells what happened to pixel `at` of the shown frame, or why that can't be told. An answer
+    /// about another pixel than the picked one is dropped.
+    pub fn set_history(&mut self, at: [u32; 2], history: Result<Arc<PixelHistory>, String>) {
+        // One that was on its way when a folder was opened is of what was open before.
+        if self.state.pick == Some(at) && self.state.scene.is_some() {
+            self.state.history.answer(at, history);
+        }
+    }
+
+    /// Index of the selected event in the history of the picked pixel.
+    #[must_use]
+    pub fn selected_event(&self) -> Option<usize> {
+        self.state.history.selected_in(self.state.history.of(self.state.pick?)?)
     }
 
     /// Makes shadows of the open scene as `choice` says; what has to be done for it.

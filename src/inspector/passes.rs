@@ -121,7 +121,11 @@ fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize
     let left = thumbnail.right() + 8.0;
     let room = time_rect.left() - left - 4.0;
     theme::line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, theme::TEXT);
-    let room = rect.right() - 8.0 - left;
+    let is_touched = state.pick.and_then(|at| state.history.of_frame(at)).is_some_and(|one| one.is_touched_by(index));
+    if is_touched {
+        pick_mark(ui, pos2(rect.right() - 14.0, rect.top() + 31.0), index);
+    }
+    let room = rect.right() - if is_touched { 26.0 } else { 8.0 } - left;
     theme::line(ui, pos2(left, rect.top() + 23.0), room, &summary(step), TextStyle::Small, theme::DIM);
 }
 
@@ -138,6 +142,25 @@ pub fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: 
     if has_focus {
         painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::FOCUS), StrokeKind::Inside);
     }
+}
+
+/// The crosshair of the pick, small: the pass did something to the picked pixel.
+fn pick_mark(ui: &Ui, at: egui::Pos2, index: usize) {
+    let place = Rect::from_center_size(at, egui::Vec2::splat(12.0));
+    let response = ui.interact(place, ui.scope_id().with(("pick mark", index)), Sense::hover());
+    let name = format!("pass {} touched the picked pixel", index + 1);
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+    let stroke = Stroke::new(1.2, theme::TEXT);
+    ui.painter().rect_stroke(
+        Rect::from_center_size(at, vec2(5.0, 5.0)),
+        CornerRadius::ZERO,
+        stroke,
+        StrokeKind::Middle,
+    );
+    for direction in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
+        ui.painter().line_segment([at + direction * 3.5, at + direction * 6.0], stroke);
+    }
+    response.on_hover_text("This pass did something to the picked pixel");
 }
 
 fn summary(step: &Step) -> String {

@@ -9,6 +9,7 @@ use super::format;
 use super::layers::{self, MapContent};
 use super::legend;
 use super::magnifier;
+use super::outline;
 use super::state::State;
 use super::theme;
 use super::top_bar::segments;
@@ -38,6 +39,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let coloring = coloring_of(&shown, range);
     if shown.images.len() == 1 {
         let placement = canvas::ui(ui, state, rect, &shown, coloring);
+        outline::ui(ui, state, rect, &shown, placement);
         magnifier::ui(ui, state, rect, &shown, coloring, placement);
     } else {
         face_grid::ui(ui, state, rect, &shown, coloring);

@@ -5,13 +5,15 @@ use super::counts;
 use super::depth::{DepthMeasure, FIXED_BITS};
 use super::findings;
 use super::format;
+use super::history_rows;
+use super::ladder;
 use super::layers::MapContent;
 use super::legend;
 use super::palette;
 use super::pixel_run;
 use super::state::State;
 use super::theme;
-use super::verdict::verdict;
+use super::verdict::{explained, verdict};
 use super::view::{PictureKind, has_truth};
 use crate::accuracy::Finding;
 use crate::capture::{Capture, CapturedLight, FrameSnapshot};
@@ -34,6 +36,10 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
         }
         ui.add_space(8.0);
         pixel_run::ui(ui, state, &capture, at);
+        ui.add_space(8.0);
+        history_rows::ui(ui, state, &capture, at);
+        ui.add_space(8.0);
+        ladder::ui(ui, state, &capture, light_in_question(state, &capture, at));
     });
 }
 
@@ -51,8 +57,21 @@ fn light_in_question(state: &State, capture: &Capture, at: [u32; 2]) -> usize {
     of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)
 }
 
-fn sentence(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2]) {
-    let verdict = verdict(capture, light_in_question(state, capture, at), at);
+/// While the history of a pixel is on its way the last sentence stays, so that it does not change
+/// twice.
+fn sentence(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
+    let light = light_in_question(state, capture, at);
+    // One that is wrong explains nothing.
+    let history = state.history.of(at).filter(|_| state.history.wrong().is_empty()).cloned();
+    let held = state.history.sentence.take().filter(|_| state.history.is_waiting() && !state.history.is_late());
+    let verdict = held.unwrap_or_else(|| {
+        let verdict = verdict(capture, light, at);
+        match &history {
+            Some(history) => explained(verdict, capture, history, light),
+            None => verdict,
+        }
+    });
+    state.history.sentence = Some(verdict.clone());
     theme::card().show(ui, |ui| {
         ui.set_width(ui.available_width());
         theme::heading(ui, &verdict.title);

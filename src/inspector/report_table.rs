@@ -6,7 +6,7 @@ use super::{format, report, report_plot, theme};
 use crate::numbers;
 use crate::report::Row;
 use crate::report::plot::{style_of, text_width};
-use egui::{Align2, CornerRadius, Pos2, Rect, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Pos2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 /// Widths of what stands before a name: its sign.
 const SIGN_WIDTH: f32 = 30.0;
@@ -90,7 +90,7 @@ fn table_row(ui: &mut Ui, state: &State, row: &Row, columns: &[&'static Column],
         response.scroll_to_me(None);
     }
     if ui.is_rect_visible(rect) {
-        background(ui, rect, is_current, &response);
+        theme::row_background(ui, rect, is_current, &response);
         report_plot::key(ui.painter(), report_plot::sign_at(rect), style_of(&row.technique), row.pareto);
         name(ui, rect, row, columns);
         let font = theme::number_font(theme::SMALL_SIZE);
@@ -115,18 +115,4 @@ fn name(ui: &Ui, rect: Rect, row: &Row, columns: &[&'static Column]) {
     let galley = ui.painter().layout_job(job);
     let at = pos2(rect.left() + SIGN_WIDTH, rect.center().y - galley.size().y / 2.0);
     ui.painter().galley(at, galley, theme::TEXT);
-}
-
-fn background(ui: &Ui, rect: Rect, is_current: bool, response: &egui::Response) {
-    let painter = ui.painter();
-    if is_current {
-        painter.rect_filled(rect, CornerRadius::ZERO, theme::SELECTED_ROW);
-        let bar = Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
-        painter.rect_filled(bar, CornerRadius::ZERO, theme::SELECTED);
-    } else if response.hovered() {
-        painter.rect_filled(rect, CornerRadius::ZERO, theme::RAISED);
-    }
-    if response.has_focus() {
-        painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, theme::FOCUS), egui::StrokeKind::Inside);
-    }
 }

@@ -2,6 +2,7 @@
 
 use super::action::{Action, RunRequest};
 use super::draw_level::DrawsState;
+use super::history::HistoryState;
 use super::meshes::ObjectMesh;
 use super::moment::Moment;
 use super::report::ReportState;
@@ -101,6 +102,8 @@ pub struct State {
     pub hover: Option<Hover>,
     /// How far the truth of the shown frame is.
     pub truth: TruthState,
+    /// What happened to the picked pixel.
+    pub history: HistoryState,
     /// The Report tab.
     pub report: ReportState,
     /// Errors that were not dismissed yet.
@@ -148,6 +151,7 @@ impl State {
             None => self.view.forget_older_truth(),
         }
         self.truth = TruthState::NotAsked;
+        self.history.forget_frame();
         let [width, height] = capture.size;
         self.pick = self.pick.filter(|[x, y]| *x < width && *y < height);
         self.hover = None;
@@ -188,6 +192,14 @@ impl State {
         }
     }
 
+    /// Asks what happened to the picked pixel, where that was not asked yet.
+    pub fn ask_for_history(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        let Some(at) = self.pick.filter(|_| self.scene.is_some() && self.capture.is_some()) else { return };
+        if self.history.ask(ctx, at) {
+            actions.push(Action::History { at });
+        }
+    }
+
     /// Tells how far the truth of the shown frame is.
     pub fn set_truth(&mut self, truth: TruthState) {
         if matches!(truth, TruthState::Cancelled | TruthState::Failed(_)) {
@@ -211,6 +223,9 @@ impl State {
     /// Another scene is open; `None` for a capture folder, which can't be run again.
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>) {
         self.meshes = None;
+        if scene.is_none() {
+            self.history.close();
+        }
         self.scene = scene.map(|(scene, draft)| OpenScene {
             name: scene.name.clone(),
             animated: scene.is_animated(),

@@ -29,6 +29,19 @@ pub const SELECTED_ROW: Color32 = Color32::from_rgb(0x22, 0x34, 0x4a);
 /// An error message's bar.
 pub const ERROR: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
 
+/// A test that was passed.
+pub const PASSED: Color32 = Color32::from_rgb(0x2f, 0xb5, 0x8a);
+/// A test that failed.
+pub const FAILED: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
+/// A test that was decided in advance, or not asked.
+pub const DECIDED: Color32 = Color32::from_rgb(0x7b, 0x82, 0x90);
+/// The light reaches it.
+pub const LIT: Color32 = Color32::from_rgb(0xf2, 0xd1, 0x6b);
+/// A count goes up by one.
+pub const COUNT_UP: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
+/// A count goes down by one.
+pub const COUNT_DOWN: Color32 = Color32::from_rgb(0x56, 0xb4, 0xe9);
+
 /// Height of a row of text and small widgets, in points.
 pub const ROW_HEIGHT: f32 = 24.0;
 /// Height of a pass with its thumbnail, in points.
@@ -145,6 +158,34 @@ pub fn line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: TextStyle, co
     job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(8.0));
     let galley = ui.painter().layout_job(job);
     ui.painter().galley(at, galley, color);
+}
+
+/// Two words on one line, the second dim, cut off with an ellipsis; `at` is its left end, half way up.
+pub fn two_inks(ui: &Ui, at: egui::Pos2, room: f32, words: [&str; 2], color: Color32) {
+    let mut job = egui::text::LayoutJob::default();
+    let format = |color| egui::TextFormat::simple(FontId::proportional(SMALL_SIZE), color);
+    job.append(words[0], 0.0, format(color));
+    if !words[1].is_empty() {
+        job.append(words[1], 4.0, format(DIM));
+    }
+    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(8.0));
+    let galley = ui.painter().layout_job(job);
+    ui.painter().galley(at - vec2(0.0, galley.size().y / 2.0), galley, color);
+}
+
+/// What is behind a row that can be clicked: the accent where it is selected.
+pub fn row_background(ui: &Ui, rect: egui::Rect, is_selected: bool, response: &egui::Response) {
+    let painter = ui.painter();
+    if is_selected {
+        painter.rect_filled(rect, CornerRadius::ZERO, SELECTED_ROW);
+        let bar = egui::Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
+        painter.rect_filled(bar, CornerRadius::ZERO, SELECTED);
+    } else if response.hovered() {
+        painter.rect_filled(rect, CornerRadius::ZERO, RAISED);
+    }
+    if response.has_focus() {
+        painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, FOCUS), egui::StrokeKind::Inside);
+    }
 }
 
 /// A card on a panel.

@@ -7,6 +7,7 @@ use super::counts;
 use super::format;
 use super::palette;
 use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot};
+use crate::history::PixelHistory;
 
 /// A sentence with what stands behind it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,6 +16,40 @@ pub struct Verdict {
     pub title: String,
     /// Where it comes from.
     pub reason: String,
+    /// What the reason that a history gives does to this one.
+    by_history: ByHistory,
+}
+
+/// A history knows the faces themselves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ByHistory {
+    /// It says the same, with numbers.
+    Replaced,
+    /// It says what comes before.
+    Preceded,
+    /// It is about something else.
+    Kept,
+}
+
+/// The same, with the reason that the pixel's history gives.
+#[must_use]
+pub fn explained(verdict: Verdict, capture: &Capture, history: &PixelHistory, light: usize) -> Verdict {
+    let label = capture.lights.get(light).and_then(|light| light.shadow.as_ref()?.byte_at(history.pixel));
+    let why = match history.why(light) {
+        Some(why) => format!("{}.", capitalized(&why.to_string())),
+        // Faces that cancel out are not the same as none.
+        None if counts::are_made_by(&capture.technique) && label == Some(0) => format!(
+            "No volume face of {} is on this pixel's view ray, so nothing is counted and the light pass adds the light.",
+            format::light(light)
+        ),
+        None => return verdict,
+    };
+    let reason = match verdict.by_history {
+        ByHistory::Replaced => why,
+        ByHistory::Preceded => format!("{why} {}", verdict.reason),
+        ByHistory::Kept => return verdict,
+    };
+    Verdict { reason, ..verdict }
 }
 
 /// What happened at pixel `at` under `light`.
@@ -26,10 +61,12 @@ pub fn verdict(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
         None => Verdict {
             title: "No light was asked about this pixel.".to_owned(),
             reason: "The capture holds no mask, so only the values below are known.".to_owned(),
+            by_history: ByHistory::Kept,
         },
         Some(2) => Verdict {
             title: "Background: no surface is at this pixel.".to_owned(),
             reason: "Nothing was drawn here, so there is nothing that a shadow could fall on.".to_owned(),
+            by_history: ByHistory::Kept,
         },
         Some(3) => Verdict {
             title: format!("Turned away from {name}."),
@@ -38,6 +75,7 @@ pub fn verdict(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
                 capitalized(&name),
                 count_note(capture, light, at)
             ),
+            by_history: ByHistory::Kept,
         },
         Some(label) => decided(capture, light, at, label != 0),
     }
@@ -72,7 +110,7 @@ fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verd
         (_, true) => "The technique's mask says that something lies between the surface and the light.",
         (_, false) => "The technique's mask says that nothing lies between the surface and the light.",
     };
-    Verdict { title: format!("{title}."), reason: reason.to_owned() }
+    Verdict { title: format!("{title}."), reason: reason.to_owned(), by_history: ByHistory::Replaced }
 }
 
 /// Shadow volumes: the count that the light pass tested.
@@ -86,6 +124,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: 
         return Verdict {
             title: format!("{title}."),
             reason: "The count that decided it was not captured.".to_owned(),
+            by_history: ByHistory::Replaced,
         };
     };
     let shown = palette::signed(count);
@@ -107,7 +146,13 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: 
         // Label and count disagree: say so, and do not explain it away.
         (_, count) => format!("The mask does not match the count {count} that the light pass tested."),
     };
-    Verdict { title, reason }
+    let by_history = match (is_dark, count) {
+        (true, 1..=127) => ByHistory::Replaced,
+        (false, 0) if in_float.is_none_or(|count| count == 0.0) => ByHistory::Replaced,
+        (true, 128..) | (false, 0) => ByHistory::Preceded,
+        _ => ByHistory::Kept,
+    };
+    Verdict { title, reason, by_history }
 }
 
 fn counted_side(capture: &Capture) -> &'static str {
@@ -136,7 +181,12 @@ fn counted_in_float(capture: &Capture, count: f32, is_dark: bool, title: &str) -
         // Label and count disagree: say so, and do not explain it away.
         _ => format!("The mask does not match the count {shown} that the light pass read."),
     };
-    Verdict { title, reason }
+    let by_history = match is_dark {
+        true if counts::reads_zero_in_eight_bits(count) || count < 0.0 => ByHistory::Preceded,
+        _ if is_dark == (count != 0.0) => ByHistory::Replaced,
+        _ => ByHistory::Kept,
+    };
+    Verdict { title, reason, by_history }
 }
 
 fn count_note(capture: &Capture, light: usize, at: [u32; 2]) -> String {

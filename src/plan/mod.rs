@@ -250,6 +250,9 @@ pub struct Draw {
     pub triangles: Range<u32>,
     /// Added to every index: a dark cap is its light cap at the far vertices.
     pub base_vertex: u32,
+    /// Of a shadow volume's part: its triangles face into the volume, and their backs are its outside.
+    /// Caps are runs of the caster's own triangles, so either way occurs.
+    pub faces_inwards: bool,
     /// Values for the shader.
     pub constants: DrawConstants,
 }

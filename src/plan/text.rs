@@ -104,6 +104,9 @@ impl FramePlan {
             draw.part.name(),
             draw.mesh.0
         )?;
+        if draw.faces_inwards {
+            writeln!(f, "    its triangles face into the volume")?;
+        }
         if draw.base_vertex > 0 {
             writeln!(f, "    {} added to every index", draw.base_vertex)?;
         }

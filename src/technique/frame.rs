@@ -404,6 +404,7 @@ impl<'a> Frame<'a> {
                 mesh: piece.mesh,
                 triangles: piece.triangles.clone(),
                 base_vertex: 0,
+                faces_inwards: false,
                 constants: DrawConstants { material, label: drawn.label, layer, ..DrawConstants::default() },
             })
         };

@@ -179,6 +179,7 @@ fn mark_pass(frame: &mut Frame, marked: &[Marked], light: LightId) {
             mesh,
             triangles: 0..receiver.triangles.len() as u32,
             base_vertex: 0,
+            faces_inwards: false,
             constants: DrawConstants::default(),
         });
     }
@@ -266,6 +267,7 @@ fn shadow_draw(frame: &mut Frame, one: &Marked, caster: usize, light: LightId, o
         mesh,
         triangles: 0..count,
         base_vertex: 0,
+        faces_inwards: false,
         constants: DrawConstants { label: 1, flat: [BLENDED, BLENDED, BLENDED, 1.0], ..DrawConstants::default() },
     })
 }

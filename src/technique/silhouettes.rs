@@ -106,6 +106,7 @@ pub fn draws(frame: &mut Frame, caster: usize, of: &[u32]) -> Vec<Draw> {
             mesh,
             triangles: 0..own.len() as u32,
             base_vertex: 0,
+            faces_inwards: false,
             constants: DrawConstants {
                 flat: let_through(&group.material.unwrap_or(object.material)),
                 ..DrawConstants::default()

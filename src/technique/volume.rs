@@ -146,6 +146,7 @@ impl Volume {
             mesh: self.mesh,
             triangles: triangles.start as u32..triangles.end as u32,
             base_vertex: self.parts.dark_cap_base.filter(|_| part == Part::DarkCap).unwrap_or(0),
+            faces_inwards: turned,
             constants: DrawConstants::default(),
         }
     }

@@ -3,6 +3,9 @@
 mod by_hand;
 mod counts;
 mod draws;
+mod history;
+mod history_by_hand;
+mod history_pictures;
 mod layers;
 mod pictures;
 mod report;

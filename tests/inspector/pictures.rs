@@ -18,7 +18,7 @@ use stencilscope::session::CaptureRequest;
 use stencilscope::technique::Technique;
 
 /// The harness leaves this much around the panels, pixels.
-const MARGIN: u32 = 8;
+pub const MARGIN: u32 = 8;
 /// Where light, one shadow and two shadows meet.
 const PICK: [u32; 2] = [689, 142];
 
@@ -51,7 +51,7 @@ fn pictures_of_the_panels_can_be_drawn() {
     }
 }
 
-fn inspector(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>, pick: [u32; 2]) -> Inspector {
+pub fn inspector(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>, pick: [u32; 2]) -> Inspector {
     let entry = SceneEntry { name: "tori".to_owned(), lesson: "four tori".to_owned() };
     let mut inspector = Inspector::new(vec![entry]);
     let draft = RunRequest {
@@ -67,11 +67,11 @@ fn inspector(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>, pi
     inspector
 }
 
-fn sizes(are_kept: bool) -> &'static [[u32; 2]] {
+pub fn sizes(are_kept: bool) -> &'static [[u32; 2]] {
     if are_kept { &[[1280, 800], [1440, 900], [1920, 1080]] } else { &[[640, 400]] }
 }
 
-fn draw(harness: &mut Harness<Seen>, folder: Option<&Path>, name: &str, size: [u32; 2]) {
+pub fn draw(harness: &mut Harness<Seen>, folder: Option<&Path>, name: &str, size: [u32; 2]) {
     let picture = harness.render().expect("a picture");
     if let Some(folder) = folder {
         save(&folder.join(format!("{name}-{}.png", size[0])), picture.as_raw(), size);

@@ -1,0 +1,214 @@
+//! An event of a pixel's history as the cells of a row, and as the row's name.
+
+use crate::history::{Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
+use crate::math::depth::DepthCurve;
+use crate::numbers;
+use crate::plan::{Clip, Part};
+use wgpu::StencilOperation;
+
+/// What stands in a row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cells {
+    /// Number of the pass, from 1.
+    pub pass: String,
+    /// What the fragment is of, for its colour.
+    pub part: Option<Part>,
+    /// The part in words, or what is cleared.
+    pub what: String,
+    /// Of which object.
+    pub of: String,
+    /// `front` or `back`; empty for a clear.
+    pub side: &'static str,
+    /// What came of it.
+    pub outcome: Outcome,
+    /// Before and after, or what stayed.
+    pub change: String,
+    /// It changed what the pixel holds.
+    pub has_changed: bool,
+}
+
+/// What came of an event.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Outcome {
+    /// A clear.
+    Cleared,
+    /// Tests and what they led to.
+    Tested {
+        /// The depth test.
+        depth: Test,
+        /// The stencil test.
+        stencil: Test,
+        /// What was done to the stencil; `None` without a stencil test.
+        operation: Option<StencilOperation>,
+    },
+    /// No fragment, and why in a word.
+    Nothing(&'static str),
+}
+
+impl Cells {
+    /// The cells of an event.
+    #[must_use]
+    pub fn of(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> Cells {
+        let (change, has_changed) = change(history, event, curve);
+        let mut cells = Cells {
+            pass: (event.pass + 1).to_string(),
+            part: None,
+            what: String::new(),
+            of: String::new(),
+            side: "",
+            outcome: Outcome::Cleared,
+            change,
+            has_changed,
+        };
+        match &event.kind {
+            EventKind::ClearDepth => cells.what = "clear depth".to_owned(),
+            EventKind::ClearStencil => cells.what = "clear stencil".to_owned(),
+            EventKind::ClearCount => cells.what = "clear count".to_owned(),
+            EventKind::Triangle(one) => {
+                cells.part = Some(one.part);
+                (cells.what, cells.of) = named(one);
+                cells.side = side(one);
+                cells.outcome = outcome(one.fate);
+            }
+        }
+        cells
+    }
+
+    /// The row in words, with every sign that it shows.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let mut name = format!("pass {}: {}", self.pass, self.what);
+        let mut add = |separator: &str, text: &str| {
+            if !text.is_empty() {
+                name.push_str(separator);
+                name.push_str(text);
+            }
+        };
+        add(" of ", &self.of);
+        add(", ", self.side);
+        match self.outcome {
+            Outcome::Cleared => {}
+            Outcome::Tested { depth, stencil, operation } => {
+                add("; ", &format!("depth {}, stencil {}", sign(depth), sign(stencil)));
+                add("; ", operation.map_or("", short));
+            }
+            Outcome::Nothing(why) => add("; ", why),
+        }
+        add("; ", &self.change);
+        name
+    }
+}
+
+/// The whole event in words; the face that words are set in has no arrow.
+#[must_use]
+pub fn line(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> String {
+    history.line(event, curve).replace('→', "to")
+}
+
+/// The part of a face and the object it belongs to: `dark cap` and `torus 2`.
+#[must_use]
+pub fn named(one: &TriangleEvent) -> (String, String) {
+    let caster = || one.caster.clone().unwrap_or_else(|| one.draw_name.clone());
+    match one.part {
+        Part::Surface => (one.draw_name.clone(), String::new()),
+        Part::Receiver => ("receiver".to_owned(), one.draw_name.clone()),
+        Part::PlanarShadow => ("flattened".to_owned(), caster()),
+        other => (other.name().replace('-', " "), caster()),
+    }
+}
+
+/// Which side of what a triangle belongs to is seen.
+#[must_use]
+pub fn side(one: &TriangleEvent) -> &'static str {
+    if one.shows_outside() { "front" } else { "back" }
+}
+
+fn outcome(fate: Fate) -> Outcome {
+    match fate {
+        Fate::Tested { stencil, depth, operation } => Outcome::Tested { depth, stencil, operation },
+        Fate::Culled => Outcome::Nothing("culled"),
+        Fate::Clipped(Clip::Near) => Outcome::Nothing("clipped at near"),
+        Fate::Clipped(Clip::Far) => Outcome::Nothing("clipped at far"),
+        Fate::Dropped(Clip::Near) => Outcome::Nothing("dropped before near"),
+        Fate::Dropped(Clip::Far) => Outcome::Nothing("dropped beyond far"),
+    }
+}
+
+/// The sign of a test beside its colour.
+#[must_use]
+pub fn sign(test: Test) -> &'static str {
+    match test {
+        Test::Passed => "✓",
+        Test::Failed => "✗",
+        Test::Always => "always",
+        Test::NotReached => "-",
+    }
+}
+
+/// A stencil operation in a few letters; wrapping or clamping is in the row's whole line.
+#[must_use]
+pub fn short(operation: StencilOperation) -> &'static str {
+    match operation {
+        StencilOperation::Keep => "keep",
+        StencilOperation::Zero => "zero",
+        StencilOperation::Replace => "set",
+        StencilOperation::Invert => "invert",
+        StencilOperation::IncrementClamp | StencilOperation::IncrementWrap => "+1",
+        StencilOperation::DecrementClamp | StencilOperation::DecrementWrap => "−1",
+    }
+}
+
+/// A stencil value with its sign, and without the stored byte beside it.
+#[must_use]
+pub fn signed(value: u8) -> String {
+    numbers::signed(value).split(' ').next().unwrap_or_default().to_owned()
+}
+
+/// A float count with the sign that stencil values have.
+fn float(value: f32) -> String {
+    if value < 0.0 { format!("−{}", -value) } else { value.to_string() }
+}
+
+/// What changed at the pixel, and whether anything did: the count, else the depth, else the stencil
+/// as it stayed.
+fn change(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> (String, bool) {
+    let Held { depth, stencil, count } = event.before;
+    let after = event.after;
+    match event.kind {
+        EventKind::ClearDepth => {
+            return (format!("→ {}", numbers::digits(f64::from(after.depth))), depth != after.depth);
+        }
+        EventKind::ClearStencil => return (format!("→ {}", signed(after.stencil)), stencil != after.stencil),
+        EventKind::ClearCount => return (format!("→ {}", float(after.count)), count != after.count),
+        EventKind::Triangle(_) => {}
+    }
+    if stencil != after.stencil {
+        (format!("{} → {}", signed(stencil), signed(after.stencil)), true)
+    } else if count != after.count {
+        (format!("{} → {}", float(count), float(after.count)), true)
+    } else if depth != after.depth {
+        let distance = curve.distance(after.depth).map_or_else(|| "∞".to_owned(), numbers::metres);
+        (format!("→ {distance}"), true)
+    } else if history.has_stencil {
+        (signed(stencil), false)
+    } else {
+        (String::new(), false)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_byte_below_zero_is_read_with_its_sign_alone() {
+        assert_eq!([0, 1, 127, 128, 255].map(signed), ["0", "1", "127", "−128", "−1"]);
+        assert_eq!(float(-2.0), "−2");
+    }
+
+    #[test]
+    fn no_two_outcomes_of_a_test_have_the_same_sign() {
+        let signs = [Test::Passed, Test::Failed, Test::Always, Test::NotReached].map(sign);
+        assert_eq!(signs.iter().collect::<std::collections::BTreeSet<_>>().len(), signs.len());
+    }
+}

@@ -1,0 +1,282 @@
+//! "History" in the Pixel panel: one row an event, in the order in which they happened.
+
+use super::format;
+use super::history_row::{Cells, Outcome, line, short, sign};
+use super::state::State;
+use super::theme;
+use crate::capture::Capture;
+use crate::history::{Event, PixelHistory, Test};
+use crate::plan::Part;
+use egui::{Align2, Color32, CornerRadius, FontId, Margin, Pos2, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo};
+use egui::{pos2, vec2};
+use std::sync::Arc;
+
+/// Height of a row, points.
+const ROW: f32 = 22.0;
+/// Rows that are shown before they scroll.
+const MOST_ROWS: usize = 12;
+/// Contradictions that are listed.
+const MOST_WRONG: usize = 3;
+/// Where a history is not of what is picked.
+const GREYED: f32 = 0.4;
+
+/// Draws heading, rows and the selected event of the picked pixel.
+pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
+    let history = state.history.last().cloned().filter(|_| state.scene.is_some());
+    heading(ui, state, history.as_deref(), at);
+    if state.scene.is_none() {
+        let text = "A capture folder holds pictures and no geometry, so what happened between them is not known. Open \
+                    the scene itself, or run `stencilscope pixel SCENE --at X,Y`.";
+        ui.add(egui::Label::new(theme::note(text)).wrap());
+        return;
+    }
+    if let Some(reason) = state.history.failed() {
+        let text = RichText::new(format!("× There is no history: {reason}")).color(theme::ERROR);
+        ui.add(egui::Label::new(text).wrap());
+        return;
+    }
+    let Some(history) = history else { return };
+    ui.scope(|ui| {
+        if state.history.is_late() {
+            ui.set_opacity(GREYED);
+        }
+        wrong(ui, state.history.wrong());
+        let shown = shown(state, &history);
+        table(ui, state, capture, &history, &shown);
+        selected(ui, state, capture, &history);
+    });
+}
+
+/// Title, how many events, and the switch; while another pixel's are waited for, that.
+fn heading(ui: &mut Ui, state: &mut State, history: Option<&PixelHistory>, at: [u32; 2]) {
+    ui.horizontal(|ui| {
+        theme::heading(ui, "History");
+        if state.scene.is_none() || state.history.failed().is_some() {
+            return;
+        }
+        let Some(history) = history.filter(|_| !state.history.is_late()) else {
+            let job = state.job.as_ref().map_or_else(String::new, |job| format!(": {job}"));
+            let text = theme::note(format!("waiting for {}, {}{job} …", at[0], at[1]));
+            ui.add(egui::Label::new(text).truncate());
+            return;
+        };
+        let all = history.events.len();
+        let count = shown(state, history).len();
+        let counted = format::counted(all as u64, "event");
+        let text = if count < all { format!("{count} of {counted}") } else { counted };
+        ui.label(theme::note(text));
+        if state.history.wrong().is_empty() && history.captured.is_some() {
+            let agrees = ui.label(theme::note("· as the GPU stored it"));
+            agrees.on_hover_text("After every pass the events make what was captured here, bit for bit");
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let text = theme::note("Hide failed");
+            let switch = ui.checkbox(&mut state.history.hides_failed, text);
+            switch.on_hover_text("Hide events that passed no test or changed nothing");
+        });
+    });
+}
+
+/// A history that contradicts the GPU is a bug of this program, and must not be believed.
+fn wrong(ui: &mut Ui, wrong: &[String]) {
+    if wrong.is_empty() {
+        return;
+    }
+    let frame = theme::card().stroke(Stroke::new(1.0, theme::ERROR)).inner_margin(Margin::same(8));
+    frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        let title = RichText::new("× This history is wrong, which is our bug. Please report it.").color(theme::ERROR);
+        ui.add(egui::Label::new(title).wrap());
+        for one in wrong.iter().take(MOST_WRONG) {
+            ui.add(egui::Label::new(theme::note(one.as_str()).color(theme::TEXT)).wrap());
+        }
+        if wrong.len() > MOST_WRONG {
+            ui.label(theme::note(format!("and {} more", wrong.len() - MOST_WRONG)));
+        }
+    });
+    ui.add_space(4.0);
+}
+
+/// Indices of the events that are listed.
+fn shown(state: &State, history: &PixelHistory) -> Vec<usize> {
+    let is_shown =
+        |event: &Event| !state.history.hides_failed || event.does_something() || state.history.is_selected(event);
+    history.events.iter().enumerate().filter(|(_, event)| is_shown(event)).map(|(index, _)| index).collect()
+}
+
+fn table(ui: &mut Ui, state: &mut State, capture: &Capture, history: &Arc<PixelHistory>, shown: &[usize]) {
+    if shown.is_empty() {
+        let none = history.events.is_empty();
+        let text = if none { "Nothing was drawn or cleared here." } else { "No event changed anything here." };
+        ui.label(theme::note(text));
+        return;
+    }
+    ui.spacing_mut().item_spacing.y = 0.0;
+    head(ui, history.has_stencil);
+    let height = ROW * shown.len().min(MOST_ROWS) as f32;
+    let area = egui::ScrollArea::vertical().id_salt("history rows").auto_shrink([false, true]);
+    // In the panel's own scroll area too it is not to shrink.
+    let mut area = area.max_height(height).min_scrolled_height(height);
+    let selected = || state.history.selected_in(history).and_then(|event| shown.iter().position(|one| *one == event));
+    if let Some(place) = state.history.scroll_to_selected.then(selected).flatten() {
+        let first = place.saturating_sub(MOST_ROWS / 2).min(shown.len().saturating_sub(MOST_ROWS));
+        area = area.vertical_scroll_offset(ROW * first as f32);
+    }
+    state.history.scroll_to_selected = false;
+    area.show_rows(ui, ROW, shown.len(), |ui, rows| {
+        for event in &shown[rows] {
+            row(ui, state, capture, history, &history.events[*event]);
+        }
+    });
+    ui.add_space(4.0);
+}
+
+/// Where the columns are.
+struct Columns {
+    pass: f32,
+    what: f32,
+    what_room: f32,
+    side: f32,
+    depth: f32,
+    stencil: Option<f32>,
+    operation: f32,
+    change: f32,
+}
+
+impl Columns {
+    /// In a row; tests and operations of a stencil have columns only where there is one.
+    fn of(row: Rect, has_stencil: bool) -> Columns {
+        let change = row.right() - 6.0;
+        let operation = change - 80.0;
+        let stencil = operation - 42.0;
+        let depth = if has_stencil { stencil - 37.0 } else { change - 100.0 };
+        let side = depth - 32.0;
+        let what = row.left() + 36.0;
+        Columns {
+            pass: row.left() + 20.0,
+            what,
+            what_room: side - what - 4.0,
+            side,
+            depth,
+            stencil: has_stencil.then_some(stencil),
+            operation,
+            change,
+        }
+    }
+}
+
+fn head(ui: &mut Ui, has_stencil: bool) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::RowHeader, true, "Columns of the history"));
+    let columns = Columns::of(rect, has_stencil);
+    let write = |x: f32, align: Align2, text: &str| {
+        let font = FontId::proportional(theme::SMALL_SIZE);
+        ui.painter().text(pos2(x, rect.center().y), align, text, font, theme::FAINT);
+    };
+    write(columns.pass, Align2::RIGHT_CENTER, "#");
+    write(columns.what, Align2::LEFT_CENTER, "face");
+    write(columns.side, Align2::LEFT_CENTER, "side");
+    write(columns.depth, Align2::LEFT_CENTER, "depth");
+    if let Some(stencil) = columns.stencil {
+        write(stencil, Align2::LEFT_CENTER, "stencil");
+        write(columns.operation, Align2::LEFT_CENTER, "op");
+    }
+    write(columns.change, Align2::RIGHT_CENTER, "change");
+    let line = Stroke::new(1.0, theme::LINE);
+    ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, line);
+}
+
+fn row(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory, event: &Event) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+    let cells = Cells::of(history, event, &capture.depth);
+    let is_selected = state.history.is_selected(event);
+    response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, cells.name()));
+    if response.clicked() {
+        state.history.select(event);
+    }
+    if response.double_clicked() {
+        state.playing = None;
+        state.select_step(event.pass);
+    }
+    if response.gained_focus() {
+        response.scroll_to_me(None);
+    }
+    if ui.is_rect_visible(rect) {
+        theme::row_background(ui, rect, is_selected, &response);
+        let ink = if event.does_something() { theme::TEXT } else { theme::DIM };
+        paint(ui, rect, &cells, history.has_stencil, ink);
+    }
+    let line = line(history, event, &capture.depth);
+    response.on_hover_text(format!("pass {}, {}: {line}. Double-click to go there.", event.pass + 1, event.pass_name));
+}
+
+fn paint(ui: &Ui, rect: Rect, cells: &Cells, has_stencil: bool, ink: Color32) {
+    let columns = Columns::of(rect, has_stencil);
+    let painter = ui.painter();
+    let middle = rect.center().y;
+    let number = theme::number_font(theme::SMALL_SIZE);
+    let words = FontId::proportional(theme::SMALL_SIZE);
+    painter.text(pos2(columns.pass, middle), Align2::RIGHT_CENTER, &cells.pass, number.clone(), theme::DIM);
+    if let Some(color) = cells.part.and_then(theme::part_color) {
+        let swatch = Rect::from_center_size(pos2(columns.pass + 10.0, middle), vec2(8.0, 8.0));
+        painter.rect_filled(swatch, CornerRadius::same(2), color);
+    }
+    // Of both words more has to be seen than the first.
+    let what = if cells.part == Some(Part::PlanarShadow) { "flat" } else { cells.what.as_str() };
+    theme::two_inks(ui, pos2(columns.what, middle), columns.what_room, [what, &cells.of], ink);
+    painter.text(pos2(columns.side, middle), Align2::LEFT_CENTER, cells.side, words.clone(), theme::DIM);
+    match cells.outcome {
+        Outcome::Cleared => {}
+        Outcome::Nothing(why) => {
+            painter.text(pos2(columns.depth, middle), Align2::LEFT_CENTER, why, words, theme::FAINT);
+        }
+        Outcome::Tested { depth, stencil, operation } => {
+            test(ui, pos2(columns.depth, middle), depth);
+            if let Some(x) = columns.stencil {
+                test(ui, pos2(x, middle), stencil);
+                let (text, color) = match operation {
+                    None => ("", theme::FAINT),
+                    Some(wgpu::StencilOperation::Keep) => (short(wgpu::StencilOperation::Keep), theme::FAINT),
+                    Some(other) => (short(other), ink),
+                };
+                painter.text(pos2(columns.operation, middle), Align2::LEFT_CENTER, text, number.clone(), color);
+            }
+        }
+    }
+    let color = if cells.has_changed { theme::TEXT } else { theme::FAINT };
+    painter.text(pos2(columns.change, middle), Align2::RIGHT_CENTER, &cells.change, number, color);
+}
+
+/// How a test went: a tick, a cross, a word or a dash, and its colour.
+fn test(ui: &Ui, at: Pos2, test: Test) {
+    let painter = ui.painter();
+    let mark = |points: &[(f32, f32)], color: Color32| {
+        let points = points.iter().map(|(x, y)| at + vec2(*x + 2.0, *y)).collect();
+        painter.line(points, Stroke::new(1.7, color));
+    };
+    match test {
+        Test::Passed => mark(&[(0.0, 0.5), (3.0, 3.5), (9.0, -3.5)], theme::PASSED),
+        Test::Failed => {
+            mark(&[(0.5, -3.5), (7.5, 3.5)], theme::FAILED);
+            mark(&[(0.5, 3.5), (7.5, -3.5)], theme::FAILED);
+        }
+        Test::Always | Test::NotReached => {
+            let font = FontId::proportional(theme::SMALL_SIZE);
+            painter.text(at, Align2::LEFT_CENTER, sign(test), font, theme::DECIDED);
+        }
+    }
+}
+
+/// The selected event in full, and the way to its step.
+fn selected(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory) {
+    let Some(event) = state.history.selected_in(history).and_then(|index| history.events.get(index)) else { return };
+    theme::card().show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.add(egui::Label::new(theme::note(line(history, event, &capture.depth)).color(theme::TEXT)).wrap());
+        let text = theme::note(format!("Go to step {}, {}", event.pass + 1, event.pass_name));
+        if event.pass != state.step && ui.button(text).clicked() {
+            state.playing = None;
+            state.select_step(event.pass);
+        }
+    });
+}

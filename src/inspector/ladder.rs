@@ -1,0 +1,305 @@
+//! The ladder: the view ray through the picked pixel from the eye (top) to infinity, with every face
+//! of a light's shadow volumes on it, what each added, and the count as it runs.
+
+use super::counts;
+use super::format;
+use super::history_row::{line, named, side};
+use super::ladder_layout::{LINE, Mark, Placed, Stretch, place, stretches};
+use super::state::State;
+use super::theme;
+use crate::capture::Capture;
+use crate::history::{Ladder, PixelHistory, Rung};
+use crate::numbers;
+use crate::plan::Part;
+use egui::{
+    Align2, Color32, CornerRadius, FontId, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+};
+
+/// Room above the eye and below infinity, points.
+const MARGIN: f32 = 12.0;
+/// Points that the running count moves for one, at most, and in all.
+const COUNT_STEP: f32 = 10.0;
+const COUNT_ROOM: f32 = 40.0;
+
+/// Draws the ladder of `light` under the history; nothing where no volumes are counted.
+pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, light: usize) {
+    let Some(history) = state.history.last().cloned() else { return };
+    if state.scene.is_none() || state.history.failed().is_some() || !counts::are_made_by(&capture.technique) {
+        return;
+    }
+    ui.horizontal(|ui| {
+        theme::heading(ui, "Ladder");
+        ui.label(theme::note(format!("of {}, along the view ray", format::light(light))));
+    });
+    ui.scope(|ui| {
+        if state.history.is_late() {
+            ui.set_opacity(0.4);
+        }
+        match history.ladder(light, &capture.depth) {
+            Some(ladder) => drawn(ui, state, capture, &history, &ladder),
+            None => {
+                let none = format!("No volume face of {} is on this pixel's view ray.", format::light(light));
+                ui.add(egui::Label::new(theme::note(none)).wrap());
+            }
+        }
+    });
+}
+
+/// Which way it counts, and from what.
+fn direction(ladder: &Ladder) -> String {
+    let way = match (ladder.is_from_infinity, ladder.surface) {
+        (true, Some(_)) => "Counted from infinity towards the surface",
+        (true, None) => "Counted from infinity, and no surface ends it",
+        (false, Some(_)) => "Counted from the eye towards the surface",
+        (false, None) => "Counted from the eye, and no surface ends it",
+    };
+    let start = match ladder.start {
+        0 => String::new(),
+        start => format!(", starting at {}: the volumes that hold the near plane", signed(start)),
+    };
+    let all = ladder.rungs.len() as u64;
+    let counted = ladder.rungs.iter().filter(|rung| rung.added != 0).count();
+    format!("{way}{start}. {counted} of {} count: {} in all.", format::counted(all, "face"), signed(ladder.count))
+}
+
+/// A whole number with the sign that stencil values have.
+fn signed(value: i32) -> String {
+    if value < 0 { format!("−{}", value.unsigned_abs()) } else { value.to_string() }
+}
+
+/// What a face added: `+1`, or nothing.
+fn added(value: i32) -> String {
+    match value {
+        0 => String::new(),
+        1.. => format!("+{value}"),
+        _ => signed(value),
+    }
+}
+
+/// Where the columns are in the ladder's rectangle.
+#[derive(Clone, Copy)]
+struct Columns {
+    ray: f32,
+    name: f32,
+    name_room: f32,
+    distance: f32,
+    added: f32,
+    steps: f32,
+    count: f32,
+}
+
+impl Columns {
+    fn of(rect: Rect) -> Columns {
+        let count = rect.right() - 6.0;
+        let steps = count - 26.0 - COUNT_ROOM;
+        let added = steps - 10.0;
+        let distance = added - 34.0;
+        let (ray, name) = (rect.left() + 20.0, rect.left() + 40.0);
+        Columns { ray, name, name_room: distance - 50.0 - name, distance, added, steps, count }
+    }
+}
+
+fn drawn(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory, ladder: &Ladder) {
+    ui.add(egui::Label::new(theme::note(direction(ladder))).wrap());
+    let chosen = state.history.selected_in(history);
+    let selected = chosen.and_then(|event| ladder.rungs.iter().position(|rung| rung.event == event));
+    let placed = place(ladder, capture.camera.near, selected);
+    let height = placed.last().map_or(0.0, |(_, y)| *y) + 2.0 * MARGIN;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Ladder of the view ray"));
+    let columns = Columns::of(rect);
+    let top = rect.top() + MARGIN;
+    let row = |y: f32| Rect::from_center_size(pos2(rect.center().x, top + y), vec2(rect.width(), LINE));
+    // Rungs first, as what is selected has a background.
+    for (mark, y) in &placed {
+        if let Mark::Rung(index) = mark {
+            rung(ui, state, capture, history, &ladder.rungs[*index], row(*y));
+        }
+    }
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    ray(ui, columns, top, &placed);
+    for (mark, y) in &placed {
+        let rect = row(*y);
+        match mark {
+            Mark::Rung(index) => paint_rung(ui, capture, history, &ladder.rungs[*index], rect),
+            Mark::More(from, to) => paint_more(ui, &ladder.rungs[*from..*to], rect),
+            other => paint_end(ui, capture, history, ladder, *other, rect),
+        }
+    }
+    paint_count(ui, columns, top, ladder, &stretches(ladder, &placed));
+}
+
+/// A rung as a widget: clicking it selects its triangle everywhere.
+fn rung(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory, rung: &Rung, rect: Rect) {
+    let Some(event) = history.events.get(rung.event) else { return };
+    let response = ui.interact(rect, ui.scope_id().with(("rung", rung.event)), Sense::click());
+    let is_selected = state.history.is_selected(event);
+    response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_selected, name(history, rung)));
+    if response.clicked() {
+        state.history.select(event);
+        state.history.scroll_to_selected = true;
+    }
+    if response.gained_focus() {
+        response.scroll_to_me(None);
+    }
+    theme::row_background(ui, rect, is_selected, &response);
+    response.on_hover_text(line(history, event, &capture.depth));
+}
+
+/// A rung in words.
+fn name(history: &PixelHistory, rung: &Rung) -> String {
+    let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return String::new() };
+    let (part, of) = named(one);
+    let counted = if rung.added == 0 { "not counted".to_owned() } else { added(rung.added) };
+    let (triangle, side) = (one.triangle + 1, side(one));
+    let [distance, running] = [numbers::metres(rung.distance), signed(rung.running)];
+    format!("rung: {part} of {of}, triangle {triangle}, {side}, at {distance}: {counted}, count {running}")
+}
+
+/// The line itself, from the eye to infinity.
+fn ray(ui: &Ui, columns: Columns, top: f32, placed: &[Placed]) {
+    let [Some(first), Some(last)] = [placed.first(), placed.last()] else { return };
+    let stroke = Stroke::new(1.5, theme::FAINT);
+    ui.painter().vline(columns.ray, top + first.1..=top + last.1, stroke);
+}
+
+fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, rect: Rect) {
+    let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return };
+    let columns = Columns::of(rect);
+    let (painter, y) = (ui.painter(), rect.center().y);
+    let counts = rung.added != 0;
+    let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(20.0, 6.0));
+    let color = theme::part_color(one.part).unwrap_or(theme::DIM);
+    if counts {
+        painter.rect_filled(bar, CornerRadius::same(1), color);
+    } else {
+        painter.rect(bar, CornerRadius::same(1), theme::PANEL, Stroke::new(1.0, theme::FAINT), StrokeKind::Inside);
+    }
+    let (part, of) = named(one);
+    let ink = if counts { theme::TEXT } else { theme::FAINT };
+    let what = format!("{part}, {}", side(one));
+    theme::two_inks(ui, pos2(columns.name, y), columns.name_room, [&what, &of], ink);
+    let number = theme::number_font(theme::SMALL_SIZE);
+    let ink = if counts { theme::DIM } else { theme::FAINT };
+    let is_clipped = rung.distance < capture.camera.near;
+    let distance = if is_clipped { "clipped".to_owned() } else { short_metres(rung.distance) };
+    painter.text(pos2(columns.distance, y), Align2::RIGHT_CENTER, distance, number.clone(), ink);
+    if !counts {
+        return;
+    }
+    let color = if rung.added > 0 { theme::COUNT_UP } else { theme::COUNT_DOWN };
+    painter.text(pos2(columns.added, y), Align2::RIGHT_CENTER, added(rung.added), number.clone(), color);
+    // Up or down beside the sign.
+    let (tip, base) = if rung.added > 0 { (-3.5, 3.0) } else { (3.5, -3.0) };
+    let x = columns.added - 24.0;
+    let triangle = [vec2(0.0, tip), vec2(3.5, base), vec2(-3.5, base)].map(|corner| pos2(x, y) + corner);
+    painter.add(Shape::convex_polygon(triangle.to_vec(), color, Stroke::NONE));
+    painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, signed(rung.running), number, theme::TEXT);
+}
+
+/// Metres in as few digits as a column has room for.
+fn short_metres(distance: f64) -> String {
+    match distance {
+        _ if !distance.is_finite() => "∞".to_owned(),
+        ..100.0 => format!("{distance:.2} m"),
+        100.0..10_000.0 => format!("{distance:.0} m"),
+        _ => numbers::metres(distance),
+    }
+}
+
+/// Rungs that are folded: how many, and what they added.
+fn paint_more(ui: &Ui, rungs: &[Rung], rect: Rect) {
+    let columns = Columns::of(rect);
+    let (painter, y) = (ui.painter(), rect.center().y);
+    for offset in [-4.0, 0.0, 4.0] {
+        painter.circle_filled(pos2(columns.ray, y + offset), 1.5, theme::DIM);
+    }
+    let counting = rungs.iter().filter(|rung| rung.added != 0).count();
+    let sum: i32 = rungs.iter().map(|rung| rung.added).sum();
+    let text = match (counting, sum) {
+        (0, _) => format!("+{} more, not counted", rungs.len()),
+        (_, 0) => format!("+{} more, adding 0", rungs.len()),
+        _ => format!("+{} more, adding {}", rungs.len(), added(sum)),
+    };
+    painter.text(pos2(columns.name, y), Align2::LEFT_CENTER, text, FontId::proportional(theme::SMALL_SIZE), theme::DIM);
+}
+
+/// Eye, near plane, surface, infinity.
+fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder, mark: Mark, rect: Rect) {
+    let columns = Columns::of(rect);
+    let (painter, y) = (ui.painter(), rect.center().y);
+    let words =
+        |text: &str, color: Color32| theme::two_inks(ui, pos2(columns.name, y), columns.name_room, [text, ""], color);
+    let number = |x: f32, text: String, color: Color32| {
+        painter.text(pos2(x, y), Align2::RIGHT_CENTER, text, theme::number_font(theme::SMALL_SIZE), color);
+    };
+    match mark {
+        Mark::Eye => {
+            painter.circle_filled(pos2(columns.ray, y), 4.0, theme::TEXT);
+            words("eye", theme::DIM);
+        }
+        Mark::Near => {
+            let [from, to] = [columns.ray - 14.0, columns.ray + 14.0].map(|x| pos2(x, y));
+            painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.5, theme::DIM), 4.0, 3.0));
+            words("near plane", theme::DIM);
+            number(columns.distance, short_metres(capture.camera.near), theme::DIM);
+            if ladder.start != 0 && !ladder.is_from_infinity {
+                number(columns.count, signed(ladder.start), theme::TEXT);
+            }
+        }
+        Mark::Surface => {
+            let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(32.0, 7.0));
+            painter.rect_filled(bar, CornerRadius::same(1), theme::TEXT);
+            let of = surface_name(history).unwrap_or("");
+            let words = ["surface", of];
+            theme::two_inks(ui, pos2(columns.name, y), columns.name_room, words, theme::TEXT);
+            number(columns.distance, ladder.surface.map(short_metres).unwrap_or_default(), theme::TEXT);
+            // What the light pass asks about.
+            let count = signed(ladder.count);
+            let size = theme::TEXT_SIZE;
+            let ink = if ladder.count == 0 { theme::LIT } else { theme::TEXT };
+            painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, count, theme::number_font(size), ink);
+        }
+        Mark::Infinity => {
+            painter.text(pos2(columns.ray, y + 7.0), Align2::CENTER_CENTER, "∞", theme::number_font(15.0), theme::DIM);
+            words("infinity", theme::DIM);
+            if ladder.start != 0 && ladder.is_from_infinity {
+                number(columns.count, signed(ladder.start), theme::TEXT);
+            }
+        }
+        Mark::Rung(_) | Mark::More(..) => {}
+    }
+}
+
+/// What the visible surface is of.
+fn surface_name(history: &PixelHistory) -> Option<&str> {
+    let wrote =
+        history.triangles().filter(|(event, one)| one.part == Part::Surface && event.before.depth != event.after.depth);
+    wrote.last().map(|(_, one)| one.draw_name.as_str())
+}
+
+/// The running count as a step line, further right where it is higher, with an arrow where it goes.
+fn paint_count(ui: &Ui, columns: Columns, top: f32, ladder: &Ladder, stretches: &[Stretch]) {
+    let counts = || stretches.iter().map(|one| one.count).chain([0]);
+    let (Some(least), Some(most)) = (counts().min(), counts().max()) else { return };
+    let step = (COUNT_ROOM / (most - least).max(1) as f32).min(COUNT_STEP);
+    let x = |count: i32| columns.steps + 4.0 + (count - least) as f32 * step;
+    let painter = ui.painter();
+    if let (Some(first), Some(last)) = (stretches.first(), stretches.last()) {
+        let (low, high) = (first.top.min(last.top), first.bottom.max(last.bottom));
+        painter.vline(x(0), top + low..=top + high, Stroke::new(1.0, theme::LINE));
+    }
+    let along = stretches.iter().flat_map(|one| {
+        let ends = if ladder.is_from_infinity { [one.bottom, one.top] } else { [one.top, one.bottom] };
+        ends.map(|y| pos2(x(one.count), top + y))
+    });
+    let along: Vec<_> = along.collect();
+    if let [.., before, last] = along[..] {
+        let back = if before.y > last.y { 6.0 } else { -6.0 };
+        let tip = [vec2(-3.5, back), vec2(0.0, 0.0), vec2(3.5, back)].map(|corner| last + corner);
+        painter.line(tip.to_vec(), Stroke::new(1.5, theme::TEXT));
+    }
+    painter.line(along, Stroke::new(1.5, theme::TEXT));
+}

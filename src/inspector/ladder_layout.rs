@@ -1,0 +1,245 @@
+//! Where the rungs of a ladder are: in order of distance, near and infinity both in sight, and no
+//! two closer than a line of text.
+//!
+//! A distance d is placed at d / (d + s), s the surface's: the eye is at 0, the surface in the
+//! middle, infinity at 1. What would overlap is moved apart, in order. Of more rungs than can be
+//! read some are folded into a line that says how many and what they added.
+
+use crate::history::Ladder;
+
+/// The least between two marks, points.
+pub const LINE: f32 = 20.0;
+/// The least height of a ladder, points.
+const LEAST_HEIGHT: f32 = 220.0;
+/// Rungs that are shown one by one.
+const MOST_RUNGS: usize = 16;
+/// Of more than those: so many at either end, and on either side of the surface and of what is
+/// selected.
+const ENDS: usize = 2;
+
+/// Something on the view ray.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    /// Where the ray begins.
+    Eye,
+    /// The near plane.
+    Near,
+    /// A face: its index among the rungs.
+    Rung(usize),
+    /// Faces that are folded: the first, and the one after the last.
+    More(usize, usize),
+    /// What is seen.
+    Surface,
+    /// Where the ray ends, or never does.
+    Infinity,
+}
+
+/// A mark and its height, points below the ladder's top.
+pub type Placed = (Mark, f32);
+
+/// A stretch of the ray, from a height to a lower one, and the count there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Its nearer end, points below the ladder's top.
+    pub top: f32,
+    /// Its farther end.
+    pub bottom: f32,
+    /// The count in between.
+    pub count: i32,
+}
+
+/// Places everything on the ray; `near` is the near plane's distance in metres, `selected` a rung.
+#[must_use]
+pub fn place(ladder: &Ladder, near: f64, selected: Option<usize>) -> Vec<Placed> {
+    let marks = marks(ladder, near, selected);
+    let scale = ladder.surface.unwrap_or_else(|| middle_distance(ladder).unwrap_or(near * 10.0));
+    let share = |distance: f64| if distance.is_finite() { distance / (distance + scale) } else { 1.0 };
+    let distance = |rung: usize| ladder.rungs[rung].distance;
+    let share_of = |mark: Mark| match mark {
+        Mark::Eye => 0.0,
+        Mark::Near => share(near),
+        Mark::Rung(rung) => share(distance(rung)),
+        Mark::More(from, to) => (share(distance(from)) + share(distance(to - 1))) / 2.0,
+        Mark::Surface => share(scale),
+        Mark::Infinity => 1.0,
+    };
+    let height = (LINE * (marks.len() - 1) as f32).max(LEAST_HEIGHT);
+    let mut placed: Vec<Placed> = marks.into_iter().map(|mark| (mark, share_of(mark) as f32 * height)).collect();
+    for index in 1..placed.len() {
+        placed[index].1 = placed[index].1.max(placed[index - 1].1 + LINE);
+    }
+    let mut below = height + LINE;
+    for (_, y) in placed.iter_mut().rev() {
+        *y = y.min(below - LINE);
+        below = *y;
+    }
+    placed
+}
+
+/// The count along the ray: from where counting begins as far as the surface.
+#[must_use]
+pub fn stretches(ladder: &Ladder, placed: &[Placed]) -> Vec<Stretch> {
+    let mut stretches = Vec::new();
+    let mut count = ladder.start;
+    let running = |mark: Mark| match mark {
+        Mark::Rung(rung) => Some(ladder.rungs[rung].running),
+        Mark::More(from, to) => Some(ladder.rungs[if ladder.is_from_infinity { from } else { to - 1 }].running),
+        _ => None,
+    };
+    let mut go = |from: &Placed, to: &Placed| {
+        count = running(from.0).unwrap_or(count);
+        stretches.push(Stretch { top: from.1.min(to.1), bottom: from.1.max(to.1), count });
+        to.0 != Mark::Surface
+    };
+    // Stops after the stretch that reaches the surface.
+    if ladder.is_from_infinity {
+        placed.windows(2).rev().all(|pair| go(&pair[1], &pair[0]));
+    } else {
+        // What lies before the near plane is not drawn.
+        let from_near = placed.iter().skip_while(|(mark, _)| *mark != Mark::Near).copied().collect::<Vec<_>>();
+        from_near.windows(2).all(|pair| go(&pair[0], &pair[1]));
+    }
+    stretches
+}
+
+/// Everything on the ray in order of distance.
+fn marks(ladder: &Ladder, near: f64, selected: Option<usize>) -> Vec<Mark> {
+    let before_near = ladder.rungs.partition_point(|rung| rung.distance < near);
+    let before_surface = ladder.surface.map(|surface| {
+        // A face as far as the surface is on the side that its test says.
+        let is_before = |added: i32| (added != 0) != ladder.is_from_infinity;
+        let rungs = ladder.rungs.iter();
+        let nearer = |distance: f64, added: i32| distance < surface || (distance == surface && is_before(added));
+        rungs.take_while(|rung| nearer(rung.distance, rung.added)).count()
+    });
+    let edges = [Some(0), Some(before_near), before_surface, selected, Some(ladder.rungs.len())];
+    let is_kept = |rung: usize| {
+        let near_edge = |edge: usize| rung + ENDS >= edge && rung < edge + ENDS;
+        ladder.rungs.len() <= MOST_RUNGS || edges.iter().flatten().any(|edge| near_edge(*edge))
+    };
+    let mut marks = vec![Mark::Eye];
+    for rung in 0..=ladder.rungs.len() {
+        if rung == before_near {
+            marks.push(Mark::Near);
+        }
+        if Some(rung) == before_surface {
+            marks.push(Mark::Surface);
+        }
+        if rung == ladder.rungs.len() {
+            break;
+        }
+        match marks.last_mut() {
+            _ if is_kept(rung) => marks.push(Mark::Rung(rung)),
+            Some(Mark::More(_, to)) if *to == rung => *to += 1,
+            _ => marks.push(Mark::More(rung, rung + 1)),
+        }
+    }
+    // A line for one rung says less than the rung.
+    for mark in &mut marks {
+        if let Mark::More(from, to) = *mark
+            && to == from + 1
+        {
+            *mark = Mark::Rung(from);
+        }
+    }
+    marks.push(Mark::Infinity);
+    marks
+}
+
+/// The distance in the middle of those that have an end.
+fn middle_distance(ladder: &Ladder) -> Option<f64> {
+    let finite = ladder.rungs.partition_point(|rung| rung.distance.is_finite());
+    ladder.rungs[..finite].get(finite / 2).map(|rung| rung.distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::history::Rung;
+
+    /// Rungs at distances, each with what it added, counted from infinity.
+    fn ladder(surface: Option<f64>, rungs: &[(f64, i32)]) -> Ladder {
+        let mut ladder = Ladder { surface, is_from_infinity: true, start: 0, count: 0, rungs: Vec::new() };
+        let rung = |(event, (distance, added)): (usize, &(f64, i32))| Rung {
+            event,
+            distance: *distance,
+            added: *added,
+            running: 0,
+        };
+        ladder.rungs = rungs.iter().enumerate().map(rung).collect();
+        for rung in ladder.rungs.iter_mut().rev() {
+            ladder.count += rung.added;
+            rung.running = ladder.count;
+        }
+        ladder
+    }
+
+    #[test]
+    fn the_surface_is_between_what_is_before_and_behind_it() {
+        let ladder = ladder(Some(5.0), &[(0.05, 0), (2.0, 0), (7.0, -1), (9.0, 1), (f64::INFINITY, 1)]);
+        let placed = place(&ladder, 0.1, None);
+        let marks: Vec<Mark> = placed.iter().map(|(mark, _)| *mark).collect();
+        use Mark::{Eye, Infinity, Near, Rung, Surface};
+        assert_eq!(marks, [Eye, Rung(0), Near, Rung(1), Surface, Rung(2), Rung(3), Rung(4), Infinity]);
+        assert!(placed.windows(2).all(|pair| pair[1].1 - pair[0].1 >= LINE - 1e-3), "{placed:?}");
+        assert!(placed.iter().all(|(_, y)| (0.0..=LEAST_HEIGHT).contains(y)), "{placed:?}");
+    }
+
+    #[test]
+    fn a_face_as_far_as_the_surface_is_on_the_side_that_its_test_says() {
+        for (added, expected) in [(1, 2), (0, 3)] {
+            let placed = place(&ladder(Some(5.0), &[(5.0, added)]), 0.1, None);
+            assert_eq!(placed.iter().position(|(mark, _)| *mark == Mark::Surface), Some(expected));
+        }
+    }
+
+    #[test]
+    fn the_count_runs_from_infinity_to_the_surface_and_no_further() {
+        let ladder = ladder(Some(5.0), &[(2.0, 0), (7.0, -1), (9.0, 1), (12.0, 1)]);
+        let stretches = stretches(&ladder, &place(&ladder, 0.1, None));
+        assert_eq!(stretches.iter().map(|one| one.count).collect::<Vec<_>>(), [0, 1, 2, 1]);
+        assert!(stretches.windows(2).all(|pair| pair[1].bottom == pair[0].top));
+    }
+
+    #[test]
+    fn from_the_eye_the_count_begins_with_what_holds_the_near_plane() {
+        let mut ladder = ladder(Some(5.0), &[(2.0, -1), (7.0, 0)]);
+        (ladder.is_from_infinity, ladder.start) = (false, 1);
+        ladder.rungs[0].running = 0;
+        let stretches = stretches(&ladder, &place(&ladder, 0.1, None));
+        assert_eq!(stretches.iter().map(|one| one.count).collect::<Vec<_>>(), [1, 0]);
+    }
+
+    #[test]
+    fn of_many_rungs_every_one_is_shown_or_counted_once() {
+        let rungs: Vec<(f64, i32)> = (0..600).map(|index| (1.0 + f64::from(index) * 0.01, 1 - index % 2 * 2)).collect();
+        for selected in [None, Some(0), Some(100), Some(300), Some(599)] {
+            let placed = place(&ladder(Some(4.0), &rungs), 0.1, selected);
+            let mut next = 0;
+            for (mark, _) in &placed {
+                match mark {
+                    Mark::Rung(rung) => {
+                        assert_eq!(*rung, next);
+                        next += 1;
+                    }
+                    Mark::More(from, to) => {
+                        assert!(*from == next && to > from);
+                        next = *to;
+                    }
+                    _ => {}
+                }
+            }
+            assert_eq!(next, 600);
+            assert!(placed.len() < 28, "{} marks", placed.len());
+            assert!(selected.is_none_or(|rung| placed.iter().any(|(mark, _)| *mark == Mark::Rung(rung))));
+        }
+    }
+
+    #[test]
+    fn without_a_surface_the_count_runs_to_the_eye() {
+        let ladder = ladder(None, &[(3.0, 1)]);
+        let placed = place(&ladder, 0.1, None);
+        assert!(!placed.iter().any(|(mark, _)| *mark == Mark::Surface));
+        assert_eq!(stretches(&ladder, &placed).last().map(|one| (one.top, one.count)), Some((0.0, 1)));
+    }
+}

@@ -1,0 +1,165 @@
+//! The selected triangle of a history, outlined in the picture.
+//!
+//! A face of a shadow volume reaches behind the eye and to infinity. So it is clipped before it is
+//! projected: at the near plane, and a little outside of the picture's four edges, where what is
+//! left has a place on the screen (Sutherland and Hodgman 1974, in homogeneous coordinates).
+
+use super::placement::Placement;
+use super::state::State;
+use super::theme;
+use super::view::{PictureKind, Shown};
+use crate::capture::Capture;
+use crate::math::projection;
+use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, vec2};
+use glam::{DMat4, DVec2, DVec4};
+
+/// How far outside the picture's edges outlines are cut, where the picture ends at 1.
+const GUARD: f64 = 1.5;
+
+/// Draws the outline over the picture in `rect`; maps have pixels of their own.
+pub fn ui(ui: &Ui, state: &State, rect: Rect, shown: &Shown, placement: Placement) {
+    let (Some(capture), Some(at)) = (&state.capture, state.pick) else { return };
+    let Some(history) = state.history.of_frame(at).filter(|_| shown.kind != PictureKind::Map) else { return };
+    let event = state.history.selected_in(history).map(|index| &history.events[index]);
+    // From another place than the eye it has another outline.
+    let Some(triangle) = event.filter(|event| event.is_from_camera).and_then(|event| event.triangle()) else { return };
+    let texels = outline(capture, triangle.corners);
+    let points: Vec<Pos2> =
+        texels.iter().map(|at| placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale).collect();
+    if points.len() < 3 {
+        return;
+    }
+    let painter = ui.painter_at(placement.rect().intersect(rect));
+    let fill = theme::SELECTED.gamma_multiply(0.14);
+    painter.add(Shape::convex_polygon(points.clone(), fill, Stroke::NONE));
+    // Dark under light, so that it shows on any picture.
+    painter.add(Shape::closed_line(points.clone(), Stroke::new(4.0, Color32::from_black_alpha(150))));
+    painter.add(Shape::closed_line(points, Stroke::new(1.5, theme::SELECTED)));
+}
+
+/// Corners of what is seen of a triangle, in texels of the capture's picture. `corners` are
+/// homogeneous and relative to the eye. Empty where nothing of it is before the eye.
+#[must_use]
+pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
+    let [width, height] = capture.size.map(f64::from);
+    let camera = &capture.camera;
+    let clip_from_view = projection::perspective(camera.fov_y_degrees, width / height, &capture.depth);
+    let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
+    let clip_from_relative = clip_from_view * DMat4::from_mat3(rotation);
+    // Near is where depth is 1, or 0; depth that is clamped has no such end.
+    let near = match (capture.depth.mapping.clamps(), capture.depth.mapping.is_reversed()) {
+        (true, _) => DVec4::W,
+        (false, true) => DVec4::W - DVec4::Z,
+        (false, false) => DVec4::Z,
+    };
+    let sides = [DVec4::X, DVec4::NEG_X, DVec4::Y, DVec4::NEG_Y].map(|side| side + DVec4::W * GUARD);
+    let corners = corners.map(|corner| clip_from_relative * DVec4::from_array(corner.map(f64::from)));
+    let clipped = std::iter::once(near).chain(sides).fold(corners.to_vec(), |polygon, plane| clip(&polygon, plane));
+    // Two opposite sides leave nothing behind the eye; a corner in the eye itself has no place.
+    let seen = clipped.into_iter().filter(|corner| corner.w > 0.0);
+    let place = |corner: DVec4| DVec2::new(corner.x / corner.w + 1.0, 1.0 - corner.y / corner.w);
+    seen.map(|corner| place(corner) * 0.5 * DVec2::new(width, height)).collect()
+}
+
+/// The part of a polygon on one side of a plane through the origin.
+fn clip(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (index, &corner) in polygon.iter().enumerate() {
+        let next = polygon[(index + 1) % polygon.len()];
+        let [here, there] = [plane.dot(corner), plane.dot(next)];
+        if here >= 0.0 {
+            kept.push(corner);
+        }
+        if (here < 0.0) != (there < 0.0) {
+            kept.push(corner.lerp(next, here / (here - there)));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capture::{AdapterInfo, Timing};
+    use crate::math::depth::DepthMapping;
+    use crate::scene::Camera;
+    use glam::DVec3;
+    use std::collections::BTreeMap;
+
+    /// An eye that looks down −z, a quarter turn wide each way, over a picture of 200 × 200.
+    fn capture(mapping: DepthMapping) -> Capture {
+        let camera = Camera {
+            eye: DVec3::ONE,
+            target: DVec3::new(1.0, 1.0, 0.0),
+            up: DVec3::Y,
+            fov_y_degrees: 90.0,
+            near: 0.5,
+            far: None,
+        };
+        Capture {
+            scene: String::new(),
+            technique: String::new(),
+            settings: BTreeMap::new(),
+            size: [200, 200],
+            adapter: AdapterInfo { name: String::new(), driver: String::new(), kind: String::new() },
+            camera,
+            depth: mapping.curve(0.5, 100.0, 0.0),
+            steps: Vec::new(),
+            lights: Vec::new(),
+            left_out: Vec::new(),
+            timing: Timing::default(),
+            plan_text: String::new(),
+        }
+    }
+
+    fn is_near(found: &[DVec2], expected: &[[f64; 2]]) -> bool {
+        let is_one = |at: &&[f64; 2]| found.iter().any(|one| one.distance(DVec2::from_array(**at)) < 1e-6);
+        found.len() == expected.len() && expected.iter().filter(is_one).count() == expected.len()
+    }
+
+    #[test]
+    fn a_triangle_before_the_eye_keeps_its_corners() {
+        for mapping in DepthMapping::ALL {
+            let corners = [[0.0, 0.0, -2.0, 1.0], [1.0, 0.0, -2.0, 1.0], [0.0, 1.0, -2.0, 1.0]];
+            let found = outline(&capture(mapping), corners);
+            assert!(is_near(&found, &[[100.0, 100.0], [150.0, 100.0], [100.0, 50.0]]), "{mapping:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_corner_at_infinity_is_where_its_direction_points() {
+        let corners = [[0.0, 0.0, -2.0, 1.0], [0.5, 0.0, -1.0, 0.0], [0.0, 1.0, -2.0, 1.0]];
+        let found = outline(&capture(DepthMapping::ReversedInfinite), corners);
+        assert!(is_near(&found, &[[100.0, 100.0], [150.0, 100.0], [100.0, 50.0]]), "{found:?}");
+    }
+
+    #[test]
+    fn what_reaches_behind_the_eye_is_cut_at_the_near_plane_and_outside_the_picture() {
+        // In the plane y = 0.1, from 1 ahead to 1 behind: 0.1 above the middle at distance 1, and
+        // 0.2 at the near plane.
+        let corners = [[-0.5, 0.1, -1.0, 1.0], [0.5, 0.1, -1.0, 1.0], [0.0, 0.1, 1.0, 1.0]];
+        let found = outline(&capture(DepthMapping::ReversedInfinite), corners);
+        assert_eq!(found.len(), 4, "{found:?}");
+        let lowest = found.iter().map(|at| at.y).fold(f64::INFINITY, f64::min);
+        assert!((lowest - 80.0).abs() < 1e-6, "{found:?}");
+        let limit = 100.0 * GUARD + 1e-6;
+        assert!(found.iter().all(|at| (*at - 100.0).abs().max_element() <= limit), "{found:?}");
+    }
+
+    #[test]
+    fn nothing_is_left_of_what_lies_behind_the_eye_or_far_beside_the_picture() {
+        for mapping in DepthMapping::ALL {
+            let behind = [[0.0, 0.0, 2.0, 1.0], [1.0, 0.0, 2.0, 1.0], [0.0, 1.0, 2.0, 1.0]];
+            assert!(outline(&capture(mapping), behind).is_empty(), "{mapping:?}");
+            let beside = [[9.0, 0.0, -2.0, 1.0], [8.0, 0.0, -2.0, 1.0], [9.0, 1.0, -2.0, 1.0]];
+            assert!(outline(&capture(mapping), beside).is_empty(), "{mapping:?}");
+        }
+    }
+
+    #[test]
+    fn a_direction_across_the_view_is_cut_at_the_guard() {
+        let corners = [[0.0, 0.0, -2.0, 1.0], [1.0, 0.0, 0.0, 0.0], [0.0, 1.0, -2.0, 1.0]];
+        let found = outline(&capture(DepthMapping::ReversedInfinite), corners);
+        assert!(!found.is_empty() && found.iter().all(|at| at.is_finite()), "{found:?}");
+    }
+}

@@ -1,0 +1,342 @@
+//! The history of the picked pixel: when it is asked for, its rows, its ladder, and what a selected
+//! triangle shows elsewhere.
+
+use super::history_by_hand::{FACES, Face, history};
+use super::{SIZE, Seen, click, harness_of, inspector, press, z_fail};
+use crate::common;
+use egui::Key;
+use egui::accesskit::{Role, Toggled};
+use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::{Harness, Node};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use stencilscope::history::{Event, PixelHistory};
+use stencilscope::inspector::Action;
+use stencilscope::plan::Part;
+use stencilscope::scene::{OpenSpec, open};
+use stencilscope::technique::Technique;
+
+/// Inside the volume: its count is 1.
+const DARK: [u32; 2] = [3, 4];
+/// A panel that shows everything.
+const TALL: [f32; 2] = [1280.0, 2000.0];
+
+fn picked(at: [u32; 2]) -> Harness<'static, Seen> {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.pick(at);
+    harness_of(inspector, TALL)
+}
+
+fn answer(harness: &mut Harness<Seen>, history: PixelHistory) {
+    harness.state_mut().inspector.set_history(history.pixel, Ok(Arc::new(history)));
+    harness.run_steps(2);
+}
+
+fn answered(faces: &[Face]) -> Harness<'static, Seen> {
+    let mut harness = picked(DARK);
+    answer(&mut harness, history(DARK, faces));
+    harness
+}
+
+fn asked(harness: &Harness<Seen>) -> Vec<[u32; 2]> {
+    let at = |action: &Action| if let Action::History { at } = action { Some(*at) } else { None };
+    harness.state().actions.iter().filter_map(at).collect()
+}
+
+fn rows(harness: &Harness<Seen>) -> Vec<String> {
+    let rows = harness.query_all_by_role(Role::Row);
+    rows.filter_map(|row| row.accesskit_node().label()).filter(|label| label.starts_with("pass ")).collect()
+}
+
+#[test]
+fn histories_by_hand_agree_with_the_capture_by_hand() {
+    assert_eq!(history(DARK, &FACES).disagreements(), []);
+    assert_eq!(history(DARK, &FACES).computed.stencil, 1);
+}
+
+#[test]
+fn a_pick_is_asked_about_once_and_again_when_it_moves_or_the_frame_changes() {
+    let mut harness = picked(DARK);
+    harness.run_steps(3);
+    assert_eq!(asked(&harness), [DARK]);
+    harness.state_mut().inspector.pick([4, 4]);
+    harness.run_steps(2);
+    answer(&mut harness, history([4, 4], &FACES));
+    assert_eq!(asked(&harness), [DARK, [4, 4]]);
+    harness.state_mut().inspector.update_capture(Arc::new(z_fail(SIZE)));
+    harness.run_steps(2);
+    assert_eq!(asked(&harness).len(), 2, "the same frame, of which more is known");
+    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
+    harness.run_steps(2);
+    assert_eq!(asked(&harness), [DARK, [4, 4], [4, 4]]);
+}
+
+#[test]
+fn without_a_pick_nothing_is_asked() {
+    let harness = harness_of(inspector(z_fail(SIZE)), TALL);
+    assert_eq!(asked(&harness), [[0; 2]; 0]);
+}
+
+#[test]
+fn every_event_is_a_row_with_its_signs() {
+    let harness = answered(&FACES);
+    assert_eq!(
+        rows(&harness),
+        [
+            "pass 1: clear depth; → 0",
+            "pass 1: clear stencil; → 0",
+            "pass 1: floor, front; depth ✓, stencil always; → 4.000 m",
+            "pass 2: side of box, front; depth ✓, stencil always; keep; 0",
+            "pass 2: side of box, back; depth ✓, stencil always; keep; 0",
+            "pass 2: side of box, front; depth ✗, stencil always; −1; 0 → −1",
+            "pass 2: side of box, back; depth ✗, stencil always; +1; −1 → 0",
+            "pass 2: dark cap of box, back; depth ✗, stencil always; +1; 0 → 1",
+            "pass 3: floor, front; depth -, stencil ✗; keep; 1",
+            "pass 4: floor, front; depth -, stencil ✗; keep; 1",
+        ]
+    );
+    harness.get_by_label("10 events");
+    harness.get_by_label("· as the GPU stored it");
+}
+
+#[test]
+fn hiding_leaves_what_did_something() {
+    let mut harness = answered(&FACES);
+    click(&mut harness, "Hide failed");
+    let left = rows(&harness);
+    assert_eq!(left.len(), 4, "the floor and the faces behind it: {left:?}");
+    assert!(left.iter().skip(1).all(|row| row.contains("depth ✗")), "{left:?}");
+    harness.get_by_label("4 of 10 events");
+    click(&mut harness, "Hide failed");
+    assert_eq!(rows(&harness).len(), 10);
+}
+
+#[test]
+fn a_click_selects_and_a_double_click_goes_to_the_step() {
+    let mut harness = answered(&FACES);
+    let row = "pass 2: dark cap of box, back; depth ✗, stencil always; +1; 0 → 1";
+    click(&mut harness, row);
+    assert_eq!((harness.state().inspector.selected_event(), harness.state().inspector.step()), (Some(7), 3));
+    harness.get_by_label(
+        "dark cap of box, triangle 5, back, at 40.000 m: fails the depth test; increment-wrap: stencil 0 to 1",
+    );
+    // An event of the harness takes a quarter of a second.
+    harness.ctx.options_mut(|options| options.input_options.max_double_click_delay = 1.0);
+    harness.run_steps(12);
+    harness.get_by_label(row).click();
+    harness.get_by_label(row).click();
+    harness.run_steps(8);
+    assert_eq!(harness.state().inspector.step(), 1);
+}
+
+#[test]
+fn the_selected_event_is_gone_to_by_keys_alone() {
+    let mut harness = answered(&FACES);
+    harness.get_by_label("pass 2: side of box, front; depth ✗, stencil always; −1; 0 → −1").focus();
+    harness.run_steps(2);
+    press(&mut harness, Key::Enter);
+    assert_eq!(harness.state().inspector.selected_event(), Some(5));
+    harness.get_by_role_and_label(Role::Button, "Go to step 2, volumes").focus();
+    harness.run_steps(2);
+    press(&mut harness, Key::Enter);
+    assert_eq!(harness.state().inspector.step(), 1);
+}
+
+#[test]
+fn a_rung_selects_its_row_and_a_row_its_rung() {
+    let mut harness = answered(&FACES);
+    harness.get_by_label("Counted from infinity towards the surface. 3 of 5 faces count: 1 in all.");
+    click(&mut harness, "rung: side of box, triangle 4, back, at 10.000 m: +1, count 2");
+    assert_eq!(harness.state().inspector.selected_event(), Some(6));
+    click(&mut harness, "pass 2: side of box, back; depth ✓, stencil always; keep; 0");
+    assert_eq!(harness.state().inspector.selected_event(), Some(4));
+    let rung = harness.get_by_label("rung: side of box, triangle 2, back, at 3.000 m: not counted, count 1");
+    assert_eq!(rung.accesskit_node().toggled(), Some(Toggled::True));
+    harness.get_by_label("rung: side of box, triangle 3, front, at 8.000 m: −1, count 1");
+    harness.get_by_label("rung: dark cap of box, triangle 5, back, at 40.000 m: +1, count 1");
+}
+
+#[test]
+fn the_selected_triangle_stays_where_the_next_pixel_has_it_too() {
+    let mut harness = answered(&FACES);
+    click(&mut harness, "rung: side of box, triangle 4, back, at 10.000 m: +1, count 2");
+    harness.state_mut().inspector.pick([4, 4]);
+    harness.run_steps(2);
+    answer(&mut harness, history([4, 4], &FACES));
+    assert_eq!(harness.state().inspector.selected_event(), Some(6));
+    harness.state_mut().inspector.pick([5, 4]);
+    harness.run_steps(2);
+    answer(&mut harness, history([5, 4], &[]));
+    assert_eq!(harness.state().inspector.selected_event(), None);
+}
+
+#[test]
+fn passes_that_touched_the_pixel_are_marked() {
+    let harness = answered(&FACES);
+    let marks = |harness: &Harness<Seen>| {
+        let is_marked = |pass: &usize| {
+            let label = format!("pass {pass} touched the picked pixel");
+            harness.query_by_label(&label).is_some()
+        };
+        (1..=4).filter(is_marked).collect::<Vec<_>>()
+    };
+    assert_eq!(marks(&harness), [1, 2], "mask and light failed the stencil test");
+    // Faces before the surface count nothing.
+    let harness = answered(&FACES[..2]);
+    assert_eq!(marks(&harness), [1, 3, 4]);
+    assert_eq!(marks(&picked(DARK)), [0; 0]);
+}
+
+#[test]
+fn the_sentence_on_top_counts_the_faces() {
+    let mut harness = answered(&FACES);
+    harness.get_by_label("Dark under light 1: its stencil count is 1.");
+    let why = "3 volume faces behind it fail the depth test: 2 back, 1 front; count 1, so the light pass skips it.";
+    harness.get_by_label(why);
+    let lit = [30, 4];
+    harness.state_mut().inspector.pick(lit);
+    harness.run_steps(2);
+    harness.get_by_label("The volume faces behind the surface cancel out, so the light pass adds the light.");
+    answer(&mut harness, history(lit, &[]));
+    harness.get_by_label("Lit by light 1: its stencil count is 0.");
+    harness.get_by_label_contains("No volume face of light 1 is on this pixel's view ray, so nothing is counted");
+    harness.get_by_label("No volume face of light 1 is on this pixel's view ray.");
+}
+
+#[test]
+fn an_answer_about_another_pixel_is_dropped_and_the_last_one_stays_greyed() {
+    let mut harness = answered(&FACES);
+    harness.state_mut().inspector.pick([4, 4]);
+    harness.run_steps(1);
+    assert_eq!(rows(&harness).len(), 10, "the last one stays");
+    harness.run_steps(2);
+    harness.get_by_label("waiting for 4, 4 …");
+    answer(&mut harness, history([5, 5], &[]));
+    harness.get_by_label("waiting for 4, 4 …");
+    assert_eq!((rows(&harness).len(), harness.state().inspector.selected_event()), (10, None));
+    answer(&mut harness, history([4, 4], &[]));
+    assert_eq!(rows(&harness).len(), 5);
+    assert!(harness.query_by_label_contains("waiting for").is_none());
+}
+
+#[test]
+fn what_failed_is_said_and_not_asked_again_until_the_pick_moves() {
+    let mut harness = picked(DARK);
+    harness.state_mut().inspector.set_history(DARK, Err("the GPU was lost: open the scene again".to_owned()));
+    harness.run_steps(3);
+    harness.get_by_label("× There is no history: the GPU was lost: open the scene again");
+    assert_eq!(asked(&harness).len(), 1);
+    harness.state_mut().inspector.pick([4, 4]);
+    harness.run_steps(2);
+    assert_eq!(asked(&harness).len(), 2);
+    assert!(harness.query_by_label_contains("There is no history").is_none());
+}
+
+#[test]
+fn a_folder_says_what_histories_need() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.clear_scene();
+    inspector.pick(DARK);
+    let mut harness = harness_of(inspector, TALL);
+    assert_eq!(asked(&harness), [[0; 2]; 0]);
+    answer(&mut harness, history(DARK, &FACES));
+    assert!(rows(&harness).is_empty(), "an answer that was on its way");
+    harness.get_by_label_contains("A capture folder holds pictures and no geometry");
+    harness.get_by_label_contains("stencilscope pixel SCENE --at X,Y");
+    assert!(harness.query_by_label("Ladder").is_none());
+}
+
+#[test]
+fn a_history_that_contradicts_the_gpu_says_that_it_is_our_bug() {
+    let mut wrong = history(DARK, &FACES);
+    wrong.events.remove(7);
+    let mut harness = picked(DARK);
+    answer(&mut harness, wrong);
+    harness.get_by_label("× This history is wrong, which is our bug. Please report it.");
+    harness.get_by_label("the GPU counted 8 fragments, and 7 are listed");
+    assert!(harness.query_by_label("· as the GPU stored it").is_none());
+}
+
+#[test]
+fn of_600_events_only_rows_in_sight_are_drawn_and_a_rung_scrolls_to_its_row() {
+    let faces: Vec<Face> = (0..595).map(|index| (Part::Side, index % 2 == 1, 4.5 + index as f32 * 0.1)).collect();
+    let mut harness = answered(&faces);
+    harness.get_by_label("600 events");
+    assert!((12..=14).contains(&rows(&harness).len()), "{} rows", rows(&harness).len());
+    let last = "rung: side of box, triangle 595, back, at 63.900 m: +1, count 1";
+    click(&mut harness, last);
+    let selected = harness.state().inspector.selected_event();
+    assert_eq!(selected, Some(597));
+    let is_selected = |row: &Node| row.accesskit_node().toggled() == Some(Toggled::True);
+    let row = harness.query_all_by_role(Role::Row).find(is_selected).expect("the row");
+    assert_eq!(
+        row.accesskit_node().label().as_deref(),
+        Some("pass 2: side of box, back; depth ✗, stencil always; +1; 0 → 1")
+    );
+    let rungs = harness.query_all_by_role(Role::ListItem).filter_map(|rung| rung.accesskit_node().label());
+    assert!(rungs.filter(|label| label.starts_with("rung: ")).count() <= 16);
+}
+
+#[test]
+fn what_the_near_plane_clipped_counts_nowhere_and_says_so() {
+    let mut faces = FACES.to_vec();
+    faces.insert(0, (Part::Side, true, 0.05));
+    let harness = answered(&faces);
+    assert!(rows(&harness).contains(&"pass 2: side of box, front; clipped at near; 0".to_owned()));
+    harness.get_by_label("rung: side of box, triangle 1, front, at 0.0500 m: not counted, count 1");
+    let clipped = history(DARK, &faces[..1]);
+    assert_eq!(clipped.counts_behind(0), None, "it does not tell which side counts");
+    assert!(clipped.agrees());
+}
+
+#[test]
+fn faces_that_are_drawn_in_two_passes_are_one_rung_each() {
+    let once = history(DARK, &FACES);
+    let mut twice = once.clone();
+    let second = once.events.iter().filter(|event| event.is_of_volume()).cloned();
+    twice.events.extend(second.map(|event| Event { pass: 2, before: event.after, ..event }));
+    let curve = z_fail(SIZE).depth;
+    assert_eq!(twice.ladder(0, &curve), once.ladder(0, &curve));
+}
+
+#[test]
+fn where_only_the_near_plane_counts_the_ladder_begins_and_ends_with_it() {
+    let mut inside = history(DARK, &[]);
+    let mut near = history(DARK, &FACES[4..]).events.remove(3);
+    near.is_from_camera = false;
+    inside.events.insert(3, near);
+    let mut harness = picked(DARK);
+    answer(&mut harness, inside);
+    harness.get_by_label(
+        "Counted from the eye towards the surface, starting at 1: the volumes that hold the near plane. 0 of 0 faces \
+         count: 1 in all.",
+    );
+}
+
+/// Caps are drawn turned; what is called front and back is nonetheless what techniques say of it.
+#[test]
+fn behind_the_surface_back_faces_add_and_before_it_front_faces() {
+    let mut session = common::session();
+    let cases = [
+        ("tori", Technique::ZFail, -1),
+        ("tori", Technique::ZPass, 1),
+        ("inside", Technique::ZPassPlus, 1),
+        ("gate", Technique::ZFail, -1),
+    ];
+    for (scene, technique, front) in cases {
+        let scene = open(&OpenSpec::new(scene)).expect("a built-in scene");
+        let request = common::request(technique, [64, 36]);
+        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+        let mut parts = BTreeSet::new();
+        for at in (0..36).flat_map(|y| (0..64).step_by(3).map(move |x| [x, y])) {
+            let history = session.history(&plan, &capture, at).expect("a history");
+            let faces = history.triangles().filter(|(event, _)| event.is_of_volume() && event.is_from_camera);
+            for (event, one) in faces.filter(|(event, _)| event.counted() != 0) {
+                let expected = if one.shows_outside() { front } else { -front };
+                assert_eq!(event.counted(), expected, "{} {technique:?} {at:?}: {one:?}", scene.name);
+                parts.insert(one.part.name());
+            }
+        }
+        assert_eq!(parts.contains("dark-cap"), technique == Technique::ZFail, "{parts:?}");
+    }
+}

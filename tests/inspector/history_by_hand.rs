@@ -1,0 +1,113 @@
+//! Histories of pixels of z-fail by hand: every event known.
+
+use stencilscope::history::{CapturedAfter, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
+use stencilscope::plan::{Clip, Part};
+use stencilscope::stencil_machine::Stored;
+use wgpu::StencilOperation;
+
+/// A face of the one volume: its part, whether its outside is seen, its distance in metres.
+pub type Face = (Part, bool, f32);
+
+/// Five faces over the pixel: two before the surface, three behind it, of which one is left.
+pub const FACES: [Face; 5] = [
+    (Part::Side, true, 2.0),
+    (Part::Side, false, 3.0),
+    (Part::Side, true, 8.0),
+    (Part::Side, false, 10.0),
+    (Part::DarkCap, false, 40.0),
+];
+
+/// Near plane of the capture, metres.
+const NEAR: f32 = 0.1;
+
+struct Making {
+    events: Vec<Event>,
+    held: Held,
+    after: Vec<CapturedAfter>,
+}
+
+impl Making {
+    fn push(&mut self, pass: usize, kind: EventKind, after: Held) {
+        let pass_name = ["ambient", "volumes", "mask", "light"][pass].to_owned();
+        let light = (pass > 0).then_some(0);
+        let before = std::mem::replace(&mut self.held, after);
+        self.events.push(Event { pass, pass_name, light, is_from_camera: true, kind, before, after });
+    }
+
+    fn end_pass(&mut self, pass: usize) {
+        let stored = Stored { depth: self.held.depth, stencil: self.held.stencil };
+        self.after.push(CapturedAfter { pass, stored, count: None });
+    }
+}
+
+fn triangle(name: &str, part: Part, primitive: u32, is_front: bool, depth: f32, fate: Fate) -> TriangleEvent {
+    TriangleEvent {
+        draw: usize::from(part == Part::DarkCap),
+        draw_name: name.to_owned(),
+        caster: (part != Part::Surface).then(|| "box".to_owned()),
+        part,
+        primitive,
+        triangle: primitive,
+        corners: [[-0.1, -0.1, -NEAR / depth, 1.0], [0.1, -0.1, -NEAR / depth, 1.0], [0.0, 0.1, -NEAR / depth, 1.0]],
+        // Triangles of a dark cap face into the volume.
+        is_front: is_front != (part == Part::DarkCap),
+        faces_inwards: part == Part::DarkCap,
+        depth,
+        fate,
+    }
+}
+
+/// The history of pixel `at`: a floor, faces of a volume (sides before dark caps), and the passes
+/// that read the count. Two clears, a floor in three passes, and as many events more as faces.
+pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
+    let surface = NEAR / (1.0 + at[0] as f32);
+    let held = Held { depth: 0.0, stencil: 0, count: 0.0 };
+    let mut making = Making { events: Vec::new(), held, after: Vec::new() };
+    making.push(0, EventKind::ClearDepth, held);
+    making.push(0, EventKind::ClearStencil, held);
+    let fate = Fate::Tested { stencil: Test::Always, depth: Test::Passed, operation: None };
+    let floor = |fate| EventKind::Triangle(Box::new(triangle("floor", Part::Surface, 0, true, surface, fate)));
+    making.push(0, floor(fate), Held { depth: surface, ..held });
+    making.end_pass(0);
+    for (index, (part, is_front, distance)) in faces.iter().enumerate() {
+        let depth = NEAR / distance;
+        if *distance < NEAR {
+            let one = triangle("sides of box", *part, index as u32, *is_front, depth, Fate::Clipped(Clip::Near));
+            making.push(1, EventKind::Triangle(Box::new(one)), making.held);
+            continue;
+        }
+        let passes = depth > surface;
+        let (operation, stencil) = match (passes, is_front) {
+            (true, _) => (StencilOperation::Keep, making.held.stencil),
+            (false, true) => (StencilOperation::DecrementWrap, making.held.stencil.wrapping_sub(1)),
+            (false, false) => (StencilOperation::IncrementWrap, making.held.stencil.wrapping_add(1)),
+        };
+        let test = if passes { Test::Passed } else { Test::Failed };
+        let fate = Fate::Tested { stencil: Test::Always, depth: test, operation: Some(operation) };
+        let name = if *part == Part::Side { "sides of box" } else { "dark cap of box" };
+        let one = triangle(name, *part, index as u32, *is_front, depth, fate);
+        making.push(1, EventKind::Triangle(Box::new(one)), Held { stencil, ..making.held });
+    }
+    making.end_pass(1);
+    for pass in [2, 3] {
+        let is_lit = making.held.stencil == 0;
+        let stencil = if is_lit { Test::Passed } else { Test::Failed };
+        let depth = if is_lit { Test::Passed } else { Test::NotReached };
+        let fate = Fate::Tested { stencil, depth, operation: Some(StencilOperation::Keep) };
+        making.push(pass, floor(fate), making.held);
+        making.end_pass(pass);
+    }
+    PixelHistory {
+        pixel: at,
+        has_stencil: true,
+        is_reversed: true,
+        computed: making.held,
+        captured: making.after.last().map(|after| after.stored),
+        captured_after: making.after,
+        counted: faces.iter().filter(|(_, _, distance)| *distance >= NEAR).count() as u32 + 3,
+        labels: Vec::new(),
+        without_fragment: 2 + faces.iter().filter(|(_, _, distance)| *distance < NEAR).count() as u32,
+        contradictions: Vec::new(),
+        events: making.events,
+    }
+}
