@@ -53,7 +53,7 @@ const MAY_USE: [(&str, &[&str]); 20] = [
             "history",
         ],
     ),
-    ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report"]),
+    ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report", "history"]),
     ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers"]),
     ("cli", &["math", "scene", "plan", "technique", "capture", "history", "session", "app", "progress", "report"]),
     ("main", &["cli"]),

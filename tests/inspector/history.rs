@@ -118,7 +118,7 @@ fn a_click_selects_and_a_double_click_goes_to_the_step() {
     click(&mut harness, row);
     assert_eq!((harness.state().inspector.selected_event(), harness.state().inspector.step()), (Some(7), 3));
     harness.get_by_label(
-        "dark cap of box, triangle 5, back, at 40.000 m: fails the depth test; increment-wrap: stencil 0 to 1",
+        "dark cap of box, triangle 5, back, at 40.000 m: behind the surface, fails the depth test; increment-wrap: stencil 0 to 1",
     );
     // An event of the harness takes a quarter of a second.
     harness.ctx.options_mut(|options| options.input_options.max_double_click_delay = 1.0);
