@@ -84,16 +84,22 @@ pub fn digits(value: f64) -> String {
     }
 }
 
-/// A stored depth with enough digits to tell neighbours apart.
+/// A stored depth in the fewest digits that read back as the same bits: neighbours differ.
 #[must_use]
 pub fn depth(value: f32) -> String {
-    if value == 0.0 { "0".to_owned() } else { format!("{value:.7}") }
+    if value == 0.0 { "0".to_owned() } else { format!("{value:?}") }
 }
 
 /// The name of a light for people: lights count from 1.
 #[must_use]
 pub fn light(index: usize) -> String {
     format!("light {}", index + 1)
+}
+
+/// A count that is kept in a float, with its sign.
+#[must_use]
+pub fn count_in_float(value: f32) -> String {
+    if value < 0.0 { format!("−{}", -value) } else { value.to_string() }
 }
 
 /// A stencil value as people read it: 255 is `−1 (255)`.
@@ -105,6 +111,16 @@ pub fn signed(value: u8) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn neighbouring_depths_read_differently() {
+        for value in [0.025f32, 1e-7, 0.999_999_9] {
+            let next = f32::from_bits(value.to_bits() + 1);
+            assert_ne!(depth(value), depth(next));
+            assert_eq!(depth(value).parse(), Ok(value));
+        }
+        assert_eq!(depth(0.025), "0.025");
+    }
 
     #[test]
     fn thousands_are_apart() {

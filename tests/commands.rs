@@ -110,6 +110,7 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
         assert_fails(&[command, "tori"], 2, &[command, "not there yet"]);
     }
     assert_fails(&["pixel", "tori"], 2, &["--at"]);
+    assert_fails(&["pixel", "tori", "--at", "3,3", "--every", "draw"], 2, &["--every draw", "leave it out"]);
     assert_fails(&["pixel", "tori", "--at", "3"], 2, &["give X,Y"]);
     assert_fails(
         &["pixel", "tori", "--size", "16x9", "--at", "1,1", "--at", "16,0"],
@@ -129,8 +130,7 @@ fn pixel_tells_its_history_as_text_and_as_json() {
     let output = run(folder.path(), &arguments);
     let story = text(&output.stdout);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    for words in
-        ["pixel 160,120: a surface 3.395 m away", "as the GPU stored it", "pass 2, volumes of light 1", "0 → 1"]
+    for words in ["pixel 160,120: a surface 3.395 m away", "as the GPU stored it", "pass 2, light 1: volumes", "0 → 1"]
     {
         assert!(story.contains(words), "`{words}` is not in\n{story}");
     }
@@ -153,7 +153,7 @@ fn pixel_tells_its_history_as_text_and_as_json() {
     for (key, value) in expected.as_object().expect("an object") {
         assert_eq!(&side[key], value, "{key}");
     }
-    assert!(side["primitive"].is_u64() && side["depth"].is_f64());
+    assert!(side["primitive"].is_u64() && side["triangle"].is_u64() && side["depth"].is_f64());
     let two = json(&["--at", "0,0", "--json"]);
     assert_eq!(two.as_array().map(Vec::len), Some(2), "several pixels are a list");
     run(folder.path(), &[&arguments[..], &["--json", "history.json"]].concat());

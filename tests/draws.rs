@@ -149,10 +149,11 @@ fn the_draws_of_one_pass_are_filled_in_later_and_are_the_same() {
     for technique in [Technique::ZFail, Technique::ShadowMap, Technique::PlanarTexture] {
         let all = session.capture(&scene, &by_draw(technique)).expect("a capture");
         let plain = session.capture(&scene, &request(technique, SIZE)).expect("a capture");
+        let plan = session.plan(&scene, &request(technique, SIZE)).expect("a plan");
         let mut filled = plain.clone();
         for step in (0..all.steps.len()).rev() {
             assert_eq!(filled.holds_draws(step), filled.steps[step].draws.is_empty());
-            session.fill_draws(&scene, &request(technique, SIZE), &mut filled, step).expect("draws");
+            session.fill_draws(&plan, &mut filled, step).expect("draws");
             assert!(filled.steps[step].draws == all.steps[step].draws, "{technique:?} {}", all.steps[step].name);
         }
         assert!(filled.bytes() <= all.bytes(), "as much is shared");
@@ -165,11 +166,11 @@ fn what_is_filled_in_twice_or_beyond_the_last_pass_changes_nothing() {
     let mut session = session();
     let scene = scene();
     let request = request(Technique::ZFail, SIZE);
-    let mut capture = session.capture(&scene, &request).expect("a capture");
-    session.fill_draws(&scene, &request, &mut capture, 1).expect("draws");
+    let (mut capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    session.fill_draws(&plan, &mut capture, 1).expect("draws");
     let once = capture.clone();
-    session.fill_draws(&scene, &request, &mut capture, 1).expect("draws");
-    session.fill_draws(&scene, &request, &mut capture, 99).expect("nothing to do");
+    session.fill_draws(&plan, &mut capture, 1).expect("draws");
+    session.fill_draws(&plan, &mut capture, 99).expect("nothing to do");
     assert!(capture == once);
     assert!(Arc::ptr_eq(stencil(state(&capture, 1, 0)), stencil(state(&once, 1, 0))));
 }
@@ -334,8 +335,8 @@ fn a_folder_may_hold_the_draws_of_some_passes() {
     let mut session: Session = session();
     let parent = tempfile::tempdir().expect("a folder");
     let (scene, request) = (scene(), request(Technique::ZFail, SIZE));
-    let mut capture = session.capture(&scene, &request).expect("a capture");
-    session.fill_draws(&scene, &request, &mut capture, 1).expect("draws");
+    let (mut capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    session.fill_draws(&plan, &mut capture, 1).expect("draws");
     let folder = written(&capture, parent.path(), "out");
     let mut back = read(&folder).expect("read");
     back.timing.write_ms = None;

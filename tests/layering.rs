@@ -18,7 +18,7 @@ const MAY_USE: [(&str, &[&str]); 20] = [
     ("capture", &["math", "scene", "plan", "accuracy"]),
     ("stencil_machine", &["plan"]),
     ("gpu", &["math", "scene", "plan", "capture"]),
-    ("history", &["math", "numbers", "plan", "capture", "gpu", "stencil_machine"]),
+    ("history", &["math", "numbers", "plan", "capture", "stencil_machine", "truth"]),
     ("report", &["capture", "numbers"]),
     (
         "session",

@@ -95,12 +95,17 @@ impl Jobs {
 
     /// Another picture is asked for, and must not wait.
     pub fn make_way(&mut self, inspector: &mut Inspector) {
+        self.pause_judging(inspector);
+        self.stop_measuring(Some("stopped for another picture: measure again when it is the one you want"), inspector);
+    }
+
+    /// Something short is asked for of the frame that is shown: its truth is asked for again after it.
+    pub fn pause_judging(&mut self, inspector: &mut Inspector) {
         if self.judging.is_some() {
             self.stop_judging();
-            // Asked for again: of the new frame, or of this one should there be none.
+            // Asked for again: of a new frame, or of this one should there be none.
             inspector.set_truth(TruthState::NotAsked);
         }
-        self.stop_measuring(Some("stopped for another picture: measure again when it is the one you want"), inspector);
     }
 
     /// The rows that were there, and an error.

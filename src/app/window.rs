@@ -157,7 +157,7 @@ impl App {
             }
             Action::Browse => return self.browse(),
             Action::CaptureDraws { step } => {
-                self.jobs.make_way(&mut self.inspector);
+                self.jobs.pause_judging(&mut self.inspector);
                 Order::Draws { frame: self.frame, step }
             }
             Action::Judge => Order::Judge { frame: self.frame, progress: self.jobs.judge() },

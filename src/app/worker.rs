@@ -262,7 +262,7 @@ impl Bench {
         let name = done.capture.steps.get(step).map_or("the pass", |step| step.name.as_str());
         (self.tell)(News::Busy(format!("capturing the draws of {name}")));
         let mut capture = Capture::clone(&done.capture);
-        (self.tell)(match session.fill_draws(&done.scene, &done.request, &mut capture, step) {
+        (self.tell)(match session.fill_draws(&done.plan, &mut capture, step) {
             Ok(()) => {
                 done.capture = Arc::new(capture);
                 News::Draws { frame, capture: Arc::clone(&done.capture) }

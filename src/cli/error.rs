@@ -45,18 +45,28 @@ pub enum CliError {
     /// The window failed.
     #[error("the window can't be opened: {0}; use `stencilscope capture`")]
     Window(String),
+    /// Histories contradict what the GPU stored.
+    #[error(
+        "{pixels} of the histories do not make what the GPU stored, which is a bug of stencilscope: please report it"
+    )]
+    WrongHistory {
+        /// How many.
+        pixels: usize,
+    },
     /// Nobody reads standard output any more.
     #[error("standard output was closed")]
     ClosedOutput,
 }
 
 impl CliError {
-    /// 2 for bad input or usage, 3 where no GPU can be used, 0 where nobody reads the result.
+    /// 1 where the answer is bad, 2 for bad input or usage, 3 where no GPU can be used, 0 where nobody
+    /// reads the result.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Session(error) if error.is_missing_adapter() => 3,
             CliError::ClosedOutput => 0,
+            CliError::WrongHistory { .. } => 1,
             _ => 2,
         }
     }

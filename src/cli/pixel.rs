@@ -3,7 +3,7 @@
 use super::options::{FrameOptions, SceneOptions, pixel};
 use super::{CliError, output};
 use crate::history::PixelDocument;
-use crate::session::{Session, SessionError};
+use crate::session::{Every, Session, SessionError};
 use clap::Args;
 use std::time::Instant;
 
@@ -26,10 +26,15 @@ pub struct PixelArguments {
 /// Renders the scene once and tells the history of each pixel.
 ///
 /// # Errors
-/// A scene, option or pixel that can't be used; no GPU; a file that can't be written.
+/// A scene, option or pixel that can't be used; no GPU; a file that can't be written;
+/// [`CliError::WrongHistory`].
 pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     let scene = arguments.scene_options.open(&arguments.scene)?;
     let mut request = arguments.frame.request(&scene)?;
+    if request.every == Every::Draw {
+        let line = "`--every draw` is for captures; a history always goes fragment by fragment: leave it out";
+        return Err(CliError::Usage(line.to_owned()));
+    }
     request.timing_runs = 0;
     let size = request.size;
     if let Some(pixel) = arguments.at.iter().find(|[x, y]| *x >= size[0] || *y >= size[1]) {
@@ -41,21 +46,21 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     let (capture, plan) = session.capture_with_plan(&scene, &request)?;
     let mut stories = vec![format!("{}, {}, {}x{}\n", scene.name, capture.technique, size[0], size[1])];
     let mut documents = Vec::with_capacity(arguments.at.len());
+    let mut wrong = 0;
     for pixel in &arguments.at {
         let start = Instant::now();
         let history = session.history(&plan, &capture, *pixel)?;
         let took = start.elapsed().as_secs_f64() * 1e3;
-        for disagreement in history.disagreements() {
-            output::note(&format!("pixel {},{}: {disagreement}: a bug of stencilscope", pixel[0], pixel[1]));
-        }
+        wrong += usize::from(!history.agrees());
         stories.push(history.story(&capture.depth));
-        documents.push(PixelDocument::new(&history, scene.lights.len(), took));
+        documents.push(PixelDocument::new(&history, took));
     }
     match (&arguments.json, &documents[..]) {
-        (None, _) => output::print(&stories.join("\n")),
-        (Some(_), [only]) => output::deliver(&json(only)?, file),
-        (Some(_), all) => output::deliver(&json(all)?, file),
+        (None, _) => output::print(&stories.join("\n"))?,
+        (Some(_), [only]) => output::deliver(&json(only)?, file)?,
+        (Some(_), all) => output::deliver(&json(all)?, file)?,
     }
+    if wrong == 0 { Ok(()) } else { Err(CliError::WrongHistory { pixels: wrong }) }
 }
 
 fn json<T: serde::Serialize + ?Sized>(value: &T) -> Result<String, CliError> {

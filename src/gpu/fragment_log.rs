@@ -9,12 +9,13 @@
 //!
 //! The vertex shader is the frame's, so depths have the same bits. The buffer has room for a
 //! fragment a triangle at first, the shader counts on when it is full, and a replay with more room follows:
-//! nothing is lost in silence. Its cost is that of the triangles over one pixel, not of the frame.
+//! nothing is lost in silence. No buffer of the picture's size is cleared or read, so its cost is that of the
+//! triangles over one pixel.
 
 use super::prepared::layer_view;
 use super::readback::mapped_bytes;
 use super::{Executor, GpuError, shaders, uniforms};
-use crate::plan::{Covering, FramePlan, Pass, RasterState};
+use crate::plan::{Covering, FragmentLog, FramePlan, LoggedFragment, Pass, RasterState};
 use bytemuck::{Pod, Zeroable};
 use std::collections::HashMap;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -40,26 +41,6 @@ pub(super) struct LogKeeper {
     pipelines: HashMap<LogKey, RenderPipeline>,
     /// Nothing is kept in it: depth bias needs a depth buffer to be meant for.
     target: Option<Texture>,
-}
-
-/// A fragment of a triangle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LoggedFragment {
-    /// Index into the triangles that were asked about.
-    pub covering: usize,
-    /// Of the front of its triangle.
-    pub is_front: bool,
-    /// As the depth test sees it, bias included; not clamped.
-    pub depth: f32,
-}
-
-/// The fragments of a pixel in the order in which their triangles were drawn.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct FragmentLog {
-    /// What was written down.
-    pub fragments: Vec<LoggedFragment>,
-    /// How many the GPU counted.
-    pub counted: u32,
 }
 
 /// A corner of a triangle, as `Corner` of `fragment_log.wgsl`.
@@ -148,16 +129,19 @@ impl Executor {
                 entries: &[BindGroupEntry { binding: 0, resource: written.as_entire_binding() }],
             });
             let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            for run in runs(plan, covering) {
-                let pipeline = log.pipeline(device, &pipelines.layouts.view, &run.key);
-                let target = layer_view(log.target(device, run.key.depth_format, plan.size), 0);
-                let mut pass = encoder.begin_render_pass(&log_pass(&target, run.key.depth_format));
+            let runs = runs(plan, covering);
+            for of_format in runs.chunk_by(|a, b| a.key.depth_format == b.key.depth_format) {
+                let format = of_format[0].key.depth_format;
+                let target = layer_view(log.target(device, format, plan.size), 0);
+                let mut pass = encoder.begin_render_pass(&log_pass(&target, format));
                 pass.set_scissor_rect(pixel[0], pixel[1], 1, 1);
-                pass.set_pipeline(&pipeline);
-                pass.set_bind_group(0, &view_group, &[views.offset(run.view)]);
                 pass.set_bind_group(1, &log_group, &[]);
                 pass.set_vertex_buffer(0, vertices.slice(..));
-                pass.draw(run.triangles.start as u32 * 3..run.triangles.end as u32 * 3, 0..1);
+                for run in of_format {
+                    pass.set_pipeline(&log.pipeline(device, &pipelines.layouts.view, &run.key));
+                    pass.set_bind_group(0, &view_group, &[views.offset(run.view)]);
+                    pass.draw(run.triangles.start as u32 * 3..run.triangles.end as u32 * 3, 0..1);
+                }
             }
             encoder.copy_buffer_to_buffer(&written, 0, &readable, 0, size);
             context.queue.submit([encoder.finish()]);
@@ -166,6 +150,7 @@ impl Executor {
             context.wait()?;
             Ok(readable)
         })?;
+        log.target.take_if(|target| u64::from(target.width()) * u64::from(target.height()) > MOST_KEPT_TEXELS);
         read(&readable)
     }
 }
@@ -200,14 +185,16 @@ fn key_of(plan: &FramePlan, pass: &Pass, raster: &RasterState) -> LogKey {
     }
 }
 
+/// Nothing is read from the target or written to it, so nothing is cleared: that would take as long as
+/// the picture is large.
 fn log_pass(target: &wgpu::TextureView, format: TextureFormat) -> wgpu::RenderPassDescriptor<'_> {
-    let store = StoreOp::Discard;
+    let store = StoreOp::Store;
     wgpu::RenderPassDescriptor {
         label: Some("fragment log"),
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: target,
-            depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store }),
-            stencil_ops: format.has_stencil_aspect().then_some(Operations { load: LoadOp::Clear(0), store }),
+            depth_ops: Some(Operations { load: LoadOp::Load, store }),
+            stencil_ops: format.has_stencil_aspect().then_some(Operations { load: LoadOp::Load, store }),
         }),
         ..wgpu::RenderPassDescriptor::default()
     }
@@ -322,5 +309,7 @@ impl LogKeeper {
     }
 }
 
+/// A larger target is made anew for each log; a picture of 8K is kept.
+const MOST_KEPT_TEXELS: u64 = 1 << 25;
 /// Pipelines kept at once.
 const MOST_PIPELINES: usize = 64;

@@ -23,6 +23,5 @@ mod uniforms;
 pub use context::Context;
 pub use error::GpuError;
 pub use executor::{Executor, Output};
-pub use fragment_log::{FragmentLog, LoggedFragment};
 pub use prepared::Prepared;
 pub use shaders::shader_sources;

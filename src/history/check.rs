@@ -44,6 +44,8 @@ pub enum Disagreement {
         /// Its index.
         event: usize,
     },
+    /// The capture holds nothing to compare with.
+    NotCaptured,
     /// After a pass the GPU stored something else than the events make.
     Stored {
         /// Index of the pass.
@@ -73,6 +75,7 @@ impl fmt::Display for Disagreement {
             Disagreement::Chain { event } => {
                 write!(f, "event {} does not begin with what the one before it left", event + 1)
             }
+            Disagreement::NotCaptured => f.write_str("the capture holds no depth to compare with"),
             Disagreement::Stored { pass, computed, captured } => {
                 let Stored { depth, stencil } = captured.stored;
                 write!(
@@ -101,7 +104,7 @@ impl PixelHistory {
     #[must_use]
     pub fn disagreements(&self) -> Vec<Disagreement> {
         let mut found = self.contradictions.clone();
-        let is_fragment = |fate: Fate| matches!(fate, Fate::Tested { .. } | Fate::Dropped(_));
+        let is_fragment = |fate: Fate| matches!(fate, Fate::Tested { .. } | Fate::Discarded(_));
         let listed = self.triangles().filter(|(_, one)| is_fragment(one.fate)).count() as u32;
         if listed != self.counted {
             found.push(Disagreement::Counted { counted: self.counted, listed });
@@ -118,6 +121,9 @@ impl PixelHistory {
             if pair[0].after != pair[1].before {
                 found.push(Disagreement::Chain { event });
             }
+        }
+        if self.captured.is_none() {
+            found.push(Disagreement::NotCaptured);
         }
         found.extend(self.captured_after.iter().filter_map(|captured| self.differs(captured)));
         found

@@ -16,7 +16,7 @@ pub struct PixelDocument {
     /// What is wrong, where something is.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     disagreements: Vec<String>,
-    /// Why each light does or does not arrive; null where no volume or flattened caster tells.
+    /// Why each light does or does not arrive; null where the technique leaves no events that tell.
     why: Vec<Option<String>>,
     milliseconds: f64,
 }
@@ -36,6 +36,8 @@ struct EventEntry {
     caster: Option<String>,
     part: Option<&'static str>,
     primitive: Option<u32>,
+    /// Index in the mesh's triangle list, from 0.
+    triangle: Option<u32>,
     front_facing: Option<bool>,
     depth: Option<f32>,
     depth_test: Option<&'static str>,
@@ -53,9 +55,9 @@ struct EventEntry {
 }
 
 impl PixelDocument {
-    /// Of a history of a frame with so many lights, which took so long to find out.
+    /// Of a history that took so long to find out.
     #[must_use]
-    pub fn new(history: &PixelHistory, lights: usize, milliseconds: f64) -> PixelDocument {
+    pub fn new(history: &PixelHistory, milliseconds: f64) -> PixelDocument {
         let stored = |depth, stencil| Stored { stencil: history.has_stencil.then_some(stencil), depth };
         let disagreements: Vec<String> = history.disagreements().iter().map(ToString::to_string).collect();
         PixelDocument {
@@ -65,7 +67,7 @@ impl PixelDocument {
             captured: history.captured.map(|captured| stored(captured.depth, captured.stencil)),
             agrees: disagreements.is_empty(),
             disagreements,
-            why: (0..lights).map(|light| history.why(light).map(|why| why.to_string())).collect(),
+            why: (0..history.labels.len()).map(|light| history.why(light).map(|why| why.to_string())).collect(),
             milliseconds,
         }
     }
@@ -93,6 +95,7 @@ fn entry(history: &PixelHistory, event: &Event) -> EventEntry {
         caster: one.and_then(|one| one.caster.clone()),
         part: one.map(|one| one.part.name()),
         primitive: one.map(|one| one.primitive),
+        triangle: one.map(|one| one.triangle),
         front_facing: one.map(|one| one.is_front),
         depth: one.map(|one| one.depth),
         depth_test: tests.and_then(|(_, depth, _)| word(depth)),
@@ -122,8 +125,8 @@ impl Fate {
             Fate::Culled => Some("culled: the draw shows only the other side of triangles"),
             Fate::Clipped(Clip::Near) => Some("clipped: it is nearer than the near plane"),
             Fate::Clipped(Clip::Far) => Some("clipped: it is beyond the far plane"),
-            Fate::Dropped(Clip::Near) => Some("dropped by the shader: it is nearer than the near plane"),
-            Fate::Dropped(Clip::Far) => Some("dropped by the shader: it is beyond the far plane"),
+            Fate::Discarded(Clip::Near) => Some("discarded by the shader: it is nearer than the near plane"),
+            Fate::Discarded(Clip::Far) => Some("discarded by the shader: it is beyond the far plane"),
         }
     }
 }

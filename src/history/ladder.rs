@@ -2,7 +2,7 @@
 //! it runs: from infinity towards the surface where faces behind it count (z-fail), else from the
 //! eye.
 
-use super::{Event, PixelHistory};
+use super::{Count, Event, PixelHistory};
 use crate::math::depth::DepthCurve;
 use std::collections::BTreeMap;
 
@@ -17,6 +17,8 @@ pub struct Ladder {
     pub start: i32,
     /// What it ended with.
     pub count: i32,
+    /// The same as the light pass tests it: in a stencil eight bits of it.
+    pub tested: Count,
     /// Nearest first.
     pub rungs: Vec<Rung>,
 }
@@ -62,6 +64,7 @@ impl PixelHistory {
         let mut rungs: Vec<Rung> = once.into_values().collect();
         rungs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let is_from_infinity = self.counts_behind(light).unwrap_or(false);
+        let tested = self.counted_at(light);
         let mut count = start;
         let mut run = |rung: &mut Rung| {
             count += rung.added;
@@ -72,6 +75,6 @@ impl PixelHistory {
         } else {
             rungs.iter_mut().for_each(&mut run)
         }
-        Some(Ladder { surface: curve.distance(first.before.depth), is_from_infinity, start, count, rungs })
+        Some(Ladder { surface: curve.distance(first.before.depth), is_from_infinity, start, count, tested, rungs })
     }
 }

@@ -25,10 +25,10 @@ pub use check::Disagreement;
 pub use json::PixelDocument;
 pub use ladder::{Ladder, Rung};
 pub use story::operation_name;
-pub use why::{Faces, Why};
+pub use why::{Count, Counted, Faces, Flattened, LightPass, Why};
 
 use crate::capture::{Capture, FrameTarget, Snapshot};
-use crate::plan::{Clip, FramePlan, Part};
+use crate::plan::{Clip, FramePlan, Part, Visibility};
 use crate::stencil_machine::Stored;
 use wgpu::StencilOperation;
 
@@ -56,6 +56,8 @@ pub struct PixelHistory {
     /// Events without a fragment that there must be: clears that the plan asks for, and triangles
     /// that geometry says were culled or clipped.
     pub without_fragment: u32,
+    /// For each light: does the technique count its shadow volumes?
+    pub counts_volumes: Vec<bool>,
     /// Where the log and geometry contradict each other.
     pub contradictions: Vec<Disagreement>,
 }
@@ -101,6 +103,8 @@ pub struct Event {
     pub light: Option<usize>,
     /// The pass is seen from the camera: depths are the picture's.
     pub is_from_camera: bool,
+    /// What the pass draws into.
+    pub target: FrameTarget,
     /// What happened.
     pub kind: EventKind,
     /// What the pixel held.
@@ -143,6 +147,8 @@ pub struct TriangleEvent {
     pub is_front: bool,
     /// It faces into the volume that it bounds.
     pub faces_inwards: bool,
+    /// Whom its shader asks how much of the light arrives, where it adds the light.
+    pub lights: Option<Visibility>,
     /// As the depth test sees it; outside 0 to 1 where it was clipped.
     pub depth: f32,
     /// What became of it.
@@ -161,8 +167,8 @@ pub enum Fate {
         /// The operation that ran on the stencil; `None` where the draw tests no stencil.
         operation: Option<StencilOperation>,
     },
-    /// The shader threw its fragment away.
-    Dropped(Clip),
+    /// The shader discarded its fragment.
+    Discarded(Clip),
     /// The draw shows only the other side of triangles.
     Culled,
     /// It lies before the near or behind the far plane.
@@ -236,6 +242,19 @@ impl Event {
         self.before != self.after || (has_passed && !self.is_of_volume())
     }
 
+    /// What it was to add to the count: also where the count stopped at 0 or 255 and did not change.
+    #[must_use]
+    pub fn step(&self) -> i32 {
+        use StencilOperation::{DecrementClamp, DecrementWrap, IncrementClamp, IncrementWrap};
+        let fate = self.triangle().map(|one| one.fate);
+        let Some(Fate::Tested { operation: Some(operation), .. }) = fate else { return self.counted() };
+        match operation {
+            IncrementClamp | IncrementWrap => 1,
+            DecrementClamp | DecrementWrap => -1,
+            _ => 0,
+        }
+    }
+
     /// It is a face of a shadow volume.
     #[must_use]
     pub fn is_of_volume(&self) -> bool {
@@ -256,6 +275,15 @@ impl PixelHistory {
         self.events.iter().filter_map(|event| Some((event, event.triangle()?)))
     }
 
+    /// What the pixel held when the light pass tested it: after the last face of the light's volumes, or
+    /// where there is none, when the light's last pass began.
+    fn tested_count(&self, light: usize) -> Held {
+        let of_light = || self.events.iter().filter(|event| event.light == Some(light));
+        let last = of_light().filter(|event| event.is_of_volume()).last();
+        let tested = || of_light().find(|event| event.triangle().is_some_and(|one| one.lights.is_some()));
+        last.map(|event| event.after).or_else(|| tested().map(|event| event.before)).unwrap_or(self.computed)
+    }
+
     /// Do a light's volume faces count where they lie behind the visible surface, and not in front of
     /// it? `None` where it has none here that would tell: what was clipped or culled counts nowhere.
     #[must_use]
@@ -263,7 +291,7 @@ impl PixelHistory {
         let is_behind = |event: &Event| {
             let depth = event.triangle()?.depth;
             let is_behind = if self.is_reversed { depth <= event.before.depth } else { depth >= event.before.depth };
-            Some((event.counted() != 0, is_behind))
+            Some((event.step() != 0, is_behind))
         };
         let is_tested = |event: &&Event| event.triangle().is_some_and(|one| matches!(one.fate, Fate::Tested { .. }));
         let faces = self.events.iter().filter(|event| event.light == Some(light) && event.is_from_camera);

@@ -1,9 +1,11 @@
 //! Takes the fragments of a log through the tests of their draws.
 
 use super::{Disagreement, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent, captured_after};
-use crate::capture::Capture;
-use crate::gpu::FragmentLog;
-use crate::plan::{AttachmentRole, ColorWrite, Coverage, Covering, Draw, Face, FramePlan, Pass, Program, ViewId};
+use crate::capture::{Capture, FrameTarget};
+use crate::plan::{
+    AttachmentRole, ColorWrite, Coverage, Covering, Draw, Face, FragmentLog, FramePlan, LightId, Part, Pass, Program,
+    ViewId,
+};
 use crate::stencil_machine::{self, Fragment};
 use wgpu::CompareFunction;
 
@@ -51,6 +53,7 @@ impl PixelHistory {
             labels: capture.lights.iter().map(|light| light.shadow.as_ref()?.byte_at(pixel)).collect(),
             counted: log.counted,
             without_fragment: clears(plan) + hidden,
+            counts_volumes: counts_volumes(plan),
             contradictions: replay.contradictions,
         }
     }
@@ -71,6 +74,7 @@ impl Replay<'_> {
             pass_name: pass.name.clone(),
             light: pass.light.map(|light| light.0),
             is_from_camera: pass.view == ViewId(0),
+            target: target_of(self.plan, pass),
             kind,
             before: self.held,
             after,
@@ -97,8 +101,8 @@ impl Replay<'_> {
 
     fn test(&mut self, pass: &Pass, one: &Covering, is_front: bool, depth: f32) {
         let draw = &pass.draws[one.draw];
-        if let Some(clip) = draw.program.drops(depth) {
-            self.push(one.pass, triangle(draw, one, Face { is_front, depth }, Fate::Dropped(clip)), self.held);
+        if let Some(clip) = draw.program.discards(depth) {
+            self.push(one.pass, triangle(draw, one, Face { is_front, depth }, Fate::Discarded(clip)), self.held);
             return;
         }
         let depth = if draw.raster.unclipped_depth { depth.clamp(0.0, 1.0) } else { depth };
@@ -134,6 +138,25 @@ impl Replay<'_> {
     }
 }
 
+/// What a pass of the picture draws into.
+fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
+    match pass.color.as_ref().map(|target| plan.attachment(target.attachment).role) {
+        Some(AttachmentRole::Labels(_)) => FrameTarget::Labels,
+        Some(AttachmentRole::Count(_)) => FrameTarget::Count,
+        _ => FrameTarget::Picture,
+    }
+}
+
+/// For each light, whether any pass draws parts of its shadow volumes, or would if it had any.
+fn counts_volumes(plan: &FramePlan) -> Vec<bool> {
+    let is_volume = |draw: &Draw| matches!(draw.part, Part::Side | Part::LightCap | Part::DarkCap);
+    let counts = |light: usize| {
+        let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
+        passes.flat_map(|pass| &pass.draws).any(is_volume)
+    };
+    (0..plan.lights.len()).map(counts).collect()
+}
+
 /// Clears of depth, stencil and float counts that a plan asks for in passes of the picture.
 fn clears(plan: &FramePlan) -> u32 {
     let of_pass = |pass: &Pass| {
@@ -158,6 +181,10 @@ fn triangle(draw: &Draw, one: &Covering, face: Face, fate: Fate) -> EventKind {
         corners: one.corners,
         is_front: face.is_front,
         faces_inwards: draw.faces_inwards,
+        lights: match draw.program {
+            Program::Light(visibility) => Some(visibility),
+            _ => None,
+        },
         depth: face.depth,
         fate,
     }))

@@ -38,8 +38,8 @@ impl PixelHistory {
         let mut pass = None;
         for event in &self.events {
             if pass.replace(event.pass) != Some(event.pass) {
-                let of = event.light.map_or_else(String::new, |light| format!(" of {}", numbers::light(light)));
-                let _ = writeln!(text, "\npass {}, {}{of}", event.pass + 1, event.pass_name);
+                let of = event.light.map_or_else(String::new, |light| format!("{}: ", numbers::light(light)));
+                let _ = writeln!(text, "\npass {}, {of}{}", event.pass + 1, event.pass_name);
             }
             let _ = writeln!(text, "  {}", self.line(event, curve));
         }
@@ -90,7 +90,7 @@ impl PixelHistory {
                     Fate::Tested { stencil: Test::Failed, .. } => "fails stencil",
                     Fate::Tested { depth: Test::Failed, .. } => "fails depth",
                     Fate::Tested { .. } => "passes",
-                    Fate::Dropped(_) => "dropped",
+                    Fate::Discarded(_) => "discarded",
                     Fate::Culled => "culled",
                     Fate::Clipped(_) => "clipped",
                 };
@@ -105,13 +105,13 @@ impl PixelHistory {
         match &event.kind {
             EventKind::ClearDepth => format!("clear depth to {}", numbers::depth(event.after.depth)),
             EventKind::ClearStencil => format!("clear stencil to {}", event.after.stencil),
-            EventKind::ClearCount => format!("clear count to {}", event.after.count),
+            EventKind::ClearCount => format!("clear count to {}", numbers::count_in_float(event.after.count)),
             EventKind::Triangle(one) => {
                 let who = who(one);
                 let side = if one.shows_outside() { "front" } else { "back" };
                 let distance = match curve.distance(one.depth).filter(|_| event.is_from_camera) {
                     Some(distance) if distance >= 0.0 => format!(", at {}", numbers::metres(distance)),
-                    Some(_) => ", beyond infinity".to_owned(),
+                    Some(_) => ", beyond the far plane".to_owned(),
                     None if event.is_from_camera => ", at infinity".to_owned(),
                     None => String::new(),
                 };
@@ -159,7 +159,12 @@ impl PixelHistory {
             };
         }
         if before.count != after.count {
-            let _ = write!(text, "; count {} → {}", before.count, after.count);
+            let _ = write!(
+                text,
+                "; count {} → {}",
+                numbers::count_in_float(before.count),
+                numbers::count_in_float(after.count)
+            );
         }
         text
     }

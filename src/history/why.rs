@@ -1,10 +1,38 @@
 //! Why a light does or does not arrive at a pixel, in one sentence, from what its history counts.
 
-use super::{Event, EventKind, PixelHistory, TriangleEvent};
+use super::{Event, EventKind, Fate, PixelHistory, Test, TriangleEvent};
+use crate::capture::FrameTarget;
 use crate::numbers;
-use crate::plan::Part;
+use crate::plan::{Part, Visibility};
+use crate::truth::{BACKGROUND, FACES_AWAY};
 use std::collections::BTreeSet;
 use std::fmt;
+
+/// What decided about a light at a pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Why {
+    /// No surface is there.
+    Background,
+    /// Faces of shadow volumes were counted.
+    Counted(Counted, LightPass),
+    /// Casters were flattened onto receivers.
+    Flattened(Flattened, LightPass),
+}
+
+/// The faces of a light's volumes at a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Counted {
+    /// Faces on the surface or behind it count, as their depth test fails; else those in front of it.
+    pub is_behind: bool,
+    /// Those that counted.
+    pub faces: Faces,
+    /// Volumes that contain the near plane, where that was asked.
+    pub near: Option<i32>,
+    /// What all that counted add up to, the near plane's too.
+    pub sum: i32,
+    /// What was left, as the light pass reads it.
+    pub count: Count,
+}
 
 /// How many faces of each side, of the outside of their volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -13,37 +41,10 @@ pub struct Faces {
     pub front: u32,
     /// Seen from the back.
     pub back: u32,
-}
-
-/// What decided about a light at a pixel.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Why {
-    /// Faces of shadow volumes were counted.
-    Counted {
-        /// Faces behind the surface count, as their depth test fails; else those in front of it.
-        is_behind: bool,
-        /// Those that counted.
-        faces: Faces,
-        /// Volumes that contain the near plane, where that was asked.
-        near: Option<i32>,
-        /// What was left, as the light pass reads it.
-        count: Count,
-        /// The light pass let the surface through.
-        is_lit: bool,
-        /// The surface faces away from the light, so that it stays dark either way.
-        faces_away: bool,
-    },
-    /// Casters were flattened onto receivers.
-    Flattened {
-        /// Names of the casters whose flattened triangles passed all tests here.
-        casters: Vec<String>,
-        /// Flattened triangles that cover the pixel and failed a test.
-        failed: u32,
-        /// The pixel is marked as one of a receiver.
-        is_marked: bool,
-        /// The light pass let the surface through, where it comes after the shadows.
-        is_lit: bool,
-    },
+    /// Of both, those that lie on the surface itself.
+    pub on_surface: u32,
+    /// Of both, those whose step was lost, as the count was at its limit.
+    pub stopped: u32,
 }
 
 /// A count as it was kept.
@@ -55,137 +56,247 @@ pub enum Count {
     Float(f32),
 }
 
-impl fmt::Display for Count {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Count::Stencil(count) => f.write_str(&numbers::signed(*count)),
-            Count::Float(count) if *count < 0.0 => write!(f, "−{}", -count),
-            Count::Float(count) => write!(f, "{count}"),
-        }
-    }
+/// The flattened triangles of a light that cover a pixel.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Flattened {
+    /// Names of the casters whose flattened triangles passed all tests here.
+    pub casters: Vec<String>,
+    /// Triangles that failed the stencil test.
+    pub failed_stencil: u32,
+    /// Triangles that failed the depth test.
+    pub failed_depth: u32,
+    /// Triangles that left no fragment.
+    pub hidden: u32,
+    /// The pixel is marked as one of a receiver.
+    pub is_marked: bool,
+}
+
+/// What the light pass did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum LightPass {
+    /// It added the light.
+    Adds,
+    /// Its test kept the light out.
+    Skips,
+    /// Its test let the surface through, but shading leaves it dark: it faces away from the light.
+    FacesAway,
+    /// The object receives no shadows: nothing was asked.
+    AsksNothing,
 }
 
 impl PixelHistory {
-    /// What decided about a light; `None` where neither volumes nor flattened casters were drawn for
-    /// it over this pixel, and no surface is there to be lit.
+    /// What decided about a light; `None` where the technique leaves no events that tell.
     #[must_use]
     pub fn why(&self, light: usize) -> Option<Why> {
-        let of_light = || self.events.iter().filter(move |event| event.light == Some(light));
-        let is_lit = of_light()
-            .any(|event| event.pass_name == LIGHT_PASS && event.triangle().is_some_and(|one| one.fate.passed()));
-        let flattened: Vec<&Event> = of_light().filter(|event| part(event) == Some(Part::PlanarShadow)).collect();
-        if !flattened.is_empty() {
-            return Some(why_flattened(&flattened, is_lit));
+        let of_light = |event: &&Event| event.light == Some(light) && event.target != FrameTarget::Labels;
+        let events = || self.events.iter().filter(of_light);
+        let flattened: Vec<&Event> = events().filter(|event| part(event) == Some(Part::PlanarShadow)).collect();
+        let counts = self.counts_volumes.get(light).copied().unwrap_or(false);
+        if !counts && flattened.is_empty() {
+            return None;
         }
-        let volume: Vec<&Event> = of_light().filter(|event| event.is_of_volume()).collect();
-        let last = volume.last()?;
-        let mut faces = Faces::default();
-        for event in volume.iter().filter(|event| event.is_from_camera && event.counted() != 0) {
-            let is_front = event.triangle().is_some_and(TriangleEvent::shows_outside);
-            *(if is_front { &mut faces.front } else { &mut faces.back }) += 1;
+        let label = self.labels.get(light).copied().flatten();
+        if label == Some(BACKGROUND) {
+            return Some(Why::Background);
         }
-        let is_behind = self.counts_behind(light).unwrap_or(false);
-        let near = volume.iter().filter(|event| !event.is_from_camera);
-        let near = near.clone().next().map(|_| near.map(|event| event.counted()).sum());
+        let counted = counts.then(|| self.counted(light));
+        let pass = match self.light_pass(light, counted.as_ref()) {
+            LightPass::Adds if label == Some(FACES_AWAY) => LightPass::FacesAway,
+            pass => pass,
+        };
+        Some(match counted {
+            Some(counted) => Why::Counted(counted, pass),
+            None => Why::Flattened(flattened_of(&flattened), pass),
+        })
+    }
+
+    fn counted(&self, light: usize) -> Counted {
+        let faces = || self.events.iter().filter(|event| event.light == Some(light) && event.is_of_volume());
+        let mut counted = Faces::default();
+        for event in faces().filter(|event| event.is_from_camera && event.step() != 0) {
+            let Some(one) = event.triangle() else { continue };
+            *(if one.shows_outside() { &mut counted.front } else { &mut counted.back }) += 1;
+            counted.on_surface += u32::from(one.depth == event.before.depth);
+            counted.stopped += u32::from(event.counted() == 0);
+        }
+        let near = faces().filter(|event| !event.is_from_camera);
+        Counted {
+            is_behind: self.counts_behind(light).unwrap_or(false),
+            faces: counted,
+            near: near.clone().next().map(|_| near.map(Event::counted).sum()),
+            sum: faces().map(Event::counted).sum(),
+            count: self.counted_at(light),
+        }
+    }
+
+    /// The count of a light as its light pass tests it.
+    pub(super) fn counted_at(&self, light: usize) -> Count {
         let in_float = self.events.iter().any(|event| event.kind == EventKind::ClearCount);
-        let count = if in_float { Count::Float(last.after.count) } else { Count::Stencil(last.after.stencil) };
-        let faces_away = self.labels.get(light).copied().flatten() == Some(FACES_AWAY);
-        Some(Why::Counted { is_behind, faces, near, count, is_lit, faces_away })
+        let held = self.tested_count(light);
+        if in_float { Count::Float(held.count) } else { Count::Stencil(held.stencil) }
+    }
+
+    fn light_pass(&self, light: usize, counted: Option<&Counted>) -> LightPass {
+        let lit = self.triangles().find(|(event, one)| {
+            event.light == Some(light)
+                && one.lights.is_some()
+                && event.target == FrameTarget::Picture
+                && one.fate.passed()
+        });
+        match lit.map(|(_, one)| (one.lights, one.fate)) {
+            None => LightPass::Skips,
+            Some((Some(Visibility::Count), _)) => match counted.map(|counted| counted.count) {
+                Some(Count::Float(count)) if count != 0.0 => LightPass::Skips,
+                _ => LightPass::Adds,
+            },
+            // Where shadows are counted, what receives them is tested.
+            Some((Some(Visibility::Everywhere), Fate::Tested { operation: None, .. })) if counted.is_some() => {
+                LightPass::AsksNothing
+            }
+            Some(_) => LightPass::Adds,
+        }
     }
 }
-
-/// The label of surfaces that face away.
-const FACES_AWAY: u8 = 3;
-/// What techniques call the pass that adds a light.
-const LIGHT_PASS: &str = "light";
 
 fn part(event: &Event) -> Option<Part> {
     event.triangle().map(|one| one.part)
 }
 
-fn why_flattened(events: &[&Event], is_lit: bool) -> Why {
-    let passed = |event: &&&Event| event.triangle().is_some_and(|one| one.fate.passed());
-    let name = |event: &&Event| event.triangle().and_then(|one| one.caster.clone());
-    let casters: BTreeSet<String> = events.iter().filter(passed).filter_map(name).collect();
-    let failed = events.iter().filter(|event| !passed(event)).count() as u32;
-    let is_marked = events.first().is_some_and(|event| event.before.stencil != 0);
-    Why::Flattened { casters: casters.into_iter().collect(), failed, is_marked, is_lit }
+fn flattened_of(events: &[&Event]) -> Flattened {
+    let mut found =
+        Flattened { is_marked: events.first().is_some_and(|event| event.before.stencil != 0), ..Flattened::default() };
+    let mut casters = BTreeSet::new();
+    for TriangleEvent { caster, draw_name, fate, .. } in events.iter().filter_map(|event| event.triangle()) {
+        match fate {
+            _ if fate.passed() => {
+                casters.insert(caster.clone().unwrap_or_else(|| draw_name.clone()));
+            }
+            Fate::Tested { stencil: Test::Failed, .. } => found.failed_stencil += 1,
+            Fate::Tested { .. } => found.failed_depth += 1,
+            Fate::Discarded(_) | Fate::Culled | Fate::Clipped(_) => found.hidden += 1,
+        }
+    }
+    found.casters = casters.into_iter().collect();
+    found
 }
 
 impl fmt::Display for Why {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Why::Counted { is_behind, faces, near, count, is_lit, faces_away } => {
-                if let Some(near) = near {
-                    // More back than front faces in it leave less than none.
-                    let sign = if *near < 0 { "−" } else { "" };
-                    write!(f, "the near plane is in {sign}{}; ", counted(near.unsigned_abs(), "volume"))?;
+            Why::Background => f.write_str("no surface is here that a shadow could fall on"),
+            Why::Counted(counted, pass) => write!(f, "{counted}, so {pass}"),
+            Why::Flattened(flattened, pass) => {
+                write!(f, "{flattened}")?;
+                match (flattened.casters.is_empty(), pass) {
+                    (false, LightPass::Adds) => f.write_str(", and darkens it after the light pass"),
+                    _ => write!(f, ", so {pass}"),
                 }
-                let side = if *is_behind { "behind" } else { "in front of" };
-                let all = faces.front + faces.back;
-                if all == 0 {
-                    write!(f, "no volume face {side} it counts")?;
-                } else {
-                    let s = if all == 1 { "s" } else { "" };
-                    let [front, back] = [faces.front, faces.back];
-                    // A float is counted by draws whose tests are the other way round.
-                    let are_counted = match (count, is_behind) {
-                        (Count::Stencil(_), true) => format!("fail{s} the depth test"),
-                        (Count::Stencil(_), false) => {
-                            format!("pass{} the depth test", if all == 1 { "es" } else { "" })
-                        }
-                        (Count::Float(_), _) => {
-                            if all == 1 {
-                                "is counted".to_owned()
-                            } else {
-                                "are counted".to_owned()
-                            }
-                        }
-                    };
-                    write!(f, "{} {side} it {are_counted}: ", counted(all, "volume face"))?;
-                    if *is_behind {
-                        write!(f, "{back} back, {front} front")?
-                    } else {
-                        write!(f, "{front} front, {back} back")?
-                    }
-                }
-                let then = match (is_lit, faces_away) {
-                    (true, true) => "would light it, but it faces away from the light",
-                    (true, false) => "adds the light",
-                    (false, _) => "skips it",
-                };
-                write!(f, "; count {count}, so the light pass {then}")
-            }
-            Why::Flattened { casters, failed, is_marked, is_lit } => {
-                let s = if *failed == 1 { "s" } else { "" };
-                match (casters.is_empty(), is_marked) {
-                    (false, _) => {
-                        write!(f, "the flattened shadow of {} falls on its receiver here", casters.join(" and "))?;
-                    }
-                    (true, false) => {
-                        let triangles = counted(*failed, "flattened triangle");
-                        write!(
-                            f,
-                            "it is on no marked receiver, so {triangles} that cover{s} it fail{s} the stencil test"
-                        )?;
-                    }
-                    (true, true) => {
-                        let triangles = counted(*failed, "flattened triangle");
-                        write!(f, "{triangles} cover{s} it, but on the planes of other receivers")?;
-                    }
-                }
-                f.write_str(match (casters.is_empty(), is_lit) {
-                    (true, true) => ": the light arrives",
-                    (true, false) => ": the light pass skips it all the same",
-                    (false, true) => ": it is darkened after the light pass",
-                    (false, false) => ", so the light pass skips it",
-                })
             }
         }
     }
 }
 
-fn counted(count: u32, noun: &str) -> String {
+impl fmt::Display for Counted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Counted { is_behind, faces, near, sum, count } = self;
+        if let Some(near) = near {
+            // More back than front faces in it leave less than none.
+            let sign = if *near < 0 { "−" } else { "" };
+            write!(f, "the near plane is in {sign}{}; ", amount(near.unsigned_abs(), "volume"))?;
+        }
+        let all = faces.front + faces.back;
+        let where_ = match (is_behind, faces.on_surface) {
+            (true, 0) => "behind the surface",
+            (true, _) => "on or behind the surface",
+            (false, _) => "in front of the surface",
+        };
+        let verb = match (count, is_behind, all) {
+            // A float is counted by draws whose tests are the other way round.
+            (Count::Float(_), _, 1) => "is counted",
+            (Count::Float(_), ..) => "are counted",
+            (Count::Stencil(_), true, 1) => "fails the depth test",
+            (Count::Stencil(_), true, _) => "fail the depth test",
+            (Count::Stencil(_), false, 1) => "passes the depth test",
+            (Count::Stencil(_), false, _) => "pass the depth test",
+        };
+        let Faces { front, back, .. } = faces;
+        match (all, is_behind) {
+            (0, _) => f.write_str("no volume face on the view ray counts")?,
+            (_, true) => write!(f, "{} {where_} {verb}: {back} back, {front} front", amount(all, "volume face"))?,
+            (_, false) => write!(f, "{} {where_} {verb}: {front} front, {back} back", amount(all, "volume face"))?,
+        }
+        if faces.stopped > 0 {
+            write!(
+                f,
+                ", of which {} the count at its limit",
+                if faces.stopped == 1 { "1 found".to_owned() } else { format!("{} found", faces.stopped) }
+            )?;
+        }
+        match count {
+            Count::Stencil(byte)
+                if i64::from(*sum).rem_euclid(256) == i64::from(*byte) && !(-128..=255).contains(sum) =>
+            {
+                write!(f, "; together {sum}, which eight bits hold as {byte}")
+            }
+            Count::Stencil(byte) if *sum > 127 => write!(f, "; count {byte}"),
+            count => write!(f, "; count {count}"),
+        }
+    }
+}
+
+impl Count {
+    /// Does the light pass take it for lit?
+    #[must_use]
+    pub fn is_zero(self) -> bool {
+        matches!(self, Count::Stencil(0)) || self == Count::Float(0.0)
+    }
+}
+
+impl fmt::Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Count::Stencil(count) => f.write_str(&numbers::signed(*count)),
+            Count::Float(count) => f.write_str(&numbers::count_in_float(*count)),
+        }
+    }
+}
+
+impl fmt::Display for Flattened {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Flattened { casters, failed_stencil, failed_depth, hidden, is_marked } = self;
+        if !casters.is_empty() {
+            return write!(f, "the flattened shadow of {} falls on the surface here", casters.join(" and "));
+        }
+        if *failed_depth > 0 {
+            let what = amount(*failed_depth, "flattened triangle");
+            let verb = if *failed_depth == 1 { "fails" } else { "fail" };
+            return write!(f, "{what} over the surface {verb} the depth test against it");
+        }
+        if *failed_stencil > 0 {
+            let what = amount(*failed_stencil, "flattened triangle");
+            let (cover, fail) = if *failed_stencil == 1 { ("covers", "fails") } else { ("cover", "fail") };
+            let mark =
+                if *is_marked { "which has the mark of another receiver" } else { "which is marked as no receiver" };
+            return write!(f, "{what} {cover} the surface, {mark}, and {fail} the stencil test");
+        }
+        write!(f, "{} over it left no fragment", amount(*hidden, "flattened triangle"))
+    }
+}
+
+impl fmt::Display for LightPass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            LightPass::Adds => "the light pass adds the light",
+            LightPass::Skips => "the light pass skips it",
+            LightPass::FacesAway => "the light pass lets it through; but it faces away from the light, and stays dark",
+            LightPass::AsksNothing => {
+                "it would be lit only at 0; but the object receives no shadows, and the light pass adds the light"
+            }
+        })
+    }
+}
+
+fn amount(count: u32, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
@@ -193,15 +304,46 @@ fn counted(count: u32, noun: &str) -> String {
 mod tests {
     use super::*;
 
+    fn counted(faces: Faces, near: Option<i32>, sum: i32, count: Count) -> Counted {
+        Counted { is_behind: near.is_none(), faces, near, sum, count }
+    }
+
     #[test]
     fn a_near_plane_that_more_volumes_were_left_than_entered_has_a_sign() {
-        let faces = Faces { front: 2, back: 0 };
-        let (near, count) = (Some(-1), Count::Stencil(1));
-        let why = Why::Counted { is_behind: false, faces, near, count, is_lit: false, faces_away: false };
+        let faces = Faces { front: 2, ..Faces::default() };
+        let why = Why::Counted(counted(faces, Some(-1), 1, Count::Stencil(1)), LightPass::Skips);
         assert_eq!(
             why.to_string(),
-            "the near plane is in −1 volume; 2 volume faces in front of it pass the depth test: 2 front, 0 back; count \
-             1, so the light pass skips it"
+            "the near plane is in −1 volume; 2 volume faces in front of the surface pass the depth test: 2 front, 0 \
+             back; count 1, so the light pass skips it"
         );
+    }
+
+    #[test]
+    fn a_count_beyond_eight_bits_says_what_they_hold() {
+        let faces = Faces { back: 257, front: 1, on_surface: 1, stopped: 0 };
+        let text = counted(faces, None, 256, Count::Stencil(0)).to_string();
+        assert_eq!(
+            text,
+            "258 volume faces on or behind the surface fail the depth test: 257 back, 1 front; together 256, which \
+             eight bits hold as 0"
+        );
+    }
+
+    #[test]
+    fn a_clamped_face_is_counted_and_said_to_have_been_lost() {
+        let faces = Faces { back: 1, front: 2, on_surface: 0, stopped: 1 };
+        let text = counted(faces, None, 0, Count::Stencil(0)).to_string();
+        assert!(text.contains("1 back, 2 front, of which 1 found the count at its limit; count 0"), "{text}");
+    }
+
+    #[test]
+    fn a_flattened_triangle_that_fails_says_which_test() {
+        let marked = Flattened { failed_depth: 2, failed_stencil: 7, is_marked: true, ..Flattened::default() };
+        assert_eq!(marked.to_string(), "2 flattened triangles over the surface fail the depth test against it");
+        let elsewhere = Flattened { failed_depth: 0, failed_stencil: 1, is_marked: false, ..marked };
+        let expected =
+            "1 flattened triangle covers the surface, which is marked as no receiver, and fails the stencil test";
+        assert_eq!(elsewhere.to_string(), expected);
     }
 }

@@ -129,8 +129,8 @@ fn outcome(fate: Fate) -> Outcome {
         Fate::Culled => Outcome::Nothing("culled"),
         Fate::Clipped(Clip::Near) => Outcome::Nothing("clipped at near"),
         Fate::Clipped(Clip::Far) => Outcome::Nothing("clipped at far"),
-        Fate::Dropped(Clip::Near) => Outcome::Nothing("dropped before near"),
-        Fate::Dropped(Clip::Far) => Outcome::Nothing("dropped beyond far"),
+        Fate::Discarded(Clip::Near) => Outcome::Nothing("discarded before near"),
+        Fate::Discarded(Clip::Far) => Outcome::Nothing("discarded beyond far"),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::format;
 use super::history_row::{Cells, Outcome, line, short, sign};
+use super::moment::Moment;
 use super::state::State;
 use super::theme;
 use crate::capture::Capture;
@@ -70,9 +71,9 @@ fn heading(ui: &mut Ui, state: &mut State, history: Option<&PixelHistory>, at: [
             agrees.on_hover_text("After every pass the events make what was captured here, bit for bit");
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let text = theme::note("Hide failed");
+            let text = theme::note("Hide idle");
             let switch = ui.checkbox(&mut state.history.hides_failed, text);
-            switch.on_hover_text("Hide events that passed no test or changed nothing");
+            switch.on_hover_text("Hide events that changed nothing, whichever tests they passed or failed");
         });
     });
 }
@@ -167,7 +168,13 @@ impl Columns {
 
 fn head(ui: &mut Ui, has_stencil: bool) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::RowHeader, true, "Columns of the history"));
+    response.widget_info(|| {
+        WidgetInfo::labeled(
+            Role::ColumnHeader,
+            true,
+            "Columns: pass, face, side, depth test, stencil test, operation, change",
+        )
+    });
     let columns = Columns::of(rect, has_stencil);
     let write = |x: f32, align: Align2, text: &str| {
         let font = FontId::proportional(theme::SMALL_SIZE);
@@ -195,8 +202,7 @@ fn row(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory
         state.history.select(event);
     }
     if response.double_clicked() {
-        state.playing = None;
-        state.select_step(event.pass);
+        go_to(state, event);
     }
     if response.gained_focus() {
         response.scroll_to_me(None);
@@ -208,6 +214,15 @@ fn row(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory
     }
     let line = line(history, event, &capture.depth);
     response.on_hover_text(format!("pass {}, {}: {line}. Double-click to go there.", event.pass + 1, event.pass_name));
+}
+
+/// After the draw of an event; a clear comes before all draws of its step.
+fn moment_of(event: &Event) -> Moment {
+    Moment { step: event.pass, draw: event.triangle().map(|one| one.draw) }
+}
+
+fn go_to(state: &mut State, event: &Event) {
+    state.select(moment_of(event));
 }
 
 fn paint(ui: &Ui, rect: Rect, cells: &Cells, has_stencil: bool, ink: Color32) {
@@ -273,10 +288,9 @@ fn selected(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHi
     theme::card().show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.add(egui::Label::new(theme::note(line(history, event, &capture.depth)).color(theme::TEXT)).wrap());
-        let text = theme::note(format!("Go to step {}, {}", event.pass + 1, event.pass_name));
-        if event.pass != state.step && ui.button(text).clicked() {
-            state.playing = None;
-            state.select_step(event.pass);
+        let text = theme::note(format!("Go to {}, {}", moment_of(event).words(), event.pass_name));
+        if moment_of(event) != state.selected() && ui.button(text).clicked() {
+            go_to(state, event);
         }
     });
 }

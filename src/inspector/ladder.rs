@@ -8,7 +8,7 @@ use super::ladder_layout::{LINE, Mark, Placed, Stretch, place, stretches};
 use super::state::State;
 use super::theme;
 use crate::capture::Capture;
-use crate::history::{Ladder, PixelHistory, Rung};
+use crate::history::{Count, Fate, Ladder, PixelHistory, Rung};
 use crate::numbers;
 use crate::plan::Part;
 use egui::{
@@ -59,7 +59,16 @@ fn direction(ladder: &Ladder) -> String {
     };
     let all = ladder.rungs.len() as u64;
     let counted = ladder.rungs.iter().filter(|rung| rung.added != 0).count();
-    format!("{way}{start}. {counted} of {} count: {} in all.", format::counted(all, "face"), signed(ladder.count))
+    let faces = format::counted(all, "face");
+    format!("{way}{start}. {counted} of {faces} count: {} in all{}.", signed(ladder.count), in_eight_bits(ladder))
+}
+
+/// What the light pass reads where eight bits do not hold the count.
+fn in_eight_bits(ladder: &Ladder) -> String {
+    match ladder.tested {
+        Count::Stencil(byte) if !(-128..=255).contains(&ladder.count) => format!(", in eight bits {byte}"),
+        Count::Stencil(_) | Count::Float(_) => String::new(),
+    }
 }
 
 /// A whole number with the sign that stencil values have.
@@ -106,7 +115,9 @@ fn drawn(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHisto
     let placed = place(ladder, capture.camera.near, selected);
     let height = placed.last().map_or(0.0, |(_, y)| *y) + 2.0 * MARGIN;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Ladder of the view ray"));
+    response.widget_info(|| {
+        WidgetInfo::labeled(Role::Image, true, format!("Ladder of the view ray. {}", direction(ladder)))
+    });
     let columns = Columns::of(rect);
     let top = rect.top() + MARGIN;
     let row = |y: f32| Rect::from_center_size(pos2(rect.center().x, top + y), vec2(rect.width(), LINE));
@@ -123,7 +134,7 @@ fn drawn(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHisto
     for (mark, y) in &placed {
         let rect = row(*y);
         match mark {
-            Mark::Rung(index) => paint_rung(ui, capture, history, &ladder.rungs[*index], rect),
+            Mark::Rung(index) => paint_rung(ui, history, &ladder.rungs[*index], rect),
             Mark::More(from, to) => paint_more(ui, &ladder.rungs[*from..*to], rect),
             other => paint_end(ui, capture, history, ladder, *other, rect),
         }
@@ -165,7 +176,7 @@ fn ray(ui: &Ui, columns: Columns, top: f32, placed: &[Placed]) {
     ui.painter().vline(columns.ray, top + first.1..=top + last.1, stroke);
 }
 
-fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, rect: Rect) {
+fn paint_rung(ui: &Ui, history: &PixelHistory, rung: &Rung, rect: Rect) {
     let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return };
     let columns = Columns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
@@ -183,7 +194,7 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
     theme::two_inks(ui, pos2(columns.name, y), columns.name_room, [&what, &of], ink);
     let number = theme::number_font(theme::SMALL_SIZE);
     let ink = if counts { theme::DIM } else { theme::FAINT };
-    let is_clipped = rung.distance < capture.camera.near;
+    let is_clipped = matches!(one.fate, Fate::Clipped(_) | Fate::Discarded(_) | Fate::Culled);
     let distance = if is_clipped { "clipped".to_owned() } else { short_metres(rung.distance) };
     painter.text(pos2(columns.distance, y), Align2::RIGHT_CENTER, distance, number.clone(), ink);
     if !counts {
@@ -203,6 +214,7 @@ fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, r
 fn short_metres(distance: f64) -> String {
     match distance {
         _ if !distance.is_finite() => "∞".to_owned(),
+        ..0.1 => numbers::metres(distance),
         ..100.0 => format!("{distance:.2} m"),
         100.0..10_000.0 => format!("{distance:.0} m"),
         _ => numbers::metres(distance),
@@ -257,9 +269,12 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
             theme::two_inks(ui, pos2(columns.name, y), columns.name_room, words, theme::TEXT);
             number(columns.distance, ladder.surface.map(short_metres).unwrap_or_default(), theme::TEXT);
             // What the light pass asks about.
-            let count = signed(ladder.count);
+            let count = match ladder.tested {
+                Count::Stencil(byte) if !(-128..=255).contains(&ladder.count) => byte.to_string(),
+                _ => signed(ladder.count),
+            };
             let size = theme::TEXT_SIZE;
-            let ink = if ladder.count == 0 { theme::LIT } else { theme::TEXT };
+            let ink = if ladder.tested.is_zero() { theme::LIT } else { theme::TEXT };
             painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, count, theme::number_font(size), ink);
         }
         Mark::Infinity => {

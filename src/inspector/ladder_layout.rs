@@ -155,11 +155,18 @@ fn middle_distance(ladder: &Ladder) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::history::Rung;
+    use crate::history::{Count, Rung};
 
     /// Rungs at distances, each with what it added, counted from infinity.
     fn ladder(surface: Option<f64>, rungs: &[(f64, i32)]) -> Ladder {
-        let mut ladder = Ladder { surface, is_from_infinity: true, start: 0, count: 0, rungs: Vec::new() };
+        let mut ladder = Ladder {
+            surface,
+            is_from_infinity: true,
+            start: 0,
+            count: 0,
+            tested: Count::Stencil(0),
+            rungs: Vec::new(),
+        };
         let rung = |(event, (distance, added)): (usize, &(f64, i32))| Rung {
             event,
             distance: *distance,

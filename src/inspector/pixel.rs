@@ -67,7 +67,7 @@ fn sentence(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     let verdict = held.unwrap_or_else(|| {
         let verdict = verdict(capture, light, at);
         match &history {
-            Some(history) => explained(verdict, capture, history, light),
+            Some(history) => explained(verdict, history, light),
             None => verdict,
         }
     });

@@ -33,15 +33,9 @@ enum ByHistory {
 
 /// The same, with the reason that the pixel's history gives.
 #[must_use]
-pub fn explained(verdict: Verdict, capture: &Capture, history: &PixelHistory, light: usize) -> Verdict {
-    let label = capture.lights.get(light).and_then(|light| light.shadow.as_ref()?.byte_at(history.pixel));
+pub fn explained(verdict: Verdict, history: &PixelHistory, light: usize) -> Verdict {
     let why = match history.why(light) {
         Some(why) => format!("{}.", capitalized(&why.to_string())),
-        // Faces that cancel out are not the same as none.
-        None if counts::are_made_by(&capture.technique) && label == Some(0) => format!(
-            "No volume face of {} is on this pixel's view ray, so nothing is counted and the light pass adds the light.",
-            format::light(light)
-        ),
         None => return verdict,
     };
     let reason = match verdict.by_history {

@@ -11,7 +11,6 @@
 //! that are culled, or clipped away at the near or far plane.
 
 use super::{Draw, FramePlan, MeshId, Pass, Program, ViewId};
-use crate::math::depth::DepthMapping;
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec4};
 use std::collections::BTreeMap;
 
@@ -72,6 +71,26 @@ pub enum Clip {
     Far,
 }
 
+/// A fragment of a triangle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoggedFragment {
+    /// Index into the triangles that were asked about.
+    pub covering: usize,
+    /// Of the front of its triangle.
+    pub is_front: bool,
+    /// As the depth test sees it, bias included; not clamped.
+    pub depth: f32,
+}
+
+/// The fragments of a pixel in the order in which their triangles were drawn.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FragmentLog {
+    /// What was written down.
+    pub fragments: Vec<LoggedFragment>,
+    /// How many the GPU counted.
+    pub counted: u32,
+}
+
 impl FramePlan {
     /// Does a pass draw into the picture, or test against its depth and stencil? Passes of shadow
     /// maps and textures have pixels of their own.
@@ -94,7 +113,7 @@ impl FramePlan {
     /// pixel of it, in the order in which the GPU draws them.
     #[must_use]
     pub fn covering(&self, pixel: [u32; 2]) -> Vec<Covering> {
-        let mut search = Search { plan: self, pixel, sieves: BTreeMap::new(), found: BTreeMap::new() };
+        let mut search = Search { plan: self, pixel, sieve: Vec::new(), sieve_of: None, found: BTreeMap::new() };
         let mut covering = Vec::new();
         for (pass_index, pass) in self.passes.iter().enumerate().filter(|(_, pass)| self.is_of_picture(pass)) {
             for (draw_index, draw) in pass.draws.iter().enumerate() {
@@ -111,8 +130,9 @@ type Searched = (MeshId, ViewId, u32, u32, u32);
 struct Search<'a> {
     plan: &'a FramePlan,
     pixel: [u32; 2],
-    /// For each vertex of a mesh in a view, which of the four planes it is outside of.
-    sieves: BTreeMap<(MeshId, ViewId), Vec<u8>>,
+    /// For each vertex of the last mesh, which of the four planes it is outside of.
+    sieve: Vec<u8>,
+    sieve_of: Option<(MeshId, ViewId)>,
     found: BTreeMap<Searched, Vec<u32>>,
 }
 
@@ -122,21 +142,26 @@ impl Search<'_> {
         let (vertices, indices) = (mesh.vertices.data(), mesh.indices.data());
         let matrix = self.plan.views[view.0].clip_from_relative;
         let square = Square::new(self.pixel, self.plan.size);
-        let sieve = self.sieves.entry((draw.mesh, view)).or_insert_with(|| square.sieve(matrix, vertices));
         let base = draw.base_vertex as usize;
         let corners_of = |triangle: u32| {
             let corners = indices.get(triangle as usize * 3..)?.get(..3)?;
             Some([corners[0] as usize + base, corners[1] as usize + base, corners[2] as usize + base])
         };
         let range = draw.triangles.clone();
-        let found =
-            self.found.entry((draw.mesh, view, range.start, range.end, draw.base_vertex)).or_insert_with(|| {
-                let is_near = |triangle: &u32| {
-                    let outside = |corner: usize| sieve.get(corner).copied().unwrap_or(u8::MAX);
-                    corners_of(*triangle).is_some_and(|[a, b, c]| outside(a) & outside(b) & outside(c) == 0)
-                };
-                range.filter(is_near).collect()
-            });
+        let searched = (draw.mesh, view, range.start, range.end, draw.base_vertex);
+        if !self.found.contains_key(&searched) {
+            if self.sieve_of != Some((draw.mesh, view)) {
+                square.sieve(matrix, vertices, &mut self.sieve);
+                self.sieve_of = Some((draw.mesh, view));
+            }
+            let outside = |corner: usize| self.sieve.get(corner).copied().unwrap_or(u8::MAX);
+            let is_near = |triangle: &u32| {
+                corners_of(*triangle).is_some_and(|[a, b, c]| outside(a) & outside(b) & outside(c) == 0)
+            };
+            let found = range.filter(is_near).collect();
+            self.found.insert(searched, found);
+        }
+        let found = &self.found[&searched];
         let mut look = |triangle: u32, primitive: u32| {
             let corners = corners_of(triangle).map(|corners| corners.map(|corner| vertices[corner]));
             let found = corners.and_then(|corners| Some((corners, square.look(matrix, corners)?)));
@@ -161,7 +186,7 @@ impl FramePlan {
             Some(wgpu::Face::Back) => !face.is_front,
             None => false,
         };
-        let is_reversed = self.depth.mapping == DepthMapping::ReversedInfinite;
+        let is_reversed = self.depth.mapping.is_reversed();
         let outside = [(depth < -SAFE_DEPTH, !is_reversed), (depth > 1.0 + SAFE_DEPTH, is_reversed)];
         let clip = outside.into_iter().find(|(is_outside, _)| *is_outside && !draw.raster.unclipped_depth);
         let is_between = (SAFE_DEPTH..=1.0 - SAFE_DEPTH).contains(&depth);
@@ -197,7 +222,7 @@ impl Square {
 
     /// Four bits for each vertex: right of, left of, above and below the square, as far as `f32` can
     /// tell for sure.
-    fn sieve(&self, clip_from_relative: Mat4, vertices: &[[f32; 4]]) -> Vec<u8> {
+    fn sieve(&self, clip_from_relative: Mat4, vertices: &[[f32; 4]], sieve: &mut Vec<u8>) {
         let clip = clip_from_relative.as_dmat4();
         let reach = self.half_pixel * (2.0 * DOUBT);
         let [x, y, w] = [clip.row(0), clip.row(1), clip.row(3)];
@@ -215,7 +240,8 @@ impl Square {
             let bound = vertex.abs().max_element() * rounding;
             (planes * vertex).cmpgt(Vec4::splat(bound)).bitmask() as u8
         };
-        vertices.iter().map(outside).collect()
+        sieve.clear();
+        sieve.extend(vertices.iter().map(outside));
     }
 
     /// `None` where the triangle is farther from the centre than doubt reaches.

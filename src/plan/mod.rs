@@ -22,7 +22,7 @@ mod split;
 pub mod text;
 
 pub use buffers::{Blob, DrawMesh, SurfaceData};
-pub use coverage::{Clip, Coverage, Covering, Face};
+pub use coverage::{Clip, Coverage, Covering, Face, FragmentLog, LoggedFragment};
 pub use image::{CpuImage, MakeImage};
 pub use left_out::LeftOut;
 pub use raster::{ColorWrite, RasterState, StencilFace};
@@ -373,7 +373,7 @@ impl Program {
     /// Which side of the range of depths a fragment lies on that the shader throws away: where depth
     /// is clamped, nothing else clips at near and far (`discard` in the shaders' files).
     #[must_use]
-    pub fn drops(self, depth: f32) -> Option<Clip> {
+    pub fn discards(self, depth: f32) -> Option<Clip> {
         match self {
             Program::Ambient { from_near: true } if depth < 0.0 => Some(Clip::Near),
             Program::Light(_) | Program::Label(_) | Program::Through if depth > 1.0 => Some(Clip::Far),

@@ -9,11 +9,10 @@
 //! much memory: where a capture would hold more than [`MOST_FILLED_BYTES`], those of the passes
 //! that were filled in before are dropped, and have to be asked for again.
 
-use super::{CaptureRequest, Session, SessionError};
+use super::{Session, SessionError};
 use crate::capture::{Aspect, Capture, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step};
 use crate::gpu::{GpuError, Output};
 use crate::plan::FramePlan;
-use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -36,24 +35,17 @@ impl Session {
         Ok(join(plan, |_| true, self.run_split(&plan.split_at_draws(), bracket)?))
     }
 
-    /// Fills in the state after each draw of a step of `capture`, which `request` made of `scene`.
-    /// Nothing else of it changes, but that draw states of other steps may be dropped.
+    /// Fills in the state after each draw of a step of `capture`, which `plan` left. Nothing else of it
+    /// changes, but that draw states of other steps may be dropped.
     ///
     /// # Errors
     /// A pass whose draws are too many for the memory, a lost GPU.
-    pub fn fill_draws(
-        &mut self,
-        scene: &Scene,
-        request: &CaptureRequest,
-        capture: &mut Capture,
-        step: usize,
-    ) -> Result<(), SessionError> {
+    pub fn fill_draws(&mut self, plan: &FramePlan, capture: &mut Capture, step: usize) -> Result<(), SessionError> {
         if step >= capture.steps.len() || capture.holds_draws(step) {
             return Ok(());
         }
-        let plan = self.plan(scene, request)?;
         let output = self.run_split(&plan.split_pass_at_draws(step), false)?;
-        let joined = join(&plan, |pass| pass == step, output);
+        let joined = join(plan, |pass| pass == step, output);
         let known = known_images(capture, step);
         for (draw, by_draw) in
             capture.steps[step].draws.iter_mut().zip(joined.steps.into_iter().skip(step).flat_map(|step| step.draws))
@@ -244,6 +236,7 @@ fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: Output) -> O
 mod tests {
     use super::*;
     use crate::scene::OpenSpec;
+    use crate::session::CaptureRequest;
     use crate::technique::{Choice, Technique};
 
     #[test]

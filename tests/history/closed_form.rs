@@ -1,9 +1,11 @@
 //! Scenes whose every event is known.
 
-use super::{SIZE, choice, frame, nested_boxes};
-use crate::common::{cuboid, from_above, session};
-use stencilscope::history::Rung;
+use super::{SIZE, builtin, choice, frame, nested_boxes};
+use crate::common::{cuboid, from_above, session, square};
+use glam::DVec3;
+use stencilscope::history::{Count, Rung};
 use stencilscope::plan::{Coverage, Part};
+use stencilscope::scene::{Light, Scene};
 use stencilscope::session::{CaptureRequest, SessionError};
 use stencilscope::technique::Technique;
 use stencilscope::testing::{Label, Rendered};
@@ -45,7 +47,8 @@ fn three_nested_boxes_by_z_fail() {
     ]);
     pixel.stencil_after("ambient", 0).stencil_after("volumes", 6).stencil(6);
     let why = pixel.history().why(0).expect("volumes").to_string();
-    let expected = "6 volume faces behind it fail the depth test: 6 back, 0 front; count 6, so the light pass skips it";
+    let expected =
+        "6 volume faces behind the surface fail the depth test: 6 back, 0 front; count 6, so the light pass skips it";
     assert_eq!(why, expected);
     frame.at(OUTSIDE).label(0, Label::Lit).agrees().events(&[
         "ambient: clear depth",
@@ -84,7 +87,8 @@ fn three_nested_boxes_in_a_float() {
     assert!(events.contains(&"volumes: clear count".to_owned()), "{events:?}");
     assert!(events.contains(&"volumes: dark cap of inner, back, passes, count 5 to 6".to_owned()), "{events:?}");
     let why = pixel.history().why(0).expect("volumes").to_string();
-    let expected = "6 volume faces behind it are counted: 6 back, 0 front; count 6, so";
+    let expected =
+        "6 volume faces behind the surface are counted: 6 back, 0 front; count 6, so the light pass skips it";
     assert!(why.starts_with(expected), "{why}");
 }
 
@@ -121,7 +125,7 @@ fn z_pass_plus_begins_with_the_count_of_the_near_plane() {
     assert_eq!((ladder.start, ladder.count), (3, 6));
     let why = pixel.history().why(0).expect("volumes").to_string();
     assert!(
-        why.starts_with("the near plane is in 3 volumes; 3 volume faces in front of it pass the depth test"),
+        why.starts_with("the near plane is in 3 volumes; 3 volume faces in front of the surface pass the depth test"),
         "{why}"
     );
     let clipped = pixel.history().triangles().filter(|(_, one)| one.fate.note().is_some());
@@ -142,7 +146,7 @@ fn a_flattened_box_raises_its_receivers_mark_once() {
     let raised: Vec<i32> = shadows.map(|(event, _)| event.counted()).collect();
     assert_eq!(raised, [1, 0], "the second triangle fails the stencil test");
     let why = pixel.history().why(0).expect("a shadow").to_string();
-    assert_eq!(why, "the flattened shadow of outer falls on its receiver here, so the light pass skips it");
+    assert_eq!(why, "the flattened shadow of outer falls on the surface here, so the light pass skips it");
 }
 
 #[test]
@@ -172,7 +176,7 @@ fn a_triangle_that_is_culled_or_clipped_says_why() {
         ("standard-finite", ["floor, front, clipped", "box, back, passes, stores depth", "box, front, clipped"]),
         (
             "standard-finite-clamp",
-            ["floor, front, fails depth", "box, back, passes, stores depth", "box, front, dropped"],
+            ["floor, front, fails depth", "box, back, passes, stores depth", "box, front, discarded"],
         ),
     ] {
         let (capture, plan) = frame(&mut session, &scene, Technique::ZFail, &[("depth", depth)], SIZE);
@@ -197,6 +201,55 @@ fn geometry_finds_the_triangles_over_a_pixel() {
     assert_eq!(names(OUTSIDE), ["floor"]);
     // The floor's diagonal runs through these pixels' centres.
     assert!(over([50, 50]).iter().all(|(_, coverage)| *coverage == Coverage::Doubtful));
+}
+
+/// What decides is told, and not what usually would.
+#[test]
+fn why_names_the_test_that_failed_and_what_nobody_asked() {
+    let mut session = session();
+    let mut why = |scene: &Scene, technique, settings: &[(&str, &str)], pixel| {
+        let (capture, plan) = frame(&mut session, scene, technique, settings, SIZE);
+        let history = session.history(&plan, &capture, pixel).expect("a history");
+        history.why(0).map(|why| why.to_string()).unwrap_or_default()
+    };
+    let scene = nested_boxes();
+    let outside = why(&scene, Technique::ZFail, &[], OUTSIDE);
+    assert_eq!(outside, "no volume face on the view ray counts; count 0, so the light pass adds the light");
+    assert_eq!(why(&scene, Technique::ShadowMap, &[], INSIDE), "");
+    let mut deaf = nested_boxes();
+    deaf.objects[0].receives = false;
+    let text = why(&deaf, Technique::ZFail, &[], INSIDE);
+    assert!(text.contains("count 6") && text.contains("the object receives no shadows"), "{text}");
+    let mut from_below = nested_boxes();
+    from_below.lights = vec![Light::point(DVec3::new(0.0, -4.0, 0.0))];
+    let text = why(&from_below, Technique::ZFail, &[], INSIDE);
+    assert!(text.ends_with("but it faces away from the light, and stays dark"), "{text}");
+    let mut to_the_sky = nested_boxes();
+    to_the_sky.objects[0].visible = false;
+    let text = why(&to_the_sky, Technique::ZFail, &[], OUTSIDE);
+    assert_eq!(text, "no surface is here that a shadow could fall on");
+    // What takes away comes last in one draw with what adds, and finds nothing to take from.
+    let text = why(&builtin("inside"), Technique::ZFail, &[("operations", "clamp")], [150, 120]);
+    assert!(!text.contains("limit") || text.contains("found the count at its limit"), "{text}");
+}
+
+/// 300 volumes: the ladder's count, and what eight bits hold of it.
+#[test]
+fn beyond_eight_bits_both_counts_are_told() {
+    let pane = |index: u32| {
+        let mut pane = square(&format!("pane {index}"), 1.0 + f64::from(index) * 1e-3, 1.0);
+        pane.visible = false;
+        pane
+    };
+    let mut scene = from_above((0..256).map(pane).collect());
+    scene.objects[0].casts = false;
+    let (capture, plan) = frame(&mut session(), &scene, Technique::ZFail, &[], SIZE);
+    let history = session().history(&plan, &capture, INSIDE).expect("a history");
+    assert!(history.agrees());
+    let text = history.why(0).expect("volumes").to_string();
+    assert!(text.ends_with("together 256, which eight bits hold as 0, so the light pass adds the light"), "{text}");
+    let ladder = history.ladder(0, &capture.depth).expect("volumes");
+    assert_eq!((ladder.count, ladder.tested), (256, Count::Stencil(0)));
 }
 
 #[test]

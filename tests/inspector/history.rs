@@ -102,12 +102,12 @@ fn every_event_is_a_row_with_its_signs() {
 #[test]
 fn hiding_leaves_what_did_something() {
     let mut harness = answered(&FACES);
-    click(&mut harness, "Hide failed");
+    click(&mut harness, "Hide idle");
     let left = rows(&harness);
     assert_eq!(left.len(), 4, "the floor and the faces behind it: {left:?}");
     assert!(left.iter().skip(1).all(|row| row.contains("depth ✗")), "{left:?}");
     harness.get_by_label("4 of 10 events");
-    click(&mut harness, "Hide failed");
+    click(&mut harness, "Hide idle");
     assert_eq!(rows(&harness).len(), 10);
 }
 
@@ -136,7 +136,7 @@ fn the_selected_event_is_gone_to_by_keys_alone() {
     harness.run_steps(2);
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().inspector.selected_event(), Some(5));
-    harness.get_by_role_and_label(Role::Button, "Go to step 2, volumes").focus();
+    harness.get_by_role_and_label(Role::Button, "Go to draw 1 of step 2, volumes").focus();
     harness.run_steps(2);
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().inspector.step(), 1);
@@ -191,7 +191,8 @@ fn passes_that_touched_the_pixel_are_marked() {
 fn the_sentence_on_top_counts_the_faces() {
     let mut harness = answered(&FACES);
     harness.get_by_label("Dark under light 1: its stencil count is 1.");
-    let why = "3 volume faces behind it fail the depth test: 2 back, 1 front; count 1, so the light pass skips it.";
+    let why =
+        "3 volume faces behind the surface fail the depth test: 2 back, 1 front; count 1, so the light pass skips it.";
     harness.get_by_label(why);
     let lit = [30, 4];
     harness.state_mut().inspector.pick(lit);
@@ -199,7 +200,7 @@ fn the_sentence_on_top_counts_the_faces() {
     harness.get_by_label("The volume faces behind the surface cancel out, so the light pass adds the light.");
     answer(&mut harness, history(lit, &[]));
     harness.get_by_label("Lit by light 1: its stencil count is 0.");
-    harness.get_by_label_contains("No volume face of light 1 is on this pixel's view ray, so nothing is counted");
+    harness.get_by_label("No volume face on the view ray counts; count 0, so the light pass adds the light.");
     harness.get_by_label("No volume face of light 1 is on this pixel's view ray.");
 }
 

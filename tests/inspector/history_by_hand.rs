@@ -1,7 +1,8 @@
 //! Histories of pixels of z-fail by hand: every event known.
 
+use stencilscope::capture::FrameTarget;
 use stencilscope::history::{CapturedAfter, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
-use stencilscope::plan::{Clip, Part};
+use stencilscope::plan::{Clip, Part, Visibility};
 use stencilscope::stencil_machine::Stored;
 use wgpu::StencilOperation;
 
@@ -31,7 +32,8 @@ impl Making {
         let pass_name = ["ambient", "volumes", "mask", "light"][pass].to_owned();
         let light = (pass > 0).then_some(0);
         let before = std::mem::replace(&mut self.held, after);
-        self.events.push(Event { pass, pass_name, light, is_from_camera: true, kind, before, after });
+        let target = if pass == 2 { FrameTarget::Labels } else { FrameTarget::Picture };
+        self.events.push(Event { pass, pass_name, light, is_from_camera: true, target, kind, before, after });
     }
 
     fn end_pass(&mut self, pass: usize) {
@@ -52,6 +54,7 @@ fn triangle(name: &str, part: Part, primitive: u32, is_front: bool, depth: f32, 
         // Triangles of a dark cap face into the volume.
         is_front: is_front != (part == Part::DarkCap),
         faces_inwards: part == Part::DarkCap,
+        lights: (part == Part::Surface).then_some(Visibility::Everywhere),
         depth,
         fate,
     }
@@ -106,6 +109,7 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
         captured_after: making.after,
         counted: faces.iter().filter(|(_, _, distance)| *distance >= NEAR).count() as u32 + 3,
         labels: Vec::new(),
+        counts_volumes: vec![true],
         without_fragment: 2 + faces.iter().filter(|(_, _, distance)| *distance < NEAR).count() as u32,
         contradictions: Vec::new(),
         events: making.events,

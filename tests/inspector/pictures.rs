@@ -113,7 +113,8 @@ fn pictures_of_draws_can_be_drawn() {
     let request = common::request(Technique::ZFail, [1280, 720]);
     let plain = Arc::new(session.capture(&scene, &request).expect("a capture"));
     let mut filled = Capture::clone(&plain);
-    session.fill_draws(&scene, &request, &mut filled, 1).expect("draws");
+    let plan = session.plan(&scene, &request).expect("a plan");
+    session.fill_draws(&plan, &mut filled, 1).expect("draws");
     let filled = Arc::new(filled);
     let views: [(&str, &Arc<Capture>, View); 4] = [
         ("held", &filled, |_| ()),
