@@ -279,7 +279,7 @@ impl PixelHistory {
     /// where there is none, when the light's last pass began.
     fn tested_count(&self, light: usize) -> Held {
         let of_light = || self.events.iter().filter(|event| event.light == Some(light));
-        let last = of_light().filter(|event| event.is_of_volume()).last();
+        let last = of_light().rfind(|event| event.is_of_volume());
         let tested = || of_light().find(|event| event.triangle().is_some_and(|one| one.lights.is_some()));
         last.map(|event| event.after).or_else(|| tested().map(|event| event.before)).unwrap_or(self.computed)
     }
