@@ -45,6 +45,12 @@ pub enum CliError {
     /// The window failed.
     #[error("the window can't be opened: {0}; use `stencilscope capture`")]
     Window(String),
+    /// Techniques did in a stress case what nobody expected.
+    #[error("{count} of the results are unexpected: see the lines marked `!!`")]
+    Unexpected {
+        /// How many cases times techniques.
+        count: usize,
+    },
     /// Nobody reads standard output any more.
     #[error("standard output was closed")]
     ClosedOutput,
@@ -57,6 +63,7 @@ impl CliError {
         match self {
             CliError::Session(error) if error.is_missing_adapter() => 3,
             CliError::ClosedOutput => 0,
+            CliError::Unexpected { .. } => 1,
             _ => 2,
         }
     }
