@@ -97,7 +97,7 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
         (&["--set", "fases=two-sided"], &["did you mean `faces`?"]),
         (&["--set", "faces=three"], &["three"]),
         (&["--set", "faces"], &["KEY=VALUE"]),
-        (&["--every", "draw"], &["not there yet", "--every pass"]),
+        (&["--every", "frame"], &["`pass` or `draw`"]),
         (&["--plot", "a.svg"], &["--plot"]),
         (&["--bogus"], &["--bogus"]),
     ];
@@ -221,6 +221,27 @@ fn captures_are_written_and_replaced_only_on_request() {
     assert_eq!(manifest["camera"]["eye"], serde_json::json!([-3.0, 2.0, 4.0]));
     assert_eq!(manifest["lights"][0]["towards"], serde_json::json!([-1.0, 2.0, 1.0]));
     assert!(!names(folder.path()).iter().any(|name| name.starts_with('.')));
+}
+
+#[test]
+fn every_draw_is_captured_on_request() {
+    let folder = folder();
+    let capture = ["capture", "triangle.obj", "--size", "48x32", "-o", "out", "--every", "draw"];
+    let output = run(folder.path(), &capture);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let manifest = fs::read_to_string(folder.path().join("out/manifest.json")).expect("a manifest");
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
+    for pass in manifest["passes"].as_array().expect("passes") {
+        let captured = pass["draws_captured"].as_array().expect("draws").len();
+        assert_eq!(captured as u64, pass["draws"].as_u64().expect("a number"), "{}", pass["name"]);
+        for draw in pass["draws_captured"].as_array().expect("draws") {
+            assert!(draw["name"].is_string() && draw["part"].is_string());
+            for key in ["color", "depth", "stencil"] {
+                let file = draw[key].as_str().expect("a file");
+                assert!(folder.path().join("out").join(file).is_file(), "{file}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod accuracy;
 mod capture_folder;
 mod commands;
 mod common;
+mod draws;
 mod history;
 #[cfg(feature = "inspector")]
 mod inspector;

@@ -23,7 +23,7 @@ const SIZE: [u32; 2] = [200, 200];
 fn request(technique: Technique, settings: &[(&str, &str)]) -> CaptureRequest {
     let mut choice = Choice::new(technique);
     settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
-    CaptureRequest { choice, size: SIZE, timing_runs: 0, external_capture: false }
+    CaptureRequest::new(choice, SIZE)
 }
 
 fn capture(session: &mut Session, scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> Capture {

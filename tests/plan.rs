@@ -120,3 +120,20 @@ fn every_shader_is_valid() {
         validator.validate(&module).unwrap_or_else(|error| panic!("{name}: {error:?}"));
     }
 }
+
+#[test]
+fn of_one_pass_only_that_one_is_split_and_nothing_runs_after_it() {
+    let plan = plan_of(&scene(), Technique::ZFail).expect("a plan");
+    for (index, pass) in plan.passes.iter().enumerate() {
+        let split = plan.split_pass_at_draws(index);
+        assert_eq!(split.passes[..index], plan.passes[..index]);
+        let parts = &split.passes[index..];
+        assert_eq!(parts.len(), pass.draws.len().max(1));
+        assert!(parts.iter().flat_map(|part| &part.draws).eq(&pass.draws));
+        assert_eq!(lint::check(&split), []);
+        let clears = |pass: &stencilscope::plan::Pass| pass.depth_stencil.as_ref().and_then(|to| to.clear_depth);
+        assert_eq!(clears(&parts[0]), clears(pass));
+        assert!(parts[1..].iter().all(|part| clears(part).is_none()), "what is there is kept");
+    }
+    assert_eq!(plan.split_pass_at_draws(99), plan);
+}

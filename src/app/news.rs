@@ -46,6 +46,22 @@ pub enum News {
         /// With its time.
         capture: Arc<Capture>,
     },
+    /// The same frame, with the states after the draws of one more step.
+    Draws {
+        /// The frame that is meant.
+        frame: u64,
+        /// With its draws.
+        capture: Arc<Capture>,
+    },
+    /// The states after the draws of a step can't be had.
+    NoDraws {
+        /// The frame that is meant.
+        frame: u64,
+        /// Index of the step.
+        step: usize,
+        /// Why, with the mend.
+        reason: String,
+    },
     /// The same frame was held against the truth.
     Judged {
         /// The frame that is meant.

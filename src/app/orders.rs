@@ -16,6 +16,13 @@ pub enum Order {
         /// The change.
         request: Box<RunRequest>,
     },
+    /// The states after the draws of a step of the frame that was captured last.
+    Draws {
+        /// The frame that is meant.
+        frame: u64,
+        /// Index of the step.
+        step: usize,
+    },
     /// The truth of the frame that was captured last.
     Judge {
         /// The frame that is meant.
@@ -46,6 +53,7 @@ pub struct Measure {
 #[derive(Debug, Default)]
 pub struct Waiting {
     picture: Option<Order>,
+    draws: Option<Order>,
     judge: Option<Order>,
     measure: Option<Order>,
 }
@@ -54,6 +62,7 @@ impl Waiting {
     /// One more.
     pub fn add(&mut self, order: Order) {
         match order {
+            Order::Draws { .. } => self.draws = Some(order),
             Order::Judge { .. } => self.judge = Some(order),
             Order::Measure(_) => self.measure = Some(order),
             Order::Open(_) | Order::Run { .. } => {
@@ -67,7 +76,8 @@ impl Waiting {
 
     /// The next to obey: what is seen first, what is known of it later.
     pub fn next(&mut self) -> Option<Order> {
-        self.picture.take().or_else(|| self.judge.take()).or_else(|| self.measure.take())
+        let seen = self.picture.take().or_else(|| self.draws.take());
+        seen.or_else(|| self.judge.take()).or_else(|| self.measure.take())
     }
 }
 
@@ -123,6 +133,15 @@ mod tests {
     fn opening_is_not_lost_to_a_run_of_the_scene_before() {
         let order = waiting([run(1), Order::Open("table".to_owned()), run(2)]).next();
         assert!(matches!(order, Some(Order::Open(name)) if name == "table"));
+    }
+
+    #[test]
+    fn draws_are_seen_before_a_truth_is_known_and_only_the_last_ones_count() {
+        let draws = |step| Order::Draws { frame: 1, step };
+        let mut waiting = waiting([judge(1), draws(1), draws(2)]);
+        assert!(matches!(waiting.next(), Some(Order::Draws { step: 2, .. })));
+        assert!(matches!(waiting.next(), Some(Order::Judge { .. })));
+        assert!(waiting.next().is_none());
     }
 
     #[test]

@@ -105,7 +105,12 @@ impl App {
                 self.jobs.stop_judging();
                 self.show(capture);
             }
-            News::Timed { frame, capture } if frame == self.frame => self.inspector.update_capture(capture),
+            News::Timed { frame, capture } | News::Draws { frame, capture } if frame == self.frame => {
+                self.inspector.update_capture(capture);
+            }
+            News::NoDraws { frame, step, reason } if frame == self.frame => {
+                self.inspector.set_draws_failed(step, reason);
+            }
             News::Judged { frame, capture } if frame == self.frame => {
                 self.jobs.stop_judging();
                 self.inspector.update_capture(capture);
@@ -116,6 +121,7 @@ impl App {
             }
             // Of a scene or frame that is shown no more.
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
+            News::Draws { .. } | News::NoDraws { .. } => {}
             News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
             News::Failed(reason) => self.inspector.push_error(reason),
         }
@@ -149,6 +155,10 @@ impl App {
                 Order::Run { generation: self.generation, request }
             }
             Action::Browse => return self.browse(),
+            Action::CaptureDraws { step } => {
+                self.jobs.make_way(&mut self.inspector);
+                Order::Draws { frame: self.frame, step }
+            }
             Action::Judge => Order::Judge { frame: self.frame, progress: self.jobs.judge() },
             Action::CancelJudge => {
                 self.jobs.stop_judging();

@@ -14,7 +14,7 @@ use crate::inspector::{ObjectMesh, RunRequest};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::scene::{OpenSpec, Scene};
-use crate::session::{CaptureRequest, Measurement, Session, SessionError, median_ms, report_rows};
+use crate::session::{CaptureRequest, Every, Measurement, Session, SessionError, median_ms, report_rows};
 use crate::technique::Choice;
 use std::path::Path;
 use std::sync::Arc;
@@ -81,6 +81,7 @@ struct Bench {
     /// How the next scene is rendered, unless it says otherwise.
     choice: Choice,
     size: [u32; 2],
+    every: Every,
     /// How many frames were captured.
     frames: u64,
     /// The frame that the window shows; `None` for a folder's.
@@ -99,8 +100,8 @@ struct Done {
 
 impl Bench {
     fn new(adapter: Option<String>, capture: &CaptureRequest, tell: Box<dyn Fn(News) + Send>) -> Bench {
-        let (choice, size) = (capture.choice.clone(), capture.size);
-        Bench { adapter, session: None, scene: None, generation: 0, choice, size, frames: 0, last: None, tell }
+        let CaptureRequest { choice, size, every, .. } = capture.clone();
+        Bench { adapter, session: None, scene: None, generation: 0, choice, size, every, frames: 0, last: None, tell }
     }
 
     /// The first thing to show.
@@ -140,6 +141,7 @@ impl Bench {
         let done = match order {
             Order::Open(name) => self.open(&name),
             Order::Run { generation, request } if generation == self.generation => self.run(&request),
+            Order::Draws { frame, step } => return self.fill_draws(frame, step),
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
             Order::Measure(what) if what.generation == self.generation => return self.measure(what),
             // Of a scene that is open no more.
@@ -204,12 +206,7 @@ impl Bench {
     }
 
     fn capture(&mut self, scene: Scene, request: &RunRequest) -> Result<(), SessionError> {
-        let request = CaptureRequest {
-            choice: request.choice.clone(),
-            size: request.size,
-            timing_runs: 0,
-            external_capture: false,
-        };
+        let request = CaptureRequest { every: self.every, ..CaptureRequest::new(request.choice.clone(), request.size) };
         let session = match &mut self.session {
             Some(session) => session,
             none => {
@@ -246,6 +243,29 @@ impl Bench {
             done.capture = Arc::new(capture);
             (self.tell)(News::Timed { frame: done.frame, capture: Arc::clone(&done.capture) });
         }
+    }
+
+    /// Adds the states after the draws of a step to the frame that was captured last, if it is the
+    /// one that is meant.
+    fn fill_draws(&mut self, frame: u64, step: usize) {
+        let (Some(session), Some(done)) = (&mut self.session, &mut self.last) else {
+            let reason = "the open scene was not rendered: mend what the error says".to_owned();
+            return (self.tell)(News::NoDraws { frame, step, reason });
+        };
+        if done.frame != frame {
+            return;
+        }
+        let name = done.capture.steps.get(step).map_or("the pass", |step| step.name.as_str());
+        (self.tell)(News::Busy(format!("capturing the draws of {name}")));
+        let mut capture = Capture::clone(&done.capture);
+        (self.tell)(match session.fill_draws(&done.scene, &done.request, &mut capture, step) {
+            Ok(()) => {
+                done.capture = Arc::new(capture);
+                News::Draws { frame, capture: Arc::clone(&done.capture) }
+            }
+            Err(error) => News::NoDraws { frame, step, reason: error.to_string() },
+        });
+        (self.tell)(News::Idle);
     }
 
     /// Adds the truth to the frame that was captured last, if it is the one that is meant.
@@ -350,6 +370,19 @@ mod tests {
         assert!(judged.lights.iter().all(|light| light.truth.is_some()));
         let Some(News::Timed { frame: 1, capture }) = heard.last() else { panic!("a time") };
         assert!(capture.timing.frame_ms.is_some() && capture.error() == judged.error());
+    }
+
+    #[test]
+    fn the_draws_of_a_pass_are_filled_in_and_stale_wishes_for_them_are_dropped() {
+        let (worker, frame, news) = started();
+        assert!(worker.order(Order::Draws { frame: frame + 1, step: 0 }));
+        // The order before is obeyed or replaced first: of both only one is answered.
+        assert!(worker.order(Order::Draws { frame, step: 1 }));
+        let filled = wait(&news, |news| if let News::Draws { capture, .. } = news { Some(capture) } else { None });
+        assert!(filled.holds_draws(1) && !filled.holds_draws(0));
+        judge(&worker, frame, &Progress::default());
+        let judged = wait(&news, |news| if let News::Judged { capture, .. } = news { Some(capture) } else { None });
+        assert!(judged.holds_draws(1), "what was filled in stays");
     }
 
     #[test]

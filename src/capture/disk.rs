@@ -3,19 +3,20 @@
 //! The folder is written beside its place and renamed into it, so it is there whole or not at
 //! all; a folder that it replaces is moved aside until then.
 
-use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, RegionEntry};
-use super::{
-    Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, FrameSnapshot, FrameTarget, Image, PixelFormat,
-    Snapshot, Step, files,
-};
+use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, StateFiles};
+use super::{Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files};
 use crate::accuracy::Finding;
-use crate::math::depth::DepthMapping;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
+
+mod draws;
+mod reader;
+
+pub use reader::read;
 
 const MANIFEST: &str = "manifest.json";
 const PLAN: &str = "plan.txt";
@@ -139,7 +140,7 @@ fn write_files(capture: &Capture, folder: &Path) -> Result<f64, CaptureError> {
     let start = Instant::now();
     fs::create_dir_all(folder).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
     let mut manifest = Manifest::new(capture);
-    let mut written = BTreeMap::new();
+    let mut written = Written::default();
     for (index, step) in capture.steps.iter().enumerate() {
         let entry = write_step(folder, index, step, capture, &mut written)?;
         manifest.passes.push(entry);
@@ -161,56 +162,78 @@ fn write_step(
     index: usize,
     step: &Step,
     capture: &Capture,
-    written: &mut BTreeMap<&'static str, (Arc<Image>, String)>,
+    written: &mut Written,
 ) -> Result<PassEntry, CaptureError> {
-    let mut entry = PassEntry {
+    let stem = format!("{index:03}-{}", slug(&step.name));
+    let files = match &step.snapshot {
+        Snapshot::Map { light, face } => map_files(capture, *light, *face),
+        Snapshot::Frame(frame) => StateFiles {
+            labels: step.light.filter(|_| frame.target == FrameTarget::Labels).map(shadow_file),
+            count: step.light.filter(|_| frame.target == FrameTarget::Count).map(count_file),
+            ..frame_files(folder, &stem, frame, written)?
+        },
+    };
+    Ok(PassEntry {
         index,
         name: step.name.clone(),
         purpose: step.purpose.clone(),
         light: step.light,
         caster: step.caster().map(ToOwned::to_owned),
+        files,
         draws: step.draws.len(),
         triangles: step.triangles(),
         gpu_ms: step.gpu_ms,
         draw_list: step.draws.iter().map(Into::into).collect(),
-        ..PassEntry::default()
-    };
-    let frame = match &step.snapshot {
-        Snapshot::Map { light, face } => {
-            let map = capture.lights.get(*light).and_then(|light| light.map.as_ref());
-            if map.is_some_and(CapturedMap::holds_colors) {
-                (entry.textures, entry.texture_layer) = (Some(textures_file(*light)), Some(*face));
-            } else {
-                (entry.map, entry.map_face) = (Some(map_file(*light)), Some(*face));
-            }
-            return Ok(entry);
-        }
-        Snapshot::Frame(frame) => frame,
-    };
+        // After the pass's own files, which the last draw names again.
+        draws_captured: draws::write(folder, &stem, step, capture, written)?,
+    })
+}
+
+/// The light's map holds what a pass left in it.
+fn map_files(capture: &Capture, light: usize, face: usize) -> StateFiles {
+    let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
+    if map.is_some_and(CapturedMap::holds_colors) {
+        StateFiles { textures: Some(textures_file(light)), texture_layer: Some(face), ..StateFiles::default() }
+    } else {
+        StateFiles { map: Some(map_file(light)), map_face: Some(face), ..StateFiles::default() }
+    }
+}
+
+/// Writes the picture's aspects, as far as no earlier file has them.
+fn frame_files(
+    folder: &Path,
+    stem: &str,
+    frame: &FrameSnapshot,
+    written: &mut Written,
+) -> Result<StateFiles, CaptureError> {
     let mut unchanged = Vec::new();
     let mut put = |name: &'static str, ending: &str, aspect: &Aspect| {
         if aspect.unchanged {
             unchanged.push(name.to_owned());
         }
-        if let Some((image, file)) = written.get(name)
-            && Arc::ptr_eq(image, &aspect.image)
-        {
-            return Ok(Some(file.clone()));
-        }
-        let file = format!("{index:03}-{}.{name}.{ending}", slug(&step.name));
-        files::write_image(&folder.join(&file), &aspect.image)?;
-        written.insert(name, (aspect.image.clone(), file.clone()));
-        Ok(Some(file))
+        written.put(folder, format!("{stem}.{name}.{ending}"), &aspect.image).map(Some)
     };
-    entry.color = put("color", "png", &frame.color)?;
-    entry.depth = put("depth", "npy", &frame.depth)?;
-    if let Some(stencil) = &frame.stencil {
-        entry.stencil = put("stencil", "npy", stencil)?;
+    let color = put("color", "png", &frame.color)?;
+    let depth = put("depth", "npy", &frame.depth)?;
+    let stencil = frame.stencil.as_ref().map_or(Ok(None), |stencil| put("stencil", "npy", stencil))?;
+    Ok(StateFiles { color, depth, stencil, unchanged: Some(unchanged), ..StateFiles::default() })
+}
+
+/// The pictures that have a file. The capture holds all of them, so each is known by its place in
+/// memory.
+#[derive(Default)]
+struct Written(BTreeMap<*const Image, String>);
+
+impl Written {
+    /// Writes a picture to `file` unless it has one; the file that it has.
+    fn put(&mut self, folder: &Path, file: String, image: &Arc<Image>) -> Result<String, CaptureError> {
+        if let Some(earlier) = self.0.get(&Arc::as_ptr(image)) {
+            return Ok(earlier.clone());
+        }
+        files::write_image(&folder.join(&file), image)?;
+        self.0.insert(Arc::as_ptr(image), file.clone());
+        Ok(file)
     }
-    entry.unchanged = Some(unchanged);
-    entry.labels = step.light.filter(|_| frame.target == FrameTarget::Labels).map(shadow_file);
-    entry.count = step.light.filter(|_| frame.target == FrameTarget::Count).map(count_file);
-    Ok(entry)
 }
 
 fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<LightEntry, CaptureError> {
@@ -265,204 +288,6 @@ fn textures_file(light: usize) -> String {
 /// Letters, digits, `+` and `-` of a name; the rest becomes `-`.
 fn slug(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '+' || c == '-' { c } else { '-' }).collect()
-}
-
-/// Reads a capture folder.
-///
-/// # Errors
-/// A file that is missing, broken or of another size than the manifest says.
-pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
-    let file = folder.join(MANIFEST);
-    let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
-    let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
-    let manifest: Manifest = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    if manifest.schema != manifest::SCHEMA {
-        return Err(wrong(format!("its schema is {}, not {}", manifest.schema, manifest::SCHEMA)));
-    }
-    if !manifest.size.iter().all(|pixels| (1..=files::LARGEST).contains(pixels)) {
-        return Err(wrong(format!("its picture is {}x{}", manifest.size[0], manifest.size[1])));
-    }
-    let mut reader = Reader { folder, size: manifest.size, images: BTreeMap::new() };
-    let lights = manifest.lights.iter().map(|light| reader.light(light)).collect::<Result<_, _>>()?;
-    let steps = manifest.passes.iter().map(|pass| reader.step(pass)).collect::<Result<_, _>>()?;
-    let capture = Capture {
-        scene: manifest.scene,
-        technique: manifest.technique,
-        settings: manifest.settings,
-        size: manifest.size,
-        adapter: manifest.adapter,
-        camera: (&manifest.camera).into(),
-        depth: manifest.depth.unwrap_or_else(|| DepthMapping::ReversedInfinite.curve(manifest.camera.near, 0.0, 0.0)),
-        steps,
-        lights,
-        left_out: manifest.left_out,
-        timing: manifest.timing,
-        plan_text: read_plan(folder)?,
-    };
-    match inconsistency(&capture) {
-        Some(reason) => Err(wrong(reason.to_owned())),
-        None => Ok(capture),
-    }
-}
-
-/// The plan's text, where there is one.
-fn read_plan(folder: &Path) -> Result<String, CaptureError> {
-    let file = folder.join(PLAN);
-    match fs::read_to_string(&file) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
-        Err(error) => Err(CaptureError::Read { file, reason: error.to_string() }),
-        Ok(text) => Ok(text),
-    }
-}
-
-/// What a manifest may say that no frame leaves behind.
-fn inconsistency(capture: &Capture) -> Option<&'static str> {
-    let light = |index: usize| capture.lights.get(index);
-    let is_consistent = |step: &Step| match &step.snapshot {
-        Snapshot::Map { light: index, face } => {
-            light(*index).and_then(|light| light.map.as_ref()).is_some_and(|map| *face < map.faces.len())
-        }
-        Snapshot::Frame(frame) => {
-            let own = step.light.and_then(light);
-            let is_there = match frame.target {
-                FrameTarget::Picture => true,
-                FrameTarget::Labels => own.is_some_and(|light| light.shadow.is_some()),
-                FrameTarget::Count => own.is_some_and(|light| light.count.is_some()),
-            };
-            step.light.is_none_or(|index| light(index).is_some()) && is_there
-        }
-    };
-    if capture.steps.is_empty() {
-        Some("it has no passes")
-    } else if !capture.steps.iter().all(is_consistent) {
-        Some("a pass names a light, map or face that is not there")
-    } else if !(capture.depth.offset.is_finite() && capture.depth.scale.is_finite()) {
-        Some("its depth can't be read back")
-    } else if capture.camera.check().is_err() {
-        Some("its camera can't see")
-    } else {
-        None
-    }
-}
-
-/// Reads each file once: what the manifest names twice is shared again.
-struct Reader<'a> {
-    folder: &'a Path,
-    size: [u32; 2],
-    images: BTreeMap<String, Arc<Image>>,
-}
-
-impl Reader<'_> {
-    fn wrong(&self, file: &str, reason: &str) -> CaptureError {
-        CaptureError::Read { file: self.folder.join(file), reason: reason.to_owned() }
-    }
-
-    fn image(&mut self, file: &str, format: PixelFormat) -> Result<Arc<Image>, CaptureError> {
-        if let Some(image) = self.images.get(file) {
-            let is_same_kind = image.format() == format;
-            return is_same_kind
-                .then(|| image.clone())
-                .ok_or_else(|| self.wrong(file, "it is named as two kinds of picture"));
-        }
-        let image = files::read_image(&self.path(file)?, format)?;
-        if image.size() != self.size {
-            return Err(self.wrong(file, "its size is not the manifest's"));
-        }
-        let image = Arc::new(image);
-        self.images.insert(file.to_owned(), image.clone());
-        Ok(image)
-    }
-
-    /// Only plain names: a manifest can't point out of its folder.
-    fn path(&self, file: &str) -> Result<PathBuf, CaptureError> {
-        if file.contains(['/', '\\']) || file.starts_with('.') {
-            return Err(self.wrong(MANIFEST, "it names a file outside its folder"));
-        }
-        Ok(self.folder.join(file))
-    }
-
-    fn step(&mut self, pass: &PassEntry) -> Result<Step, CaptureError> {
-        let draws = pass.draw_list.iter().map(|draw| {
-            draw.to_summary().ok_or_else(|| self.wrong(MANIFEST, "it names a part of a draw that is not known"))
-        });
-        let draws = draws.collect::<Result<_, _>>()?;
-        let snapshot = match (pass.map.as_ref().or(pass.textures.as_ref()), pass.light) {
-            (Some(_), Some(light)) => Snapshot::Map { light, face: pass.map_face.or(pass.texture_layer).unwrap_or(0) },
-            _ => Snapshot::Frame(self.frame(pass)?),
-        };
-        Ok(Step {
-            name: pass.name.clone(),
-            purpose: pass.purpose.clone(),
-            light: pass.light,
-            draws,
-            gpu_ms: pass.gpu_ms,
-            snapshot,
-        })
-    }
-
-    fn frame(&mut self, pass: &PassEntry) -> Result<FrameSnapshot, CaptureError> {
-        let unchanged = pass.unchanged.clone().unwrap_or_default();
-        let mut aspect = |name: &str, file: &Option<String>, format| {
-            let file = file.as_ref().ok_or_else(|| self.wrong(MANIFEST, &format!("a pass lacks its {name}")))?;
-            let unchanged = unchanged.iter().any(|aspect| aspect == name);
-            Ok(Aspect { image: self.image(file, format)?, unchanged })
-        };
-        let color = aspect("color", &pass.color, PixelFormat::Rgba8Srgb)?;
-        let depth = aspect("depth", &pass.depth, PixelFormat::Depth32F)?;
-        let has_stencil = pass.stencil.is_some();
-        let stencil = has_stencil.then(|| aspect("stencil", &pass.stencil, PixelFormat::U8)).transpose()?;
-        let target = match (&pass.labels, &pass.count) {
-            (Some(_), _) => FrameTarget::Labels,
-            (None, Some(_)) => FrameTarget::Count,
-            (None, None) => FrameTarget::Picture,
-        };
-        Ok(FrameSnapshot { color, depth, stencil, target })
-    }
-
-    fn truth(&mut self, entry: &LightEntry) -> Result<Option<CapturedTruth>, CaptureError> {
-        let (Some(labels), Some(findings), Some(error)) = (&entry.truth, &entry.error_picture, entry.error) else {
-            return Ok(None);
-        };
-        let is_known = |region: &RegionEntry| {
-            let [left, top, right, bottom] = region.bounds;
-            let is_inside = left <= right && right < self.size[0] && top <= bottom && bottom < self.size[1];
-            region.to_region().filter(|_| is_inside && region.at[0] <= right && region.at[1] <= bottom)
-        };
-        let worst = match &entry.worst_region {
-            None => None,
-            Some(region) => {
-                let wrong = || self.wrong(MANIFEST, "its worst region is outside the picture or of no known kind");
-                Some(is_known(region).ok_or_else(wrong)?)
-            }
-        };
-        Ok(Some(CapturedTruth {
-            labels: self.image(labels, PixelFormat::U8)?,
-            findings: self.image(findings, PixelFormat::U8)?,
-            error,
-            worst,
-        }))
-    }
-
-    fn light(&mut self, entry: &LightEntry) -> Result<CapturedLight, CaptureError> {
-        let position = entry.homogeneous().ok_or_else(|| self.wrong(MANIFEST, "a light has no place"))?;
-        let shadow = entry.shadow.as_ref().map(|file| self.image(file, PixelFormat::U8)).transpose()?;
-        let count = entry.count.as_ref().map(|file| self.image(file, PixelFormat::Count32F)).transpose()?;
-        let map = match (entry.map.as_ref().or(entry.textures.as_ref()), &entry.matrices) {
-            (Some(file), Some(matrices)) => {
-                let faces = files::read_layers(&self.path(file)?)?;
-                if faces.len() != matrices.clip_from_light.len() {
-                    return Err(self.wrong(file, "it has another number of faces than the manifest"));
-                }
-                Some(CapturedMap {
-                    faces: faces.into_iter().map(Arc::new).collect(),
-                    light_from_world: manifest::from_rows(&matrices.light_from_world),
-                    clip_from_light: matrices.clip_from_light.iter().map(manifest::from_rows).collect(),
-                })
-            }
-            _ => None,
-        };
-        Ok(CapturedLight { position, shadow, count, map, truth: self.truth(entry)? })
-    }
 }
 
 #[cfg(test)]

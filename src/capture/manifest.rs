@@ -51,13 +51,37 @@ pub(super) struct PassEntry {
     pub purpose: String,
     pub light: Option<usize>,
     pub caster: Option<String>,
+    #[serde(flatten)]
+    pub files: StateFiles,
+    pub draws: usize,
+    pub triangles: u64,
+    pub gpu_ms: Option<f64>,
+    pub draw_list: Vec<DrawEntry>,
+    /// One a draw, in order, where the state after each was captured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub draws_captured: Option<Vec<DrawStateEntry>>,
+}
+
+/// A draw with the files of what it left.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct DrawStateEntry {
+    pub name: String,
+    pub caster: Option<String>,
+    pub part: String,
+    #[serde(flatten)]
+    pub files: StateFiles,
+}
+
+/// The files of what a pass or a draw left.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(super) struct StateFiles {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub color: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stencil: Option<String>,
-    /// Aspects that the pass did not change: they name an earlier file.
+    /// Aspects that were not changed: they name an earlier file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unchanged: Option<Vec<String>>,
     /// The labels that a mask pass writes.
@@ -68,7 +92,7 @@ pub(super) struct PassEntry {
     pub count: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<String>,
-    /// Which face of the map it drew.
+    /// Which face of the map it drew; without one, the file is that face alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map_face: Option<usize>,
     /// The same of textures that hold what light passes.
@@ -76,10 +100,6 @@ pub(super) struct PassEntry {
     pub textures: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub texture_layer: Option<usize>,
-    pub draws: usize,
-    pub triangles: u64,
-    pub gpu_ms: Option<f64>,
-    pub draw_list: Vec<DrawEntry>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -207,7 +227,8 @@ impl DrawEntry {
     /// `None` for a part that this version does not know.
     pub fn to_summary(&self) -> Option<DrawSummary> {
         let part = Part::from_name(&self.part)?;
-        Some(DrawSummary { name: self.name.clone(), caster: self.caster.clone(), part, triangles: self.triangles })
+        let (name, caster) = (self.name.clone(), self.caster.clone());
+        Some(DrawSummary { name, caster, part, triangles: self.triangles, after: None })
     }
 }
 

@@ -3,6 +3,7 @@
 //! A capture stands alone: it can be written to a folder and read back ([`disk`]) without a
 //! plan, a scene or a GPU, and everything that looks at frames (inspector, tests, later history
 //! and reports) reads it. An aspect that a pass did not change is shared with the step before.
+//! Where it was asked for, the draws of a pass have the state after each too ([`DrawState`]).
 
 pub mod disk;
 mod files;
@@ -88,6 +89,19 @@ pub struct DrawSummary {
     pub part: Part,
     /// Triangles submitted.
     pub triangles: u64,
+    /// The state after it; `None` where only the state after its pass was captured.
+    pub after: Option<DrawState>,
+}
+
+/// The state after one draw of a pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawState {
+    /// As after a step. What the draw did not change is shared with the draw before it, or with
+    /// the step before where it is the first.
+    pub snapshot: Snapshot,
+    /// What the pass draws into where that is not the picture: labels, a count, or the layer of a
+    /// map. The capture's light holds the last of them.
+    pub target: Option<Aspect>,
 }
 
 /// The state after a step: of the picture's three aspects, or of a shadow map.
@@ -224,6 +238,12 @@ impl Capture {
         })
     }
 
+    /// Is the state after every draw of a step known? So it is of a step without draws.
+    #[must_use]
+    pub fn holds_draws(&self, step: usize) -> bool {
+        self.steps.get(step).is_some_and(|step| step.draws.iter().all(|draw| draw.after.is_some()))
+    }
+
     /// Bytes of all distinct images: shared ones count once.
     #[must_use]
     pub fn bytes(&self) -> u64 {
@@ -246,17 +266,39 @@ impl Capture {
 
     fn for_each_image(&self, mut visit: impl FnMut(&Arc<Image>)) {
         for step in &self.steps {
-            if let Snapshot::Frame(frame) = &step.snapshot {
-                visit(&frame.color.image);
-                visit(&frame.depth.image);
-                frame.stencil.iter().for_each(|aspect| visit(&aspect.image));
-            }
+            step.snapshot.aspects().for_each(|aspect| visit(&aspect.image));
+            let states = step.draws.iter().filter_map(|draw| draw.after.as_ref());
+            states.flat_map(DrawState::aspects).for_each(|aspect| visit(&aspect.image));
         }
         for light in &self.lights {
             light.shadow.iter().chain(&light.count).for_each(&mut visit);
             light.map.iter().flat_map(|map| &map.faces).for_each(&mut visit);
             light.truth.iter().flat_map(|truth| [&truth.labels, &truth.findings]).for_each(&mut visit);
         }
+    }
+}
+
+impl Snapshot {
+    /// The picture's aspects, as far as there are any.
+    pub fn aspects(&self) -> impl Iterator<Item = &Aspect> {
+        let frame = match self {
+            Snapshot::Frame(frame) => Some(frame),
+            Snapshot::Map { .. } => None,
+        };
+        frame.into_iter().flat_map(|frame| [&frame.color, &frame.depth].into_iter().chain(&frame.stencil))
+    }
+}
+
+impl DrawState {
+    /// The picture's aspects, and the pass's own target.
+    pub fn aspects(&self) -> impl Iterator<Item = &Aspect> {
+        self.snapshot.aspects().chain(&self.target)
+    }
+
+    /// Did the draw leave everything as it was?
+    #[must_use]
+    pub fn changes_nothing(&self) -> bool {
+        self.aspects().all(|aspect| aspect.unchanged)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::CliError;
 use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, open};
-use crate::session::CaptureRequest;
+use crate::session::{CaptureRequest, Every};
 use crate::technique::{Choice, ChoiceError, Technique};
 use clap::Args;
 use glam::DVec3;
@@ -123,13 +123,13 @@ impl FrameOptions {
     /// What to capture of `scene`, timed.
     ///
     /// # Errors
-    /// A technique or setting that does not exist, an option that is not there yet.
+    /// A technique or setting that does not exist, or is not there yet.
     pub fn request(&self, scene: &Scene) -> Result<CaptureRequest, CliError> {
-        self.refuse_what_is_to_come()?;
         Ok(CaptureRequest {
             choice: self.choice(scene)?,
             size: self.size,
             timing_runs: TIMING_RUNS,
+            every: self.every()?,
             external_capture: self.external_capture,
         })
     }
@@ -146,16 +146,12 @@ impl FrameOptions {
         Choice::parse(&TechniqueRequest { name, settings }).map_err(|error: ChoiceError| error.into())
     }
 
-    fn refuse_what_is_to_come(&self) -> Result<(), CliError> {
-        let refuse = |what: &str, instead: &str| {
-            Err(CliError::NotThereYet { what: what.to_owned(), instead: instead.to_owned() })
-        };
+    fn every(&self) -> Result<Every, CliError> {
         match self.every.as_str() {
-            "pass" => {}
-            "draw" => return refuse("`--every draw`", "use `--every pass`"),
-            _ => return Err(CliError::Usage("`--every` takes `pass` or `draw`: choose one".to_owned())),
+            "pass" => Ok(Every::Pass),
+            "draw" => Ok(Every::Draw),
+            _ => Err(CliError::Usage("`--every` takes `pass` or `draw`: choose one".to_owned())),
         }
-        Ok(())
     }
 }
 

@@ -88,7 +88,7 @@ mod window {
             let capture = disk::read(folder)?;
             // How a scene would be rendered that is opened from the window later.
             let choice = Choice::new(Technique::ZFail);
-            let request = CaptureRequest { choice, size: capture.size, timing_runs: 0, external_capture: false };
+            let request = CaptureRequest::new(choice, capture.size);
             (ViewSource::Capture(Box::new(capture)), request)
         } else {
             let scene = arguments.scene_options.load(&arguments.scene)?;

@@ -26,6 +26,8 @@ pub struct Executor {
 pub struct Output {
     /// One a pass.
     pub steps: Vec<Step>,
+    /// One a pass: what it left in its own target, where that is not the picture.
+    pub targets: Vec<Option<Arc<Image>>>,
     /// One a light: its labels.
     pub labels: Vec<Option<Arc<Image>>>,
     /// One a light: its volumes' count.
@@ -242,32 +244,37 @@ fn collect(prepared: &Prepared, times: &[Option<f64>]) -> Result<Output, GpuErro
     let mut depth = zero(PixelFormat::Depth32F);
     let mut stencil = zero(PixelFormat::U8);
     let none = vec![None; plan.lights.len()];
-    let mut output = Output { steps: Vec::new(), labels: none.clone(), counts: none, maps: empty_maps(plan) };
+    let maps = empty_maps(plan);
+    let mut output = Output { steps: Vec::new(), targets: Vec::new(), labels: none.clone(), counts: none, maps };
     for (index, pass) in plan.passes.iter().enumerate() {
         let staged = &prepared.staged[index];
         let role = |target| plan.attachment(target).role;
         let color_role = pass.color.as_ref().map(|target| (role(target.attachment), target.layer));
         let depth_role = pass.depth_stencil.as_ref().map(|target| (role(target.attachment), target.layer));
-        let snapshot = match (color_role, depth_role) {
+        let (snapshot, target) = match (color_role, depth_role) {
             (Some((AttachmentRole::Map(light), face)), _) | (_, Some((AttachmentRole::Map(light), face))) => {
                 let face = face as usize;
-                if let (Some(faces), Some(staging)) =
-                    (&mut output.maps[light.0], staged.color.as_ref().or(staged.depth.as_ref()))
+                let faces = &mut output.maps[light.0];
+                if let (Some(faces), Some(staging)) = (faces.as_mut(), staged.color.as_ref().or(staged.depth.as_ref()))
                 {
                     faces[face] = staging.image()?;
                 }
-                Snapshot::Map { light: light.0, face }
+                let image = faces.as_ref().map(|faces| faces[face].clone());
+                (Snapshot::Map { light: light.0, face }, image)
             }
             _ => {
                 let change = color_change(plan, pass);
-                let mut color_after = None;
+                let (mut color_after, mut own) = (None, None);
                 let target = match color_role.map(|(role, _)| role) {
                     Some(AttachmentRole::Labels(light)) => {
-                        output.labels[light.0] = after(&change, &staged.color, PixelFormat::U8, plan.size)?;
+                        keep(&mut output.labels[light.0], after(&change, &staged.color, PixelFormat::U8, plan.size)?);
+                        own.clone_from(&output.labels[light.0]);
                         FrameTarget::Labels
                     }
                     Some(AttachmentRole::Count(light)) => {
-                        output.counts[light.0] = after(&change, &staged.color, PixelFormat::Count32F, plan.size)?;
+                        let count = after(&change, &staged.color, PixelFormat::Count32F, plan.size)?;
+                        keep(&mut output.counts[light.0], count);
+                        own.clone_from(&output.counts[light.0]);
                         FrameTarget::Count
                     }
                     _ => {
@@ -277,17 +284,19 @@ fn collect(prepared: &Prepared, times: &[Option<f64>]) -> Result<Output, GpuErro
                 };
                 let depth_after = after(&depth_change(pass), &staged.depth, PixelFormat::Depth32F, plan.size)?;
                 let stencil_after = after(&stencil_change(pass), &staged.stencil, PixelFormat::U8, plan.size)?;
-                Snapshot::Frame(FrameSnapshot {
+                let frame = FrameSnapshot {
                     color: step_aspect(&mut color, color_after),
                     depth: step_aspect(&mut depth, depth_after),
                     stencil: prepared.passes[index].has_stencil.then(|| step_aspect(&mut stencil, stencil_after)),
                     target,
-                })
+                };
+                (Snapshot::Frame(frame), own)
             }
         };
         // What the CPU makes takes the GPU no time.
         let gpu_ms = times[index].filter(|_| pass.image.is_none());
         output.steps.push(step(pass, gpu_ms, snapshot));
+        output.targets.push(target);
     }
     Ok(output)
 }
@@ -318,6 +327,13 @@ fn after(
     }
 }
 
+/// A pass that changes nothing leaves what was there.
+fn keep(known: &mut Option<Arc<Image>>, after: Option<Arc<Image>>) {
+    if after.is_some() {
+        *known = after;
+    }
+}
+
 /// Moves an aspect on by one step. A clear to what was there already changes nothing.
 fn step_aspect(current: &mut Arc<Image>, next: Option<Arc<Image>>) -> Aspect {
     let changed = next.filter(|next| next != current);
@@ -334,6 +350,7 @@ fn step(pass: &Pass, gpu_ms: Option<f64>, snapshot: Snapshot) -> Step {
         caster: draw.caster.clone(),
         part: draw.part,
         triangles: u64::from(draw.triangles.end - draw.triangles.start),
+        after: None,
     };
     Step {
         name: pass.name.clone(),

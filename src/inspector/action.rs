@@ -15,6 +15,11 @@ pub enum Action {
     Run(Box<RunRequest>),
     /// Trace the truth of the frame that is shown, and hold the technique against it.
     Judge,
+    /// Capture the state after each draw of a step of the frame that is shown.
+    CaptureDraws {
+        /// Index of the step.
+        step: usize,
+    },
     /// Stop tracing.
     CancelJudge,
     /// Measure every technique on the open scene.

@@ -100,11 +100,13 @@ pub fn known_after(capture: &Capture, index: usize) -> Option<(usize, &Arc<Image
 /// The counts to show a pixel of: of the light whose picture is shown, or else of the step's.
 #[must_use]
 pub fn to_show<'a>(capture: &'a Capture, state: &State) -> Option<(usize, &'a Arc<Image>)> {
-    if state.view.shown(capture, state.step).is_some_and(|shown| shown.kind == PictureKind::Count) {
+    if state.view.shown(capture, state.moment()).is_some_and(|shown| shown.kind == PictureKind::Count) {
         let light = state.view.light_with(capture, |light| light.count.is_some())?;
-        return Some((light, capture.lights.get(light)?.count.as_ref()?));
+        let drawn = state.moment().count(capture).filter(|(of, _)| *of == light);
+        return drawn.or_else(|| Some((light, capture.lights.get(light)?.count.as_ref()?)));
     }
-    known_after(capture, state.step)
+    let at = state.moment();
+    at.count(capture).or_else(|| known_after(capture, at.step))
 }
 
 #[cfg(test)]

@@ -1,52 +1,158 @@
 //! Under the passes: the draws of the selected one, and what the frame left out.
 
+use super::coloring::Coloring;
+use super::draw_level::DrawsState;
 use super::format;
+use super::keys;
+use super::moment::Moment;
+use super::passes;
+use super::state::State;
 use super::theme;
-use crate::capture::{DrawSummary, Step};
+use crate::capture::{Capture, DrawState, DrawSummary, FrameTarget, Image, Snapshot};
 use crate::plan::LeftOut;
-use egui::{RichText, Ui, vec2};
+use egui::{CornerRadius, Rect, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Draws that are listed before the rest is folded away.
 const LISTED: usize = 16;
+/// Height of a draw, points.
+const HEIGHT: f32 = 24.0;
+/// Where a draw's thumbnail is, points from the row's corners.
+const THUMBNAIL: [f32; 2] = [12.0, 3.0];
+/// How wide it is.
+const THUMBNAIL_WIDTH: f32 = 32.0;
+/// Where a draw's swatch is.
+const INDENT: f32 = THUMBNAIL[0] + THUMBNAIL_WIDTH + 8.0;
 
-/// The draws of a step: part, name and triangles; many are folded away unless `all`.
-pub fn of_step(ui: &mut Ui, step: &Step, all: &mut bool) {
+/// The draws of the selected step: part, name and triangles, and a thumbnail where the state after
+/// each is known. Many are folded away until all are wished for, or one of them is selected.
+pub fn of_step(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>) {
+    let draws = &capture.steps[state.step].draws;
     // One line less is folded away for the line that says so.
-    let listed = if *all || step.draws.len() <= LISTED { step.draws.len() } else { LISTED - 1 };
-    for draw in &step.draws[..listed] {
-        row(ui, draw);
+    let short = if draws.len() <= LISTED { draws.len() } else { LISTED - 1 };
+    state.all_draws |= state.draw.is_some_and(|draw| draw >= short);
+    let listed = if state.all_draws { draws.len() } else { short };
+    for draw in 0..listed {
+        row(ui, state, capture, draw);
+        if state.draw == Some(draw) {
+            note(ui, state, capture);
+        }
     }
-    let folded = &step.draws[listed..];
+    let folded = &draws[listed..];
     if !folded.is_empty() {
         let triangles = folded.iter().map(|draw| draw.triangles).sum();
         let text = format!("{} more draws · {}", folded.len(), format::counted(triangles, "triangle"));
         ui.horizontal(|ui| {
-            ui.add_space(34.0);
+            ui.add_space(INDENT);
             let button = egui::Button::new(theme::note(text)).frame_when_inactive(false);
-            *all |= ui.add(button).on_hover_text("List all draws of this pass").clicked();
+            state.all_draws |= ui.add(button).on_hover_text("List all draws of this pass").clicked();
         });
     }
 }
 
-fn row(ui: &mut Ui, draw: &DrawSummary) {
-    ui.horizontal(|ui| {
-        ui.set_min_height(20.0);
-        ui.add_space(34.0);
-        match theme::part_color(draw.part) {
-            Some(color) => theme::swatch(ui, color),
-            None => ui.add_space(10.0 + ui.spacing().item_spacing.x),
+/// One draw: it can be selected, and says so while its state is being fetched.
+fn row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize) {
+    let draw = &capture.steps[state.step].draws[index];
+    let is_selected = state.draw == Some(index);
+    let is_missing = is_selected && !state.selected().is_held(capture);
+    let is_fetched = is_missing && state.scene.is_some() && !matches!(state.draws, DrawsState::Failed(..));
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    let name = if is_fetched { format!("{}, being fetched", draw.name) } else { draw.name.clone() };
+    response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &name));
+    state.tree_widgets.push(response.id);
+    keys::keep_arrows(ui, &response);
+    if is_selected && state.scroll_to_step {
+        response.scroll_to_me(None);
+    }
+    if response.clicked() {
+        state.select(Moment { step: state.step, draw: Some(index) });
+        state.scroll_to_step = false;
+    }
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    passes::paint_row_background(ui, rect, is_selected, response.hovered(), response.has_focus());
+    if capture.holds_draws(state.step) {
+        paint_change(ui, state, capture, index, rect);
+    }
+    let right = if is_fetched { "fetching …".to_owned() } else { format::count(draw.triangles) };
+    paint_words(ui, draw, is_selected, &right, rect);
+    let changes = if changes_nothing(draw) { "\nIt changed nothing" } else { "" };
+    response.on_hover_text(format!("{}: {}{changes}", draw.part.name(), draw.name));
+}
+
+fn changes_nothing(draw: &DrawSummary) -> bool {
+    draw.after.as_ref().is_some_and(DrawState::changes_nothing)
+}
+
+/// A thumbnail of what the draw changed, or that it changed nothing.
+fn paint_change(ui: &Ui, state: &mut State, capture: &Capture, index: usize, row: Rect) {
+    let size = vec2(THUMBNAIL_WIDTH, HEIGHT - 2.0 * THUMBNAIL[1]);
+    let place = Rect::from_min_size(row.min + vec2(THUMBNAIL[0], THUMBNAIL[1]), size);
+    let changed = changed_picture(state, capture, index);
+    passes::paint_thumbnail(ui, state, changed, place);
+    if changes_nothing(&capture.steps[state.step].draws[index]) {
+        let font = TextStyle::Monospace.resolve(ui.style());
+        ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, "=", font, theme::FAINT);
+    }
+}
+
+/// The part's swatch, the draw's name, and at the right its triangles.
+fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, right: &str, row: Rect) {
+    let left = row.left() + INDENT;
+    if let Some(color) = theme::part_color(draw.part) {
+        let swatch = Rect::from_center_size(pos2(left + 5.0, row.center().y), vec2(10.0, 10.0));
+        let outline = Stroke::new(1.0, theme::FAINT);
+        ui.painter().rect(swatch, CornerRadius::same(2), color, outline, StrokeKind::Inside);
+    }
+    let left = left + 18.0;
+    let at = pos2(row.right() - 8.0, row.center().y);
+    let font = TextStyle::Monospace.resolve(ui.style());
+    let right = ui.painter().text(at, egui::Align2::RIGHT_CENTER, right, font, theme::DIM);
+    let color = match (is_selected, changes_nothing(draw)) {
+        (true, _) => theme::TEXT,
+        (false, true) => theme::FAINT,
+        (false, false) => theme::DIM,
+    };
+    let room = right.left() - left - 8.0;
+    theme::line(ui, pos2(left, row.center().y - 7.0), room, &draw.name, TextStyle::Small, color);
+}
+
+/// What a draw changed, as a picture with its colouring.
+fn changed_picture(state: &mut State, capture: &Capture, index: usize) -> Option<(Arc<Image>, Coloring)> {
+    let after = capture.steps[state.step].draws[index].after.as_ref()?;
+    let target = after.target.as_ref().filter(|target| !target.unchanged).map(|target| &target.image);
+    match &after.snapshot {
+        Snapshot::Map { light, face } => Some(passes::colored_layer(state, capture, [*light, *face], target?)),
+        Snapshot::Frame(frame) => match frame.target {
+            FrameTarget::Picture => passes::changed_aspect(state, capture, frame),
+            FrameTarget::Labels => Some((target?.clone(), Coloring::Labels)),
+            FrameTarget::Count => Some((target?.clone(), Coloring::Count)),
+        },
+    }
+}
+
+/// Under a selected draw whose state is not there and does not come: why.
+fn note(ui: &mut Ui, state: &State, capture: &Capture) {
+    if state.selected().is_held(capture) {
+        return;
+    }
+    let (text, color) = match &state.draws {
+        _ if state.scene.is_none() => {
+            let text = "This folder has no states after draws, so draws can't be stepped through: capture it with \
+                        --every draw.";
+            (text.to_owned(), theme::TEXT)
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.add_space(8.0);
-            let triangles = theme::number(format::count(draw.triangles)).color(theme::DIM);
-            ui.label(triangles).on_hover_text("Triangles submitted");
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                let text = RichText::new(&draw.name).size(theme::SMALL_SIZE).color(theme::DIM);
-                ui.add(egui::Label::new(text).truncate()).on_hover_text(draw.part.name());
-            });
-        });
+        DrawsState::Failed(_, reason) => (format!("× The state after this draw is not known: {reason}"), theme::ERROR),
+        // The row says so, so that nothing moves when it comes.
+        DrawsState::Fetching(_) | DrawsState::NotAsked => return,
+    };
+    ui.horizontal(|ui| {
+        ui.add_space(INDENT);
+        ui.add(egui::Label::new(RichText::new(text).size(theme::SMALL_SIZE).color(color)).wrap());
     });
+    ui.add_space(4.0);
 }
 
 /// What the frame did without, faint, with the reason: absence is a lesson too.

@@ -1,4 +1,4 @@
-//! Keys that act on the whole window: stepping, playing, the search fields.
+//! Keys that act on the whole window: stepping by pass and by draw, playing, the search fields.
 //!
 //! They act while nothing, or a widget of the pass tree, has the focus; a text field or the
 //! picture keeps its keys. Keys are consumed before widgets see them.
@@ -28,12 +28,25 @@ pub fn handle(ctx: &Context, state: &mut State) {
     let by = presses(Key::ArrowRight) - presses(Key::ArrowLeft);
     if by != 0 {
         state.step_by(by);
+    }
+    let by = presses(Key::ArrowDown) - presses(Key::ArrowUp);
+    if by != 0 {
+        state.draw_by(by);
     } else if pressed(Modifiers::NONE, Key::Home) {
         state.select_step(0);
     } else if pressed(Modifiers::NONE, Key::End) {
         state.select_step(usize::MAX);
     } else if pressed(Modifiers::NONE, Key::Space) {
         state.toggle_play(ctx.input(|input| input.time));
+    }
+}
+
+/// A widget of the pass tree keeps the arrows: they step, and do not move the focus.
+pub fn keep_arrows(ui: &egui::Ui, response: &egui::Response) {
+    if response.has_focus() {
+        let arrows =
+            egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..egui::EventFilter::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::depth::DepthMeasure;
 use super::format;
+use super::moment::Moment;
 use super::view::{CUBE_FACES, FaceChoice, PictureKind, PictureView, Shown};
 use crate::capture::{Capture, PixelFormat, Snapshot};
 
@@ -118,12 +119,16 @@ fn layer(capture: &Capture, light: usize, content: MapContent, index: usize, cou
 
 impl PictureView {
     /// The chosen layer of a light's map, or all.
-    pub(super) fn shown_map(&self, capture: &Capture) -> Option<Shown> {
+    pub(super) fn shown_map(&self, capture: &Capture, at: Moment) -> Option<Shown> {
         let light = self.light_with(capture, |light| light.map.is_some())?;
         let map = capture.lights.get(light)?.map.as_ref()?;
         let content = MapContent::of(capture, light)?;
         let mut layers = layers(capture, light);
         let mut images = map.faces.clone();
+        let drawn = at.layer(capture).filter(|(of, layer, _)| *of == light && *layer < images.len());
+        if let Some((_, layer, image)) = drawn {
+            images[layer] = image.clone();
+        }
         let mut title = format!("{} of {}", content.in_titles(), format::light(light));
         let has_many = images.len() > 1;
         let chosen = match self.face {
@@ -139,6 +144,9 @@ impl PictureView {
                 MapContent::Depth => format!(", {}", one.full_name),
                 _ => format!(": {}", one.name),
             };
+        }
+        if drawn.is_some_and(|(_, layer, _)| chosen.is_none_or(|chosen| chosen == layer)) {
+            title += &format!(" after {}", at.words());
         }
         let (measure, format) = match content {
             MapContent::Depth => {

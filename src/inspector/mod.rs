@@ -12,6 +12,7 @@
 //! coloring.rs  what a texel means                  texture.rs    pictures as textures, cached
 //! layers.rs    maps, textures and silhouettes      counts.rs     counts beyond eight bits
 //! findings.rs  the error picture's hatching        truth_note.rs while there is no truth
+//! moment.rs    after a step, or after a draw       draw_level.rs selecting and fetching draws
 //! ```
 
 mod action;
@@ -20,6 +21,7 @@ mod coloring;
 mod counts;
 mod depth;
 mod dock;
+mod draw_level;
 mod draws;
 mod face_grid;
 mod findings;
@@ -30,6 +32,7 @@ mod legend;
 mod magnifier;
 mod meshes;
 mod messages;
+mod moment;
 mod open_dialog;
 mod palette;
 mod passes;
@@ -54,6 +57,7 @@ mod verdict;
 mod view;
 
 pub use action::{Action, RunRequest};
+pub use draw_level::DrawsState;
 pub use meshes::ObjectMesh;
 pub use report::{ReportProgress, ReportView};
 pub use state::SceneEntry;
@@ -107,6 +111,7 @@ impl Inspector {
         self.dock.ui(ui, &mut self.state, &mut actions);
         open_dialog::ui(ui.ctx(), &mut self.state, &mut actions);
         self.state.ask_for_truth(&mut actions);
+        self.state.ask_for_draws(&mut actions);
         actions
     }
 
@@ -137,8 +142,8 @@ impl Inspector {
         self.state.set_capture(capture);
     }
 
-    /// Shows the same frame, of which more is known: how long it takes, or its truth. What is
-    /// selected stays, and playing goes on.
+    /// Shows the same frame, of which more is known: how long it takes, its truth, or its draws. What
+    /// is selected stays, and playing goes on.
     pub fn update_capture(&mut self, capture: Arc<Capture>) {
         self.state.update_capture(capture);
     }
@@ -146,6 +151,11 @@ impl Inspector {
     /// Tells how far the truth of the shown frame is.
     pub fn set_truth(&mut self, truth: TruthState) {
         self.state.set_truth(truth);
+    }
+
+    /// Tells why there are no states after the draws of a step of the shown frame.
+    pub fn set_draws_failed(&mut self, step: usize, reason: String) {
+        self.state.set_draws_failed(step, reason);
     }
 
     /// Makes shadows of the open scene as `choice` says; what has to be done for it.
@@ -202,6 +212,24 @@ impl Inspector {
         self.state.select_step(step);
     }
 
+    /// Index of the selected draw of that step; `None`: the step as a whole.
+    #[must_use]
+    pub fn draw(&self) -> Option<usize> {
+        self.state.draw
+    }
+
+    /// Selects a draw of a step; the whole step if it has fewer.
+    pub fn select_draw(&mut self, step: usize, draw: usize) {
+        self.state.select(moment::Moment { step, draw: Some(draw) });
+    }
+
+    /// The pictures that are shown; none where nothing is drawn yet.
+    #[must_use]
+    pub fn shown_images(&self) -> Vec<Arc<crate::capture::Image>> {
+        let shown = |capture: &Arc<Capture>| self.state.view.shown(capture, self.state.moment());
+        self.state.capture.as_ref().and_then(shown).map_or_else(Vec::new, |shown| shown.images)
+    }
+
     /// The picked pixel of the picture.
     #[must_use]
     pub fn picked(&self) -> Option<[u32; 2]> {
@@ -217,7 +245,7 @@ impl Inspector {
     #[must_use]
     pub fn picture_kind(&self) -> Option<PictureKind> {
         let capture = self.state.capture.as_ref()?;
-        self.state.view.shown(capture, self.state.step).map(|shown| shown.kind)
+        self.state.view.shown(capture, self.state.moment()).map(|shown| shown.kind)
     }
 
     /// Wishes for a kind of picture.

@@ -6,6 +6,7 @@ use super::counts;
 use super::depth::{DepthMeasure, DepthScale};
 use super::draws;
 use super::format;
+use super::keys;
 use super::state::{State, StepSearch};
 use super::texture::TextureSize;
 use super::theme;
@@ -59,7 +60,7 @@ fn tree(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>) {
         }
         pass_row(ui, state, capture, index);
         if index == state.step {
-            draws::of_step(ui, step, &mut state.all_draws);
+            draws::of_step(ui, state, capture);
         }
     }
     if found == 0 {
@@ -87,15 +88,12 @@ fn group_heading(ui: &mut Ui, capture: &Capture, light: Option<usize>) {
 /// One pass: thumbnail of what it changed, number and name, what it drew, its time.
 fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize) {
     let step = &capture.steps[index];
-    let is_selected = index == state.step;
+    let is_selected = index == state.step && state.draw.is_none();
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::PASS_ROW_HEIGHT), Sense::click());
     let title = format!("{} · {}", index + 1, step.name);
     response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &title));
     state.tree_widgets.push(response.id);
-    if response.has_focus() {
-        let arrows = egui::EventFilter { horizontal_arrows: true, ..egui::EventFilter::default() };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
-    }
+    keys::keep_arrows(ui, &response);
     if is_selected && state.scroll_to_step {
         response.scroll_to_me(None);
     }
@@ -109,7 +107,8 @@ fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize
     }
     paint_row_background(ui, rect, is_selected, response.hovered(), response.has_focus());
     let thumbnail = Rect::from_min_size(rect.min + vec2(8.0, 6.0), vec2(52.0, 32.0));
-    paint_thumbnail(ui, state, capture, index, thumbnail);
+    let changed = changed_picture(state, capture, index);
+    paint_thumbnail(ui, state, changed, thumbnail);
     let time = format::milliseconds(step.gpu_ms);
     let font = TextStyle::Monospace.resolve(ui.style());
     let time_rect = ui.painter().text(
@@ -126,7 +125,8 @@ fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize
     theme::line(ui, pos2(left, rect.top() + 23.0), room, &summary(step), TextStyle::Small, theme::DIM);
 }
 
-fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool, has_focus: bool) {
+/// The background of a row of the tree, and the marks of what is selected or has the focus.
+pub fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool, has_focus: bool) {
     let painter = ui.painter();
     if is_selected {
         painter.rect_filled(rect, CornerRadius::ZERO, theme::SELECTED_ROW);
@@ -154,30 +154,35 @@ fn changed_picture(state: &mut State, capture: &Capture, index: usize) -> Option
     match &step.snapshot {
         Snapshot::Map { light, face } => {
             let map = capture.lights.get(*light)?.map.as_ref()?;
-            let image = map.faces.get(*face)?.clone();
-            if image.format() == PixelFormat::Rgba8 {
-                return Some((image, Coloring::Linear));
-            }
-            let measure = DepthMeasure::of_map(capture, *light, *face).unwrap_or(DepthMeasure::Raw);
-            let range = state.cache.depth_range(&image, measure).unwrap_or([0.0, 1.0]);
-            Some((image, Coloring::Depth(DepthScale { measure, range })))
+            Some(colored_layer(state, capture, [*light, *face], map.faces.get(*face)?))
         }
         Snapshot::Frame(frame) if frame.target == FrameTarget::Count => {
             counts::finished_by(capture, index).map(|(_, count)| (count.clone(), Coloring::Count))
         }
-        Snapshot::Frame(frame) => changed_aspect(state, capture, step, frame),
+        Snapshot::Frame(frame) if frame.target == FrameTarget::Labels => {
+            Some((capture.lights.get(step.light?)?.shadow.clone()?, Coloring::Labels))
+        }
+        Snapshot::Frame(frame) => changed_aspect(state, capture, frame),
     }
 }
 
-fn changed_aspect(
+/// A layer of a light's map with its colouring.
+pub fn colored_layer(
     state: &mut State,
     capture: &Capture,
-    step: &Step,
-    frame: &FrameSnapshot,
-) -> Option<(Arc<Image>, Coloring)> {
-    if frame.target == FrameTarget::Labels {
-        return Some((capture.lights.get(step.light?)?.shadow.clone()?, Coloring::Labels));
+    [light, face]: [usize; 2],
+    image: &Arc<Image>,
+) -> (Arc<Image>, Coloring) {
+    if image.format() == PixelFormat::Rgba8 {
+        return (image.clone(), Coloring::Linear);
     }
+    let measure = DepthMeasure::of_map(capture, light, face).unwrap_or(DepthMeasure::Raw);
+    let range = state.cache.depth_range(image, measure).unwrap_or([0.0, 1.0]);
+    (image.clone(), Coloring::Depth(DepthScale { measure, range }))
+}
+
+/// What a step or a draw changed of the picture.
+pub fn changed_aspect(state: &mut State, capture: &Capture, frame: &FrameSnapshot) -> Option<(Arc<Image>, Coloring)> {
     if !frame.color.unchanged {
         return Some((frame.color.image.clone(), Coloring::Srgb));
     }
@@ -192,10 +197,11 @@ fn changed_aspect(
     None
 }
 
-fn paint_thumbnail(ui: &Ui, state: &mut State, capture: &Capture, index: usize, rect: Rect) {
+/// A small picture in its frame; the frame alone where there is none.
+pub fn paint_thumbnail(ui: &Ui, state: &mut State, picture: Option<(Arc<Image>, Coloring)>, rect: Rect) {
     let painter = ui.painter();
     painter.rect_filled(rect, CornerRadius::ZERO, theme::BACKGROUND);
-    if let Some((image, coloring)) = changed_picture(state, capture, index) {
+    if let Some((image, coloring)) = picture {
         let texture = state.cache.texture(ui.ctx(), &image, coloring, TextureSize::Thumbnail);
         let size = texture.size_vec2();
         let fitted = size * (rect.width() / size.x).min(rect.height() / size.y);

@@ -24,7 +24,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     toolbar(ui, state, &capture);
     let rect = ui.available_rect_before_wrap();
     ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::BACKGROUND);
-    let Some(shown) = state.view.shown(&capture, state.step) else {
+    let Some(shown) = state.view.shown(&capture, state.moment()) else {
         ui.painter().text(
             rect.center(),
             Align2::CENTER_CENTER,
@@ -94,7 +94,7 @@ fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
     egui::Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         ui.horizontal(|ui| {
             kinds(ui, state, capture);
-            let kind = state.view.shown(capture, state.step).map(|shown| shown.kind);
+            let kind = state.view.shown(capture, state.moment()).map(|shown| shown.kind);
             match kind {
                 Some(PictureKind::Count) => lights(ui, state, capture, |light| light.count.is_some()),
                 Some(PictureKind::Mask) => lights(ui, state, capture, |light| light.shadow.is_some()),
@@ -118,11 +118,11 @@ fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
 
 /// A button for each kind of picture that exists at this step.
 fn kinds(ui: &mut Ui, state: &mut State, capture: &Capture) {
-    let kinds = available(capture, state.step);
+    let kinds = available(capture, state.moment());
     let labels: Vec<(&str, &str)> = kinds.iter().map(|kind| (kind.name(capture), kind.meaning(capture))).collect();
     // What was chosen, even while its truth is not known yet.
     let is_asked_for = state.view.kind.needs_truth() && kinds.contains(&state.view.kind);
-    let shown = || state.view.shown(capture, state.step).map(|shown| shown.kind);
+    let shown = || state.view.shown(capture, state.moment()).map(|shown| shown.kind);
     let current = if is_asked_for { Some(state.view.kind) } else { shown() };
     let chosen = kinds.iter().position(|kind| Some(*kind) == current);
     if let Some(index) = segments(ui, &labels, chosen) {
@@ -207,7 +207,7 @@ fn depth_mode(ui: &mut Ui, state: &mut State) {
 
 /// Right to left: the zoom in per cent, Fit, 1:1.
 fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
-    let size = state.view.shown(capture, state.step).and_then(|shown| Some(shown.images.first()?.size()));
+    let size = state.view.shown(capture, state.moment()).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };
     if let Zoom::Pixels(pixels) = state.view.zoom {
         ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::DIM));

@@ -61,10 +61,10 @@ fn sentence(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2]) {
 }
 
 fn values(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2]) {
-    theme::heading(ui, &format!("After step {}", state.step + 1));
+    theme::heading(ui, &format!("After {}", state.moment().words()));
     egui::Grid::new("pixel values").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
         row(ui, "pixel", &format!("{}, {}", at[0], at[1]));
-        match capture.frame_at(state.step) {
+        match state.moment().frame(capture) {
             Some(frame) => {
                 frame_values(ui, capture, frame, at);
                 count_row(ui, state, capture, at);
@@ -150,7 +150,7 @@ fn let_through_values(ui: &mut Ui, what: &str, layer: &str, texel: [u32; 2], [r,
 
 /// The picked texel of the map that is shown.
 fn map_values(ui: &mut Ui, state: &State, capture: &Capture, texel: [u32; 2]) {
-    let Some(shown) = state.view.shown(capture, state.step).filter(|shown| shown.images.len() == 1) else { return };
+    let Some(shown) = state.view.shown(capture, state.moment()).filter(|shown| shown.images.len() == 1) else { return };
     if let (Some(bytes), Some(layer)) = (shown.images[0].rgba_at(texel), shown.layers.first()) {
         let what = MapContent::of_capture(capture).map_or("map", MapContent::one);
         return let_through_values(ui, what, &layer.name, texel, bytes);

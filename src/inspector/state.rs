@@ -1,7 +1,9 @@
 //! What the panels show and remember, and how it changes. No widget is drawn here.
 
 use super::action::{Action, RunRequest};
+use super::draw_level::DrawsState;
 use super::meshes::ObjectMesh;
+use super::moment::Moment;
 use super::report::ReportState;
 use super::texture::PictureCache;
 use super::truth_note::TruthState;
@@ -81,6 +83,12 @@ pub struct State {
     pub scenes: Vec<SceneEntry>,
     /// Index of the selected step.
     pub step: usize,
+    /// Index of the selected draw of that step; `None`: the step as a whole.
+    pub draw: Option<usize>,
+    /// What is shown while the state after the selected draw is not there.
+    pub stays: Moment,
+    /// How far the states after draws are that were asked for.
+    pub draws: DrawsState,
     /// While playing: the time of the next step, in egui's seconds.
     pub playing: Option<f64>,
     /// The picture panel.
@@ -125,10 +133,16 @@ impl State {
     /// Shows another capture. The step stays where it means the same, and so does the pick
     /// where it still lies inside.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
+        let step = self.step;
         self.step = match &self.capture {
-            Some(before) => corresponding_step(before, self.step, &capture),
+            Some(before) => corresponding_step(before, step, &capture),
             None => capture.steps.len().saturating_sub(1),
         };
+        if let Some(before) = self.capture.clone() {
+            self.follow_draw(&before, step, &capture);
+        }
+        self.stays = self.step.into();
+        self.draws = DrawsState::NotAsked;
         match &self.capture {
             Some(before) => self.view.keep_truth_of(before, &capture),
             None => self.view.forget_older_truth(),
@@ -144,12 +158,13 @@ impl State {
         self.cache.forget_unused();
     }
 
-    /// Shows the same frame, of which more is known: how long it takes, or its truth.
+    /// Shows the same frame, of which more is known: how long it takes, its truth, or its draws.
     pub fn update_capture(&mut self, capture: Arc<Capture>) {
         if has_truth(&capture) {
             self.view.forget_older_truth();
             self.truth = TruthState::NotAsked;
         }
+        self.note_draws_of(&capture);
         self.capture = Some(capture);
         self.cache.forget_unused();
     }
@@ -166,7 +181,7 @@ impl State {
     pub fn ask_for_truth(&mut self, actions: &mut Vec<Action>) {
         let can_ask = self.truth == TruthState::NotAsked && self.scene.is_some() && self.view.kind.needs_truth();
         let is_missing =
-            |capture: &Arc<Capture>| !has_truth(capture) && available(capture, self.step).contains(&self.view.kind);
+            |capture: &Arc<Capture>| !has_truth(capture) && available(capture, self.moment()).contains(&self.view.kind);
         if can_ask && self.capture.as_ref().is_some_and(is_missing) {
             self.truth = TruthState::Running { done: 0, of: 0 };
             actions.push(Action::Judge);
@@ -209,6 +224,10 @@ impl State {
     pub fn select_step(&mut self, step: usize) {
         let Some(capture) = self.capture.clone() else { return };
         self.step = step.min(capture.steps.len().saturating_sub(1));
+        self.draw = None;
+        if !matches!(self.draws, DrawsState::Fetching(_)) {
+            self.draws = DrawsState::NotAsked;
+        }
         self.all_draws = false;
         self.scroll_to_step = true;
         self.view.follow(&capture, self.step);

@@ -16,7 +16,8 @@ pub fn ui(ui: &mut Ui, state: &State) {
     let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(Margin::symmetric(8, 2));
     egui::Panel::bottom("status bar").frame(frame).exact_size(26.0).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
-            let shown = |capture: &Arc<Capture>| Some((Arc::clone(capture), state.view.shown(capture, state.step)?));
+            let shown =
+                |capture: &Arc<Capture>| Some((Arc::clone(capture), state.view.shown(capture, state.moment())?));
             if let Some((capture, shown)) = state.capture.as_ref().and_then(shown) {
                 picture(ui, state, &capture, &shown);
             }
@@ -54,7 +55,7 @@ fn picture(ui: &mut Ui, state: &State, capture: &Capture, shown: &Shown) {
 
 fn frame_values(ui: &mut Ui, capture: &Capture, state: &State, at: [u32; 2]) {
     let [x, y] = at;
-    let Some(frame) = capture.frame_at(state.step) else { return };
+    let Some(frame) = state.moment().frame(capture) else { return };
     if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
         theme::swatch(ui, egui::Color32::from_rgb(red, green, blue));
         ui.label(theme::number(format!("{x}, {y}   colour {red} {green} {blue}")));

@@ -1,5 +1,7 @@
-//! Step controls: back, forth, play, a scrubber, and the search fields of Ctrl-G and Ctrl-F.
+//! Step controls: back, forth, play, draw by draw, a scrubber, and the search fields of Ctrl-G and Ctrl-F.
 
+use super::format;
+use super::keys;
 use super::state::{State, StepSearch};
 use super::theme;
 use egui::{Key, Ui, vec2};
@@ -31,11 +33,45 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
             ui.label(theme::note(format!("step {} of {steps}", state.step + 1)));
         });
     });
+    widgets.extend(draw_controls(ui, state));
+    for id in &widgets {
+        if let Some(response) = ui.ctx().read_response(*id) {
+            keys::keep_arrows(ui, &response);
+        }
+    }
     if steps > 1 {
         widgets.push(scrubber(ui, state, steps));
     }
     search(ui, state);
     state.tree_widgets.extend(widgets);
+}
+
+/// Back and forth through the draws of the whole frame, and which one is selected.
+fn draw_controls(ui: &mut Ui, state: &mut State) -> [egui::Id; 2] {
+    let Some(capture) = state.capture.clone() else { return [egui::Id::NULL; 2] };
+    let at = state.selected();
+    let row = ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let back = ui.add_enabled(at.previous(&capture).is_some(), egui::Button::new(symbol("▲")));
+        let back = back.accessible_name("Previous draw").on_hover_text("Previous draw (up arrow)");
+        let forth = ui.add_enabled(at.next(&capture).is_some(), egui::Button::new(symbol("▼")));
+        let forth = forth.accessible_name("Next draw").on_hover_text("Next draw (down arrow)");
+        if back.clicked() {
+            state.draw_by(-1);
+        }
+        if forth.clicked() {
+            state.draw_by(1);
+        }
+        let draws = capture.steps.get(at.step).map_or(0, |step| step.draws.len());
+        let words = match at.draw {
+            Some(draw) => format!("draw {} of {draws}", draw + 1),
+            None if draws == 0 => "it draws nothing".to_owned(),
+            None => format!("after its {}", format::counted(draws as u64, "draw")),
+        };
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(theme::note(words)));
+        [back.id, forth.id]
+    });
+    row.inner
 }
 
 /// A sign that only the monospaced face has.
@@ -99,7 +135,7 @@ fn go(state: &mut State, search: &StepSearch) {
 /// Do a pass or its draws contain all words?
 #[must_use]
 pub fn matches(step: &crate::capture::Step, words: &str) -> bool {
-    let light = step.light.map_or_else(|| "scene".to_owned(), super::format::light);
+    let light = step.light.map_or_else(|| "scene".to_owned(), format::light);
     let draws = step.draws.iter().flat_map(|draw| [draw.name.as_str(), draw.part.name()]);
     let text =
         [step.name.as_str(), light.as_str()].into_iter().chain(draws).collect::<Vec<_>>().join(" ").to_lowercase();

@@ -7,6 +7,7 @@
 use super::depth::DepthMeasure;
 use super::format;
 use super::layers::{Layer, MapContent};
+use super::moment::Moment;
 use crate::capture::{Capture, CapturedLight, CapturedTruth, Image, Snapshot};
 use std::sync::Arc;
 
@@ -236,10 +237,11 @@ impl PictureView {
         }
     }
 
-    /// The picture to show at a step: the kind wished for, or what stands in for it.
+    /// The picture to show at a moment: the kind wished for, or what stands in for it.
     #[must_use]
-    pub fn shown(&self, capture: &Capture, step: usize) -> Option<Shown> {
-        let kinds = available(capture, step);
+    pub fn shown(&self, capture: &Capture, at: impl Into<Moment>) -> Option<Shown> {
+        let at = at.into();
+        let kinds = available(capture, at);
         let wished = if self.kind.needs_truth() && self.truth_to_show(capture).is_none() {
             self.kind_before_truth.unwrap_or(PictureKind::Color)
         } else {
@@ -252,8 +254,8 @@ impl PictureView {
         };
         let wished = [wished, twin].into_iter().find(|kind| kinds.contains(kind));
         let kind = wished.or_else(|| kinds.iter().copied().find(|kind| !kind.needs_truth()))?;
-        let frame = capture.frame_at(step);
-        let after = |what: &str| format!("{what} after step {}", step + 1);
+        let frame = at.frame(capture);
+        let after = |what: &str| format!("{what} after {}", at.words());
         let depth_format = if has_stencil(capture) { "Depth32FloatStencil8" } else { "Depth32Float" };
         let raw = DepthMeasure::Raw;
         let camera = || self.measure_or_raw(Some(DepthMeasure::of_camera(capture)));
@@ -264,15 +266,21 @@ impl PictureView {
             PictureKind::Count => {
                 let light = self.light_with(capture, |light| light.count.is_some())?;
                 let title = format!("count of {}", format::light(light));
-                (capture.lights.get(light)?.count.clone()?, raw, title, "R32Float")
+                match at.count(capture).filter(|(of, _)| *of == light) {
+                    Some((_, image)) => (image.clone(), raw, after(&title), "R32Float"),
+                    None => (capture.lights.get(light)?.count.clone()?, raw, title, "R32Float"),
+                }
             }
             PictureKind::Mask => {
                 let light = self.light_with(capture, |light| light.shadow.is_some())?;
                 let title = format!("mask of {}", format::light(light));
-                (capture.lights.get(light)?.shadow.clone()?, raw, title, "R8Uint")
+                match at.labels(capture).filter(|(of, _)| *of == light) {
+                    Some((_, image)) => (image.clone(), raw, after(&title), "R8Uint"),
+                    None => (capture.lights.get(light)?.shadow.clone()?, raw, title, "R8Uint"),
+                }
             }
             PictureKind::Truth | PictureKind::Error => return self.shown_truth(capture, kind),
-            PictureKind::Map => return self.shown_map(capture),
+            PictureKind::Map => return self.shown_map(capture, at),
         };
         Some(Shown { kind, images: vec![image], layers: Vec::new(), measure, title, format, is_older: false })
     }
@@ -320,10 +328,10 @@ pub fn has_truth(capture: &Capture) -> bool {
     capture.lights.iter().any(|light| light.truth.is_some())
 }
 
-/// The kinds of picture that exist at a step, or can be asked for, in the order of their buttons.
+/// The kinds of picture that exist at a moment, or can be asked for, in the order of their buttons.
 #[must_use]
-pub fn available(capture: &Capture, step: usize) -> Vec<PictureKind> {
-    let frame = capture.frame_at(step);
+pub fn available(capture: &Capture, at: impl Into<Moment>) -> Vec<PictureKind> {
+    let frame = at.into().frame(capture);
     let exists = |kind: &PictureKind| match kind {
         PictureKind::Color | PictureKind::Depth => frame.is_some(),
         PictureKind::Stencil => frame.is_some_and(|frame| frame.stencil.is_some()),

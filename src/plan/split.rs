@@ -1,4 +1,5 @@
-//! The same frame with one pass a draw, so that a snapshot after each pass is one after each draw.
+//! The same frame with one pass a draw, so that a snapshot after each pass is one after each draw:
+//! of the whole frame, or of one of its passes.
 
 use super::{ColorTarget, DepthStencilTarget, FramePlan, Pass};
 
@@ -8,7 +9,21 @@ impl FramePlan {
     /// of one draw, or of none, stays as it is.
     #[must_use]
     pub fn split_at_draws(&self) -> FramePlan {
-        let passes = self.passes.iter().flat_map(split).collect();
+        self.split_where(|_| true)
+    }
+
+    /// The frame up to pass `index` and no further, of which only that pass is split.
+    #[must_use]
+    pub fn split_pass_at_draws(&self, index: usize) -> FramePlan {
+        let mut plan = self.split_where(|pass| pass == index);
+        let parts = self.passes.get(index).map_or(0, |pass| pass.draws.len().max(1));
+        plan.passes.truncate(index + parts);
+        plan
+    }
+
+    fn split_where(&self, is_split: impl Fn(usize) -> bool) -> FramePlan {
+        let parts = |(index, pass)| if is_split(index) { split(pass) } else { vec![pass.clone()] };
+        let passes = self.passes.iter().enumerate().flat_map(parts).collect();
         FramePlan { passes, ..self.clone() }
     }
 }

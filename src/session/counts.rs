@@ -23,7 +23,7 @@ impl Session {
         let request = TechniqueRequest { name: capture.technique.clone(), settings: capture.settings.clone() };
         let mut choice = Choice::parse(&request)?;
         choice.set(COUNTER, "float")?;
-        let request = CaptureRequest { choice, size: capture.size, timing_runs: 0, external_capture: false };
+        let request = CaptureRequest::new(choice, capture.size);
         match self.capture(scene, &request) {
             Ok(counted) => {
                 for (light, counted) in capture.lights.iter_mut().zip(counted.lights) {

@@ -4,6 +4,7 @@
 //! lists). Commands, the window and tests all go through it.
 
 mod counts;
+mod draws;
 mod history;
 mod measure;
 mod report;
@@ -11,6 +12,7 @@ mod stress;
 mod truth;
 mod volumes;
 
+pub use draws::Every;
 pub use history::HistoryCost;
 pub use measure::{Measured, Measurement};
 pub use report::report_rows;
@@ -37,15 +39,17 @@ pub struct CaptureRequest {
     /// How often to time the frame with and without snapshots, in turn, after a warm-up;
     /// 0: not at all, and the timing is left unknown.
     pub timing_runs: usize,
+    /// How often to take a snapshot.
+    pub every: Every,
     /// Brackets the frame for an attached graphics debugger.
     pub external_capture: bool,
 }
 
 impl CaptureRequest {
-    /// An untimed capture.
+    /// An untimed capture with a snapshot after every pass.
     #[must_use]
     pub fn new(choice: Choice, size: [u32; 2]) -> CaptureRequest {
-        CaptureRequest { choice, size, timing_runs: 0, external_capture: false }
+        CaptureRequest { choice, size, timing_runs: 0, every: Every::Pass, external_capture: false }
     }
 }
 
@@ -61,6 +65,9 @@ pub enum SessionError {
     /// The GPU is missing, too small or failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// All draws of the frame, or of one of its passes, are too many to keep the state after each.
+    #[error("{0}; or take fewer snapshots (--every pass)")]
+    TooManyDraws(GpuError),
     /// No ray can be followed through the scene.
     #[error(transparent)]
     Truth(#[from] TruthError),
@@ -138,7 +145,8 @@ impl Session {
         scene.objects.iter().map(one).collect()
     }
 
-    /// Renders `scene` and keeps every attachment after every pass.
+    /// Renders `scene` and keeps every attachment after every pass, or after every draw. Only the
+    /// frame with a snapshot after every pass is timed.
     ///
     /// # Errors
     /// A scene that the technique can't draw, a picture larger than the adapter allows, a lost GPU.
@@ -165,7 +173,13 @@ impl Session {
             timing.frame_ms = median_ms(&cost.frames);
             timing.captured_ms = median_ms(&cost.captured);
         }
-        let output = self.executor.capture(prepared, request.external_capture)?;
+        let output = match request.every {
+            Every::Pass => self.executor.capture(prepared, request.external_capture)?,
+            Every::Draw => {
+                drop(prepared);
+                self.run_by_draw(&plan, request.external_capture)?
+            }
+        };
         Ok((self.assemble(scene, &plan, output, timing), plan))
     }
 

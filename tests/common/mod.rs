@@ -22,7 +22,7 @@ pub fn session() -> Session {
 
 /// A technique with its defaults, untimed.
 pub fn request(technique: Technique, size: [u32; 2]) -> CaptureRequest {
-    CaptureRequest { choice: Choice::new(technique), size, timing_runs: 0, external_capture: false }
+    CaptureRequest::new(Choice::new(technique), size)
 }
 
 /// A mesh from points and triangles.

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use stencilscope::accuracy::{ErrorCounts, Finding, Region};
 use stencilscope::capture::{
-    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, FrameTarget,
-    Image, PixelFormat, Snapshot, Step, Timing,
+    AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawState, DrawSummary, FrameSnapshot,
+    FrameTarget, Image, PixelFormat, Snapshot, Step, Timing,
 };
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::math::projection::perspective;
@@ -25,7 +25,7 @@ fn image_of<const N: usize>(format: PixelFormat, size: [u32; 2], texel: impl Fn(
 }
 
 fn draw(name: &str, part: Part, triangles: u64) -> DrawSummary {
-    DrawSummary { name: name.to_owned(), caster: Some("box".to_owned()), part, triangles }
+    DrawSummary { name: name.to_owned(), caster: Some("box".to_owned()), part, triangles, after: None }
 }
 
 fn step(name: &str, light: Option<usize>, draws: Vec<DrawSummary>, snapshot: Snapshot) -> Step {
@@ -128,6 +128,42 @@ pub fn with_truth(mut capture: Capture) -> Capture {
         ErrorCounts { compared: 1170, false_shadow: 40, missing_shadow: 1, edge_band: 20, ..ErrorCounts::default() };
     let worst = Region { pixels: 40, kind: Finding::FalseShadow, bounds: [18, 0, 19, 19], at: [18, 0] };
     capture.lights[0].truth = Some(CapturedTruth { labels, findings, error, worst: Some(worst) });
+    capture
+}
+
+/// The states after draws beside a capture by hand. The first draw of the volumes, the sides, has
+/// counted in the upper half only. The first map pass has two draws; after the first its face is at
+/// half the depth.
+pub fn with_draws(mut capture: Capture) -> Capture {
+    let height = capture.size[1];
+    for step in &mut capture.steps {
+        let last = DrawState { snapshot: step.snapshot.clone(), target: None };
+        step.draws.iter_mut().for_each(|draw| draw.after = Some(last.clone()));
+        let Snapshot::Frame(frame) = &step.snapshot else { continue };
+        let Some(counts) = frame.stencil.as_ref().filter(|_| step.name == "volumes") else { continue };
+        let after_sides = image_of(PixelFormat::U8, capture.size, |x, y| {
+            let count = counts.image.byte_at([x, y]).expect("a count");
+            [if y < height / 2 { count } else { 0 }]
+        });
+        let stencil = Some(Aspect { image: after_sides, unchanged: false });
+        let snapshot = Snapshot::Frame(FrameSnapshot { stencil, ..frame.clone() });
+        step.draws[0].after = Some(DrawState { snapshot, target: None });
+    }
+    let first = &mut capture.steps[0];
+    if let Snapshot::Map { face, .. } = first.snapshot {
+        let map = capture.lights[0].map.as_ref().expect("a map");
+        let halfway = Arc::new(Image::uniform(PixelFormat::Depth32F, [16, 16], &0.125_f32.to_le_bytes()));
+        let state = |image: &Arc<Image>| {
+            let target = Some(Aspect { image: image.clone(), unchanged: false });
+            Some(DrawState { snapshot: first.snapshot.clone(), target })
+        };
+        let states = [state(&halfway), state(&map.faces[face])];
+        first.draws = ["near box", "far box"]
+            .into_iter()
+            .zip(states)
+            .map(|(name, after)| DrawSummary { after, ..draw(name, Part::Map, 12) })
+            .collect();
+    }
     capture
 }
 

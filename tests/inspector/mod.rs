@@ -2,6 +2,7 @@
 
 mod by_hand;
 mod counts;
+mod draws;
 mod layers;
 mod pictures;
 mod report;

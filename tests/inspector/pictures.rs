@@ -104,6 +104,36 @@ fn pictures_of_textures_silhouettes_and_counts_can_be_drawn() {
     }
 }
 
+/// Passes draw by draw: states that are there, that are being fetched, and that a folder lacks.
+#[test]
+fn pictures_of_draws_can_be_drawn() {
+    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
+    let mut session = common::session();
+    let scene = open(&OpenSpec::new("tori")).expect("tori");
+    let request = common::request(Technique::ZFail, [1280, 720]);
+    let plain = Arc::new(session.capture(&scene, &request).expect("a capture"));
+    let mut filled = Capture::clone(&plain);
+    session.fill_draws(&scene, &request, &mut filled, 1).expect("draws");
+    let filled = Arc::new(filled);
+    let views: [(&str, &Arc<Capture>, View); 4] = [
+        ("held", &filled, |_| ()),
+        ("pass", &filled, |harness| harness.state_mut().inspector.select_step(1)),
+        ("fetching", &plain, |_| ()),
+        ("folder", &plain, |harness| harness.state_mut().inspector.clear_scene()),
+    ];
+    for (name, capture, view) in views {
+        for size in sizes(folder.is_some()) {
+            let mut inspector = inspector(&scene, &request, capture, PICK);
+            inspector.set_picture_kind(PictureKind::Stencil);
+            inspector.select_draw(1, 2);
+            let mut harness = harness_of(inspector, size.map(|side| (side + 2 * MARGIN) as f32));
+            view(&mut harness);
+            harness.run_steps(2);
+            draw(&mut harness, folder.as_deref(), &format!("draws-{name}"), *size);
+        }
+    }
+}
+
 /// A frame and what is looked at in it.
 struct Example {
     scene: &'static str,

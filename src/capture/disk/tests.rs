@@ -6,6 +6,7 @@ use crate::capture::{
     AdapterInfo, Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, Image,
     PixelFormat, Snapshot, Step, Timing,
 };
+use crate::math::depth::DepthMapping;
 use crate::plan::{LeftOut, Part};
 use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
@@ -29,8 +30,13 @@ fn aspect(image: &Arc<Image>, unchanged: bool) -> Aspect {
 }
 
 fn step(name: &str, light: Option<usize>, snapshot: Snapshot) -> Step {
-    let draw =
-        DrawSummary { name: "sides of bunny".into(), caster: Some("bunny".into()), part: Part::Side, triangles: 7 };
+    let draw = DrawSummary {
+        name: "sides of bunny".into(),
+        caster: Some("bunny".into()),
+        part: Part::Side,
+        triangles: 7,
+        after: None,
+    };
     Step {
         name: name.to_owned(),
         purpose: "To be seen.".to_owned(),

@@ -1,0 +1,227 @@
+//! Reads a capture folder. What it says is not trusted: every file, size and index is checked.
+
+use super::super::manifest::{self, LightEntry, Manifest, PassEntry, RegionEntry, StateFiles};
+use super::super::{
+    Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, FrameTarget, Image,
+    PixelFormat, Snapshot, Step, files,
+};
+use super::{CaptureError, MANIFEST, PLAN};
+use crate::math::depth::DepthMapping;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Reads a capture folder.
+///
+/// # Errors
+/// A file that is missing, broken or of another size than the manifest says.
+pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
+    let file = folder.join(MANIFEST);
+    let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
+    let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
+    let manifest: Manifest = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    if manifest.schema != manifest::SCHEMA {
+        return Err(wrong(format!("its schema is {}, not {}", manifest.schema, manifest::SCHEMA)));
+    }
+    if !manifest.size.iter().all(|pixels| (1..=files::LARGEST).contains(pixels)) {
+        return Err(wrong(format!("its picture is {}x{}", manifest.size[0], manifest.size[1])));
+    }
+    let mut reader = Reader { folder, size: manifest.size, images: BTreeMap::new() };
+    let lights = manifest.lights.iter().map(|light| reader.light(light)).collect::<Result<Vec<_>, _>>()?;
+    let steps = manifest.passes.iter().map(|pass| reader.step(pass, &lights)).collect::<Result<_, _>>()?;
+    let capture = Capture {
+        scene: manifest.scene,
+        technique: manifest.technique,
+        settings: manifest.settings,
+        size: manifest.size,
+        adapter: manifest.adapter,
+        camera: (&manifest.camera).into(),
+        depth: manifest.depth.unwrap_or_else(|| DepthMapping::ReversedInfinite.curve(manifest.camera.near, 0.0, 0.0)),
+        steps,
+        lights,
+        left_out: manifest.left_out,
+        timing: manifest.timing,
+        plan_text: read_plan(folder)?,
+    };
+    match inconsistency(&capture) {
+        Some(reason) => Err(wrong(reason.to_owned())),
+        None => Ok(capture),
+    }
+}
+
+/// The plan's text, where there is one.
+fn read_plan(folder: &Path) -> Result<String, CaptureError> {
+    let file = folder.join(PLAN);
+    match fs::read_to_string(&file) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
+        Err(error) => Err(CaptureError::Read { file, reason: error.to_string() }),
+        Ok(text) => Ok(text),
+    }
+}
+
+/// What a manifest may say that no frame leaves behind.
+fn inconsistency(capture: &Capture) -> Option<&'static str> {
+    let light = |index: usize| capture.lights.get(index);
+    let is_consistent = |step: &Step| match &step.snapshot {
+        Snapshot::Map { light: index, face } => {
+            light(*index).and_then(|light| light.map.as_ref()).is_some_and(|map| *face < map.faces.len())
+        }
+        Snapshot::Frame(frame) => {
+            let own = step.light.and_then(light);
+            let is_there = match frame.target {
+                FrameTarget::Picture => true,
+                FrameTarget::Labels => own.is_some_and(|light| light.shadow.is_some()),
+                FrameTarget::Count => own.is_some_and(|light| light.count.is_some()),
+            };
+            step.light.is_none_or(|index| light(index).is_some()) && is_there
+        }
+    };
+    if capture.steps.is_empty() {
+        Some("it has no passes")
+    } else if !capture.steps.iter().all(is_consistent) {
+        Some("a pass names a light, map or face that is not there")
+    } else if !(capture.depth.offset.is_finite() && capture.depth.scale.is_finite()) {
+        Some("its depth can't be read back")
+    } else if capture.camera.check().is_err() {
+        Some("its camera can't see")
+    } else {
+        None
+    }
+}
+
+/// Reads each file once: what the manifest names twice is shared again.
+pub(super) struct Reader<'a> {
+    folder: &'a Path,
+    size: [u32; 2],
+    images: BTreeMap<String, Arc<Image>>,
+}
+
+impl Reader<'_> {
+    pub(super) fn wrong(&self, file: &str, reason: &str) -> CaptureError {
+        CaptureError::Read { file: self.folder.join(file), reason: reason.to_owned() }
+    }
+
+    pub(super) fn image(&mut self, file: &str, format: PixelFormat) -> Result<Arc<Image>, CaptureError> {
+        self.image_of_size(file, format, self.size)
+    }
+
+    pub(super) fn image_of_size(
+        &mut self,
+        file: &str,
+        format: PixelFormat,
+        size: [u32; 2],
+    ) -> Result<Arc<Image>, CaptureError> {
+        if let Some(image) = self.images.get(file) {
+            let is_same_kind = image.format() == format && image.size() == size;
+            return is_same_kind
+                .then(|| image.clone())
+                .ok_or_else(|| self.wrong(file, "it is named as two kinds of picture"));
+        }
+        let image = files::read_image(&self.path(file)?, format)?;
+        if image.size() != size {
+            return Err(self.wrong(file, "its size is not the manifest's"));
+        }
+        let image = Arc::new(image);
+        self.images.insert(file.to_owned(), image.clone());
+        Ok(image)
+    }
+
+    /// Only plain names: a manifest can't point out of its folder.
+    fn path(&self, file: &str) -> Result<PathBuf, CaptureError> {
+        if file.contains(['/', '\\']) || file.starts_with('.') {
+            return Err(self.wrong(MANIFEST, "it names a file outside its folder"));
+        }
+        Ok(self.folder.join(file))
+    }
+
+    fn step(&mut self, pass: &PassEntry, lights: &[CapturedLight]) -> Result<Step, CaptureError> {
+        let draws = pass.draw_list.iter().map(|draw| {
+            draw.to_summary().ok_or_else(|| self.wrong(MANIFEST, "it names a part of a draw that is not known"))
+        });
+        let mut draws = draws.collect::<Result<Vec<DrawSummary>, _>>()?;
+        let files = &pass.files;
+        let snapshot = match (files.map.as_ref().or(files.textures.as_ref()), pass.light) {
+            (Some(_), Some(light)) => {
+                Snapshot::Map { light, face: files.map_face.or(files.texture_layer).unwrap_or(0) }
+            }
+            _ => Snapshot::Frame(self.frame(files)?),
+        };
+        if let Some(captured) = &pass.draws_captured {
+            self.draw_states(captured, &snapshot, lights, &mut draws)?;
+        }
+        Ok(Step {
+            name: pass.name.clone(),
+            purpose: pass.purpose.clone(),
+            light: pass.light,
+            draws,
+            gpu_ms: pass.gpu_ms,
+            snapshot,
+        })
+    }
+
+    pub(super) fn frame(&mut self, files: &StateFiles) -> Result<FrameSnapshot, CaptureError> {
+        let unchanged = files.unchanged.clone().unwrap_or_default();
+        let mut aspect = |name: &str, file: &Option<String>, format| {
+            let file =
+                file.as_ref().ok_or_else(|| self.wrong(MANIFEST, &format!("a pass or draw lacks its {name}")))?;
+            let unchanged = unchanged.iter().any(|aspect| aspect == name);
+            Ok(Aspect { image: self.image(file, format)?, unchanged })
+        };
+        let color = aspect("color", &files.color, PixelFormat::Rgba8Srgb)?;
+        let depth = aspect("depth", &files.depth, PixelFormat::Depth32F)?;
+        let has_stencil = files.stencil.is_some();
+        let stencil = has_stencil.then(|| aspect("stencil", &files.stencil, PixelFormat::U8)).transpose()?;
+        let target = match (&files.labels, &files.count) {
+            (Some(_), _) => FrameTarget::Labels,
+            (None, Some(_)) => FrameTarget::Count,
+            (None, None) => FrameTarget::Picture,
+        };
+        Ok(FrameSnapshot { color, depth, stencil, target })
+    }
+
+    fn truth(&mut self, entry: &LightEntry) -> Result<Option<CapturedTruth>, CaptureError> {
+        let (Some(labels), Some(findings), Some(error)) = (&entry.truth, &entry.error_picture, entry.error) else {
+            return Ok(None);
+        };
+        let is_known = |region: &RegionEntry| {
+            let [left, top, right, bottom] = region.bounds;
+            let is_inside = left <= right && right < self.size[0] && top <= bottom && bottom < self.size[1];
+            region.to_region().filter(|_| is_inside && region.at[0] <= right && region.at[1] <= bottom)
+        };
+        let worst = match &entry.worst_region {
+            None => None,
+            Some(region) => {
+                let wrong = || self.wrong(MANIFEST, "its worst region is outside the picture or of no known kind");
+                Some(is_known(region).ok_or_else(wrong)?)
+            }
+        };
+        Ok(Some(CapturedTruth {
+            labels: self.image(labels, PixelFormat::U8)?,
+            findings: self.image(findings, PixelFormat::U8)?,
+            error,
+            worst,
+        }))
+    }
+
+    fn light(&mut self, entry: &LightEntry) -> Result<CapturedLight, CaptureError> {
+        let position = entry.homogeneous().ok_or_else(|| self.wrong(MANIFEST, "a light has no place"))?;
+        let shadow = entry.shadow.as_ref().map(|file| self.image(file, PixelFormat::U8)).transpose()?;
+        let count = entry.count.as_ref().map(|file| self.image(file, PixelFormat::Count32F)).transpose()?;
+        let map = match (entry.map.as_ref().or(entry.textures.as_ref()), &entry.matrices) {
+            (Some(file), Some(matrices)) => {
+                let faces = files::read_layers(&self.path(file)?)?;
+                if faces.len() != matrices.clip_from_light.len() {
+                    return Err(self.wrong(file, "it has another number of faces than the manifest"));
+                }
+                Some(CapturedMap {
+                    faces: faces.into_iter().map(Arc::new).collect(),
+                    light_from_world: manifest::from_rows(&matrices.light_from_world),
+                    clip_from_light: matrices.clip_from_light.iter().map(manifest::from_rows).collect(),
+                })
+            }
+            _ => None,
+        };
+        Ok(CapturedLight { position, shadow, count, map, truth: self.truth(entry)? })
+    }
+}

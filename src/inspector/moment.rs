@@ -1,0 +1,108 @@
+//! A moment of the frame, after a step or after one of its draws, and what a capture holds of it.
+//!
+//! After the last draw of a step is after the step, so the state after it is always known. Going
+//! draw by draw, a step whose draws nobody has selected counts as its last one, and a step
+//! without draws is a stop of its own.
+
+use crate::capture::{Capture, DrawState, DrawSummary, FrameSnapshot, FrameTarget, Image, Snapshot};
+use std::sync::Arc;
+
+/// After a step, or after one of its draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Moment {
+    /// Index of the step.
+    pub step: usize,
+    /// Index of the draw; `None`: after the whole step.
+    pub draw: Option<usize>,
+}
+
+impl From<usize> for Moment {
+    fn from(step: usize) -> Moment {
+        Moment { step, draw: None }
+    }
+}
+
+impl Moment {
+    /// `step 2`, `draw 3 of step 2`.
+    #[must_use]
+    pub fn words(self) -> String {
+        let step = self.step + 1;
+        self.draw.map_or_else(|| format!("step {step}"), |draw| format!("draw {} of step {step}", draw + 1))
+    }
+
+    /// Does the capture know the state at this moment?
+    #[must_use]
+    pub fn is_held(self, capture: &Capture) -> bool {
+        let Some(index) = self.draw else { return true };
+        let draws = draws(capture, self.step);
+        index + 1 >= draws.len() || draws[index].after.is_some()
+    }
+
+    /// The state after the draw, where one is selected and was captured.
+    fn state(self, capture: &Capture) -> Option<&DrawState> {
+        draws(capture, self.step).get(self.draw?)?.after.as_ref()
+    }
+
+    /// The picture's aspects. Where the draw's are not known, those after the step.
+    #[must_use]
+    pub fn frame(self, capture: &Capture) -> Option<&FrameSnapshot> {
+        match self.state(capture).map(|state| &state.snapshot) {
+            Some(Snapshot::Frame(frame)) => Some(frame),
+            Some(Snapshot::Map { .. }) | None => capture.frame_at(self.step),
+        }
+    }
+
+    /// The light whose labels the draw writes, with those.
+    #[must_use]
+    pub fn labels(self, capture: &Capture) -> Option<(usize, &Arc<Image>)> {
+        self.own(capture, FrameTarget::Labels)
+    }
+
+    /// The light whose count the draw changes, with that.
+    #[must_use]
+    pub fn count(self, capture: &Capture) -> Option<(usize, &Arc<Image>)> {
+        self.own(capture, FrameTarget::Count)
+    }
+
+    fn own(self, capture: &Capture, target: FrameTarget) -> Option<(usize, &Arc<Image>)> {
+        let state = self.state(capture)?;
+        let is_it = matches!(&state.snapshot, Snapshot::Frame(frame) if frame.target == target);
+        let light = capture.steps.get(self.step)?.light?;
+        state.target.as_ref().filter(|_| is_it).map(|aspect| (light, &aspect.image))
+    }
+
+    /// The layer of a light's map that the draw draws into, with its texels.
+    #[must_use]
+    pub fn layer(self, capture: &Capture) -> Option<(usize, usize, &Arc<Image>)> {
+        let state = self.state(capture)?;
+        match &state.snapshot {
+            Snapshot::Map { light, face } => Some((*light, *face, &state.target.as_ref()?.image)),
+            Snapshot::Frame(_) => None,
+        }
+    }
+
+    /// The moment one draw later; `None` at the end.
+    #[must_use]
+    pub fn next(self, capture: &Capture) -> Option<Moment> {
+        let following = self.draw.map(|draw| draw + 1).filter(|draw| *draw < draws(capture, self.step).len());
+        let in_step = following.map(|draw| Moment { draw: Some(draw), ..self });
+        in_step.or_else(|| {
+            let step = Some(self.step + 1).filter(|step| *step < capture.steps.len())?;
+            Some(Moment { step, draw: (!draws(capture, step).is_empty()).then_some(0) })
+        })
+    }
+
+    /// The moment one draw earlier; `None` at the start.
+    #[must_use]
+    pub fn previous(self, capture: &Capture) -> Option<Moment> {
+        let last = |step: usize| draws(capture, step).len().checked_sub(1);
+        match self.draw.or_else(|| last(self.step)).and_then(|draw| draw.checked_sub(1)) {
+            Some(draw) => Some(Moment { draw: Some(draw), ..self }),
+            None => self.step.checked_sub(1).map(|step| Moment { step, draw: last(step) }),
+        }
+    }
+}
+
+fn draws(capture: &Capture, step: usize) -> &[DrawSummary] {
+    capture.steps.get(step).map_or(&[], |step| &step.draws)
+}

@@ -1,0 +1,264 @@
+//! The state after every draw: the plan is run with its passes split at their draws, and the
+//! parts are joined to steps again here, and only here.
+//!
+//! Joined steps are those of a capture without draw states: what a pass left is what its last
+//! part left, and it is unchanged where it ended as it began, whatever happened in between. What a
+//! draw did not change shares the picture of the draw before it.
+//!
+//! The draws of one pass can be filled in later ([`Session::fill_draws`]). Together they may take
+//! much memory: where a capture would hold more than [`MOST_FILLED_BYTES`], those of the passes
+//! that were filled in before are dropped, and have to be asked for again.
+
+use super::{CaptureRequest, Session, SessionError};
+use crate::capture::{Aspect, Capture, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step};
+use crate::gpu::{GpuError, Output};
+use crate::plan::FramePlan;
+use crate::scene::Scene;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// How often a snapshot is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Every {
+    /// After every pass.
+    #[default]
+    Pass,
+    /// After every draw, and so after every pass.
+    Draw,
+}
+
+/// Bytes of a capture to which draws may be filled in without dropping others.
+const MOST_FILLED_BYTES: u64 = 1 << 30;
+
+impl Session {
+    /// Runs a frame with a snapshot after each of its draws.
+    pub(super) fn run_by_draw(&mut self, plan: &FramePlan, bracket: bool) -> Result<Output, SessionError> {
+        Ok(join(plan, |_| true, self.run_split(&plan.split_at_draws(), bracket)?))
+    }
+
+    /// Fills in the state after each draw of a step of `capture`, which `request` made of `scene`.
+    /// Nothing else of it changes, but that draw states of other steps may be dropped.
+    ///
+    /// # Errors
+    /// A pass whose draws are too many for the memory, a lost GPU.
+    pub fn fill_draws(
+        &mut self,
+        scene: &Scene,
+        request: &CaptureRequest,
+        capture: &mut Capture,
+        step: usize,
+    ) -> Result<(), SessionError> {
+        if step >= capture.steps.len() || capture.holds_draws(step) {
+            return Ok(());
+        }
+        let plan = self.plan(scene, request)?;
+        let output = self.run_split(&plan.split_pass_at_draws(step), false)?;
+        let joined = join(&plan, |pass| pass == step, output);
+        let known = known_images(capture, step);
+        for (draw, by_draw) in
+            capture.steps[step].draws.iter_mut().zip(joined.steps.into_iter().skip(step).flat_map(|step| step.draws))
+        {
+            draw.after = by_draw.after.map(|state| sharing(state, &known));
+        }
+        make_room(capture, step, MOST_FILLED_BYTES);
+        Ok(())
+    }
+
+    fn run_split(&mut self, split: &FramePlan, bracket: bool) -> Result<Output, SessionError> {
+        let run = |session: &mut Session| {
+            let prepared = session.executor.prepare(split)?;
+            session.executor.capture(prepared, bracket)
+        };
+        run(self).map_err(|error| match error {
+            GpuError::TooLarge { .. } => SessionError::TooManyDraws(error),
+            error => error.into(),
+        })
+    }
+}
+
+/// Where a capture holds more than `most` bytes, only the draw states of one step stay.
+fn make_room(capture: &mut Capture, step: usize, most: u64) {
+    if capture.bytes() <= most {
+        return;
+    }
+    let others = capture.steps.iter_mut().enumerate().filter(|(index, _)| *index != step);
+    others.flat_map(|(_, step)| &mut step.draws).for_each(|draw| draw.after = None);
+}
+
+/// What draws of a step may have left just as it was: all that the frame holds around them.
+fn known_images(capture: &Capture, step: usize) -> Vec<Arc<Image>> {
+    let before = step.checked_sub(1).and_then(|before| capture.frame_at(before)).cloned().map(Snapshot::Frame);
+    let snapshots = before.iter().chain([&capture.steps[step].snapshot]);
+    let mut known: Vec<Arc<Image>> = snapshots.flat_map(Snapshot::aspects).map(|aspect| aspect.image.clone()).collect();
+    for light in &capture.lights {
+        known.extend(light.shadow.iter().chain(&light.count).cloned());
+        known.extend(light.map.iter().flat_map(|map| map.faces.iter().cloned()));
+    }
+    known
+}
+
+/// The same state in pictures that are held already, where there are equal ones.
+fn sharing(mut state: DrawState, known: &[Arc<Image>]) -> DrawState {
+    let share = |aspect: &mut Aspect| {
+        if let Some(image) = known.iter().find(|image| **image == aspect.image) {
+            aspect.image = image.clone();
+        }
+    };
+    frame_aspects(&mut state.snapshot).into_iter().flatten().for_each(share);
+    state.target.iter_mut().for_each(share);
+    state
+}
+
+/// What a pass draws into beside the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum OwnTarget {
+    Labels(usize),
+    Count(usize),
+    Layer(usize, usize),
+}
+
+impl OwnTarget {
+    fn of(step: &Step) -> Option<OwnTarget> {
+        match &step.snapshot {
+            Snapshot::Map { light, face } => Some(OwnTarget::Layer(*light, *face)),
+            Snapshot::Frame(frame) => match frame.target {
+                FrameTarget::Picture => None,
+                FrameTarget::Labels => step.light.map(OwnTarget::Labels),
+                FrameTarget::Count => step.light.map(OwnTarget::Count),
+            },
+        }
+    }
+}
+
+/// Colour, depth and stencil, as far as a snapshot has them.
+fn frame_aspects(snapshot: &mut Snapshot) -> [Option<&mut Aspect>; 3] {
+    match snapshot {
+        Snapshot::Frame(frame) => [Some(&mut frame.color), Some(&mut frame.depth), frame.stencil.as_mut()],
+        Snapshot::Map { .. } => [None, None, None],
+    }
+}
+
+/// What is there while the parts of a frame go by.
+struct Now {
+    /// Colour, depth and stencil.
+    frame: [Arc<Image>; 3],
+    own: BTreeMap<OwnTarget, Arc<Image>>,
+}
+
+impl Now {
+    /// wgpu clears new textures to zero.
+    fn new(size: [u32; 2]) -> Now {
+        let zero = |format: PixelFormat| Arc::new(Image::uniform(format, size, &vec![0; format.texel_bytes()]));
+        let frame = [PixelFormat::Rgba8Srgb, PixelFormat::Depth32F, PixelFormat::U8].map(zero);
+        Now { frame, own: BTreeMap::new() }
+    }
+
+    /// Goes on by one part, which shares what it leaves as it was.
+    fn go_on(&mut self, snapshot: &mut Snapshot) {
+        for (now, aspect) in self.frame.iter_mut().zip(frame_aspects(snapshot)) {
+            match aspect {
+                Some(aspect) if aspect.unchanged => aspect.image = now.clone(),
+                Some(aspect) => *now = aspect.image.clone(),
+                None => {}
+            }
+        }
+    }
+
+    /// The same for a pass's own target.
+    fn go_on_with(&mut self, target: OwnTarget, image: Arc<Image>) -> Aspect {
+        match self.own.get(&target) {
+            Some(now) if *now == image => Aspect { image: now.clone(), unchanged: true },
+            _ => {
+                self.own.insert(target, image.clone());
+                Aspect { image, unchanged: false }
+            }
+        }
+    }
+
+    /// Ends a pass that began at `before`. What is again as it was then is that picture.
+    fn end(&mut self, before: &[Arc<Image>; 3], snapshot: &mut Snapshot) {
+        for ((now, before), aspect) in self.frame.iter_mut().zip(before).zip(frame_aspects(snapshot)) {
+            if !Arc::ptr_eq(now, before) && now == before {
+                now.clone_from(before);
+            }
+            if let Some(aspect) = aspect {
+                *aspect = Aspect { image: now.clone(), unchanged: Arc::ptr_eq(now, before) };
+            }
+        }
+    }
+}
+
+/// Joins the parts of the passes that were split. `plan` is the frame before it was split; it may
+/// have more passes than were run.
+fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: Output) -> Output {
+    let mut now = Now::new(plan.size);
+    let mut parts = output.steps.into_iter().zip(output.targets).peekable();
+    let mut joined = Output { steps: Vec::new(), targets: Vec::new(), ..output };
+    for (index, pass) in plan.passes.iter().enumerate() {
+        if parts.peek().is_none() {
+            break;
+        }
+        let count = if is_split(index) { pass.draws.len().max(1) } else { 1 };
+        let before = now.frame.clone();
+        let mut whole: Option<Step> = None;
+        let mut target_after = None;
+        for (mut part, target) in parts.by_ref().take(count) {
+            now.go_on(&mut part.snapshot);
+            let target = OwnTarget::of(&part).zip(target).map(|(own, image)| now.go_on_with(own, image));
+            target_after = target.as_ref().map(|aspect| aspect.image.clone());
+            if let ([draw], true) = (&mut part.draws[..], is_split(index)) {
+                draw.after = Some(DrawState { snapshot: part.snapshot.clone(), target });
+            }
+            whole = Some(match whole {
+                None => part,
+                Some(mut whole) => {
+                    whole.draws.append(&mut part.draws);
+                    whole.gpu_ms = whole.gpu_ms.zip(part.gpu_ms).map(|(sum, more)| sum + more);
+                    Step { snapshot: part.snapshot, ..whole }
+                }
+            });
+        }
+        let Some(mut whole) = whole else { break };
+        now.end(&before, &mut whole.snapshot);
+        if let Some(DrawState { snapshot, .. }) = whole.draws.last_mut().and_then(|draw| draw.after.as_mut()) {
+            // Its pictures are the step's; what it changed itself it still did.
+            for (aspect, now) in frame_aspects(snapshot).into_iter().zip(&now.frame) {
+                aspect.into_iter().for_each(|aspect| aspect.image.clone_from(now));
+            }
+        }
+        joined.steps.push(whole);
+        joined.targets.push(target_after);
+    }
+    for (target, image) in now.own {
+        let place = match target {
+            OwnTarget::Labels(light) => joined.labels[light].as_mut(),
+            OwnTarget::Count(light) => joined.counts[light].as_mut(),
+            OwnTarget::Layer(light, face) => joined.maps[light].as_mut().and_then(|faces| faces.get_mut(face)),
+        };
+        place.into_iter().for_each(|place| place.clone_from(&image));
+    }
+    joined
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::OpenSpec;
+    use crate::technique::{Choice, Technique};
+
+    #[test]
+    fn draws_of_other_passes_go_only_where_there_is_no_room_for_all() {
+        let scene = crate::scene::open(&OpenSpec::new("tetrahedron")).expect("a built-in scene");
+        let request = CaptureRequest::new(Choice::new(Technique::ZFail), [32, 24]);
+        let request = CaptureRequest { every: Every::Draw, ..request };
+        let mut capture = Session::new(None).and_then(|mut session| session.capture(&scene, &request)).expect("draws");
+        let (bytes, steps) = (capture.bytes(), capture.steps.clone());
+        make_room(&mut capture, 1, bytes);
+        assert_eq!(capture.steps, steps);
+        make_room(&mut capture, 1, bytes - 1);
+        for (index, step) in capture.steps.iter().enumerate() {
+            assert_eq!(capture.holds_draws(index), index == 1 || step.draws.is_empty(), "{}", step.name);
+        }
+        assert_eq!(capture.steps[1], steps[1]);
+    }
+}

@@ -1,0 +1,221 @@
+//! Draw by draw: selecting, stepping, asking for states that are not there, and what is shown.
+
+use super::by_hand::{cube_map, with_draws};
+use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, press, z_fail};
+use egui::Key;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::sync::Arc;
+use stencilscope::capture::Capture;
+use stencilscope::inspector::{Action, PictureKind};
+
+fn at(harness: &Harness<Seen>) -> (usize, Option<usize>) {
+    (harness.state().inspector.step(), harness.state().inspector.draw())
+}
+
+/// Steps that draws were asked for of.
+fn asked(harness: &Harness<Seen>) -> Vec<usize> {
+    let step = |action: &Action| if let Action::CaptureDraws { step } = action { Some(*step) } else { None };
+    harness.state().actions.iter().filter_map(step).collect()
+}
+
+/// How many texels of the shown stencil are 1.
+fn ones(harness: &Harness<Seen>) -> u64 {
+    harness.state().inspector.shown_images()[0].histogram()[1]
+}
+
+fn update(harness: &mut Harness<Seen>, capture: Capture) {
+    harness.state_mut().inspector.update_capture(Arc::new(capture));
+    harness.run_steps(2);
+}
+
+#[test]
+fn up_and_down_go_draw_by_draw_through_the_whole_frame() {
+    let mut harness = harness(with_draws(z_fail(SIZE)));
+    press(&mut harness, Key::Home);
+    assert_eq!(at(&harness), (0, None));
+    // Ambient has one draw, volumes two, the mask none, light one.
+    let path = [(1, Some(0)), (1, Some(1)), (2, None), (3, Some(0))];
+    for expected in path {
+        press(&mut harness, Key::ArrowDown);
+        assert_eq!(at(&harness), expected);
+    }
+    press(&mut harness, Key::ArrowDown);
+    assert_eq!(at(&harness), (3, Some(0)), "there is nothing after the last draw");
+    for expected in [(2, None), (1, Some(1)), (1, Some(0)), (0, Some(0))] {
+        press(&mut harness, Key::ArrowUp);
+        assert_eq!(at(&harness), expected);
+    }
+    press(&mut harness, Key::ArrowUp);
+    assert_eq!(at(&harness), (0, Some(0)), "there is nothing before the first");
+    assert_eq!(asked(&harness), [0; 0], "all states are there");
+}
+
+#[test]
+fn a_whole_pass_counts_as_its_last_draw() {
+    let mut harness = harness(with_draws(z_fail(SIZE)));
+    click(&mut harness, "2 · volumes");
+    press(&mut harness, Key::ArrowUp);
+    assert_eq!(at(&harness), (1, Some(0)));
+    click(&mut harness, "2 · volumes");
+    assert_eq!(at(&harness), (1, None));
+    press(&mut harness, Key::ArrowDown);
+    assert_eq!(at(&harness), (2, None));
+}
+
+#[test]
+fn left_right_home_and_end_go_by_pass_and_leave_the_draws() {
+    let mut harness = harness(with_draws(z_fail(SIZE)));
+    for (key, expected) in
+        [(Key::ArrowRight, (2, None)), (Key::ArrowLeft, (0, None)), (Key::Home, (0, None)), (Key::End, (3, None))]
+    {
+        harness.state_mut().inspector.select_draw(1, 0);
+        harness.run_steps(1);
+        press(&mut harness, key);
+        assert_eq!(at(&harness), expected, "{key:?}");
+    }
+}
+
+#[test]
+fn buttons_and_rows_select_draws_and_say_which() {
+    let mut harness = harness(with_draws(z_fail(SIZE)));
+    click(&mut harness, "2 · volumes");
+    harness.get_by_label("after its 2 draws");
+    click_button(&mut harness, "Previous draw");
+    harness.get_by_label("draw 1 of 2");
+    click_button(&mut harness, "Next draw");
+    harness.get_by_label("draw 2 of 2");
+    harness.get_by_label("step 2 of 4");
+    click(&mut harness, "sides of box");
+    assert_eq!(at(&harness), (1, Some(0)));
+    click(&mut harness, "3 · mask");
+    harness.get_by_label("it draws nothing");
+}
+
+#[test]
+fn picture_pixel_and_status_bar_show_the_state_after_the_draw() {
+    let mut inspector = inspector(with_draws(z_fail(SIZE)));
+    inspector.pick([3, 20]);
+    inspector.select_step(1);
+    inspector.set_picture_kind(PictureKind::Stencil);
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    assert_eq!(ones(&harness), 599);
+    harness.get_by_label("0000 0001");
+    // The sides count the upper half only; the dark cap the rest.
+    click(&mut harness, "sides of box");
+    assert_eq!(ones(&harness), 299);
+    harness.get_by_label("After draw 1 of step 2");
+    harness.get_by_label("0000 0000");
+    harness.get_by_label_contains("stencil after draw 1 of step 2");
+    click(&mut harness, "dark cap of box");
+    assert_eq!(ones(&harness), 599);
+    harness.get_by_label("After draw 2 of step 2");
+}
+
+#[test]
+fn a_draw_whose_state_is_not_there_is_asked_for_once_and_the_picture_stays() {
+    let mut harness = harness(z_fail(SIZE));
+    click(&mut harness, "2 · volumes");
+    click_button(&mut harness, "Stencil");
+    assert_eq!(asked(&harness), [0; 0]);
+    click(&mut harness, "sides of box");
+    harness.run_steps(4);
+    assert_eq!((asked(&harness), ones(&harness)), (vec![1], 599));
+    harness.get_by_label("sides of box, being fetched");
+    harness.get_by_label_contains("stencil after step 2");
+    // The same frame was timed meanwhile.
+    update(&mut harness, z_fail(SIZE));
+    assert_eq!(asked(&harness), [1]);
+    update(&mut harness, with_draws(z_fail(SIZE)));
+    assert_eq!((at(&harness), ones(&harness)), ((1, Some(0)), 299));
+    assert!(harness.query_by_label_contains("being fetched").is_none());
+    assert_eq!(asked(&harness), [1]);
+}
+
+#[test]
+fn the_last_draw_of_a_pass_is_known_without_asking() {
+    let mut harness = harness(z_fail(SIZE));
+    click(&mut harness, "2 · volumes");
+    click_button(&mut harness, "Stencil");
+    click(&mut harness, "dark cap of box");
+    press(&mut harness, Key::ArrowDown);
+    press(&mut harness, Key::ArrowDown);
+    assert_eq!((at(&harness), asked(&harness)), ((3, Some(0)), vec![]));
+}
+
+#[test]
+fn another_frame_keeps_the_draw_and_asks_for_its_state() {
+    let mut harness = harness(with_draws(z_fail(SIZE)));
+    harness.state_mut().inspector.select_draw(1, 0);
+    harness.run_steps(2);
+    let mut other = z_fail([20, 10]);
+    other.steps[1].draws.swap(0, 1);
+    let dark_cap_first = Arc::new(other.clone());
+    harness.state_mut().inspector.set_capture(dark_cap_first);
+    harness.run_steps(2);
+    assert_eq!((at(&harness), asked(&harness)), ((1, Some(1)), vec![]), "sides are last now");
+    harness.state_mut().inspector.select_draw(1, 0);
+    harness.run_steps(2);
+    assert_eq!(asked(&harness), [1]);
+    harness.state_mut().inspector.set_capture(Arc::new(other));
+    harness.run_steps(2);
+    assert_eq!((at(&harness), asked(&harness)), ((1, Some(0)), vec![1, 1]));
+}
+
+#[test]
+fn why_there_are_no_states_is_said_and_selecting_again_asks_again() {
+    let mut harness = harness(z_fail(SIZE));
+    click(&mut harness, "2 · volumes");
+    click(&mut harness, "sides of box");
+    harness.state_mut().inspector.set_draws_failed(1, "the GPU is lost".to_owned());
+    harness.run_steps(3);
+    harness.get_by_label("× The state after this draw is not known: the GPU is lost");
+    assert_eq!(asked(&harness), [1]);
+    click(&mut harness, "sides of box");
+    assert_eq!(asked(&harness), [1, 1]);
+}
+
+#[test]
+fn a_folder_without_draws_says_why_and_how() {
+    let mut without = inspector(z_fail(SIZE));
+    without.clear_scene();
+    let mut harness = harness_of(without, [1280.0, 800.0]);
+    click(&mut harness, "2 · volumes");
+    click(&mut harness, "sides of box");
+    harness.get_by_label_contains("capture it with --every draw");
+    assert_eq!(asked(&harness), [0; 0]);
+    harness.state_mut().inspector.set_capture(Arc::new(with_draws(z_fail(SIZE))));
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("--every draw").is_none());
+    assert_eq!(at(&harness), (1, Some(0)));
+}
+
+#[test]
+fn stepping_reaches_draws_that_are_folded_away() {
+    let mut capture = z_fail(SIZE);
+    let draw = capture.steps[1].draws[0].clone();
+    capture.steps[1].draws = (0..40)
+        .map(|index| stencilscope::capture::DrawSummary { name: format!("volume {index}"), ..draw.clone() })
+        .collect();
+    let mut harness = harness(capture);
+    click(&mut harness, "2 · volumes");
+    harness.get_by_label_contains("25 more draws");
+    assert!(harness.query_by_label("volume 38").is_none());
+    click_button(&mut harness, "Previous draw");
+    assert_eq!(at(&harness), (1, Some(38)));
+    harness.get_by_label("volume 38, being fetched");
+}
+
+#[test]
+fn a_map_pass_shows_the_face_after_the_draw() {
+    let capture = with_draws(cube_map());
+    let mut harness = harness(capture);
+    press(&mut harness, Key::Home);
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Map));
+    let depth = |harness: &Harness<Seen>| harness.state().inspector.shown_images()[0].depth_at([3, 3]);
+    assert_eq!(depth(&harness), Some(0.25));
+    harness.state_mut().inspector.select_draw(0, 0);
+    harness.run_steps(2);
+    assert_eq!(depth(&harness), Some(0.125));
+    harness.get_by_label_contains("shadow map of light 1, face −x after draw 1 of step 1");
+}
