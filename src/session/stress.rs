@@ -2,6 +2,7 @@
 
 use super::{Session, SessionError, milliseconds};
 use crate::accuracy::{ErrorCounts, Finding};
+use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::{Scene, SceneError};
 use crate::stress::{Case, Drives, Entrant, Row};
@@ -17,8 +18,21 @@ struct Before {
     findings: Vec<u8>,
 }
 
+/// What a row is of.
+struct Step<'a> {
+    case: &'a Case,
+    entrant: Entrant,
+    value: f64,
+    size: [u32; 2],
+}
+
+fn scene_of(case: &Case, value: f64) -> Result<Scene, SessionError> {
+    let named = |source| SceneError::Mesh { name: format!("{} {value}", case.name), source };
+    Ok(case.scene(value).map_err(named)?)
+}
+
 impl Session {
-    /// Runs `cases` with pictures of `size` pixels; with `only`, no other techniques.
+    /// Runs `cases` with pictures of `size` pixels, but for those that have a size of their own; with `only`, no other techniques.
     ///
     /// # Errors
     /// A case that can't be drawn or traced, which is a bug of the case; a lost GPU;
@@ -40,14 +54,13 @@ impl Session {
             let entrants = runs(case);
             let mut before = Vec::new();
             for value in case.values {
-                let scene = case.scene(*value);
-                let scene =
-                    scene.map_err(|source| SceneError::Mesh { name: format!("{} {value}", case.name), source })?;
+                let scene = scene_of(case, *value)?;
                 for entrant in &entrants {
                     if progress.is_cancelled() {
                         return Err(SessionError::Cancelled);
                     }
-                    rows.push(self.stress_row(case, &scene, *entrant, *value, size, &mut before)?);
+                    let step = Step { case, entrant: *entrant, value: *value, size: case.size.unwrap_or(size) };
+                    rows.push(self.stress_row(&step, &scene, &mut before, |_| ())?);
                     progress.advance();
                 }
             }
@@ -55,20 +68,37 @@ impl Session {
         Ok(rows)
     }
 
-    fn stress_row(
+    /// One technique at one value of a case, with its plan changed by `change` before it runs: shows
+    /// that a plan which is wrong is judged so.
+    ///
+    /// # Errors
+    /// As [`Session::stress`].
+    pub fn stress_changed(
         &mut self,
         case: &Case,
-        scene: &Scene,
         entrant: Entrant,
         value: f64,
         size: [u32; 2],
-        before: &mut Vec<Before>,
+        change: impl FnOnce(&mut FramePlan),
     ) -> Result<Row, SessionError> {
+        let scene = scene_of(case, value)?;
+        self.stress_row(&Step { case, entrant, value, size }, &scene, &mut Vec::new(), change)
+    }
+
+    fn stress_row(
+        &mut self,
+        step: &Step,
+        scene: &Scene,
+        before: &mut Vec<Before>,
+        change: impl FnOnce(&mut FramePlan),
+    ) -> Result<Row, SessionError> {
+        let Step { case, entrant, value, size } = *step;
         // Its own progress: the steps of the whole are rows.
         let traced = self.traced(scene, size, &Progress::default())?;
         let choice = case.choice(&entrant, value)?;
         let start = Instant::now();
-        let plan = technique::plan(Job { scene, size, choice: &choice, cache: &mut self.geometry })?;
+        let mut plan = technique::plan(Job { scene, size, choice: &choice, cache: &mut self.geometry })?;
+        change(&mut plan);
         let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());
         self.executor.time(&ready, false)?;

@@ -37,6 +37,8 @@ pub struct Case {
     pub values: &'static [f64],
     /// What the number changes.
     pub drives: Drives,
+    /// Width and height of the picture, where these are the point.
+    pub size: Option<[u32; 2]>,
     /// Forms of techniques that run beside the usual ones.
     pub also: &'static [Entrant],
     /// Usual techniques that are left out, with the reason.
@@ -140,6 +142,22 @@ pub const USUAL: [Technique; 7] = [
     Technique::Projective,
 ];
 
+/// Why a technique is expected to be right where no failure of it is known.
+#[must_use]
+pub const fn right_because(technique: Technique) -> &'static str {
+    match technique {
+        Technique::ZFail => "volumes are closed and counted from infinity, so neither eye nor near plane matters",
+        Technique::ZPass => "the near plane cuts no volume, and the eye is in none",
+        Technique::ZPassPlus => "what the near plane begins with is counted too, so the eye may be in a volume",
+        Technique::ShadowMap => "its texels are finer than pixels here, and its bias is enough",
+        Technique::Planar => "all that is darkened is flat, and casters are clipped to what lies between",
+        Technique::PlanarTexture => "all that is darkened is flat, and no edge of a shadow is blurred by texels",
+        Technique::Projective => "nothing darkens itself here, or stands between light and caster",
+        Technique::RayTraced => "it is the truth",
+        Technique::None => "there is nothing to darken",
+    }
+}
+
 impl Case {
     /// The case of that name.
     #[must_use]
@@ -178,6 +196,13 @@ impl Case {
             choice.set(key, &value.to_string())?;
         }
         Ok(choice)
+    }
+
+    /// Why that is expected of a technique, in one line.
+    #[must_use]
+    pub fn because(&self, entrant: &Entrant) -> &'static str {
+        let failure = self.failures.iter().find(|failure| failure.of == *entrant);
+        failure.map_or(right_because(entrant.technique), |failure| failure.because)
     }
 
     /// What is expected of a technique.
@@ -406,6 +431,7 @@ struct SummaryEntry {
     #[serde(skip_serializing_if = "Option::is_none")]
     flips: Option<u64>,
     expected: &'static str,
+    because: &'static str,
     verdict: &'static str,
 }
 
@@ -420,6 +446,7 @@ impl SummaryEntry {
             compared: summary.worst.1,
             flips: summary.flips,
             expected: summary.expected.name(),
+            because: Case::named(summary.case).map_or("", |case| case.because(&summary.entrant)),
             verdict: summary.verdict.name(),
         }
     }

@@ -92,3 +92,14 @@ pub fn still_life() -> Result<Scene, MeshError> {
     let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.8, 0.0], [0.8, 0.6, 0.8])?];
     Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.0, 4.0, 1.5), objects))
 }
+
+/// The same object turned about the fixed x, then y, then z axis.
+pub fn turned(object: Object, rotate_degrees: [f64; 3]) -> Object {
+    let rotate_degrees = DVec3::from_array(rotate_degrees);
+    Object { pose: Pose { rotate_degrees, ..object.pose }, ..object }
+}
+
+/// The same object stretched; negative factors mirror.
+pub fn scaled(object: Object, scale: [f64; 3]) -> Object {
+    Object { pose: Pose { scale: DVec3::from_array(scale), ..object.pose }, ..object }
+}

@@ -1,9 +1,10 @@
 //! Sweeps: how the error grows with one number.
 
 use super::stage::{carried, cuboid, enlarged, floor, lamp, mesh, moved, object, scene, still_life, unseen};
+use super::who::*;
 use crate::scene::builtin::shapes;
 use crate::scene::{Light, MeshError, Object};
-use crate::stress::{Case, Drives, Entrant, Failure};
+use crate::stress::{Case, Drives};
 use crate::technique::Technique;
 use glam::DVec3;
 
@@ -25,19 +26,9 @@ pub const ALL: &[Case] = &[
     LIGHT_ORBIT,
 ];
 
-const MAP: Entrant = Entrant::of(Technique::ShadowMap);
-const TEXTURE: Entrant = Entrant::of(Technique::PlanarTexture);
-const SILHOUETTE: Entrant = Entrant::of(Technique::Projective);
-const FAR_CLIP: Entrant = Entrant::with(Technique::ZFail, &[("depth", "standard-finite")]);
-const FAR_CLAMP: Entrant = Entrant::with(Technique::ZFail, &[("depth", "standard-finite-clamp")]);
-const TO_INFINITY: Entrant = Entrant::with(Technique::ZFail, &[("depth", "standard-infinite")]);
-const FINITE: Entrant = Entrant::with(Technique::ZFail, &[("extrusion", "finite:2")]);
-const IN_FLOAT: Entrant = Entrant::with(Technique::ZFail, &[("counter", "float")]);
-const CLAMPED: Entrant = Entrant::with(Technique::ZFail, &[("operations", "clamp")]);
-
-const fn fails(of: Entrant, name: &'static str, because: &'static str) -> Failure {
-    Failure { of, name, because }
-}
+// Two deviations from the specification's table. `near-far` and shadow maps: the map's near plane is
+// fitted to what casts and not to the eye, so it is right here; its bias fails in `grazing`.
+// `light-far` and shadow maps: what fails is none of their usual failures, but the map's depth.
 
 const NEAR_FAR: Case = Case {
     name: "near-far",
@@ -51,15 +42,13 @@ const NEAR_FAR: Case = Case {
         Ok(scene)
     }),
     also: &[TO_INFINITY, FAR_CLIP, FAR_CLAMP],
-    without: &[],
     failures: &[
         fails(FAR_CLIP, "far-clip", "the far plane cuts dark caps away, so volumes are open behind the surface"),
-        fails(FAR_CLAMP, "far-clip", "depth of surfaces and of volumes behind them rounds to the same number"),
-        fails(TO_INFINITY, "depth-bits", "near 1 a float has 24 bits, and the far half of the scene shares one value"),
-        fails(MAP, "aliasing", "the map's texels are larger than pixels"),
-        fails(TEXTURE, "aliasing", "the texture's texels are larger than pixels"),
-        fails(SILHOUETTE, "aliasing", "the silhouette's texels are larger than pixels"),
+        fails(FAR_CLAMP, "far-clip", "nothing is cut away, but surfaces and what is behind them round to one depth"),
+        fails(TO_INFINITY, "depth-bits", "near 1 a float has 24 bits, and the far half of the scene shares one depth"),
+        TEXELS_OF_TEXTURE,
     ],
+    ..PLAIN
 };
 
 const WORLD_OFFSET: Case = Case {
@@ -68,13 +57,8 @@ const WORLD_OFFSET: Case = Case {
     parameter: "offset in metres",
     values: &[0.0, 1e2, 1e4, 1e5, 1e6, 1e7, 1e8],
     drives: Drives::Scene(|offset| Ok(carried(still_life()?, DVec3::new(1.0, 0.5, -0.25) * offset))),
-    also: &[],
-    without: &[],
-    failures: &[
-        fails(MAP, "aliasing", "the map's texels are larger than pixels"),
-        fails(TEXTURE, "aliasing", "the texture's texels are larger than pixels"),
-        fails(SILHOUETTE, "aliasing", "the silhouette's texels are larger than pixels"),
-    ],
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
 };
 
 const WORLD_SCALE: Case = Case {
@@ -83,29 +67,33 @@ const WORLD_SCALE: Case = Case {
     parameter: "scale",
     values: &[1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6],
     drives: Drives::Scene(|factor| Ok(enlarged(still_life()?, factor))),
-    also: &[],
-    without: &[],
-    failures: WORLD_OFFSET.failures,
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
 };
 
 const LIGHT_CLOSE: Case = Case {
     name: "light-close",
-    lesson: "the light comes to the caster's face: its volume opens to a half-space",
+    lesson: "the light comes to a board's face: its volume opens to a half-space",
     parameter: "distance in caster's sizes",
     values: &[1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7],
     drives: Drives::Scene(|distance| {
-        let mut scene = still_life()?;
-        scene.lights = vec![lamp(0.1, 1.1 + 0.8 * distance, 0.15)];
-        Ok(scene)
+        // A sheet: what a map misses of a box's top, its bottom would make up for.
+        let board = moved(object("board", shapes::quad([0.8; 2])?), [0.0, 1.0, 0.0]);
+        let light = lamp(0.1, 1.0 + 0.8 * distance, 0.15);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, board]))
     }),
     also: &[FINITE],
-    without: &[],
     failures: &[
-        fails(FINITE, "finite-extrusion", "volumes end before they reach the floor"),
-        fails(MAP, "map-near-plane", "what is nearer to the light than the map's near plane is not in it"),
-        fails(TEXTURE, "aliasing", "the texture's texels are larger than pixels"),
-        fails(SILHOUETTE, "aliasing", "the silhouette's texels are larger than pixels"),
+        fails(FINITE, "finite-extrusion", "a vertex is carried by its distance to the light, which is next to nothing"),
+        fails(
+            MAP,
+            "map-near-plane",
+            "the map begins at a millionth of the scene: what is nearer to the light is not in it",
+        ),
+        TEXELS_OF_TEXTURE,
+        TEXELS_OF_SILHOUETTE,
     ],
+    ..PLAIN
 };
 
 const LIGHT_FAR: Case = Case {
@@ -118,9 +106,11 @@ const LIGHT_FAR: Case = Case {
         scene.lights = vec![Light::point(DVec3::new(0.2, 1.0, 0.4).normalize() * (6.0 * distance))];
         Ok(scene)
     }),
-    also: &[],
-    without: &[],
-    failures: WORLD_OFFSET.failures,
+    failures: &[
+        fails(MAP, "depth-bits", "seen from far away, all that casts is within a few steps of the map's depth"),
+        TEXELS_OF_TEXTURE,
+    ],
+    ..PLAIN
 };
 
 const GRAZING: Case = Case {
@@ -135,13 +125,19 @@ const GRAZING: Case = Case {
         scene.objects[1].pose.translate.y = 0.3;
         Ok(scene)
     }),
-    also: &[],
-    without: &[],
+    also: &[UNBIASED, DETACHED],
     failures: &[
-        fails(MAP, "acne", "a texel of the map spans metres of the floor's depth"),
-        fails(TEXTURE, "aliasing", "the texture's texels are larger than pixels"),
-        fails(SILHOUETTE, "aliasing", "the silhouette's texels are larger than pixels"),
+        fails(MAP, "acne", "a texel of the map spans metres of the floor, and its bias is no longer enough"),
+        fails(
+            UNBIASED,
+            "acne",
+            "without a bias every surface is as deep as its own texels, and half of them are nearer",
+        ),
+        fails(DETACHED, "peter-panning", "a bias that large carries the shadow away from what throws it"),
+        TEXELS_OF_TEXTURE,
+        TEXELS_OF_SILHOUETTE,
     ],
+    ..PLAIN
 };
 
 const SLIVER: Case = Case {
@@ -157,9 +153,8 @@ const SLIVER: Case = Case {
         let caster = moved(fan, [0.0, 1.0, 0.0]);
         Ok(scene([0.5, 3.5, 4.5], [0.0, 0.3, 0.0], lamp(0.3, 4.0, 0.8), vec![floor(3.0)?, caster]))
     }),
-    also: &[],
-    without: &[],
-    failures: WORLD_OFFSET.failures,
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
 };
 
 const NESTED: Case = Case {
@@ -176,16 +171,21 @@ const NESTED: Case = Case {
         objects.extend(panes.collect::<Result<Vec<Object>, MeshError>>()?);
         Ok(scene([0.5, 3.5, 4.5], [0.0, 0.3, 0.0], lamp(0.1, 8.0, 0.2), objects))
     }),
-    also: &[IN_FLOAT, CLAMPED],
+    also: &[IN_FLOAT, CLAMPED, CLAMPED_IN_TURN],
     without: &[(Technique::Projective, "a silhouette of each of 600 casters does not fit into one texture array")],
     failures: &[
-        fails(Entrant::of(Technique::ZFail), "wrap-256", "a count of 256 reads 0 in eight bits"),
-        fails(Entrant::of(Technique::ZPass), "wrap-256", "a count of 256 reads 0 in eight bits"),
-        fails(Entrant::of(Technique::ZPassPlus), "wrap-256", "a count of 256 reads 0 in eight bits"),
-        fails(CLAMPED, "clamp", "what is beyond 255 is not counted, and is taken away all the same"),
-        fails(MAP, "aliasing", "the map's texels are larger than pixels"),
-        fails(TEXTURE, "aliasing", "the texture's texels are larger than pixels"),
+        fails(Z_FAIL, "wrap-256", "a count of 256 reads 0 in eight bits"),
+        fails(Z_PASS, "wrap-256", "a count of 256 reads 0 in eight bits"),
+        fails(Z_PASS_PLUS, "wrap-256", "a count of 256 reads 0 in eight bits"),
+        fails(
+            CLAMPED,
+            "clamp",
+            "what takes away first stops at 0, and what adds later is left: so wrap is the default",
+        ),
+        fails(CLAMPED_IN_TURN, "clamp", "what adds comes first, so it fails only where more than 255 are added"),
+        TEXELS_OF_TEXTURE,
     ],
+    ..PLAIN
 };
 
 const THIN_GAP: Case = Case {
@@ -198,9 +198,8 @@ const THIN_GAP: Case = Case {
         let objects = vec![floor(3.0)?, unseen(board("left", -1.0)?), unseen(board("right", 1.0)?)];
         Ok(scene([0.0, 3.0, 4.0], [0.0, 0.0, 0.0], lamp(0.0, 3.0, 0.0), objects))
     }),
-    also: &[],
-    without: &[],
-    failures: WORLD_OFFSET.failures,
+    failures: &[TEXELS_OF_MAP, TEXELS_OF_TEXTURE],
+    ..PLAIN
 };
 
 const FINE_GRID: Case = Case {
@@ -209,9 +208,10 @@ const FINE_GRID: Case = Case {
     parameter: "bar in pixels",
     values: &[10.0, 5.0, 2.0, 1.0, 0.5, 0.1],
     drives: Drives::Scene(|pixels| {
-        // A pixel of 240 rows is about 0.02 m of the floor.
+        // A pixel of 240 rows is about 0.02 m of the floor. The grid is so wide that its map has
+        // texels larger than the thinnest bars.
         let pitch = 0.04 * pixels;
-        let count = (1.2 / pitch).ceil().min(150.0) as u32;
+        let count = (2.4 / pitch).ceil() as u32;
         let mut points = Vec::new();
         let mut triangles = Vec::new();
         for bar in 0..count {
@@ -225,9 +225,8 @@ const FINE_GRID: Case = Case {
         let grid = unseen(moved(object("grid", mesh(&points, &triangles)?), [0.0, 1.0, 0.0]));
         Ok(scene([0.0, 4.0, 3.0], [0.0, 0.0, 0.0], lamp(0.2, 5.0, 0.4), vec![floor(2.5)?, grid]))
     }),
-    also: &[],
-    without: &[],
-    failures: WORLD_OFFSET.failures,
+    failures: &[TEXELS_OF_MAP, TEXELS_OF_TEXTURE, TEXELS_OF_SILHOUETTE],
+    ..PLAIN
 };
 
 const TRIANGLE_COUNT: Case = Case {
@@ -240,15 +239,12 @@ const TRIANGLE_COUNT: Case = Case {
         let ball = moved(object("ball", shapes::sphere(0.6, 2 * rings, rings)?), [0.0, 1.0, 0.0]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.0, 4.0, 1.5), vec![floor(3.0)?, ball]))
     }),
-    also: &[],
     without: &[
         (Technique::Planar, "a ball's triangles are receivers by the thousand: not what it is for"),
         (Technique::PlanarTexture, "a ball's triangles are receivers by the thousand: not what it is for"),
     ],
-    failures: &[
-        fails(MAP, "aliasing", "the map's texels are larger than pixels"),
-        fails(SILHOUETTE, "self-shadow", "a silhouette never darkens its own caster"),
-    ],
+    failures: &[TEXELS_OF_MAP],
+    ..PLAIN
 };
 
 const MAP_SIZE: Case = Case {
@@ -257,14 +253,14 @@ const MAP_SIZE: Case = Case {
     parameter: "texels a side",
     values: &[64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0, 4096.0],
     drives: Drives::Setting("size", still_life),
-    also: &[],
     without: &[
         (Technique::ZFail, "it has no map"),
         (Technique::ZPass, "it has no map"),
         (Technique::ZPassPlus, "it has no map"),
         (Technique::Planar, "it has no map"),
     ],
-    failures: WORLD_OFFSET.failures,
+    failures: &[TEXELS_OF_MAP, TEXELS_OF_TEXTURE, TEXELS_OF_SILHOUETTE],
+    ..PLAIN
 };
 
 /// Fifty places of the near plane, from before the box to behind it.
@@ -289,18 +285,21 @@ const NEAR_PLANE: Case = Case {
         scene.camera.near = near;
         Ok(scene)
     }),
-    also: &[],
     without: &[
         (Technique::ShadowMap, "it does not know the near plane"),
         (Technique::Planar, "it does not know the near plane"),
         (Technique::PlanarTexture, "it does not know the near plane"),
         (Technique::Projective, "it does not know the near plane"),
     ],
-    failures: &[fails(
-        Entrant::of(Technique::ZPass),
-        "near-plane",
-        "faces that the near plane cuts away are not counted",
-    )],
+    failures: &[
+        CUT_BY_NEAR,
+        fails(
+            Z_PASS_PLUS,
+            "near-plane-crack",
+            "the light's view and the camera's cut a caster along one line, and round it apart",
+        ),
+    ],
+    ..PLAIN
 };
 
 /// A thousand steps of the light, each far less than a pixel of its shadow.
@@ -325,7 +324,6 @@ const LIGHT_ORBIT: Case = Case {
         let light = lamp(1.5 * cos, 3.5, 1.5 * sin);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, torus]))
     }),
-    also: &[],
     without: &[
         (Technique::ZPass, "z-fail stands for the volumes: a thousand frames each"),
         (Technique::ZPassPlus, "z-fail stands for the volumes: a thousand frames each"),
@@ -334,5 +332,5 @@ const LIGHT_ORBIT: Case = Case {
         (Technique::PlanarTexture, "its texels swim with the light: not promised to stand still"),
         (Technique::Projective, "its texels swim with the light: not promised to stand still"),
     ],
-    failures: &[],
+    ..PLAIN
 };
