@@ -22,6 +22,7 @@ pub const LIGHT_FACING: Entrant = Entrant::with(Technique::ZFail, &[("casters", 
 pub const BY_TOPOLOGY: Entrant = Entrant::with(Technique::ZFail, &[("casters", "by-topology")]);
 pub const CAPS_NEVER: Entrant = Entrant::with(Technique::ZFail, &[("light-caps", "never")]);
 pub const UNBIASED: Entrant = Entrant::with(Technique::ShadowMap, &[("bias-slope", "0"), ("bias-constant", "0")]);
+pub const COARSE: Entrant = Entrant::with(Technique::ShadowMap, &[("size", "128")]);
 pub const DETACHED: Entrant = Entrant::with(Technique::ShadowMap, &[("bias-slope", "200")]);
 pub const UNCLIPPED: Entrant = Entrant::with(Technique::Planar, &[("clip", "off")]);
 pub const REVERSED: Entrant = Entrant::with(Technique::Projective, &[("reverse", "on")]);

@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 
 /// All of them.
 pub const ALL: &[Case] = &[
+    LIGHT_AT_SHEET,
     LIGHT_IN_NEAR_PLANE,
     LIGHT_INSIDE_MESH,
     LIGHT_IN_TORUS_HOLE,
@@ -20,6 +21,29 @@ pub const ALL: &[Case] = &[
     SUN_ALONG_RECEIVER,
     LIGHT_COUNT,
 ];
+
+// Z-fail at 1e-7: from the sheet's far corners the light is 1e-5 degrees over its plane, where the
+// specification allows for `f32-limit`. The far cap's corners are directions that are that nearly in
+// one plane, and single precision no longer says on which side of it a pixel is.
+const LIGHT_AT_SHEET: Case = Case {
+    name: "light-at-sheet",
+    lesson: "the light is so near a sheet that its map's near plane passes it: the map sees through it",
+    parameter: "distance in caster's sizes",
+    values: &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7],
+    drives: Drives::Scene(|distance| {
+        let sheet = moved(object("sheet", shapes::quad([0.8; 2])?), [0.0, 1.0, 0.0]);
+        let light = lamp(0.1, 1.0 + 0.8 * distance, 0.15);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, sheet]))
+    }),
+    failures: &[
+        fails(MAP, "map-near-plane", "it begins at a millionth of the scene: what is nearer to the light is not in it"),
+        fails(Z_FAIL, "f32-limit", "the far cap's corners are directions in one plane, as far as 24 bits can tell"),
+        fails(PLANAR, "f32-limit", "a shadow of a thousand kilometres has corners that 24 bits can't place to a pixel"),
+        TEXELS_OF_TEXTURE,
+        TEXELS_OF_SILHOUETTE,
+    ],
+    ..PLAIN
+};
 
 const LIGHT_IN_NEAR_PLANE: Case = Case {
     name: "light-in-near-plane",
