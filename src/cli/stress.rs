@@ -2,6 +2,7 @@
 
 use super::options::{picture_size, technique_named};
 use super::progress::with_bar;
+use super::report::{is_png, plot_file};
 use super::{CliError, output};
 use crate::progress::Progress;
 use crate::scene::suggestion;
@@ -16,7 +17,7 @@ pub struct StressArguments {
     #[arg(long, value_name = "NAME")]
     case: Vec<String>,
     /// List the cases, a line each, and run none
-    #[arg(long, conflicts_with_all = ["case", "json"])]
+    #[arg(long, conflicts_with_all = ["case", "json", "markdown", "plot"])]
     list: bool,
     /// Only these techniques; repeatable
     #[arg(short, long, value_name = "NAME")]
@@ -30,6 +31,12 @@ pub struct StressArguments {
     /// Machine-readable, to a file or to standard output in place of the table
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     json: Option<Option<String>>,
+    /// A Markdown table, to a file or to standard output in place of the table
+    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with = "json")]
+    markdown: Option<Option<String>>,
+    /// A picture of error against each sweep's number (.svg or .png)
+    #[arg(long, value_name = "FILE", value_parser = plot_file)]
+    plot: Option<String>,
 }
 
 /// Runs the cases.
@@ -48,24 +55,39 @@ pub fn run(arguments: &StressArguments) -> Result<(), CliError> {
     let chosen = arguments.case.iter().map(named).collect::<Result<Vec<_>, _>>()?;
     let chosen = if chosen.is_empty() { cases::all().collect() } else { chosen };
     let only = arguments.technique.iter().map(|name| technique_named(name)).collect::<Result<Vec<Technique>, _>>()?;
-    let file = arguments.json.as_ref().and_then(Option::as_deref);
-    file.map_or(Ok(()), output::check_target)?;
+    let files = [&arguments.json, &arguments.markdown].into_iter().flatten().flatten().chain(&arguments.plot);
+    let files: Vec<&String> = files.collect();
+    files.iter().try_for_each(|file| output::check_target(file))?;
+    if let [one, other] = files[..]
+        && one == other
+    {
+        return Err(CliError::Usage(format!("`{}` is named for two results: choose another file", one.escape_debug())));
+    }
     let mut session = Session::new(arguments.adapter.as_deref())?;
     let rows =
         with_bar("stress", &Progress::default(), |progress| session.stress(&chosen, &only, arguments.size, progress))?;
     let stress = Stress { adapter: session.adapter().clone(), size: arguments.size, rows };
-    match &arguments.json {
-        Some(_) => output::deliver(
-            &stress
-                .to_json()
-                .map_err(|error| CliError::Output { path: "the rows".to_owned(), source: error.into() })?,
-            file,
-        )?,
-        None => output::print(&stress.to_table())?,
-    }
+    deliver(arguments, &stress)?;
     let unexpected =
         stress.summary().into_iter().filter(|summary| summary.verdict == crate::stress::Verdict::Unexpected).count();
     if unexpected > 0 { Err(CliError::Unexpected { count: unexpected }) } else { Ok(()) }
+}
+
+fn deliver(arguments: &StressArguments, stress: &Stress) -> Result<(), CliError> {
+    if let Some(file) = &arguments.plot {
+        let plot = stress.to_plot();
+        let bytes = if is_png(file) { plot.to_png()? } else { plot.to_svg().into_bytes() };
+        output::write(file, &bytes)?;
+    }
+    match (&arguments.json, &arguments.markdown) {
+        (Some(file), _) => {
+            let failed =
+                |error: serde_json::Error| CliError::Output { path: "the rows".to_owned(), source: error.into() };
+            output::deliver(&stress.to_json().map_err(failed)?, file.as_deref())
+        }
+        (_, Some(file)) => output::deliver(&stress.to_markdown(), file.as_deref()),
+        _ => output::print(&stress.to_table()),
+    }
 }
 
 fn unknown(name: &str) -> CliError {
