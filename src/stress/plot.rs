@@ -5,7 +5,7 @@
 //! lane for each who runs, so that lines without an error do not cover each other. The first wrong
 //! value, where the line leaves the band, has a filled mark.
 
-use super::{Case, Entrant, Row, Stress, table};
+use super::{Case, Drives, Entrant, Row, Stress, table};
 use crate::numbers;
 use crate::report::plot::labels::{self, Obstacles, Wish};
 use crate::report::plot::scale::{self, Log};
@@ -29,7 +29,7 @@ const LEAST_VALUES: usize = 6;
 const LEAST_DECADES: f64 = 20.0;
 /// Above it a sweep is not drawn mark by mark: only where it breaks.
 const MOST_MARKS: usize = 16;
-/// More values are no sweep of one number, but a heap of scenes.
+/// More values that are no motion are a heap of scenes.
 const MOST_VALUES: usize = 100;
 
 impl Stress {
@@ -38,7 +38,8 @@ impl Stress {
     pub fn to_plot(&self) -> Plot {
         let mut cases: Vec<&'static Case> = self.rows.iter().filter_map(|row| Case::named(row.case)).collect();
         cases.dedup_by_key(|case| case.name);
-        cases.retain(|case| (LEAST_VALUES..=MOST_VALUES).contains(&case.values.len()));
+        let is_motion = |case: &Case| matches!(case.drives, Drives::Motion(_));
+        cases.retain(|case| is_motion(case) || (LEAST_VALUES..=MOST_VALUES).contains(&case.values.len()));
         let mut plot = Plot::empty(PAGE);
         plot.title = "Wrong pixels where a scene is driven to its extreme".to_owned();
         plot.summary = format!("{} sweeps: the share of wrong pixels against one number each.", cases.len());
@@ -107,7 +108,7 @@ impl Stress {
             wishes.extend(labelled.and_then(|index| points.get(index)).map(|at| Wish {
                 at: *at,
                 whiskers: [0.0; 2],
-                text: entrant.to_string(),
+                text: caption(entrant),
                 ink: Ink::Technique(style),
                 area: if breaks.is_some() { axes.area } else { axes.band },
                 must: breaks.is_some(),
@@ -132,6 +133,12 @@ impl Stress {
     }
 }
 
+/// A technique's name; of a form what sets it apart: shape and colour are the technique's.
+fn caption(entrant: &Entrant) -> String {
+    let settings: Vec<String> = entrant.settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
+    if settings.is_empty() { entrant.technique.name().to_owned() } else { settings.join(" ") }
+}
+
 fn share(row: &Row) -> f64 {
     if row.error.compared == 0 { 0.0 } else { row.error.wrong() as f64 / row.error.compared as f64 * 100.0 }
 }
@@ -146,8 +153,13 @@ fn spot(row: &Row, at: [f64; 2], filled: bool) -> Spot {
 
 /// From a case's number to points across.
 enum Across {
-    /// The number spans decades; a zero is left of them.
-    Log(Log),
+    /// The number spans decades.
+    Log {
+        /// Of them.
+        scale: Log,
+        /// The lowest value but zero, where there is a zero: that is a decade below it.
+        above_zero: Option<f64>,
+    },
     /// It does not.
     Even {
         /// First and last value.
@@ -166,15 +178,15 @@ impl Across {
         if high / low < LEAST_DECADES || values.len() > MOST_MARKS {
             return Across::Even { values: ends, points };
         }
-        // A place a decade lower for zero.
-        let low = if positive().count() < values.len() { low / 10.0 } else { low };
+        let above_zero = (positive().count() < values.len()).then_some(low);
+        let low = if above_zero.is_some() { low / 10.0 } else { low };
         let points = if ends[0] > ends[1] { [points[1], points[0]] } else { points };
-        Across::Log(Log::new([low, high], points))
+        Across::Log { scale: Log::new([low, high], points), above_zero }
     }
 
     fn position(&self, value: f64) -> f64 {
         match self {
-            Across::Log(log) => log.position(value),
+            Across::Log { scale, .. } => scale.position(value),
             Across::Even { values: [first, last], points: [start, end] } => {
                 let span = if last == first { 1.0 } else { last - first };
                 start + (value - first) / span * (end - start)
@@ -184,7 +196,11 @@ impl Across {
 
     fn ticks(&self) -> Vec<f64> {
         match self {
-            Across::Log(log) => log.ticks(46.0),
+            Across::Log { scale, above_zero: None } => scale.ticks(46.0),
+            Across::Log { scale, above_zero: Some(low) } => {
+                let ticks = scale.ticks(46.0).into_iter().filter(|tick| tick >= low);
+                [0.0].into_iter().chain(ticks).collect()
+            }
             Across::Even { values: [first, last], .. } => {
                 (0..=4).map(|quarter| first + (last - first) * f64::from(quarter) / 4.0).collect()
             }
