@@ -114,6 +114,8 @@ impl Stress {
                 must: breaks.is_some(),
             }));
         }
+        // Those that must be shown and need most room first.
+        wishes.sort_by_key(|wish: &Wish| std::cmp::Reverse((wish.must, wish.text.len())));
         let obstacles = Obstacles { marks: spots.iter().map(|spot| spot.at).collect(), segments };
         let placed = labels::place(&wishes, &obstacles);
         lines.extend(placed.iter().flatten().filter_map(|placed| {
