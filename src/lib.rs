@@ -49,6 +49,7 @@ pub mod report;
 pub mod scene;
 pub mod session;
 pub mod stencil_machine;
+pub mod stress;
 pub mod technique;
 pub mod testing;
 pub mod truth;

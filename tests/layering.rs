@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 20] = [
+const MAY_USE: [(&str, &[&str]); 21] = [
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
@@ -20,6 +20,7 @@ const MAY_USE: [(&str, &[&str]); 20] = [
     ("gpu", &["math", "scene", "plan", "capture"]),
     ("history", &["math", "numbers", "plan", "capture", "stencil_machine", "truth"]),
     ("report", &["capture", "numbers"]),
+    ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
         "session",
         &[
@@ -35,6 +36,7 @@ const MAY_USE: [(&str, &[&str]); 20] = [
             "progress",
             "report",
             "history",
+            "stress",
         ],
     ),
     (
@@ -55,7 +57,10 @@ const MAY_USE: [(&str, &[&str]); 20] = [
     ),
     ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report", "history"]),
     ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers"]),
-    ("cli", &["math", "scene", "plan", "technique", "capture", "history", "session", "app", "progress", "report"]),
+    (
+        "cli",
+        &["math", "scene", "plan", "technique", "capture", "history", "session", "app", "progress", "report", "stress"],
+    ),
     ("main", &["cli"]),
 ];
 

@@ -15,6 +15,7 @@ mod ray_cast;
 mod report;
 mod scenes;
 mod stencil_machine;
+mod stress;
 mod techniques;
 mod truth;
 mod volumes;

@@ -53,6 +53,12 @@ pub enum CliError {
         /// How many.
         pixels: usize,
     },
+    /// Techniques did in a stress case what nobody expected.
+    #[error("{count} of the results are unexpected: see the lines marked `!!`")]
+    Unexpected {
+        /// How many cases times techniques.
+        count: usize,
+    },
     /// Nobody reads standard output any more.
     #[error("standard output was closed")]
     ClosedOutput,
@@ -66,7 +72,7 @@ impl CliError {
         match self {
             CliError::Session(error) if error.is_missing_adapter() => 3,
             CliError::ClosedOutput => 0,
-            CliError::WrongHistory { .. } => 1,
+            CliError::WrongHistory { .. } | CliError::Unexpected { .. } => 1,
             _ => 2,
         }
     }

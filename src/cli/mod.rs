@@ -13,6 +13,7 @@ mod pixel;
 mod progress;
 mod report;
 mod scenes;
+mod stress;
 mod usage;
 mod view;
 
@@ -24,9 +25,9 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// The commands that exist.
-const COMMANDS: [&str; 7] = ["view", "capture", "pixel", "report", "scenes", "bench", "help"];
+const COMMANDS: [&str; 8] = ["view", "capture", "pixel", "report", "stress", "scenes", "bench", "help"];
 /// Commands that are planned, but not built.
-const COMMANDS_TO_COME: [&str; 3] = ["diagnose", "diff", "stress"];
+const COMMANDS_TO_COME: [&str; 2] = ["diagnose", "diff"];
 
 /// An interactive visual debugger for stencil shadows and shadow maps
 #[derive(Debug, Parser)]
@@ -46,6 +47,8 @@ enum Command {
     Pixel(Box<pixel::PixelArguments>),
     /// Measure how wrong each technique is, and what it costs
     Report(Box<report::ReportArguments>),
+    /// Drive every technique until it breaks
+    Stress(Box<stress::StressArguments>),
     /// List the built-in scenes
     Scenes(scenes::ScenesArguments),
     /// Measure the program's own speed, as ratios
@@ -60,7 +63,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
     let arguments = with_command(arguments.into_iter().collect());
     let first = arguments.get(1).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
     if COMMANDS_TO_COME.contains(&first.as_str()) {
-        let instead = "use view, capture, pixel, report, scenes or bench".to_owned();
+        let instead = "use view, capture, pixel, report, stress, scenes or bench".to_owned();
         return Err(CliError::NotThereYet { what: format!("`{first}`"), instead });
     }
     let second = arguments.get(2).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
@@ -76,6 +79,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
         Command::Capture(arguments) => capture::run(&arguments),
         Command::Pixel(arguments) => pixel::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
+        Command::Stress(arguments) => stress::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
     }

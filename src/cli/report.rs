@@ -134,12 +134,13 @@ fn check_distinct(files: &[&String], scenes: &[String]) -> Result<(), CliError> 
     Ok(())
 }
 
-fn is_png(file: &str) -> bool {
+/// Does a file's ending ask for pixels?
+pub fn is_png(file: &str) -> bool {
     Path::new(file).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
 }
 
 /// A file whose ending says what to write.
-fn plot_file(text: &str) -> Result<String, String> {
+pub fn plot_file(text: &str) -> Result<String, String> {
     let is_svg = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
     if is_svg || is_png(text) { Ok(text.to_owned()) } else { Err("give a file that ends in .svg or .png".to_owned()) }
 }

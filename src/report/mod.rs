@@ -233,6 +233,22 @@ impl Report {
     }
 }
 
+impl plot::Plot {
+    /// On paper, as SVG.
+    #[must_use]
+    pub fn to_svg(&self) -> String {
+        svg::svg(self)
+    }
+
+    /// On paper, as PNG with two pixels a point.
+    ///
+    /// # Errors
+    /// More charts than memory has room for.
+    pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
+        png::png(&self.to_svg(), 2.0)
+    }
+}
+
 /// Is `one` at least as fast and right as `other`, and one of the two more?
 fn beats(one: &Row, other: &Row) -> bool {
     let (time, error) = (one.frame_ms.median, one.wrong_fraction);

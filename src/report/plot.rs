@@ -14,9 +14,9 @@
 
 mod around;
 mod chart;
-mod labels;
+pub(crate) mod labels;
 mod marks;
-mod scale;
+pub(crate) mod scale;
 
 #[cfg(test)]
 mod tests;
@@ -36,6 +36,8 @@ pub const SMALL_SIZE: f64 = 11.0;
 /// Radius of a mark in points.
 pub const RADIUS: f64 = 4.6;
 
+/// What a report's plot is called.
+const TITLE: &str = "Wrong pixels against frame time";
 /// Below this a chart is too narrow to be read, points.
 const LEAST_CHART_WIDTH: f64 = 300.0;
 /// Below this a chart is too low to be read, points.
@@ -213,6 +215,8 @@ pub struct Key {
 pub struct Plot {
     /// Width and height in points.
     pub size: [f64; 2],
+    /// What it is.
+    pub title: String,
     /// In a sentence, for who can't see it.
     pub summary: String,
     /// One a scene.
@@ -244,15 +248,15 @@ pub fn text_width(text: &str, size: f64) -> f64 {
 
 impl Text {
     /// A line of words.
-    fn new(at: [f64; 2], text: impl Into<String>, size: f64, ink: Ink) -> Text {
+    pub(crate) fn new(at: [f64; 2], text: impl Into<String>, size: f64, ink: Ink) -> Text {
         Text { at, text: text.into(), size, anchor: Anchor::Start, ink, strong: false }
     }
 
-    fn anchored(self, anchor: Anchor) -> Text {
+    pub(crate) fn anchored(self, anchor: Anchor) -> Text {
         Text { anchor, ..self }
     }
 
-    fn strong(self) -> Text {
+    pub(crate) fn strong(self) -> Text {
         Text { strong: true, ..self }
     }
 
@@ -325,9 +329,11 @@ fn columns(width: f64, most: usize, charts: usize) -> usize {
 }
 
 impl Plot {
-    fn empty(width: f64) -> Plot {
+    /// Without anything, and no height yet.
+    pub(crate) fn empty(width: f64) -> Plot {
         Plot {
             size: [width, 0.0],
+            title: TITLE.to_owned(),
             summary: String::new(),
             charts: Vec::new(),
             texts: Vec::new(),

@@ -19,8 +19,9 @@ pub fn svg(plot: &Plot) -> String {
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
          height=\"{height}\" role=\"img\" aria-labelledby=\"title desc\" font-family=\"{FONTS}\">\n\
-         <title id=\"title\">Wrong pixels against frame time</title>\n<desc id=\"desc\">{}</desc>\n\
+         <title id=\"title\">{}</title>\n<desc id=\"desc\">{}</desc>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
+        escaped(&plot.title),
         escaped(&plot.summary),
         hex(PAPER),
     );

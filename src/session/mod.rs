@@ -8,6 +8,7 @@ mod draws;
 mod history;
 mod measure;
 mod report;
+mod stress;
 mod truth;
 mod volumes;
 
@@ -78,6 +79,9 @@ pub enum SessionError {
         /// Of the picture.
         size: [u32; 2],
     },
+    /// A scene made by code is broken.
+    #[error(transparent)]
+    Scene(#[from] crate::scene::SceneError),
     /// It was asked to stop.
     #[error("cancelled")]
     Cancelled,

@@ -10,6 +10,7 @@
 //! Light caps are the surface's own triangles in its own vertex order, so that their depths are
 //! bit-equal and the strict test is exact. Triangles that face away from the light count as
 //! turned: they are not turned in the buffer, but drawn with front and back operations swapped.
+//! Sides are drawn a few steps of depth behind their place (`counting`).
 
 mod counting;
 mod near_count;

@@ -16,7 +16,7 @@ pub fn summary(report: &Report) -> String {
 
 /// Title and what it was measured on; where the charts begin.
 pub fn heading(plot: &mut Plot, report: &Report) -> f64 {
-    let title = Text::new([8.0, 18.0], "Wrong pixels against frame time", TITLE_SIZE + 2.0, Ink::Text).strong();
+    let title = Text::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, Ink::Text).strong();
     let adapter = &report.adapter;
     let sizes = table::sizes(report.rows.iter().map(|row| row.size));
     let facts = [adapter.name.as_str(), adapter.driver.as_str(), sizes.as_str()];

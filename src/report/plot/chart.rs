@@ -351,7 +351,8 @@ fn label(
 }
 
 impl Chart {
-    fn moved(self, [right, down]: [f64; 2]) -> Chart {
+    /// The same chart at another corner of the page.
+    pub(crate) fn moved(self, [right, down]: [f64; 2]) -> Chart {
         let to = |[x, y]: [f64; 2]| [x + right, y + down];
         let rect = |rect: Rect| Rect { min: to(rect.min), max: to(rect.max) };
         let text = |text: Text| Text { at: to(text.at), ..text };

@@ -1,0 +1,97 @@
+//! `stencilscope stress`: every technique driven until it breaks.
+
+use super::options::{picture_size, technique_named};
+use super::progress::with_bar;
+use super::report::{is_png, plot_file};
+use super::{CliError, output};
+use crate::progress::Progress;
+use crate::scene::suggestion;
+use crate::session::Session;
+use crate::stress::{Case, Stress, cases};
+use crate::technique::Technique;
+use clap::Args;
+
+#[derive(Debug, Args)]
+pub struct StressArguments {
+    /// Only this case; repeatable [default: all]
+    #[arg(long, value_name = "NAME")]
+    case: Vec<String>,
+    /// List the cases, a line each, and run none
+    #[arg(long, conflicts_with_all = ["case", "json", "markdown", "plot"])]
+    list: bool,
+    /// Only these techniques; repeatable
+    #[arg(short, long, value_name = "NAME")]
+    technique: Vec<String>,
+    /// Width and height of the picture
+    #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "320x240")]
+    size: [u32; 2],
+    /// A part of the GPU's name; `llvmpipe` is the software one [default: the best]
+    #[arg(long, value_name = "SUBSTRING")]
+    adapter: Option<String>,
+    /// Machine-readable, to a file or to standard output in place of the table
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    json: Option<Option<String>>,
+    /// A Markdown table, to a file or to standard output in place of the table
+    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with = "json")]
+    markdown: Option<Option<String>>,
+    /// A picture of error against each sweep's number (.svg or .png)
+    #[arg(long, value_name = "FILE", value_parser = plot_file)]
+    plot: Option<String>,
+}
+
+/// Runs the cases.
+///
+/// # Errors
+/// A case or technique that does not exist; no GPU; a file that can't be written;
+/// [`CliError::Unexpected`] where a technique did not do as expected.
+pub fn run(arguments: &StressArguments) -> Result<(), CliError> {
+    if arguments.list {
+        let line = |case: &Case| {
+            format!("{:22}  {} values of {}: {}\n", case.name, case.values.len(), case.parameter, case.lesson)
+        };
+        return output::print(&cases::all().map(line).collect::<String>());
+    }
+    let named = |name: &String| Case::named(name).ok_or_else(|| unknown(name));
+    let chosen = arguments.case.iter().map(named).collect::<Result<Vec<_>, _>>()?;
+    let chosen = if chosen.is_empty() { cases::all().collect() } else { chosen };
+    let only = arguments.technique.iter().map(|name| technique_named(name)).collect::<Result<Vec<Technique>, _>>()?;
+    let files = [&arguments.json, &arguments.markdown].into_iter().flatten().flatten().chain(&arguments.plot);
+    let files: Vec<&String> = files.collect();
+    files.iter().try_for_each(|file| output::check_target(file))?;
+    if let [one, other] = files[..]
+        && one == other
+    {
+        return Err(CliError::Usage(format!("`{}` is named for two results: choose another file", one.escape_debug())));
+    }
+    let mut session = Session::new(arguments.adapter.as_deref())?;
+    let rows =
+        with_bar("stress", &Progress::default(), |progress| session.stress(&chosen, &only, arguments.size, progress))?;
+    let stress = Stress { adapter: session.adapter().clone(), size: arguments.size, rows };
+    deliver(arguments, &stress)?;
+    let unexpected =
+        stress.summary().into_iter().filter(|summary| summary.verdict == crate::stress::Verdict::Unexpected).count();
+    if unexpected > 0 { Err(CliError::Unexpected { count: unexpected }) } else { Ok(()) }
+}
+
+fn deliver(arguments: &StressArguments, stress: &Stress) -> Result<(), CliError> {
+    if let Some(file) = &arguments.plot {
+        let plot = stress.to_plot();
+        let bytes = if is_png(file) { plot.to_png()? } else { plot.to_svg().into_bytes() };
+        output::write(file, &bytes)?;
+    }
+    match (&arguments.json, &arguments.markdown) {
+        (Some(file), _) => {
+            let failed =
+                |error: serde_json::Error| CliError::Output { path: "the rows".to_owned(), source: error.into() };
+            output::deliver(&stress.to_json().map_err(failed)?, file.as_deref())
+        }
+        (_, Some(file)) => output::deliver(&stress.to_markdown(), file.as_deref()),
+        _ => output::print(&stress.to_table()),
+    }
+}
+
+fn unknown(name: &str) -> CliError {
+    let names: Vec<&str> = cases::all().map(|case| case.name).collect();
+    let hint = suggestion(name, &names);
+    CliError::Usage(format!("no stress case is called `{}`: {hint}", name.escape_debug()))
+}

@@ -1,0 +1,19 @@
+//! Single extremes: places where a rule of thumb, a tolerance or a sign goes wrong.
+
+mod eyes;
+mod lights;
+mod meshes;
+mod receivers;
+
+use crate::stress::Case;
+
+/// All of them.
+pub fn all() -> impl Iterator<Item = &'static Case> {
+    [eyes::ALL, lights::ALL, meshes::ALL, receivers::ALL].into_iter().flatten()
+}
+
+/// So many steps of the last bit away.
+fn ulps(value: f64, steps: f64) -> f64 {
+    let step = if steps > 0.0 { f64::next_up } else { f64::next_down };
+    (0..steps.abs() as u32).fold(value, |value, _| step(value))
+}

@@ -1,0 +1,97 @@
+//! Extremes of where the eye and the near plane are.
+
+use super::ulps;
+use crate::scene::Light;
+use crate::scene::builtin::shapes;
+use crate::stress::cases::stage::{cuboid, floor, lamp, moved, object, scene, still_life, turned};
+use crate::stress::cases::who::*;
+use crate::stress::{Case, Drives};
+use glam::DVec3;
+
+/// All of them.
+pub const ALL: &[Case] =
+    &[EYE_IN_VOLUME, EYE_ON_SIDE_PLANE, LIGHT_BEHIND_EYE, SKY_BEHIND_VOLUME, SUN_ALONG_VIEW, ONE_PIXEL, WIDE, TALL];
+
+const EYE_IN_VOLUME: Case = Case {
+    name: "eye-in-volume",
+    lesson: "a roof over the eye: whoever counts from the eye on begins with a count that is not zero",
+    drives: Drives::Scene(|_| {
+        let roof = moved(object("roof", shapes::quad([2.5; 2])?), [1.3, 4.0, 3.2]);
+        let objects = vec![floor(3.0)?, roof, cuboid("box", [0.0, 0.5, 0.0], [0.6; 3])?];
+        Ok(scene([1.5, 2.0, 3.5], [0.0, 0.3, 0.0], lamp(1.2, 6.0, 3.0), objects))
+    }),
+    failures: &[CUT_BY_NEAR, TEXELS_OF_TEXTURE, TEXELS_OF_SILHOUETTE],
+    ..PLAIN
+};
+
+const EYE_ON_SIDE_PLANE: Case = Case {
+    name: "eye-on-side-plane",
+    lesson: "the eye lies in a volume's side, to the last bit: it is seen as a line, and cut by the near plane",
+    parameter: "ulps",
+    values: &[-1.0, 0.0, 1.0],
+    drives: Drives::Scene(|steps| {
+        // The light at height 4 carries the edge at x = 1, height 2, to x = 1.5 at the eye's height.
+        let board = moved(object("board", shapes::quad([1.0, 2.0])?), [0.5, 2.0, 0.0]);
+        let eye = [ulps(1.5, steps), 1.0, 1.0];
+        Ok(scene(eye, [-0.5, 0.0, -1.0], lamp(0.0, 4.0, 0.0), vec![floor(3.0)?, board]))
+    }),
+    failures: &[CUT_BY_NEAR, TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const LIGHT_BEHIND_EYE: Case = Case {
+    name: "light-behind-eye",
+    lesson: "the light is behind the eye, and a caster between eye and near plane: it is not drawn, but casts",
+    drives: Drives::Scene(|_| {
+        let board = moved(turned(object("board", shapes::quad([0.3; 2])?), [90.0, 0.0, 0.0]), [0.1, 1.1, 3.5]);
+        let wall = moved(turned(object("wall", shapes::quad([6.0, 4.0])?), [90.0, 0.0, 0.0]), [0.0, 1.0, -2.0]);
+        let mut scene = scene([0.0, 1.0, 4.0], [0.0, 1.0, 0.0], lamp(0.2, 1.4, 8.0), vec![floor(3.0)?, wall, board]);
+        scene.camera.near = 1.0;
+        Ok(scene)
+    }),
+    failures: &[CUT_BY_NEAR, TEXELS_OF_TEXTURE, BETWEEN],
+    ..PLAIN
+};
+
+const SKY_BEHIND_VOLUME: Case = Case {
+    name: "sky-behind-volume",
+    lesson: "pixels that show no surface lie behind volumes too: they are neither lit nor dark",
+    drives: Drives::Scene(|_| {
+        let mut scene = still_life()?;
+        scene.camera.target = scene.camera.eye + DVec3::new(-1.2, -0.55, -4.0);
+        Ok(scene)
+    }),
+    also: &[TO_INFINITY],
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const SUN_ALONG_VIEW: Case = Case {
+    name: "sun-along-view",
+    lesson: "the sun shines along the view: every volume is seen from its end, every side edge-on in the middle",
+    drives: Drives::Scene(|_| {
+        let mut scene = still_life()?;
+        scene.lights = vec![Light::directional(scene.camera.eye - scene.camera.target)];
+        Ok(scene)
+    }),
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const ONE_PIXEL: Case =
+    Case { name: "one-pixel", lesson: "a picture of one pixel has neighbours on no side", size: Some([1, 1]), ..PLAIN };
+
+const WIDE: Case = Case {
+    name: "wide-picture",
+    lesson: "16384 × 1 pixels: the widest that there is, a view of nearly 180 degrees across",
+    size: Some([16_384, 1]),
+    ..PLAIN
+};
+
+const TALL: Case = Case {
+    name: "tall-picture",
+    lesson: "1 × 16384 pixels: one column, each pixel a sliver",
+    size: Some([1, 16_384]),
+    failures: &[TEXELS_OF_MAP, TEXELS_OF_TEXTURE, TEXELS_OF_SILHOUETTE],
+    ..PLAIN
+};

@@ -1,0 +1,191 @@
+//! Extremes of where the light is, and of how many there are.
+
+use super::ulps;
+use crate::scene::builtin::shapes;
+use crate::scene::{Light, MeshError, Scene};
+use crate::stress::cases::stage::{cuboid, floor, lamp, moved, object, scene, still_life, turned};
+use crate::stress::cases::who::*;
+use crate::stress::{Case, Drives};
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// All of them.
+pub const ALL: &[Case] = &[
+    LIGHT_AT_SHEET,
+    LIGHT_IN_NEAR_PLANE,
+    LIGHT_INSIDE_MESH,
+    LIGHT_IN_TORUS_HOLE,
+    LIGHT_IN_FACE_PLANE,
+    LIGHT_ON_VERTEX,
+    CASTER_AROUND_LIGHT,
+    SUN_ALONG_RECEIVER,
+    LIGHT_COUNT,
+];
+
+// Z-fail at 1e-7: from the sheet's far corners the light is 1e-5 degrees over its plane, where the
+// specification allows for `f32-limit`. The far cap's corners are directions that are that nearly in
+// one plane, and single precision no longer says on which side of it a pixel is.
+const LIGHT_AT_SHEET: Case = Case {
+    name: "light-at-sheet",
+    lesson: "the light is so near a sheet that its map's near plane passes it: the map sees through it",
+    parameter: "distance in caster's sizes",
+    values: &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7],
+    drives: Drives::Scene(|distance| {
+        let sheet = moved(object("sheet", shapes::quad([0.8; 2])?), [0.0, 1.0, 0.0]);
+        let light = lamp(0.1, 1.0 + 0.8 * distance, 0.15);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, sheet]))
+    }),
+    failures: &[
+        fails(MAP, "map-near-plane", "it begins at a millionth of the scene: what is nearer to the light is not in it"),
+        fails(Z_FAIL, "f32-limit", "the far cap's corners are directions in one plane, as far as 24 bits can tell"),
+        fails(PLANAR, "f32-limit", "a shadow of a thousand kilometres has corners that 24 bits can't place to a pixel"),
+        TEXELS_OF_TEXTURE,
+        TEXELS_OF_SILHOUETTE,
+    ],
+    ..PLAIN
+};
+
+const LIGHT_IN_NEAR_PLANE: Case = Case {
+    name: "light-in-near-plane",
+    lesson: "the light lies in the near plane and sees it as a line: who counts there from the light sees nothing",
+    parameter: "ulps",
+    values: &[-1.0, 0.0, 1.0],
+    drives: Drives::Scene(|steps| {
+        // The eye at z = 4 has its near plane at z = 3; a board between it and the light crosses it.
+        let board = moved(object("board", shapes::quad([0.6; 2])?), [0.5, 2.0, 3.0]);
+        let light = lamp(1.0, 3.0, ulps(3.0, steps));
+        let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.4, 0.0], [0.8; 3])?, board];
+        let mut scene = scene([0.0, 1.0, 4.0], [0.0, 1.0, 0.0], light, objects);
+        scene.camera.near = 1.0;
+        Ok(scene)
+    }),
+    failures: &[
+        CUT_BY_NEAR,
+        fails(
+            Z_PASS_PLUS,
+            "light-in-near-plane",
+            "the light sees the near rectangle as a line, so what the eye is inside of is not counted",
+        ),
+        TEXELS_OF_TEXTURE,
+        TEXELS_OF_SILHOUETTE,
+    ],
+    ..PLAIN
+};
+
+const LIGHT_INSIDE_MESH: Case = Case {
+    name: "light-inside-mesh",
+    lesson: "the light is inside a closed mesh: all outside is dark, though no outer face is turned to the light",
+    drives: Drives::Scene(|_| {
+        let mut scene = still_life()?;
+        scene.lights = vec![lamp(0.1, 0.85, 0.05)];
+        Ok(scene)
+    }),
+    also: &[LIGHT_FACING, BY_TOPOLOGY],
+    failures: &[
+        CUT_BY_NEAR,
+        NO_FIT,
+        fails(LIGHT_FACING, "light-facing-inside", "from inside, no outer face is turned to the light: nothing casts"),
+    ],
+    ..PLAIN
+};
+
+const LIGHT_IN_TORUS_HOLE: Case = Case {
+    name: "light-in-torus-hole",
+    lesson: "the light is in a ring's hole: outside the mesh, with the mesh all around",
+    drives: Drives::Scene(|_| {
+        let ring = moved(object("ring", shapes::torus(0.7, 0.2, 24, 12)?), [0.0, 0.8, 0.0]);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.05, 0.85, 0.0), vec![floor(3.0)?, ring]))
+    }),
+    also: &[LIGHT_FACING],
+    failures: &[TEXELS_OF_MAP, TEXELS_OF_TEXTURE, NO_FIT],
+    ..PLAIN
+};
+
+const LIGHT_IN_FACE_PLANE: Case = Case {
+    name: "light-in-face-plane",
+    lesson: "the light lies in the plane of a box's top, and a last bit above and below: which way does it face?",
+    parameter: "ulps",
+    values: &[-1.0, 0.0, 1.0],
+    drives: Drives::Scene(|steps| {
+        let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.75, 0.0], [0.5; 3])?];
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.5, ulps(1.0, steps), 0.25), objects))
+    }),
+    also: &[LIGHT_FACING],
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const LIGHT_ON_VERTEX: Case = Case {
+    name: "light-on-vertex",
+    lesson: "the light is on a corner of the box: the three faces there are edge-on and cast nothing, the others do",
+    drives: Drives::Scene(|_| {
+        let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.75, 0.0], [0.5; 3])?];
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.25, 1.0, 0.25), objects))
+    }),
+    failures: &[TEXELS_OF_TEXTURE, NO_FIT],
+    ..PLAIN
+};
+
+const CASTER_AROUND_LIGHT: Case = Case {
+    name: "caster-around-light",
+    lesson: "a lamp shade around the light, open above and below: it is on every side, and behind the light too",
+    drives: Drives::Scene(|_| {
+        let rim = |height: f64| (0..24).map(move |step| (f64::from(step) / 24.0 * TAU, height));
+        let points: Vec<[f64; 3]> =
+            rim(0.7).chain(rim(1.1)).map(|(angle, height)| [0.5 * angle.cos(), height, 0.5 * angle.sin()]).collect();
+        let sides = (0..24_u32).flat_map(|a| {
+            let b = (a + 1) % 24;
+            [[a, a + 24, b + 24], [a, b + 24, b]]
+        });
+        let shade = object("shade", shapes::triangles(points, sides.collect())?);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.05, 0.95, 0.0), vec![floor(3.0)?, shade]))
+    }),
+    also: &[LIGHT_FACING],
+    failures: &[
+        TEXELS_OF_MAP,
+        TEXELS_OF_TEXTURE,
+        NO_FIT,
+        fails(
+            LIGHT_FACING,
+            "light-facing-open",
+            "the shade has only outer faces, and none of them is turned to the light",
+        ),
+    ],
+    ..PLAIN
+};
+
+const SUN_ALONG_RECEIVER: Case = Case {
+    name: "sun-along-receiver",
+    lesson: "the sun shines level: the floor is edge-on and in no light, the wall behind the box has its shadow",
+    drives: Drives::Scene(|_| {
+        let wall = moved(turned(object("wall", shapes::quad([6.0, 3.0])?), [90.0, 0.0, 0.0]), [0.0, 1.5, -2.0]);
+        let objects = vec![floor(3.0)?, wall, cuboid("box", [0.0, 0.8, 0.0], [0.8, 0.6, 0.8])?];
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::directional(DVec3::new(0.2, 0.0, 1.0)), objects))
+    }),
+    failures: &[TEXELS_OF_TEXTURE, BETWEEN],
+    ..PLAIN
+};
+
+const LIGHT_COUNT: Case = Case {
+    name: "light-count",
+    lesson: "none, one and sixteen lights: none must find in the stencil what another left there",
+    parameter: "lights",
+    values: &[0.0, 1.0, 16.0],
+    drives: Drives::Scene(ring_of_lights),
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+fn ring_of_lights(count: f64) -> Result<Scene, MeshError> {
+    let mut scene = still_life()?;
+    let place = |index: u32| {
+        let (sin, cos) = (f64::from(index) / 16.0 * TAU).sin_cos();
+        if index % 4 == 3 {
+            Light::directional(DVec3::new(cos, 1.5, sin))
+        } else {
+            lamp(2.0 * cos, 3.0 + 0.1 * f64::from(index), 2.0 * sin)
+        }
+    };
+    scene.lights = (0..count as u32).map(place).collect();
+    Ok(scene)
+}

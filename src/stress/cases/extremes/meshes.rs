@@ -1,0 +1,239 @@
+//! Extremes of how a mesh hangs together.
+
+use crate::scene::builtin::shapes;
+use crate::scene::{MeshError, Object, Scene};
+use crate::stress::cases::stage::{cuboid, floor, lamp, mesh, moved, object, scaled, scene, turned};
+use crate::stress::cases::who::*;
+use crate::stress::{Case, Drives};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// All of them.
+pub const ALL: &[Case] = &[
+    BOTH_SIDES,
+    OPEN_MESH,
+    MOBIUS,
+    FINS,
+    SHARED_EDGE,
+    SPLIT_VERTICES,
+    T_JUNCTION,
+    COINCIDENT,
+    INSTANCES,
+    DEGENERATE,
+    UNDRAWN,
+];
+
+/// A caster over the usual floor.
+fn over_floor(casters: Vec<Object>) -> Result<Scene, MeshError> {
+    let mut objects = vec![floor(3.0)?];
+    objects.extend(casters);
+    Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.0, 4.0, 1.5), objects))
+}
+
+const BOTH_SIDES: Case = Case {
+    name: "both-sides",
+    lesson: "a single sheet, seen from the side that it faces and from the other: it casts the same either way",
+    parameter: "eye turned",
+    values: &[0.0, 180.0],
+    drives: Drives::Scene(|degrees| {
+        let sheet = moved(turned(object("sheet", shapes::quad([1.0; 2])?), [70.0, 30.0, 0.0]), [0.0, 0.8, 0.0]);
+        let mut scene = over_floor(vec![sheet])?;
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        scene.camera.eye = DVec3::new(1.5 * cos + 5.0 * sin, 3.0, 5.0 * cos - 1.5 * sin);
+        Ok(scene)
+    }),
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const OPEN_MESH: Case = Case {
+    name: "open-mesh",
+    lesson: "a box without its top: the silhouette of the faces turned to the light does not close",
+    drives: Drives::Scene(|_| {
+        let closed = shapes::cuboid([0.8, 0.6, 0.8])?;
+        let points: Vec<[f64; 3]> = closed.positions().iter().map(|point| point.to_array()).collect();
+        let is_top = |corners: &&[u32; 3]| corners.iter().all(|vertex| points[*vertex as usize][1] > 0.0);
+        let open: Vec<[u32; 3]> = closed.triangles().iter().filter(|corners| !is_top(corners)).copied().collect();
+        over_floor(vec![moved(object("open box", mesh(&points, &open)?), [0.0, 0.8, 0.0])])
+    }),
+    also: &[LIGHT_FACING, BY_TOPOLOGY],
+    failures: &[
+        TEXELS_OF_TEXTURE,
+        fails(
+            LIGHT_FACING,
+            "light-facing-open",
+            "light falls through the open top on faces that are turned away and do not cast",
+        ),
+    ],
+    ..PLAIN
+};
+
+const MOBIUS: Case = Case {
+    name: "mobius",
+    lesson: "a strip with one side: no winding is consistent, so no face is the outer one",
+    drives: Drives::Scene(|_| {
+        let steps = 48_u32;
+        let at = |step: u32, side: f64| {
+            let around = f64::from(step) / f64::from(steps) * TAU;
+            let twist = f64::from(step) / f64::from(steps) * PI;
+            let radius = 0.6 + side * 0.25 * twist.cos();
+            [radius * around.cos(), side * 0.25 * twist.sin(), radius * around.sin()]
+        };
+        let points: Vec<[f64; 3]> = (0..steps).flat_map(|step| [at(step, -1.0), at(step, 1.0)]).collect();
+        let quads = (0..steps).flat_map(|step| {
+            let (a, b) = (2 * step, 2 * step + 1);
+            // The last joins the first's other side.
+            let (c, d) = if step + 1 < steps { (a + 2, a + 3) } else { (1, 0) };
+            [[a, c, d], [a, d, b]]
+        });
+        let strip = object("strip", mesh(&points, &quads.collect::<Vec<_>>())?);
+        over_floor(vec![moved(turned(strip, [20.0, 0.0, 0.0]), [0.0, 1.0, 0.0])])
+    }),
+    failures: &[TEXELS_OF_MAP, TEXELS_OF_TEXTURE, NO_SELF_SHADOW],
+    ..PLAIN
+};
+
+const FINS: Case = Case {
+    name: "fins",
+    lesson: "three fins on one edge: it has three triangles, and two of them can't cancel for the third",
+    drives: Drives::Scene(|_| {
+        let fin = |index: u32| {
+            let (sin, cos) = (f64::from(index) / 3.0 * TAU + 0.3).sin_cos();
+            [[0.5 * cos, 0.3, 0.5 * sin], [0.5 * cos, -0.3, 0.5 * sin]]
+        };
+        let mut points = vec![[0.0, 0.3, 0.0], [0.0, -0.3, 0.0]];
+        points.extend((0..3).flat_map(fin));
+        let quads = (0..3).flat_map(|index| {
+            let (top, bottom) = (2 + 2 * index, 3 + 2 * index);
+            [[0, 1, bottom], [0, bottom, top]]
+        });
+        over_floor(vec![moved(object("fins", mesh(&points, &quads.collect::<Vec<_>>())?), [0.0, 0.8, 0.0])])
+    }),
+    also: &[LIGHT_FACING],
+    failures: &[
+        TEXELS_OF_TEXTURE,
+        fails(LIGHT_FACING, "light-facing-open", "fins that show the light their other side do not cast"),
+    ],
+    ..PLAIN
+};
+
+const SHARED_EDGE: Case = Case {
+    name: "shared-edge",
+    lesson: "two cubes that meet in an edge: four triangles share it, and it may be silhouette twice or not at all",
+    drives: Drives::Scene(|_| {
+        let cube = shapes::cuboid([0.5; 3])?;
+        let pair = shapes::joined([(&cube, DVec3::ZERO), (&cube, DVec3::new(0.5, 0.5, 0.0))])?;
+        over_floor(vec![moved(object("cubes", pair), [-0.25, 0.5, 0.0])])
+    }),
+    also: &[LIGHT_FACING],
+    failures: &[TEXELS_OF_TEXTURE, NO_SELF_SHADOW],
+    ..PLAIN
+};
+
+const SPLIT_VERTICES: Case = Case {
+    name: "split-vertices",
+    lesson: "a cube with corners of its own for every triangle, as files have them: welded, it is closed again",
+    drives: Drives::Scene(|_| {
+        let cube = shapes::cuboid([0.8, 0.6, 0.8])?;
+        let corner = |vertex: &u32| cube.positions()[*vertex as usize].to_array();
+        let points: Vec<[f64; 3]> = cube.triangles().as_flattened().iter().map(corner).collect();
+        let triangles: Vec<[u32; 3]> = (0..points.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        over_floor(vec![moved(object("cube", mesh(&points, &triangles)?), [0.0, 0.8, 0.0])])
+    }),
+    also: &[LIGHT_FACING],
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const T_JUNCTION: Case = Case {
+    name: "t-junction",
+    lesson: "a wall whose one half has a corner in the middle of the other's edge: the edges are three, and none shared",
+    drives: Drives::Scene(|_| {
+        let points = [
+            [-0.6, -0.4, 0.0],
+            [0.0, -0.4, 0.0],
+            [0.0, 0.4, 0.0],
+            [-0.6, 0.4, 0.0],
+            [0.0, 0.1, 0.0],
+            [0.6, -0.4, 0.0],
+            [0.6, 0.1, 0.0],
+            [0.6, 0.4, 0.0],
+        ];
+        let triangles = [[0, 1, 2], [0, 2, 3], [1, 5, 6], [1, 6, 4], [4, 6, 7], [4, 7, 2]];
+        over_floor(vec![moved(turned(object("wall", mesh(&points, &triangles)?), [-20.0, 0.0, 0.0]), [0.0, 0.8, 0.0])])
+    }),
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const COINCIDENT: Case = Case {
+    name: "coincident",
+    lesson: "the same triangle twice, and then with its other side: two volumes fill the same space",
+    parameter: "turned",
+    values: &[0.0, 1.0],
+    drives: Drives::Scene(|turned| {
+        let points = [[-0.6, 0.0, 0.4], [0.6, 0.0, 0.4], [0.0, 0.3, -0.6]];
+        let second = if turned == 0.0 { [0, 1, 2] } else { [0, 2, 1] };
+        over_floor(vec![moved(object("pair", mesh(&points, &[[0, 1, 2], second])?), [0.0, 0.8, 0.0])])
+    }),
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const INSTANCES: Case = Case {
+    name: "instances",
+    lesson: "one mesh mirrored and stretched: mirroring turns every triangle inside out",
+    drives: Drives::Scene(|_| {
+        let place = |at: [f64; 3], scale: [f64; 3]| -> Result<Object, MeshError> {
+            let name = format!("cylinder at {}", at[0]);
+            Ok(scaled(moved(object(&name, shapes::cylinder(0.3, 0.8, 16)?), at), scale))
+        };
+        let casters = [
+            place([-1.2, 0.8, 0.0], [-1.0, 1.0, 1.0])?,
+            place([0.0, 0.8, 0.0], [1.5, -0.3, 0.7])?,
+            place([1.2, 0.8, 0.0], [-0.4, -1.2, -1.1])?,
+        ];
+        over_floor(casters.to_vec())
+    }),
+    also: &[LIGHT_FACING, BY_TOPOLOGY],
+    failures: &[TEXELS_OF_MAP, TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const DEGENERATE: Case = Case {
+    name: "degenerate",
+    lesson: "a mesh of triangles without area, and one of none at all: nothing casts, nothing breaks",
+    parameter: "corners alike",
+    values: &[0.0, 2.0, 3.0],
+    drives: Drives::Scene(|alike| {
+        let points = [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]];
+        let triangle = match alike as u32 {
+            0 => [0, 1, 2],
+            2 => [0, 1, 1],
+            _ => [1, 1, 1],
+        };
+        let caster = moved(object("line", mesh(&points, &[triangle])?), [0.0, 0.8, 0.0]);
+        over_floor(vec![caster, cuboid("box", [-1.0, 0.6, 0.0], [0.4; 3])?])
+    }),
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const UNDRAWN: Case = Case {
+    name: "undrawn",
+    lesson: "a caster that is not drawn: its light cap lies on no surface, so it must be tested like any other face",
+    drives: Drives::Scene(|_| {
+        let hidden = cuboid("box", [0.0, 0.8, 0.0], [0.8, 0.6, 0.8])?;
+        over_floor(vec![Object { visible: false, ..hidden }])
+    }),
+    also: &[CAPS_NEVER],
+    failures: &[
+        TEXELS_OF_TEXTURE,
+        fails(
+            CAPS_NEVER,
+            "light-caps-never",
+            "a cap in front of a surface passes the test, but is counted as if it were behind",
+        ),
+    ],
+    ..PLAIN
+};

@@ -1,0 +1,129 @@
+//! Extremes of what is darkened: where it lies, and whether there is any.
+
+use crate::scene::Object;
+use crate::scene::builtin::shapes;
+use crate::stress::cases::stage::{cuboid, floor, lamp, moved, object, scene, still_life, turned};
+use crate::stress::cases::who::*;
+use crate::stress::{Case, Drives};
+
+/// All of them.
+pub const ALL: &[Case] =
+    &[COPLANAR, ACROSS_LIGHT, THROUGH_FLOOR, BEHIND_PROJECTOR, SHELF_BETWEEN, ROUND_RECEIVER, NO_CASTER, NO_RECEIVER];
+
+const COPLANAR: Case = Case {
+    name: "coplanar",
+    lesson: "a tile lies in the floor's plane, to the last bit: it darkens nothing, and does not fight",
+    drives: Drives::Scene(|_| {
+        let tile = moved(object("tile", shapes::quad([1.3; 2])?), [0.2, 0.0, 0.3]);
+        let objects = vec![floor(3.0)?, tile, cuboid("box", [0.0, 1.0, 0.0], [0.5; 3])?];
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.0, 4.0, 1.5), objects))
+    }),
+    failures: &[TEXELS_OF_TEXTURE],
+    ..PLAIN
+};
+
+const ACROSS_LIGHT: Case = Case {
+    name: "across-light",
+    lesson: "a wall reaches from below the light to above it: what is above must not be thrown on the floor",
+    drives: Drives::Scene(|_| {
+        let wall = moved(turned(object("wall", shapes::quad([1.0, 2.0])?), [90.0, 0.0, 0.0]), [0.0, 1.5, -0.3]);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.3, 1.7, 0.8), vec![floor(3.0)?, wall]))
+    }),
+    also: &[UNCLIPPED],
+    failures: &[
+        TEXELS_OF_TEXTURE,
+        fails(UNCLIPPED, "anti-shadow", "what is above the light is thrown through it, upside down"),
+    ],
+    ..PLAIN
+};
+
+const THROUGH_FLOOR: Case = Case {
+    name: "through-floor",
+    lesson: "a box stands in the floor, half of it below: what is below must not be thrown up on it",
+    drives: Drives::Scene(|_| {
+        let objects = vec![floor(3.0)?, cuboid("box", [0.0, -0.4, 0.0], [0.6, 1.6, 0.6])?];
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.0, 4.0, 1.5), objects))
+    }),
+    also: &[UNCLIPPED],
+    failures: &[
+        TEXELS_OF_MAP,
+        TEXELS_OF_TEXTURE,
+        BETWEEN,
+        fails(UNCLIPPED, "false-shadow", "what is below the floor is thrown up on it"),
+    ],
+    ..PLAIN
+};
+
+const BEHIND_PROJECTOR: Case = Case {
+    name: "behind-projector",
+    lesson: "a wall behind the light: a slide's picture has a mirror image there unless q ≤ 0 is left out",
+    drives: Drives::Scene(|_| {
+        let wall = moved(turned(object("wall", shapes::quad([6.0, 3.0])?), [90.0, 0.0, 0.0]), [0.0, 1.5, -2.0]);
+        let board = moved(turned(object("board", shapes::quad([0.5; 2])?), [90.0, 0.0, 0.0]), [0.1, 1.3, 1.5]);
+        Ok(scene([1.0, 3.0, 4.5], [0.0, 0.8, -1.0], lamp(0.0, 1.2, 0.5), vec![floor(3.0)?, wall, board]))
+    }),
+    also: &[REVERSED],
+    failures: &[
+        TEXELS_OF_MAP,
+        TEXELS_OF_TEXTURE,
+        TEXELS_OF_SILHOUETTE,
+        fails(REVERSED, "reverse-projection", "behind the light, where q is negative, the slide shows again"),
+    ],
+    ..PLAIN
+};
+
+const SHELF_BETWEEN: Case = Case {
+    name: "shelf-between",
+    lesson: "a shelf stands between the light and a caster that is smaller: who compares no depth darkens the shelf",
+    drives: Drives::Scene(|_| {
+        let shelf = moved(object("shelf", shapes::quad([1.2; 2])?), [0.0, 1.4, 0.0]);
+        let objects = vec![floor(3.0)?, shelf, cuboid("box", [0.1, 0.6, 0.1], [0.4; 3])?];
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.4, 4.0, 0.6), objects))
+    }),
+    failures: &[TEXELS_OF_TEXTURE, BETWEEN],
+    ..PLAIN
+};
+
+const ROUND_RECEIVER: Case = Case {
+    name: "round-receiver",
+    lesson: "a ring under a board: it is not flat, and it darkens itself",
+    drives: Drives::Scene(|_| {
+        let ring = moved(object("ring", shapes::torus(0.6, 0.25, 32, 16)?), [0.0, 0.5, 0.0]);
+        let board = moved(object("board", shapes::quad([0.5, 0.9])?), [0.4, 1.6, 0.0]);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(2.5, 3.0, 0.5), vec![floor(3.0)?, ring, board]))
+    }),
+    also: &[LIGHT_FACING, BY_TOPOLOGY],
+    failures: &[TEXELS_OF_MAP, NOT_PLANAR, NOT_PLANAR_TEXTURE, BETWEEN],
+    ..PLAIN
+};
+
+const NO_CASTER: Case = Case {
+    name: "no-caster",
+    lesson: "nothing casts, and nothing is there to cast: all is lit",
+    parameter: "objects",
+    values: &[2.0, 0.0],
+    drives: Drives::Scene(|objects| {
+        let mut scene = still_life()?;
+        scene.objects.truncate(objects as usize);
+        scene.objects.iter_mut().for_each(|object| object.casts = false);
+        Ok(scene)
+    }),
+    ..PLAIN
+};
+
+const NO_RECEIVER: Case = Case {
+    name: "no-receiver",
+    lesson: "no surface receives, and none is drawn: volumes are counted and nobody asks",
+    parameter: "drawn",
+    values: &[1.0, 0.0],
+    drives: Drives::Scene(|drawn| {
+        let mut scene = still_life()?;
+        let apart = |object: &mut Object| {
+            object.receives = false;
+            object.visible = drawn > 0.0;
+        };
+        scene.objects.iter_mut().for_each(apart);
+        Ok(scene)
+    }),
+    ..PLAIN
+};

@@ -1,0 +1,70 @@
+//! Who runs beside the usual forms, what their failures are called, and the words that many cases share.
+
+use crate::stress::{Case, Drives, Entrant, Failure};
+use crate::technique::Technique;
+
+pub const Z_FAIL: Entrant = Entrant::of(Technique::ZFail);
+pub const Z_PASS: Entrant = Entrant::of(Technique::ZPass);
+pub const Z_PASS_PLUS: Entrant = Entrant::of(Technique::ZPassPlus);
+pub const MAP: Entrant = Entrant::of(Technique::ShadowMap);
+pub const PLANAR: Entrant = Entrant::of(Technique::Planar);
+pub const TEXTURE: Entrant = Entrant::of(Technique::PlanarTexture);
+pub const SILHOUETTE: Entrant = Entrant::of(Technique::Projective);
+
+pub const FAR_CLIP: Entrant = Entrant::with(Technique::ZFail, &[("depth", "standard-finite")]);
+pub const FAR_CLAMP: Entrant = Entrant::with(Technique::ZFail, &[("depth", "standard-finite-clamp")]);
+pub const TO_INFINITY: Entrant = Entrant::with(Technique::ZFail, &[("depth", "standard-infinite")]);
+pub const FINITE: Entrant = Entrant::with(Technique::ZFail, &[("extrusion", "finite:2")]);
+pub const IN_FLOAT: Entrant = Entrant::with(Technique::ZFail, &[("counter", "float")]);
+pub const CLAMPED: Entrant = Entrant::with(Technique::ZFail, &[("operations", "clamp")]);
+pub const CLAMPED_IN_TURN: Entrant = Entrant::with(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]);
+pub const LIGHT_FACING: Entrant = Entrant::with(Technique::ZFail, &[("casters", "light-facing")]);
+pub const BY_TOPOLOGY: Entrant = Entrant::with(Technique::ZFail, &[("casters", "by-topology")]);
+pub const CAPS_NEVER: Entrant = Entrant::with(Technique::ZFail, &[("light-caps", "never")]);
+pub const UNBIASED: Entrant = Entrant::with(Technique::ShadowMap, &[("bias-slope", "0"), ("bias-constant", "0")]);
+pub const COARSE: Entrant = Entrant::with(Technique::ShadowMap, &[("size", "128")]);
+pub const DETACHED: Entrant = Entrant::with(Technique::ShadowMap, &[("bias-slope", "200")]);
+pub const UNCLIPPED: Entrant = Entrant::with(Technique::Planar, &[("clip", "off")]);
+pub const REVERSED: Entrant = Entrant::with(Technique::Projective, &[("reverse", "on")]);
+
+/// A known failure.
+pub const fn fails(of: Entrant, name: &'static str, because: &'static str) -> Failure {
+    Failure { of, name, because }
+}
+
+pub const TEXELS_OF_TEXTURE: Failure =
+    fails(TEXTURE, "aliasing", "a receiver of several metres has 256 texels a side: each is larger than a pixel");
+pub const TEXELS_OF_SILHOUETTE: Failure =
+    fails(SILHOUETTE, "aliasing", "512 texels hold the whole silhouette: where the light spreads it, each shows");
+pub const TEXELS_OF_MAP: Failure =
+    fails(MAP, "aliasing", "1024 texels hold all that casts: where the light spreads them, each shows");
+pub const NOT_PLANAR: Failure = fails(PLANAR, "not-planar", "a receiver that is not flat gets no shadow");
+pub const NOT_PLANAR_TEXTURE: Failure =
+    fails(TEXTURE, "not-planar", "a receiver that is not flat has no texture, so it gets no shadow");
+pub const NO_SELF_SHADOW: Failure =
+    fails(SILHOUETTE, "self-shadow", "a silhouette is not thrown on the object that it is of");
+pub const BETWEEN: Failure = fails(
+    SILHOUETTE,
+    "between",
+    "no depth is compared: what stands between light and caster is darkened like what lies behind",
+);
+pub const NO_FIT: Failure = fails(
+    SILHOUETTE,
+    "no-fit",
+    "no picture holds a caster that reaches behind the light, so it casts nothing and the plan says so",
+);
+pub const CUT_BY_NEAR: Failure =
+    fails(Z_PASS, "near-plane", "faces that the near plane cuts away, or that are behind the eye, are not counted");
+
+/// What is not said of a case: one value of the easiest scene.
+pub const PLAIN: Case = Case {
+    name: "",
+    lesson: "",
+    parameter: "form",
+    values: &[0.0],
+    drives: Drives::Scene(|_| super::stage::still_life()),
+    size: None,
+    also: &[],
+    without: &[],
+    failures: &[],
+};

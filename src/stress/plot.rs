@@ -1,0 +1,271 @@
+//! The plot: how the share of wrong pixels grows with a sweep's number, one chart a sweep.
+//!
+//! Across: the number, from easy on the left to extreme on the right, log where it spans decades.
+//! Up: wrong pixels of those compared, log. Zero has no place there: it has a band below, with a
+//! lane for each who runs, so that lines without an error do not cover each other. The first wrong
+//! value, where the line leaves the band, has a filled mark.
+
+use super::{Case, Drives, Entrant, Row, Stress, table};
+use crate::numbers;
+use crate::report::plot::labels::{self, Obstacles, Wish};
+use crate::report::plot::scale::{self, Log};
+use crate::report::plot::{
+    Anchor, Chart, Ink, Key, Line, Plot, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of, text_width,
+};
+
+/// Width of the page and of its two charts, and height of a chart, points.
+const PAGE: f64 = 900.0;
+const CHART: [f64; 2] = [440.0, 300.0];
+/// Around a chart's area: title and caption above, ticks and parameter below, points.
+const TOP: f64 = 40.0;
+const BOTTOM: f64 = 38.0;
+const LEFT: f64 = 74.0;
+const RIGHT: f64 = 20.0;
+/// Height of a lane of the band, points.
+const LANE: f64 = 9.0;
+/// A sweep has at least so many values.
+const LEAST_VALUES: usize = 6;
+/// A number that grows by less is shown on an even scale.
+const LEAST_DECADES: f64 = 20.0;
+/// Above it a sweep is not drawn mark by mark: only where it breaks.
+const MOST_MARKS: usize = 16;
+/// More values that are no motion are a heap of scenes.
+const MOST_VALUES: usize = 100;
+
+impl Stress {
+    /// All sweeps that were run, in charts.
+    #[must_use]
+    pub fn to_plot(&self) -> Plot {
+        let mut cases: Vec<&'static Case> = self.rows.iter().filter_map(|row| Case::named(row.case)).collect();
+        cases.dedup_by_key(|case| case.name);
+        let is_motion = |case: &Case| matches!(case.drives, Drives::Motion(_));
+        cases.retain(|case| is_motion(case) || (LEAST_VALUES..=MOST_VALUES).contains(&case.values.len()));
+        let mut plot = Plot::empty(PAGE);
+        plot.title = "Wrong pixels where a scene is driven to its extreme".to_owned();
+        plot.summary = format!("{} sweeps: the share of wrong pixels against one number each.", cases.len());
+        let title = Text::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, Ink::Text).strong();
+        let [width, height] = self.size;
+        let facts = format!("{} · {width} × {height}; filled: the first value with a wrong pixel", self.adapter.name);
+        plot.texts = vec![title, Text::new([8.0, 38.0], facts, TEXT_SIZE, Ink::Dim)];
+        self.legend(&mut plot, 58.0);
+        for (index, case) in cases.iter().enumerate() {
+            let corner = [(index % 2) as f64 * (PAGE - CHART[0]), 74.0 + (index / 2) as f64 * (CHART[1] + 14.0)];
+            plot.charts.push(self.chart(case).moved(corner));
+        }
+        if cases.is_empty() {
+            plot.texts.push(Text::new([8.0, 84.0], "No sweep was run.", TEXT_SIZE, Ink::Dim));
+        }
+        plot.size = [PAGE, 90.0 + cases.len().div_ceil(2) as f64 * (CHART[1] + 14.0)];
+        plot
+    }
+
+    /// Each technique's mark, in a line.
+    fn legend(&self, plot: &mut Plot, y: f64) {
+        let mut names: Vec<&str> = Vec::new();
+        for row in &self.rows {
+            let name = row.entrant.technique.name();
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let mut x = 14.0;
+        for name in names {
+            let style = style_of(name);
+            plot.keys.push(Key { at: [x, y], style, filled: false });
+            plot.texts.push(Text::new([x + 10.0, y], name, SMALL_SIZE, Ink::Technique(style)));
+            x += 26.0 + text_width(name, SMALL_SIZE);
+        }
+    }
+
+    fn chart(&self, case: &Case) -> Chart {
+        let rows = || self.rows.iter().filter(|row| row.case == case.name);
+        let mut entrants: Vec<Entrant> = Vec::new();
+        for row in rows() {
+            if !entrants.contains(&row.entrant) {
+                entrants.push(row.entrant);
+            }
+        }
+        let axes = Axes::new(case, entrants.len(), rows().map(share));
+        let mut lines = axes.grid();
+        let (mut spots, mut wishes, mut segments) = (Vec::new(), Vec::new(), Vec::new());
+        for (lane, entrant) in entrants.iter().enumerate() {
+            let style = style_of(entrant.technique.name());
+            let of_entrant: Vec<&Row> = rows().filter(|row| row.entrant == *entrant).collect();
+            let points: Vec<[f64; 2]> = of_entrant.iter().map(|row| axes.place(row, lane)).collect();
+            segments.extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
+            if points.len() > 1 {
+                let ink = Ink::Technique(style);
+                lines.push(Line { points: points.clone(), width: 1.3, ink, faint: false });
+            }
+            let breaks = of_entrant.iter().position(|row| row.error.wrong() > 0);
+            for (index, (row, at)) in of_entrant.iter().zip(&points).enumerate() {
+                let is_break = breaks == Some(index);
+                if is_break || of_entrant.len() <= MOST_MARKS {
+                    spots.push(spot(row, *at, is_break));
+                }
+            }
+            let labelled = breaks.or((!entrant.settings.is_empty()).then_some(0));
+            wishes.extend(labelled.and_then(|index| points.get(index)).map(|at| Wish {
+                at: *at,
+                whiskers: [0.0; 2],
+                text: caption(entrant),
+                ink: Ink::Technique(style),
+                area: if breaks.is_some() { axes.area } else { axes.band },
+                must: breaks.is_some(),
+            }));
+        }
+        // Those that must be shown and need most room first.
+        wishes.sort_by_key(|wish: &Wish| std::cmp::Reverse((wish.must, wish.text.len())));
+        let obstacles = Obstacles { marks: spots.iter().map(|spot| spot.at).collect(), segments };
+        let placed = labels::place(&wishes, &obstacles);
+        lines.extend(placed.iter().flatten().filter_map(|placed| {
+            let points = placed.leader?.to_vec();
+            Some(Line { points, width: 0.8, ink: placed.text.ink, faint: true })
+        }));
+        spots.sort_by_key(|spot| spot.filled);
+        Chart {
+            title: case.name.to_owned(),
+            area: axes.area,
+            band: axes.band,
+            lines,
+            spots,
+            texts: axes.texts(case),
+            labels: placed.into_iter().flatten().map(|placed| placed.text).collect(),
+        }
+    }
+}
+
+/// A technique's name; of a form what sets it apart: shape and colour are the technique's.
+fn caption(entrant: &Entrant) -> String {
+    let settings: Vec<String> = entrant.settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
+    if settings.is_empty() { entrant.technique.name().to_owned() } else { settings.join(" ") }
+}
+
+fn share(row: &Row) -> f64 {
+    if row.error.compared == 0 { 0.0 } else { row.error.wrong() as f64 / row.error.compared as f64 * 100.0 }
+}
+
+fn spot(row: &Row, at: [f64; 2], filled: bool) -> Spot {
+    let value = table::value(row.parameter.1);
+    let name = format!("{} at {value}: {} wrong", row.entrant, numbers::count(row.error.wrong()));
+    let details = format!("{name}\nof {} compared", numbers::count(row.error.compared));
+    let style = style_of(row.entrant.technique.name());
+    Spot { row: 0, at, whisker: [at[0]; 2], style, filled, name, details }
+}
+
+/// From a case's number to points across.
+enum Across {
+    /// The number spans decades.
+    Log {
+        /// Of them.
+        scale: Log,
+        /// The lowest value but zero, where there is a zero: that is a decade below it.
+        above_zero: Option<f64>,
+    },
+    /// It does not.
+    Even {
+        /// First and last value.
+        values: [f64; 2],
+        /// Where these are.
+        points: [f64; 2],
+    },
+}
+
+impl Across {
+    fn new(values: &[f64], points: [f64; 2]) -> Across {
+        let ends = [values.first(), values.last()].map(|end| end.copied().unwrap_or(0.0));
+        let positive = || values.iter().copied().filter(|value| *value > 0.0);
+        let [low, high] = [positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max)];
+        // A motion's steps are even, wherever they begin.
+        if high / low < LEAST_DECADES || values.len() > MOST_MARKS {
+            return Across::Even { values: ends, points };
+        }
+        let above_zero = (positive().count() < values.len()).then_some(low);
+        let low = if above_zero.is_some() { low / 10.0 } else { low };
+        let points = if ends[0] > ends[1] { [points[1], points[0]] } else { points };
+        Across::Log { scale: Log::new([low, high], points), above_zero }
+    }
+
+    fn position(&self, value: f64) -> f64 {
+        match self {
+            Across::Log { scale, .. } => scale.position(value),
+            Across::Even { values: [first, last], points: [start, end] } => {
+                let span = if last == first { 1.0 } else { last - first };
+                start + (value - first) / span * (end - start)
+            }
+        }
+    }
+
+    fn ticks(&self) -> Vec<f64> {
+        match self {
+            Across::Log { scale, above_zero: None } => scale.ticks(46.0),
+            Across::Log { scale, above_zero: Some(low) } => {
+                let ticks = scale.ticks(46.0).into_iter().filter(|tick| tick >= low);
+                [0.0].into_iter().chain(ticks).collect()
+            }
+            Across::Even { values: [first, last], .. } => {
+                (0..=4).map(|quarter| first + (last - first) * f64::from(quarter) / 4.0).collect()
+            }
+        }
+    }
+}
+
+/// A chart's scales, relative to its corner.
+struct Axes {
+    area: Rect,
+    band: Rect,
+    across: Across,
+    /// Per cent.
+    up: Log,
+}
+
+impl Axes {
+    fn new(case: &Case, lanes: usize, shares: impl Iterator<Item = f64>) -> Axes {
+        let [x0, x1] = [LEFT, CHART[0] - RIGHT];
+        let bottom = CHART[1] - BOTTOM;
+        let band = Rect { min: [x0, bottom - lanes as f64 * LANE - 6.0], max: [x1, bottom] };
+        let area = Rect { min: [x0, TOP], max: [x1, band.min[1] - 7.0] };
+        let range = scale::range(shares, [0.01, 10.0]);
+        let up = Log::new(range, [area.max[1], area.min[1]]);
+        Axes { area, band, across: Across::new(case.values, [x0 + 10.0, x1 - 10.0]), up }
+    }
+
+    fn place(&self, row: &Row, lane: usize) -> [f64; 2] {
+        let share = share(row);
+        let in_band = self.band.min[1] + 3.0 + (lane as f64 + 0.5) * LANE;
+        [self.across.position(row.parameter.1), if share > 0.0 { self.up.position(share) } else { in_band }]
+    }
+
+    fn levels(&self) -> impl Iterator<Item = f64> {
+        self.up.ticks(22.0).into_iter().filter(|percent| *percent <= 100.0)
+    }
+
+    fn grid(&self) -> Vec<Line> {
+        let line = |points: [[f64; 2]; 2]| Line { points: points.to_vec(), width: 1.0, ink: Ink::Grid, faint: false };
+        let [left, right] = [self.area.min[0], self.area.max[0]];
+        let level = self.levels().map(|tick| self.up.position(tick)).map(|y| line([[left, y], [right, y]]));
+        let upright = self.across.ticks().into_iter().flat_map(|tick| {
+            let x = self.across.position(tick);
+            [&self.area, &self.band].map(|rect| line([[x, rect.min[1]], [x, rect.max[1]]]))
+        });
+        level.chain(upright).collect()
+    }
+
+    fn texts(&self, case: &Case) -> Vec<Text> {
+        let small = |at, text: String| Text::new(at, text, SMALL_SIZE, Ink::Dim);
+        let mut texts = vec![
+            Text::new([8.0, 10.0], case.name, TITLE_SIZE, Ink::Text).strong(),
+            small([8.0, 27.0], "wrong pixels, of those compared".to_owned()),
+            small([self.area.max[0], self.band.max[1] + 28.0], case.parameter.to_owned()).anchored(Anchor::End),
+        ];
+        let beside = self.area.min[0] - 6.0;
+        let levels = self.levels().map(|percent| (self.up.position(percent), format!("{percent}\u{a0}%")));
+        let none = ((self.band.min[1] + self.band.max[1]) / 2.0, "none wrong".to_owned());
+        texts.extend(levels.chain([none]).map(|(y, text)| small([beside, y], text).anchored(Anchor::End)));
+        texts.extend(self.across.ticks().into_iter().map(|tick| {
+            let at = [self.across.position(tick), self.band.max[1] + 11.0];
+            small(at, table::value(tick)).anchored(Anchor::Middle)
+        }));
+        texts
+    }
+}

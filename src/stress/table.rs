@@ -1,0 +1,106 @@
+//! The table for people, a line a case and technique; and one for a README, a row a case.
+
+use super::{Case, Expected, Stress, Summary, USUAL, Verdict};
+use crate::numbers;
+
+impl Stress {
+    /// Case by case: who holds, who breaks where, and whether that was known.
+    #[must_use]
+    pub fn to_table(&self) -> String {
+        let summaries = self.summary();
+        let width = summaries.iter().map(|summary| summary.entrant.to_string().len()).max().unwrap_or(0);
+        let mut text = String::new();
+        let mut case = "";
+        for summary in &summaries {
+            if summary.case != case {
+                case = summary.case;
+                let lesson = Case::named(case).map_or("", |case| case.lesson);
+                text.push_str(&format!("\n{case}: {lesson}\n"));
+            }
+            text.push_str(&line(summary, width));
+        }
+        let count = |verdict| summaries.iter().filter(|summary| summary.verdict == verdict).count();
+        text.push_str(&format!(
+            "\n{} hold, {} fail as known, {} unexpected\n",
+            count(Verdict::Holds),
+            count(Verdict::FailsAsKnown),
+            count(Verdict::Unexpected)
+        ));
+        text
+    }
+
+    /// Cases down, the usual techniques across: a dot where one holds, else where it breaks and how
+    /// that is called. Other forms stand in a last column.
+    #[must_use]
+    pub fn to_markdown(&self) -> String {
+        let summaries = self.summary();
+        let mut names: Vec<&str> = summaries.iter().map(|summary| summary.case).collect();
+        names.dedup();
+        let mut text = "| case | parameter |".to_owned();
+        USUAL.iter().for_each(|technique| text.push_str(&format!(" {} |", technique.name())));
+        text.push_str(" other forms |\n|---|---|");
+        USUAL.iter().for_each(|_| text.push_str("---|"));
+        text.push_str("---|\n");
+        for name in names {
+            let of_case = || summaries.iter().filter(|summary| summary.case == name);
+            let cells = USUAL.iter().map(|technique| {
+                let usual = of_case().find(|s| s.entrant.technique == *technique && s.entrant.settings.is_empty());
+                usual.map_or(String::new(), cell)
+            });
+            let others = of_case().filter(|summary| !summary.entrant.settings.is_empty());
+            let others: Vec<String> = others.map(|one| format!("{}: {}", one.entrant, cell(one))).collect();
+            let cells: Vec<String> = cells.chain([others.join("; ")]).collect();
+            text.push_str(&format!("| {name} | {} | {} |\n", range(name), cells.join(" | ")));
+        }
+        text
+    }
+}
+
+/// The parameter and its ends.
+fn range(case: &str) -> String {
+    let Some(case) = Case::named(case) else { return String::new() };
+    match case.values {
+        [] | [_] => String::new(),
+        [first, .., last] => format!("{} {} → {}", case.parameter, value(*first), value(*last)),
+    }
+}
+
+/// A parameter's value: short, and in powers of ten where it is far from 1.
+pub(super) fn value(value: f64) -> String {
+    // Steps of a motion are sums of tenths: what is beyond six digits is their rounding.
+    let rounded = if value == 0.0 { 0.0 } else { format!("{value:.5e}").parse().unwrap_or(value) };
+    match rounded {
+        0.0 => "0".to_owned(),
+        far if !(1e-3..1e5).contains(&far.abs()) => format!("{far:e}"),
+        near => near.to_string(),
+    }
+}
+
+fn cell(summary: &Summary) -> String {
+    let mark = if summary.verdict == Verdict::Unexpected { " (!)" } else { "" };
+    match (summary.breaks_at, summary.expected) {
+        (None, _) => format!("·{mark}"),
+        (Some(at), expected) => {
+            let name = if let Expected::Fails(name) = expected { name } else { "wrong" };
+            let is_sweep = Case::named(summary.case).is_some_and(|case| case.values.len() > 1);
+            if is_sweep { format!("{} {name}{mark}", value(at)) } else { format!("{name}{mark}") }
+        }
+    }
+}
+
+fn line(summary: &Summary, width: usize) -> String {
+    let mark = if summary.verdict == Verdict::Unexpected { "!!" } else { "  " };
+    let found = match summary.breaks_at {
+        None => "no wrong pixel".to_owned(),
+        Some(value) => {
+            let (worst, compared) = summary.worst;
+            let [worst, compared] = [worst, compared].map(numbers::count);
+            format!("breaks at {}, at most {worst} of {compared} wrong", self::value(value))
+        }
+    };
+    let flips = summary.flips.map_or_else(String::new, |flips| format!(", {flips} flips"));
+    let (verdict, expected) = (summary.verdict.name(), summary.expected.name());
+    let verdict =
+        if summary.verdict == Verdict::Holds { verdict.to_owned() } else { format!("{verdict} ({expected})") };
+    format!("{mark}  {:width$}  {verdict}: {found}{flips}\n", summary.entrant.to_string())
+}
