@@ -53,9 +53,13 @@ const MAY_USE: [(&str, &[&str]); 21] = [
             "report",
             "numbers",
             "history",
+            "stress",
         ],
     ),
-    ("app", &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report", "history"]),
+    (
+        "app",
+        &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report", "history", "stress"],
+    ),
     ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers"]),
     (
         "cli",

@@ -1,9 +1,10 @@
-//! The worker's long work, as the window watches and stops it: a truth, a report.
+//! The worker's long work, as the window watches and stops it: a truth, a report, stress cases.
 
-use super::orders::Measure;
-use crate::inspector::{Inspector, ReportProgress, ReportView, TruthState};
+use super::orders::{Measure, StressRun};
+use crate::inspector::{Inspector, ReportProgress, ReportView, StressProgress, TruthState};
 use crate::progress::Progress;
 use crate::report::Report;
+use crate::stress::{Case, Row};
 use crate::technique::Choice;
 
 /// Timed frames of each row of a report.
@@ -16,8 +17,19 @@ const OTHER_STEPS: usize = 2;
 pub struct Jobs {
     judging: Option<Progress>,
     measuring: Option<Measuring>,
-    /// How often measuring was begun.
+    stressing: Option<Stressing>,
+    /// How often measuring or stress cases were begun.
     count: u64,
+}
+
+#[derive(Debug)]
+struct Stressing {
+    job: u64,
+    progress: Progress,
+    /// The cases, in order.
+    names: Vec<&'static str>,
+    /// How many are done.
+    done: usize,
 }
 
 #[derive(Debug)]
@@ -39,7 +51,10 @@ impl Jobs {
             let report = inspector.report().report.clone();
             inspector.set_report(ReportView { report, running: Some(measuring.steps()), error: None });
         }
-        self.judging.is_some() || self.measuring.is_some()
+        if let Some(stressing) = &self.stressing {
+            inspector.set_stress(Some(stressing.steps()), None);
+        }
+        self.judging.is_some() || self.measuring.is_some() || self.stressing.is_some()
     }
 
     /// A truth is asked for.
@@ -93,6 +108,41 @@ impl Jobs {
         }
     }
 
+    /// Stress cases are asked for, by name.
+    pub fn stress(&mut self, cases: &[&'static str], inspector: &mut Inspector) -> StressRun {
+        self.stop_stress(inspector);
+        self.count += 1;
+        let (job, progress) = (self.count, Progress::default());
+        let cases: Vec<&'static Case> = cases.iter().filter_map(|name| Case::named(name)).collect();
+        let names = cases.iter().map(|case| case.name).collect();
+        self.stressing = Some(Stressing { job, progress: progress.clone(), names, done: 0 });
+        self.watch(inspector);
+        StressRun { job, cases, progress }
+    }
+
+    /// The rows of a case; those of a run that was stopped are dropped.
+    pub fn add_stress(&mut self, job: u64, rows: Vec<Row>, inspector: &mut Inspector) {
+        if let Some(stressing) = self.stressing.as_mut().filter(|stressing| stressing.job == job) {
+            stressing.done += 1;
+            inspector.add_stress(rows);
+        }
+    }
+
+    /// No more stress cases run.
+    pub fn end_stress(&mut self, job: u64, error: Option<String>, inspector: &mut Inspector) {
+        if self.stressing.take_if(|stressing| stressing.job == job).is_some() {
+            inspector.set_stress(None, error);
+        }
+    }
+
+    /// Stops running stress cases, where any run; what is done stays.
+    pub fn stop_stress(&mut self, inspector: &mut Inspector) {
+        if let Some(stressing) = self.stressing.take() {
+            stressing.progress.cancel();
+            inspector.set_stress(None, None);
+        }
+    }
+
     /// Another picture is asked for, and must not wait.
     pub fn make_way(&mut self, inspector: &mut Inspector) {
         self.pause_judging(inspector);
@@ -112,6 +162,13 @@ impl Jobs {
     fn show(&self, inspector: &mut Inspector, error: Option<String>) {
         let report = inspector.report().report.clone();
         inspector.set_report(ReportView { report, running: None, error });
+    }
+}
+
+impl Stressing {
+    fn steps(&self) -> StressProgress {
+        let what = self.names.get(self.done).map_or_else(String::new, |name| (*name).to_owned());
+        StressProgress { done: self.done, of: self.names.len(), what }
     }
 }
 

@@ -93,6 +93,20 @@ pub enum News {
         /// The report, or why there is none.
         result: Result<Report, String>,
     },
+    /// The rows of a stress case.
+    Stressed {
+        /// The running that is meant.
+        job: u64,
+        /// Every technique at every value.
+        rows: Vec<crate::stress::Row>,
+    },
+    /// Stress cases run no more; not told of what was cancelled.
+    StressEnded {
+        /// The running that is meant.
+        job: u64,
+        /// Why they do not, where it was not that all are done.
+        error: Option<String>,
+    },
     /// Something failed; the text has the mend.
     Failed(String),
 }

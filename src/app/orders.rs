@@ -2,6 +2,7 @@
 
 use crate::inspector::RunRequest;
 use crate::progress::Progress;
+use crate::stress::{Case, Entrant};
 use crate::technique::Choice;
 
 /// What the window asks for.
@@ -9,6 +10,17 @@ use crate::technique::Choice;
 pub enum Order {
     /// A built-in scene, or the path of a scene file, model or capture folder.
     Open(String),
+    /// The scene of a stress case.
+    OpenCase {
+        /// Which case.
+        case: &'static Case,
+        /// The value of its number.
+        value: f64,
+        /// How its shadows are made; `None`: as before.
+        entrant: Option<Entrant>,
+    },
+    /// Stress cases.
+    Stress(StressRun),
     /// The open scene again, changed.
     Run {
         /// The scene that is meant.
@@ -56,6 +68,17 @@ pub struct Measure {
     pub progress: Progress,
 }
 
+/// Stress cases to run.
+#[derive(Debug)]
+pub struct StressRun {
+    /// Told with the rows.
+    pub job: u64,
+    /// Which.
+    pub cases: Vec<&'static Case>,
+    /// Stopped by the window.
+    pub progress: Progress,
+}
+
 /// Orders that wait: of each sort only the newest counts.
 #[derive(Debug, Default)]
 pub struct Waiting {
@@ -64,6 +87,7 @@ pub struct Waiting {
     history: Option<Order>,
     judge: Option<Order>,
     measure: Option<Order>,
+    stress: Option<Order>,
 }
 
 impl Waiting {
@@ -74,7 +98,8 @@ impl Waiting {
             Order::History { .. } => self.history = Some(order),
             Order::Judge { .. } => self.judge = Some(order),
             Order::Measure(_) => self.measure = Some(order),
-            Order::Open(_) | Order::Run { .. } => {
+            Order::Stress(_) => self.stress = Some(order),
+            Order::Open(_) | Order::OpenCase { .. } | Order::Run { .. } => {
                 self.picture = Some(match self.picture.take() {
                     Some(earlier) => newest(earlier, order),
                     None => order,
@@ -83,10 +108,15 @@ impl Waiting {
         }
     }
 
+    /// What is left of an order that was obeyed in part; a newer one of its sort counts instead.
+    pub fn put_back(&mut self, rest: StressRun) {
+        self.stress.get_or_insert(Order::Stress(rest));
+    }
+
     /// The next to obey: what is seen first, what is known of it later.
     pub fn next(&mut self) -> Option<Order> {
         let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
-        seen.or_else(|| self.judge.take()).or_else(|| self.measure.take())
+        seen.or_else(|| self.judge.take()).or_else(|| self.measure.take()).or_else(|| self.stress.take())
     }
 }
 
@@ -94,7 +124,7 @@ impl Waiting {
 /// are of the old scene and those after were made before the window knew the new one.
 fn newest(earlier: Order, later: Order) -> Order {
     match (&earlier, &later) {
-        (Order::Open(_), Order::Run { .. }) => earlier,
+        (Order::Open(_) | Order::OpenCase { .. }, Order::Run { .. }) => earlier,
         _ => later,
     }
 }
@@ -160,6 +190,17 @@ mod tests {
         assert!(matches!(waiting.next(), Some(Order::History { at: [3, 0], .. })));
         assert!(matches!(waiting.next(), Some(Order::Judge { .. })));
         assert!(waiting.next().is_none());
+    }
+
+    #[test]
+    fn the_rest_of_the_stress_cases_comes_last_and_gives_way_to_a_newer_run() {
+        let run = |job| StressRun { job, cases: Vec::new(), progress: Progress::default() };
+        let mut waiting = waiting([Order::Stress(run(2)), judge(1)]);
+        waiting.put_back(run(1));
+        assert!(matches!(waiting.next(), Some(Order::Judge { .. })));
+        assert!(matches!(waiting.next(), Some(Order::Stress(StressRun { job: 2, .. }))));
+        waiting.put_back(run(1));
+        assert!(matches!(waiting.next(), Some(Order::Stress(StressRun { job: 1, .. }))));
     }
 
     #[test]

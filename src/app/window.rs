@@ -8,6 +8,7 @@ use super::worker::{Start, Worker};
 use super::{AppError, ViewRequest, no_window};
 use crate::inspector::{Action, Inspector, PictureKind, SceneEntry, TruthState};
 use crate::scene::{TechniqueRequest, builtin};
+use crate::stress::Case;
 use crate::technique::Choice;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
@@ -124,6 +125,8 @@ impl App {
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
             News::Draws { .. } | News::NoDraws { .. } | News::History { .. } => {}
             News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
+            News::Stressed { job, rows } => self.jobs.add_stress(job, rows, &mut self.inspector),
+            News::StressEnded { job, error } => self.jobs.end_stress(job, error, &mut self.inspector),
             News::Failed(reason) => self.inspector.push_error(reason),
         }
         self.redraw();
@@ -174,6 +177,16 @@ impl App {
             Action::CancelReport => {
                 self.jobs.stop_measuring(None, &mut self.inspector);
                 return self.redraw();
+            }
+            Action::RunStress { cases } => Order::Stress(self.jobs.stress(&cases, &mut self.inspector)),
+            Action::CancelStress => {
+                self.jobs.stop_stress(&mut self.inspector);
+                return self.redraw();
+            }
+            Action::OpenStress { case, value, entrant } => {
+                let Some(case) = Case::named(case) else { return };
+                self.jobs.make_way(&mut self.inspector);
+                Order::OpenCase { case, value, entrant }
             }
             Action::OpenReportRow { technique, settings } => {
                 return self.open_report_row(TechniqueRequest { name: technique, settings });

@@ -7,7 +7,7 @@
 //! dragged light waits for the clock.
 
 use super::news::News;
-use super::orders::{Measure, Order, Waiting};
+use super::orders::{Measure, Order, StressRun, Waiting};
 use super::{AppError, ViewSource};
 use crate::capture::{Capture, disk};
 use crate::inspector::{ObjectMesh, RunRequest};
@@ -16,6 +16,7 @@ use crate::progress::Progress;
 use crate::report::Report;
 use crate::scene::{OpenSpec, Scene};
 use crate::session::{CaptureRequest, Every, Measurement, Session, SessionError, median_ms, report_rows};
+use crate::stress::{Case, Entrant};
 use crate::technique::Choice;
 use std::path::Path;
 use std::sync::Arc;
@@ -27,6 +28,8 @@ use std::time::{Duration, Instant};
 const TIMED_FRAMES: usize = 5;
 /// A frame that takes longer to capture is not timed: the next order would wait for it.
 const LONGEST_TIMED: Duration = Duration::from_millis(250);
+/// Pictures of stress cases, but for those with a size of their own.
+const STRESS_SIZE: [u32; 2] = [320, 240];
 /// How long nothing is asked for before the clock runs.
 const IDLE: Duration = Duration::from_millis(400);
 
@@ -122,9 +125,17 @@ impl Bench {
         let mut waiting = Waiting::default();
         loop {
             orders.try_iter().for_each(|order| waiting.add(order));
-            if let Some(order) = waiting.next() {
-                self.obey(order);
-                continue;
+            match waiting.next() {
+                Some(Order::Stress(run)) => {
+                    // Case by case: what is asked for in between does not wait for all of them.
+                    self.stress(run).into_iter().for_each(|rest| waiting.put_back(rest));
+                    continue;
+                }
+                Some(order) => {
+                    self.obey(order);
+                    continue;
+                }
+                None => {}
             }
             let next = if self.last.as_ref().is_some_and(|done| done.wants_timing) {
                 orders.recv_timeout(IDLE)
@@ -143,12 +154,15 @@ impl Bench {
         let done = match order {
             Order::Open(name) => self.open(&name),
             Order::Run { generation, request } if generation == self.generation => self.run(&request),
+            Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant),
             Order::Draws { frame, step } => return self.fill_draws(frame, step),
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
             Order::History { frame, at } => return self.history(frame, at),
             Order::Measure(what) if what.generation == self.generation => return self.measure(what),
             // Of a scene that is open no more.
             Order::Run { .. } | Order::Measure(_) => return,
+            // Obeyed by the loop, case by case.
+            Order::Stress(_) => return,
         };
         self.finish(done);
     }
@@ -169,6 +183,54 @@ impl Bench {
             self.choice = Choice::parse(wish).map_err(|error| format!("{name}: {error}"))?;
         }
         self.show_scene(Box::new(scene), 0.0)
+    }
+
+    /// Opens a stress case's scene at a value, with its shadows made as `entrant` says.
+    fn open_case(&mut self, case: &'static Case, value: f64, entrant: Option<Entrant>) -> Result<(), String> {
+        (self.tell)(News::Busy(format!("opening {}", case.name)));
+        let mut scene = case.scene(value).map_err(|error| format!("{} at {value}: {error}", case.name))?;
+        scene.name = format!("{} {value}", case.name);
+        if let Some(entrant) = entrant {
+            self.choice = case.choice(&entrant, value).map_err(|error| format!("{}: {error}", case.name))?;
+        }
+        self.size = case.size.unwrap_or(self.size);
+        self.show_scene(Box::new(scene), 0.0)
+    }
+
+    /// Runs the first of some stress cases, and gives back the others.
+    fn stress(&mut self, mut run: StressRun) -> Option<StressRun> {
+        if run.progress.is_cancelled() || run.cases.is_empty() {
+            return None;
+        }
+        let case = run.cases.remove(0);
+        (self.tell)(News::Busy(format!("stress: {}", case.name)));
+        let rows = self.session().and_then(|session| session.stress(&[case], &[], STRESS_SIZE, &run.progress));
+        (self.tell)(News::Idle);
+        let error = match rows {
+            Ok(rows) => {
+                (self.tell)(News::Stressed { job: run.job, rows });
+                None
+            }
+            // The window knows: it has asked for it.
+            Err(SessionError::Cancelled) => return None,
+            Err(error) => Some(error.to_string()),
+        };
+        if error.is_some() || run.cases.is_empty() {
+            (self.tell)(News::StressEnded { job: run.job, error });
+            return None;
+        }
+        Some(run)
+    }
+
+    /// The session, opened on first use.
+    fn session(&mut self) -> Result<&mut Session, SessionError> {
+        match &mut self.session {
+            Some(session) => Ok(session),
+            none => {
+                (self.tell)(News::Busy("starting the GPU".to_owned()));
+                Ok(none.insert(Session::new(self.adapter.as_deref())?))
+            }
+        }
     }
 
     fn show_scene(&mut self, scene: Box<Scene>, time: f64) -> Result<(), String> {
@@ -210,16 +272,10 @@ impl Bench {
 
     fn capture(&mut self, scene: Scene, request: &RunRequest) -> Result<(), SessionError> {
         let request = CaptureRequest { every: self.every, ..CaptureRequest::new(request.choice.clone(), request.size) };
-        let session = match &mut self.session {
-            Some(session) => session,
-            none => {
-                (self.tell)(News::Busy("starting the GPU".to_owned()));
-                none.insert(Session::new(self.adapter.as_deref())?)
-            }
-        };
+        self.session()?;
         (self.tell)(News::Busy(format!("capturing {}", request.choice.technique().name())));
         let start = Instant::now();
-        let (capture, plan) = session.capture_with_plan(&scene, &request)?;
+        let (capture, plan) = self.session()?.capture_with_plan(&scene, &request)?;
         let capture = Arc::new(capture);
         let wants_timing = start.elapsed() <= LONGEST_TIMED;
         self.frames += 1;
@@ -351,7 +407,7 @@ mod tests {
         (worker, frame, news)
     }
 
-    fn wait<T>(news: &Receiver<News>, is_it: impl Fn(News) -> Option<T>) -> T {
+    fn wait<T>(news: &Receiver<News>, mut is_it: impl FnMut(News) -> Option<T>) -> T {
         loop {
             if let Some(found) = is_it(news.recv_timeout(PATIENCE).expect("news")) {
                 return found;
@@ -361,6 +417,49 @@ mod tests {
 
     fn judge(worker: &Worker, frame: u64, progress: &Progress) {
         assert!(worker.order(Order::Judge { frame, progress: progress.clone() }));
+    }
+
+    #[test]
+    fn stress_cases_run_one_by_one_and_give_way_to_what_is_asked_in_between() {
+        let (worker, frame, news) = started();
+        let cases = ["one-pixel", "no-receiver"].map(|name| Case::named(name).expect("a case")).to_vec();
+        let run = StressRun { job: 5, cases, progress: Progress::default() };
+        assert!(worker.order(Order::Stress(run)));
+        let mut heard = Vec::new();
+        let error = wait(&news, |news| {
+            match news {
+                News::Stressed { job: 5, rows } => heard.push(rows[0].case),
+                News::StressEnded { job: 5, error } => return Some(error),
+                _ => {}
+            }
+            None
+        });
+        assert_eq!((heard, error), (vec!["one-pixel", "no-receiver"], None));
+        let cancelled = StressRun {
+            job: 6,
+            cases: vec![Case::named("tall-picture").expect("a case")],
+            progress: Progress::default(),
+        };
+        cancelled.progress.cancel();
+        assert!(worker.order(Order::Stress(cancelled)));
+        judge(&worker, frame, &Progress::default());
+        wait(&news, |news| {
+            assert!(!matches!(news, News::Stressed { .. }), "it was cancelled");
+            matches!(news, News::Judged { .. }).then_some(())
+        });
+    }
+
+    #[test]
+    fn a_stress_case_is_opened_as_a_scene_with_the_technique_that_breaks() {
+        let (worker, _frame, news) = started();
+        let case = Case::named("nested").expect("a case");
+        let entrant = case.entrants().into_iter().find(|entrant| !entrant.settings.is_empty());
+        assert!(worker.order(Order::OpenCase { case, value: 2.0, entrant }));
+        let scene = wait(&news, |news| if let News::Opened { scene, .. } = news { Some(scene) } else { None });
+        assert_eq!(scene.name, "nested 2");
+        let capture = wait(&news, |news| if let News::Captured { capture, .. } = news { Some(capture) } else { None });
+        assert_eq!(capture.technique, "z-fail");
+        assert_eq!(capture.settings.get("counter").map(String::as_str), Some("float"));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What the panels ask of the app. Panels change nothing outside themselves.
 
 use crate::scene::{Camera, Light};
+use crate::stress::Entrant;
 use crate::technique::Choice;
 use std::collections::BTreeMap;
 
@@ -31,6 +32,22 @@ pub enum Action {
     RunReport,
     /// Stop measuring; the rows so far stay.
     CancelReport,
+    /// Run stress cases.
+    RunStress {
+        /// Their names.
+        cases: Vec<&'static str>,
+    },
+    /// Stop running; the cases that are done stay.
+    CancelStress,
+    /// Open the scene of a stress case.
+    OpenStress {
+        /// Its name.
+        case: &'static str,
+        /// The value of its number.
+        value: f64,
+        /// How its shadows are made; `None`: as before.
+        entrant: Option<Entrant>,
+    },
     /// Render the open scene as a row of the report was.
     OpenReportRow {
         /// Name of the technique.

@@ -6,7 +6,7 @@
 
 use super::action::Action;
 use super::state::State;
-use super::{passes, picture, pixel, report, settings, theme};
+use super::{passes, picture, pixel, report, settings, stress, theme};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
@@ -30,6 +30,7 @@ enum Panel {
     Picture,
     Pixel,
     Report,
+    Stress,
 }
 
 /// The panels and where they are.
@@ -52,10 +53,11 @@ impl Dock {
         let mut tiles = Tiles::default();
         let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
         let left = tiles.insert_tab_tile(sides.to_vec());
-        let [picture, report, right] = [Panel::Picture, Panel::Report, Panel::Pixel].map(|panel| {
-            let pane = tiles.insert_pane(panel);
-            tiles.insert_tab_tile(vec![pane])
-        });
+        let [picture, report, right] =
+            [&[Panel::Picture][..], &[Panel::Report, Panel::Stress], &[Panel::Pixel]].map(|panels| {
+                let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
+                tiles.insert_tab_tile(panes)
+            });
         let middle = tiles.insert_vertical_tile(vec![picture, report]);
         let row = tiles.insert_horizontal_tile(vec![left, middle, right]);
         let tree = Tree::new(Id::unique("inspector dock"), row, tiles);
@@ -66,7 +68,9 @@ impl Dock {
     pub fn ui(&mut self, ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         if !self.arranged_by_user {
             self.keep_widths(ui.available_width());
-            self.keep_heights(ui.available_height(), state.report.is_empty());
+            // What was shown in the frame before is what is shown.
+            let is_empty = state.report.is_empty() && !std::mem::take(&mut state.stress.is_shown);
+            self.keep_heights(ui.available_height(), is_empty);
         }
         let mut behavior = Panels { state, actions, edited: false };
         self.tree.ui(&mut behavior, ui);
@@ -113,6 +117,10 @@ impl Behavior<Panel> for Panels<'_> {
                 Panel::Picture => picture::ui(ui, self.state, self.actions),
                 Panel::Pixel => pixel::ui(ui, self.state),
                 Panel::Report => report::ui(ui, self.state, self.actions),
+                Panel::Stress => {
+                    self.state.stress.is_shown = true;
+                    stress::ui(ui, self.state, self.actions);
+                }
             }
         });
         UiResponse::None
@@ -125,6 +133,7 @@ impl Behavior<Panel> for Panels<'_> {
             Panel::Picture => "Picture",
             Panel::Pixel => "Pixel",
             Panel::Report => "Report",
+            Panel::Stress => "Stress",
         };
         title.into()
     }

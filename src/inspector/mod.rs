@@ -55,6 +55,7 @@ mod settings_off;
 mod settings_scene;
 mod state;
 mod status_bar;
+mod stress;
 mod texture;
 mod theme;
 mod top_bar;
@@ -68,6 +69,7 @@ pub use draw_level::DrawsState;
 pub use meshes::ObjectMesh;
 pub use report::{ReportProgress, ReportView};
 pub use state::SceneEntry;
+pub use stress::StressProgress;
 pub use truth_note::TruthState;
 pub use view::{PictureKind, Zoom};
 
@@ -210,6 +212,22 @@ impl Inspector {
     #[must_use]
     pub fn report(&self) -> &ReportView {
         self.state.report.view()
+    }
+
+    /// Adds the rows of a stress case that was run; those of the same case before go.
+    pub fn add_stress(&mut self, rows: Vec<crate::stress::Row>) {
+        self.state.stress.add(rows);
+    }
+
+    /// Tells how far running stress cases is, or that none run; and why it failed, with the mend.
+    pub fn set_stress(&mut self, running: Option<StressProgress>, error: Option<String>) {
+        self.state.stress.show(running, error);
+    }
+
+    /// The rows of all stress cases that were run.
+    #[must_use]
+    pub fn stress(&self) -> &[crate::stress::Row] {
+        self.state.stress.rows()
     }
 
     /// Shows an error with its mend until it is dismissed; what was shown before stays.

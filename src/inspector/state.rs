@@ -6,6 +6,7 @@ use super::history::HistoryState;
 use super::meshes::ObjectMesh;
 use super::moment::Moment;
 use super::report::ReportState;
+use super::stress::StressState;
 use super::texture::PictureCache;
 use super::truth_note::TruthState;
 use super::view::{PictureKind, PictureView, Zoom, available, has_truth};
@@ -106,6 +107,8 @@ pub struct State {
     pub history: HistoryState,
     /// The Report tab.
     pub report: ReportState,
+    /// The stress cases and what they came to.
+    pub stress: StressState,
     /// Errors that were not dismissed yet.
     pub errors: Vec<String>,
     /// What is being done.

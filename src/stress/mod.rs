@@ -15,6 +15,8 @@ mod json;
 mod plot;
 mod table;
 
+pub use table::value_text;
+
 use crate::accuracy::ErrorCounts;
 use crate::capture::AdapterInfo;
 use crate::scene::{MeshError, Scene};
@@ -302,36 +304,7 @@ impl Stress {
     /// One entry a case and technique, in the order of the rows.
     #[must_use]
     pub fn summary(&self) -> Vec<Summary> {
-        let mut summaries: Vec<Summary> = Vec::new();
-        for row in &self.rows {
-            let of_row = |summary: &&mut Summary| summary.case == row.case && summary.entrant == row.entrant;
-            let wrong = row.error.wrong();
-            let known = summaries.iter_mut().find(of_row);
-            let Some(summary) = known else {
-                summaries.push(Summary {
-                    case: row.case,
-                    entrant: row.entrant,
-                    breaks_at: (wrong > 0).then_some(row.parameter.1),
-                    worst: (wrong, row.error.compared),
-                    flips: row.flips,
-                    expected: row.expected,
-                    verdict: Verdict::Holds,
-                });
-                continue;
-            };
-            if wrong > 0 {
-                summary.breaks_at = summary.breaks_at.or(Some(row.parameter.1));
-            }
-            if wrong > summary.worst.0 {
-                summary.worst = (wrong, row.error.compared);
-            }
-            summary.flips = match (summary.flips, row.flips) {
-                (None, None) => None,
-                (a, b) => Some(a.unwrap_or(0) + b.unwrap_or(0)),
-            };
-        }
-        summaries.iter_mut().for_each(|summary| summary.verdict = summary.judged());
-        summaries
+        summary(&self.rows)
     }
 
     /// Is anything unexpected?
@@ -339,6 +312,41 @@ impl Stress {
     pub fn is_unexpected(&self) -> bool {
         self.summary().iter().any(|summary| summary.verdict == Verdict::Unexpected)
     }
+}
+
+/// One entry a case and technique, in the order of the rows.
+#[must_use]
+pub fn summary(rows: &[Row]) -> Vec<Summary> {
+    let mut summaries: Vec<Summary> = Vec::new();
+    for row in rows {
+        let of_row = |summary: &&mut Summary| summary.case == row.case && summary.entrant == row.entrant;
+        let wrong = row.error.wrong();
+        let known = summaries.iter_mut().find(of_row);
+        let Some(summary) = known else {
+            summaries.push(Summary {
+                case: row.case,
+                entrant: row.entrant,
+                breaks_at: (wrong > 0).then_some(row.parameter.1),
+                worst: (wrong, row.error.compared),
+                flips: row.flips,
+                expected: row.expected,
+                verdict: Verdict::Holds,
+            });
+            continue;
+        };
+        if wrong > 0 {
+            summary.breaks_at = summary.breaks_at.or(Some(row.parameter.1));
+        }
+        if wrong > summary.worst.0 {
+            summary.worst = (wrong, row.error.compared);
+        }
+        summary.flips = match (summary.flips, row.flips) {
+            (None, None) => None,
+            (a, b) => Some(a.unwrap_or(0) + b.unwrap_or(0)),
+        };
+    }
+    summaries.iter_mut().for_each(|summary| summary.verdict = summary.judged());
+    summaries
 }
 
 impl Summary {

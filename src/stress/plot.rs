@@ -146,7 +146,7 @@ fn share(row: &Row) -> f64 {
 }
 
 fn spot(row: &Row, at: [f64; 2], filled: bool) -> Spot {
-    let value = table::value(row.parameter.1);
+    let value = table::value_text(row.parameter.1);
     let name = format!("{} at {value}: {} wrong", row.entrant, numbers::count(row.error.wrong()));
     let details = format!("{name}\nof {} compared", numbers::count(row.error.compared));
     let style = style_of(row.entrant.technique.name());
@@ -264,7 +264,7 @@ impl Axes {
         texts.extend(levels.chain([none]).map(|(y, text)| small([beside, y], text).anchored(Anchor::End)));
         texts.extend(self.across.ticks().into_iter().map(|tick| {
             let at = [self.across.position(tick), self.band.max[1] + 11.0];
-            small(at, table::value(tick)).anchored(Anchor::Middle)
+            small(at, table::value_text(tick)).anchored(Anchor::Middle)
         }));
         texts
     }

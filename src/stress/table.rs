@@ -61,12 +61,13 @@ fn range(case: &str) -> String {
     let Some(case) = Case::named(case) else { return String::new() };
     match case.values {
         [] | [_] => String::new(),
-        [first, .., last] => format!("{} {} → {}", case.parameter, value(*first), value(*last)),
+        [first, .., last] => format!("{} {} → {}", case.parameter, value_text(*first), value_text(*last)),
     }
 }
 
 /// A parameter's value: short, and in powers of ten where it is far from 1.
-pub(super) fn value(value: f64) -> String {
+#[must_use]
+pub fn value_text(value: f64) -> String {
     // Steps of a motion are sums of tenths: what is beyond six digits is their rounding.
     let rounded = if value == 0.0 { 0.0 } else { format!("{value:.5e}").parse().unwrap_or(value) };
     match rounded {
@@ -83,7 +84,7 @@ fn cell(summary: &Summary) -> String {
         (Some(at), expected) => {
             let name = if let Expected::Fails(name) = expected { name } else { "wrong" };
             let is_sweep = Case::named(summary.case).is_some_and(|case| case.values.len() > 1);
-            if is_sweep { format!("{} {name}{mark}", value(at)) } else { format!("{name}{mark}") }
+            if is_sweep { format!("{} {name}{mark}", value_text(at)) } else { format!("{name}{mark}") }
         }
     }
 }
@@ -95,7 +96,7 @@ fn line(summary: &Summary, width: usize) -> String {
         Some(value) => {
             let (worst, compared) = summary.worst;
             let [worst, compared] = [worst, compared].map(numbers::count);
-            format!("breaks at {}, at most {worst} of {compared} wrong", self::value(value))
+            format!("breaks at {}, at most {worst} of {compared} wrong", value_text(value))
         }
     };
     let flips = summary.flips.map_or_else(String::new, |flips| format!(", {flips} flips"));

@@ -10,6 +10,7 @@ mod layers;
 mod pictures;
 mod report;
 mod settings;
+mod stress;
 mod truth;
 
 use crate::common;

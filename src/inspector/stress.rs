@@ -1,0 +1,236 @@
+//! The Stress tab: every case with its lesson, what each technique did in it, and the scene of any
+//! value to open.
+//!
+//! It shows data and asks for it; running is the app's.
+
+use super::action::Action;
+use super::state::State;
+use super::{format, theme};
+use crate::stress::{Case, Row, Summary, Verdict, cases, summary, value_text};
+use egui::{Align, Layout, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+
+/// Width of the list of cases, points.
+const LIST_WIDTH: f32 = 232.0;
+/// Height of a row of the list and of the table, points.
+const ROW: f32 = 24.0;
+/// Values that are offered to be opened; of more, these many spread evenly.
+const MOST_VALUES: usize = 12;
+/// Columns of the table: where what was found and the verdict begin, points from its left.
+const COLUMNS: [f32; 2] = [196.0, 330.0];
+
+/// How far running is.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct StressProgress {
+    /// Cases that are done.
+    pub done: usize,
+    /// Cases in all.
+    pub of: usize,
+    /// The case that runs.
+    pub what: String,
+}
+
+/// What the tab shows.
+#[derive(Debug, Default)]
+pub struct StressState {
+    rows: Vec<Row>,
+    summaries: Vec<Summary>,
+    running: Option<StressProgress>,
+    error: Option<String>,
+    /// Index of the selected case.
+    selected: usize,
+    /// The tab was drawn in the frame before: it wants room.
+    pub is_shown: bool,
+}
+
+impl StressState {
+    /// Rows of a case that was run; those of the same case before go.
+    pub fn add(&mut self, rows: Vec<Row>) {
+        let is_again = |row: &Row| rows.iter().any(|new| new.case == row.case);
+        self.rows.retain(|row| !is_again(row));
+        self.rows.extend(rows);
+        self.summaries = summary(&self.rows);
+        self.error = None;
+    }
+
+    /// How far running is, or that nothing runs; and why it failed, with the mend.
+    pub fn show(&mut self, running: Option<StressProgress>, error: Option<String>) {
+        self.running = running;
+        if error.is_some() {
+            self.error = error;
+        }
+    }
+
+    /// The rows of all cases that were run.
+    #[must_use]
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    fn of<'a>(&'a self, case: &'a Case) -> impl Iterator<Item = &'a Summary> {
+        self.summaries.iter().filter(|summary| summary.case == case.name)
+    }
+
+    /// The worst verdict of a case; `None` where it was not run.
+    fn verdict(&self, case: &Case) -> Option<Verdict> {
+        self.of(case).map(|summary| summary.verdict).max()
+    }
+}
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    let all: Vec<&'static Case> = cases::all().collect();
+    let selected = state.stress.selected.min(all.len().saturating_sub(1));
+    let Some(case) = all.get(selected).copied() else { return };
+    top_line(ui, state, case, &all, actions);
+    if let Some(error) = &state.stress.error {
+        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::ERROR)).wrap());
+    }
+    let size = ui.available_size();
+    ui.horizontal_top(|ui| {
+        ui.allocate_ui_with_layout(vec2(LIST_WIDTH, size.y), Layout::top_down(Align::Min), |ui| {
+            let scroll = ScrollArea::vertical().id_salt("stress cases").auto_shrink([false, false]);
+            scroll.show_rows(ui, ROW, all.len(), |ui, rows| {
+                for index in rows {
+                    list_row(ui, state, all[index], index);
+                }
+            });
+        });
+        ui.allocate_ui_with_layout(vec2(ui.available_width(), size.y), Layout::top_down(Align::Min), |ui| {
+            let scroll = ScrollArea::vertical().id_salt("stress case").auto_shrink([false, false]);
+            scroll.show(ui, |ui| detail(ui, state, case, actions));
+        });
+    });
+}
+
+/// What can be run, and how far it is.
+fn top_line(ui: &mut Ui, state: &State, case: &Case, all: &[&'static Case], actions: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| match &state.stress.running {
+        Some(progress) => {
+            if ui.button("Cancel").on_hover_text("Stop; the cases that are done stay").clicked() {
+                actions.push(Action::CancelStress);
+            }
+            let share = progress.done as f32 / progress.of.max(1) as f32;
+            let bar = egui::ProgressBar::new(share).desired_width(ui.available_width().min(180.0)).desired_height(8.0);
+            ui.add(bar).accessible_name("Running stress cases");
+            ui.label(theme::note(format!("{} of {} · {}", progress.done, progress.of, progress.what)));
+        }
+        None => {
+            let one = ui.button(format!("Run {}", case.name));
+            if one.on_hover_text("Run the selected case: every technique at every value").clicked() {
+                actions.push(Action::RunStress { cases: vec![case.name] });
+            }
+            if ui.button("Run all").on_hover_text("Run every case; this takes minutes").clicked() {
+                actions.push(Action::RunStress { cases: all.iter().map(|case| case.name).collect() });
+            }
+            let unexpected = state.stress.summaries.iter().filter(|one| one.verdict == Verdict::Unexpected).count();
+            let ran = all.iter().filter(|case| state.stress.verdict(case).is_some()).count();
+            let text = match (ran, unexpected) {
+                (0, _) => "Each case drives one number from easy to extreme, and says who must hold and who must fail."
+                    .to_owned(),
+                (_, 0) => format!("{ran} of {} cases were run, and nothing was unexpected", all.len()),
+                _ => format!("{ran} of {} cases were run, {unexpected} results unexpected", all.len()),
+            };
+            ui.add(egui::Label::new(theme::note(text)).wrap());
+        }
+    });
+    ui.add_space(4.0);
+}
+
+/// A sign and a word for a verdict.
+fn mark(verdict: Option<Verdict>) -> (&'static str, egui::Color32) {
+    match verdict {
+        None => ("", theme::FAINT),
+        Some(Verdict::Holds) => ("holds", theme::PASSED),
+        Some(Verdict::FailsAsKnown) => ("as known", theme::DIM),
+        Some(Verdict::Unexpected) => ("unexpected", theme::ERROR),
+    }
+}
+
+fn list_row(ui: &mut Ui, state: &mut State, case: &Case, index: usize) {
+    let is_selected = state.stress.selected == index;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+    let (word, color) = mark(state.stress.verdict(case));
+    let name = if word.is_empty() { case.name.to_owned() } else { format!("{}: {word}", case.name) };
+    response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, &name));
+    if response.clicked() {
+        state.stress.selected = index;
+    }
+    theme::row_background(ui, rect, is_selected, &response);
+    let font = TextStyle::Small.resolve(ui.style());
+    let at = pos2(rect.right() - 8.0, rect.center().y);
+    let verdict = ui.painter().text(at, egui::Align2::RIGHT_CENTER, word, font, color);
+    let left = rect.left() + 8.0;
+    let room = verdict.left() - left - 8.0;
+    theme::line(ui, pos2(left, rect.center().y - 8.0), room, case.name, TextStyle::Body, theme::TEXT);
+    response.on_hover_text(case.lesson);
+}
+
+/// The selected case: its lesson, its values, and who did what.
+fn detail(ui: &mut Ui, state: &State, case: &'static Case, actions: &mut Vec<Action>) {
+    theme::heading(ui, case.name);
+    ui.add(egui::Label::new(theme::note(case.lesson).color(theme::TEXT)).wrap());
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::note(format!("Open at {}:", if case.parameter.is_empty() { "value" } else { case.parameter })));
+        for value in offered(case.values) {
+            let button = ui.button(theme::number(value_text(value)));
+            if button.on_hover_text("Open this scene in the window").clicked() {
+                actions.push(Action::OpenStress { case: case.name, value, entrant: None });
+            }
+        }
+    });
+    ui.add_space(4.0);
+    if state.stress.of(case).next().is_none() {
+        for entrant in case.entrants() {
+            let expected = case.expected(&entrant).name();
+            ui.label(theme::note(format!("{entrant}: expected {expected}")));
+        }
+        return;
+    }
+    for summary in state.stress.of(case) {
+        table_row(ui, case, summary, actions);
+    }
+}
+
+/// The values, or some of them, the ends included.
+fn offered(values: &[f64]) -> Vec<f64> {
+    if values.len() <= MOST_VALUES {
+        return values.to_vec();
+    }
+    let last = values.len() - 1;
+    (0..MOST_VALUES).filter_map(|index| values.get(index * last / (MOST_VALUES - 1)).copied()).collect()
+}
+
+/// A technique; a click opens the case where it breaks, or at its last value.
+fn table_row(ui: &mut Ui, case: &'static Case, summary: &Summary, actions: &mut Vec<Action>) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+    let found = match summary.breaks_at {
+        None => "no wrong pixel".to_owned(),
+        Some(value) => format!("breaks at {}", value_text(value)),
+    };
+    let expected = summary.expected.name();
+    let verdict = match summary.verdict {
+        Verdict::Holds => "holds".to_owned(),
+        other => format!("{} ({expected})", other.name()),
+    };
+    let name = format!("{}: {found}, {verdict}", summary.entrant);
+    response.widget_info(|| WidgetInfo::labeled(Role::Row, true, &name));
+    theme::row_background(ui, rect, false, &response);
+    let (_, color) = mark(Some(summary.verdict));
+    let y = rect.center().y - 7.0;
+    let [second, third] = COLUMNS.map(|column| rect.left() + column);
+    let technique = summary.entrant.to_string();
+    theme::line(ui, pos2(rect.left() + 8.0, y), COLUMNS[0] - 16.0, &technique, TextStyle::Small, theme::TEXT);
+    theme::line(ui, pos2(second, y), third - second - 8.0, &found, TextStyle::Small, theme::DIM);
+    theme::line(ui, pos2(third, y), rect.right() - third - 8.0, &verdict, TextStyle::Small, color);
+    let (wrong, compared) = summary.worst;
+    let [wrong, compared] = [wrong, compared].map(format::count);
+    let because = case.because(&summary.entrant);
+    let hover = format!(
+        "Expected: {expected}, as {because}. At most {wrong} of {compared} compared pixels are wrong. Click to open it there."
+    );
+    if response.on_hover_text(hover).clicked() {
+        let value = summary.breaks_at.or(case.values.last().copied()).unwrap_or_default();
+        actions.push(Action::OpenStress { case: case.name, value, entrant: Some(summary.entrant) });
+    }
+}

@@ -1,0 +1,109 @@
+//! The Stress tab.
+
+use super::{SIZE, Seen, click_button, harness_of, inspector, z_fail};
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::collections::BTreeMap;
+use stencilscope::accuracy::ErrorCounts;
+use stencilscope::inspector::{Action, Inspector, StressProgress};
+use stencilscope::stress::{Case, Row, cases};
+
+fn showing(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
+    let mut inspector = inspector(z_fail(SIZE));
+    prepare(&mut inspector);
+    let mut harness = harness_of(inspector, [1440.0, 900.0]);
+    harness.get_by_role_and_label(Role::Tab, "Stress").click();
+    harness.run_steps(4);
+    harness
+}
+
+/// Rows of a case, as if every technique had so many wrong pixels at each value.
+fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<Row> {
+    let case = Case::named(name).expect("a case");
+    let row = |value: &f64| {
+        let value = *value;
+        case.entrants().into_iter().map(move |entrant| (entrant, value))
+    };
+    let row_of = |(entrant, value): (stencilscope::stress::Entrant, f64)| Row {
+        case: case.name,
+        parameter: (case.parameter, value),
+        entrant,
+        settings: BTreeMap::new(),
+        error: ErrorCounts {
+            compared: 1000,
+            false_shadow: wrong(&entrant.to_string(), value),
+            ..ErrorCounts::default()
+        },
+        flips: None,
+        expected: case.expected(&entrant),
+        frame_ms: 1.0,
+        setup_ms: 1.0,
+    };
+    case.values.iter().flat_map(row).map(row_of).collect()
+}
+
+fn select(harness: &mut Harness<Seen>, row: &str) {
+    harness.get_by_role_and_label(Role::Row, row).click();
+    harness.run_steps(2);
+}
+
+#[test]
+fn cases_are_listed_run_and_cancelled() {
+    let mut harness = showing(|_| ());
+    let first = cases::all().next().expect("a case").name;
+    click_button(&mut harness, &format!("Run {first}"));
+    select(&mut harness, "world-scale");
+    click_button(&mut harness, "Run world-scale");
+    click_button(&mut harness, "Run all");
+    let all: Vec<&str> = cases::all().map(|case| case.name).collect();
+    let expected = [vec![first], vec!["world-scale"], all].map(|cases| Action::RunStress { cases });
+    assert_eq!(harness.state().actions, expected);
+    let running = StressProgress { done: 3, of: 51, what: "light-close".to_owned() };
+    harness.state_mut().inspector.set_stress(Some(running), None);
+    harness.run_steps(2);
+    harness.get_by_label("3 of 51 · light-close");
+    click_button(&mut harness, "Cancel");
+    assert_eq!(harness.state().actions.last(), Some(&Action::CancelStress));
+}
+
+#[test]
+fn a_case_that_was_run_says_who_broke_where_and_opens_there() {
+    let wrong = |entrant: &str, value: f64| u64::from(entrant == "z-pass" && value == 256.0) * 7;
+    let mut harness = showing(|inspector| inspector.add_stress(rows("nested", wrong)));
+    select(&mut harness, "nested: unexpected");
+    harness.get_by_role_and_label(Role::Row, "shadow-map: no wrong pixel, holds");
+    // It was known to fail, and did not: our knowledge is wrong.
+    harness.get_by_role_and_label(Role::Row, "z-fail: no wrong pixel, unexpected (wrap-256)");
+    select(&mut harness, "z-pass: breaks at 256, fails as known (wrap-256)");
+    let Some(Action::OpenStress { case: "nested", value: 256.0, entrant: Some(entrant) }) =
+        harness.state().actions.last()
+    else {
+        panic!("{:?}", harness.state().actions)
+    };
+    assert_eq!(entrant.to_string(), "z-pass");
+}
+
+#[test]
+fn any_value_opens_as_a_scene_and_an_error_is_said() {
+    let mut harness = showing(|inspector| inspector.set_stress(None, Some("the GPU was lost".to_owned())));
+    harness.get_by_label("× the GPU was lost");
+    select(&mut harness, "grazing");
+    harness.get_by_label("z-fail: expected right");
+    click_button(&mut harness, "1e-4");
+    let expected = Action::OpenStress { case: "grazing", value: 1e-4, entrant: None };
+    assert_eq!(harness.state().actions, [expected]);
+}
+
+#[test]
+fn running_a_case_again_replaces_its_rows_and_no_others() {
+    let mut inspector = Inspector::default();
+    inspector.add_stress(rows("nested", |_, _| 0));
+    inspector.add_stress(rows("grazing", |_, _| 0));
+    let count = inspector.stress().len();
+    inspector.add_stress(rows("nested", |_, _| 1));
+    assert_eq!(inspector.stress().len(), count);
+    let wrong =
+        |name| inspector.stress().iter().filter(|row| row.case == name).map(|row| row.error.wrong()).sum::<u64>();
+    assert!(wrong("nested") > 0 && wrong("grazing") == 0);
+}
