@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! scene ──► technique ──► FramePlan ──► gpu::Executor ──► Capture ──┬─► history ──► cli, inspector, testing
-//!    └────► truth ──────────────────────────────────► accuracy ◄─────┴─► report
+//!    └────► truth ──────────────────────────────────► accuracy ◄─────┴─► report, stress
 //! ```
 //!
 //! A frame is data: a technique turns a scene into a plan, one executor runs any plan and keeps

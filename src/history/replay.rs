@@ -147,7 +147,7 @@ fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
     }
 }
 
-/// For each light, whether any pass draws parts of its shadow volumes, or would if it had any.
+/// For each light, whether any pass draws parts of its shadow volumes, over this pixel or elsewhere.
 fn counts_volumes(plan: &FramePlan) -> Vec<bool> {
     let is_volume = |draw: &Draw| matches!(draw.part, Part::Side | Part::LightCap | Part::DarkCap);
     let counts = |light: usize| {

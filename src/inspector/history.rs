@@ -26,7 +26,7 @@ pub struct HistoryState {
     /// The answer is waited for longer than [`PATIENCE`].
     is_late: bool,
     /// Events that did nothing are hidden.
-    pub hides_failed: bool,
+    pub hides_idle: bool,
     /// The selected triangle.
     selected: Option<TriangleKey>,
     /// Its row has to be scrolled to.
@@ -94,7 +94,7 @@ impl HistoryState {
 
     /// What is shown has no history: a capture folder.
     pub fn close(&mut self) {
-        *self = HistoryState { hides_failed: self.hides_failed, ..HistoryState::default() };
+        *self = HistoryState { hides_idle: self.hides_idle, ..HistoryState::default() };
     }
 
     /// Another frame is shown: what is known is of the one before.

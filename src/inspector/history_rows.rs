@@ -72,7 +72,7 @@ fn heading(ui: &mut Ui, state: &mut State, history: Option<&PixelHistory>, at: [
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let text = theme::note("Hide idle");
-            let switch = ui.checkbox(&mut state.history.hides_failed, text);
+            let switch = ui.checkbox(&mut state.history.hides_idle, text);
             switch.on_hover_text("Hide events that changed nothing, whichever tests they passed or failed");
         });
     });
@@ -101,7 +101,7 @@ fn wrong(ui: &mut Ui, wrong: &[String]) {
 /// Indices of the events that are listed.
 fn shown(state: &State, history: &PixelHistory) -> Vec<usize> {
     let is_shown =
-        |event: &Event| !state.history.hides_failed || event.does_something() || state.history.is_selected(event);
+        |event: &Event| !state.history.hides_idle || event.does_something() || state.history.is_selected(event);
     history.events.iter().enumerate().filter(|(_, event)| is_shown(event)).map(|(index, _)| index).collect()
 }
 
