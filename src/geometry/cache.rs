@@ -1,6 +1,7 @@
 //! What geometry is worth keeping between plans: edge lists by the mesh's content, planes by the
 //! mesh and its place, and buffers.
 
+use super::hugging::put_hugging_last;
 use super::planar::Flattened;
 use super::{
     Casters, EdgeList, Extruder, Facings, Planes, SilhouetteEdge, Topology, VolumeParts, silhouette,
@@ -54,6 +55,23 @@ pub struct Caster<'a> {
     pub world: &'a [DVec3],
 }
 
+/// A volume that is asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct VolumeOf<'a> {
+    /// Whose.
+    pub caster: Caster<'a>,
+    /// It is drawn too, so its sides may hug what is seen.
+    pub is_drawn: bool,
+    /// Homogeneous position.
+    pub light: DVec4,
+    /// Which of its triangles cast.
+    pub casters: Casters,
+    /// How the silhouette is found.
+    pub by: SilhouetteBy,
+    /// Carries it away from the light.
+    pub extruder: &'a Extruder,
+}
+
 impl GeometryCache {
     /// Forgets flattened casters that the last plan did not ask for.
     pub fn next_plan(&mut self) {
@@ -90,28 +108,22 @@ impl GeometryCache {
         planes
     }
 
-    /// Writes the indices of a caster's volume for a light into `out`: facings, silhouette and
-    /// [`write_indices`] in buffers that are kept.
-    pub fn volume_indices(
-        &mut self,
-        caster: Caster,
-        light: DVec4,
-        casters: Casters,
-        by: SilhouetteBy,
-        extruder: &Extruder,
-        out: &mut Vec<u32>,
-    ) -> VolumeParts {
+    /// Writes the indices of a volume into `out`: facings, silhouette and [`write_indices`] in
+    /// buffers that are kept.
+    pub fn volume_indices(&mut self, of: &VolumeOf, out: &mut Vec<u32>) -> VolumeParts {
+        let VolumeOf { caster, light, .. } = *of;
         let triangles = caster.mesh.triangles();
         let planes = self.planes(caster);
-        let edges = (by == SilhouetteBy::Adjacency).then(|| self.edges(caster.mesh));
+        let edges = (of.by == SilhouetteBy::Adjacency).then(|| self.edges(caster.mesh));
         planes.facings(caster.world, triangles, light, &mut self.facings);
-        self.facings.keep_casting(casters);
-        match edges {
-            Some(edges) => silhouette(&edges, &self.facings, &mut self.silhouette),
-            None => silhouette_by_search(triangles, &self.facings, &mut self.silhouette),
+        self.facings.keep_casting(of.casters);
+        let found = &mut self.silhouette;
+        match &edges {
+            Some(edges) => silhouette(edges, &self.facings, found),
+            None => silhouette_by_search(triangles, &self.facings, found),
         }
-        let one_point = extruder.is_one_point();
-        write_indices(triangles, caster.world.len(), &self.facings, &self.silhouette, one_point, out)
+        let hugging = if of.is_drawn { put_hugging_last(found, caster, light, edges.as_deref()) } else { 0 };
+        write_indices(triangles, caster.world.len(), &self.facings, (found, hugging), of.extruder.far_end(), out)
     }
 
     /// How `mesh` hangs together, found out on first use.

@@ -6,6 +6,7 @@
 mod cache;
 mod edges;
 mod facing;
+mod hugging;
 mod intersection;
 pub mod light_frame;
 pub mod near_view;
@@ -18,12 +19,12 @@ pub mod topology;
 mod volume;
 mod winding;
 
-pub use cache::{Caster, GeometryCache, SilhouetteBy};
+pub use cache::{Caster, GeometryCache, SilhouetteBy, VolumeOf};
 pub use edges::{Edge, EdgeList};
 pub use facing::{Facings, Planes};
 pub use intersection::self_meeting;
 pub use receiver_texture::Parallelogram;
 pub use silhouette::{Casters, MOST_TO_SEARCH, SilhouetteEdge, facing, silhouette, silhouette_by_search};
 pub use topology::Topology;
-pub use volume::{Extruder, Extrusion, VolumeParts, write_indices};
+pub use volume::{DarkCap, Extruder, Extrusion, FarEnd, VolumeParts, write_indices};
 pub use winding::winding_number;

@@ -8,10 +8,11 @@
 //! - *light cap*: the casting triangles in the surface's own vertex order, so that their depths
 //!   are bit-equal to the surface's; those that face the light first (unturned), then those that
 //!   had to be turned, which are drawn with front and back operations swapped.
-//! - *dark cap*: the same triangles carried away. It has no indices of its own: it is the light
-//!   cap's with the number of near vertices added to each, and it must face away from the light, so
-//!   it is the other of its two runs that counts as turned. Where all far vertices are one
-//!   point, there is none.
+//! - *dark cap*: closes the far end ([`FarEnd`]): where all far vertices are one point, with nothing;
+//!   at infinity and with the light outside the caster's box, with a fan; else with the same triangles
+//!   carried away. Those have no indices of their own: they are the light cap's with the number of
+//!   near vertices added to each, and they must face away from the light, so it is the other of
+//!   the two runs that counts as turned.
 //!
 //! Where each run begins follows from the counts of facings alone, so indices are written once, into
 //! a buffer that may be kept, by several threads where there are many.
@@ -36,6 +37,27 @@ pub enum Extrusion {
     Finite(f64),
 }
 
+/// What closes a volume away from the light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FarEnd {
+    /// Nothing: all sides meet in one point, where a directional light's rays go.
+    Point,
+    /// A triangle for each quad of the sides, from its far edge to one direction that the light looks
+    /// along. At infinity only the outline of a cap matters, so this counts like the carried
+    /// triangles do; of a fine mesh it is a small part of them, and it stays well-shaped when
+    /// the light comes so near that carried triangles open to half-spaces.
+    ///
+    /// For the two to be the same, no triangle of either may hold the direction against that one:
+    /// then what lies between them encloses nothing. It is so where a side of the caster's
+    /// bounding box has the light outside, and the direction goes in through it.
+    Fan,
+    /// The casting triangles, carried away.
+    Caps,
+}
+
+/// A direction goes in through a side of the bounding box at this sine at least.
+const STEEP: f64 = 0.25;
+
 /// Carries a caster's vertices away from a light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extruder {
@@ -43,27 +65,29 @@ pub struct Extruder {
     extrusion: Extrusion,
     /// Of the bounding box's diagonal.
     size: f64,
+    /// Where the fan's triangles meet.
+    apex: Option<DVec3>,
 }
 
 impl Extruder {
     /// For a caster with these `world` positions.
     #[must_use]
     pub fn new(world: &[DVec3], light: DVec4, extrusion: Extrusion) -> Extruder {
-        let size = match (extrusion, light.w == 0.0) {
-            (Extrusion::Finite(_), true) => {
-                let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-                let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-                (high - low).length()
-            }
-            _ => 0.0,
-        };
-        Extruder { light, extrusion, size }
+        let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let is_fan = light.w != 0.0 && extrusion == Extrusion::Infinite;
+        let apex = if is_fan { apex(low, high, light.truncate() / light.w) } else { None };
+        Extruder { light, extrusion, size: (high - low).length(), apex }
     }
 
-    /// All vertices go to one point: a directional light's point at infinity.
+    /// What closes the volume away from the light.
     #[must_use]
-    pub fn is_one_point(&self) -> bool {
-        self.light.w == 0.0 && self.extrusion == Extrusion::Infinite
+    pub fn far_end(&self) -> FarEnd {
+        match (self.extrusion, self.apex) {
+            (Extrusion::Infinite, _) if self.light.w == 0.0 => FarEnd::Point,
+            (_, Some(_)) => FarEnd::Fan,
+            _ => FarEnd::Caps,
+        }
     }
 
     /// Where a vertex goes.
@@ -81,11 +105,24 @@ impl Extruder {
         }
     }
 
-    /// The caster's vertices, then the far ones.
+    /// The caster's vertices, then the far ones, then the fan's apex.
     pub fn vertices(&self, world: &[DVec3]) -> impl Iterator<Item = DVec4> {
-        let far = if self.is_one_point() { &world[..1.min(world.len())] } else { world };
-        world.iter().map(|position| position.extend(1.0)).chain(far.iter().map(|position| self.carry(*position)))
+        let far = if self.far_end() == FarEnd::Point { &world[..1.min(world.len())] } else { world };
+        let far = far.iter().map(|position| self.carry(*position));
+        let apex = self.apex.map(|apex| apex.extend(0.0));
+        world.iter().map(|position| position.extend(1.0)).chain(far).chain(apex)
     }
+}
+
+/// The direction a fan meets in; `None` where the light is inside the box from `low` to `high`, or on it.
+fn apex(low: DVec3, high: DVec3, light: DVec3) -> Option<DVec3> {
+    let axes = [(DVec3::X, light.x - high.x), (DVec3::Y, light.y - high.y), (DVec3::Z, light.z - high.z)];
+    let others = [(DVec3::NEG_X, low.x - light.x), (DVec3::NEG_Y, low.y - light.y), (DVec3::NEG_Z, low.z - light.z)];
+    // The side that the light is farthest outside of.
+    let (outward, outside) = axes.into_iter().chain(others).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let to_middle = ((low + high) / 2.0 - light).normalize_or_zero();
+    let is_steep = -to_middle.dot(outward) > STEEP;
+    (outside > 0.0).then_some(if is_steep { to_middle } else { -outward })
 }
 
 /// Runs of a volume's triangles.
@@ -93,52 +130,92 @@ impl Extruder {
 pub struct VolumeParts {
     /// Quads from the silhouette to the far vertices.
     pub sides: Range<usize>,
+    /// Those of the silhouette's last edges, which hug a triangle of their own.
+    pub hugging_sides: Range<usize>,
     /// Casting triangles that face the light as they are.
     pub light_cap: Range<usize>,
     /// Casting triangles that face away and count as turned, in their own vertex order.
     pub light_cap_turned: Range<usize>,
-    /// What is added to the light cap's indices to get the dark cap's: the number of near vertices.
-    /// `None` where there is no dark cap.
-    pub dark_cap_base: Option<u32>,
+    /// What closes the far end.
+    pub dark_cap: DarkCap,
+}
+
+/// What closes a volume's far end.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum DarkCap {
+    /// Nothing needs to.
+    #[default]
+    None,
+    /// Triangles of its own, that face outwards.
+    Fan(Range<usize>),
+    /// The light cap's triangles with this added to their indices, the number of near vertices.
+    Carried(u32),
 }
 
 impl VolumeParts {
-    fn new(sides: usize, facings: &Facings, dark_cap_base: Option<u32>) -> VolumeParts {
-        let [towards, away] = [sides + facings.towards(), sides + facings.towards() + facings.away()];
-        VolumeParts { sides: 0..sides, light_cap: sides..towards, light_cap_turned: towards..away, dark_cap_base }
+    fn new(sides: [usize; 2], facings: &Facings, dark_cap: DarkCap) -> VolumeParts {
+        let all = sides[0] + sides[1];
+        let [towards, away] = [all + facings.towards(), all + facings.towards() + facings.away()];
+        VolumeParts {
+            sides: 0..sides[0],
+            hugging_sides: sides[0]..all,
+            light_cap: all..towards,
+            light_cap_turned: towards..away,
+            dark_cap,
+        }
     }
 
     /// How many triangles a volume with both caps has.
     #[must_use]
     pub fn triangles(&self) -> usize {
-        let caps = if self.dark_cap_base.is_some() { 2 } else { 1 };
-        self.sides.len() + caps * (self.light_cap.len() + self.light_cap_turned.len())
+        let light_caps = self.light_cap.len() + self.light_cap_turned.len();
+        let dark_cap = match &self.dark_cap {
+            DarkCap::None => 0,
+            DarkCap::Fan(triangles) => triangles.len(),
+            DarkCap::Carried(_) => light_caps,
+        };
+        self.hugging_sides.end + light_caps + dark_cap
     }
 }
 
 /// Writes the indices of the volume of a caster of `vertex_count` vertices: three a triangle, into
 /// the vertices of [`Extruder::vertices`], front faces outwards but for turned light-cap
-/// triangles. The dark cap is part of what they say, but not of them. Whatever `out` held is overwritten.
+/// triangles. The last `hugging` edges' sides are a run of their own. Whatever `out` held is overwritten.
 pub fn write_indices(
     triangles: &[[u32; 3]],
     vertex_count: usize,
     facings: &Facings,
-    silhouette: &[SilhouetteEdge],
-    is_one_point: bool,
+    (silhouette, hugging): (&[SilhouetteEdge], usize),
+    far_end: FarEnd,
     out: &mut Vec<u32>,
 ) -> VolumeParts {
-    let far = Far { first: vertex_count as u32, is_one_point };
-    let quads: usize = silhouette.iter().map(|edge| edge.multiplicity.unsigned_abs() as usize).sum();
-    let dark_cap_base = (!is_one_point).then_some(far.first);
-    let parts = VolumeParts::new(if is_one_point { quads } else { 2 * quads }, facings, dark_cap_base);
-    let length = parts.light_cap_turned.end * 3;
+    let far = Far { first: vertex_count as u32, is_one_point: far_end == FarEnd::Point };
+    let edges = silhouette.split_at(silhouette.len() - hugging);
+    let quads = |edges: &[SilhouetteEdge]| -> usize {
+        edges.iter().map(|edge| edge.multiplicity.unsigned_abs() as usize).sum()
+    };
+    let quads = [quads(edges.0), quads(edges.1)];
+    let sides = quads.map(|quads| if far.is_one_point { quads } else { 2 * quads });
+    let mut parts = VolumeParts::new(sides, facings, DarkCap::None);
+    let caps_end = parts.light_cap_turned.end;
+    let fan = if far_end == FarEnd::Fan { quads[0] + quads[1] } else { 0 };
+    parts.dark_cap = match far_end {
+        FarEnd::Point => DarkCap::None,
+        FarEnd::Fan => DarkCap::Fan(caps_end..caps_end + fan),
+        FarEnd::Caps => DarkCap::Carried(far.first),
+    };
+    let length = (caps_end + fan) * 3;
     if out.capacity() < length {
         *out = vec![0; length]; // zeroed by the system, not by us
     } else {
         out.resize(length, 0);
     }
-    let (sides, caps) = out.as_chunks_mut().0.split_at_mut(parts.sides.end);
+    let (sides, rest) = out.as_chunks_mut().0.split_at_mut(parts.hugging_sides.end);
     write_sides(sides, silhouette, far);
+    let (caps, fan) = rest.split_at_mut(facings.towards() + facings.away());
+    if far_end == FarEnd::Fan {
+        write_fan(fan, silhouette, far);
+    }
     let (towards, away) = caps.split_at_mut(facings.towards());
     let caps = Caps { towards, away };
     if triangles.len() <= 2 * SHARE {
@@ -164,6 +241,11 @@ struct Far {
 impl Far {
     fn of(self, vertex: u32) -> u32 {
         if self.is_one_point { self.first } else { self.first + vertex }
+    }
+
+    /// After as many far vertices as there are near ones.
+    fn apex(self) -> u32 {
+        2 * self.first
     }
 }
 
@@ -239,6 +321,16 @@ fn write_sides(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: Far) {
     }
 }
 
+/// Each side's quad runs along its far edge one way; the fan's triangle must run back.
+fn write_fan(out: &mut [[u32; 3]], silhouette: &[SilhouetteEdge], far: Far) {
+    let mut room = out.iter_mut();
+    for &SilhouetteEdge { edge, multiplicity } in silhouette {
+        let (p, q) = (far.of(edge.low), far.of(edge.high));
+        let triangle = if multiplicity > 0 { [q, p, far.apex()] } else { [p, q, far.apex()] };
+        (0..multiplicity.unsigned_abs()).zip(&mut room).for_each(|(_, out)| *out = triangle);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::{Casters, EdgeList, Planes, silhouette};
@@ -263,11 +355,12 @@ mod tests {
             facings.keep_casting(casters);
             silhouette(&EdgeList::new(corners, world.len()), &facings, &mut edges);
             let extruder = Extruder::new(world, light, extrusion);
-            let one_point = extruder.is_one_point();
-            let parts = write_indices(corners, world.len(), &facings, &edges, one_point, &mut indices);
+            let far_end = extruder.far_end();
+            let hugging = edges.len() / 3;
+            let parts = write_indices(corners, world.len(), &facings, (&edges, hugging), far_end, &mut indices);
             let mut triangles: Vec<[u32; 3]> = indices.as_chunks().0.to_vec();
-            // As they face outwards: the light cap's turned run, and the dark cap's other one.
-            if let Some(base) = parts.dark_cap_base {
+            // As they face outwards: the light cap's turned run, and the carried dark cap's other one.
+            if let DarkCap::Carried(base) = parts.dark_cap {
                 let carried = |[a, b, c]: [u32; 3]| [a + base, b + base, c + base];
                 let turned = |[a, b, c]: [u32; 3]| [a, c, b];
                 let towards: Vec<_> = triangles[parts.light_cap.clone()].iter().map(|t| turned(carried(*t))).collect();
@@ -330,13 +423,13 @@ mod tests {
         let world = [DVec3::ZERO, DVec3::X, DVec3::Y];
         for (corners, is_turned) in [([0, 1, 2], false), ([0, 2, 1], true)] {
             let volume = Volume::new(&world, &[corners], DVec4::new(0.2, 0.2, 4.0, 1.0));
-            assert_eq!(volume.parts.sides.len(), 6);
+            assert_eq!([volume.parts.sides.len(), volume.parts.hugging_sides.len()], [4, 2]);
             assert_eq!(volume.parts.light_cap.len(), usize::from(!is_turned));
             assert_eq!(volume.parts.light_cap_turned.len(), usize::from(is_turned));
-            assert_eq!((volume.parts.dark_cap_base, volume.triangles.len()), (Some(3), 8));
+            assert_eq!((&volume.parts.dark_cap, volume.triangles.len()), (&DarkCap::Fan(7..10), 10));
             assert_closed(&volume);
             let inside = DVec3::new(0.3, 0.3, -1.0);
-            for index in volume.parts.sides.clone() {
+            for index in 0..volume.parts.hugging_sides.end {
                 let [a, b, c] = volume.triangles[index].map(|v| volume.vertices[v as usize]);
                 let matrix = glam::DMat4::from_cols(a, b, c, inside.extend(1.0));
                 assert!(matrix.determinant() > 0.0, "the inside is behind every side");
@@ -348,8 +441,8 @@ mod tests {
     fn a_directional_light_needs_no_dark_cap_and_half_the_sides() {
         let world = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let volume = Volume::new(&world, &[[0, 1, 2]], DVec4::new(0.0, 0.0, 1.0, 0.0));
-        assert_eq!(volume.parts.sides.len(), 3);
-        assert_eq!(volume.parts.dark_cap_base, None);
+        assert_eq!(volume.parts.hugging_sides.end, 3);
+        assert_eq!(volume.parts.dark_cap, DarkCap::None);
         assert_eq!(volume.vertices.len(), 4);
     }
 
@@ -361,7 +454,7 @@ mod tests {
         // The bounding box's diagonal is 5.
         let sun = Extruder::new(&world, DVec4::new(0.0, 7.0, 0.0, 0.0), Extrusion::Finite(2.0));
         assert_eq!(sun.carry(DVec3::X), DVec4::new(1.0, -10.0, 0.0, 1.0));
-        assert!(!sun.is_one_point());
+        assert_eq!([point.far_end(), sun.far_end()], [FarEnd::Caps; 2]);
     }
 
     /// Many triangles, so that several threads write; the same runs as one by one.
@@ -372,11 +465,62 @@ mod tests {
         let sign_of = |i: u32| [Sign::Positive, Sign::Negative, Sign::Zero][(i / 40 % 7 % 3) as usize];
         let facings = Facings::from_signs((0..count).map(sign_of));
         let mut indices = vec![9; 7];
-        let parts = write_indices(&triangles, count as usize + 2, &facings, &[], false, &mut indices);
+        let parts = write_indices(&triangles, count as usize + 2, &facings, (&[], 0), FarEnd::Caps, &mut indices);
         let of = |sign: Sign| triangles.iter().zip(0..count).filter(move |(_, i)| sign_of(*i) == sign).map(|(t, _)| *t);
         let written = indices.as_chunks::<3>().0;
         let expected: Vec<[u32; 3]> = of(Sign::Positive).chain(of(Sign::Negative)).collect();
         assert_eq!(written[..parts.light_cap_turned.end], expected);
-        assert_eq!((written.len(), parts.dark_cap_base), (expected.len(), Some(count + 2)));
+        assert_eq!((written.len(), parts.dark_cap), (expected.len(), DarkCap::Carried(count + 2)));
+    }
+
+    /// How often triangles of directions hold `ray`, with sign.
+    fn windings(volume: &Volume, triangles: impl Iterator<Item = [u32; 3]>, ray: DVec3) -> i32 {
+        let of = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(|corner| volume.vertices[corner as usize].truncate());
+            let sides = [a.cross(b).dot(ray), b.cross(c).dot(ray), c.cross(a).dot(ray)];
+            // All three signs, and the same: it is in the triangle, or in the one opposite.
+            let is_ahead = a.cross(b).dot(c) * sides[0] > 0.0;
+            let holds = sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0);
+            if holds && is_ahead { sides[0].signum() as i32 } else { 0 }
+        };
+        triangles.map(of).sum()
+    }
+
+    /// From all sides of random soups, and from so near that the carried triangles are half-spaces.
+    #[test]
+    fn a_fan_counts_like_the_carried_triangles() {
+        let mut seen = 0;
+        for seed in 0..200 {
+            let (world, corners) = soup(seed, 1 + seed as usize % 20);
+            let lights = [[9.0, 7.5, 2.0], [3.1, 6.0 + 1e-7, 2.9], [-0.5, 2.2, 3.3], [3.0, 2.5, -40.0]];
+            for light in lights.map(|light| DVec3::from_array(light).extend(1.0)) {
+                let fan = Volume::new(&world, &corners, light);
+                let DarkCap::Fan(range) = fan.parts.dark_cap.clone() else { panic!("{light} is outside the box") };
+                let base = world.len() as u32;
+                for _ in 0..40 {
+                    seen += 1;
+                    let angle = f64::from(seen);
+                    let ray = DVec3::new(angle.sin(), (1.7 * angle).cos(), (2.3 * angle).sin() + 0.01);
+                    let by_fan = windings(&fan, fan.triangles[range.clone()].iter().copied(), ray);
+                    let carried = |run: &Range<usize>, is_turned: bool| {
+                        let far = fan.triangles[run.clone()].iter().map(|t| t.map(|corner| corner + base));
+                        let sum = windings(&fan, far, ray);
+                        if is_turned { -sum } else { sum }
+                    };
+                    // Turned as in `assert_closed`: away from the light.
+                    let by_caps = carried(&fan.parts.light_cap, true) + carried(&fan.parts.light_cap_turned, false);
+                    assert_eq!(by_fan, by_caps, "{seed} {light} {ray}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_light_inside_the_box_has_no_fan() {
+        let world = [DVec3::ZERO, DVec3::ONE];
+        let far_end = |light: DVec3| Extruder::new(&world, light.extend(1.0), Extrusion::Infinite).far_end();
+        assert_eq!(far_end(DVec3::splat(0.5)), FarEnd::Caps);
+        assert_eq!(far_end(DVec3::new(0.5, 1.0, 0.5)), FarEnd::Caps);
+        assert_eq!(far_end(DVec3::new(0.5, 1.0_f64.next_up(), 0.5)), FarEnd::Fan);
     }
 }

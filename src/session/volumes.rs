@@ -60,9 +60,9 @@ pub fn volume_cost(mesh: &Mesh, runs: usize) -> VolumeCost {
         timed(&mut cost.facing, is_timed, || planes.facings(black_box(world), triangles, light, &mut facings));
         facings.keep_casting(Casters::All);
         timed(&mut cost.multiplicities, is_timed, || silhouette(&edges, black_box(&facings), &mut edges_found));
-        let one_point = extruder.is_one_point();
+        let far_end = extruder.far_end();
         let parts = timed(&mut cost.indices, is_timed, || {
-            write_indices(triangles, world.len(), &facings, black_box(&edges_found), one_point, &mut indices)
+            write_indices(triangles, world.len(), &facings, (black_box(&edges_found), 0), far_end, &mut indices)
         });
         let new_light = start.elapsed();
         if is_timed {

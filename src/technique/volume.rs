@@ -10,7 +10,7 @@
 //! Light caps are the surface's own triangles in its own vertex order, so that their depths are
 //! bit-equal and the strict test is exact. Triangles that face away from the light count as
 //! turned: they are not turned in the buffer, but drawn with front and back operations swapped.
-//! Sides are drawn a few steps of depth behind their place (`counting`).
+//! Sides that hug the surface they are thrown by are drawn a little behind their place (`counting`).
 
 mod counting;
 mod near_count;
@@ -19,7 +19,7 @@ mod options;
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::settings::ONE_ROW;
 use super::{PlanError, ReportRows};
-use crate::geometry::{Caster, Casters, Extruder, Extrusion, SilhouetteBy, VolumeParts, relative};
+use crate::geometry::{Caster, Casters, DarkCap, Extruder, Extrusion, SilhouetteBy, VolumeOf, VolumeParts, relative};
 use crate::plan::{
     Blob, Draw, DrawConstants, DrawMesh, FramePlan, LightId, MeshId, Part, Program, RasterState, Visibility,
 };
@@ -107,47 +107,60 @@ struct NeededPart {
     part: Part,
     /// Its triangles face inwards: operations are swapped.
     turned: bool,
+    /// Sides that the surface they are thrown by is too near to.
+    hugs: bool,
+    /// What is added to its indices.
+    base_vertex: u32,
     triangles: Range<usize>,
 }
 
+impl NeededPart {
+    fn new(part: Part, turned: bool, triangles: &Range<usize>) -> NeededPart {
+        NeededPart { part, turned, hugs: false, base_vertex: 0, triangles: triangles.clone() }
+    }
+}
+
 impl Volume {
+    /// The casting triangles themselves.
+    fn casting(&self) -> impl Iterator<Item = NeededPart> {
+        let runs = [(false, &self.parts.light_cap), (true, &self.parts.light_cap_turned)];
+        let parts = runs.map(|(turned, triangles)| NeededPart::new(Part::LightCap, turned, triangles));
+        parts.into_iter().filter(|part| !part.triangles.is_empty())
+    }
+
     fn draws(&self, counting: Counting, options: &Options, step: Step) -> Vec<Draw> {
-        let draw = |part: &NeededPart| {
-            let raster = counting.raster(part.part, part.turned, options, step);
-            self.draw(part.part, part.turned, &part.triangles, raster)
-        };
-        self.needed.iter().map(draw).collect()
+        self.needed.iter().map(|part| self.draw(part, counting.raster(part, options, step))).collect()
     }
 
     fn float_draws(&self, counting: Counting, options: &Options) -> Vec<Draw> {
         let draw = |part: &NeededPart| {
-            let (raster, count) = counting.float_raster(part.part, part.turned, options);
+            let (raster, count) = counting.float_raster(part, options);
             let constants = DrawConstants { count, ..DrawConstants::default() };
-            let draw = self.draw(part.part, part.turned, &part.triangles, raster);
-            Draw { program: Program::Count, constants, ..draw }
+            Draw { program: Program::Count, constants, ..self.draw(part, raster) }
         };
         self.needed.iter().map(draw).collect()
     }
 
-    fn draw(&self, part: Part, turned: bool, triangles: &Range<usize>, raster: RasterState) -> Draw {
-        let what = match (part, turned) {
+    fn draw(&self, part: &NeededPart, raster: RasterState) -> Draw {
+        let what = match (part.part, part.turned) {
+            (Part::Side, _) if part.hugs => "hugging sides",
             (Part::Side, _) => "sides",
             (Part::LightCap, false) => "light cap",
             (Part::LightCap, true) => "turned light cap",
             // What faces the light faces inwards at the far end.
-            (_, true) => "dark cap",
-            (_, false) => "turned dark cap",
+            (_, false) if part.base_vertex != 0 => "turned dark cap",
+            (_, _) => "dark cap",
         };
         Draw {
             name: format!("{what} of {}", self.caster),
             caster: Some(self.caster.clone()),
-            part,
+            part: part.part,
             program: Program::Position,
             raster,
             mesh: self.mesh,
-            triangles: triangles.start as u32..triangles.end as u32,
-            base_vertex: self.parts.dark_cap_base.filter(|_| part == Part::DarkCap).unwrap_or(0),
-            faces_inwards: turned,
+            triangles: part.triangles.start as u32..part.triangles.end as u32,
+            base_vertex: part.base_vertex,
+            faces_inwards: part.turned,
             constants: DrawConstants::default(),
         }
     }
@@ -215,8 +228,9 @@ fn make(
     let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
     let extruder = Extruder::new(&placed.world, position, options.extrusion);
     let mut indices = Vec::new();
-    let cache = &mut frame.job.cache;
-    let parts = cache.volume_indices(caster, position, casters, options.silhouette, &extruder, &mut indices);
+    let (is_drawn, by) = (placed.object.visible, options.silhouette);
+    let volume = VolumeOf { caster, is_drawn, light: position, casters, by, extruder: &extruder };
+    let parts = frame.job.cache.volume_indices(&volume, &mut indices);
     let vertices = extruder.vertices(&placed.world).map(|vertex| relative::homogeneous(vertex, eye)).collect();
     let mesh = DrawMesh {
         name: format!("volume of {}", placed.object.name),
@@ -234,25 +248,40 @@ fn needed_parts(
     parts: &VolumeParts,
     caster: &Object,
 ) -> Vec<NeededPart> {
-    let part = |part, turned, triangles: &Range<usize>| NeededPart { part, turned, triangles: triangles.clone() };
-    let light_caps =
-        [part(Part::LightCap, false, &parts.light_cap), part(Part::LightCap, true, &parts.light_cap_turned)];
-    let mut needed = vec![part(Part::Side, false, &parts.sides)];
+    let run = NeededPart::new;
+    let hugging = NeededPart { hugs: true, ..run(Part::Side, false, &parts.hugging_sides) };
+    let mut needed = vec![run(Part::Side, false, &parts.sides), hugging];
     if counting == Counting::Behind || !caster.visible {
         // In z-pass the view ray enters the volume of an undrawn caster through its light cap.
-        needed.extend(light_caps);
+        needed.push(run(Part::LightCap, false, &parts.light_cap));
+        needed.push(run(Part::LightCap, true, &parts.light_cap_turned));
     } else {
         let because = "z-pass counts in front of surfaces, and a drawn caster's cap is never in front of itself";
         frame.leave_out("caps", &caster.name, because);
     }
     // A finite volume ends in front of whatever lies beyond it.
     if counting == Counting::Behind || options.extrusion != Extrusion::Infinite {
-        if parts.dark_cap_base.is_some() {
-            needed.push(part(Part::DarkCap, true, &parts.light_cap));
-            needed.push(part(Part::DarkCap, false, &parts.light_cap_turned));
-        } else {
-            let because = "a directional light's volume closes in one point at infinity";
-            frame.leave_out("dark cap", &caster.name, because);
+        match &parts.dark_cap {
+            DarkCap::None => {
+                let because = "a directional light's volume closes in one point at infinity";
+                frame.leave_out("dark cap", &caster.name, because);
+            }
+            DarkCap::Fan(triangles) => {
+                needed.push(run(Part::DarkCap, false, triangles));
+                let cap = parts.light_cap.len() + parts.light_cap_turned.len();
+                if triangles.len() < cap {
+                    let because = format!(
+                        "at infinity only its outline matters: {} triangles close what {cap} would",
+                        triangles.len()
+                    );
+                    frame.leave_out("inner triangles of the dark cap", &caster.name, &because);
+                }
+            }
+            DarkCap::Carried(base) => {
+                let carried = |part: NeededPart| NeededPart { base_vertex: *base, ..part };
+                needed.push(carried(run(Part::DarkCap, true, &parts.light_cap)));
+                needed.push(carried(run(Part::DarkCap, false, &parts.light_cap_turned)));
+            }
         }
     }
     needed

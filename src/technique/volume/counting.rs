@@ -1,19 +1,20 @@
 //! Where volume faces count, and the raster state that makes them.
 
-use super::{Options, Part, RasterState};
+use super::{NeededPart, Options, Part, RasterState};
 use crate::plan::{ColorWrite, LightId, StencilFace};
 use crate::technique::Technique;
 use crate::technique::frame::Frame;
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
-/// How far sides are drawn behind their place, in steps of depth. A side shares no triangle with the
-/// surface, so their depths round apart. Where the light grazes a surface, the side that the
-/// surface's own edge throws runs behind it, nearer than that: what comes out in front of it leaves
-/// the surface's cap without its other half. Rounding grows with a triangle's largest depth, and so
-/// does the step of a depth bias. One step mends a light at 1e-4 degrees; with four there is room.
-/// It costs pixels along the edges of other casters' shadows, on floors that the light grazes at less
-/// than 0.03 degrees: only sides that hug a drawn surface should have it.
-const SIDE_BIAS: i32 = -4;
+/// How far sides that hug a drawn surface are drawn behind their place, in steps of depth. Depths of a
+/// side and of the surface round apart, and where the light grazes a surface, the side that its own
+/// edge throws runs behind it, nearer than that: what comes out in front leaves the surface's
+/// cap without its other half. Rounding grows with a triangle's largest depth, and so does the step of
+/// a depth bias; one step mends a light at 1e-4 degrees, the other is room.
+///
+/// No other side has it: a bias moves the edge of a shadow on whatever the light grazes, by so many
+/// steps over the tangent of the light's height.
+const HUGGING_BIAS: i32 = -2;
 
 /// Where a volume face counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,13 +93,13 @@ impl Counting {
         }
     }
 
-    /// The state for triangles that face outwards (`turned`: inwards).
-    pub fn raster(self, part: Part, turned: bool, options: &Options, step: Step) -> RasterState {
+    /// The state that a part counts with.
+    pub fn raster(self, part: &NeededPart, options: &Options, step: Step) -> RasterState {
         let (add, take) = operations(options);
-        let adds_in_front = (self != Counting::Behind) != turned;
+        let adds_in_front = (self != Counting::Behind) != part.turned;
         let (front, back) = if adds_in_front { (add, take) } else { (take, add) };
         let surface = RasterState::surface();
-        let is_never = options.light_caps_never_pass && part == Part::LightCap;
+        let is_never = options.light_caps_never_pass && part.part == Part::LightCap;
         let depth_compare = if is_never { CompareFunction::Never } else { surface.depth_compare };
         let depth_bias = depth_bias(part);
         let state = RasterState { depth_compare, depth_bias, depth_write: false, color: ColorWrite::None, ..surface };
@@ -114,19 +115,19 @@ impl Counting {
         state.with_faces(self.face(keep(front_counts, front)), self.face(keep(back_counts, back)), 0)
     }
 
-    /// The state for counting in a float target, and what a front face adds there (`turned`: a back
-    /// face that counts as one). What fails the depth test writes nothing, so counting behind the
-    /// surface tests the other way round.
-    pub fn float_raster(self, part: Part, turned: bool, options: &Options) -> (RasterState, f32) {
+    /// The state for counting in a float target, and what a front face adds there (of a turned part: a
+    /// back face that counts as one). What fails the depth test writes nothing, so counting behind
+    /// the surface tests the other way round.
+    pub fn float_raster(self, part: &NeededPart, options: &Options) -> (RasterState, f32) {
         let surface = RasterState::surface();
-        let never_passes = options.light_caps_never_pass && part == Part::LightCap;
+        let never_passes = options.light_caps_never_pass && part.part == Part::LightCap;
         let depth_compare = match (self, never_passes) {
             (Counting::Behind, true) => CompareFunction::Always,
             (Counting::Behind, false) => CompareFunction::LessEqual,
             (_, true) => CompareFunction::Never,
             (_, false) => surface.depth_compare,
         };
-        let adds_in_front = (self != Counting::Behind) != turned;
+        let adds_in_front = (self != Counting::Behind) != part.turned;
         let depth_bias = depth_bias(part);
         let state = RasterState { depth_compare, depth_bias, depth_write: false, color: ColorWrite::Add, ..surface };
         (state, if adds_in_front { 1.0 } else { -1.0 })
@@ -141,9 +142,8 @@ impl Counting {
     }
 }
 
-/// Caps stay where they are: a light cap is the surface, bit for bit.
-fn depth_bias(part: Part) -> DepthBiasState {
-    let constant = if part == Part::Side { SIDE_BIAS } else { 0 };
+fn depth_bias(part: &NeededPart) -> DepthBiasState {
+    let constant = if part.hugs { HUGGING_BIAS } else { 0 };
     DepthBiasState { constant, ..DepthBiasState::default() }
 }
 

@@ -14,9 +14,7 @@
 use super::counting::operations;
 use super::{Options, Volume};
 use crate::geometry::near_view;
-use crate::plan::{
-    ColorWrite, Draw, DrawConstants, LightId, Part, PlanView, Program, RasterState, StencilFace, ViewId,
-};
+use crate::plan::{ColorWrite, Draw, DrawConstants, LightId, PlanView, Program, RasterState, StencilFace, ViewId};
 use crate::technique::frame::Frame;
 use wgpu::CompareFunction;
 
@@ -35,12 +33,8 @@ pub fn pass(frame: &mut Frame, light: LightId, options: &Options, volumes: &[Vol
         }
     };
     let raster = raster(options);
-    let draws: Vec<_> = volumes
-        .iter()
-        .flat_map(|volume| [(volume, false, &volume.parts.light_cap), (volume, true, &volume.parts.light_cap_turned)])
-        .filter(|(_, _, triangles)| !triangles.is_empty())
-        .map(|(volume, turned, triangles)| volume.draw(Part::LightCap, turned, triangles, raster.clone()))
-        .collect();
+    let draws: Vec<_> =
+        volumes.iter().flat_map(|volume| volume.casting().map(|part| volume.draw(&part, raster.clone()))).collect();
     if draws.is_empty() {
         frame.leave_out("count at the near plane", &name, "nothing casts");
         return;
