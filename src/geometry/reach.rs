@@ -1,0 +1,258 @@
+//! What a caster and its shadow can reach of a view: reasons to leave things out.
+//!
+//! Every question is whether a convex body lies wholly outside one plane of another. That errs to
+//! the safe side: bodies apart for which no such plane is known count as touching. A body's points
+//! are relative to the eye and homogeneous, so a shadow is a caster's points together with the same
+//! points carried to infinity, and a plane through the eye asks both alike.
+//!
+//! The GPU sees points rounded to `f32`. So a body is outside a plane only if it is farther away
+//! than that rounding can move it, and a margin for the arithmetic here comes on top.
+
+use crate::math::Plane;
+use crate::math::projection;
+use crate::scene::Camera;
+use glam::{DVec3, DVec4};
+
+/// A light this near to the near plane, in parts of its distance from the eye, lies in it.
+const IN_PLANE: f64 = 1e-6;
+/// How far `f32` moves a point, and rounding in the GPU's products, in parts of its distance from the eye.
+const ROUNDING: f64 = 1e-5;
+
+/// A view's planes, and the near rectangle, relative to the eye.
+#[derive(Debug, Clone)]
+pub struct ViewVolume {
+    /// Near, left, right, bottom, top; positive inside.
+    planes: [Plane; 5],
+    /// Corners of the near rectangle in order round it.
+    near_rectangle: [DVec3; 4],
+    ahead: DVec3,
+    near: f64,
+}
+
+/// The space between the near rectangle and a light: a caster outside of it neither holds a point of
+/// the rectangle in its shadow nor is cut by it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NearClipVolume {
+    /// Its planes, positive inside.
+    Planes(Vec<Plane>),
+    /// The light lies in the near plane: all that this slab meets may be between.
+    Slab(Plane),
+}
+
+/// Where a body lies outside of a plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outside {
+    /// Which plane, by its place in the volume.
+    pub plane: usize,
+    /// How far its nearest point is from it, metres; infinite where all its points are directions.
+    pub distance: f64,
+}
+
+impl ViewVolume {
+    /// What a camera sees, `aspect` being width over height. It has no far plane: a volume must not be
+    /// cut there.
+    #[must_use]
+    pub fn new(camera: &Camera, aspect: f64) -> ViewVolume {
+        let world_from_view = projection::view_from_world_rotation(camera.target - camera.eye, camera.up).transpose();
+        let up = (camera.fov_y_degrees.to_radians() / 2.0).tan();
+        let right = up * aspect;
+        let corner = |x: f64, y: f64| world_from_view * (DVec3::new(x * right, y * up, -1.0) * camera.near);
+        let side = |inward: DVec3| Plane::through(DVec3::ZERO, world_from_view * inward);
+        let ahead = world_from_view * DVec3::NEG_Z;
+        ViewVolume {
+            planes: [
+                Plane::through(ahead * camera.near, ahead),
+                side(DVec3::new(1.0, 0.0, -right)),
+                side(DVec3::new(-1.0, 0.0, -right)),
+                side(DVec3::new(0.0, 1.0, -up)),
+                side(DVec3::new(0.0, -1.0, -up)),
+            ],
+            near_rectangle: [corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0), corner(1.0, -1.0)],
+            ahead,
+            near: camera.near,
+        }
+    }
+
+    /// Where points lie outside of the view: nothing between them is seen. Points are homogeneous and
+    /// relative to the eye; `w = 0` is a direction.
+    #[must_use]
+    pub fn outside(&self, points: &[DVec4]) -> Option<Outside> {
+        outside(&self.planes, points)
+    }
+
+    /// The same of points at infinity: the near plane is no matter there.
+    #[must_use]
+    pub fn outside_at_infinity(&self, directions: &[DVec3]) -> Option<Outside> {
+        let points: Vec<DVec4> = directions.iter().map(|direction| direction.extend(0.0)).collect();
+        let sides = outside(&self.planes[1..], &points);
+        sides.map(|found| Outside { plane: found.plane + 1, ..found })
+    }
+
+    /// The space between the near rectangle and a light, homogeneous and relative to the eye.
+    #[must_use]
+    pub fn near_clip(&self, light: DVec4) -> NearClipVolume {
+        let near_plane = &self.planes[0];
+        let height = near_plane.at(light);
+        let reach = light.truncate().length() + self.near * light.w;
+        if height.abs() <= IN_PLANE * reach {
+            return NearClipVolume::Slab(*near_plane);
+        }
+        let corners = self.near_rectangle;
+        let middle = self.ahead * self.near;
+        let inwards = |plane: Plane| if plane.at(middle.extend(1.0)) < 0.0 { plane.turned() } else { plane };
+        let side = |index: usize| {
+            let [a, b] = [corners[index], corners[(index + 1) % 4]];
+            inwards(Plane::through(a, (b - a).cross(light.truncate() - a * light.w)))
+        };
+        // Towards the light from the near plane, and for a lamp no farther than the light itself.
+        let base = if height > 0.0 { *near_plane } else { near_plane.turned() };
+        let mut planes = vec![base, side(0), side(1), side(2), side(3)];
+        if light.w != 0.0 {
+            planes.push(Plane::through(light.truncate() / light.w, -base.normal));
+        }
+        NearClipVolume::Planes(planes)
+    }
+}
+
+impl NearClipVolume {
+    /// Where points lie outside of it; `None` where they may not.
+    #[must_use]
+    pub fn outside(&self, points: &[DVec4]) -> Option<Outside> {
+        match self {
+            NearClipVolume::Planes(planes) => outside(planes, points),
+            NearClipVolume::Slab(plane) => outside(&[*plane, plane.turned()], points),
+        }
+    }
+}
+
+/// The first plane that all points are outside of.
+fn outside(planes: &[Plane], points: &[DVec4]) -> Option<Outside> {
+    let beyond = |plane: &Plane| {
+        let mut nearest = f64::INFINITY;
+        for point in points {
+            let height = plane.at(*point);
+            let margin = ROUNDING * (point.truncate().length() + plane.offset.abs() * point.w);
+            if height > -margin {
+                return None;
+            }
+            // A direction only goes farther away.
+            if point.w != 0.0 {
+                nearest = nearest.min(-height / point.w);
+            }
+        }
+        Some(nearest)
+    };
+    let found = planes.iter().enumerate().find_map(|(plane, of)| Some(Outside { plane, distance: beyond(of)? }));
+    found.filter(|_| !points.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At the origin, looking along −z, 90 degrees each way: the near rectangle is 2 wide at 1.
+    fn view() -> ViewVolume {
+        let camera = Camera {
+            eye: DVec3::new(3e6, -2e6, 1e6),
+            target: DVec3::new(3e6, -2e6, 0.0),
+            up: DVec3::Y,
+            fov_y_degrees: 90.0,
+            near: 1.0,
+            far: None,
+        };
+        ViewVolume::new(&camera, 1.0)
+    }
+
+    fn points(of: &[[f64; 3]]) -> Vec<DVec4> {
+        of.iter().map(|point| DVec3::from_array(*point).extend(1.0)).collect()
+    }
+
+    #[test]
+    fn what_is_outside_of_a_side_of_the_view_is_not_seen() {
+        let view = view();
+        assert!(view.outside(&points(&[[0.0, 0.0, -5.0]])).is_none());
+        // The right side is x = −z.
+        let right = view.outside(&points(&[[6.0, 0.0, -5.0], [7.0, 1.0, -5.5]])).expect("outside");
+        assert_eq!(right.plane, 2);
+        assert!((right.distance - 0.5f64.sqrt()).abs() < 1e-12, "{right:?}");
+        assert!(view.outside(&points(&[[6.0, 0.0, -5.0], [4.0, 0.0, -5.0]])).is_none(), "one point is inside");
+        assert_eq!(view.outside(&points(&[[0.0, 0.0, -0.5]])).expect("nearer than near").plane, 0);
+        assert!(view.outside(&[]).is_none(), "nothing is nowhere");
+    }
+
+    #[test]
+    fn a_shadow_that_goes_on_into_the_view_is_seen() {
+        let view = view();
+        let caster = [6.0, 0.0, -5.0, 1.0].map(f64::from);
+        let caster = DVec4::from_array(caster);
+        let shadow = |towards: [f64; 3]| [caster, DVec3::from_array(towards).extend(0.0)];
+        assert!(view.outside(&shadow([-1.0, 0.0, 0.0])).is_none(), "it falls to the left, into the view");
+        assert!(view.outside(&shadow([1.0, 0.0, 0.0])).is_some(), "it falls to the right");
+        assert!(view.outside_at_infinity(&[DVec3::X]).is_some());
+        assert!(view.outside_at_infinity(&[DVec3::NEG_Z]).is_none());
+    }
+
+    /// The pyramid over the near rectangle with its top at a lamp 4 before it.
+    #[test]
+    fn only_what_is_between_light_and_near_rectangle_can_hold_the_eye_in_its_shadow() {
+        let lamp = DVec4::new(0.0, 0.0, -5.0, 1.0);
+        let volume = view().near_clip(lamp);
+        assert!(volume.outside(&points(&[[0.0, 0.0, -3.0]])).is_none());
+        // Halfway it is as wide as half the rectangle.
+        assert!(volume.outside(&points(&[[0.49, 0.0, -3.0]])).is_none());
+        assert!(volume.outside(&points(&[[0.51, 0.0, -3.0]])).is_some());
+        assert!(volume.outside(&points(&[[0.0, 0.0, -0.9]])).is_some(), "between eye and near plane");
+        assert!(volume.outside(&points(&[[0.0, 0.0, -5.1]])).is_some(), "beyond the lamp");
+        let behind = view().near_clip(DVec4::new(0.0, 0.0, 3.0, 1.0));
+        assert!(behind.outside(&points(&[[0.0, 0.0, -2.0]])).is_some(), "the light is behind the eye");
+        assert!(behind.outside(&points(&[[0.0, 0.0, 1.0]])).is_none());
+        let sun = view().near_clip(DVec4::new(0.0, 1.0, 0.5, 0.0));
+        assert!(sun.outside(&points(&[[0.0, 100.0, 49.0]])).is_none(), "it has no end");
+        assert!(sun.outside(&points(&[[0.0, 100.0, 40.0]])).is_some());
+    }
+
+    #[test]
+    fn at_the_boundary_it_errs_to_the_safe_side() {
+        let volume = view().near_clip(DVec4::new(0.0, 0.0, -5.0, 1.0));
+        for off in [-1e-9, 0.0, 1e-9] {
+            assert!(volume.outside(&points(&[[0.5 + off, 0.0, -3.0]])).is_none(), "{off}");
+        }
+    }
+
+    /// A light in the near plane sees the rectangle as a line: all that the plane meets counts.
+    #[test]
+    fn a_light_in_the_near_plane_asks_about_the_plane_alone() {
+        let volume = view().near_clip(DVec4::new(4.0, 0.0, -1.0, 1.0));
+        assert_eq!(volume, NearClipVolume::Slab(view().planes[0]));
+        assert!(volume.outside(&points(&[[9.0, 0.0, -0.9], [9.0, 0.0, -1.1]])).is_none(), "it crosses the plane");
+        assert!(volume.outside(&points(&[[9.0, 0.0, -1.1], [9.0, 0.0, -2.0]])).is_some());
+    }
+
+    /// Against the definition: a point is between if the ray from the light through it meets the
+    /// rectangle beyond it.
+    #[test]
+    fn the_planes_are_those_of_the_definition() {
+        let view = view();
+        let mut state = 9u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
+        };
+        let mut found = [0, 0];
+        for _ in 0..40_000 {
+            let w = f64::from(u8::from(unit() > 0.0));
+            let light = (DVec3::new(unit(), unit(), unit()) * 8.0).extend(w);
+            let point = DVec3::new(unit(), unit(), unit()) * 6.0;
+            let towards = light.truncate() - point * light.w;
+            // The plane z = −1, from the point away from the light.
+            let way = (-1.0 - point.z) / -towards.z;
+            let on_plane = point - towards * way;
+            let is_between = way > 0.0 && on_plane.truncate().abs().max_element() < 1.0;
+            let is_outside = view.near_clip(light).outside(&[point.extend(1.0)]).is_some();
+            let is_near_edge = (on_plane.truncate().abs().max_element() - 1.0).abs() < 0.01 || way.abs() < 0.01;
+            assert!(is_between != is_outside || is_near_edge, "{light} {point}");
+            found[usize::from(is_between)] += 1;
+        }
+        assert!(found[1] > 200, "{found:?}");
+    }
+}
