@@ -11,9 +11,7 @@ use std::collections::BTreeMap;
 /// The largest picture along a side.
 const LARGEST: u32 = 16_384;
 /// Used where neither the command line nor the scene names a technique.
-const DEFAULT_TECHNIQUE: &str = "z-fail";
-/// Techniques that are planned, but not built.
-const TECHNIQUES_TO_COME: [&str; 1] = ["auto"];
+const DEFAULT_TECHNIQUE: &str = "auto";
 /// How often a frame is timed with and without snapshots.
 const TIMING_RUNS: usize = 5;
 
@@ -160,11 +158,6 @@ impl FrameOptions {
 /// # Errors
 /// No such technique, or none yet.
 pub fn technique_named(name: &str) -> Result<Technique, CliError> {
-    if TECHNIQUES_TO_COME.contains(&name) {
-        let built: Vec<&str> = Technique::ALL.iter().map(|technique| technique.name()).collect();
-        let instead = format!("choose one of {}", built.join(", "));
-        return Err(CliError::NotThereYet { what: format!("technique `{name}`"), instead });
-    }
     let request = TechniqueRequest { name: name.to_owned(), settings: BTreeMap::new() };
     Ok(Choice::parse(&request)?.technique())
 }

@@ -8,6 +8,7 @@ mod edges;
 mod facing;
 mod hugging;
 mod intersection;
+pub mod layers;
 pub mod light_frame;
 pub mod near_view;
 pub mod planar;
@@ -17,6 +18,7 @@ pub mod relative;
 mod silhouette;
 pub mod solid;
 pub mod topology;
+pub mod umbra;
 mod volume;
 mod winding;
 

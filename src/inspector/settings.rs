@@ -104,6 +104,7 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, of
             explained(response.labelled_by(label));
             chosen
         }
+        SettingValues::SomeOf(words) => some_of(ui, spec.key, words, current, &explained),
         SettingValues::WordOr { words, prefix, low, high, whole } => {
             let number = current.strip_prefix(prefix).and_then(|number| number.parse::<f64>().ok());
             let numbered = prefix.trim_end_matches(':');
@@ -133,6 +134,40 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, of
             explained(ui.add(widget).labelled_by(label)).changed().then(|| value.to_string())
         }
     }
+}
+
+/// A menu of words to tick, all or none of them included.
+fn some_of(
+    ui: &mut Ui,
+    name: &str,
+    words: &[&str],
+    current: &str,
+    explained: &impl Fn(egui::Response) -> egui::Response,
+) -> Option<String> {
+    let is_ticked = |word: &str| current == "all" || current.split(',').any(|one| one.trim() == word);
+    let ticked: Vec<&str> = words.iter().copied().filter(|word| is_ticked(word)).collect();
+    let shown = match ticked.len() {
+        0 => "none".to_owned(),
+        count if count == words.len() => "all".to_owned(),
+        count => format!("{count} of {}", words.len()),
+    };
+    let mut chosen = None;
+    let menu = ui.menu_button(shown, |ui| {
+        for word in words {
+            let mut is_on = ticked.contains(word);
+            if ui.checkbox(&mut is_on, *word).changed() {
+                let on = |other: &&&str| if **other == *word { is_on } else { ticked.contains(*other) };
+                let some: Vec<&str> = words.iter().filter(on).copied().collect();
+                chosen = Some(match some.len() {
+                    0 => "none".to_owned(),
+                    count if count == words.len() => "all".to_owned(),
+                    _ => some.join(","),
+                });
+            }
+        }
+    });
+    explained(menu.response.accessible_name(name));
+    chosen
 }
 
 /// A number that may be tiny: it moves by a part of itself, and a power of ten says how small it is.

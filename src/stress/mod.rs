@@ -153,6 +153,9 @@ pub const fn right_because(technique: Technique) -> &'static str {
         Technique::Planar => "all that is darkened is flat, and casters are clipped to what lies between",
         Technique::PlanarTexture => "all that is darkened is flat, and no edge of a shadow is blurred by texels",
         Technique::Projective => "nothing darkens itself here, or stands between light and caster",
+        Technique::Auto => {
+            "it counts like z-fail, leaves out what nothing needs, and beyond eight bits counts in a float"
+        }
         Technique::RayTraced => "it is the truth",
         Technique::None => "there is nothing to darken",
     }

@@ -3,6 +3,7 @@
 //! A technique starts a [`Frame`], adds its own passes between `ambient_pass` and, for each
 //! light, `mask_pass` and `light_pass`, and finishes it into a plan.
 
+use super::left_out::Decision;
 use super::{Choice, PlanError, surfaces};
 use crate::geometry::GeometryCache;
 use crate::geometry::relative;
@@ -177,7 +178,7 @@ impl<'a> Frame<'a> {
             clips_volumes: false,
             color: no_target,
             depth_stencil: no_target,
-            has_stencil: stencil == StencilUse::Always,
+            has_stencil: stencil == StencilUse::Always || !Decision::Stencil.is_allowed(job.choice),
             stencil_of: None,
             job,
         };
@@ -248,10 +249,16 @@ impl<'a> Frame<'a> {
     /// A pass of a light into stencil alone, over the camera's depth. The first one of a light
     /// clears what the light before has left.
     pub fn stencil_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
-        if self.stencil_of.is_none() {
+        let is_untouched = self.stencil_of.is_none();
+        let is_left_out = is_untouched && Decision::Clear.is_allowed(self.job.choice);
+        if is_left_out {
             self.leave_out("stencil clear", &Frame::light_name(light), "nothing has written the stencil before");
         }
         self.push_pass(light, name, purpose, None, draws);
+        let target = self.plan.passes.last_mut().and_then(|pass| pass.depth_stencil.as_mut());
+        if let Some(target) = target.filter(|_| is_untouched && !is_left_out) {
+            target.clear_stencil = Some(0);
+        }
     }
 
     /// A timed pass of a light, seen by the camera. The first one of a light clears what another has left

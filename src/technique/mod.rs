@@ -4,8 +4,10 @@
 //! name and summary, a line in [`plan`], and its settings as data (`settings.rs`). What they share is in `frame.rs`: the
 //! camera, surfaces, and the ambient, light and mask passes.
 
+mod auto;
 mod casters;
 mod frame;
+mod left_out;
 mod none;
 mod planar;
 mod planar_texture;
@@ -19,6 +21,7 @@ mod surfaces;
 mod volume;
 
 pub use frame::{Job, MOST_LIGHTS};
+pub use left_out::Decision;
 pub use settings::{Choice, ChoiceError, ReportRows, SettingSpec, SettingValues};
 
 use crate::plan::FramePlan;
@@ -33,6 +36,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         Technique::Planar => planar::plan(job),
         Technique::PlanarTexture => planar_texture::plan(job),
         Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => volume::plan(job),
+        Technique::Auto => auto::plan(job),
         Technique::ShadowMap => shadow_map::plan(job),
         Technique::Projective => projective::plan(job),
         Technique::RayTraced => ray_traced::plan(job),
@@ -71,6 +75,8 @@ pub enum Technique {
     ZFail,
     /// Shadow volumes counted in front of the surface, from the near plane's own count on.
     ZPassPlus,
+    /// Shadow volumes, each counted as is cheapest while right, and only those that matter.
+    Auto,
     /// Depth from the light, compared at every pixel.
     ShadowMap,
     /// Casters' silhouettes projected over the scene.
@@ -81,13 +87,14 @@ pub enum Technique {
 
 impl Technique {
     /// All that exist, in teaching order.
-    pub const ALL: [Technique; 9] = [
+    pub const ALL: [Technique; 10] = [
         Technique::None,
         Technique::Planar,
         Technique::PlanarTexture,
         Technique::ZPass,
         Technique::ZFail,
         Technique::ZPassPlus,
+        Technique::Auto,
         Technique::ShadowMap,
         Technique::Projective,
         Technique::RayTraced,
@@ -103,6 +110,7 @@ impl Technique {
             Technique::ZPass => "z-pass",
             Technique::ZFail => "z-fail",
             Technique::ZPassPlus => "z-pass-plus",
+            Technique::Auto => "auto",
             Technique::ShadowMap => "shadow-map",
             Technique::Projective => "projective",
             Technique::RayTraced => "ray-traced",
@@ -128,6 +136,9 @@ impl Technique {
             }
             Technique::ZPassPlus => {
                 "Counts the near plane's volumes from the light first, then as z-pass: the eye may be inside one."
+            }
+            Technique::Auto => {
+                "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs."
             }
             Technique::ShadowMap => "Stores the depth of what the light sees, and darkens what lies behind it.",
             Technique::Projective => {

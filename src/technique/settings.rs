@@ -4,7 +4,8 @@
 //! one line here and its use in the technique. Only what works is listed: a value that is not
 //! there yet is refused, not ignored.
 
-use super::{Technique, none, planar, planar_texture, projective, ray_traced, shadow_map, volume};
+use super::left_out::Decision;
+use super::{Technique, auto, none, planar, planar_texture, projective, ray_traced, shadow_map, volume};
 use crate::math::depth::DepthMapping;
 use crate::scene::{TechniqueRequest, suggestion};
 use std::collections::BTreeMap;
@@ -31,6 +32,8 @@ pub enum SettingValues {
     Integer(i64, i64),
     /// A finite number in this range, ends included.
     Number(f64, f64),
+    /// `all`, `none`, or some of these words between commas.
+    SomeOf(&'static [&'static str]),
     /// One of these words, or a number in this range behind a prefix, as in `pcf:3`.
     WordOr {
         /// The words.
@@ -66,12 +69,6 @@ pub enum ChoiceError {
         key: String,
         /// The nearest key, or all of them.
         hint: String,
-    },
-    /// A setting of the plan, but not built.
-    #[error("the setting `{key}` is not there yet: leave it out")]
-    NotThereYet {
-        /// What was asked for.
-        key: String,
     },
     /// The setting can't be that.
     #[error("the setting `{key}` of {technique} can't be `{value}`: {hint}")]
@@ -122,13 +119,18 @@ const fn size(default: &'static str, most: i64, meaning: &'static str) -> Settin
     SettingSpec { key: "size", values: SettingValues::Integer(1, most), default, meaning }
 }
 
-/// Settings that are planned, but not built.
-const TO_COME: [&str; 1] = ["leave-out"];
-const NONE: &[SettingSpec] = &[DEPTH, EPSILON, DIFFUSE];
+const LEAVE_OUT: SettingSpec = SettingSpec {
+    key: "leave-out",
+    values: SettingValues::SomeOf(&Decision::NAMES),
+    default: "all",
+    meaning: "what the frame may do without where that is proven to change nothing",
+};
+const NONE: &[SettingSpec] = &[DEPTH, EPSILON, DIFFUSE, LEAVE_OUT];
 const PLANAR: &[SettingSpec] = &[
     DEPTH,
     EPSILON,
     DIFFUSE,
+    LEAVE_OUT,
     word("stencil", &["on", "off"], "keeps shadows on their receiver"),
     word("blend", &["once", "twice"], "how often overlapping triangles darken a pixel"),
     word("clip", &["on", "off"], "drops what is beyond the light or below the receiver"),
@@ -139,6 +141,7 @@ const VOLUME: &[SettingSpec] = &[
     DEPTH,
     EPSILON,
     DIFFUSE,
+    LEAVE_OUT,
     word("casters", &["all", "by-topology", "light-facing", "light-back-facing"], "which triangles cast"),
     SettingSpec {
         key: "extrusion",
@@ -154,11 +157,12 @@ const VOLUME: &[SettingSpec] = &[
     word("silhouette", &["adjacency", "edge-list"], "how shared edges are found: built once, or searched each time"),
 ];
 const PLANAR_TEXTURE: &[SettingSpec] =
-    &[DEPTH, EPSILON, DIFFUSE, size("256", 4096, "texels along each side of a receiver's texture")];
+    &[DEPTH, EPSILON, DIFFUSE, LEAVE_OUT, size("256", 4096, "texels along each side of a receiver's texture")];
 const PROJECTIVE: &[SettingSpec] = &[
     DEPTH,
     EPSILON,
     DIFFUSE,
+    LEAVE_OUT,
     size("512", 4096, "texels along each side of a silhouette's picture"),
     word("passes", &["single", "multi"], "silhouettes are read while lighting, or darken the lit picture one by one"),
     word("reverse", &["off", "on"], "silhouettes also fall on what is behind the light"),
@@ -167,6 +171,7 @@ const SHADOW_MAP: &[SettingSpec] = &[
     DEPTH,
     EPSILON,
     DIFFUSE,
+    LEAVE_OUT,
     size("1024", 8192, "texels along each side of the map"),
     SettingSpec {
         key: "bias-constant",
@@ -202,7 +207,7 @@ impl Technique {
     #[must_use]
     pub fn settings(self) -> &'static [SettingSpec] {
         match self {
-            Technique::None | Technique::RayTraced => NONE,
+            Technique::None | Technique::RayTraced | Technique::Auto => NONE,
             Technique::Planar => PLANAR,
             Technique::PlanarTexture => PLANAR_TEXTURE,
             Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => VOLUME,
@@ -229,6 +234,7 @@ impl Technique {
             Technique::PlanarTexture => planar_texture::REPORT_ROWS,
             Technique::ZPass | Technique::ZPassPlus => volume::REPORT_ROWS,
             Technique::ZFail => volume::Z_FAIL_REPORT_ROWS,
+            Technique::Auto => auto::REPORT_ROWS,
             Technique::ShadowMap => shadow_map::REPORT_ROWS,
             Technique::Projective => projective::REPORT_ROWS,
             Technique::RayTraced => ray_traced::REPORT_ROWS,
@@ -284,9 +290,6 @@ impl Choice {
         let technique = self.technique.name();
         let specs = self.technique.settings();
         let Some(spec) = specs.iter().find(|spec| spec.key == key) else {
-            if TO_COME.contains(&key) {
-                return Err(ChoiceError::NotThereYet { key: key.to_owned() });
-            }
             let keys: Vec<&str> = specs.iter().map(|spec| spec.key).collect();
             return Err(ChoiceError::UnknownSetting { technique, key: key.to_owned(), hint: suggestion(key, &keys) });
         };
@@ -335,6 +338,10 @@ impl SettingValues {
     fn check(self, value: &str) -> Result<(), String> {
         let in_range = match self {
             SettingValues::OneOf(words) => words.contains(&value),
+            SettingValues::SomeOf(words) => {
+                let mut some = value.split(',').map(str::trim);
+                ["all", "none"].contains(&value) || some.all(|one| words.contains(&one))
+            }
             SettingValues::Integer(low, high) => value.parse().is_ok_and(|n: i64| (low..=high).contains(&n)),
             SettingValues::Number(low, high) => value.parse().is_ok_and(|n: f64| (low..=high).contains(&n)),
             SettingValues::WordOr { words, prefix, low, high, whole } => {
@@ -352,6 +359,9 @@ impl std::fmt::Display for SettingValues {
         match self {
             SettingValues::OneOf([only]) => write!(f, "only `{only}` is there yet"),
             SettingValues::OneOf(words) => write!(f, "choose one of {}", words.join(", ")),
+            SettingValues::SomeOf(words) => {
+                write!(f, "choose all, none, or some of {}, between commas", words.join(", "))
+            }
             SettingValues::Integer(low, high) => write!(f, "choose a whole number from {low} to {high}"),
             SettingValues::Number(low, high) => write!(f, "choose a number from {low} to {high}"),
             SettingValues::WordOr { words, prefix, low, high, whole } => {

@@ -7,6 +7,7 @@
 
 use super::casters::{self, Darkened};
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::left_out::Decision;
 use super::{PlanError, ReportRows};
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
@@ -169,7 +170,7 @@ fn add_face(
     let name = if is_cube { format!("map {}", CUBE_FACES[face].0) } else { "map".to_owned() };
     let raster = map_raster(frame);
     let draws: Vec<Draw> = casters.iter().filter(shows).map(|caster| map_draw(caster, &raster)).collect();
-    if draws.is_empty() {
+    if draws.is_empty() && Decision::MapFaces.is_allowed(frame.job.choice) {
         frame.leave_out(&name, &Frame::light_name(light), "no caster shows in this face");
         return None;
     }

@@ -16,15 +16,17 @@ mod counting;
 mod near_count;
 mod options;
 
+use super::auto::Questions;
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::settings::ONE_ROW;
-use super::{PlanError, ReportRows};
+use super::{PlanError, ReportRows, Technique};
 use crate::geometry::{Caster, Casters, DarkCap, Extruder, Extrusion, SilhouetteBy, VolumeOf, VolumeParts, relative};
 use crate::plan::{
     Blob, Draw, DrawConstants, DrawMesh, FramePlan, LightId, MeshId, Part, Program, RasterState, Visibility,
 };
 use crate::scene::Object;
-use counting::{Counting, Step};
+pub use counting::Counting;
+use counting::Step;
 use options::{Options, WhoCasts};
 use std::ops::Range;
 
@@ -43,27 +45,41 @@ pub(super) const Z_FAIL_REPORT_ROWS: ReportRows = &[
     &[("depth", "standard-finite")],
 ];
 
-/// Plans z-pass, z-fail or z-pass-plus.
+/// How a volume is counted, and which caps that takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Form {
+    pub counting: Counting,
+    pub light_cap: bool,
+    pub dark_cap: bool,
+}
+
+/// Plans z-pass, z-fail, z-pass-plus or the mixture of them that is cheapest.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let counting = Counting::of(job.choice.technique());
+    let technique = job.choice.technique();
     let options = Options::of(job.choice);
     options.check(job.scene)?;
     let stencil = if options.counts_in_float { StencilUse::ToLightOnce } else { StencilUse::Always };
     let mut frame = Frame::new(job, stencil)?;
-    frame.clips_volumes = counting != Counting::Behind;
+    frame.clips_volumes = matches!(technique, Technique::ZPass | Technique::ZPassPlus);
     frame.ambient_pass();
     for light in frame.light_ids() {
-        let volumes = volumes(&mut frame, light, counting, &options);
-        if options.counts_in_float {
+        let (volumes, may_overflow) = volumes(&mut frame, light, &options);
+        let counting = Counting::of(technique);
+        if options.counts_in_float || may_overflow {
             count_in_float(&mut frame, light, counting, &options, &volumes);
             continue;
         }
         if counting == Counting::InFrontPlus {
             near_count::pass(&mut frame, light, &options, &volumes);
         }
+        let counted = counted_by(&volumes, counting);
         for step in Step::all(options.two_pass) {
-            let draws = volumes.iter().flat_map(|volume| volume.draws(counting, &options, *step)).collect();
-            frame.stencil_pass(light, step.name(), &counting.purpose(light, *step), draws);
+            let draws: Vec<Draw> = volumes.iter().flat_map(|volume| volume.draws(&options, *step)).collect();
+            if draws.is_empty() && technique == Technique::Auto {
+                frame.leave_out("volume pass", &Frame::light_name(light), "no caster's volume is needed");
+                continue;
+            }
+            frame.stencil_pass(light, step.name(), &counting::purpose(counted, light, *step), draws);
         }
         frame.mask_pass(light, &[Drawn::shadow(), Drawn::lit().where_stencil(0xff, 0)]);
         let purpose = "Adds the light where the count is zero, and raises the count there, so that no pixel is lit \
@@ -71,6 +87,12 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         frame.light_pass(light, purpose, &Drawn::light_once_where_zero(0xff));
     }
     Ok(frame.finish())
+}
+
+/// How all of these are counted, `usual` if there are none; `None` where each has its own way.
+fn counted_by(volumes: &[Volume], usual: Counting) -> Option<Counting> {
+    let first = volumes.first().map_or(usual, |volume| volume.counting);
+    volumes.iter().all(|volume| volume.counting == first).then_some(first)
 }
 
 /// The same in a float target: signed, and right beyond eight bits. It adds and takes away in one
@@ -84,8 +106,8 @@ fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options
     if counting == Counting::InFrontPlus {
         near_count::pass(frame, light, options, volumes);
     }
-    let draws = volumes.iter().flat_map(|volume| volume.float_draws(counting, options)).collect();
-    let purpose = counting.purpose(light, Step::BothFaces);
+    let draws = volumes.iter().flat_map(|volume| volume.float_draws(options)).collect();
+    let purpose = counting::purpose(counted_by(volumes, counting), light, Step::BothFaces);
     frame.count_pass(light, Step::BothFaces.name(), &purpose, draws);
     frame.mask_pass(light, &[Drawn::lit_by(Visibility::Count)]);
     let purpose = "Adds the light where the count is zero. Everywhere else the surface is inside a shadow volume and \
@@ -96,6 +118,7 @@ fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options
 /// A caster's volume, ready to be drawn.
 struct Volume {
     caster: String,
+    counting: Counting,
     mesh: MeshId,
     parts: VolumeParts,
     /// Which of its parts count in the volume pass.
@@ -128,13 +151,13 @@ impl Volume {
         parts.into_iter().filter(|part| !part.triangles.is_empty())
     }
 
-    fn draws(&self, counting: Counting, options: &Options, step: Step) -> Vec<Draw> {
-        self.needed.iter().map(|part| self.draw(part, counting.raster(part, options, step))).collect()
+    fn draws(&self, options: &Options, step: Step) -> Vec<Draw> {
+        self.needed.iter().map(|part| self.draw(part, self.counting.raster(part, options, step))).collect()
     }
 
-    fn float_draws(&self, counting: Counting, options: &Options) -> Vec<Draw> {
+    fn float_draws(&self, options: &Options) -> Vec<Draw> {
         let draw = |part: &NeededPart| {
-            let (raster, count) = counting.float_raster(part, options);
+            let (raster, count) = self.counting.float_raster(part, options);
             let constants = DrawConstants { count, ..DrawConstants::default() };
             Draw { program: Program::Count, constants, ..self.draw(part, raster) }
         };
@@ -166,13 +189,28 @@ impl Volume {
     }
 }
 
-fn volumes(frame: &mut Frame, light: LightId, counting: Counting, options: &Options) -> Vec<Volume> {
-    let mut volumes = Vec::new();
+/// All volumes of a light, and whether they may count beyond eight bits although nobody asked for that.
+fn volumes(frame: &mut Frame, light: LightId, options: &Options) -> (Vec<Volume>, bool) {
+    let technique = frame.job.choice.technique();
+    let counting = Counting::of(technique);
+    let questions = (technique == Technique::Auto).then(|| Questions::new(frame, light));
+    let (mut volumes, mut counted) = (Vec::new(), Vec::new());
     for index in 0..frame.placed.len() {
         let object = frame.placed[index].object;
         if !object.casts || object.mesh.triangles().is_empty() {
             continue;
         }
+        let form = match &questions {
+            Some(questions) => questions.form(frame, index),
+            None => Ok(fixed_form(frame, counting, options, object)),
+        };
+        let form = match form {
+            Ok(form) => form,
+            Err(left_out) => {
+                frame.plan.left_out.push(left_out);
+                continue;
+            }
+        };
         let casters = who_casts(frame, light, index, options);
         let (mesh, parts) = make(frame, light, index, casters, options);
         if parts.light_cap_turned.end == 0 {
@@ -184,12 +222,26 @@ fn volumes(frame: &mut Frame, light: LightId, counting: Counting, options: &Opti
             frame.leave_out("volume", &object.name, because);
             continue;
         }
-        let mut needed = needed_parts(frame, counting, options, &parts, object);
+        let mut needed = needed_parts(frame, form, &parts, object);
         needed.retain(|part| !part.triangles.is_empty());
         let mesh = frame.add_mesh(mesh);
-        volumes.push(Volume { caster: object.name.clone(), mesh, parts, needed });
+        volumes.push(Volume { caster: object.name.clone(), counting: form.counting, mesh, parts, needed });
+        counted.push(index);
     }
-    volumes
+    let may_overflow = questions.is_some_and(|questions| questions.may_overflow(frame, &counted));
+    (volumes, may_overflow)
+}
+
+/// What a technique gives every caster.
+fn fixed_form(frame: &mut Frame, counting: Counting, options: &Options, caster: &Object) -> Form {
+    // In z-pass the view ray enters the volume of an undrawn caster through its light cap.
+    let light_cap = counting == Counting::Behind || !caster.visible;
+    if !light_cap {
+        let because = "z-pass counts in front of surfaces, and a drawn caster's cap is never in front of itself";
+        frame.leave_out("caps", &caster.name, because);
+    }
+    // A finite volume ends in front of whatever lies beyond it.
+    Form { counting, light_cap, dark_cap: counting == Counting::Behind || options.extrusion != Extrusion::Infinite }
 }
 
 /// Which triangles of an object cast; for `by-topology`, with what decided it.
@@ -241,47 +293,37 @@ fn make(
     (mesh, parts)
 }
 
-fn needed_parts(
-    frame: &mut Frame,
-    counting: Counting,
-    options: &Options,
-    parts: &VolumeParts,
-    caster: &Object,
-) -> Vec<NeededPart> {
+fn needed_parts(frame: &mut Frame, form: Form, parts: &VolumeParts, caster: &Object) -> Vec<NeededPart> {
     let run = NeededPart::new;
     let hugging = NeededPart { hugs: true, ..run(Part::Side, false, &parts.hugging_sides) };
     let mut needed = vec![run(Part::Side, false, &parts.sides), hugging];
-    if counting == Counting::Behind || !caster.visible {
-        // In z-pass the view ray enters the volume of an undrawn caster through its light cap.
+    if form.light_cap {
         needed.push(run(Part::LightCap, false, &parts.light_cap));
         needed.push(run(Part::LightCap, true, &parts.light_cap_turned));
-    } else {
-        let because = "z-pass counts in front of surfaces, and a drawn caster's cap is never in front of itself";
-        frame.leave_out("caps", &caster.name, because);
     }
-    // A finite volume ends in front of whatever lies beyond it.
-    if counting == Counting::Behind || options.extrusion != Extrusion::Infinite {
-        match &parts.dark_cap {
-            DarkCap::None => {
-                let because = "a directional light's volume closes in one point at infinity";
-                frame.leave_out("dark cap", &caster.name, because);
+    if !form.dark_cap {
+        return needed;
+    }
+    match &parts.dark_cap {
+        DarkCap::None => {
+            let because = "a directional light's volume closes in one point at infinity";
+            frame.leave_out("dark cap", &caster.name, because);
+        }
+        DarkCap::Fan(triangles) => {
+            needed.push(run(Part::DarkCap, false, triangles));
+            let cap = parts.light_cap.len() + parts.light_cap_turned.len();
+            if triangles.len() < cap {
+                let because = format!(
+                    "at infinity only its outline matters: {} triangles close what {cap} would",
+                    triangles.len()
+                );
+                frame.leave_out("inner triangles of the dark cap", &caster.name, &because);
             }
-            DarkCap::Fan(triangles) => {
-                needed.push(run(Part::DarkCap, false, triangles));
-                let cap = parts.light_cap.len() + parts.light_cap_turned.len();
-                if triangles.len() < cap {
-                    let because = format!(
-                        "at infinity only its outline matters: {} triangles close what {cap} would",
-                        triangles.len()
-                    );
-                    frame.leave_out("inner triangles of the dark cap", &caster.name, &because);
-                }
-            }
-            DarkCap::Carried(base) => {
-                let carried = |part: NeededPart| NeededPart { base_vertex: *base, ..part };
-                needed.push(carried(run(Part::DarkCap, true, &parts.light_cap)));
-                needed.push(carried(run(Part::DarkCap, false, &parts.light_cap_turned)));
-            }
+        }
+        DarkCap::Carried(base) => {
+            let carried = |part: NeededPart| NeededPart { base_vertex: *base, ..part };
+            needed.push(carried(run(Part::DarkCap, true, &parts.light_cap)));
+            needed.push(carried(run(Part::DarkCap, false, &parts.light_cap_turned)));
         }
     }
     needed

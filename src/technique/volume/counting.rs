@@ -63,38 +63,8 @@ impl Counting {
         }
     }
 
-    pub fn purpose(self, light: LightId, step: Step) -> String {
-        let light = Frame::light_name(light);
-        let [adds, takes] = match self {
-            Counting::InFront | Counting::InFrontPlus => {
-                ["a front face nearer than the surface adds 1", "a back face nearer than it takes 1 away"]
-            }
-            Counting::Behind => ["a back face hidden by the surface adds 1", "a hidden front face takes 1 away"],
-        };
-        let what = match self {
-            Counting::InFront | Counting::InFrontPlus => {
-                format!("the shadow volumes of {light} in front of each surface")
-            }
-            Counting::Behind => format!("the shadow volumes of {light} behind each surface"),
-        };
-        let left = match self {
-            Counting::InFront => "What is left contains the surface, if the eye itself is in none.",
-            Counting::InFrontPlus => {
-                "With what the near plane began with, what is left contains the surface, wherever the eye is."
-            }
-            Counting::Behind => "What is left contains the surface, wherever the eye is.",
-        };
-        match step {
-            Step::BothFaces => format!("Counts {what}: {adds}, {takes}. {left}"),
-            Step::Adding => {
-                format!("Counts {what}, first half: {adds}. The other faces follow in a pass of their own.")
-            }
-            Step::TakingAway => format!("Counts {what}, second half: {takes}. {left}"),
-        }
-    }
-
     /// The state that a part counts with.
-    pub fn raster(self, part: &NeededPart, options: &Options, step: Step) -> RasterState {
+    pub(super) fn raster(self, part: &NeededPart, options: &Options, step: Step) -> RasterState {
         let (add, take) = operations(options);
         let adds_in_front = (self != Counting::Behind) != part.turned;
         let (front, back) = if adds_in_front { (add, take) } else { (take, add) };
@@ -118,7 +88,7 @@ impl Counting {
     /// The state for counting in a float target, and what a front face adds there (of a turned part: a
     /// back face that counts as one). What fails the depth test writes nothing, so counting behind
     /// the surface tests the other way round.
-    pub fn float_raster(self, part: &NeededPart, options: &Options) -> (RasterState, f32) {
+    pub(super) fn float_raster(self, part: &NeededPart, options: &Options) -> (RasterState, f32) {
         let surface = RasterState::surface();
         let never_passes = options.light_caps_never_pass && part.part == Part::LightCap;
         let depth_compare = match (self, never_passes) {
@@ -145,6 +115,40 @@ impl Counting {
 fn depth_bias(part: &NeededPart) -> DepthBiasState {
     let constant = if part.hugs { HUGGING_BIAS } else { 0 };
     DepthBiasState { constant, ..DepthBiasState::default() }
+}
+
+/// What a pass is for; `None` counts each volume in its own way.
+pub fn purpose(counting: Option<Counting>, light: LightId, step: Step) -> String {
+    let light = Frame::light_name(light);
+    let (what, [adds, takes], left) = match counting {
+        Some(Counting::InFront) => (
+            format!("the shadow volumes of {light} in front of each surface"),
+            ["a front face nearer than the surface adds 1", "a back face nearer than it takes 1 away"],
+            "What is left contains the surface, if the eye itself is in none.",
+        ),
+        Some(Counting::InFrontPlus) => (
+            format!("the shadow volumes of {light} in front of each surface"),
+            ["a front face nearer than the surface adds 1", "a back face nearer than it takes 1 away"],
+            "With what the near plane began with, what is left contains the surface, wherever the eye is.",
+        ),
+        Some(Counting::Behind) => (
+            format!("the shadow volumes of {light} behind each surface"),
+            ["a back face hidden by the surface adds 1", "a hidden front face takes 1 away"],
+            "What is left contains the surface, wherever the eye is.",
+        ),
+        None => (
+            format!(
+                "the shadow volumes of {light}, behind each surface where they may hold the eye, else in front of it"
+            ),
+            ["in front, a front face adds 1 and a back face takes 1 away", "behind, it is the other way round"],
+            "Either way, what is left contains the surface, wherever the eye is.",
+        ),
+    };
+    match step {
+        Step::BothFaces => format!("Counts {what}: {adds}, {takes}. {left}"),
+        Step::Adding => format!("Counts {what}, first half: {adds}. The other faces follow in a pass of their own."),
+        Step::TakingAway => format!("Counts {what}, second half: {takes}. {left}"),
+    }
 }
 
 /// What adds 1 and what takes 1 away.

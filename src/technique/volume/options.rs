@@ -3,7 +3,7 @@
 use super::{Casters, Extrusion, PlanError, SilhouetteBy};
 use crate::geometry::MOST_TO_SEARCH;
 use crate::scene::Scene;
-use crate::technique::Choice;
+use crate::technique::{Choice, Decision};
 
 /// A volume technique's settings.
 pub struct Options {
@@ -45,6 +45,7 @@ impl Options {
                 "light-facing" => WhoCasts::Always(Casters::LightFacing),
                 "light-back-facing" => WhoCasts::Always(Casters::LightBackFacing),
                 "by-topology" => WhoCasts::ByTopology,
+                "" if Decision::AwayTriangles.is_allowed(choice) => WhoCasts::ByTopology,
                 _ => WhoCasts::Always(Casters::All),
             },
             extrusion: choice.number_after("extrusion", "finite:").map_or(Extrusion::Infinite, Extrusion::Finite),

@@ -1,0 +1,197 @@
+//! Which casters lie wholly in the umbra of another.
+//!
+//! What a convex body darkens, `{L + s(o − L), s ≥ 1}` over its points `o`, is convex too, and whatever
+//! lies in it darkens nothing that is not in it. So a caster whose bounding box's corners are all
+//! in the umbra of a convex one needs no volume of its own. The way to the light must meet the body
+//! strictly between, so two casters can't lie in each other's umbra, and each chain of them ends at
+//! one that is drawn.
+
+use super::EdgeList;
+use crate::math::Plane;
+use glam::{DVec3, DVec4};
+
+/// How far inside the umbra a point must be, in parts of the occluder's size, and of the way to the light.
+const MARGIN: f64 = 1e-6;
+
+/// A convex body: a closed one, or a flat piece without thickness.
+#[derive(Debug, Clone)]
+pub enum ConvexBody {
+    /// Planes of its faces, positive outside.
+    Solid(Vec<Plane>),
+    /// Its plane, and planes upright on its border, positive outside.
+    Sheet(Plane, Vec<Plane>),
+}
+
+/// A convex body with its size, as something that may hold others in its umbra.
+#[derive(Debug, Clone)]
+pub struct Occluder {
+    body: ConvexBody,
+    size: f64,
+}
+
+impl Occluder {
+    /// Meshes of more triangles are not looked at: what stands before others is mostly a wall, board or box.
+    pub const MOST_TRIANGLES: usize = 64;
+
+    /// A mesh, if it is convex and small. `edges` are those of `triangles`.
+    #[must_use]
+    pub fn new(world: &[DVec3], triangles: &[[u32; 3]], edges: &EdgeList) -> Option<Occluder> {
+        if triangles.is_empty() || triangles.len() > Occluder::MOST_TRIANGLES {
+            return None;
+        }
+        let used = || triangles.iter().flatten().map(|vertex| world[*vertex as usize]);
+        let low = used().fold(DVec3::INFINITY, DVec3::min);
+        let size = (used().fold(DVec3::NEG_INFINITY, DVec3::max) - low).length();
+        let flatness = size * 1e-9;
+        let planes: Option<Vec<Plane>> = triangles.iter().map(|corners| plane_of(world, *corners, size)).collect();
+        let planes = planes?;
+        let incident = |index: usize| edges.incident(index).count();
+        let is_flat = used().all(|point| planes[0].at(point.extend(1.0)).abs() <= flatness);
+        let body = if is_flat {
+            let border = (0..edges.edges().len()).filter(|index| incident(*index) == 1);
+            // Tiles of one side: no edge has more than two, and they do not overlap.
+            let is_tiled = (0..edges.edges().len()).all(|index| incident(index) <= 2)
+                && planes.iter().all(|plane| plane.normal.dot(planes[0].normal) > 0.0);
+            let middle = used().sum::<DVec3>() / (3 * triangles.len()) as f64;
+            let upright = border.map(|index| {
+                let [a, b] = [edges.edges()[index].low, edges.edges()[index].high].map(|v| world[v as usize]);
+                let plane = Plane::through(a, (b - a).cross(planes[0].normal));
+                if plane.at(middle.extend(1.0)) > 0.0 { plane.turned() } else { plane }
+            });
+            is_tiled.then(|| ConvexBody::Sheet(planes[0], upright.collect()))?
+        } else {
+            let middle = used().sum::<DVec3>() / (3 * triangles.len()) as f64;
+            let is_turned = |plane: &Plane| plane.at(middle.extend(1.0)) > 0.0;
+            // Turned outwards, its triangles run along each edge once either way: the surface is whole.
+            let run = |(triangle, way): (usize, i32)| if is_turned(&planes[triangle]) { -way } else { way };
+            let is_closed = (0..edges.edges().len())
+                .all(|index| incident(index) == 2 && edges.incident(index).map(run).sum::<i32>() == 0);
+            let outwards = |plane: &Plane| if is_turned(plane) { plane.turned() } else { *plane };
+            is_closed.then(|| ConvexBody::Solid(planes.iter().map(outwards).collect()))?
+        };
+        let (ConvexBody::Solid(outside) | ConvexBody::Sheet(_, outside)) = &body;
+        let is_convex = outside.iter().all(|plane| used().all(|point| plane.at(point.extend(1.0)) <= flatness));
+        (is_convex && !outside.is_empty()).then_some(Occluder { body, size })
+    }
+
+    /// Are all these points deep in its umbra? With no points, no.
+    #[must_use]
+    pub fn darkens_all(&self, points: &[DVec3], light: DVec4) -> bool {
+        !points.is_empty() && points.iter().all(|point| self.darkens(*point, light))
+    }
+
+    fn darkens(&self, point: DVec3, light: DVec4) -> bool {
+        // To a lamp the way ends at 1; to a sun it has unit length and no end.
+        let way = light.truncate() - point * light.w;
+        let way = if light.w == 0.0 { way.normalize_or_zero() } else { way / light.w };
+        let (end, margin) = match light.w == 0.0 {
+            true => (f64::INFINITY, MARGIN * self.size),
+            false => (1.0 - MARGIN, MARGIN * (self.size / way.length()).max(1.0)),
+        };
+        let slope = |plane: &Plane| plane.normal.dot(way);
+        let at = |plane: &Plane| plane.at(point.extend(1.0));
+        match &self.body {
+            ConvexBody::Solid(planes) => {
+                let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
+                for plane in planes {
+                    let (slope, height) = (slope(plane), at(plane) + MARGIN * self.size);
+                    match slope {
+                        slope if slope < 0.0 => enters = enters.max(height / -slope),
+                        slope if slope > 0.0 => leaves = leaves.min(-height / slope),
+                        _ if height > 0.0 => return false,
+                        _ => (),
+                    }
+                }
+                enters > margin && enters < leaves && leaves < end
+            }
+            ConvexBody::Sheet(plane, border) => {
+                let meets = -at(plane) / slope(plane);
+                let hit = (point + way * meets).extend(1.0);
+                let is_inside = border.iter().all(|plane| plane.at(hit) < -MARGIN * self.size);
+                meets.is_finite() && meets > margin && meets < end && is_inside
+            }
+        }
+    }
+}
+
+fn plane_of(world: &[DVec3], corners: [u32; 3], size: f64) -> Option<Plane> {
+    let [a, b, c] = corners.map(|vertex| world[vertex as usize]);
+    let normal = (b - a).cross(c - a);
+    (normal.length() > 1e-9 * size * size).then(|| Plane::through(a, normal))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin::shapes;
+
+    fn occluder(mesh: &crate::scene::Mesh, offset: DVec3) -> Option<Occluder> {
+        let world: Vec<DVec3> = mesh.positions().iter().map(|point| *point + offset).collect();
+        Occluder::new(&world, mesh.triangles(), &EdgeList::new(mesh.triangles(), world.len()))
+    }
+
+    const LAMP: DVec4 = DVec4::new(0.0, 4.0, 0.0, 1.0);
+    const SUN: DVec4 = DVec4::new(0.0, 3.0, 0.0, 0.0);
+
+    #[test]
+    fn a_box_and_a_board_hold_what_is_behind_them() {
+        let cube = occluder(&shapes::cuboid([2.0; 3]).expect("a box"), DVec3::ZERO).expect("convex");
+        let board = occluder(&shapes::quad([2.0; 2]).expect("a quad"), DVec3::ZERO).expect("convex");
+        for (body, low) in [(&cube, -1.0), (&board, 0.0)] {
+            for light in [LAMP, SUN] {
+                let is_dark = |point: [f64; 3]| body.darkens_all(&[DVec3::from_array(point)], light);
+                assert!(is_dark([0.0, low - 0.01, 0.0]));
+                assert!(is_dark([0.99, low - 2.0, 0.99]));
+                assert!(!is_dark([0.0, 3.0, 0.0]), "before it");
+                assert!(!is_dark([0.0, low, 0.0]), "on it");
+                assert!(!is_dark([0.0, -low + 0.001, 0.0]), "before it, near");
+                assert!(!body.darkens_all(&[], light));
+            }
+            assert!(!body.darkens_all(&[DVec3::new(1.01, low - 0.5, 0.0)], SUN));
+        }
+        // The lamp's umbra widens: at 1 below the board it reaches 1.25.
+        assert!(board.darkens_all(&[DVec3::new(1.24, -1.0, 0.0)], LAMP));
+        assert!(!board.darkens_all(&[DVec3::new(1.26, -1.0, 0.0)], LAMP));
+        assert!(!cube.darkens_all(&[DVec3::new(0.0, 9.0, 0.0)], DVec4::new(0.0, 0.0, 0.0, 1.0)), "a light inside");
+    }
+
+    #[test]
+    fn at_the_border_it_errs_to_the_safe_side() {
+        for offset in [DVec3::ZERO, DVec3::splat(1e6)] {
+            let board = occluder(&shapes::quad([2.0; 2]).expect("a quad"), offset).expect("convex");
+            for off in [-1e-9, 0.0, 1e-9] {
+                assert!(!board.darkens_all(&[offset + DVec3::new(1.0 + off, -1.0, 0.0)], SUN), "{off}");
+                assert!(!board.darkens_all(&[offset + DVec3::new(0.0, off, 0.0)], SUN), "{off}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_convex_or_not_whole_is_no_occluder() {
+        assert!(occluder(&shapes::torus(1.0, 0.3, 4, 3).expect("a torus"), DVec3::ZERO).is_none());
+        let of = |points: &[[f64; 3]], triangles: &[[u32; 3]]| {
+            let world: Vec<DVec3> = points.iter().map(|point| DVec3::from_array(*point)).collect();
+            Occluder::new(&world, triangles, &EdgeList::new(triangles, world.len()))
+        };
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, -1.0], [0.0, 0.0, -1.0], [0.3, 0.0, -0.3]];
+        assert!(of(&corners, &[[0, 1, 2], [0, 2, 3]]).is_some());
+        assert!(of(&corners, &[[0, 1, 4], [0, 4, 3]]).is_none(), "a dent");
+        assert!(of(&corners, &[[0, 1, 4], [1, 2, 4], [2, 3, 4]]).is_none(), "a piece is missing");
+        let tetrahedron = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let sides = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        assert!(of(&tetrahedron, &sides).is_some());
+        assert!(of(&tetrahedron, &sides[..3]).is_none(), "it is open");
+        let doubled = [sides[0], sides[0], sides[1], sides[1]];
+        assert!(of(&tetrahedron, &doubled).is_none(), "two sides, each twice");
+    }
+
+    /// Neither of two boards at one place, nor of two that cross, holds the other.
+    #[test]
+    fn two_casters_never_hold_each_other() {
+        let mesh = shapes::quad([2.0; 2]).expect("a quad");
+        let [one, other] = [DVec3::ZERO, DVec3::new(0.0, 1e-12, 0.0)].map(|at| (occluder(&mesh, at), at));
+        let points = |at: DVec3| mesh.positions().iter().map(|point| *point + at).collect::<Vec<_>>();
+        assert!(!one.0.expect("convex").darkens_all(&points(other.1), LAMP));
+        assert!(!other.0.expect("convex").darkens_all(&points(one.1), LAMP));
+    }
+}

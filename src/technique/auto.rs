@@ -1,0 +1,176 @@
+//! Shadow volumes as cheap as they may be: `auto`.
+//!
+//! For each light and caster, in this order:
+//!
+//! ```text
+//! nothing behind it that receives ─┐
+//! its volume misses the view       ├─► no volume
+//! another caster's umbra holds it ─┘
+//! it holds no point of the near rectangle in its shadow ─► z-pass, without caps
+//! else ─► z-fail: a light cap if it is in view itself, a dark cap if its far end is
+//! ```
+//!
+//! Both kinds of counting leave the same number at every surface, so they share one stencil buffer. A
+//! closed caster counts with the triangles that face the light alone. Where a count could reach 256, it
+//! is kept in a float. Each decision is recorded, and each can be forbidden (`leave-out`): then what it
+//! would have left out is drawn, and nothing must change.
+
+use super::casters::{self, Darkened};
+use super::frame::{Frame, Job};
+use super::left_out::Decision;
+use super::volume::{Counting, Form};
+use super::{PlanError, ReportRows, volume};
+use crate::geometry::umbra::Occluder;
+use crate::geometry::{NearClipVolume, Outside, ViewVolume, layers};
+use crate::numbers;
+use crate::plan::{FramePlan, LeftOut, LightId};
+use glam::{DVec3, DVec4};
+
+/// With all that may be left out, and with nothing left out.
+pub(super) const REPORT_ROWS: ReportRows = &[&[], &[("leave-out", "none")]];
+
+/// What eight bits hold.
+const MOST_IN_STENCIL: usize = 255;
+/// Casters of more vertices are asked about by the corners of their boxes.
+const MOST_VERTICES_TO_LOOK_AT: usize = 4096;
+
+/// Plans a frame of volumes that each have the form they need.
+pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+    volume::plan(job)
+}
+
+/// What a light's volumes are asked about.
+pub struct Questions {
+    light: LightId,
+    position: DVec4,
+    view: ViewVolume,
+    near_clip: NearClipVolume,
+    /// By object: what may hold others in its umbra.
+    occluders: Vec<Option<Occluder>>,
+}
+
+impl Questions {
+    /// Of one light.
+    pub fn new(frame: &mut Frame, light: LightId) -> Questions {
+        let position = frame.light_position(light);
+        let [width, height] = frame.job.size.map(f64::from);
+        let view = ViewVolume::new(&frame.job.scene.camera, width / height);
+        let near_clip = view.near_clip(relative(position, frame.eye()));
+        let asks = Decision::Umbra.is_allowed(frame.job.choice);
+        let (placed, cache) = (&frame.placed, &mut frame.job.cache);
+        let mut occluder = |index: usize| {
+            let placed = &placed[index];
+            let mesh = &placed.object.mesh;
+            let may = asks && placed.object.casts && mesh.triangles().len() <= Occluder::MOST_TRIANGLES;
+            may.then(|| Occluder::new(&placed.world, mesh.triangles(), &cache.edges(mesh))).flatten()
+        };
+        let occluders = (0..placed.len()).map(&mut occluder).collect();
+        Questions { light, position, view, near_clip, occluders }
+    }
+
+    /// How a caster's volume must be counted.
+    ///
+    /// # Errors
+    /// Why it needs none.
+    pub fn form(&self, frame: &mut Frame, index: usize) -> Result<Form, LeftOut> {
+        let object = frame.placed[index].object;
+        let allowed = |decision: Decision| decision.is_allowed(frame.job.choice);
+        let no_volume = |because: String| Err(LeftOut::new("volume", &object.name, because));
+        if allowed(Decision::Caster) && !casters::can_darken(frame, index, self.light, Darkened::All) {
+            let light = Frame::light_name(self.light);
+            return no_volume(format!("all that receives lies on the side of {light}, or in its plane"));
+        }
+        let eye = frame.eye();
+        let near: Vec<DVec4> = outline(&frame.placed[index].world).map(|point| (point - eye).extend(1.0)).collect();
+        let light = relative(self.position, eye);
+        let carried = |point: &DVec4| (point.truncate() * light.w - light.truncate()).extend(0.0);
+        let far: Vec<DVec4> = near.iter().map(carried).collect();
+        let whole: Vec<DVec4> = near.iter().chain(&far).copied().collect();
+        if allowed(Decision::View)
+            && let Some(outside) = self.view.outside(&whole)
+        {
+            return no_volume(format!("it lies {}", beyond(outside, VIEW_PLANES[outside.plane])));
+        }
+        if let Some(other) = self.holder(frame, index) {
+            return no_volume(format!("{} holds all of it in its umbra", frame.placed[other].object.name));
+        }
+        // Clamped depth would let z-pass count what lies before the near plane.
+        let may_pass = allowed(Decision::Caps) && !frame.depth_mapping().clamps();
+        if let Some(outside) = self.near_clip.outside(&near).filter(|_| may_pass) {
+            let plane = format!("plane {} of the near-clip volume", outside.plane + 1);
+            frame.leave_out("caps", &object.name, &format!("it lies {}: z-pass counts it", beyond(outside, &plane)));
+            // What is not drawn has no surface where its volume begins.
+            return Ok(Form { counting: Counting::InFront, light_cap: !object.visible, dark_cap: false });
+        }
+        let mut form = Form { counting: Counting::Behind, light_cap: true, dark_cap: true };
+        if let Some(outside) = self.view.outside(&near).filter(|_| allowed(Decision::LightCap)) {
+            let because = format!("the caster lies {}", beyond(outside, VIEW_PLANES[outside.plane]));
+            frame.leave_out("light cap", &object.name, &because);
+            form.light_cap = false;
+        }
+        let directions: Vec<DVec3> = far.iter().map(|point| point.truncate()).collect();
+        let far_end = self.view.outside_at_infinity(&directions);
+        if let Some(outside) = far_end.filter(|_| light.w != 0.0 && allowed(Decision::DarkCap)) {
+            let because = format!("at infinity it lies outside {}", VIEW_PLANES[outside.plane]);
+            frame.leave_out("dark cap", &object.name, &because);
+            form.dark_cap = false;
+        }
+        Ok(form)
+    }
+
+    /// A caster whose umbra holds all of another.
+    fn holder(&self, frame: &Frame, index: usize) -> Option<usize> {
+        let world = &frame.placed[index].world;
+        let corners: Vec<DVec3> = box_corners(world).collect();
+        let holds = |occluder: &Option<Occluder>| {
+            occluder.as_ref().is_some_and(|occluder| occluder.darkens_all(&corners, self.position))
+        };
+        (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
+    }
+
+    /// Could a count of these casters reach 256?
+    pub fn may_overflow(&self, frame: &Frame, casters: &[usize]) -> bool {
+        let count = |index: &usize| frame.placed[*index].object.mesh.triangles().len();
+        if casters.iter().map(count).sum::<usize>() <= MOST_IN_STENCIL {
+            return false;
+        }
+        let triangles: Vec<_> = casters.iter().flat_map(|index| casters::world_triangles(frame, *index)).collect();
+        layers::may_exceed(&triangles, self.position, MOST_IN_STENCIL)
+    }
+}
+
+/// In the order of [`ViewVolume`]'s planes.
+const VIEW_PLANES: [&str; 5] = [
+    "the view's near plane",
+    "the view's left side",
+    "the view's right side",
+    "the view's lower side",
+    "the view's upper side",
+];
+
+/// `0.8 m outside the view's left side`.
+fn beyond(outside: Outside, plane: &str) -> String {
+    match outside.distance.is_finite() {
+        true => format!("{} outside {plane}", numbers::metres(outside.distance)),
+        false => format!("outside {plane}"),
+    }
+}
+
+fn relative(position: DVec4, eye: DVec3) -> DVec4 {
+    (position.truncate() - eye * position.w).extend(position.w)
+}
+
+/// Points whose hull holds a caster.
+fn outline(world: &[DVec3]) -> Box<dyn Iterator<Item = DVec3> + '_> {
+    if world.len() <= MOST_VERTICES_TO_LOOK_AT { Box::new(world.iter().copied()) } else { Box::new(box_corners(world)) }
+}
+
+fn box_corners(world: &[DVec3]) -> impl Iterator<Item = DVec3> + use<> {
+    let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let count = if world.is_empty() { 0 } else { 8 };
+    (0..count).map(move |corner| {
+        let of = |bit: u32, low: f64, high: f64| if corner & bit == 0 { low } else { high };
+        DVec3::new(of(1, low.x, high.x), of(2, low.y, high.y), of(4, low.z, high.z))
+    })
+}

@@ -1,0 +1,78 @@
+//! What may be left out of a frame: one decision each, taken where it is proven to change nothing.
+
+use super::Choice;
+
+/// Something that a scene may not need.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Decision {
+    /// A light that reaches no surface in view: its passes.
+    Light,
+    /// A caster behind which, as the light sees it, there is nothing: its volume, map or silhouette.
+    Caster,
+    /// A volume that misses the view.
+    View,
+    /// A caster wholly in the umbra of another: its volume.
+    Umbra,
+    /// Of a closed caster, the triangles that face away from the light.
+    AwayTriangles,
+    /// Caps of a caster that holds no point of the near plane in its shadow: z-pass counts without.
+    Caps,
+    /// The light cap of a caster that is not in view.
+    LightCap,
+    /// The dark cap of a volume whose far end is not in view.
+    DarkCap,
+    /// The part of the picture beyond a light's range.
+    Scissor,
+    /// The stencil buffer where nothing counts or marks.
+    Stencil,
+    /// Clearing a stencil that nothing has written.
+    Clear,
+    /// Faces of a cube map that no caster shows in.
+    MapFaces,
+}
+
+impl Decision {
+    /// The names that `leave-out` knows, in order.
+    pub const NAMES: [&str; 12] = [
+        Decision::Light.name(),
+        Decision::Caster.name(),
+        Decision::View.name(),
+        Decision::Umbra.name(),
+        Decision::AwayTriangles.name(),
+        Decision::Caps.name(),
+        Decision::LightCap.name(),
+        Decision::DarkCap.name(),
+        Decision::Scissor.name(),
+        Decision::Stencil.name(),
+        Decision::Clear.name(),
+        Decision::MapFaces.name(),
+    ];
+
+    /// As in `--set leave-out=caps,umbra`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Decision::Light => "light",
+            Decision::Caster => "caster",
+            Decision::View => "view",
+            Decision::Umbra => "umbra",
+            Decision::AwayTriangles => "away-triangles",
+            Decision::Caps => "caps",
+            Decision::LightCap => "light-cap",
+            Decision::DarkCap => "dark-cap",
+            Decision::Scissor => "scissor",
+            Decision::Stencil => "stencil",
+            Decision::Clear => "clear",
+            Decision::MapFaces => "map-faces",
+        }
+    }
+
+    /// May it be taken?
+    pub(super) fn is_allowed(self, choice: &Choice) -> bool {
+        match choice.word("leave-out") {
+            "none" => false,
+            "all" => true,
+            some => some.split(',').any(|name| name.trim() == self.name()),
+        }
+    }
+}
