@@ -80,6 +80,12 @@ impl ViewVolume {
         outside(&self.planes, points)
     }
 
+    /// Are all points of space beyond the near plane, so that it cuts nothing between them?
+    #[must_use]
+    pub fn is_beyond_near(&self, points: &[DVec4]) -> bool {
+        outside(&[self.planes[0].turned()], points).is_some()
+    }
+
     /// The same of points at infinity: the near plane is no matter there.
     #[must_use]
     pub fn outside_at_infinity(&self, directions: &[DVec3]) -> Option<Outside> {

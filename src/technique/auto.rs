@@ -140,7 +140,7 @@ impl Questions {
 }
 
 /// In the order of [`ViewVolume`]'s planes.
-const VIEW_PLANES: [&str; 5] = [
+pub const VIEW_PLANES: [&str; 5] = [
     "the view's near plane",
     "the view's left side",
     "the view's right side",
@@ -149,7 +149,7 @@ const VIEW_PLANES: [&str; 5] = [
 ];
 
 /// `0.8 m outside the view's left side`.
-fn beyond(outside: Outside, plane: &str) -> String {
+pub fn beyond(outside: Outside, plane: &str) -> String {
     match outside.distance.is_finite() {
         true => format!("{} outside {plane}", numbers::metres(outside.distance)),
         false => format!("outside {plane}"),
@@ -161,7 +161,7 @@ fn relative(position: DVec4, eye: DVec3) -> DVec4 {
 }
 
 /// Points whose hull holds a caster.
-fn outline(world: &[DVec3]) -> Box<dyn Iterator<Item = DVec3> + '_> {
+pub fn outline(world: &[DVec3]) -> Box<dyn Iterator<Item = DVec3> + '_> {
     if world.len() <= MOST_VERTICES_TO_LOOK_AT { Box::new(world.iter().copied()) } else { Box::new(box_corners(world)) }
 }
 

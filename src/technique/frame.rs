@@ -74,6 +74,8 @@ pub struct Frame<'a> {
     pub placed: Vec<Placed<'a>>,
     /// All visible surfaces, in the order in which they are drawn.
     pub pieces: Vec<Piece>,
+    /// Those that the next light's pass draws, where they are not all.
+    pub lit: Option<Vec<Piece>>,
     pub plan: FramePlan,
     /// Clamped depth clips volumes at the near plane all the same: what counts in front of surfaces
     /// must not begin before them.
@@ -174,6 +176,7 @@ impl<'a> Frame<'a> {
         let mut frame = Frame {
             placed: Vec::new(),
             pieces: Vec::new(),
+            lit: None,
             plan,
             clips_volumes: false,
             color: no_target,
@@ -339,7 +342,11 @@ impl<'a> Frame<'a> {
             raster: RasterState::visible_surface(ColorWrite::Add),
             label: LIT,
         };
-        let draws = self.surface_draws(|object| Some(if object.receives { shadowed } else { &unshadowed }));
+        let look = |object: &Object| Some(if object.receives { shadowed } else { &unshadowed });
+        let draws = match &self.lit {
+            Some(lit) => self.draws_of(lit, look),
+            None => self.surface_draws(look),
+        };
         self.push_pass(light, "light", purpose, Some(self.kept_color()), draws);
     }
 
@@ -398,6 +405,10 @@ impl<'a> Frame<'a> {
 
     /// One draw a piece of every visible object, as `look` says for the object.
     fn surface_draws<'d>(&self, look: impl Fn(&Object) -> Option<&'d Drawn>) -> Vec<Draw> {
+        self.draws_of(&self.pieces, look)
+    }
+
+    fn draws_of<'d>(&self, pieces: &[Piece], look: impl Fn(&Object) -> Option<&'d Drawn>) -> Vec<Draw> {
         let draw = |piece: &Piece| {
             let object = self.placed[piece.object].object;
             let drawn = look(object)?;
@@ -415,7 +426,7 @@ impl<'a> Frame<'a> {
                 constants: DrawConstants { material, label: drawn.label, layer, ..DrawConstants::default() },
             })
         };
-        self.pieces.iter().filter_map(draw).collect()
+        pieces.iter().filter_map(draw).collect()
     }
 
     /// The picture's depth-stencil target for a pass of `light`: what another light has left in the

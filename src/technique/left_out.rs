@@ -21,8 +21,12 @@ pub enum Decision {
     LightCap,
     /// The dark cap of a volume whose far end is not in view.
     DarkCap,
-    /// The part of the picture beyond a light's range.
-    Scissor,
+    /// Surfaces that are not in view.
+    Surfaces,
+    /// Triangles of a closed surface that face away from the eye.
+    HiddenTriangles,
+    /// In a light's pass, triangles that face away from it.
+    UnlitTriangles,
     /// The stencil buffer where nothing counts or marks.
     Stencil,
     /// Clearing a stencil that nothing has written.
@@ -33,7 +37,7 @@ pub enum Decision {
 
 impl Decision {
     /// The names that `leave-out` knows, in order.
-    pub const NAMES: [&str; 12] = [
+    pub const NAMES: [&str; 14] = [
         Decision::Light.name(),
         Decision::Caster.name(),
         Decision::View.name(),
@@ -42,7 +46,9 @@ impl Decision {
         Decision::Caps.name(),
         Decision::LightCap.name(),
         Decision::DarkCap.name(),
-        Decision::Scissor.name(),
+        Decision::Surfaces.name(),
+        Decision::HiddenTriangles.name(),
+        Decision::UnlitTriangles.name(),
         Decision::Stencil.name(),
         Decision::Clear.name(),
         Decision::MapFaces.name(),
@@ -60,7 +66,9 @@ impl Decision {
             Decision::Caps => "caps",
             Decision::LightCap => "light-cap",
             Decision::DarkCap => "dark-cap",
-            Decision::Scissor => "scissor",
+            Decision::Surfaces => "surfaces",
+            Decision::HiddenTriangles => "hidden-triangles",
+            Decision::UnlitTriangles => "unlit-triangles",
             Decision::Stencil => "stencil",
             Decision::Clear => "clear",
             Decision::MapFaces => "map-faces",

@@ -16,6 +16,7 @@ mod ray_traced;
 mod receivers;
 mod settings;
 mod shadow_map;
+mod shown;
 mod silhouettes;
 mod surfaces;
 mod volume;

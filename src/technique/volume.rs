@@ -18,8 +18,9 @@ mod options;
 
 use super::auto::Questions;
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::left_out::Decision;
 use super::settings::ONE_ROW;
-use super::{PlanError, ReportRows, Technique};
+use super::{PlanError, ReportRows, Technique, shown};
 use crate::geometry::{Caster, Casters, DarkCap, Extruder, Extrusion, SilhouetteBy, VolumeOf, VolumeParts, relative};
 use crate::plan::{
     Blob, Draw, DrawConstants, DrawMesh, FramePlan, LightId, MeshId, Part, Program, RasterState, Visibility,
@@ -61,8 +62,21 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let stencil = if options.counts_in_float { StencilUse::ToLightOnce } else { StencilUse::Always };
     let mut frame = Frame::new(job, stencil)?;
     frame.clips_volumes = matches!(technique, Technique::ZPass | Technique::ZPassPlus);
+    if technique == Technique::Auto {
+        shown::leave_out_hidden(&mut frame);
+    }
     frame.ambient_pass();
     for light in frame.light_ids() {
+        if technique == Technique::Auto {
+            let lit = shown::lit_by(&mut frame, light);
+            if lit.is_empty() && Decision::Light.is_allowed(frame.job.choice) {
+                let because = "every surface in view faces away from it";
+                frame.leave_out("all passes", &Frame::light_name(light), because);
+                frame.mask_pass(light, &[Drawn::lit()]);
+                continue;
+            }
+            frame.lit = Some(lit);
+        }
         let (volumes, may_overflow) = volumes(&mut frame, light, &options);
         let counting = Counting::of(technique);
         if options.counts_in_float || may_overflow {

@@ -1,0 +1,120 @@
+//! Which triangles of surfaces can show, and which of those a light can reach.
+//!
+//! A surface out of view is not drawn. Of a closed one that the near plane does not cut, triangles that
+//! face away from the eye are hidden by others; and a triangle that faces away from a light gets nothing
+//! from it, so the light pass needs only the rest.
+
+use super::frame::{Frame, Piece};
+use super::left_out::Decision;
+use super::{auto, surfaces};
+use crate::geometry::{Caster, ViewVolume};
+use crate::numbers;
+use crate::plan::{DrawMesh, LightId};
+use glam::{DVec3, DVec4};
+
+/// A triangle this nearly edge-on to the eye, as a sine, may be rasterised as facing it.
+const EDGE_ON: f64 = 1e-4;
+
+/// Leaves out of the frame's surfaces what can't show.
+pub fn leave_out_hidden(frame: &mut Frame) {
+    let [width, height] = frame.job.size.map(f64::from);
+    let view = ViewVolume::new(&frame.job.scene.camera, width / height);
+    let mut kept = Vec::new();
+    let mut reduced = vec![None; frame.placed.len()];
+    for piece in std::mem::take(&mut frame.pieces) {
+        let index = piece.object;
+        if reduced[index].is_none() {
+            reduced[index] = Some(shown(frame, &view, index));
+        }
+        match &reduced[index] {
+            Some(Shown::Triangles(shows)) => kept.extend(subset(frame, piece, |triangle| shows[triangle as usize])),
+            Some(Shown::Nothing) => (),
+            _ => kept.push(piece),
+        }
+    }
+    frame.pieces = kept;
+}
+
+#[derive(Clone)]
+enum Shown {
+    All,
+    /// By triangle.
+    Triangles(Vec<bool>),
+    Nothing,
+}
+
+fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
+    let (eye, choice) = (frame.eye(), frame.job.choice);
+    let placed = &frame.placed[index];
+    let (object, world) = (placed.object, &placed.world);
+    let relative: Vec<DVec4> = auto::outline(world).map(|point| (point - eye).extend(1.0)).collect();
+    if Decision::Surfaces.is_allowed(choice)
+        && let Some(outside) = view.outside(&relative)
+    {
+        let because = auto::beyond(outside, auto::VIEW_PLANES[outside.plane]);
+        frame.leave_out("surface", &object.name, &format!("it lies {because}"));
+        return Shown::Nothing;
+    }
+    if !Decision::HiddenTriangles.is_allowed(choice) || !view.is_beyond_near(&relative) {
+        return Shown::All;
+    }
+    let caster = Caster { mesh: &object.mesh, pose: &object.pose, world };
+    if frame.job.cache.light_facing_suffices(caster, eye.extend(1.0)).is_err() {
+        return Shown::All;
+    }
+    let faces_eye = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|vertex| world[vertex as usize]);
+        let (normal, to_eye): (DVec3, DVec3) = ((b - a).cross(c - a), eye - a);
+        normal.dot(to_eye) > -EDGE_ON * normal.length() * to_eye.length()
+    };
+    let shows: Vec<bool> = object.mesh.triangles().iter().map(faces_eye).collect();
+    let hidden = shows.iter().filter(|shows| !**shows).count();
+    let because = "the mesh is closed and wound outwards, the eye is outside it, and the near plane does not cut it";
+    frame.leave_out(
+        &format!("{} triangles that face away from the eye", numbers::count(hidden as u64)),
+        &object.name,
+        because,
+    );
+    Shown::Triangles(shows)
+}
+
+/// A piece's triangles for which `shows` holds, of the mesh it has; `None` where there are none.
+fn subset(frame: &mut Frame, piece: Piece, shows: impl Fn(u32) -> bool) -> Option<Piece> {
+    let triangles: Vec<u32> = piece.triangles.clone().filter(|triangle| shows(*triangle)).collect();
+    if triangles.len() == piece.triangles.len() {
+        return Some(piece);
+    }
+    if triangles.is_empty() {
+        return None;
+    }
+    let mesh: DrawMesh = surfaces::subset(&frame.plan.meshes[piece.mesh.0], &piece.name, &triangles);
+    let mesh = frame.add_mesh(mesh);
+    Some(Piece { mesh, triangles: 0..triangles.len() as u32, ..piece })
+}
+
+/// The pieces that a light adds anything to: all of them where wrapped light reaches round edges, or
+/// where of surfaces that coincide only the first may be lit.
+pub fn lit_by(frame: &mut Frame, light: LightId) -> Vec<Piece> {
+    let pieces = frame.pieces.clone();
+    if !Decision::UnlitTriangles.is_allowed(frame.job.choice)
+        || frame.plan.wraps_diffuse
+        || surfaces::coincide(&frame.placed)
+    {
+        return pieces;
+    }
+    let total = |pieces: &[Piece]| pieces.iter().map(|piece| piece.triangles.len() as u64).sum::<u64>();
+    let all = total(&pieces);
+    let mut lit = Vec::new();
+    for piece in pieces {
+        let surface = frame.plan.meshes[piece.mesh.0].surface.as_ref();
+        let Some(sides) = surface.map(|surface| surface.sides.clone()) else { continue };
+        let faces_light = |triangle: u32| sides.data()[triangle as usize] & (1 << light.0) == 0;
+        lit.extend(subset(frame, piece, faces_light));
+    }
+    let unlit = all - total(&lit);
+    if unlit > 0 {
+        let what = format!("{} triangles that face away", numbers::count(unlit));
+        frame.leave_out(&what, &format!("the pass of {}", Frame::light_name(light)), "it adds nothing to them");
+    }
+    lit
+}
