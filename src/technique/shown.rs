@@ -67,7 +67,12 @@ fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
         let (normal, to_eye): (DVec3, DVec3) = ((b - a).cross(c - a), eye - a);
         normal.dot(to_eye) > -EDGE_ON * normal.length() * to_eye.length()
     };
-    let shows: Vec<bool> = object.mesh.triangles().iter().map(faces_eye).collect();
+    // Along an edge with one that faces the eye, rounding may let the other win: neighbours stay.
+    let mut is_neighbour = vec![false; world.len()];
+    let facing = object.mesh.triangles().iter().filter(|corners| faces_eye(corners));
+    facing.flatten().for_each(|vertex| is_neighbour[*vertex as usize] = true);
+    let touches = |corners: &[u32; 3]| corners.iter().any(|vertex| is_neighbour[*vertex as usize]);
+    let shows: Vec<bool> = object.mesh.triangles().iter().map(touches).collect();
     let hidden = shows.iter().filter(|shows| !**shows).count();
     let because = "the mesh is closed and wound outwards, the eye is outside it, and the near plane does not cut it";
     frame.leave_out(
