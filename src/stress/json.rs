@@ -1,4 +1,11 @@
 //! The machine-readable form: rows, and one entry a case and technique.
+//!
+//! A row and its summary have the same `case` and `entrant`: the technique with the settings that the
+//! case gives it, as the table has it. `settings` are all of a row's, what the number drives included,
+//! and of a summary only those that the entrant changes. In a summary `worst` is the most wrong pixels
+//! at one value and `compared` how many were compared there; a row's `compared` is its own.
+//! `frame_ms` is the median of `timed_frames` frames, and `setup_from_nothing` says that no pipeline of
+//! an earlier row was used; geometry never is.
 
 use super::{Case, Row, Stress, Summary};
 use crate::capture::AdapterInfo;
@@ -41,6 +48,7 @@ struct RowEntry<'a> {
     case: &'static str,
     parameter: Parameter,
     technique: &'static str,
+    entrant: String,
     settings: &'a BTreeMap<String, String>,
     compared: u64,
     false_shadow: u64,
@@ -52,15 +60,19 @@ struct RowEntry<'a> {
     expected: &'static str,
     verdict: &'static str,
     frame_ms: f64,
+    timed_frames: usize,
     setup_ms: f64,
+    setup_from_nothing: bool,
 }
 
 impl<'a> RowEntry<'a> {
     fn new(row: &'a Row) -> RowEntry<'a> {
+        let case = Case::named(row.case);
         RowEntry {
             case: row.case,
             parameter: Parameter { name: row.parameter.0, value: row.parameter.1 },
             technique: row.entrant.technique.name(),
+            entrant: row.entrant.to_string(),
             settings: &row.settings,
             compared: row.error.compared,
             false_shadow: row.error.false_shadow,
@@ -71,7 +83,9 @@ impl<'a> RowEntry<'a> {
             expected: row.expected.name(),
             verdict: row.expected.judge(row.error.wrong()).name(),
             frame_ms: row.frame_ms,
+            timed_frames: case.map_or(1, Case::timed_frames),
             setup_ms: row.setup_ms,
+            setup_from_nothing: case.is_some_and(|case| case.timed),
         }
     }
 }
@@ -80,6 +94,7 @@ impl<'a> RowEntry<'a> {
 struct SummaryEntry {
     case: &'static str,
     technique: &'static str,
+    entrant: String,
     settings: BTreeMap<&'static str, &'static str>,
     breaks_at: Option<f64>,
     worst: u64,
@@ -96,6 +111,7 @@ impl SummaryEntry {
         SummaryEntry {
             case: summary.case,
             technique: summary.entrant.technique.name(),
+            entrant: summary.entrant.to_string(),
             settings: summary.entrant.settings.iter().copied().collect(),
             breaks_at: summary.breaks_at,
             worst: summary.worst.0,
