@@ -124,3 +124,40 @@ fn unknown(name: &str) -> CliError {
     let hint = suggestion(name, &names);
     CliError::Usage(format!("no stress case is called `{}`: {hint}", name.escape_debug()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(cases: &[&str], only: &[Technique]) -> Option<String> {
+        let chosen: Vec<&Case> = match cases {
+            [] => cases::all().collect(),
+            names => names.iter().filter_map(|name| Case::named(name)).collect(),
+        };
+        let error = check_that_all_run(&chosen, !cases.is_empty(), only).err()?;
+        assert_eq!(error.exit_code(), 2);
+        Some(error.to_string())
+    }
+
+    #[test]
+    fn what_runs_nothing_is_refused_with_the_reason() {
+        let reason = |cases: &[&str], only: &[Technique]| refused(cases, only).expect("it runs nothing");
+        let random = Case::named("random").expect("a case");
+        let because = random.without.iter().find(|(without, _)| *without == Technique::ZPass).expect("a reason").1;
+        let text = reason(&["random"], &[Technique::ZPass]);
+        assert!(text.contains("`z-pass` does not run in `random`") && text.contains(because), "{text}");
+        let text = reason(&["sliver"], &[Technique::RayTraced]);
+        assert!(text.contains("`ray-traced` runs in no stress case, as it is the truth"), "{text}");
+        assert!(reason(&[], &[Technique::None]).contains("`none` runs in no stress case"));
+        // Others that run do not make up for it.
+        assert!(reason(&["random"], &[Technique::ZFail, Technique::ZPass]).contains("z-pass"));
+        assert!(reason(&["nested", "random"], &[Technique::ZPass]).contains("`random`"));
+    }
+
+    #[test]
+    fn what_runs_somewhere_is_not() {
+        assert_eq!(refused(&["sliver"], &[]), None);
+        assert_eq!(refused(&["nested", "random"], &[Technique::ZPass, Technique::ZFail]), None);
+        assert_eq!(refused(&[], &[Technique::ZPass]), None, "cases that are not named may be without it");
+    }
+}

@@ -67,11 +67,11 @@ impl Session {
         progress: &Progress,
         between: &mut dyn FnMut(&mut Session),
     ) -> Result<Vec<Measured>, SessionError> {
+        let traced = self.traced_between(scene, what.size, progress, between)?;
         let mut go_on = |session: &mut Session| {
             between(session);
             if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(()) }
         };
-        let traced = self.traced_between(scene, what.size, progress, &mut |session| drop(go_on(session)))?;
         progress.start(what.choices.len() * (what.runs + 2));
         let plans = self.plans(scene, what)?;
         check_memory(&plans)?;

@@ -70,3 +70,39 @@ impl Session {
         Ok(Some(row))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::progress::Progress;
+    use crate::session::CaptureRequest;
+    use crate::technique::Choice;
+
+    const SIZE: [u32; 2] = [40, 30];
+
+    #[test]
+    fn what_comes_between_two_rows_changes_none_of_them() {
+        let mut session = Session::new(None).expect("the reference adapter");
+        let cases = ["near-plane", "eye-in-volume", "map-size"].map(|name| Case::named(name).expect("a case"));
+        let only = [Technique::ZFail, Technique::ZPass, Technique::ShadowMap];
+        let progress = Progress::default();
+        let whole = session.stress(&cases, &only, SIZE, &progress).expect("rows");
+        let mut steps = StressSteps::new(&cases, &only, SIZE);
+        assert_eq!((steps.left(), steps.next_case()), (whole.len(), Some((0, "near-plane"))));
+        assert_eq!(progress.steps(), (whole.len(), whole.len()));
+        let between = Case::named("nested").expect("a case").scene(2.0).expect("a scene");
+        let request = CaptureRequest::new(Choice::new(Technique::ZFail), SIZE);
+        for expected in &whole {
+            let row = session.stress_step(&mut steps).expect("a row").expect("one is left");
+            assert_eq!((row.case, row.parameter, row.entrant), (expected.case, expected.parameter, expected.entrant));
+            assert_eq!((row.error, row.flips), (expected.error, expected.flips));
+            let mut capture = session.capture(&between, &request).expect("a capture");
+            session.judge(&between, &mut capture, &Progress::default()).expect("a truth");
+        }
+        assert_eq!((steps.left(), steps.next_case()), (0, None));
+        assert_eq!(session.stress_step(&mut steps).expect("the end"), None);
+        assert!(whole.iter().any(|row| row.flips.is_some()), "a motion is among them");
+        progress.cancel();
+        assert!(matches!(session.stress(&cases, &only, SIZE, &progress), Err(SessionError::Cancelled)));
+    }
+}

@@ -123,3 +123,40 @@ impl SummaryEntry {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accuracy::ErrorCounts;
+
+    #[test]
+    fn every_row_has_one_summary_by_case_and_entrant() {
+        let cases = ["nested", "triangle-count"].map(|name| Case::named(name).expect("a case"));
+        let row = |case: &'static Case, entrant: crate::stress::Entrant, value: f64| Row {
+            case: case.name,
+            parameter: (case.parameter, value),
+            entrant,
+            settings: case.choice(&entrant, value).expect("a choice").settings().clone(),
+            error: ErrorCounts::default(),
+            flips: None,
+            expected: case.expected(&entrant),
+            frame_ms: 1.0,
+            setup_ms: 1.0,
+        };
+        let entrants = cases.iter().flat_map(|case| case.entrants().into_iter().map(move |entrant| (*case, entrant)));
+        let of_case = |(case, entrant): (&'static Case, _)| case.values.iter().map(move |v| (case, entrant, *v));
+        let rows = entrants.flat_map(of_case).map(|(case, entrant, value)| row(case, entrant, value)).collect();
+        let adapter = AdapterInfo { name: "none".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() };
+        let json = Stress { adapter, size: [1, 1], rows }.to_json().expect("JSON");
+        let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        let [rows, summary] = ["rows", "summary"].map(|key| json[key].as_array().expect("a list"));
+        for row in rows {
+            let is_of = |entry: &&serde_json::Value| ["case", "entrant"].iter().all(|key| entry[key] == row[key]);
+            assert_eq!(summary.iter().filter(is_of).count(), 1, "{row}");
+            let is_timed = row["case"] == "triangle-count";
+            assert_eq!(row["timed_frames"], if is_timed { 3 } else { 1 });
+            assert_eq!(row["setup_from_nothing"], is_timed);
+        }
+        assert!(rows.iter().any(|row| row["entrant"] == "z-fail operations=clamp"));
+    }
+}
