@@ -287,19 +287,24 @@ fn folded_rungs_open_by_a_click_or_by_enter_and_fold_again() {
         rungs.filter(|label| label.starts_with("rung: ")).count()
     };
     assert_eq!(rungs(&harness), 4);
+    let enter = |harness: &mut Harness<Seen>, button: &str| {
+        harness.get_by_role_and_label(Role::Button, button).focus();
+        harness.run_steps(2);
+        press(harness, Key::Enter);
+    };
     click(&mut harness, "+296 more, adding 0");
     assert_eq!(rungs(&harness), 104);
-    harness.get_by_role_and_label(Role::Button, "+196 more, adding 0").focus();
-    harness.run_steps(2);
-    press(&mut harness, Key::Enter);
+    enter(&mut harness, "+196 more, adding 0");
     assert_eq!(rungs(&harness), 204);
-    click(&mut harness, "Fold");
+    enter(&mut harness, "Fold");
     assert_eq!(rungs(&harness), 4);
-    click(&mut harness, "+296 more, adding 0");
-    harness.state_mut().inspector.pick([4, 4]);
+    enter(&mut harness, "+296 more, adding 0");
+    assert_eq!(rungs(&harness), 104);
+    harness.state_mut().inspector.pick([3, 5]);
     harness.run_steps(2);
-    answer(&mut harness, history([4, 4], &faces));
+    answer(&mut harness, history([3, 5], &faces));
     assert_eq!(rungs(&harness), 4, "another pixel has other faces");
+    assert!(harness.query_by_label("Fold").is_none());
 }
 
 #[test]
