@@ -9,6 +9,7 @@ mod history;
 mod measure;
 mod report;
 mod stress;
+mod stress_steps;
 mod truth;
 mod volumes;
 
@@ -16,6 +17,7 @@ pub use draws::Every;
 pub use history::HistoryCost;
 pub use measure::{Measured, Measurement};
 pub use report::report_rows;
+pub use stress_steps::StressSteps;
 pub use truth::{TruthCost, truth_cost};
 pub use volumes::{VolumeCost, volume_cost};
 

@@ -1,7 +1,8 @@
 //! Runs stress cases: every technique at every value, against the truth.
 
-use super::{Session, SessionError, milliseconds};
+use super::{Session, SessionError, StressSteps, median_ms, milliseconds};
 use crate::accuracy::{ErrorCounts, Finding};
+use crate::geometry::GeometryCache;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::{Scene, SceneError};
@@ -10,7 +11,8 @@ use crate::technique::{self, Job, Technique};
 use std::time::Instant;
 
 /// What a light's pixels said at the value before, in a motion.
-struct Before {
+#[derive(Debug)]
+pub(super) struct Before {
     entrant: Entrant,
     light: usize,
     labels: Vec<u8>,
@@ -19,14 +21,16 @@ struct Before {
 }
 
 /// What a row is of.
-struct Step<'a> {
-    case: &'a Case,
-    entrant: Entrant,
-    value: f64,
-    size: [u32; 2],
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step<'a> {
+    pub case: &'a Case,
+    pub entrant: Entrant,
+    pub value: f64,
+    pub size: [u32; 2],
 }
 
-fn scene_of(case: &Case, value: f64) -> Result<Scene, SessionError> {
+/// The scene of a case at a value.
+pub(super) fn scene_of(case: &Case, value: f64) -> Result<Scene, SessionError> {
     let named = |source| SceneError::Mesh { name: format!("{} {value}", case.name), source };
     Ok(case.scene(value).map_err(named)?)
 }
@@ -44,28 +48,15 @@ impl Session {
         size: [u32; 2],
         progress: &Progress,
     ) -> Result<Vec<Row>, SessionError> {
-        let runs = |case: &Case| -> Vec<Entrant> {
-            let is_asked = |entrant: &Entrant| only.is_empty() || only.contains(&entrant.technique);
-            case.entrants().into_iter().filter(is_asked).collect()
-        };
-        progress.start(cases.iter().map(|case| case.values.len() * runs(case).len()).sum());
-        let mut rows = Vec::new();
-        for case in cases {
-            let entrants = runs(case);
-            let mut before = Vec::new();
-            for value in case.values {
-                let scene = scene_of(case, *value)?;
-                for entrant in &entrants {
-                    if progress.is_cancelled() {
-                        return Err(SessionError::Cancelled);
-                    }
-                    let step = Step { case, entrant: *entrant, value: *value, size: case.size.unwrap_or(size) };
-                    rows.push(self.stress_row(&step, &scene, &mut before, |_| ())?);
-                    progress.advance();
-                }
-            }
+        let mut steps = StressSteps::new(cases, only, size);
+        progress.start(steps.left());
+        let mut rows = Vec::with_capacity(steps.left());
+        while !progress.is_cancelled() {
+            let Some(row) = self.stress_step(&mut steps)? else { return Ok(rows) };
+            rows.push(row);
+            progress.advance();
         }
-        Ok(rows)
+        Err(SessionError::Cancelled)
     }
 
     /// One technique at one value of a case, with its plan changed by `change` before it runs: shows
@@ -85,7 +76,7 @@ impl Session {
         self.stress_row(&Step { case, entrant, value, size }, &scene, &mut Vec::new(), change)
     }
 
-    fn stress_row(
+    pub(super) fn stress_row(
         &mut self,
         step: &Step,
         scene: &Scene,
@@ -96,13 +87,19 @@ impl Session {
         // Its own progress: the steps of the whole are rows.
         let traced = self.traced(scene, size, &Progress::default())?;
         let choice = case.choice(&entrant, value)?;
+        if case.timed {
+            self.executor.forget();
+        }
         let start = Instant::now();
-        let mut plan = technique::plan(Job { scene, size, choice: &choice, cache: &mut self.geometry })?;
+        // Geometry that another technique has found out would be had for nothing.
+        let cache = &mut GeometryCache::default();
+        let mut plan = technique::plan(Job { scene, size, choice: &choice, cache })?;
         change(&mut plan);
         let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());
         self.executor.time(&ready, false)?;
-        let frame_ms = milliseconds(self.executor.time(&ready, false)?);
+        let frames = (0..case.timed_frames()).map(|_| self.executor.time(&ready, false));
+        let frame_ms = median_ms(&frames.collect::<Result<Vec<_>, _>>()?).unwrap_or(f64::NAN);
         let output = self.executor.capture(ready, false)?;
         let mut error = ErrorCounts::default();
         let mut flips = None;

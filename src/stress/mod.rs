@@ -24,6 +24,9 @@ use crate::technique::{Choice, ChoiceError, Technique};
 use std::collections::BTreeMap;
 use std::fmt;
 
+/// Timed frames of each row where times are the point.
+const TIMED_FRAMES: usize = 3;
+
 /// A scene that one number makes harder and harder.
 #[derive(Debug, Clone, Copy)]
 pub struct Case {
@@ -39,6 +42,8 @@ pub struct Case {
     pub drives: Drives,
     /// Width and height of the picture, where these are the point.
     pub size: Option<[u32; 2]>,
+    /// Its times are the point: every row is set up from nothing, and several frames are timed.
+    pub timed: bool,
     /// Forms of techniques that run beside the usual ones.
     pub also: &'static [Entrant],
     /// Usual techniques that are left out, with the reason.
@@ -198,6 +203,12 @@ impl Case {
         Ok(choice)
     }
 
+    /// How many frames of a row are timed, after a warm-up.
+    #[must_use]
+    pub fn timed_frames(&self) -> usize {
+        if self.timed { TIMED_FRAMES } else { 1 }
+    }
+
     /// Why that is expected of a technique, in one line.
     #[must_use]
     pub fn because(&self, entrant: &Entrant) -> &'static str {
@@ -264,9 +275,10 @@ pub struct Row {
     pub flips: Option<u64>,
     /// What is expected of the technique in this case.
     pub expected: Expected,
-    /// Wall time of a frame, ms.
+    /// Wall time of a frame, ms: the median of [`Case::timed_frames`].
     pub frame_ms: f64,
-    /// Planning, geometry, pipelines and uploads, ms.
+    /// Planning, geometry, pipelines and uploads, ms. No geometry is kept from row to row; pipelines
+    /// are, but not where times are the point.
     pub setup_ms: f64,
 }
 

@@ -3,7 +3,7 @@
 use super::{SIZE, Seen, click_button, harness_of, inspector, z_fail};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::BTreeMap;
 use stencilscope::accuracy::ErrorCounts;
 use stencilscope::inspector::{Action, Inspector, StressProgress};
@@ -43,6 +43,10 @@ fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<Row> {
     case.values.iter().flat_map(row).map(row_of).collect()
 }
 
+fn running(done: usize, of: usize, rows: (usize, usize), what: &str) -> StressProgress {
+    StressProgress { done, of, rows, what: what.to_owned() }
+}
+
 fn select(harness: &mut Harness<Seen>, row: &str) {
     harness.get_by_role_and_label(Role::Row, row).click();
     harness.run_steps(2);
@@ -59,10 +63,9 @@ fn cases_are_listed_run_and_cancelled() {
     let all: Vec<&str> = cases::all().map(|case| case.name).collect();
     let expected = [vec![first], vec!["world-scale"], all].map(|cases| Action::RunStress { cases });
     assert_eq!(harness.state().actions, expected);
-    let running = StressProgress { done: 3, of: 51, what: "light-close".to_owned() };
-    harness.state_mut().inspector.set_stress(Some(running), None);
+    harness.state_mut().inspector.set_stress(Some(running(3, 51, (40, 1200), "light-close")), None);
     harness.run_steps(2);
-    harness.get_by_label("3 of 51 · light-close");
+    harness.get_by_label("3 of 51 · light-close · 40 of 1\u{2009}200 rows");
     click_button(&mut harness, "Cancel");
     assert_eq!(harness.state().actions.last(), Some(&Action::CancelStress));
 }
@@ -106,4 +109,28 @@ fn running_a_case_again_replaces_its_rows_and_no_others() {
     let wrong =
         |name| inspector.stress().iter().filter(|row| row.case == name).map(|row| row.error.wrong()).sum::<u64>();
     assert!(wrong("nested") > 0 && wrong("grazing") == 0);
+}
+
+#[test]
+fn progress_moves_within_a_case() {
+    let mut harness = showing(|_| ());
+    let share = |harness: &mut Harness<Seen>, rows| {
+        harness.state_mut().inspector.set_stress(Some(running(0, 1, (rows, 1000), "random")), None);
+        harness.run_steps(2);
+        let bar = harness.get_by_role_and_label(Role::ProgressIndicator, "Running stress cases");
+        bar.accesskit_node().numeric_value()
+    };
+    assert_eq!(share(&mut harness, 0), Some(0.0));
+    assert_eq!(share(&mut harness, 500), Some(50.0));
+    assert_eq!(share(&mut harness, 990), Some(99.0));
+}
+
+#[test]
+fn the_error_of_a_run_goes_when_the_next_begins_and_does_not_come_back_when_that_is_cancelled() {
+    let mut harness = showing(|inspector| inspector.set_stress(None, Some("the GPU was lost".to_owned())));
+    for progress in [Some(running(0, 1, (0, 10), "random")), None] {
+        harness.state_mut().inspector.set_stress(progress, None);
+        harness.run_steps(2);
+        assert!(harness.query_by_label_contains("the GPU was lost").is_none());
+    }
 }

@@ -240,6 +240,7 @@ const TRIANGLE_COUNT: Case = Case {
         let ball = moved(object("ball", shapes::sphere(0.6, 2 * rings, rings)?), [0.0, 1.0, 0.0]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.0, 4.0, 1.5), vec![floor(3.0)?, ball]))
     }),
+    timed: true,
     without: &[
         (Technique::Planar, "a ball's triangles are receivers by the thousand: not what it is for"),
         (Technique::PlanarTexture, "a ball's triangles are receivers by the thousand: not what it is for"),

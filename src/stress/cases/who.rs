@@ -64,6 +64,7 @@ pub const PLAIN: Case = Case {
     values: &[0.0],
     drives: Drives::Scene(|_| super::stage::still_life()),
     size: None,
+    timed: false,
     also: &[],
     without: &[],
     failures: &[],
