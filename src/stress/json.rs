@@ -69,7 +69,7 @@ impl<'a> RowEntry<'a> {
             edge_band: row.error.edge_band,
             flips: row.flips,
             expected: row.expected.name(),
-            verdict: row.expected.judge(row.error.wrong()).name(),
+            verdict: row.verdict().name(),
             frame_ms: row.frame_ms,
             setup_ms: row.setup_ms,
         }
