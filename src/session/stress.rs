@@ -19,6 +19,8 @@ struct Before {
     light: usize,
     labels: Vec<u8>,
     truth: Vec<u8>,
+    /// How many more times each pixel's label has changed than its truth.
+    ahead: Vec<i8>,
 }
 
 /// Something made wrong in what a technique does, while truth and expectation stay: it must be found.
@@ -154,16 +156,17 @@ impl Session {
                 off_limit = Some(off_limit.unwrap_or(0) + limit.compare(light, labels).counts.wrong());
             }
             if let Drives::Motion(_) = case.drives {
-                let now = Before {
+                let mut now = Before {
                     entrant,
                     light,
                     labels: labels.rows().flatten().copied().collect(),
                     truth: traced.truth.labels[light].clone(),
+                    ahead: vec![0; traced.truth.labels[light].len()],
                 };
                 let last = before.iter_mut().find(|before| before.entrant == entrant && before.light == light);
                 match last {
                     Some(last) => {
-                        flips = Some(flips.unwrap_or(0) + flips_between(last, &now, size[0] as usize));
+                        flips = Some(flips.unwrap_or(0) + flips_between(last, &mut now, size[0] as usize));
                         *last = now;
                     }
                     None => before.push(now),
@@ -199,39 +202,70 @@ impl Fault<'_> {
     }
 }
 
-/// Pixels whose label changed though the truth did not, neither there nor beside it. That holds along
-/// edges too: excused there is a pixel that differs, not one that flickers.
-fn flips_between(last: &Before, now: &Before, width: usize) -> u64 {
+/// Pixels whose label has changed there and back although the truth did not.
+///
+/// A label may change a step before the truth or after it: then it is one change ahead or behind for
+/// that time. Two ahead is a flicker. Excused edges count too, since a flicker can hide there; but a
+/// change does not where the truth changes beside the pixel: an edge touches it then.
+fn flips_between(last: &Before, now: &mut Before, width: usize) -> u64 {
     let (count, height) = (now.labels.len(), now.labels.len() / width.max(1));
-    let is_still = |at: usize| {
+    let moves = |at: usize| last.truth[at] != now.truth[at];
+    let is_touched = |at: usize| {
         let (x, y) = (at % width, at / width);
         let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
         let mut around =
             rows.flat_map(|row| (x.saturating_sub(1)..=(x + 1).min(width - 1)).map(move |column| row * width + column));
-        around.all(|other| last.truth[other] == now.truth[other])
+        around.any(moves)
     };
-    (0..count).filter(|at| last.labels[*at] != now.labels[*at] && is_still(*at)).count() as u64
+    let mut flips = 0;
+    for at in 0..count {
+        let (label_moves, truth_moves) = (last.labels[at] != now.labels[at], moves(at));
+        let counts = label_moves && (truth_moves || !is_touched(at));
+        let ahead = (last.ahead[at] + i8::from(counts) - i8::from(truth_moves)).max(-1);
+        let is_flip = ahead == 2;
+        flips += u64::from(is_flip);
+        now.ahead[at] = if is_flip { 0 } else { ahead };
+    }
+    flips
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn before(labels: &[u8], truth: &[u8]) -> Before {
-        Before { entrant: Entrant::of(Technique::ZFail), light: 0, labels: labels.to_vec(), truth: truth.to_vec() }
+    /// Flips of the middle of three by three pixels, step by step; the others stand still, but for
+    /// a corner of the truth.
+    fn flips(labels: &[u8], truth: &[u8], corner: &[u8]) -> Vec<u64> {
+        let at = |step: usize| {
+            let mut now = Before {
+                entrant: Entrant::of(Technique::ZFail),
+                light: 0,
+                labels: vec![0; 9],
+                truth: vec![0; 9],
+                ahead: vec![0; 9],
+            };
+            (now.labels[4], now.truth[4], now.truth[8]) = (labels[step], truth[step], corner[step]);
+            now
+        };
+        let mut last = at(0);
+        let mut next = |step| {
+            let mut now = at(step);
+            let flips = flips_between(&last, &mut now, 3);
+            last = now;
+            flips
+        };
+        (1..labels.len()).map(&mut next).collect()
     }
 
     #[test]
-    fn a_flip_counts_where_the_truth_stands_still_around_it() {
-        let still = [0; 9];
-        let flips = |labels: &[u8], truth: &[u8]| flips_between(&before(&still, &still), &before(labels, truth), 3);
-        let mut flipped = still;
-        flipped[4] = 1;
-        assert_eq!(flips(&still, &still), 0);
-        assert_eq!(flips(&flipped, &still), 1);
-        assert_eq!(flips(&flipped, &flipped), 0, "the truth shows it");
-        assert_eq!(flips(&flipped, &[0, 0, 0, 0, 0, 0, 0, 0, 1]), 0, "an edge passes beside it");
-        flipped[5] = 1;
-        assert_eq!(flips(&flipped, &still), 2, "two that flip together flicker too");
+    fn a_change_there_and_back_is_a_flip_unless_the_truth_changes_too() {
+        let still = [0; 5];
+        assert_eq!(flips(&[0, 1, 0, 1, 0], &still, &still), [0, 1, 0, 1]);
+        assert_eq!(flips(&[0, 1, 1, 0, 0], &still, &still), [0, 0, 1, 0], "however long it takes");
+        assert_eq!(flips(&[0, 1, 0, 0, 0], &[0, 1, 0, 0, 0], &still), [0; 4], "the truth does so");
+        assert_eq!(flips(&[0, 1, 1, 1, 1], &[0, 0, 1, 1, 1], &still), [0; 4], "a step early");
+        assert_eq!(flips(&[0, 0, 1, 1, 1], &[0, 1, 1, 1, 1], &still), [0; 4], "a step late");
+        assert_eq!(flips(&[0, 1, 0, 1, 1], &[0, 0, 0, 1, 1], &still), [0, 1, 0, 0], "a flicker before it comes");
+        assert_eq!(flips(&[0, 1, 0, 0, 0], &still, &[0, 1, 0, 0, 0]), [0; 4], "an edge touches it and goes");
     }
 }

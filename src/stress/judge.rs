@@ -22,8 +22,8 @@ pub struct Row {
     pub error: ErrorCounts,
     /// What there is to compare.
     pub seen: Seen,
-    /// Pixels that changed since the value before although the truth did not, there or beside it;
-    /// `None` where the case is no motion, and at its first value.
+    /// Pixels that have now changed there and back although the truth did not; `None` where the case is
+    /// no motion, and at its first value.
     pub flips: Option<u64>,
     /// Wrong pixels if the truth is that of the scene to which the case converges, where it does.
     pub off_limit: Option<u64>,

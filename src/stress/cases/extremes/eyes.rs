@@ -73,6 +73,7 @@ const SUN_ALONG_VIEW: Case = Case {
         scene.lights = vec![Light::directional(scene.camera.eye - scene.camera.target)];
         Ok(scene)
     }),
+    least: |_| Least::all_lit("no shadow is seen from where the light comes"),
     ..PLAIN
 };
 
