@@ -45,6 +45,8 @@ pub enum Kind {
     Missing,
     /// Either.
     Either,
+    /// Either, or of another surface than in truth.
+    Any,
 }
 
 /// What is expected of a technique at one value.
@@ -120,6 +122,12 @@ impl Failure {
         Failure { symptom: Symptom { kind: Kind::Missing, ..self.symptom }, ..self }
     }
 
+    /// Its wrong pixels may be those of another surface.
+    #[must_use]
+    pub const fn is_any(self) -> Failure {
+        Failure { symptom: Symptom { kind: Kind::Any, ..self.symptom }, ..self }
+    }
+
     /// It makes at most this share of the compared pixels wrong.
     #[must_use]
     pub const fn at_most(self, most: f64) -> Failure {
@@ -189,13 +197,13 @@ impl Row {
         let others = match kind {
             Kind::False => error.missing_shadow,
             Kind::Missing => error.false_shadow,
-            Kind::Either => 0,
+            Kind::Either | Kind::Any => 0,
         };
         // Beside what is known of them, texels show in these techniques.
         let blur = texels(self.entrant.technique).map_or(0.0, |(symptom, _)| symptom.most);
         if !shows && matches!(self.expected, Expected::Fails(_)) {
             Some(Surprise::NotShown)
-        } else if error.wrong_surface > 0 || others as f64 > blur * error.compared as f64 {
+        } else if (error.wrong_surface > 0 && kind != Kind::Any) || others as f64 > blur * error.compared as f64 {
             Some(Surprise::OtherKind)
         } else if error.wrong() as f64 > most * error.compared as f64 {
             Some(Surprise::TooMany)
