@@ -359,7 +359,10 @@ const TRIANGLE_COUNT: Case = Case {
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.0, 4.0, 1.5), vec![floor(3.0)?, ball]))
     }),
     also: &[EDGE_LIST],
-    up_to: &[(EDGE_LIST, 1e4, "every edge is searched for: with more it is refused")],
+    up_to: &[
+        (EDGE_LIST, 1e4, "every edge is searched for: with more it is refused"),
+        (PLANAR, 1e5, "each triangle is a receiver: a million take as long as all other cases together"),
+    ],
     // For ten times as many, n log n is a factor of twelve to fourteen, and n squared one of a hundred.
     trend: Some(Trend::Grows(32.0)),
     ..PLAIN
