@@ -361,7 +361,7 @@ const TRIANGLE_COUNT: Case = Case {
     also: &[EDGE_LIST],
     up_to: &[
         (EDGE_LIST, 1e4, "every edge is searched for: with more it is refused"),
-        (PLANAR, 1e5, "each triangle is a receiver: a million take as long as all other cases together"),
+        (PLANAR, 1e5, "each triangle is a receiver: a million take half a minute"),
     ],
     // For ten times as many, n log n is a factor of twelve to fourteen, and n squared one of a hundred.
     trend: Some(Trend::Grows(32.0)),
