@@ -1,6 +1,6 @@
 //! Stress cases row by row, so that other work may come in between.
 
-use super::stress::{Before, Step, scene_of};
+use super::stress::{Before, Fault, Step, scene_of};
 use super::{Session, SessionError};
 use crate::scene::Scene;
 use crate::stress::{Case, Row};
@@ -30,7 +30,8 @@ impl StressSteps {
             let entrants: Vec<_> = case.entrants().into_iter().filter(|entrant| is_asked(entrant.technique)).collect();
             for (value_index, value) in case.values.iter().enumerate() {
                 let step = |entrant| Step { case, entrant, value: *value, size: case.size.unwrap_or(size) };
-                left.extend(entrants.iter().map(|entrant| ([case_index, value_index], step(*entrant))));
+                let running = entrants.iter().filter(|entrant| case.runs(entrant, *value));
+                left.extend(running.map(|entrant| ([case_index, value_index], step(*entrant))));
             }
         }
         StressSteps { left, place: None, scene: None, before: Vec::new() }
@@ -65,7 +66,7 @@ impl Session {
             None => scene_of(step.case, step.value)?,
         };
         steps.place = Some(place);
-        let row = self.stress_row(&step, &scene, &mut steps.before, |_| ())?;
+        let row = self.stress_row(&step, &scene, &mut steps.before, Fault::None)?;
         steps.scene = Some(scene);
         Ok(Some(row))
     }

@@ -81,7 +81,7 @@ impl<'a> RowEntry<'a> {
             edge_band: row.error.edge_band,
             flips: row.flips,
             expected: row.expected.name(),
-            verdict: row.expected.judge(row.error.wrong()).name(),
+            verdict: row.verdict().name(),
             frame_ms: row.frame_ms,
             timed_frames: case.map_or(1, Case::timed_frames),
             setup_ms: row.setup_ms,
