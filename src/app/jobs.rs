@@ -116,8 +116,9 @@ impl Jobs {
         let cases: Vec<&'static Case> = cases.iter().filter_map(|name| Case::named(name)).collect();
         let names = cases.iter().map(|case| case.name).collect();
         self.stressing = Some(Stressing { job, progress: progress.clone(), names, done: 0 });
+        let run = StressRun::new(job, &cases, progress);
         self.watch(inspector);
-        StressRun { job, cases, progress }
+        run
     }
 
     /// The rows of a case; those of a run that was stopped are dropped.
@@ -143,7 +144,7 @@ impl Jobs {
         }
     }
 
-    /// Another picture is asked for, and must not wait.
+    /// Another picture is asked for, and must not wait. Stress cases give way by themselves.
     pub fn make_way(&mut self, inspector: &mut Inspector) {
         self.pause_judging(inspector);
         self.stop_measuring(Some("stopped for another picture: measure again when it is the one you want"), inspector);
@@ -168,7 +169,7 @@ impl Jobs {
 impl Stressing {
     fn steps(&self) -> StressProgress {
         let what = self.names.get(self.done).map_or_else(String::new, |name| (*name).to_owned());
-        StressProgress { done: self.done, of: self.names.len(), what }
+        StressProgress { done: self.done, of: self.names.len(), rows: self.progress.steps(), what }
     }
 }
 
@@ -228,5 +229,25 @@ mod tests {
         assert!(inspector.report().report.is_none() && inspector.report().running.is_some());
         jobs.end_measuring(measure.job, Ok(report()), &mut inspector);
         assert!(inspector.report().report.is_some() && inspector.report().running.is_none());
+    }
+
+    #[test]
+    fn stress_says_how_far_it_is_within_a_case_and_goes_on_beside_another_picture() {
+        let (mut jobs, mut inspector) = (Jobs::default(), Inspector::default());
+        let mut run = jobs.stress(&["random", "one-pixel"], &mut inspector);
+        let all = run.steps.left();
+        let steps = |jobs: &Jobs| jobs.stressing.as_ref().map(Stressing::steps).expect("it runs");
+        let expected =
+            |done, rows: usize, what: &str| StressProgress { done, of: 2, rows: (rows, all), what: what.to_owned() };
+        assert!(all > 1000);
+        assert_eq!(steps(&jobs), expected(0, 0, "random"));
+        (0..500).for_each(|_| run.progress.advance());
+        assert_eq!(steps(&jobs), expected(0, 500, "random"));
+        jobs.make_way(&mut inspector);
+        assert!(!run.progress.is_cancelled());
+        jobs.add_stress(run.job, std::mem::take(&mut run.rows), &mut inspector);
+        assert_eq!(steps(&jobs), expected(1, 500, "one-pixel"));
+        jobs.stop_stress(&mut inspector);
+        assert!(run.progress.is_cancelled() && !jobs.watch(&mut inspector));
     }
 }

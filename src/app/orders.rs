@@ -2,8 +2,13 @@
 
 use crate::inspector::RunRequest;
 use crate::progress::Progress;
-use crate::stress::{Case, Entrant};
+use crate::session::StressSteps;
+use crate::stress::{Case, Entrant, Row};
 use crate::technique::Choice;
+use std::sync::mpsc::Receiver;
+
+/// Pictures of stress cases, but for those with a size of their own.
+const STRESS_SIZE: [u32; 2] = [320, 240];
 
 /// What the window asks for.
 #[derive(Debug)]
@@ -20,7 +25,7 @@ pub enum Order {
         entrant: Option<Entrant>,
     },
     /// Stress cases.
-    Stress(StressRun),
+    Stress(Box<StressRun>),
     /// The open scene again, changed.
     Run {
         /// The scene that is meant.
@@ -68,15 +73,27 @@ pub struct Measure {
     pub progress: Progress,
 }
 
-/// Stress cases to run.
+/// Stress cases to run, or what is left of them.
 #[derive(Debug)]
 pub struct StressRun {
     /// Told with the rows.
     pub job: u64,
-    /// Which.
-    pub cases: Vec<&'static Case>,
-    /// Stopped by the window.
+    /// The rows to make.
+    pub steps: StressSteps,
+    /// The rows so far of the case that is under way.
+    pub rows: Vec<Row>,
+    /// Counts rows; watched and stopped by the window.
     pub progress: Progress,
+}
+
+impl StressRun {
+    /// All of `cases`.
+    #[must_use]
+    pub fn new(job: u64, cases: &[&'static Case], progress: Progress) -> StressRun {
+        let steps = StressSteps::new(cases, &[], STRESS_SIZE);
+        progress.start(steps.left());
+        StressRun { job, steps, rows: Vec::new(), progress }
+    }
 }
 
 /// Orders that wait: of each sort only the newest counts.
@@ -109,14 +126,47 @@ impl Waiting {
     }
 
     /// What is left of an order that was obeyed in part; a newer one of its sort counts instead.
-    pub fn put_back(&mut self, rest: StressRun) {
+    pub fn put_back(&mut self, rest: Box<StressRun>) {
         self.stress.get_or_insert(Order::Stress(rest));
+    }
+
+    /// The next that is about the frame that is shown and takes no longer than a frame; none while a
+    /// new picture is waited for.
+    pub fn next_short(&mut self) -> Option<Order> {
+        if self.picture.is_some() { None } else { self.draws.take().or_else(|| self.history.take()) }
     }
 
     /// The next to obey: what is seen first, what is known of it later.
     pub fn next(&mut self) -> Option<Order> {
         let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
         seen.or_else(|| self.judge.take()).or_else(|| self.measure.take()).or_else(|| self.stress.take())
+    }
+}
+
+/// Where orders come in, and those that wait.
+#[derive(Debug)]
+pub struct Inbox<'a> {
+    /// From the window.
+    pub orders: &'a Receiver<Order>,
+    /// Taken in, and not obeyed yet.
+    pub waiting: Waiting,
+}
+
+impl Inbox<'_> {
+    /// [`Waiting::next`], once all that came was taken in.
+    pub fn next(&mut self) -> Option<Order> {
+        self.take_in();
+        self.waiting.next()
+    }
+
+    /// [`Waiting::next_short`], once all that came was taken in.
+    pub fn next_short(&mut self) -> Option<Order> {
+        self.take_in();
+        self.waiting.next_short()
+    }
+
+    fn take_in(&mut self) {
+        self.orders.try_iter().for_each(|order| self.waiting.add(order));
     }
 }
 
@@ -194,13 +244,24 @@ mod tests {
 
     #[test]
     fn the_rest_of_the_stress_cases_comes_last_and_gives_way_to_a_newer_run() {
-        let run = |job| StressRun { job, cases: Vec::new(), progress: Progress::default() };
+        let run = |job| Box::new(StressRun::new(job, &[], Progress::default()));
         let mut waiting = waiting([Order::Stress(run(2)), judge(1)]);
         waiting.put_back(run(1));
         assert!(matches!(waiting.next(), Some(Order::Judge { .. })));
-        assert!(matches!(waiting.next(), Some(Order::Stress(StressRun { job: 2, .. }))));
+        assert!(matches!(waiting.next(), Some(Order::Stress(run)) if run.job == 2));
         waiting.put_back(run(1));
-        assert!(matches!(waiting.next(), Some(Order::Stress(StressRun { job: 1, .. }))));
+        assert!(matches!(waiting.next(), Some(Order::Stress(run)) if run.job == 1));
+    }
+
+    #[test]
+    fn between_steps_of_long_work_only_what_is_short_is_obeyed_and_nothing_of_a_frame_that_goes() {
+        let history = || Order::History { frame: 1, at: [0, 0] };
+        let mut still = waiting([judge(1), history(), Order::Draws { frame: 1, step: 1 }]);
+        assert!(matches!(still.next_short(), Some(Order::Draws { .. })));
+        assert!(matches!(still.next_short(), Some(Order::History { .. })));
+        assert!(still.next_short().is_none(), "a truth takes long");
+        assert!(matches!(still.next(), Some(Order::Judge { .. })));
+        assert!(waiting([history(), run(1)]).next_short().is_none());
     }
 
     #[test]

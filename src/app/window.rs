@@ -178,7 +178,7 @@ impl App {
                 self.jobs.stop_measuring(None, &mut self.inspector);
                 return self.redraw();
             }
-            Action::RunStress { cases } => Order::Stress(self.jobs.stress(&cases, &mut self.inspector)),
+            Action::RunStress { cases } => Order::Stress(Box::new(self.jobs.stress(&cases, &mut self.inspector))),
             Action::CancelStress => {
                 self.jobs.stop_stress(&mut self.inspector);
                 return self.redraw();

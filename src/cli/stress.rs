@@ -7,7 +7,7 @@ use super::{CliError, output};
 use crate::progress::Progress;
 use crate::scene::suggestion;
 use crate::session::Session;
-use crate::stress::{Case, Stress, cases};
+use crate::stress::{Case, Stress, cases, right_because};
 use crate::technique::Technique;
 use clap::Args;
 
@@ -28,7 +28,8 @@ pub struct StressArguments {
     /// A part of the GPU's name; `llvmpipe` is the software one [default: the best]
     #[arg(long, value_name = "SUBSTRING")]
     adapter: Option<String>,
-    /// Machine-readable, to a file or to standard output in place of the table
+    /// Machine-readable, to a file or to standard output in place of the table: rows, and by their
+    /// `case` and `entrant` a summary of each
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     json: Option<Option<String>>,
     /// A Markdown table, to a file or to standard output in place of the table
@@ -55,6 +56,8 @@ pub fn run(arguments: &StressArguments) -> Result<(), CliError> {
     let chosen = arguments.case.iter().map(named).collect::<Result<Vec<_>, _>>()?;
     let chosen = if chosen.is_empty() { cases::all().collect() } else { chosen };
     let only = arguments.technique.iter().map(|name| technique_named(name)).collect::<Result<Vec<Technique>, _>>()?;
+    let is_named = !arguments.case.is_empty();
+    check_that_all_run(&chosen, is_named, &only)?;
     let files = [&arguments.json, &arguments.markdown].into_iter().flatten().flatten().chain(&arguments.plot);
     let files: Vec<&String> = files.collect();
     files.iter().try_for_each(|file| output::check_target(file))?;
@@ -71,6 +74,32 @@ pub fn run(arguments: &StressArguments) -> Result<(), CliError> {
     let unexpected =
         stress.summary().into_iter().filter(|summary| summary.verdict == crate::stress::Verdict::Unexpected).count();
     if unexpected > 0 { Err(CliError::Unexpected { count: unexpected }) } else { Ok(()) }
+}
+
+/// Every technique that is asked for runs in a chosen case, and every case that is named runs one:
+/// what compares nothing is no success.
+fn check_that_all_run(chosen: &[&Case], is_named: bool, only: &[Technique]) -> Result<(), CliError> {
+    let runs = |case: &Case, technique| case.entrants().iter().any(|entrant| entrant.technique == technique);
+    if let Some(technique) = only.iter().find(|technique| !chosen.iter().any(|case| runs(case, **technique))) {
+        return Err(runs_nowhere(chosen, is_named, *technique));
+    }
+    let is_idle = |case: &&&Case| !only.iter().any(|technique| runs(case, *technique));
+    match (chosen.iter().find(is_idle), only) {
+        (Some(case), [technique, ..]) if is_named => Err(runs_nowhere(&[*case], true, *technique)),
+        _ => Ok(()),
+    }
+}
+
+fn runs_nowhere(chosen: &[&Case], is_named: bool, technique: Technique) -> CliError {
+    let name = technique.name();
+    let reason = |case: &&Case| {
+        let (_, because) = case.without.iter().find(|(without, _)| *without == technique)?;
+        Some(format!("`{name}` does not run in `{}`, as {because}: choose another technique or case", case.name))
+    };
+    let of_case = chosen.iter().filter(|_| is_named).find_map(reason);
+    CliError::Usage(of_case.unwrap_or_else(|| {
+        format!("`{name}` runs in no stress case, as {}: choose another technique", right_because(technique))
+    }))
 }
 
 fn deliver(arguments: &StressArguments, stress: &Stress) -> Result<(), CliError> {
@@ -94,4 +123,41 @@ fn unknown(name: &str) -> CliError {
     let names: Vec<&str> = cases::all().map(|case| case.name).collect();
     let hint = suggestion(name, &names);
     CliError::Usage(format!("no stress case is called `{}`: {hint}", name.escape_debug()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(cases: &[&str], only: &[Technique]) -> Option<String> {
+        let chosen: Vec<&Case> = match cases {
+            [] => cases::all().collect(),
+            names => names.iter().filter_map(|name| Case::named(name)).collect(),
+        };
+        let error = check_that_all_run(&chosen, !cases.is_empty(), only).err()?;
+        assert_eq!(error.exit_code(), 2);
+        Some(error.to_string())
+    }
+
+    #[test]
+    fn what_runs_nothing_is_refused_with_the_reason() {
+        let reason = |cases: &[&str], only: &[Technique]| refused(cases, only).expect("it runs nothing");
+        let random = Case::named("random").expect("a case");
+        let because = random.without.iter().find(|(without, _)| *without == Technique::ZPass).expect("a reason").1;
+        let text = reason(&["random"], &[Technique::ZPass]);
+        assert!(text.contains("`z-pass` does not run in `random`") && text.contains(because), "{text}");
+        let text = reason(&["sliver"], &[Technique::RayTraced]);
+        assert!(text.contains("`ray-traced` runs in no stress case, as it is the truth"), "{text}");
+        assert!(reason(&[], &[Technique::None]).contains("`none` runs in no stress case"));
+        // Others that run do not make up for it.
+        assert!(reason(&["random"], &[Technique::ZFail, Technique::ZPass]).contains("z-pass"));
+        assert!(reason(&["nested", "random"], &[Technique::ZPass]).contains("`random`"));
+    }
+
+    #[test]
+    fn what_runs_somewhere_is_not() {
+        assert_eq!(refused(&["sliver"], &[]), None);
+        assert_eq!(refused(&["nested", "random"], &[Technique::ZPass, Technique::ZFail]), None);
+        assert_eq!(refused(&[], &[Technique::ZPass]), None, "cases that are not named may be without it");
+    }
 }

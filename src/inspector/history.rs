@@ -6,6 +6,8 @@
 
 use super::verdict::Verdict;
 use crate::history::{Event, PixelHistory};
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -31,6 +33,8 @@ pub struct HistoryState {
     selected: Option<TriangleKey>,
     /// Its row has to be scrolled to.
     pub scroll_to_selected: bool,
+    /// Rungs of each light's ladder that were opened from a fold: of this pixel of this frame.
+    pub unfolded: BTreeMap<usize, Vec<Range<usize>>>,
     /// The sentence on top as it was last said with a history.
     pub sentence: Option<Verdict>,
 }
@@ -78,6 +82,9 @@ impl HistoryState {
         match history {
             Ok(history) if history.pixel == at => {
                 let wrong = history.disagreements().iter().map(ToString::to_string).collect();
+                if self.of(at).is_none() {
+                    self.unfolded.clear();
+                }
                 self.known = Some(Known { history, is_of_frame: true, wrong });
                 self.failed = None;
             }

@@ -14,12 +14,16 @@ use crate::plan::Part;
 use egui::{
     Align2, Color32, CornerRadius, FontId, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
+use std::ops::Range;
 
 /// Room above the eye and below infinity, points.
 const MARGIN: f32 = 12.0;
 /// Points that the running count moves for one, at most, and in all.
 const COUNT_STEP: f32 = 10.0;
 const COUNT_ROOM: f32 = 40.0;
+
+/// Folded rungs that a click opens: of more, the nearest.
+const OPENED_AT_ONCE: usize = 100;
 
 /// Draws the ladder of `light` under the history; nothing where no volumes are counted.
 pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, light: usize) {
@@ -30,13 +34,17 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, light: usize) {
     ui.horizontal(|ui| {
         theme::heading(ui, "Ladder");
         ui.label(theme::note(format!("of {}, along the view ray", format::light(light))));
+        let is_open = state.history.unfolded.contains_key(&light);
+        if is_open && ui.small_button("Fold").on_hover_text("Fold faces again").clicked() {
+            state.history.unfolded.remove(&light);
+        }
     });
     ui.scope(|ui| {
         if state.history.is_late() {
             ui.set_opacity(0.4);
         }
         match history.ladder(light, &capture.depth) {
-            Some(ladder) => drawn(ui, state, capture, &history, &ladder),
+            Some(ladder) => drawn(ui, state, capture, &history, (light, &ladder)),
             None => {
                 let none = format!("No volume face of {} is on this pixel's view ray.", format::light(light));
                 ui.add(egui::Label::new(theme::note(none)).wrap());
@@ -108,11 +116,12 @@ impl Columns {
     }
 }
 
-fn drawn(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory, ladder: &Ladder) {
+fn drawn(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory, (light, ladder): (usize, &Ladder)) {
     ui.add(egui::Label::new(theme::note(direction(ladder))).wrap());
     let chosen = state.history.selected_in(history);
     let selected = chosen.and_then(|event| ladder.rungs.iter().position(|rung| rung.event == event));
-    let placed = place(ladder, capture.camera.near, selected);
+    let open = state.history.unfolded.get(&light).map_or(&[][..], Vec::as_slice);
+    let placed = place(ladder, capture.camera.near, selected, open);
     let height = placed.last().map_or(0.0, |(_, y)| *y) + 2.0 * MARGIN;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     response.widget_info(|| {
@@ -123,8 +132,14 @@ fn drawn(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHisto
     let row = |y: f32| Rect::from_center_size(pos2(rect.center().x, top + y), vec2(rect.width(), LINE));
     // Rungs first, as what is selected has a background.
     for (mark, y) in &placed {
-        if let Mark::Rung(index) = mark {
-            rung(ui, state, capture, history, &ladder.rungs[*index], row(*y));
+        match mark {
+            Mark::Rung(index) => rung(ui, state, capture, history, &ladder.rungs[*index], row(*y)),
+            Mark::More(from, to) => {
+                if let Some(opened) = fold(ui, ladder, *from..*to, row(*y)) {
+                    state.history.unfolded.entry(light).or_default().push(opened);
+                }
+            }
+            _ => {}
         }
     }
     if !ui.is_rect_visible(rect) {
@@ -157,6 +172,31 @@ fn rung(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistor
     }
     theme::row_background(ui, rect, is_selected, &response);
     response.on_hover_text(line(history, event, &capture.depth));
+}
+
+/// Folded rungs as a widget; those that a click opens.
+fn fold(ui: &mut Ui, ladder: &Ladder, rungs: Range<usize>, rect: Rect) -> Option<Range<usize>> {
+    let response = ui.interact(rect, ui.scope_id().with(("fold", rungs.start)), Sense::click());
+    let opened = rungs.start..rungs.end.min(rungs.start + OPENED_AT_ONCE);
+    let hover = format!("Open {}", format::counted(opened.len() as u64, "face"));
+    let name = folded(&ladder.rungs[rungs]);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    if response.gained_focus() {
+        response.scroll_to_me(None);
+    }
+    theme::row_background(ui, rect, false, &response);
+    response.on_hover_text(hover).clicked().then_some(opened)
+}
+
+/// Rungs that are folded, in words: how many, and what they added.
+fn folded(rungs: &[Rung]) -> String {
+    let counting = rungs.iter().filter(|rung| rung.added != 0).count();
+    let sum: i32 = rungs.iter().map(|rung| rung.added).sum();
+    match (counting, sum) {
+        (0, _) => format!("+{} more, not counted", rungs.len()),
+        (_, 0) => format!("+{} more, adding 0", rungs.len()),
+        _ => format!("+{} more, adding {}", rungs.len(), added(sum)),
+    }
 }
 
 /// A rung in words.
@@ -221,21 +261,14 @@ fn short_metres(distance: f64) -> String {
     }
 }
 
-/// Rungs that are folded: how many, and what they added.
 fn paint_more(ui: &Ui, rungs: &[Rung], rect: Rect) {
     let columns = Columns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
     for offset in [-4.0, 0.0, 4.0] {
         painter.circle_filled(pos2(columns.ray, y + offset), 1.5, theme::DIM);
     }
-    let counting = rungs.iter().filter(|rung| rung.added != 0).count();
-    let sum: i32 = rungs.iter().map(|rung| rung.added).sum();
-    let text = match (counting, sum) {
-        (0, _) => format!("+{} more, not counted", rungs.len()),
-        (_, 0) => format!("+{} more, adding 0", rungs.len()),
-        _ => format!("+{} more, adding {}", rungs.len(), added(sum)),
-    };
-    painter.text(pos2(columns.name, y), Align2::LEFT_CENTER, text, FontId::proportional(theme::SMALL_SIZE), theme::DIM);
+    let font = FontId::proportional(theme::SMALL_SIZE);
+    painter.text(pos2(columns.name, y), Align2::LEFT_CENTER, folded(rungs), font, theme::DIM);
 }
 
 /// Eye, near plane, surface, infinity.

@@ -6,6 +6,7 @@
 //! read some are folded into a line that says how many and what they added.
 
 use crate::history::Ladder;
+use std::ops::Range;
 
 /// The least between two marks, points.
 pub const LINE: f32 = 20.0;
@@ -48,10 +49,11 @@ pub struct Stretch {
     pub count: i32,
 }
 
-/// Places everything on the ray; `near` is the near plane's distance in metres, `selected` a rung.
+/// Places everything on the ray; `near` is the near plane's distance in metres, `selected` a rung,
+/// `open` rungs that are not to be folded.
 #[must_use]
-pub fn place(ladder: &Ladder, near: f64, selected: Option<usize>) -> Vec<Placed> {
-    let marks = marks(ladder, near, selected);
+pub fn place(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<usize>]) -> Vec<Placed> {
+    let marks = marks(ladder, near, selected, open);
     let scale = ladder.surface.unwrap_or_else(|| middle_distance(ladder).unwrap_or(near * 10.0));
     let share = |distance: f64| if distance.is_finite() { distance / (distance + scale) } else { 1.0 };
     let distance = |rung: usize| ladder.rungs[rung].distance;
@@ -103,7 +105,7 @@ pub fn stretches(ladder: &Ladder, placed: &[Placed]) -> Vec<Stretch> {
 }
 
 /// Everything on the ray in order of distance.
-fn marks(ladder: &Ladder, near: f64, selected: Option<usize>) -> Vec<Mark> {
+fn marks(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<usize>]) -> Vec<Mark> {
     let before_near = ladder.rungs.partition_point(|rung| rung.distance < near);
     let before_surface = ladder.surface.map(|surface| {
         // A face as far as the surface is on the side that its test says.
@@ -115,7 +117,9 @@ fn marks(ladder: &Ladder, near: f64, selected: Option<usize>) -> Vec<Mark> {
     let edges = [Some(0), Some(before_near), before_surface, selected, Some(ladder.rungs.len())];
     let is_kept = |rung: usize| {
         let near_edge = |edge: usize| rung + ENDS >= edge && rung < edge + ENDS;
-        ladder.rungs.len() <= MOST_RUNGS || edges.iter().flatten().any(|edge| near_edge(*edge))
+        ladder.rungs.len() <= MOST_RUNGS
+            || edges.iter().flatten().any(|edge| near_edge(*edge))
+            || open.iter().any(|open| open.contains(&rung))
     };
     let mut marks = vec![Mark::Eye];
     for rung in 0..=ladder.rungs.len() {
@@ -184,7 +188,7 @@ mod tests {
     #[test]
     fn the_surface_is_between_what_is_before_and_behind_it() {
         let ladder = ladder(Some(5.0), &[(0.05, 0), (2.0, 0), (7.0, -1), (9.0, 1), (f64::INFINITY, 1)]);
-        let placed = place(&ladder, 0.1, None);
+        let placed = place(&ladder, 0.1, None, &[]);
         let marks: Vec<Mark> = placed.iter().map(|(mark, _)| *mark).collect();
         use Mark::{Eye, Infinity, Near, Rung, Surface};
         assert_eq!(marks, [Eye, Rung(0), Near, Rung(1), Surface, Rung(2), Rung(3), Rung(4), Infinity]);
@@ -195,7 +199,7 @@ mod tests {
     #[test]
     fn a_face_as_far_as_the_surface_is_on_the_side_that_its_test_says() {
         for (added, expected) in [(1, 2), (0, 3)] {
-            let placed = place(&ladder(Some(5.0), &[(5.0, added)]), 0.1, None);
+            let placed = place(&ladder(Some(5.0), &[(5.0, added)]), 0.1, None, &[]);
             assert_eq!(placed.iter().position(|(mark, _)| *mark == Mark::Surface), Some(expected));
         }
     }
@@ -203,7 +207,7 @@ mod tests {
     #[test]
     fn the_count_runs_from_infinity_to_the_surface_and_no_further() {
         let ladder = ladder(Some(5.0), &[(2.0, 0), (7.0, -1), (9.0, 1), (12.0, 1)]);
-        let stretches = stretches(&ladder, &place(&ladder, 0.1, None));
+        let stretches = stretches(&ladder, &place(&ladder, 0.1, None, &[]));
         assert_eq!(stretches.iter().map(|one| one.count).collect::<Vec<_>>(), [0, 1, 2, 1]);
         assert!(stretches.windows(2).all(|pair| pair[1].bottom == pair[0].top));
     }
@@ -213,7 +217,7 @@ mod tests {
         let mut ladder = ladder(Some(5.0), &[(2.0, -1), (7.0, 0)]);
         (ladder.is_from_infinity, ladder.start) = (false, 1);
         ladder.rungs[0].running = 0;
-        let stretches = stretches(&ladder, &place(&ladder, 0.1, None));
+        let stretches = stretches(&ladder, &place(&ladder, 0.1, None, &[]));
         assert_eq!(stretches.iter().map(|one| one.count).collect::<Vec<_>>(), [1, 0]);
     }
 
@@ -221,7 +225,7 @@ mod tests {
     fn of_many_rungs_every_one_is_shown_or_counted_once() {
         let rungs: Vec<(f64, i32)> = (0..600).map(|index| (1.0 + f64::from(index) * 0.01, 1 - index % 2 * 2)).collect();
         for selected in [None, Some(0), Some(100), Some(300), Some(599)] {
-            let placed = place(&ladder(Some(4.0), &rungs), 0.1, selected);
+            let placed = place(&ladder(Some(4.0), &rungs), 0.1, selected, &[]);
             let mut next = 0;
             for (mark, _) in &placed {
                 match mark {
@@ -243,9 +247,26 @@ mod tests {
     }
 
     #[test]
+    fn what_is_open_is_not_folded_and_counts_as_before() {
+        let rungs: Vec<(f64, i32)> = (0..40).map(|index| (1.0 + f64::from(index), 1 - index % 2 * 2)).collect();
+        let ladder = ladder(Some(100.0), &rungs);
+        let opened = [2..20, 20..38];
+        let folded = place(&ladder, 0.1, None, &[]);
+        assert!(folded.iter().any(|(mark, _)| *mark == Mark::More(2, 38)));
+        let open = place(&ladder, 0.1, None, &opened[..1]);
+        assert!((2..20).all(|rung| open.iter().any(|(mark, _)| *mark == Mark::Rung(rung))));
+        assert!(open.iter().any(|(mark, _)| *mark == Mark::More(20, 38)));
+        let all = place(&ladder, 0.1, None, &opened);
+        assert!(all.iter().all(|(mark, _)| !matches!(mark, Mark::More(..))));
+        assert!(all.windows(2).all(|pair| pair[1].1 >= pair[0].1 + LINE - 0.01));
+        let last = |placed: &[Placed]| stretches(&ladder, placed).last().map(|one| one.count);
+        assert_eq!(last(&all), last(&folded));
+    }
+
+    #[test]
     fn without_a_surface_the_count_runs_to_the_eye() {
         let ladder = ladder(None, &[(3.0, 1)]);
-        let placed = place(&ladder, 0.1, None);
+        let placed = place(&ladder, 0.1, None, &[]);
         assert!(!placed.iter().any(|(mark, _)| *mark == Mark::Surface));
         assert_eq!(stretches(&ladder, &placed).last().map(|one| (one.top, one.count)), Some((0.0, 1)));
     }

@@ -25,6 +25,8 @@ pub struct StressProgress {
     pub done: usize,
     /// Cases in all.
     pub of: usize,
+    /// Rows that are done, and in all.
+    pub rows: (usize, usize),
     /// The case that runs.
     pub what: String,
 }
@@ -55,7 +57,8 @@ impl StressState {
     /// How far running is, or that nothing runs; and why it failed, with the mend.
     pub fn show(&mut self, running: Option<StressProgress>, error: Option<String>) {
         self.running = running;
-        if error.is_some() {
+        // What runs has not failed: an error is of the run before.
+        if error.is_some() || self.running.is_some() {
             self.error = error;
         }
     }
@@ -109,10 +112,13 @@ fn top_line(ui: &mut Ui, state: &State, case: &Case, all: &[&'static Case], acti
             if ui.button("Cancel").on_hover_text("Stop; the cases that are done stay").clicked() {
                 actions.push(Action::CancelStress);
             }
-            let share = progress.done as f32 / progress.of.max(1) as f32;
+            let (rows, all) = progress.rows;
+            let share = rows as f32 / all.max(1) as f32;
             let bar = egui::ProgressBar::new(share).desired_width(ui.available_width().min(180.0)).desired_height(8.0);
             ui.add(bar).accessible_name("Running stress cases");
-            ui.label(theme::note(format!("{} of {} · {}", progress.done, progress.of, progress.what)));
+            let [rows, all] = [rows, all].map(|rows| format::count(rows as u64));
+            let StressProgress { done, of, what, .. } = progress;
+            ui.label(theme::note(format!("{done} of {of} · {what} · {rows} of {all} rows")));
         }
         None => {
             let one = ui.button(format!("Run {}", case.name));

@@ -52,15 +52,33 @@ impl Session {
         what: &Measurement,
         progress: &Progress,
     ) -> Result<Vec<Measured>, SessionError> {
-        let go_on = || if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(()) };
-        let traced = self.traced(scene, what.size, progress)?;
+        self.measure_between(scene, what, progress, &mut |_| ())
+    }
+
+    /// The same, with `between` called while the truth is traced and between any two steps after it:
+    /// what it does is in no measured time.
+    ///
+    /// # Errors
+    /// As [`Session::measure`].
+    pub fn measure_between(
+        &mut self,
+        scene: &Scene,
+        what: &Measurement,
+        progress: &Progress,
+        between: &mut dyn FnMut(&mut Session),
+    ) -> Result<Vec<Measured>, SessionError> {
+        let traced = self.traced_between(scene, what.size, progress, between)?;
+        let mut go_on = |session: &mut Session| {
+            between(session);
+            if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(()) }
+        };
         progress.start(what.choices.len() * (what.runs + 2));
         let plans = self.plans(scene, what)?;
         check_memory(&plans)?;
         let mut prepared = Vec::with_capacity(plans.len());
         let mut setups = Vec::with_capacity(plans.len());
         for (plan, planned) in &plans {
-            go_on()?;
+            go_on(self)?;
             self.executor.forget();
             let start = Instant::now();
             let ready = self.executor.prepare(plan)?;
@@ -73,7 +91,7 @@ impl Session {
         let mut gpu: Vec<Vec<f64>> = vec![Vec::with_capacity(what.runs); plans.len()];
         for _ in 0..what.runs {
             for ((ready, frames), gpu) in prepared.iter().zip(&mut frames).zip(&mut gpu) {
-                go_on()?;
+                go_on(self)?;
                 frames.push(self.executor.time(ready, false)?);
                 gpu.extend(self.executor.gpu_ms(ready)?);
                 progress.advance();
@@ -84,7 +102,7 @@ impl Session {
         for (((choice, (plan, _)), ready), ((frames, gpu_ms), setup_ms)) in
             what.choices.iter().zip(&plans).zip(prepared).zip(timed)
         {
-            go_on()?;
+            go_on(self)?;
             let output = self.executor.capture(ready, false)?;
             let labels = output.labels.iter().enumerate();
             let error = labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();

@@ -9,6 +9,7 @@ mod history;
 mod measure;
 mod report;
 mod stress;
+mod stress_steps;
 mod truth;
 mod volumes;
 
@@ -16,6 +17,8 @@ pub use draws::Every;
 pub use history::HistoryCost;
 pub use measure::{Measured, Measurement};
 pub use report::report_rows;
+pub use stress::Fault;
+pub use stress_steps::StressSteps;
 pub use truth::{TruthCost, truth_cost};
 pub use volumes::{VolumeCost, volume_cost};
 
@@ -101,6 +104,8 @@ pub struct Session {
     executor: Executor,
     geometry: GeometryCache,
     traced: Option<Arc<truth::Traced>>,
+    /// Of the scene to which a stress case converges.
+    limit: Option<Arc<truth::Traced>>,
 }
 
 /// A frame's cost, with and without snapshots.
@@ -121,7 +126,7 @@ impl Session {
     /// No usable adapter, with what to install.
     pub fn new(adapter: Option<&str>) -> Result<Session, SessionError> {
         let context = Context::new(adapter)?;
-        Ok(Session { executor: Executor::new(context), geometry: GeometryCache::default(), traced: None })
+        Ok(Session { executor: Executor::new(context), geometry: GeometryCache::default(), traced: None, limit: None })
     }
 
     /// The GPU that it runs on.

@@ -1,32 +1,54 @@
 //! Runs stress cases: every technique at every value, against the truth.
 
-use super::{Session, SessionError, milliseconds};
-use crate::accuracy::{ErrorCounts, Finding};
+use super::truth::Traced;
+use super::{Session, SessionError, StressSteps, median_ms, milliseconds};
+use crate::accuracy::ErrorCounts;
+use crate::geometry::GeometryCache;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::{Scene, SceneError};
-use crate::stress::{Case, Drives, Entrant, Row};
-use crate::technique::{self, Job, Technique};
+use crate::stress::{Case, Drives, Entrant, Row, Seen, Trend};
+use crate::technique::{self, Choice, Job, Technique};
+use crate::truth::{LIT, SHADOW};
+use std::borrow::Cow;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// What a light's pixels said at the value before, in a motion.
-struct Before {
+#[derive(Debug)]
+pub(super) struct Before {
     entrant: Entrant,
     light: usize,
     labels: Vec<u8>,
     truth: Vec<u8>,
-    findings: Vec<u8>,
+    /// How many more times each pixel's label has changed than its truth.
+    ahead: Vec<i8>,
+}
+
+/// Something made wrong in what a technique does, while truth and expectation stay: it must be found.
+#[derive(Clone, Copy)]
+pub enum Fault<'a> {
+    /// Nothing is wrong.
+    None,
+    /// In the scene, before any geometry is made from it.
+    Scene(&'a dyn Fn(&mut Scene)),
+    /// In the settings, whatever the row says.
+    Choice(&'a dyn Fn(&mut Choice)),
+    /// In the plan.
+    Plan(&'a dyn Fn(&mut FramePlan)),
 }
 
 /// What a row is of.
-struct Step<'a> {
-    case: &'a Case,
-    entrant: Entrant,
-    value: f64,
-    size: [u32; 2],
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step<'a> {
+    pub case: &'a Case,
+    pub entrant: Entrant,
+    pub value: f64,
+    pub size: [u32; 2],
 }
 
-fn scene_of(case: &Case, value: f64) -> Result<Scene, SessionError> {
+/// The scene of a case at a value.
+pub(super) fn scene_of(case: &Case, value: f64) -> Result<Scene, SessionError> {
     let named = |source| SceneError::Mesh { name: format!("{} {value}", case.name), source };
     Ok(case.scene(value).map_err(named)?)
 }
@@ -44,85 +66,114 @@ impl Session {
         size: [u32; 2],
         progress: &Progress,
     ) -> Result<Vec<Row>, SessionError> {
-        let runs = |case: &Case| -> Vec<Entrant> {
-            let is_asked = |entrant: &Entrant| only.is_empty() || only.contains(&entrant.technique);
-            case.entrants().into_iter().filter(is_asked).collect()
-        };
-        progress.start(cases.iter().map(|case| case.values.len() * runs(case).len()).sum());
-        let mut rows = Vec::new();
-        for case in cases {
-            let entrants = runs(case);
-            let mut before = Vec::new();
-            for value in case.values {
-                let scene = scene_of(case, *value)?;
-                for entrant in &entrants {
-                    if progress.is_cancelled() {
-                        return Err(SessionError::Cancelled);
-                    }
-                    let step = Step { case, entrant: *entrant, value: *value, size: case.size.unwrap_or(size) };
-                    rows.push(self.stress_row(&step, &scene, &mut before, |_| ())?);
-                    progress.advance();
+        let mut steps = StressSteps::new(cases, only, size);
+        progress.start(steps.left());
+        let mut rows = Vec::with_capacity(steps.left());
+        while !progress.is_cancelled() {
+            let Some(row) = self.stress_step(&mut steps)? else { return Ok(rows) };
+            rows.push(row);
+            progress.advance();
+        }
+        Err(SessionError::Cancelled)
+    }
+
+    /// Runs values of a case with `fault` in them, judged like any others: shows what would be found.
+    ///
+    /// # Errors
+    /// As [`Session::stress`].
+    pub fn stress_faulty(
+        &mut self,
+        case: &Case,
+        entrants: &[Entrant],
+        values: &[f64],
+        size: [u32; 2],
+        fault: Fault,
+        progress: &Progress,
+    ) -> Result<Vec<Row>, SessionError> {
+        let (mut rows, mut before) = (Vec::new(), Vec::new());
+        for value in values {
+            let scene = scene_of(case, *value)?;
+            for entrant in entrants {
+                if progress.is_cancelled() {
+                    return Err(SessionError::Cancelled);
                 }
+                if case.runs(entrant, *value) {
+                    let step = Step { case, entrant: *entrant, value: *value, size };
+                    rows.push(self.stress_row(&step, &scene, &mut before, fault)?);
+                }
+                progress.advance();
             }
         }
         Ok(rows)
     }
 
-    /// One technique at one value of a case, with its plan changed by `change` before it runs: shows
-    /// that a plan which is wrong is judged so.
-    ///
-    /// # Errors
-    /// As [`Session::stress`].
-    pub fn stress_changed(
-        &mut self,
-        case: &Case,
-        entrant: Entrant,
-        value: f64,
-        size: [u32; 2],
-        change: impl FnOnce(&mut FramePlan),
-    ) -> Result<Row, SessionError> {
-        let scene = scene_of(case, value)?;
-        self.stress_row(&Step { case, entrant, value, size }, &scene, &mut Vec::new(), change)
+    /// The truth of the scene to which the case converges.
+    fn limit_of(&mut self, case: &Case, size: [u32; 2]) -> Result<Option<Arc<Traced>>, SessionError> {
+        let Some(Trend::ConvergesTo(limit)) = case.trend else { return Ok(None) };
+        let named = |source| SceneError::Mesh { name: format!("the limit of {}", case.name), source };
+        let scene = limit().map_err(named)?;
+        // Beside the row's own truth, so that neither is traced again for each row.
+        std::mem::swap(&mut self.traced, &mut self.limit);
+        let traced = self.traced(&scene, size, &Progress::default());
+        std::mem::swap(&mut self.traced, &mut self.limit);
+        traced.map(Some)
     }
 
-    fn stress_row(
+    pub(super) fn stress_row(
         &mut self,
         step: &Step,
         scene: &Scene,
         before: &mut Vec<Before>,
-        change: impl FnOnce(&mut FramePlan),
+        fault: Fault,
     ) -> Result<Row, SessionError> {
         let Step { case, entrant, value, size } = *step;
         // Its own progress: the steps of the whole are rows.
         let traced = self.traced(scene, size, &Progress::default())?;
+        let limit = self.limit_of(case, size)?;
         let choice = case.choice(&entrant, value)?;
+        if case.timed {
+            self.executor.forget();
+        }
+        let (scene, used) = fault.applied(scene, &choice);
         let start = Instant::now();
-        let mut plan = technique::plan(Job { scene, size, choice: &choice, cache: &mut self.geometry })?;
-        change(&mut plan);
+        // Geometry that another technique has found out would be had for nothing.
+        let cache = &mut GeometryCache::default();
+        let mut plan = technique::plan(Job { scene: &scene, size, choice: &used, cache })?;
+        if let Fault::Plan(change) = fault {
+            change(&mut plan);
+        }
         let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());
         self.executor.time(&ready, false)?;
-        let frame_ms = milliseconds(self.executor.time(&ready, false)?);
+        let frames = (0..case.timed_frames()).map(|_| self.executor.time(&ready, false));
+        let frame_ms = median_ms(&frames.collect::<Result<Vec<_>, _>>()?).unwrap_or(f64::NAN);
         let output = self.executor.capture(ready, false)?;
         let mut error = ErrorCounts::default();
-        let mut flips = None;
+        let (mut flips, mut off_limit, mut seen) = (None, None, Seen::default());
         for (light, labels) in
             output.labels.iter().enumerate().filter_map(|(light, labels)| Some((light, labels.as_ref()?)))
         {
             let accuracy = traced.compare(light, labels);
             error = [error, accuracy.counts].into_iter().sum();
+            let count = |label: u8| traced.truth.labels[light].iter().filter(|other| **other == label).count() as u64;
+            seen.pixels += u64::from(size[0]) * u64::from(size[1]);
+            seen.lit += count(LIT);
+            seen.shadow += count(SHADOW);
+            if let Some(limit) = &limit {
+                off_limit = Some(off_limit.unwrap_or(0) + limit.compare(light, labels).counts.wrong());
+            }
             if let Drives::Motion(_) = case.drives {
-                let now = Before {
+                let mut now = Before {
                     entrant,
                     light,
                     labels: labels.rows().flatten().copied().collect(),
                     truth: traced.truth.labels[light].clone(),
-                    findings: accuracy.findings,
+                    ahead: vec![0; traced.truth.labels[light].len()],
                 };
                 let last = before.iter_mut().find(|before| before.entrant == entrant && before.light == light);
                 match last {
                     Some(last) => {
-                        flips = Some(flips.unwrap_or(0) + isolated_flips(last, &now, size[0] as usize));
+                        flips = Some(flips.unwrap_or(0) + flips_between(last, &mut now, size[0] as usize));
                         *last = now;
                     }
                     None => before.push(now),
@@ -135,58 +186,93 @@ impl Session {
             entrant,
             settings: choice.settings().clone(),
             error,
+            seen,
             flips,
-            expected: case.expected(&entrant),
+            off_limit,
+            expected: case.expected_at(&entrant, value),
             frame_ms,
             setup_ms,
         })
     }
 }
 
-/// Pixels whose label changed though the truth's did not, and none beside them changed; those that
-/// the truth excuses at an edge are left out.
-fn isolated_flips(last: &Before, now: &Before, width: usize) -> u64 {
-    let changed = |at: usize| last.labels[at] != now.labels[at];
-    let excused = |findings: &[u8], at: usize| findings[at] == Finding::EdgeBand as u8;
+impl Fault<'_> {
+    /// What the technique is given in place of these.
+    fn applied<'a>(self, scene: &'a Scene, choice: &Choice) -> (Cow<'a, Scene>, Choice) {
+        let (mut scene, mut choice) = (Cow::Borrowed(scene), choice.clone());
+        match self {
+            Fault::Scene(change) => change(scene.to_mut()),
+            Fault::Choice(change) => change(&mut choice),
+            Fault::None | Fault::Plan(_) => {}
+        }
+        (scene, choice)
+    }
+}
+
+/// Pixels whose label has changed there and back although the truth did not.
+///
+/// A label may change a step before the truth or after it: then it is one change ahead or behind for
+/// that time. Two ahead is a flicker. Excused edges count too, since a flicker can hide there; but a
+/// change does not where the truth changes beside the pixel: an edge touches it then.
+fn flips_between(last: &Before, now: &mut Before, width: usize) -> u64 {
     let (count, height) = (now.labels.len(), now.labels.len() / width.max(1));
-    let is_isolated = |at: &usize| {
+    let moves = |at: usize| last.truth[at] != now.truth[at];
+    let is_touched = |at: usize| {
         let (x, y) = (at % width, at / width);
         let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
         let mut around =
             rows.flat_map(|row| (x.saturating_sub(1)..=(x + 1).min(width - 1)).map(move |column| row * width + column));
-        !around.any(|other| other != *at && changed(other))
+        around.any(moves)
     };
-    let flipped = (0..count).filter(|at| changed(*at) && last.truth[*at] == now.truth[*at]);
-    let flipped = flipped.filter(|at| !excused(&last.findings, *at) && !excused(&now.findings, *at));
-    flipped.filter(is_isolated).count() as u64
+    let mut flips = 0;
+    for at in 0..count {
+        let (label_moves, truth_moves) = (last.labels[at] != now.labels[at], moves(at));
+        let counts = label_moves && (truth_moves || !is_touched(at));
+        let ahead = (last.ahead[at] + i8::from(counts) - i8::from(truth_moves)).max(-1);
+        let is_flip = ahead == 2;
+        flips += u64::from(is_flip);
+        now.ahead[at] = if is_flip { 0 } else { ahead };
+    }
+    flips
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn before(labels: &[u8], truth: &[u8]) -> Before {
-        let entrant = Entrant::of(Technique::ZFail);
-        Before { entrant, light: 0, labels: labels.to_vec(), truth: truth.to_vec(), findings: vec![0; labels.len()] }
+    /// Flips of the middle of three by three pixels, step by step; the others stand still, but for
+    /// a corner of the truth.
+    fn flips(labels: &[u8], truth: &[u8], corner: &[u8]) -> Vec<u64> {
+        let at = |step: usize| {
+            let mut now = Before {
+                entrant: Entrant::of(Technique::ZFail),
+                light: 0,
+                labels: vec![0; 9],
+                truth: vec![0; 9],
+                ahead: vec![0; 9],
+            };
+            (now.labels[4], now.truth[4], now.truth[8]) = (labels[step], truth[step], corner[step]);
+            now
+        };
+        let mut last = at(0);
+        let mut next = |step| {
+            let mut now = at(step);
+            let flips = flips_between(&last, &mut now, 3);
+            last = now;
+            flips
+        };
+        (1..labels.len()).map(&mut next).collect()
     }
 
     #[test]
-    fn a_flip_counts_where_the_truth_stands_still_and_nothing_beside_it_moves() {
-        let still = [0; 9];
-        let mut flipped = [0; 9];
-        flipped[4] = 1;
-        let flips = |labels: &[u8], truth: &[u8]| isolated_flips(&before(&still, &still), &before(labels, truth), 3);
-        assert_eq!(flips(&still, &still), 0);
-        assert_eq!(flips(&flipped, &still), 1);
-        assert_eq!(flips(&flipped, &flipped), 0, "the truth shows it");
-        flipped[5] = 1;
-        assert_eq!(flips(&flipped, &still), 0, "an edge that moves is not isolated");
-    }
-
-    #[test]
-    fn an_excused_pixel_does_not_count() {
-        let mut now = before(&[0, 0, 1], &[0; 3]);
-        now.findings[2] = Finding::EdgeBand as u8;
-        assert_eq!(isolated_flips(&before(&[0; 3], &[0; 3]), &now, 3), 0);
+    fn a_change_there_and_back_is_a_flip_unless_the_truth_changes_too() {
+        let still = [0; 5];
+        assert_eq!(flips(&[0, 1, 0, 1, 0], &still, &still), [0, 1, 0, 1]);
+        assert_eq!(flips(&[0, 1, 1, 0, 0], &still, &still), [0, 0, 1, 0], "however long it takes");
+        assert_eq!(flips(&[0, 1, 0, 0, 0], &[0, 1, 0, 0, 0], &still), [0; 4], "the truth does so");
+        assert_eq!(flips(&[0, 1, 1, 1, 1], &[0, 0, 1, 1, 1], &still), [0; 4], "a step early");
+        assert_eq!(flips(&[0, 0, 1, 1, 1], &[0, 1, 1, 1, 1], &still), [0; 4], "a step late");
+        assert_eq!(flips(&[0, 1, 0, 1, 1], &[0, 0, 0, 1, 1], &still), [0, 1, 0, 0], "a flicker before it comes");
+        assert_eq!(flips(&[0, 1, 0, 0, 0], &still, &[0, 1, 0, 0, 0]), [0; 4], "an edge touches it and goes");
     }
 }

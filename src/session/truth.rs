@@ -8,7 +8,11 @@ use crate::scene::{Camera, Pose, Scene};
 use crate::truth::{Tracer, Truth};
 use glam::DVec4;
 use std::sync::Arc;
+use std::thread;
 use std::time::{Duration, Instant};
+
+/// While a truth is traced, how often what came in between is looked at.
+const BETWEEN: Duration = Duration::from_millis(5);
 
 /// A traced scene.
 #[derive(Debug)]
@@ -79,15 +83,49 @@ impl Session {
         size: [u32; 2],
         progress: &Progress,
     ) -> Result<Arc<Traced>, SessionError> {
-        let key = Key::new(scene, size);
-        if let Some(traced) = self.traced.as_ref().filter(|traced| traced.key == key) {
-            return Ok(traced.clone());
+        if let Some(traced) = self.known_truth(scene, size) {
+            return Ok(traced);
         }
         let tracer = Tracer::new(scene, size)?;
         let truth = tracer.trace(progress).ok_or(SessionError::Cancelled)?;
-        let traced = Arc::new(Traced { key, tracer, truth });
-        self.traced = Some(traced.clone());
-        Ok(traced)
+        Ok(self.keep_truth(scene, tracer, truth))
+    }
+
+    /// The same on a thread of its own, while `between` is called every now and then.
+    pub(super) fn traced_between(
+        &mut self,
+        scene: &Scene,
+        size: [u32; 2],
+        progress: &Progress,
+        between: &mut dyn FnMut(&mut Session),
+    ) -> Result<Arc<Traced>, SessionError> {
+        if let Some(traced) = self.known_truth(scene, size) {
+            return Ok(traced);
+        }
+        let traced = thread::scope(|scope| {
+            let tracing = scope.spawn(|| {
+                let tracer = Tracer::new(scene, size)?;
+                let truth = tracer.trace(progress).ok_or(SessionError::Cancelled)?;
+                Ok::<_, SessionError>((tracer, truth))
+            });
+            while !tracing.is_finished() {
+                between(self);
+                thread::sleep(BETWEEN);
+            }
+            tracing.join()
+        });
+        let (tracer, truth) = traced.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+        Ok(self.keep_truth(scene, tracer, truth))
+    }
+
+    fn known_truth(&self, scene: &Scene, size: [u32; 2]) -> Option<Arc<Traced>> {
+        let key = Key::new(scene, size);
+        self.traced.as_ref().filter(|traced| traced.key == key).cloned()
+    }
+
+    fn keep_truth(&mut self, scene: &Scene, tracer: Tracer, truth: Truth) -> Arc<Traced> {
+        let key = Key::new(scene, truth.size);
+        self.traced.insert(Arc::new(Traced { key, tracer, truth })).clone()
     }
 }
 

@@ -1,4 +1,11 @@
 //! The machine-readable form: rows, and one entry a case and technique.
+//!
+//! A row and its summary have the same `case` and `entrant`: the technique with the settings that the
+//! case gives it, as the table has it. `settings` are all of a row's, what the number drives included,
+//! and of a summary only those that the entrant changes. In a summary `worst` is the most wrong pixels
+//! at one value and `compared` how many were compared there; a row's `compared` is its own.
+//! `frame_ms` is the median of `timed_frames` frames, and `setup_from_nothing` says that no pipeline of
+//! an earlier row was used; geometry never is.
 
 use super::{Case, Row, Stress, Summary};
 use crate::capture::AdapterInfo;
@@ -41,6 +48,7 @@ struct RowEntry<'a> {
     case: &'static str,
     parameter: Parameter,
     technique: &'static str,
+    entrant: String,
     settings: &'a BTreeMap<String, String>,
     compared: u64,
     false_shadow: u64,
@@ -52,15 +60,19 @@ struct RowEntry<'a> {
     expected: &'static str,
     verdict: &'static str,
     frame_ms: f64,
+    timed_frames: usize,
     setup_ms: f64,
+    setup_from_nothing: bool,
 }
 
 impl<'a> RowEntry<'a> {
     fn new(row: &'a Row) -> RowEntry<'a> {
+        let case = Case::named(row.case);
         RowEntry {
             case: row.case,
             parameter: Parameter { name: row.parameter.0, value: row.parameter.1 },
             technique: row.entrant.technique.name(),
+            entrant: row.entrant.to_string(),
             settings: &row.settings,
             compared: row.error.compared,
             false_shadow: row.error.false_shadow,
@@ -69,9 +81,11 @@ impl<'a> RowEntry<'a> {
             edge_band: row.error.edge_band,
             flips: row.flips,
             expected: row.expected.name(),
-            verdict: row.expected.judge(row.error.wrong()).name(),
+            verdict: row.verdict().name(),
             frame_ms: row.frame_ms,
+            timed_frames: case.map_or(1, Case::timed_frames),
             setup_ms: row.setup_ms,
+            setup_from_nothing: case.is_some_and(|case| case.timed),
         }
     }
 }
@@ -80,6 +94,7 @@ impl<'a> RowEntry<'a> {
 struct SummaryEntry {
     case: &'static str,
     technique: &'static str,
+    entrant: String,
     settings: BTreeMap<&'static str, &'static str>,
     breaks_at: Option<f64>,
     worst: u64,
@@ -96,6 +111,7 @@ impl SummaryEntry {
         SummaryEntry {
             case: summary.case,
             technique: summary.entrant.technique.name(),
+            entrant: summary.entrant.to_string(),
             settings: summary.entrant.settings.iter().copied().collect(),
             breaks_at: summary.breaks_at,
             worst: summary.worst.0,
@@ -105,5 +121,44 @@ impl SummaryEntry {
             because: Case::named(summary.case).map_or("", |case| case.because(&summary.entrant)),
             verdict: summary.verdict.name(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accuracy::ErrorCounts;
+
+    #[test]
+    fn every_row_has_one_summary_by_case_and_entrant() {
+        let cases = ["nested", "triangle-count"].map(|name| Case::named(name).expect("a case"));
+        let row = |case: &'static Case, entrant: crate::stress::Entrant, value: f64| Row {
+            case: case.name,
+            parameter: (case.parameter, value),
+            entrant,
+            settings: case.choice(&entrant, value).expect("a choice").settings().clone(),
+            error: ErrorCounts::default(),
+            seen: crate::stress::Seen::default(),
+            flips: None,
+            off_limit: None,
+            expected: case.expected(&entrant),
+            frame_ms: 1.0,
+            setup_ms: 1.0,
+        };
+        let entrants = cases.iter().flat_map(|case| case.entrants().into_iter().map(move |entrant| (*case, entrant)));
+        let of_case = |(case, entrant): (&'static Case, _)| case.values.iter().map(move |v| (case, entrant, *v));
+        let rows = entrants.flat_map(of_case).map(|(case, entrant, value)| row(case, entrant, value)).collect();
+        let adapter = AdapterInfo { name: "none".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() };
+        let json = Stress { adapter, size: [1, 1], rows }.to_json().expect("JSON");
+        let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        let [rows, summary] = ["rows", "summary"].map(|key| json[key].as_array().expect("a list"));
+        for row in rows {
+            let is_of = |entry: &&serde_json::Value| ["case", "entrant"].iter().all(|key| entry[key] == row[key]);
+            assert_eq!(summary.iter().filter(is_of).count(), 1, "{row}");
+            let is_timed = row["case"] == "triangle-count";
+            assert_eq!(row["timed_frames"], if is_timed { 3 } else { 1 });
+            assert_eq!(row["setup_from_nothing"], is_timed);
+        }
+        assert!(rows.iter().any(|row| row["entrant"] == "z-fail operations=clamp"));
     }
 }

@@ -1,6 +1,6 @@
 //! The table for people, a line a case and technique; and one for a README, a row a case.
 
-use super::{Case, Expected, Stress, Summary, USUAL, Verdict};
+use super::{Case, Stress, Summary, USUAL, Verdict};
 use crate::numbers;
 
 impl Stress {
@@ -79,14 +79,11 @@ pub fn value_text(value: f64) -> String {
 
 fn cell(summary: &Summary) -> String {
     let mark = if summary.verdict == Verdict::Unexpected { " (!)" } else { "" };
-    match (summary.breaks_at, summary.expected) {
-        (None, _) => format!("·{mark}"),
-        (Some(at), expected) => {
-            let name = if let Expected::Fails(name) = expected { name } else { "wrong" };
-            let is_sweep = Case::named(summary.case).is_some_and(|case| case.values.len() > 1);
-            if is_sweep { format!("{} {name}{mark}", value_text(at)) } else { format!("{name}{mark}") }
-        }
-    }
+    let is_sweep = Case::named(summary.case).is_some_and(|case| case.values.len() > 1);
+    let part = |(at, name): (f64, &str)| if is_sweep { format!("{} {name}", value_text(at)) } else { name.to_owned() };
+    let surprise = summary.surprise.map(|(at, surprise)| part((at, &surprise.to_string())));
+    let parts: Vec<String> = summary.shown.iter().copied().map(part).chain(surprise).collect();
+    if parts.is_empty() { format!("·{mark}") } else { format!("{}{mark}", parts.join(", ")) }
 }
 
 fn line(summary: &Summary, width: usize) -> String {
@@ -100,8 +97,15 @@ fn line(summary: &Summary, width: usize) -> String {
         }
     };
     let flips = summary.flips.map_or_else(String::new, |flips| format!(", {flips} flips"));
-    let (verdict, expected) = (summary.verdict.name(), summary.expected.name());
-    let verdict =
-        if summary.verdict == Verdict::Holds { verdict.to_owned() } else { format!("{verdict} ({expected})") };
-    format!("{mark}  {:width$}  {verdict}: {found}{flips}\n", summary.entrant.to_string())
+    let shown: Vec<&str> = summary.shown.iter().map(|(_, name)| *name).collect();
+    let verdict = match (summary.surprise, &shown[..]) {
+        (Some((at, surprise)), _) => format!("{}, at {}: {surprise}", summary.verdict.name(), value_text(at)),
+        (None, []) => summary.verdict.name().to_owned(),
+        (None, names) => format!("{} ({})", summary.verdict.name(), names.join(", ")),
+    };
+    let course = summary.course.as_ref().map_or_else(String::new, |course| {
+        let word = if course.holds { "" } else { "not as it must be: " };
+        format!("      {:width$}  {word}{}\n", "", course.text)
+    });
+    format!("{mark}  {:width$}  {verdict}: {found}{flips}\n{course}", summary.entrant.to_string())
 }

@@ -279,6 +279,51 @@ fn of_600_events_only_rows_in_sight_are_drawn_and_a_rung_scrolls_to_its_row() {
 }
 
 #[test]
+fn folded_rungs_open_by_a_click_or_by_enter_and_fold_again() {
+    let faces: Vec<Face> = (0..300).map(|index| (Part::Side, index % 2 == 1, 4.5 + index as f32 * 0.1)).collect();
+    let mut harness = answered(&faces);
+    let rungs = |harness: &Harness<Seen>| {
+        let rungs = harness.query_all_by_role(Role::ListItem).filter_map(|rung| rung.accesskit_node().label());
+        rungs.filter(|label| label.starts_with("rung: ")).count()
+    };
+    assert_eq!(rungs(&harness), 4);
+    let enter = |harness: &mut Harness<Seen>, button: &str| {
+        harness.get_by_role_and_label(Role::Button, button).focus();
+        harness.run_steps(2);
+        press(harness, Key::Enter);
+    };
+    click(&mut harness, "+296 more, adding 0");
+    assert_eq!(rungs(&harness), 104);
+    enter(&mut harness, "+196 more, adding 0");
+    assert_eq!(rungs(&harness), 204);
+    enter(&mut harness, "Fold");
+    assert_eq!(rungs(&harness), 4);
+    enter(&mut harness, "+296 more, adding 0");
+    assert_eq!(rungs(&harness), 104);
+    harness.state_mut().inspector.pick([3, 5]);
+    harness.run_steps(2);
+    answer(&mut harness, history([3, 5], &faces));
+    assert_eq!(rungs(&harness), 4, "another pixel has other faces");
+    assert!(harness.query_by_label("Fold").is_none());
+}
+
+#[test]
+fn a_dragged_pick_ends_with_the_answer_for_its_last_place() {
+    let mut harness = answered(&FACES);
+    // Each answer comes when the pick has moved on, the last one but one again after the last.
+    for x in 4..=9 {
+        harness.state_mut().inspector.pick([x, 4]);
+        harness.run_steps(1);
+        answer(&mut harness, history([x - 1, 4], &FACES));
+    }
+    answer(&mut harness, history([9, 4], &FACES[..2]));
+    answer(&mut harness, history([8, 4], &FACES));
+    assert_eq!(asked(&harness), [3, 4, 5, 6, 7, 8, 9].map(|x| [x, 4]));
+    assert_eq!(rows(&harness).len(), 7);
+    assert!(harness.query_by_label_contains("waiting for").is_none());
+}
+
+#[test]
 fn what_the_near_plane_clipped_counts_nowhere_and_says_so() {
     let mut faces = FACES.to_vec();
     faces.insert(0, (Part::Side, true, 0.05));

@@ -3,11 +3,11 @@
 use super::{SIZE, Seen, click_button, harness_of, inspector, z_fail};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::BTreeMap;
 use stencilscope::accuracy::ErrorCounts;
 use stencilscope::inspector::{Action, Inspector, StressProgress};
-use stencilscope::stress::{Case, Row, cases};
+use stencilscope::stress::{self, Case, Row, cases};
 
 fn showing(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
@@ -25,22 +25,28 @@ fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<Row> {
         let value = *value;
         case.entrants().into_iter().map(move |entrant| (entrant, value))
     };
-    let row_of = |(entrant, value): (stencilscope::stress::Entrant, f64)| Row {
+    let row_of = |(entrant, value): (stress::Entrant, f64)| Row {
         case: case.name,
         parameter: (case.parameter, value),
         entrant,
         settings: BTreeMap::new(),
         error: ErrorCounts {
             compared: 1000,
-            false_shadow: wrong(&entrant.to_string(), value),
+            missing_shadow: wrong(&entrant.to_string(), value),
             ..ErrorCounts::default()
         },
+        seen: stress::Seen { pixels: 2000, lit: 900, shadow: 100 },
         flips: None,
-        expected: case.expected(&entrant),
+        off_limit: None,
+        expected: case.expected_at(&entrant, value),
         frame_ms: 1.0,
         setup_ms: 1.0,
     };
     case.values.iter().flat_map(row).map(row_of).collect()
+}
+
+fn running(done: usize, of: usize, rows: (usize, usize), what: &str) -> StressProgress {
+    StressProgress { done, of, rows, what: what.to_owned() }
 }
 
 fn select(harness: &mut Harness<Seen>, row: &str) {
@@ -59,17 +65,16 @@ fn cases_are_listed_run_and_cancelled() {
     let all: Vec<&str> = cases::all().map(|case| case.name).collect();
     let expected = [vec![first], vec!["world-scale"], all].map(|cases| Action::RunStress { cases });
     assert_eq!(harness.state().actions, expected);
-    let running = StressProgress { done: 3, of: 51, what: "light-close".to_owned() };
-    harness.state_mut().inspector.set_stress(Some(running), None);
+    harness.state_mut().inspector.set_stress(Some(running(3, 51, (40, 1200), "light-close")), None);
     harness.run_steps(2);
-    harness.get_by_label("3 of 51 · light-close");
+    harness.get_by_label("3 of 51 · light-close · 40 of 1\u{2009}200 rows");
     click_button(&mut harness, "Cancel");
     assert_eq!(harness.state().actions.last(), Some(&Action::CancelStress));
 }
 
 #[test]
 fn a_case_that_was_run_says_who_broke_where_and_opens_there() {
-    let wrong = |entrant: &str, value: f64| u64::from(entrant == "z-pass" && value == 256.0) * 7;
+    let wrong = |entrant: &str, value: f64| u64::from(entrant == "z-pass" && value % 256.0 == 0.0) * 7;
     let mut harness = showing(|inspector| inspector.add_stress(rows("nested", wrong)));
     select(&mut harness, "nested: unexpected");
     harness.get_by_role_and_label(Role::Row, "shadow-map: no wrong pixel, holds");
@@ -106,4 +111,28 @@ fn running_a_case_again_replaces_its_rows_and_no_others() {
     let wrong =
         |name| inspector.stress().iter().filter(|row| row.case == name).map(|row| row.error.wrong()).sum::<u64>();
     assert!(wrong("nested") > 0 && wrong("grazing") == 0);
+}
+
+#[test]
+fn progress_moves_within_a_case() {
+    let mut harness = showing(|_| ());
+    let share = |harness: &mut Harness<Seen>, rows| {
+        harness.state_mut().inspector.set_stress(Some(running(0, 1, (rows, 1000), "random")), None);
+        harness.run_steps(2);
+        let bar = harness.get_by_role_and_label(Role::ProgressIndicator, "Running stress cases");
+        bar.accesskit_node().numeric_value()
+    };
+    assert_eq!(share(&mut harness, 0), Some(0.0));
+    assert_eq!(share(&mut harness, 500), Some(50.0));
+    assert_eq!(share(&mut harness, 990), Some(99.0));
+}
+
+#[test]
+fn the_error_of_a_run_goes_when_the_next_begins_and_does_not_come_back_when_that_is_cancelled() {
+    let mut harness = showing(|inspector| inspector.set_stress(None, Some("the GPU was lost".to_owned())));
+    for progress in [Some(running(0, 1, (0, 10), "random")), None] {
+        harness.state_mut().inspector.set_stress(progress, None);
+        harness.run_steps(2);
+        assert!(harness.query_by_label_contains("the GPU was lost").is_none());
+    }
 }

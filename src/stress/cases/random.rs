@@ -5,7 +5,7 @@ use super::stage::{mesh, object};
 use super::who::PLAIN;
 use crate::scene::builtin::shapes;
 use crate::scene::{Camera, Light, Mesh, MeshError, Object, Scene};
-use crate::stress::{Case, Drives};
+use crate::stress::{Case, Drives, Least};
 use crate::technique::Technique;
 use glam::DVec3;
 
@@ -26,6 +26,7 @@ pub const RANDOM: Case = Case {
         (Technique::PlanarTexture, OTHERS),
         (Technique::Projective, OTHERS),
     ],
+    least: |_| Least::nothing("many eyes look past all there is, and many soups lie wholly in light or shadow"),
     ..PLAIN
 };
 

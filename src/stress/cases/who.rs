@@ -1,6 +1,6 @@
 //! Who runs beside the usual forms, what their failures are called, and the words that many cases share.
 
-use crate::stress::{Case, Drives, Entrant, Failure};
+use crate::stress::{Case, Drives, Entrant, Failure, Least};
 use crate::technique::Technique;
 
 pub const Z_FAIL: Entrant = Entrant::of(Technique::ZFail);
@@ -18,6 +18,7 @@ pub const FINITE: Entrant = Entrant::with(Technique::ZFail, &[("extrusion", "fin
 pub const IN_FLOAT: Entrant = Entrant::with(Technique::ZFail, &[("counter", "float")]);
 pub const CLAMPED: Entrant = Entrant::with(Technique::ZFail, &[("operations", "clamp")]);
 pub const CLAMPED_IN_TURN: Entrant = Entrant::with(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]);
+pub const EDGE_LIST: Entrant = Entrant::with(Technique::ZFail, &[("silhouette", "edge-list")]);
 pub const LIGHT_FACING: Entrant = Entrant::with(Technique::ZFail, &[("casters", "light-facing")]);
 pub const BY_TOPOLOGY: Entrant = Entrant::with(Technique::ZFail, &[("casters", "by-topology")]);
 pub const CAPS_NEVER: Entrant = Entrant::with(Technique::ZFail, &[("light-caps", "never")]);
@@ -29,30 +30,26 @@ pub const REVERSED: Entrant = Entrant::with(Technique::Projective, &[("reverse",
 
 /// A known failure.
 pub const fn fails(of: Entrant, name: &'static str, because: &'static str) -> Failure {
-    Failure { of, name, because }
+    Failure::new(of, name, because)
 }
 
-pub const TEXELS_OF_TEXTURE: Failure =
-    fails(TEXTURE, "aliasing", "a receiver of several metres has 256 texels a side: each is larger than a pixel");
-pub const TEXELS_OF_SILHOUETTE: Failure =
-    fails(SILHOUETTE, "aliasing", "512 texels hold the whole silhouette: where the light spreads it, each shows");
-pub const TEXELS_OF_MAP: Failure =
-    fails(MAP, "aliasing", "1024 texels hold all that casts: where the light spreads them, each shows");
-pub const NOT_PLANAR: Failure = fails(PLANAR, "not-planar", "a receiver that is not flat gets no shadow");
+pub const NOT_PLANAR: Failure = fails(PLANAR, "not-planar", "a receiver that is not flat gets no shadow").is_missing();
 pub const NOT_PLANAR_TEXTURE: Failure =
-    fails(TEXTURE, "not-planar", "a receiver that is not flat has no texture, so it gets no shadow");
+    fails(TEXTURE, "not-planar", "a receiver that is not flat has no texture, so it gets no shadow").is_missing();
 pub const NO_SELF_SHADOW: Failure =
-    fails(SILHOUETTE, "self-shadow", "a silhouette is not thrown on the object that it is of");
+    fails(SILHOUETTE, "self-shadow", "a silhouette is not thrown on the object that it is of").is_missing();
 pub const BETWEEN: Failure = fails(
     SILHOUETTE,
     "between",
     "no depth is compared: what stands between light and caster is darkened like what lies behind",
-);
+)
+.is_false();
 pub const NO_FIT: Failure = fails(
     SILHOUETTE,
     "no-fit",
     "no picture holds a caster that reaches behind the light, so it casts nothing and the plan says so",
-);
+)
+.is_missing();
 pub const CUT_BY_NEAR: Failure =
     fails(Z_PASS, "near-plane", "faces that the near plane cuts away, or that are behind the eye, are not counted");
 
@@ -64,7 +61,11 @@ pub const PLAIN: Case = Case {
     values: &[0.0],
     drives: Drives::Scene(|_| super::stage::still_life()),
     size: None,
+    timed: false,
     also: &[],
     without: &[],
+    up_to: &[],
     failures: &[],
+    least: |_| Least::USUAL,
+    trend: None,
 };

@@ -1,0 +1,306 @@
+//! The worker by its orders and news.
+
+use super::*;
+use crate::app::orders::{Measure, StressRun};
+use crate::progress::Progress;
+use crate::stress::Case;
+use crate::technique::Technique;
+
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A worker over a small built-in scene, its first frame, and the news after it.
+fn started() -> (Worker, u64, Receiver<News>) {
+    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let start = Start {
+        source: ViewSource::Scene(Box::new(scene)),
+        capture: CaptureRequest::new(Choice::new(Technique::Planar), [64, 36]),
+        time: 0.0,
+        adapter: None,
+    };
+    let (tell, news) = channel();
+    let worker = Worker::start(start, move |news| drop(tell.send(news))).expect("a thread");
+    let frame = wait(&news, |news| if let News::Captured { frame, .. } = news { Some(frame) } else { None });
+    (worker, frame, news)
+}
+
+fn wait<T>(news: &Receiver<News>, mut is_it: impl FnMut(News) -> Option<T>) -> T {
+    loop {
+        if let Some(found) = is_it(news.recv_timeout(PATIENCE).expect("news")) {
+            return found;
+        }
+    }
+}
+
+fn judge(worker: &Worker, frame: u64, progress: &Progress) {
+    assert!(worker.order(Order::Judge { frame, progress: progress.clone() }));
+}
+
+fn case(name: &str) -> &'static Case {
+    Case::named(name).expect("a case")
+}
+
+fn stress(worker: &Worker, job: u64, cases: &[&str]) -> Progress {
+    let progress = Progress::default();
+    let cases: Vec<&Case> = cases.iter().map(|name| case(name)).collect();
+    assert!(worker.order(Order::Stress(Box::new(StressRun::new(job, &cases, progress.clone())))));
+    progress
+}
+
+fn wait_until_busy(news: &Receiver<News>, with: &str) {
+    wait(news, |news| matches!(news, News::Busy(what) if what == with).then_some(()));
+}
+
+/// Technique, settings and size of the next frame.
+fn captured(news: &Receiver<News>) -> (String, std::collections::BTreeMap<String, String>, [u32; 2]) {
+    let capture = wait(news, |news| if let News::Captured { capture, .. } = news { Some(capture) } else { None });
+    (capture.technique.clone(), capture.settings.clone(), capture.size)
+}
+
+#[test]
+fn stress_cases_run_one_by_one_and_a_cancelled_run_is_dropped() {
+    let (worker, frame, news) = started();
+    let progress = stress(&worker, 5, &["one-pixel", "no-receiver"]);
+    let mut heard = Vec::new();
+    let error = wait(&news, |news| {
+        match news {
+            News::Stressed { job: 5, rows } => heard.push((rows[0].case, rows.len())),
+            News::StressEnded { job: 5, error } => return Some(error),
+            _ => {}
+        }
+        None
+    });
+    let rows = ["one-pixel", "no-receiver"].map(|name| (name, case(name).entrants().len() * case(name).values.len()));
+    assert_eq!((&heard[..], error), (&rows[..], None));
+    let all = rows.iter().map(|(_, count)| count).sum();
+    assert_eq!(progress.steps(), (all, all));
+    wait(&news, |news| matches!(news, News::Idle).then_some(()));
+    stress(&worker, 6, &["tall-picture"]).cancel();
+    judge(&worker, frame, &Progress::default());
+    wait(&news, |news| {
+        assert!(!matches!(news, News::Stressed { .. } | News::StressEnded { .. }), "it was cancelled");
+        matches!(news, News::Judged { .. }).then_some(())
+    });
+}
+
+#[test]
+fn within_a_case_of_a_thousand_rows_pictures_and_pixels_are_answered_and_it_goes_on() {
+    let (worker, frame, news) = started();
+    let progress = stress(&worker, 1, &["random"]);
+    wait_until_busy(&news, "stress: random");
+    // As a dragged pick asks: many at once, of which the last is to be answered.
+    (0..60).for_each(|x| assert!(worker.order(Order::History { frame, at: [x, 5] })));
+    wait(&news, |news| {
+        assert!(!matches!(news, News::Stressed { .. }), "the answer comes first");
+        matches!(news, News::History { at: [59, 5], history: Ok(_), .. }).then_some(())
+    });
+    assert!(worker.order(Order::Open("tori".to_owned())));
+    wait(&news, |news| {
+        assert!(!matches!(news, News::Stressed { .. }), "the picture comes first");
+        matches!(news, News::Captured { .. }).then_some(())
+    });
+    let (done, all) = progress.steps();
+    assert!(done < all, "{done} of {all}");
+    wait_until_busy(&news, "stress: random");
+    progress.cancel();
+    wait(&news, |news| matches!(news, News::Idle).then_some(()));
+}
+
+#[test]
+fn a_pixel_is_answered_while_a_report_is_measured() {
+    let (worker, frame, news) = started();
+    let progress = Progress::default();
+    let choices = [Technique::ZFail, Technique::Planar].map(Choice::new).to_vec();
+    let what = Measure { generation: 1, job: 1, choices, runs: 1_000, progress: progress.clone() };
+    assert!(worker.order(Order::Measure(what)));
+    wait_until_busy(&news, "measuring every technique");
+    for y in 0..20 {
+        assert!(worker.order(Order::Draws { frame, step: 1 }));
+        (0..20).for_each(|x| assert!(worker.order(Order::History { frame, at: [x, y] })));
+    }
+    let mut has_draws = false;
+    wait(&news, |news| {
+        assert!(!matches!(news, News::Measured { .. }), "the answer comes first");
+        has_draws |= matches!(&news, News::Draws { capture, .. } if capture.holds_draws(1));
+        matches!(news, News::History { at: [19, 19], history: Ok(_), .. }).then_some(())
+    });
+    assert!(has_draws);
+    progress.cancel();
+    judge(&worker, frame, &Progress::default());
+    let judged = wait(&news, |news| if let News::Judged { capture, .. } = news { Some(capture) } else { None });
+    assert!(judged.holds_draws(1), "what was filled in stays");
+}
+
+#[test]
+fn a_report_of_a_scene_that_is_open_no_more_says_so() {
+    let (worker, _frame, news) = started();
+    let choices = vec![Choice::new(Technique::Planar)];
+    let what = Measure { generation: 0, job: 3, choices, runs: 1, progress: Progress::default() };
+    assert!(worker.order(Order::Measure(what)));
+    let result = wait(&news, |news| if let News::Measured { job: 3, result } = news { Some(result) } else { None });
+    assert!(result.expect_err("another scene").contains("measure again"));
+}
+
+#[test]
+fn a_stress_case_is_opened_as_a_scene_with_the_technique_that_breaks() {
+    let (worker, _frame, news) = started();
+    let entrant = case("nested").entrants().into_iter().find(|entrant| !entrant.settings.is_empty());
+    assert!(worker.order(Order::OpenCase { case: case("nested"), value: 2.0, entrant }));
+    let scene = wait(&news, |news| if let News::Opened { scene, .. } = news { Some(scene) } else { None });
+    assert_eq!(scene.name, "nested 2");
+    let (technique, settings, size) = captured(&news);
+    assert_eq!((technique.as_str(), size), ("z-fail", [64, 36]));
+    assert_eq!(settings.get("counter").map(String::as_str), Some("float"));
+    // What it brought along does not stay.
+    assert!(worker.order(Order::OpenCase { case: case("nested"), value: 1.0, entrant: None }));
+    assert_eq!(captured(&news).0, "planar");
+}
+
+#[test]
+fn a_setting_that_a_case_drives_is_set_on_the_chosen_technique_or_on_one_that_has_it() {
+    let (worker, _frame, news) = started();
+    let open = |value| assert!(worker.order(Order::OpenCase { case: case("map-size"), value, entrant: None }));
+    let size = |settings: std::collections::BTreeMap<String, String>| settings.get("size").cloned();
+    for (value, text) in [(64.0, "64"), (256.0, "256")] {
+        open(value);
+        let (technique, settings, _) = captured(&news);
+        assert_eq!((technique.as_str(), size(settings).as_deref()), ("shadow-map", Some(text)));
+    }
+    let request = wait_for_request(&worker, &news);
+    let texture = RunRequest { choice: Choice::new(Technique::PlanarTexture), ..request.1 };
+    assert!(worker.order(Order::Run { generation: request.0, request: Box::new(texture) }));
+    assert_eq!(captured(&news).0, "planar-texture");
+    open(128.0);
+    let (technique, settings, _) = captured(&news);
+    assert_eq!((technique.as_str(), size(settings).as_deref()), ("planar-texture", Some("128")));
+}
+
+/// Opens the built-in table: its generation and first run.
+fn wait_for_request(worker: &Worker, news: &Receiver<News>) -> (u64, RunRequest) {
+    assert!(worker.order(Order::Open("table".to_owned())));
+    let opened = wait(news, |news| match news {
+        News::Opened { generation, request, .. } => Some((generation, *request)),
+        _ => None,
+    });
+    captured(news);
+    opened
+}
+
+#[test]
+fn the_size_of_a_case_goes_with_it_but_what_is_changed_meanwhile_stays() {
+    let (worker, _frame, news) = started();
+    let z_fail = case("wide-picture").entrants().into_iter().find(|entrant| entrant.technique == Technique::ZFail);
+    let open = || {
+        assert!(worker.order(Order::OpenCase { case: case("wide-picture"), value: 0.0, entrant: z_fail }));
+        let opened = wait(&news, |news| match news {
+            News::Opened { generation, request, .. } => Some((generation, *request)),
+            _ => None,
+        });
+        assert_eq!(captured(&news).2, [16_384, 1]);
+        opened
+    };
+    let run = |generation, request: &RunRequest| {
+        assert!(worker.order(Order::Run { generation, request: Box::new(request.clone()) }));
+        captured(&news)
+    };
+    let (generation, mut request) = open();
+    request.camera.eye.x += 0.1;
+    assert_eq!(run(generation, &request).2, [16_384, 1], "only the eye moved");
+    let (_, table) = wait_for_request(&worker, &news);
+    assert_eq!((table.choice.technique(), table.size), (Technique::Planar, [64, 36]));
+    let (generation, request) = open();
+    run(generation, &RunRequest { size: [80, 60], ..request });
+    let (_, table) = wait_for_request(&worker, &news);
+    assert_eq!((table.choice.technique(), table.size), (Technique::Planar, [80, 60]));
+}
+
+#[test]
+fn after_the_first_frame_the_meshes_are_told() {
+    let (_worker, _frame, news) = started();
+    let meshes = wait(&news, |news| if let News::Meshes { meshes, .. } = news { Some(meshes) } else { None });
+    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let names = |of: &[ObjectMesh]| of.iter().map(|mesh| mesh.object.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&meshes), scene.objects.iter().map(|object| object.name.clone()).collect::<Vec<_>>());
+}
+
+#[test]
+fn the_last_frame_is_judged_and_keeps_its_truth_when_it_is_timed() {
+    let (tell, news) = channel();
+    let request = CaptureRequest::new(Choice::new(Technique::Planar), [64, 36]);
+    let mut bench = Bench::new(None, &request, Box::new(move |news| drop(tell.send(news))));
+    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    bench.begin(ViewSource::Scene(Box::new(scene)), 0.0);
+    bench.judge(1, &Progress::default());
+    bench.time();
+    let heard: Vec<News> = news.try_iter().collect();
+    let judged =
+        heard.iter().find_map(|news| if let News::Judged { capture, .. } = news { Some(capture) } else { None });
+    let judged = judged.expect("a truth");
+    assert!(judged.lights.iter().all(|light| light.truth.is_some()));
+    let Some(News::Timed { frame: 1, capture }) = heard.last() else { panic!("a time") };
+    assert!(capture.timing.frame_ms.is_some() && capture.error() == judged.error());
+}
+
+#[test]
+fn the_draws_of_a_pass_are_filled_in_and_stale_wishes_for_them_are_dropped() {
+    let (worker, frame, news) = started();
+    assert!(worker.order(Order::Draws { frame: frame + 1, step: 0 }));
+    // The order before is obeyed or replaced first: of both only one is answered.
+    assert!(worker.order(Order::Draws { frame, step: 1 }));
+    let filled = wait(&news, |news| if let News::Draws { capture, .. } = news { Some(capture) } else { None });
+    assert!(filled.holds_draws(1) && !filled.holds_draws(0));
+    judge(&worker, frame, &Progress::default());
+    let judged = wait(&news, |news| if let News::Judged { capture, .. } = news { Some(capture) } else { None });
+    assert!(judged.holds_draws(1), "what was filled in stays");
+}
+
+#[test]
+fn a_frame_that_is_shown_no_more_and_a_cancelled_truth_are_passed_over() {
+    let (worker, frame, news) = started();
+    let cancelled = Progress::default();
+    cancelled.cancel();
+    judge(&worker, frame + 1, &Progress::default());
+    judge(&worker, frame, &cancelled);
+    assert!(worker.order(Order::Open("no such scene".to_owned())));
+    let is_judged = wait(&news, |news| match news {
+        News::Judged { .. } => Some(true),
+        News::Failed(_) => Some(false),
+        _ => None,
+    });
+    assert!(!is_judged);
+    judge(&worker, frame, &Progress::default());
+    wait(&news, |news| if let News::Judged { .. } = news { Some(()) } else { None });
+}
+
+#[test]
+fn a_pixel_of_the_last_frame_tells_its_history_and_of_another_frame_why_not() {
+    let (worker, frame, news) = started();
+    let ask = |frame, at| {
+        assert!(worker.order(Order::History { frame, at }));
+        wait(&news, |news| match news {
+            News::History { frame, at, history } => Some((frame, at, history)),
+            _ => None,
+        })
+    };
+    let (of, at, history) = ask(frame, [32, 20]);
+    let history = history.expect("a history");
+    assert_eq!((of, at, history.pixel), (frame, [32, 20], [32, 20]));
+    assert!(history.agrees() && !history.events.is_empty());
+    let (.., outside) = ask(frame, [64, 0]);
+    assert!(outside.expect_err("no such pixel").contains("outside the picture"));
+    assert!(ask(frame + 1, [0, 0]).2.is_err());
+}
+
+#[test]
+fn the_open_scene_is_measured_in_the_size_that_is_shown() {
+    let (worker, _, news) = started();
+    let measure = |generation, job| {
+        let choices = [Technique::ZFail, Technique::Planar].map(Choice::new).to_vec();
+        Order::Measure(Measure { generation, job, choices, runs: 1, progress: Progress::default() })
+    };
+    assert!(worker.order(measure(1, 7)));
+    let (job, result) =
+        wait(&news, |news| if let News::Measured { job, result } = news { Some((job, result)) } else { None });
+    let report = result.expect("a report");
+    let rows: Vec<_> = report.rows.iter().map(|row| (row.technique.as_str(), row.size)).collect();
+    assert_eq!((job, rows), (7, vec![("z-fail", [64, 36]), ("planar", [64, 36])]));
+}

@@ -1,0 +1,109 @@
+//! Stress cases row by row, so that other work may come in between.
+
+use super::stress::{Before, Fault, Step, scene_of};
+use super::{Session, SessionError};
+use crate::scene::Scene;
+use crate::stress::{Case, Row};
+use crate::technique::Technique;
+use std::collections::VecDeque;
+
+/// Stress cases under way: the rows that are still to be made, and what a motion carries from one
+/// value to the next.
+#[derive(Debug)]
+pub struct StressSteps {
+    /// Each with the index of its case and of its value.
+    left: VecDeque<([usize; 2], Step<'static>)>,
+    /// Case and value of the scene.
+    place: Option<[usize; 2]>,
+    scene: Option<Scene>,
+    before: Vec<Before>,
+}
+
+impl StressSteps {
+    /// All values of `cases`, with pictures of `size` pixels but for those that have a size of their
+    /// own; with `only`, no other techniques.
+    #[must_use]
+    pub fn new(cases: &[&'static Case], only: &[Technique], size: [u32; 2]) -> StressSteps {
+        let mut left = VecDeque::new();
+        for (case_index, case) in cases.iter().enumerate() {
+            let is_asked = |technique: Technique| only.is_empty() || only.contains(&technique);
+            let entrants: Vec<_> = case.entrants().into_iter().filter(|entrant| is_asked(entrant.technique)).collect();
+            for (value_index, value) in case.values.iter().enumerate() {
+                let step = |entrant| Step { case, entrant, value: *value, size: case.size.unwrap_or(size) };
+                let running = entrants.iter().filter(|entrant| case.runs(entrant, *value));
+                left.extend(running.map(|entrant| ([case_index, value_index], step(*entrant))));
+            }
+        }
+        StressSteps { left, place: None, scene: None, before: Vec::new() }
+    }
+
+    /// How many rows are still to be made.
+    #[must_use]
+    pub fn left(&self) -> usize {
+        self.left.len()
+    }
+
+    /// Index and name of the case that the next row is of; `None` at the end.
+    #[must_use]
+    pub fn next_case(&self) -> Option<(usize, &'static str)> {
+        self.left.front().map(|([case, _], step)| (*case, step.case.name))
+    }
+}
+
+impl Session {
+    /// Makes the next row; `None` at the end. What the session does between two rows changes none of
+    /// them.
+    ///
+    /// # Errors
+    /// A case that can't be drawn or traced, which is a bug of the case; a lost GPU.
+    pub fn stress_step(&mut self, steps: &mut StressSteps) -> Result<Option<Row>, SessionError> {
+        let Some((place, step)) = steps.left.pop_front() else { return Ok(None) };
+        if steps.place.is_none_or(|[case, _]| case != place[0]) {
+            steps.before.clear();
+        }
+        let scene = match steps.scene.take().filter(|_| steps.place == Some(place)) {
+            Some(scene) => scene,
+            None => scene_of(step.case, step.value)?,
+        };
+        steps.place = Some(place);
+        let row = self.stress_row(&step, &scene, &mut steps.before, Fault::None)?;
+        steps.scene = Some(scene);
+        Ok(Some(row))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::progress::Progress;
+    use crate::session::CaptureRequest;
+    use crate::technique::Choice;
+
+    const SIZE: [u32; 2] = [40, 30];
+
+    #[test]
+    fn what_comes_between_two_rows_changes_none_of_them() {
+        let mut session = Session::new(None).expect("the reference adapter");
+        let cases = ["near-plane", "eye-in-volume", "map-size"].map(|name| Case::named(name).expect("a case"));
+        let only = [Technique::ZFail, Technique::ZPass, Technique::ShadowMap];
+        let progress = Progress::default();
+        let whole = session.stress(&cases, &only, SIZE, &progress).expect("rows");
+        let mut steps = StressSteps::new(&cases, &only, SIZE);
+        assert_eq!((steps.left(), steps.next_case()), (whole.len(), Some((0, "near-plane"))));
+        assert_eq!(progress.steps(), (whole.len(), whole.len()));
+        let between = Case::named("nested").expect("a case").scene(2.0).expect("a scene");
+        let request = CaptureRequest::new(Choice::new(Technique::ZFail), SIZE);
+        for expected in &whole {
+            let row = session.stress_step(&mut steps).expect("a row").expect("one is left");
+            assert_eq!((row.case, row.parameter, row.entrant), (expected.case, expected.parameter, expected.entrant));
+            assert_eq!((row.error, row.flips), (expected.error, expected.flips));
+            let mut capture = session.capture(&between, &request).expect("a capture");
+            session.judge(&between, &mut capture, &Progress::default()).expect("a truth");
+        }
+        assert_eq!((steps.left(), steps.next_case()), (0, None));
+        assert_eq!(session.stress_step(&mut steps).expect("the end"), None);
+        assert!(whole.iter().any(|row| row.flips.is_some()), "a motion is among them");
+        progress.cancel();
+        assert!(matches!(session.stress(&cases, &only, SIZE, &progress), Err(SessionError::Cancelled)));
+    }
+}

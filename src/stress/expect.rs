@@ -1,0 +1,250 @@
+//! What is expected of a technique at one value, and whether what came of it is that.
+//!
+//! A known [`Failure`] says at which values it shows, what its wrong pixels are, and of how many it
+//! is the reason. Beyond these the technique must be right, so a known failure excuses nothing else.
+
+use super::{Entrant, Row};
+use crate::technique::Technique;
+use std::fmt;
+
+/// The edge band may excuse so large a share of what is compared; more of it hides an error.
+const MOST_EXCUSED: f64 = 0.02;
+
+/// A failure that is known.
+#[derive(Debug, Clone, Copy)]
+pub struct Failure {
+    /// Whose.
+    pub of: Entrant,
+    /// Why it shows.
+    pub because: &'static str,
+    /// At which values.
+    pub at: fn(f64) -> bool,
+    /// How.
+    pub symptom: Symptom,
+    /// Must it show there? Else it may.
+    pub must_show: bool,
+}
+
+/// How a failure shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Symptom {
+    /// Its name, such as `near-plane`.
+    pub name: &'static str,
+    /// What its wrong pixels are.
+    pub kind: Kind,
+    /// It makes at most this share of the compared pixels wrong.
+    pub most: f64,
+}
+
+/// What wrong pixels are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Dark, and lit in truth.
+    False,
+    /// Lit, and dark in truth.
+    Missing,
+    /// Either.
+    Either,
+    /// Either, or of another surface than in truth.
+    Any,
+}
+
+/// What is expected of a technique at one value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Expected {
+    /// No wrong pixel.
+    Right,
+    /// This failure shows.
+    Fails(Symptom),
+    /// Not promised to be right: this may show.
+    MayFail(Symptom),
+}
+
+/// What came of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Verdict {
+    /// Nothing is wrong.
+    Holds,
+    /// What is wrong was known to be.
+    FailsAsKnown,
+    /// Nobody expected this.
+    Unexpected,
+}
+
+/// Why a row is not what was expected.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Surprise {
+    /// The truth has too few lit or dark pixels for the row to mean anything.
+    LittleToSee,
+    /// Wrong pixels, where none is known.
+    Wrong,
+    /// The known failure does not show.
+    NotShown,
+    /// Wrong pixels of another kind than the known failure's.
+    OtherKind,
+    /// More wrong pixels than the known failure explains.
+    TooMany,
+    /// So many pixels differ along edges that excusing them hides an error.
+    TooManyExcused,
+    /// Pixels flicker.
+    Flickers,
+}
+
+impl Failure {
+    /// A failure that shows at every value, anyhow.
+    #[must_use]
+    pub const fn new(of: Entrant, name: &'static str, because: &'static str) -> Failure {
+        let symptom = Symptom { name, kind: Kind::Either, most: 1.0 };
+        Failure { of, because, at: |_| true, symptom, must_show: true }
+    }
+
+    /// Another's.
+    #[must_use]
+    pub const fn of(self, of: Entrant) -> Failure {
+        Failure { of, ..self }
+    }
+
+    /// It shows at these values only.
+    #[must_use]
+    pub const fn at(self, at: fn(f64) -> bool) -> Failure {
+        Failure { at, ..self }
+    }
+
+    /// Its wrong pixels are false shadow.
+    #[must_use]
+    pub const fn is_false(self) -> Failure {
+        Failure { symptom: Symptom { kind: Kind::False, ..self.symptom }, ..self }
+    }
+
+    /// Its wrong pixels are missing shadow.
+    #[must_use]
+    pub const fn is_missing(self) -> Failure {
+        Failure { symptom: Symptom { kind: Kind::Missing, ..self.symptom }, ..self }
+    }
+
+    /// Its wrong pixels may be those of another surface.
+    #[must_use]
+    pub const fn is_any(self) -> Failure {
+        Failure { symptom: Symptom { kind: Kind::Any, ..self.symptom }, ..self }
+    }
+
+    /// It makes at most this share of the compared pixels wrong.
+    #[must_use]
+    pub const fn at_most(self, most: f64) -> Failure {
+        Failure { symptom: Symptom { most, ..self.symptom }, ..self }
+    }
+
+    /// It need not show.
+    #[must_use]
+    pub const fn perhaps(self) -> Failure {
+        Failure { must_show: false, ..self }
+    }
+
+    pub(super) fn expected(&self) -> Expected {
+        if self.must_show { Expected::Fails(self.symptom) } else { Expected::MayFail(self.symptom) }
+    }
+}
+
+/// What texels do along a shadow's edge, for techniques that are never promised to be right.
+#[must_use]
+pub const fn texels(technique: Technique) -> Option<(Symptom, &'static str)> {
+    let (most, because) = match technique {
+        Technique::ShadowMap => (0.002, "1024 texels hold all that casts: where the light spreads them, each shows"),
+        Technique::PlanarTexture => {
+            (0.005, "a receiver of several metres has 256 texels a side: each is larger than a pixel")
+        }
+        Technique::Projective => {
+            (0.002, "512 texels hold the whole silhouette: where the light spreads it, each shows")
+        }
+        _ => return None,
+    };
+    Some((Symptom { name: "aliasing", kind: Kind::Either, most }, because))
+}
+
+impl Expected {
+    /// In JSON and tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.symptom().map_or("right", |symptom| symptom.name)
+    }
+
+    fn symptom(self) -> Option<Symptom> {
+        match self {
+            Expected::Right => None,
+            Expected::Fails(symptom) | Expected::MayFail(symptom) => Some(symptom),
+        }
+    }
+}
+
+impl Row {
+    /// Why this is not what was expected.
+    #[must_use]
+    pub fn surprise(&self) -> Option<Surprise> {
+        if self.is_little_to_see() {
+            return Some(Surprise::LittleToSee);
+        }
+        let error = &self.error;
+        let is_blurred = error.edge_band as f64 > MOST_EXCUSED * error.compared as f64;
+        let shows = error.wrong() > 0 || is_blurred;
+        let Some(Symptom { kind, most, .. }) = self.expected.symptom() else {
+            return match (error.wrong(), self.flips) {
+                (1.., _) => Some(Surprise::Wrong),
+                _ if is_blurred => Some(Surprise::TooManyExcused),
+                (_, Some(1..)) => Some(Surprise::Flickers),
+                _ => None,
+            };
+        };
+        let others = match kind {
+            Kind::False => error.missing_shadow,
+            Kind::Missing => error.false_shadow,
+            Kind::Either | Kind::Any => 0,
+        };
+        // Beside what is known of them, texels show in these techniques.
+        let blur = texels(self.entrant.technique).map_or(0.0, |(symptom, _)| symptom.most);
+        if !shows && matches!(self.expected, Expected::Fails(_)) {
+            Some(Surprise::NotShown)
+        } else if (error.wrong_surface > 0 && kind != Kind::Any) || others as f64 > blur * error.compared as f64 {
+            Some(Surprise::OtherKind)
+        } else if error.wrong() as f64 > most * error.compared as f64 {
+            Some(Surprise::TooMany)
+        } else {
+            None
+        }
+    }
+
+    /// What came of it.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        match (self.surprise(), self.expected, self.error.wrong()) {
+            (Some(_), ..) => Verdict::Unexpected,
+            (None, Expected::Fails(_), _) | (None, _, 1..) => Verdict::FailsAsKnown,
+            _ => Verdict::Holds,
+        }
+    }
+}
+
+impl Verdict {
+    /// In JSON and tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Holds => "holds",
+            Verdict::FailsAsKnown => "fails as known",
+            Verdict::Unexpected => "unexpected",
+        }
+    }
+}
+
+impl fmt::Display for Surprise {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Surprise::LittleToSee => "too few lit or dark pixels to compare",
+            Surprise::Wrong => "wrong where it must be right",
+            Surprise::NotShown => "right where it is known to fail",
+            Surprise::OtherKind => "wrong in another way than known",
+            Surprise::TooMany => "more wrong than known",
+            Surprise::TooManyExcused => "too many pixels excused along edges",
+            Surprise::Flickers => "pixels flicker",
+        })
+    }
+}

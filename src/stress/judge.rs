@@ -1,0 +1,198 @@
+//! Rows, and what they say of each case and technique.
+
+use super::expect::{Expected, Surprise, Verdict};
+use super::trend::Course;
+use super::{Case, Entrant};
+use crate::accuracy::ErrorCounts;
+use crate::capture::AdapterInfo;
+use std::collections::BTreeMap;
+
+/// One technique at one value of one case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Name of the case.
+    pub case: &'static str,
+    /// Name and value of its number.
+    pub parameter: (&'static str, f64),
+    /// The technique.
+    pub entrant: Entrant,
+    /// All settings.
+    pub settings: BTreeMap<String, String>,
+    /// Against the truth, summed over lights.
+    pub error: ErrorCounts,
+    /// What there is to compare.
+    pub seen: Seen,
+    /// Pixels that have now changed there and back although the truth did not; `None` where the case is
+    /// no motion, and at its first value.
+    pub flips: Option<u64>,
+    /// Wrong pixels if the truth is that of the scene to which the case converges, where it does.
+    pub off_limit: Option<u64>,
+    /// What is expected of the technique at this value.
+    pub expected: Expected,
+    /// Wall time of a frame, ms.
+    pub frame_ms: f64,
+    /// Planning, geometry, pipelines and uploads, ms.
+    pub setup_ms: f64,
+}
+
+/// What the truth shows, summed over lights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Seen {
+    /// All pixels.
+    pub pixels: u64,
+    /// Lit ones.
+    pub lit: u64,
+    /// Those in shadow.
+    pub shadow: u64,
+}
+
+/// Shares of all pixels that must be lit and in shadow, or a row says nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Least {
+    /// Lit ones.
+    pub lit: f64,
+    /// Those in shadow.
+    pub shadow: f64,
+    /// Why they are fewer than usual.
+    pub because: &'static str,
+}
+
+impl Least {
+    /// Enough for an edge between light and shadow of some length.
+    pub const USUAL: Least = Least { lit: 0.01, shadow: 0.002, because: "" };
+
+    /// Nothing need be lit.
+    #[must_use]
+    pub const fn all_dark(because: &'static str) -> Least {
+        Least { lit: 0.0, because, ..Least::USUAL }
+    }
+
+    /// Nothing need be in shadow.
+    #[must_use]
+    pub const fn all_lit(because: &'static str) -> Least {
+        Least { shadow: 0.0, because, ..Least::USUAL }
+    }
+
+    /// There may be nothing to compare.
+    #[must_use]
+    pub const fn nothing(because: &'static str) -> Least {
+        Least { lit: 0.0, shadow: 0.0, because }
+    }
+}
+
+/// How a technique did in a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// Name of the case.
+    pub case: &'static str,
+    /// The technique.
+    pub entrant: Entrant,
+    /// The first value with a wrong pixel; `None` where there is none.
+    pub breaks_at: Option<f64>,
+    /// Most wrong pixels at one value, of how many compared.
+    pub worst: (u64, u64),
+    /// Flips over the whole motion.
+    pub flips: Option<u64>,
+    /// The failure that must show at some value, else the one that may, else to be right.
+    pub expected: Expected,
+    /// The failures that showed, by name, each with its first value.
+    pub shown: Vec<(f64, &'static str)>,
+    /// The first value at which something was unexpected.
+    pub surprise: Option<(f64, Surprise)>,
+    /// What became of the rows from value to value, where the case asks for it.
+    pub course: Option<Course>,
+    /// Of the whole.
+    pub verdict: Verdict,
+}
+
+/// What was run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stress {
+    /// Where.
+    pub adapter: AdapterInfo,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Case by case, value by value, technique by technique.
+    pub rows: Vec<Row>,
+}
+
+impl Stress {
+    /// One entry a case and technique, in the order of the rows.
+    #[must_use]
+    pub fn summary(&self) -> Vec<Summary> {
+        summary(&self.rows)
+    }
+
+    /// Is anything unexpected?
+    #[must_use]
+    pub fn is_unexpected(&self) -> bool {
+        self.summary().iter().any(|summary| summary.verdict == Verdict::Unexpected)
+    }
+}
+
+impl Row {
+    /// Has the truth too few lit or dark pixels? Then a row can't be wrong, and must not hold.
+    pub(super) fn is_little_to_see(&self) -> bool {
+        let Some(case) = Case::named(self.case) else { return false };
+        let least = (case.least)(self.parameter.1);
+        let pixels = self.seen.pixels as f64;
+        let is_asked = least != Least::nothing(least.because);
+        let is_less = |count: u64, share: f64| (count as f64) < share * pixels;
+        is_asked
+            && (self.seen.pixels == 0 || is_less(self.seen.lit, least.lit) || is_less(self.seen.shadow, least.shadow))
+    }
+}
+
+/// One entry a case and technique, in the order of the rows.
+#[must_use]
+pub fn summary(rows: &[Row]) -> Vec<Summary> {
+    let mut groups: Vec<Vec<&Row>> = Vec::new();
+    for row in rows {
+        let is_of_row = |group: &&mut Vec<&Row>| (group[0].case, group[0].entrant) == (row.case, row.entrant);
+        match groups.iter_mut().find(is_of_row) {
+            Some(group) => group.push(row),
+            None => groups.push(vec![row]),
+        }
+    }
+    groups.iter().map(|group| Summary::new(group)).collect()
+}
+
+impl Summary {
+    /// Of one technique's rows in one case: at least one.
+    fn new(rows: &[&Row]) -> Summary {
+        let wrong = |row: &&&Row| row.error.wrong() > 0;
+        let mut worst = rows[0];
+        let mut shown: Vec<(f64, &'static str)> = Vec::new();
+        for row in rows {
+            if row.error.wrong() > worst.error.wrong() {
+                worst = row;
+            }
+            let name = row.expected.name();
+            if row.verdict() == Verdict::FailsAsKnown && shown.iter().all(|(_, other)| *other != name) {
+                shown.push((row.parameter.1, name));
+            }
+        }
+        let expected = || rows.iter().map(|row| row.expected);
+        let must = expected().find(|expected| matches!(expected, Expected::Fails(_)));
+        let may = || expected().find(|expected| *expected != Expected::Right);
+        let surprise = rows.iter().find_map(|row| Some((row.parameter.1, row.surprise()?)));
+        let course = Case::named(rows[0].case).and_then(|case| case.trend?.course(rows));
+        let is_off_course = course.as_ref().is_some_and(|course| !course.holds);
+        Summary {
+            case: rows[0].case,
+            entrant: rows[0].entrant,
+            breaks_at: rows.iter().find(wrong).map(|row| row.parameter.1),
+            worst: (worst.error.wrong(), worst.error.compared),
+            flips: rows.iter().filter_map(|row| row.flips).reduce(|a, b| a + b),
+            expected: must.or_else(may).unwrap_or(Expected::Right),
+            verdict: match (surprise.is_some() || is_off_course, shown.is_empty()) {
+                (true, _) => Verdict::Unexpected,
+                (false, false) => Verdict::FailsAsKnown,
+                (false, true) => Verdict::Holds,
+            },
+            shown,
+            surprise,
+            course,
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! How a case's rows change from value to value, where that is the lesson.
+
+use super::{Expected, Row, value_text};
+use crate::numbers;
+use crate::scene::{MeshError, Scene};
+
+/// What must become of the rows of a case.
+#[derive(Debug, Clone, Copy)]
+pub enum Trend {
+    /// They come to be those of another scene.
+    ConvergesTo(fn() -> Result<Scene, MeshError>),
+    /// The error falls as the number grows.
+    Falls,
+    /// Times grow, and for ten times the number by at most this factor.
+    Grows(f64),
+}
+
+/// What became of one technique's rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Course {
+    /// In words and numbers.
+    pub text: String,
+    /// Is it as it must be?
+    pub holds: bool,
+}
+
+/// One step up may be caught by texels that happen to lie well at the size before.
+const NOISE: u64 = 3;
+/// Below it times are those of a frame, not of its triangles.
+const LEAST_TIMED: f64 = 1e4;
+
+impl Trend {
+    /// Of one technique's rows, in the order of their values; `None` where they are too few to tell.
+    #[must_use]
+    pub fn course(&self, rows: &[&Row]) -> Option<Course> {
+        match self {
+            Trend::ConvergesTo(_) => converges(rows),
+            Trend::Falls => falls(rows),
+            Trend::Grows(most) => grows(rows, *most),
+        }
+    }
+}
+
+/// What differs from the other scene's truth must fall to nothing, but for techniques that are not
+/// right in the end.
+fn converges(rows: &[&Row]) -> Option<Course> {
+    let off: Vec<u64> = rows.iter().filter_map(|row| row.off_limit).collect();
+    let [first, .., last] = off[..] else { return None };
+    let is_promised = rows.last().is_some_and(|row| row.expected == Expected::Right);
+    let is_falling = off.windows(2).all(|pair| pair[1] <= pair[0]);
+    let counts: Vec<String> = off.iter().map(|count| numbers::count(*count)).collect();
+    let text = format!("{} pixels differ from the limit", counts.join(", "));
+    Some(Course { text, holds: !is_promised || (is_falling && first > 0 && last == 0) })
+}
+
+/// Pixels that differ from the truth, excused or not: of maps finer than pixels all are excused.
+fn falls(rows: &[&Row]) -> Option<Course> {
+    let errors: Vec<(f64, u64)> =
+        rows.iter().map(|row| (row.parameter.1, row.error.wrong() + row.error.edge_band)).collect();
+    let [(_, first), .., (_, last)] = errors[..] else { return None };
+    let holds = errors.windows(2).all(|pair| pair[1].1 <= pair[0].1 + NOISE) && 4 * last < first;
+    let product = |(value, error): &(f64, u64)| {
+        let [error, product] = [*error, (*error as f64 * value) as u64].map(numbers::count);
+        format!("{} × {error} = {product}", value_text(*value))
+    };
+    let products: Vec<String> = errors.iter().map(product).collect();
+    Some(Course { text: format!("size × error: {}", products.join(", ")), holds })
+}
+
+fn grows(rows: &[&Row], most: f64) -> Option<Course> {
+    let [_, _, ..] = rows else { return None };
+    let times =
+        |of: fn(&Row) -> f64| -> Vec<f64> { rows.windows(2).map(|pair| growth([pair[0], pair[1]], of)).collect() };
+    let [setup, frame] = [times(|row| row.setup_ms), times(|row| row.frame_ms)];
+    let list = |factors: &[f64]| factors.iter().map(|factor| format!("{factor:.1}")).collect::<Vec<_>>().join(", ");
+    let text = format!("per ten times as many: setup × {}; frame × {}", list(&setup), list(&frame));
+    let timed: Vec<&Row> = rows.iter().copied().filter(|row| row.parameter.1 >= LEAST_TIMED).collect();
+    let holds = match timed[..] {
+        [first, .., last] => {
+            [|row: &Row| row.setup_ms, |row: &Row| row.frame_ms].into_iter().all(|of| growth([first, last], of) <= most)
+        }
+        _ => true,
+    };
+    Some(Course { text, holds })
+}
+
+/// The factor for ten times the number.
+fn growth([from, to]: [&Row; 2], of: fn(&Row) -> f64) -> f64 {
+    (of(to) / of(from)).powf(1.0 / (to.parameter.1 / from.parameter.1).log10())
+}
