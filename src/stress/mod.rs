@@ -115,8 +115,9 @@ impl fmt::Display for Entrant {
 }
 
 /// Techniques that run in every case unless it says otherwise. The ray-traced one is right by
-/// definition, and none asks nothing. `auto` belongs here, right everywhere, as soon as it exists.
-pub const USUAL: [Technique; 7] = [
+/// definition, and none asks nothing.
+pub const USUAL: [Technique; 8] = [
+    Technique::Auto,
     Technique::ZFail,
     Technique::ZPass,
     Technique::ZPassPlus,

@@ -186,9 +186,11 @@ const GRAZING_EDGE: Case = Case {
     }),
     failures: &[
         SUNK,
+        SUNK.of(AUTO),
         SUNK.of(Z_PASS),
         SUNK.of(Z_PASS_PLUS),
         SINKING,
+        SINKING.of(AUTO),
         SINKING.of(Z_PASS),
         SINKING.of(Z_PASS_PLUS),
         SPREAD,
@@ -397,6 +399,7 @@ const MAP_SIZE: Case = Case {
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.3, 1.8, 0.2), vec![floor(3.0)?, ring]))
     }),
     without: &[
+        (Technique::Auto, "it has no map"),
         (Technique::ZFail, "it has no map"),
         (Technique::ZPass, "it has no map"),
         (Technique::ZPassPlus, "it has no map"),

@@ -3,6 +3,7 @@
 use crate::stress::{Case, Drives, Entrant, Failure, Least};
 use crate::technique::Technique;
 
+pub const AUTO: Entrant = Entrant::of(Technique::Auto);
 pub const Z_FAIL: Entrant = Entrant::of(Technique::ZFail);
 pub const Z_PASS: Entrant = Entrant::of(Technique::ZPass);
 pub const Z_PASS_PLUS: Entrant = Entrant::of(Technique::ZPassPlus);

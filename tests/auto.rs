@@ -1,0 +1,271 @@
+//! What `auto` leaves out: taken where it changes nothing, not taken in the scene beside it, and never a
+//! pixel of difference.
+
+use crate::common::random::Random;
+use crate::common::{cuboid, from_above, judged, mesh, request, session, square};
+use glam::DVec3;
+use std::sync::Arc;
+use stencilscope::capture::{Capture, CapturedLight, FrameTarget, Snapshot, Step};
+use stencilscope::progress::Progress;
+use stencilscope::scene::builtin::{self, shapes};
+use stencilscope::scene::{Camera, Light, Material, Object, Scene};
+use stencilscope::session::{CaptureRequest, Session};
+use stencilscope::technique::{Decision, Technique};
+
+const SIZE: [u32; 2] = [96, 72];
+
+fn auto(leave_out: &str) -> CaptureRequest {
+    let mut request = request(Technique::Auto, SIZE);
+    request.choice.set("leave-out", leave_out).expect("a setting");
+    request
+}
+
+fn labels(capture: &Capture) -> Vec<Vec<u8>> {
+    let of = |light: &CapturedLight| light.shadow.as_ref().expect("labels").rows().flatten().copied().collect();
+    capture.lights.iter().map(of).collect()
+}
+
+/// The finished picture.
+fn picture(capture: &Capture) -> Vec<u8> {
+    let color = |snapshot: &Snapshot| match snapshot {
+        Snapshot::Frame(frame) => Some(frame.color.image.rows().flatten().copied().collect()),
+        Snapshot::Map { .. } => None,
+    };
+    let steps = capture.steps.iter().filter(|step| step.name != "mask");
+    steps.filter_map(|step| color(&step.snapshot)).next_back().expect("a picture")
+}
+
+/// What is left out of a scene, as `what of whom`; all of it, then nothing, must show the same, and be right.
+fn left_out(session: &mut Session, scene: &Scene) -> Vec<String> {
+    let all = session.capture(scene, &auto("all")).expect("a capture");
+    let none = session.capture(scene, &auto("none")).expect("a capture");
+    assert_eq!(labels(&all), labels(&none), "{}", scene.name);
+    assert!(picture(&all) == picture(&none), "{}: the picture differs", scene.name);
+    let judged = judged(session, scene, Technique::Auto, SIZE);
+    let wrong: u64 =
+        judged.lights.iter().filter_map(|light| light.truth.as_ref()).map(|truth| truth.error.wrong()).sum();
+    assert_eq!(wrong, 0, "{}", scene.name);
+    all.left_out.iter().map(|left| format!("{} of {}", left.what, left.of)).collect()
+}
+
+/// In `taken` it is left out, in `kept`, the scene beside it, it is not; and where `decision` is forbidden
+/// it never is.
+fn assert_decides(decision: Decision, what: &str, taken: &Scene, kept: &Scene) {
+    let mut session = session();
+    let found = left_out(&mut session, taken);
+    assert!(found.iter().any(|left| left == what), "{decision:?}: no `{what}` among {found:?}");
+    let beside = left_out(&mut session, kept);
+    assert!(!beside.iter().any(|left| left == what), "{decision:?}: `{what}` is in {beside:?}");
+    let others = Decision::NAMES.into_iter().filter(|name| *name != decision.name()).collect::<Vec<_>>().join(",");
+    let without = session.capture(taken, &auto(&others)).expect("a capture");
+    assert!(!without.left_out.iter().any(|left| format!("{} of {}", left.what, left.of) == what), "{decision:?}");
+}
+
+fn closed_box(name: &str, low: [f64; 3], high: [f64; 3]) -> Object {
+    cuboid(name, low, high)
+}
+
+fn looking(scene: Scene, eye: [f64; 3], target: [f64; 3]) -> Scene {
+    let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
+    Scene { camera: Camera { eye, target, up: DVec3::Y, fov_y_degrees: 50.0, near: 0.1, far: None }, ..scene }
+}
+
+fn carried(mut scene: Scene, by: DVec3) -> Scene {
+    scene.camera.eye += by;
+    scene.camera.target += by;
+    scene.objects.iter_mut().for_each(|object| object.pose.translate += by);
+    scene.lights.iter_mut().filter(|light| !light.is_directional()).for_each(|light| light.position += by.extend(0.0));
+    scene
+}
+
+#[test]
+fn a_floor_with_nothing_behind_it_has_no_volume() {
+    for by in [DVec3::ZERO, DVec3::new(1e6, -2e6, 5e5)] {
+        let standing = carried(from_above(vec![closed_box("box", [-0.5, 0.0, -0.5], [0.5, 1.0, 0.5])]), by);
+        for depth in [1e-9_f64, 0.3] {
+            let depth = if by == DVec3::ZERO { depth } else { depth.max(1e-6) };
+            let sunk = carried(from_above(vec![closed_box("box", [-0.5, -depth, -0.5], [0.5, 1.0, 0.5])]), by);
+            assert_decides(Decision::Caster, "volume of floor", &standing, &sunk);
+        }
+    }
+}
+
+#[test]
+fn a_volume_that_misses_the_view_is_not_drawn() {
+    let aside = |towards: f64| {
+        let mut scene = from_above(vec![closed_box("box", [20.0, 1.0, -0.5], [21.0, 2.0, 0.5])]);
+        scene.lights = vec![Light::directional(DVec3::new(towards, 1.0, 0.0))];
+        scene
+    };
+    // Away from the view, and into it.
+    assert_decides(Decision::View, "volume of box", &aside(-2.0), &aside(9.0));
+}
+
+#[test]
+fn what_stands_in_anothers_umbra_casts_nothing_more() {
+    let beneath =
+        |x: f64| from_above(vec![square("board", 2.0, 1.0), closed_box("box", [x, 0.2, -0.2], [x + 0.4, 0.8, 0.2])]);
+    assert_decides(Decision::Umbra, "volume of box", &beneath(-0.2), &beneath(1.4));
+    // Exactly at the border, and within 1e-9 of it: the board's shadow ends at 1 at the sun's height.
+    for off in [-1e-9, 0.0, 1e-9] {
+        let under_sun = |x: f64| {
+            let mut scene = beneath(x);
+            scene.lights = vec![Light::directional(DVec3::Y)];
+            scene
+        };
+        assert_decides(Decision::Umbra, "volume of box", &under_sun(0.5), &under_sun(0.6 + off));
+    }
+}
+
+#[test]
+fn two_boards_at_one_place_do_not_drop_each_other() {
+    let scene = from_above(vec![square("one", 2.0, 1.0), square("other", 2.0, 1.0)]);
+    let found = left_out(&mut session(), &scene);
+    assert!(!found.iter().any(|left| left == "volume of one" || left == "volume of other"), "{found:?}");
+}
+
+#[test]
+fn a_closed_mesh_casts_with_what_faces_the_light_alone() {
+    let torus = |is_torn: bool| {
+        let whole = shapes::torus(1.0, 0.3, 12, 8).expect("a torus");
+        let triangles = &whole.triangles()[usize::from(is_torn)..];
+        let positions: Vec<[f64; 3]> = whole.positions().iter().map(|p| [p.x, p.y + 1.5, p.z]).collect();
+        from_above(vec![Object::new("torus", mesh(&positions, triangles), Material::default())])
+    };
+    let what = "triangles that face away of torus";
+    assert_decides(Decision::AwayTriangles, what, &torus(false), &torus(true));
+}
+
+/// The eye stands beside a shadow, and in it.
+#[test]
+fn who_cannot_hold_the_eye_needs_no_caps() {
+    let seen_from = |x: f64| {
+        let scene = from_above(vec![closed_box("box", [-0.5, 2.0, -0.5], [0.5, 2.5, 0.5])]);
+        looking(scene, [x, 0.5, 2.0], [0.0, 0.3, -1.0])
+    };
+    let above = |x: f64| Scene { lights: vec![Light::point(DVec3::new(0.0, 4.0, -1.0))], ..seen_from(x) };
+    assert_decides(Decision::Caps, "caps of box", &above(3.0), &above(0.2));
+}
+
+/// The caster is behind the eye, and its shadow falls over it.
+#[test]
+fn a_caster_that_is_not_in_view_needs_no_light_cap() {
+    let seen_to = |z: f64| {
+        let wall = closed_box("wall", [-6.0, 0.0, -6.0], [6.0, 6.0, -5.0]);
+        let board =
+            mesh(&[[-0.5, 0.8, 4.0], [0.5, 0.8, 4.0], [0.5, 2.0, 4.0], [-0.5, 2.0, 4.0]], &[[0, 1, 2], [0, 2, 3]]);
+        let scene = from_above(vec![wall, Object::new("board", board, Material::default())]);
+        let scene = looking(scene, [0.0, 1.4, 3.0], [0.0, 1.4, z]);
+        Scene { lights: vec![Light::point(DVec3::new(0.0, 1.5, if z < 3.0 { 8.0 } else { 1.0 }))], ..scene }
+    };
+    assert_decides(Decision::LightCap, "light cap of board", &seen_to(-5.0), &seen_to(9.0));
+}
+
+/// The light is overhead, so the far end is below the floor.
+#[test]
+fn a_far_end_out_of_view_is_not_closed() {
+    let looks_to = |target: [f64; 3]| {
+        let scene = from_above(vec![closed_box("box", [-0.5, 2.0, -0.5], [0.5, 2.5, 0.5])]);
+        let scene = looking(scene, [0.1, 1.0, 0.1], target);
+        Scene { lights: vec![Light::point(DVec3::new(0.0, 6.0, 0.0))], ..scene }
+    };
+    assert_decides(Decision::DarkCap, "dark cap of box", &looks_to([4.0, 1.2, 4.0]), &looks_to([0.3, 0.0, 0.2]));
+}
+
+#[test]
+fn a_surface_out_of_view_is_not_drawn() {
+    let beside = |x: f64| from_above(vec![closed_box("box", [x, 0.0, -0.5], [x + 1.0, 1.0, 0.5])]);
+    assert_decides(Decision::Surfaces, "surface of box", &beside(20.0), &beside(2.0));
+}
+
+fn ball(rings: u32, radius: f64, at: [f64; 3]) -> Object {
+    let shape = shapes::sphere(radius, 2 * rings, rings).expect("a sphere");
+    let mut ball = Object::new("ball", Arc::new(shape), Material::default());
+    ball.pose.translate = DVec3::from_array(at);
+    ball
+}
+
+#[test]
+fn the_far_side_of_a_closed_surface_is_not_drawn() {
+    // In view as a whole; the second is cut by the near plane.
+    let whole = from_above(vec![ball(10, 1.0, [0.0, 2.0, 0.0])]);
+    let cut = from_above(vec![ball(10, 1.0, [0.0, 9.05, 0.0])]);
+    let mut session = session();
+    let hidden = |found: &[String]| found.iter().any(|left| left.ends_with("face away from the eye of ball"));
+    assert!(hidden(&left_out(&mut session, &whole)));
+    assert!(!hidden(&left_out(&mut session, &cut)));
+}
+
+#[test]
+fn a_light_is_not_added_to_what_faces_away_from_it() {
+    let scene = from_above(vec![ball(10, 1.0, [2.0, 2.0, 0.0])]);
+    let mut session = session();
+    let unlit = |left: &String| left.ends_with("face away of the pass of light 1");
+    assert!(left_out(&mut session, &scene).iter().any(unlit));
+    let mut wrapped = auto("all");
+    wrapped.choice.set("diffuse", "wrapped").expect("a setting");
+    let capture = session.capture(&scene, &wrapped).expect("a capture");
+    assert!(!capture.left_out.iter().any(|left| unlit(&format!("{} of {}", left.what, left.of))));
+}
+
+#[test]
+fn a_light_that_all_in_view_faces_away_from_has_no_passes() {
+    let sun = |y: f64| {
+        let mut scene = from_above(vec![]);
+        scene.lights = vec![Light::directional(DVec3::new(0.3, y, 0.1))];
+        scene
+    };
+    assert_decides(Decision::Light, "all passes of light 1", &sun(-1.0), &sun(1.0));
+}
+
+/// Where a count may pass what eight bits hold, and one below.
+#[test]
+fn a_count_beyond_eight_bits_is_kept_in_a_float() {
+    let mut session = session();
+    let mut stack = |count: u32| {
+        let boards = (0..count).map(|i| square(&format!("board {i}"), 2.0 - f64::from(i) / 1000.0, 1.0)).collect();
+        let mut scene = from_above(boards);
+        // Two triangles a board, of which a ray meets one or, on their edge, both.
+        scene.lights = vec![Light::point(DVec3::new(0.1, 4.0, 0.2))];
+        let capture = session.capture(&scene, &auto("caster")).expect("a capture");
+        let full = judged(&mut session, &scene, Technique::Auto, SIZE);
+        assert_eq!(full.lights[0].truth.as_ref().map(|truth| truth.error.wrong()), Some(0), "{count}");
+        let is_of_count =
+            |step: &Step| matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Count);
+        capture.steps.iter().any(is_of_count)
+    };
+    assert!(!stack(100));
+    assert!(stack(256));
+}
+
+/// Every built-in scene from random places: `auto` is right, says what z-fail says, and leaves out nothing
+/// that shows.
+#[test]
+fn from_any_place_auto_shows_what_z_fail_shows() {
+    const CAMERAS: u64 = 4;
+    let mut session = session();
+    for (index, of) in builtin::ALL.iter().enumerate() {
+        let (name, scene) = (of.name, of.scene().expect("a scene"));
+        for camera in 0..CAMERAS {
+            let scene = seen_from_anywhere(&scene, 100 * index as u64 + camera);
+            left_out(&mut session, &scene);
+            let auto = session.capture(&scene, &auto("all")).expect("a capture");
+            let mut z_fail = session.capture(&scene, &request(Technique::ZFail, SIZE)).expect("a capture");
+            session.judge(&scene, &mut z_fail, &Progress::default()).expect("a truth");
+            let wraps =
+                z_fail.lights.iter().any(|light| light.truth.as_ref().is_some_and(|truth| truth.error.wrong() > 0));
+            assert!(wraps && name == "gate" || labels(&auto) == labels(&z_fail), "{name}, camera {camera}");
+        }
+    }
+}
+
+/// The scene's own camera, carried about by up to its distance from what it looks at.
+fn seen_from_anywhere(scene: &Scene, seed: u64) -> Scene {
+    let mut random = Random::new(seed + 1);
+    let camera = scene.camera;
+    let reach = (camera.eye - camera.target).length();
+    let target = camera.target + random.within(0.3 * reach);
+    let eye = camera.target + random.within(1.2 * reach);
+    let near = camera.near * 10f64.powf(2.0 * random.unit() - 1.0);
+    Scene { camera: Camera { eye, target, near, ..camera }, name: format!("{} {seed}", scene.name), ..scene.clone() }
+}
