@@ -92,11 +92,11 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
         (&["--near", "-1"], &["near plane"]),
         (&["--sun", "0,0,0"], &["direction"]),
         (&["-t", "z-fial"], &["did you mean `z-fail`?"]),
-        (&["-t", "auto"], &["`auto` is not there yet"]),
+        (&["--set", "leave-out=capes"], &["`leave-out`", "choose all, none, or some of light, caster"]),
         (&["-t", "z-pass", "-t", "z-fail"], &["multiple times"]),
-        (&["--set", "fases=two-sided"], &["did you mean `faces`?"]),
-        (&["--set", "faces=three"], &["three"]),
-        (&["--set", "faces"], &["KEY=VALUE"]),
+        (&["-t", "z-fail", "--set", "fases=two-sided"], &["did you mean `faces`?"]),
+        (&["-t", "z-fail", "--set", "faces=three"], &["three"]),
+        (&["-t", "z-fail", "--set", "faces"], &["KEY=VALUE"]),
         (&["--every", "frame"], &["`pass` or `draw`"]),
         (&["--plot", "a.svg"], &["--plot"]),
         (&["--bogus"], &["--bogus"]),
@@ -200,12 +200,12 @@ fn captures_are_written_and_replaced_only_on_request() {
     let capture = ["capture", "triangle.obj", "--size", "48x32", "-o", "out"];
     let output = run(folder.path(), &capture);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert!(text(&output.stdout).starts_with("out: triangle, z-fail, 48x32"));
+    assert!(text(&output.stdout).starts_with("out: triangle, auto, 48x32"));
     let manifest = || -> serde_json::Value {
         let text = fs::read_to_string(folder.path().join("out/manifest.json")).expect("a manifest");
         serde_json::from_str(&text).expect("JSON")
     };
-    assert_eq!(manifest()["technique"], "z-fail");
+    assert_eq!(manifest()["technique"], "auto");
     for key in ["frame_ms", "captured_ms", "write_ms", "setup_ms"] {
         assert!(manifest()["timing"][key].as_f64().is_some_and(|ms| ms > 0.0), "{key}");
     }

@@ -14,7 +14,7 @@ const MAY_USE: [(&str, &[&str]); 21] = [
     ("accuracy", &["truth"]),
     ("geometry", &["math", "scene"]),
     ("plan", &["math", "scene", "geometry"]),
-    ("technique", &["math", "scene", "geometry", "plan", "truth", "progress"]),
+    ("technique", &["math", "scene", "geometry", "plan", "truth", "progress", "numbers"]),
     ("capture", &["math", "scene", "plan", "accuracy"]),
     ("stencil_machine", &["plan"]),
     ("gpu", &["math", "scene", "plan", "capture"]),

@@ -93,7 +93,7 @@ fn what_a_report_can_not_do_is_refused_before_it_measures() {
         (&["tori", "--plot", "missing/r.svg"], &["missing/r.svg", "choose another file"]),
         (&["tori", "--json", "models"], &["models", "choose another file"]),
         (&["tori", "-t", "z-fial"], &["did you mean `z-fail`?"]),
-        (&["tori", "-t", "auto"], &["not there yet"]),
+        (&["tori", "-t", "automatic"], &["no technique is called `automatic`"]),
         (&["tori", "--set", "sise=3"], &["sise"]),
         (&["tori", "--set", "size=0"], &["size", "from 1"]),
         (&["tori", "--runs", "0"], &["0"]),
