@@ -1,7 +1,6 @@
 //! What `auto` leaves out: taken where it changes nothing, not taken in the scene beside it, and never a
 //! pixel of difference.
 
-use crate::common::random::Random;
 use crate::common::{cuboid, from_above, judged, mesh, request, session, square};
 use glam::DVec3;
 use std::sync::Arc;
@@ -247,25 +246,15 @@ fn from_any_place_auto_shows_what_z_fail_shows() {
     for (index, of) in builtin::ALL.iter().enumerate() {
         let (name, scene) = (of.name, of.scene().expect("a scene"));
         for camera in 0..CAMERAS {
-            let scene = seen_from_anywhere(&scene, 100 * index as u64 + camera);
+            let seen = scene.camera.anywhere(100 * index as u64 + camera);
+            let scene = Scene { camera: seen, name: format!("{name}, camera {camera}"), ..scene.clone() };
             left_out(&mut session, &scene);
             let auto = session.capture(&scene, &auto("all")).expect("a capture");
             let mut z_fail = session.capture(&scene, &request(Technique::ZFail, SIZE)).expect("a capture");
             session.judge(&scene, &mut z_fail, &Progress::default()).expect("a truth");
             let wraps =
                 z_fail.lights.iter().any(|light| light.truth.as_ref().is_some_and(|truth| truth.error.wrong() > 0));
-            assert!(wraps && name == "gate" || labels(&auto) == labels(&z_fail), "{name}, camera {camera}");
+            assert!(wraps && name == "gate" || labels(&auto) == labels(&z_fail), "{}", scene.name);
         }
     }
-}
-
-/// The scene's own camera, carried about by up to its distance from what it looks at.
-fn seen_from_anywhere(scene: &Scene, seed: u64) -> Scene {
-    let mut random = Random::new(seed + 1);
-    let camera = scene.camera;
-    let reach = (camera.eye - camera.target).length();
-    let target = camera.target + random.within(0.3 * reach);
-    let eye = camera.target + random.within(1.2 * reach);
-    let near = camera.near * 10f64.powf(2.0 * random.unit() - 1.0);
-    Scene { camera: Camera { eye, target, near, ..camera }, name: format!("{} {seed}", scene.name), ..scene.clone() }
 }

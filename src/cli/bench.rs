@@ -2,16 +2,20 @@
 
 use super::options::{FrameOptions, SceneOptions};
 use super::{CliError, output};
-use crate::scene::builtin::shapes;
+use crate::progress::Progress;
+use crate::scene::builtin::{self, shapes};
 use crate::scene::{Mesh, MeshBuilder, Scene, SceneError, model_scene};
-use crate::session::{CaptureCost, Session, TruthCost, VolumeCost, median_ms, truth_cost, volume_cost};
+use crate::session::{
+    CaptureCost, Measured, Measurement, Session, TruthCost, VolumeCost, median_ms, truth_cost, volume_cost,
+};
+use crate::technique::{Choice, Technique};
 use clap::Args;
 use glam::DVec3;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 /// The benchmarks that exist.
-const BENCHMARKS: [&str; 4] = ["capture", "volumes", "truth", "history"];
+const BENCHMARKS: [&str; 5] = ["capture", "volumes", "truth", "history", "auto"];
 /// Benchmarks that are planned, but not built.
 const BENCHMARKS_TO_COME: [&str; 1] = ["panels"];
 /// Frames of each kind that are timed.
@@ -25,12 +29,15 @@ const LIGHTS: usize = 80;
 
 #[derive(Debug, Args)]
 pub struct BenchArguments {
-    /// What to measure: capture, volumes, truth, history
+    /// What to measure: capture, volumes, truth, history, auto
     #[arg(value_name = "NAME", default_value = "capture")]
     names: Vec<String>,
     /// A scene in place of the benchmark's own; repeatable
     #[arg(long, value_name = "SCENE")]
     scene: Vec<String>,
+    /// `auto`: from how many places each scene is seen
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    cameras: u64,
     #[command(flatten)]
     scene_options: SceneOptions,
     #[command(flatten)]
@@ -48,6 +55,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
             "truth" => truth(arguments)?,
             "volumes" => volumes(arguments)?,
             "history" => history(arguments)?,
+            "auto" => auto(arguments)?,
             _ => capture(arguments)?,
         }
     }
@@ -134,6 +142,50 @@ fn history(arguments: &BenchArguments) -> Result<(), CliError> {
         ))?;
     }
     Ok(())
+}
+
+/// The technique that leaves out what it can, against the fastest one that is right and against z-fail, from
+/// places all round.
+fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
+    let built_in = || builtin::ALL.iter().map(|of| Ok(of.scene()?)).collect();
+    let mut session = Session::new(arguments.frame.adapter.as_deref())?;
+    let is_rival = |technique: &Technique| !matches!(technique, Technique::None | Technique::RayTraced);
+    let choices: Vec<Choice> = Technique::ALL.into_iter().filter(is_rival).map(Choice::new).collect();
+    let what = Measurement { choices, size: arguments.frame.size, runs: RUNS };
+    for scene in scenes(arguments, built_in)? {
+        let (mut to_fastest, mut to_z_fail, mut wrong) = (Vec::new(), Vec::new(), 0);
+        for seed in 0..arguments.cameras {
+            let seen = Scene { camera: scene.camera.anywhere(seed), ..scene.clone() };
+            let measured = session.measure(&seen, &what, &Progress::default())?;
+            let time = |of: &Measured| median_ms(&of.frames).unwrap_or(f64::NAN);
+            let of = |technique: Technique| measured.iter().find(|one| one.choice.technique() == technique);
+            let (Some(auto), Some(z_fail)) = (of(Technique::Auto), of(Technique::ZFail)) else { continue };
+            let right = measured.iter().filter(|one| one.error.wrong() == 0 && one.error.compared > 0);
+            let others = right.filter(|one| one.choice.technique() != Technique::Auto);
+            to_fastest.extend(others.map(time).min_by(f64::total_cmp).map(|fastest| time(auto) / fastest));
+            to_z_fail.push(time(auto) / time(z_fail));
+            wrong += auto.error.wrong();
+        }
+        output::print(&format!(
+            "{}, {} cameras, {}x{}: {wrong} wrong pixels\n  auto/fastest that is right: {}\n  auto/z-fail: {}\n",
+            scene.name,
+            arguments.cameras,
+            what.size[0],
+            what.size[1],
+            spread(to_fastest),
+            spread(to_z_fail),
+        ))?;
+    }
+    Ok(())
+}
+
+/// Median and ends of some ratios.
+fn spread(mut ratios: Vec<f64>) -> String {
+    ratios.sort_by(f64::total_cmp);
+    match (ratios.first(), ratios.get(ratios.len() / 2), ratios.last()) {
+        (Some(least), Some(median), Some(most)) => format!("{median:.2} (from {least:.2} to {most:.2})"),
+        _ => "none".to_owned(),
+    }
 }
 
 fn scenes(

@@ -45,4 +45,24 @@ impl Camera {
             Ok(())
         }
     }
+
+    /// The same camera somewhere else, for tests and benchmarks of what must hold from any place: eye,
+    /// target and near plane are moved by up to 1.2 and 0.3 of their distance, and to between a tenth and ten
+    /// times. One `seed` always gives one place.
+    #[must_use]
+    pub fn anywhere(&self, seed: u64) -> Camera {
+        // Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators".
+        let mut state = seed;
+        let mut unit = || {
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mixed = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let distance = (self.eye - self.target).length();
+        let mut within =
+            |reach: f64| DVec3::new(unit(), unit(), unit()).map(|one| (2.0 * one - 1.0) * reach * distance);
+        let (target, eye) = (self.target + within(0.3), self.target + within(1.2));
+        Camera { eye, target, near: self.near * 10_f64.powf(2.0 * unit() - 1.0), ..*self }
+    }
 }

@@ -14,7 +14,7 @@ use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 ///
 /// No other side has it: a bias moves the edge of a shadow on whatever the light grazes, by so many
 /// steps over the tangent of the light's height.
-const HUGGING_BIAS: i32 = -2;
+const HUGGING_BIAS: i32 = -4;
 
 /// Where a volume face counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
