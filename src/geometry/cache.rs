@@ -4,7 +4,7 @@
 use super::hugging::put_hugging_last;
 use super::planar::Flattened;
 use super::{
-    Casters, EdgeList, Extruder, Facings, Planes, SilhouetteEdge, Topology, VolumeParts, silhouette,
+    Casters, EdgeList, Extruder, Facings, Fan, FarEnd, Planes, SilhouetteEdge, Topology, VolumeParts, silhouette,
     silhouette_by_search, solid, write_indices,
 };
 use crate::scene::{Mesh, Pose};
@@ -123,7 +123,13 @@ impl GeometryCache {
             None => silhouette_by_search(triangles, &self.facings, found),
         }
         let hugging = if of.is_drawn { put_hugging_last(found, caster, light, edges.as_deref()) } else { 0 };
-        write_indices(triangles, caster.world.len(), &self.facings, (found, hugging), of.extruder.far_end(), out)
+        let fan = |light| Fan::new(caster.world, triangles, &self.facings, found, light);
+        let far_end = match of.extruder.infinite_from().map(fan) {
+            Some(Some(fan)) => FarEnd::Fan(fan),
+            None if of.extruder.is_one_point() => FarEnd::Point,
+            _ => FarEnd::Caps,
+        };
+        write_indices(triangles, caster.world.len(), &self.facings, (found, hugging), far_end, out)
     }
 
     /// How `mesh` hangs together, found out on first use.

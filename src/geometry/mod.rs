@@ -6,6 +6,7 @@
 mod cache;
 mod edges;
 mod facing;
+mod far_end;
 mod hugging;
 mod intersection;
 pub mod layers;
@@ -25,6 +26,7 @@ mod winding;
 pub use cache::{Caster, GeometryCache, SilhouetteBy, VolumeOf};
 pub use edges::{Edge, EdgeList};
 pub use facing::{Facings, Planes};
+pub use far_end::Fan;
 pub use intersection::self_meeting;
 pub use reach::{NearClipVolume, Outside, ViewVolume};
 pub use receiver_texture::Parallelogram;

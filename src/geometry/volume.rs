@@ -9,8 +9,7 @@
 //!   are bit-equal to the surface's; those that face the light first (unturned), then those that
 //!   had to be turned, which are drawn with front and back operations swapped.
 //! - *dark cap*: closes the far end ([`FarEnd`]): where all far vertices are one point, with nothing;
-//!   at infinity and with the light outside the caster's box, with a fan; else with the same triangles
-//!   carried away. Those have no indices of their own: they are the light cap's with the number of
+//!   at infinity with a [`Fan`]; else with the same triangles carried away. Those have no indices of their own: they are the light cap's with the number of
 //!   near vertices added to each, and they must face away from the light, so it is the other of
 //!   the two runs that counts as turned.
 //!
@@ -18,6 +17,7 @@
 //! a buffer that may be kept, by several threads where there are many.
 
 use super::facing::{MIXED, RUN};
+use super::far_end::Fan;
 use super::{Facings, SilhouetteEdge};
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
@@ -38,25 +38,15 @@ pub enum Extrusion {
 }
 
 /// What closes a volume away from the light.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FarEnd {
     /// Nothing: all sides meet in one point, where a directional light's rays go.
     Point,
-    /// A triangle for each quad of the sides, from its far edge to one direction that the light looks
-    /// along. At infinity only the outline of a cap matters, so this counts like the carried
-    /// triangles do; of a fine mesh it is a small part of them, and it stays well-shaped when
-    /// the light comes so near that carried triangles open to half-spaces.
-    ///
-    /// For the two to be the same, no triangle of either may hold the direction against that one:
-    /// then what lies between them encloses nothing. It is so where a side of the caster's
-    /// bounding box has the light outside, and the direction goes in through it.
-    Fan,
+    /// A triangle for each quad of the sides, from its far edge to one direction.
+    Fan(Fan),
     /// The casting triangles, carried away.
     Caps,
 }
-
-/// A direction goes in through a side of the bounding box at this sine at least.
-const STEEP: f64 = 0.25;
 
 /// Carries a caster's vertices away from a light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,29 +55,34 @@ pub struct Extruder {
     extrusion: Extrusion,
     /// Of the bounding box's diagonal.
     size: f64,
-    /// Where the fan's triangles meet.
-    apex: Option<DVec3>,
 }
 
 impl Extruder {
     /// For a caster with these `world` positions.
     #[must_use]
     pub fn new(world: &[DVec3], light: DVec4, extrusion: Extrusion) -> Extruder {
-        let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        let is_fan = light.w != 0.0 && extrusion == Extrusion::Infinite;
-        let apex = if is_fan { apex(low, high, light.truncate() / light.w) } else { None };
-        Extruder { light, extrusion, size: (high - low).length(), apex }
+        let size = match (extrusion, light.w == 0.0) {
+            (Extrusion::Finite(_), true) => {
+                let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+                let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+                (high - low).length()
+            }
+            _ => 0.0,
+        };
+        Extruder { light, extrusion, size }
     }
 
-    /// What closes the volume away from the light.
+    /// Where the light is, if it is a point and volumes have no end.
     #[must_use]
-    pub fn far_end(&self) -> FarEnd {
-        match (self.extrusion, self.apex) {
-            (Extrusion::Infinite, _) if self.light.w == 0.0 => FarEnd::Point,
-            (_, Some(_)) => FarEnd::Fan,
-            _ => FarEnd::Caps,
-        }
+    pub fn infinite_from(&self) -> Option<DVec3> {
+        let is_infinite = self.extrusion == Extrusion::Infinite && self.light.w != 0.0;
+        is_infinite.then(|| self.light.truncate() / self.light.w)
+    }
+
+    /// All vertices go to one point: a directional light's point at infinity.
+    #[must_use]
+    pub fn is_one_point(&self) -> bool {
+        self.light.w == 0.0 && self.extrusion == Extrusion::Infinite
     }
 
     /// Where a vertex goes.
@@ -105,28 +100,15 @@ impl Extruder {
         }
     }
 
-    /// The caster's vertices, then the far ones, then the fan's apex.
+    /// The caster's vertices, then the far ones. A fan's follow them.
     pub fn vertices(&self, world: &[DVec3]) -> impl Iterator<Item = DVec4> {
-        let far = if self.far_end() == FarEnd::Point { &world[..1.min(world.len())] } else { world };
-        let far = far.iter().map(|position| self.carry(*position));
-        let apex = self.apex.map(|apex| apex.extend(0.0));
-        world.iter().map(|position| position.extend(1.0)).chain(far).chain(apex)
+        let far = if self.is_one_point() { &world[..1.min(world.len())] } else { world };
+        world.iter().map(|position| position.extend(1.0)).chain(far.iter().map(|position| self.carry(*position)))
     }
 }
 
-/// The direction a fan meets in; `None` where the light is inside the box from `low` to `high`, or on it.
-fn apex(low: DVec3, high: DVec3, light: DVec3) -> Option<DVec3> {
-    let axes = [(DVec3::X, light.x - high.x), (DVec3::Y, light.y - high.y), (DVec3::Z, light.z - high.z)];
-    let others = [(DVec3::NEG_X, low.x - light.x), (DVec3::NEG_Y, low.y - light.y), (DVec3::NEG_Z, low.z - light.z)];
-    // The side that the light is farthest outside of.
-    let (outward, outside) = axes.into_iter().chain(others).max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let to_middle = ((low + high) / 2.0 - light).normalize_or_zero();
-    let is_steep = -to_middle.dot(outward) > STEEP;
-    (outside > 0.0).then_some(if is_steep { to_middle } else { -outward })
-}
-
 /// Runs of a volume's triangles.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct VolumeParts {
     /// Quads from the silhouette to the far vertices.
     pub sides: Range<usize>,
@@ -141,13 +123,13 @@ pub struct VolumeParts {
 }
 
 /// What closes a volume's far end.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub enum DarkCap {
     /// Nothing needs to.
     #[default]
     None,
-    /// Triangles of its own, that face outwards.
-    Fan(Range<usize>),
+    /// Triangles of its own, that face outwards, with vertices after all others.
+    Fan(Range<usize>, Fan),
     /// The light cap's triangles with this added to their indices, the number of near vertices.
     Carried(u32),
 }
@@ -171,7 +153,7 @@ impl VolumeParts {
         let light_caps = self.light_cap.len() + self.light_cap_turned.len();
         let dark_cap = match &self.dark_cap {
             DarkCap::None => 0,
-            DarkCap::Fan(triangles) => triangles.len(),
+            DarkCap::Fan(triangles, _) => triangles.len(),
             DarkCap::Carried(_) => light_caps,
         };
         self.hugging_sides.end + light_caps + dark_cap
@@ -189,7 +171,7 @@ pub fn write_indices(
     far_end: FarEnd,
     out: &mut Vec<u32>,
 ) -> VolumeParts {
-    let far = Far { first: vertex_count as u32, is_one_point: far_end == FarEnd::Point };
+    let far = Far { first: vertex_count as u32, is_one_point: matches!(far_end, FarEnd::Point) };
     let edges = silhouette.split_at(silhouette.len() - hugging);
     let quads = |edges: &[SilhouetteEdge]| -> usize {
         edges.iter().map(|edge| edge.multiplicity.unsigned_abs() as usize).sum()
@@ -198,13 +180,16 @@ pub fn write_indices(
     let sides = quads.map(|quads| if far.is_one_point { quads } else { 2 * quads });
     let mut parts = VolumeParts::new(sides, facings, DarkCap::None);
     let caps_end = parts.light_cap_turned.end;
-    let fan = if far_end == FarEnd::Fan { quads[0] + quads[1] } else { 0 };
+    let mut end = caps_end;
     parts.dark_cap = match far_end {
         FarEnd::Point => DarkCap::None,
-        FarEnd::Fan => DarkCap::Fan(caps_end..caps_end + fan),
+        FarEnd::Fan(fan) => {
+            end += quads[0] + quads[1] + fan.sphere_triangles();
+            DarkCap::Fan(caps_end..end, fan)
+        }
         FarEnd::Caps => DarkCap::Carried(far.first),
     };
-    let length = (caps_end + fan) * 3;
+    let length = end * 3;
     if out.capacity() < length {
         *out = vec![0; length]; // zeroed by the system, not by us
     } else {
@@ -213,8 +198,10 @@ pub fn write_indices(
     let (sides, rest) = out.as_chunks_mut().0.split_at_mut(parts.hugging_sides.end);
     write_sides(sides, silhouette, far);
     let (caps, fan) = rest.split_at_mut(facings.towards() + facings.away());
-    if far_end == FarEnd::Fan {
+    if let FarEnd::Fan(of) = far_end {
+        let (fan, spheres) = fan.split_at_mut(quads[0] + quads[1]);
         write_fan(fan, silhouette, far);
+        spheres.iter_mut().zip(of.sphere_indices(far.apex() + 1)).for_each(|(out, triangle)| *out = triangle);
     }
     let (towards, away) = caps.split_at_mut(facings.towards());
     let caps = Caps { towards, away };
@@ -355,7 +342,11 @@ mod tests {
             facings.keep_casting(casters);
             silhouette(&EdgeList::new(corners, world.len()), &facings, &mut edges);
             let extruder = Extruder::new(world, light, extrusion);
-            let far_end = extruder.far_end();
+            let far_end = match extruder.infinite_from() {
+                Some(light) => FarEnd::Fan(Fan::new(world, corners, &facings, &edges, light).expect("a fan")),
+                None if extruder.is_one_point() => FarEnd::Point,
+                None => FarEnd::Caps,
+            };
             let hugging = edges.len() / 3;
             let parts = write_indices(corners, world.len(), &facings, (&edges, hugging), far_end, &mut indices);
             let mut triangles: Vec<[u32; 3]> = indices.as_chunks().0.to_vec();
@@ -367,7 +358,9 @@ mod tests {
                 let away: Vec<_> = triangles[parts.light_cap_turned.clone()].iter().map(|t| carried(*t)).collect();
                 triangles.extend(towards.into_iter().chain(away));
             }
-            Volume { vertices: extruder.vertices(world).collect(), triangles, parts }
+            let fan = if let DarkCap::Fan(_, fan) = &parts.dark_cap { Some(*fan) } else { None };
+            let vertices = extruder.vertices(world).chain(fan.iter().flat_map(Fan::vertices)).collect();
+            Volume { vertices, triangles, parts }
         }
     }
 
@@ -426,7 +419,8 @@ mod tests {
             assert_eq!([volume.parts.sides.len(), volume.parts.hugging_sides.len()], [4, 2]);
             assert_eq!(volume.parts.light_cap.len(), usize::from(!is_turned));
             assert_eq!(volume.parts.light_cap_turned.len(), usize::from(is_turned));
-            assert_eq!((&volume.parts.dark_cap, volume.triangles.len()), (&DarkCap::Fan(7..10), 10));
+            assert!(matches!(&volume.parts.dark_cap, DarkCap::Fan(triangles, _) if *triangles == (7..10)));
+            assert_eq!(volume.triangles.len(), 10);
             assert_closed(&volume);
             let inside = DVec3::new(0.3, 0.3, -1.0);
             for index in 0..volume.parts.hugging_sides.end {
@@ -454,7 +448,7 @@ mod tests {
         // The bounding box's diagonal is 5.
         let sun = Extruder::new(&world, DVec4::new(0.0, 7.0, 0.0, 0.0), Extrusion::Finite(2.0));
         assert_eq!(sun.carry(DVec3::X), DVec4::new(1.0, -10.0, 0.0, 1.0));
-        assert_eq!([point.far_end(), sun.far_end()], [FarEnd::Caps; 2]);
+        assert_eq!([point.infinite_from(), sun.infinite_from()], [None; 2]);
     }
 
     /// Many triangles, so that several threads write; the same runs as one by one.
@@ -492,10 +486,14 @@ mod tests {
         let mut seen = 0;
         for seed in 0..200 {
             let (world, corners) = soup(seed, 1 + seed as usize % 20);
-            let lights = [[9.0, 7.5, 2.0], [3.1, 6.0 + 1e-7, 2.9], [-0.5, 2.2, 3.3], [3.0, 2.5, -40.0]];
-            for light in lights.map(|light| DVec3::from_array(light).extend(1.0)) {
+            // Beside it, and inside: between triangles, and at a thousandth of a millionth from one.
+            let near = (world[0] + world[1] + world[2]) / 3.0 + DVec3::new(1e-9, 2e-9, -1e-9);
+            let inside = [[3.1, 2.2, 2.7], [0.7, 5.3, 1.9], near.to_array()];
+            let beside = [[9.0, 7.5, 2.0], [3.1, 6.0 + 1e-7, 2.9], [-0.5, 2.2, 3.3], [3.0, 2.5, -40.0]];
+            let lights = [&beside[..], &inside[..]].concat();
+            for light in lights.into_iter().map(|light| DVec3::from_array(light).extend(1.0)) {
                 let fan = Volume::new(&world, &corners, light);
-                let DarkCap::Fan(range) = fan.parts.dark_cap.clone() else { panic!("{light} is outside the box") };
+                let DarkCap::Fan(range, _) = fan.parts.dark_cap.clone() else { panic!("{light} is a point") };
                 let base = world.len() as u32;
                 for _ in 0..40 {
                     seen += 1;
@@ -515,12 +513,14 @@ mod tests {
         }
     }
 
+    /// All round it is dark: one sphere.
     #[test]
-    fn a_light_inside_the_box_has_no_fan() {
-        let world = [DVec3::ZERO, DVec3::ONE];
-        let far_end = |light: DVec3| Extruder::new(&world, light.extend(1.0), Extrusion::Infinite).far_end();
-        assert_eq!(far_end(DVec3::splat(0.5)), FarEnd::Caps);
-        assert_eq!(far_end(DVec3::new(0.5, 1.0, 0.5)), FarEnd::Caps);
-        assert_eq!(far_end(DVec3::new(0.5, 1.0_f64.next_up(), 0.5)), FarEnd::Fan);
+    fn a_light_in_a_closed_mesh_is_closed_by_a_sphere() {
+        let corners = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let world = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let volume = Volume::new(&world, &corners, DVec4::new(0.2, 0.2, 0.2, 1.0));
+        let DarkCap::Fan(triangles, fan) = &volume.parts.dark_cap else { panic!("a point light") };
+        assert_eq!((triangles.len(), fan.spheres, volume.parts.hugging_sides.end), (8, 1, 0));
+        assert_closed(&volume);
     }
 }

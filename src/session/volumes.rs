@@ -1,6 +1,8 @@
 //! What shadow-volume geometry costs on the CPU.
 
-use crate::geometry::{Casters, EdgeList, Extruder, Extrusion, Facings, Planes, silhouette, write_indices};
+use crate::geometry::{
+    Casters, EdgeList, Extruder, Extrusion, Facings, Fan, FarEnd, Planes, silhouette, write_indices,
+};
 use crate::plan::Blob;
 use crate::scene::Mesh;
 use glam::{DQuat, DVec3, DVec4};
@@ -60,8 +62,10 @@ pub fn volume_cost(mesh: &Mesh, runs: usize) -> VolumeCost {
         timed(&mut cost.facing, is_timed, || planes.facings(black_box(world), triangles, light, &mut facings));
         facings.keep_casting(Casters::All);
         timed(&mut cost.multiplicities, is_timed, || silhouette(&edges, black_box(&facings), &mut edges_found));
-        let far_end = extruder.far_end();
         let parts = timed(&mut cost.indices, is_timed, || {
+            let from = extruder.infinite_from();
+            let fan = from.and_then(|light| Fan::new(world, triangles, &facings, &edges_found, light));
+            let far_end = fan.map_or(FarEnd::Caps, FarEnd::Fan);
             write_indices(triangles, world.len(), &facings, (black_box(&edges_found), 0), far_end, &mut indices)
         });
         let new_light = start.elapsed();

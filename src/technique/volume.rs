@@ -21,7 +21,9 @@ use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::left_out::Decision;
 use super::settings::ONE_ROW;
 use super::{PlanError, ReportRows, Technique, shown};
-use crate::geometry::{Caster, Casters, DarkCap, Extruder, Extrusion, SilhouetteBy, VolumeOf, VolumeParts, relative};
+use crate::geometry::{
+    Caster, Casters, DarkCap, Extruder, Extrusion, Fan, SilhouetteBy, VolumeOf, VolumeParts, relative,
+};
 use crate::plan::{
     Blob, Draw, DrawConstants, DrawMesh, FramePlan, LightId, MeshId, Part, Program, RasterState, Visibility,
 };
@@ -297,7 +299,9 @@ fn make(
     let (is_drawn, by) = (placed.object.visible, options.silhouette);
     let volume = VolumeOf { caster, is_drawn, light: position, casters, by, extruder: &extruder };
     let parts = frame.job.cache.volume_indices(&volume, &mut indices);
-    let vertices = extruder.vertices(&placed.world).map(|vertex| relative::homogeneous(vertex, eye)).collect();
+    let fan = if let DarkCap::Fan(_, fan) = parts.dark_cap { Some(fan) } else { None };
+    let vertices = extruder.vertices(&placed.world).chain(fan.iter().flat_map(Fan::vertices));
+    let vertices = vertices.map(|vertex| relative::homogeneous(vertex, eye)).collect();
     let mesh = DrawMesh {
         name: format!("volume of {}", placed.object.name),
         vertices: Blob::new(vertices),
@@ -323,7 +327,7 @@ fn needed_parts(frame: &mut Frame, form: Form, parts: &VolumeParts, caster: &Obj
             let because = "a directional light's volume closes in one point at infinity";
             frame.leave_out("dark cap", &caster.name, because);
         }
-        DarkCap::Fan(triangles) => {
+        DarkCap::Fan(triangles, _) => {
             needed.push(run(Part::DarkCap, false, triangles));
             let cap = parts.light_cap.len() + parts.light_cap_turned.len();
             if triangles.len() < cap {
