@@ -17,6 +17,7 @@ mod near_count;
 mod options;
 
 use super::auto::Questions;
+use super::casters::{self, Darkened};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::left_out::Decision;
 use super::settings::ONE_ROW;
@@ -235,6 +236,12 @@ fn volumes(frame: &mut Frame, light: LightId, options: &Options) -> (Vec<Volume>
                 Casters::LightFacing => "no triangle faces the light",
                 Casters::LightBackFacing => "no triangle faces away from the light",
             };
+            frame.leave_out("volume", &object.name, because);
+            continue;
+        }
+        // A bias of sides that hug it is a few steps, and rounding may be more.
+        if !parts.hugging_sides.is_empty() && !casters::can_darken(frame, index, light, Darkened::All) {
+            let because = "the light grazes it, so that depth can't tell it from its sides, and nothing is behind it";
             frame.leave_out("volume", &object.name, because);
             continue;
         }
