@@ -253,25 +253,23 @@ fn z_fail_holds_in_extremes() {
     }
 }
 
-/// A light 1e-4 degrees above the floor: the side that the floor's own edge throws is nearer to the
-/// floor than its depth rounds, and must not come out in front of it. All three ways of counting
-/// had 27 wrong pixels.
+/// A light that grazes the floor: the side that the floor's own edge throws is nearer to the floor than its
+/// depth rounds, by how much depends on the size of the picture. All three ways of counting had up to
+/// 416 wrong pixels.
 #[test]
-fn sides_that_hug_a_surface_do_not_come_out_in_front_of_it() {
+fn a_grazed_floor_does_not_darken_itself() {
     let mut session = session();
     for technique in [Technique::ZFail, Technique::ZPass, Technique::ZPassPlus] {
-        let row = one(&mut session, ("grazing", 1e-4), Entrant::of(technique), [320, 240], Fault::None);
-        assert!(row.error.compared > 40_000);
-        assert_eq!(row.error.wrong(), 0, "{technique:?}: {:?}", row.error);
-        let unbiased = |plan: &mut FramePlan| {
-            draws(plan, Part::Side).for_each(|draw| draw.raster.depth_bias = wgpu::DepthBiasState::default());
-        };
-        let row = one(&mut session, ("grazing", 1e-4), Entrant::of(technique), [320, 240], Fault::Plan(&unbiased));
-        assert!(row.error.wrong() > 0, "{technique:?}: the bias is not what mends it");
+        for (degrees, size) in [(1e-4, [320, 240]), (1e-3, [360, 240]), (1e-3, [720, 480])] {
+            let row = one(&mut session, ("grazing", degrees), Entrant::of(technique), size, Fault::None);
+            assert!(row.error.compared > 40_000);
+            assert_eq!(row.error.wrong(), 0, "{technique:?}: {:?}", row.error);
+        }
     }
 }
 
-/// Seeds that once had a wrong pixel (2 and 1 at 320 × 240).
+/// Seeds that once had a wrong pixel (2 and 1 at 320 × 240), each at the edge of a grazed triangle: the bias of
+/// sides that hug it is what mends them.
 #[test]
 fn seeds_that_failed_hold() {
     let mut session = session();
@@ -279,6 +277,11 @@ fn seeds_that_failed_hold() {
         let z_fail = Entrant::of(Technique::ZFail);
         let row = one(&mut session, ("random", seed), z_fail, [320, 240], Fault::None);
         assert_eq!(row.error.wrong(), 0, "{seed}: {:?}", row.error);
+        let unbiased = |plan: &mut FramePlan| {
+            draws(plan, Part::Side).for_each(|draw| draw.raster.depth_bias = wgpu::DepthBiasState::default());
+        };
+        let row = one(&mut session, ("random", seed), z_fail, [320, 240], Fault::Plan(&unbiased));
+        assert!(row.error.wrong() > 0, "{seed}");
     }
 }
 
