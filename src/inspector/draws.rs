@@ -11,7 +11,6 @@ use super::theme;
 use crate::capture::{Capture, DrawState, DrawSummary, FrameTarget, Image, Snapshot};
 use crate::plan::LeftOut;
 use egui::{CornerRadius, Rect, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Draws that are listed before the rest is folded away.
@@ -163,27 +162,35 @@ pub fn left_out(ui: &mut Ui, left_out: &[LeftOut]) {
     ui.add_space(8.0);
     ui.label(theme::note("Left out"));
     ui.add_space(2.0);
-    // The same decision is taken again for every light: once is enough to read.
-    let mut times = BTreeMap::new();
+    // The same is decided again for every light, and for many objects with one reason: once is
+    // enough to read.
+    let mut reasons: Vec<(&str, Vec<(String, u32)>)> = Vec::new();
     for entry in left_out {
-        *times.entry(key(entry)).or_insert(0_u32) += 1;
+        let title = format!("{} of {}", entry.what, entry.of);
+        let place = reasons.iter().position(|(because, _)| *because == entry.because).unwrap_or(reasons.len());
+        if place == reasons.len() {
+            reasons.push((&entry.because, Vec::new()));
+        }
+        let titles = &mut reasons[place].1;
+        match titles.iter_mut().find(|(known, _)| *known == title) {
+            Some((_, times)) => *times += 1,
+            None => titles.push((title, 1)),
+        }
     }
-    for entry in left_out {
-        let Some(times) = times.remove(&key(entry)) else { continue };
-        let times = if times > 1 { format!(" ×{times}") } else { String::new() };
-        let title = format!("{} of {}{times}", entry.what, entry.of);
+    for (because, titles) in reasons {
         ui.horizontal(|ui| {
             ui.add_space(8.0);
             ui.vertical(|ui| {
-                ui.add(egui::Label::new(RichText::new(title).size(theme::SMALL_SIZE).color(theme::DIM)).wrap());
-                let reason = RichText::new(&entry.because).size(theme::SMALL_SIZE).color(theme::FAINT);
-                ui.add(egui::Label::new(reason).wrap());
+                let small = |text: String, color| {
+                    egui::Label::new(RichText::new(text).size(theme::SMALL_SIZE).color(color)).wrap()
+                };
+                for (title, times) in titles {
+                    let title = if times > 1 { format!("{title} ×{times}") } else { title };
+                    ui.add(small(title, theme::DIM));
+                }
+                ui.add(small(because.to_owned(), theme::FAINT));
             });
         });
         ui.allocate_space(vec2(0.0, 6.0));
     }
-}
-
-fn key(entry: &LeftOut) -> [&str; 3] {
-    [&entry.what, &entry.of, &entry.because]
 }
