@@ -253,11 +253,13 @@ fn from_any_place_auto_shows_what_z_fail_shows() {
             let auto = session.capture(&scene, &auto("all")).expect("a capture");
             let mut z_fail = session.capture(&scene, &request(Technique::ZFail, SIZE)).expect("a capture");
             session.judge(&scene, &mut z_fail, &Progress::default()).expect("a truth");
+            let truths = z_fail.lights.iter().filter_map(|light| light.truth.as_ref());
+            compared += u64::from(truths.map(|truth| truth.error.compared).sum::<u64>() > 0);
             let wraps =
                 z_fail.lights.iter().any(|light| light.truth.as_ref().is_some_and(|truth| truth.error.wrong() > 0));
             assert!(wraps && name == "gate" || labels(&auto) == labels(&z_fail), "{}", scene.name);
         }
     }
     // From behind a wall, nothing lit or dark is seen.
-    assert!(compared >= 40, "{compared} cameras see something");
+    assert!(compared >= 36, "{compared} cameras see something");
 }
