@@ -79,7 +79,10 @@ fn a_case_that_was_run_says_who_broke_where_and_opens_there() {
     select(&mut harness, "nested: unexpected");
     harness.get_by_role_and_label(Role::Row, "shadow-map: no wrong pixel, holds");
     // It was known to fail, and did not: our knowledge is wrong.
-    harness.get_by_role_and_label(Role::Row, "z-fail: no wrong pixel, unexpected (wrap-256)");
+    harness.get_by_role_and_label(
+        Role::Row,
+        "z-fail: no wrong pixel, unexpected, at 256: right where it is known to fail",
+    );
     select(&mut harness, "z-pass: breaks at 256, fails as known (wrap-256)");
     let Some(Action::OpenStress { case: "nested", value: 256.0, entrant: Some(entrant) }) =
         harness.state().actions.last()
