@@ -164,6 +164,30 @@ fn a_known_failure_excuses_its_values_its_kind_and_its_share_only() {
     assert_eq!(rows.map(|row| row.expected.name()), ["wrap-256", "right"]);
 }
 
+/// A known failure may show by nothing but too many excused pixels: the words say so.
+#[test]
+fn what_is_only_excused_is_said_to_be() {
+    let row = row("fine-grid", Technique::ShadowMap, 0.1, [0, 0]);
+    let rows = vec![Row { error: ErrorCounts { edge_band: 500, ..row.error }, ..row }];
+    let whole = &summary(&rows)[0];
+    assert_eq!((whole.breaks_at, whole.blurred_at, whole.verdict), (None, Some(0.1), Verdict::FailsAsKnown));
+    let adapter = session().adapter().clone();
+    let stress = Stress { adapter, size: [320, 240], rows };
+    assert!(stress.to_table().contains("no wrong pixel, but too many pixels excused along edges at 0.1"));
+    assert!(stress.to_markdown().contains("0.1 aliasing (too many excused)"));
+    assert!(stress.to_json().expect("JSON").contains("\"too_many_excused_at\": 0.1"));
+    assert!(!stress.to_table().contains("measured at") && !stress.to_markdown().contains("measured at"));
+}
+
+/// Some false shadow and some missing shadow.
+#[test]
+fn a_mixed_failure_is_of_both_kinds() {
+    let cut = |wrong| row("eye-in-volume", Technique::ZPass, 0.0, wrong).surprise();
+    assert_eq!(cut([3000, 3000]), None);
+    assert_eq!((cut([0, 3000]), cut([3000, 0])), (Some(Surprise::OtherKind), Some(Surprise::OtherKind)));
+    assert_eq!(cut([0, 0]), Some(Surprise::NotShown));
+}
+
 #[test]
 fn what_can_not_fail_does_not_hold() {
     let good = row("near-far", Technique::ZFail, 10.0, [0, 0]);
@@ -540,6 +564,7 @@ fn the_command_tells_in_every_form() {
     assert_eq!(table.status.code(), Some(0), "{}", text(&table.stderr));
     let table = text(&table.stdout);
     assert!(table.contains("sliver: ") && table.contains("2 hold, 0 fail as known, 0 unexpected"), "{table}");
+    assert!(table.contains("expectations are measured at 320x240"), "{table}");
 
     let output = run(folder.path(), &[&volumes[..], &["--plot", "s.svg", "--json"][..]].concat());
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
@@ -551,14 +576,17 @@ fn the_command_tells_in_every_form() {
         let numbers = ["compared", "false_shadow", "missing_shadow", "frame_ms", "setup_ms"];
         assert!(numbers.iter().all(|key| row[key].is_number()), "{row}");
         assert_eq!(row["verdict"], "holds");
+        assert!(row["surprise"].is_null() && row["lit"].is_number() && row["shadow"].is_number());
     }
     assert!(summary.iter().all(|entry| entry["breaks_at"].is_null() && entry["verdict"] == "holds"));
+    assert_eq!((&json["size"], &json["measured_at"]), (&serde_json::json!([80, 60]), &serde_json::json!([320, 240])));
     let plot = std::fs::read_to_string(folder.path().join("s.svg")).expect("a plot");
     assert!(plot.contains("<svg") && plot.contains("aspect ratio") && plot.contains("z-fail at 1e8"), "{plot}");
 
     let output = run(folder.path(), &[&volumes[..], &["--markdown", "s.md", "--plot", "s.png"][..]].concat());
     assert_eq!((output.status.code(), text(&output.stdout)), (Some(0), String::new()));
     let markdown = std::fs::read_to_string(folder.path().join("s.md")).expect("a table");
+    assert!(markdown.contains("\nexpectations are measured at 320x240"), "{markdown}");
     assert!(markdown.contains("| sliver | aspect ratio 1 → 1e8 |  | · | · |  |"), "{markdown}");
     assert!(std::fs::read(folder.path().join("s.png")).expect("a picture").starts_with(b"\x89PNG"));
 

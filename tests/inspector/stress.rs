@@ -83,6 +83,8 @@ fn a_case_that_was_run_says_who_broke_where_and_opens_there() {
         Role::Row,
         "z-fail: no wrong pixel, unexpected, at 256: right where it is known to fail",
     );
+    select(&mut harness, "z-fail: no wrong pixel, unexpected, at 256: right where it is known to fail");
+    assert!(matches!(harness.state().actions.last(), Some(Action::OpenStress { value: 256.0, .. })));
     select(&mut harness, "z-pass: breaks at 256, fails as known (wrap-256)");
     let Some(Action::OpenStress { case: "nested", value: 256.0, entrant: Some(entrant) }) =
         harness.state().actions.last()
@@ -101,6 +103,22 @@ fn any_value_opens_as_a_scene_and_an_error_is_said() {
     click_button(&mut harness, "1e-4");
     let expected = Action::OpenStress { case: "grazing", value: 1e-4, entrant: None };
     assert_eq!(harness.state().actions, [expected]);
+}
+
+#[test]
+fn what_is_unexpected_opens_and_a_course_is_told() {
+    // Wrong at 256 is known, at 600 it is not.
+    let wrong =
+        |entrant: &str, value: f64| u64::from(entrant == "z-fail" && [256.0, 512.0, 600.0].contains(&value)) * 7;
+    let mut harness = showing(|inspector| {
+        inspector.add_stress(rows("nested", wrong));
+        inspector.add_stress(rows("map-size", |_, _| 1));
+    });
+    select(&mut harness, "nested: unexpected");
+    select(&mut harness, "z-fail: breaks at 256, unexpected, at 600: wrong where it must be right");
+    assert!(matches!(harness.state().actions.last(), Some(Action::OpenStress { value: 600.0, .. })));
+    select(&mut harness, "map-size: unexpected");
+    assert!(harness.query_all_by_label_contains("not as it must be: size × error: 64 × 1 = 64").count() > 0);
 }
 
 #[test]
