@@ -361,7 +361,6 @@ fn casting_nothing_is_no_known_failure() {
         "light-far depth-bits",
         "sliver aliasing",
         "nested wrap-256",
-        "fine-grid aliasing",
         "light-at-sheet f32-limit",
         "light-at-sheet map-near-plane",
         "light-inside-mesh near-plane",
