@@ -207,18 +207,10 @@ fn offered(values: &[f64]) -> Vec<f64> {
     (0..MOST_VALUES).filter_map(|index| values.get(index * last / (MOST_VALUES - 1)).copied()).collect()
 }
 
-/// A technique; a click opens the case where it breaks, or at its last value.
+/// A technique; a click opens the case where it is unexpected, else where it breaks, or at its last value.
 fn table_row(ui: &mut Ui, case: &'static Case, summary: &Summary, actions: &mut Vec<Action>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
-    let found = match summary.breaks_at {
-        None => "no wrong pixel".to_owned(),
-        Some(value) => format!("breaks at {}", value_text(value)),
-    };
-    let expected = summary.expected.name();
-    let verdict = match summary.verdict {
-        Verdict::Holds => "holds".to_owned(),
-        other => format!("{} ({expected})", other.name()),
-    };
+    let (found, verdict, expected) = (summary.found_text(), summary.verdict_text(), summary.expected.name());
     let name = format!("{}: {found}, {verdict}", summary.entrant);
     response.widget_info(|| WidgetInfo::labeled(Role::Row, true, &name));
     theme::row_background(ui, rect, false, &response);
@@ -236,7 +228,13 @@ fn table_row(ui: &mut Ui, case: &'static Case, summary: &Summary, actions: &mut 
         "Expected: {expected}, as {because}. At most {wrong} of {compared} compared pixels are wrong. Click to open it there."
     );
     if response.on_hover_text(hover).clicked() {
-        let value = summary.breaks_at.or(case.values.last().copied()).unwrap_or_default();
+        let surprise = summary.surprise.map(|(at, _)| at);
+        let breaks = surprise.or(summary.breaks_at).or(summary.blurred_at);
+        let value = breaks.or(case.values.last().copied()).unwrap_or_default();
         actions.push(Action::OpenStress { case: case.name, value, entrant: Some(summary.entrant) });
+    }
+    if let Some(course) = &summary.course {
+        let color = if course.holds { theme::DIM } else { theme::ERROR };
+        ui.add(egui::Label::new(theme::note(course.to_string()).color(color)).wrap());
     }
 }

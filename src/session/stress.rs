@@ -2,7 +2,7 @@
 
 use super::truth::Traced;
 use super::{Session, SessionError, StressSteps, median_ms, milliseconds};
-use crate::accuracy::ErrorCounts;
+use crate::accuracy::{ErrorCounts, Finding};
 use crate::geometry::GeometryCache;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
@@ -11,6 +11,7 @@ use crate::stress::{Case, Drives, Entrant, Row, Seen, Trend};
 use crate::technique::{self, Choice, Job, Technique};
 use crate::truth::{LIT, SHADOW};
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -21,6 +22,8 @@ pub(super) struct Before {
     light: usize,
     labels: Vec<u8>,
     truth: Vec<u8>,
+    /// Do labels and truth differ along an edge?
+    excused: Vec<bool>,
     /// How many more times each pixel's label has changed than its truth.
     ahead: Vec<i8>,
 }
@@ -168,6 +171,7 @@ impl Session {
                     light,
                     labels: labels.rows().flatten().copied().collect(),
                     truth: traced.truth.labels[light].clone(),
+                    excused: accuracy.findings.iter().map(|finding| *finding == Finding::EdgeBand as u8).collect(),
                     ahead: vec![0; traced.truth.labels[light].len()],
                 };
                 let last = before.iter_mut().find(|before| before.entrant == entrant && before.light == light);
@@ -212,28 +216,32 @@ impl Fault<'_> {
 /// Pixels whose label has changed there and back although the truth did not.
 ///
 /// A label may change a step before the truth or after it: then it is one change ahead or behind for
-/// that time. Two ahead is a flicker. Excused edges count too, since a flicker can hide there; but a
-/// change does not where the truth changes beside the pixel: an edge touches it then.
+/// that time. Two ahead is a flicker. A change does not count where the truth changes beside the pixel:
+/// an edge touches it then. Excused pixels along edges count too, since a flicker can hide there, but
+/// only alone: an edge that lies along a row of pixels moves all of them at once.
 fn flips_between(last: &Before, now: &mut Before, width: usize) -> u64 {
     let (count, height) = (now.labels.len(), now.labels.len() / width.max(1));
     let moves = |at: usize| last.truth[at] != now.truth[at];
-    let is_touched = |at: usize| {
+    let around = |at: usize| {
         let (x, y) = (at % width, at / width);
         let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
-        let mut around =
-            rows.flat_map(|row| (x.saturating_sub(1)..=(x + 1).min(width - 1)).map(move |column| row * width + column));
-        around.any(moves)
+        rows.flat_map(move |row| (x.saturating_sub(1)..=(x + 1).min(width - 1)).map(move |column| row * width + column))
     };
-    let mut flips = 0;
+    let is_touched = |at: usize| around(at).any(moves);
+    let mut flips = BTreeSet::new();
     for at in 0..count {
         let (label_moves, truth_moves) = (last.labels[at] != now.labels[at], moves(at));
         let counts = label_moves && (truth_moves || !is_touched(at));
         let ahead = (last.ahead[at] + i8::from(counts) - i8::from(truth_moves)).max(-1);
         let is_flip = ahead == 2;
-        flips += u64::from(is_flip);
+        if is_flip {
+            flips.insert(at);
+        }
         now.ahead[at] = if is_flip { 0 } else { ahead };
     }
-    flips
+    let is_excused = |at: usize| last.excused[at] || now.excused[at];
+    let is_alone = |at: usize| !around(at).any(|other| other != at && flips.contains(&other));
+    flips.iter().filter(|at| !is_excused(**at) || is_alone(**at)).count() as u64
 }
 
 #[cfg(test)]
@@ -249,6 +257,7 @@ mod tests {
                 light: 0,
                 labels: vec![0; 9],
                 truth: vec![0; 9],
+                excused: vec![false; 9],
                 ahead: vec![0; 9],
             };
             (now.labels[4], now.truth[4], now.truth[8]) = (labels[step], truth[step], corner[step]);
@@ -274,5 +283,33 @@ mod tests {
         assert_eq!(flips(&[0, 0, 1, 1, 1], &[0, 1, 1, 1, 1], &still), [0; 4], "a step late");
         assert_eq!(flips(&[0, 1, 0, 1, 1], &[0, 0, 0, 1, 1], &still), [0, 1, 0, 0], "a flicker before it comes");
         assert_eq!(flips(&[0, 1, 0, 0, 0], &still, &[0, 1, 0, 0, 0]), [0; 4], "an edge touches it and goes");
+    }
+
+    /// Flips where these of three by three pixels change there and back.
+    fn flips_of(pixels: &[usize], is_excused: bool) -> u64 {
+        let at = |label: u8| {
+            let mut now = Before {
+                entrant: Entrant::of(Technique::ZFail),
+                light: 0,
+                labels: vec![0; 9],
+                truth: vec![0; 9],
+                excused: vec![false; 9],
+                ahead: vec![0; 9],
+            };
+            pixels.iter().for_each(|pixel| now.labels[*pixel] = label);
+            pixels.iter().for_each(|pixel| now.excused[*pixel] = is_excused && label == 1);
+            now
+        };
+        let [before, mut there, mut back] = [0, 1, 0].map(at);
+        assert_eq!(flips_between(&before, &mut there, 3), 0);
+        flips_between(&there, &mut back, 3)
+    }
+
+    #[test]
+    fn an_excused_pixel_flickers_only_alone() {
+        assert_eq!((flips_of(&[4], true), flips_of(&[4], false)), (1, 1));
+        assert_eq!((flips_of(&[3, 4, 5], true), flips_of(&[3, 4, 5], false)), (0, 3), "a row");
+        assert_eq!((flips_of(&[0, 4, 8], true), flips_of(&[0, 4, 8], false)), (0, 3), "corners touch");
+        assert_eq!((flips_of(&[0, 2, 6, 8], true), flips_of(&[2, 3], true)), (4, 2), "apart");
     }
 }

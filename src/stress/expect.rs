@@ -45,6 +45,8 @@ pub enum Kind {
     Missing,
     /// Either.
     Either,
+    /// Some of each.
+    Mixed,
     /// Either, or of another surface than in truth.
     Any,
 }
@@ -122,6 +124,12 @@ impl Failure {
         Failure { symptom: Symptom { kind: Kind::Missing, ..self.symptom }, ..self }
     }
 
+    /// Its wrong pixels are false shadow and missing shadow, some of each.
+    #[must_use]
+    pub const fn is_mixed(self) -> Failure {
+        Failure { symptom: Symptom { kind: Kind::Mixed, ..self.symptom }, ..self }
+    }
+
     /// Its wrong pixels may be those of another surface.
     #[must_use]
     pub const fn is_any(self) -> Failure {
@@ -177,6 +185,12 @@ impl Expected {
 }
 
 impl Row {
+    /// Do so many pixels differ along edges that excusing them hides an error?
+    #[must_use]
+    pub fn is_blurred(&self) -> bool {
+        self.error.edge_band as f64 > MOST_EXCUSED * self.error.compared as f64
+    }
+
     /// Why this is not what was expected.
     #[must_use]
     pub fn surprise(&self) -> Option<Surprise> {
@@ -184,7 +198,7 @@ impl Row {
             return Some(Surprise::LittleToSee);
         }
         let error = &self.error;
-        let is_blurred = error.edge_band as f64 > MOST_EXCUSED * error.compared as f64;
+        let is_blurred = self.is_blurred();
         let shows = error.wrong() > 0 || is_blurred;
         let Some(Symptom { kind, most, .. }) = self.expected.symptom() else {
             return match (error.wrong(), self.flips) {
@@ -197,13 +211,17 @@ impl Row {
         let others = match kind {
             Kind::False => error.missing_shadow,
             Kind::Missing => error.false_shadow,
-            Kind::Either | Kind::Any => 0,
+            Kind::Either | Kind::Mixed | Kind::Any => 0,
         };
+        let is_one_sided = error.false_shadow == 0 || error.missing_shadow == 0;
         // Beside what is known of them, texels show in these techniques.
         let blur = texels(self.entrant.technique).map_or(0.0, |(symptom, _)| symptom.most);
         if !shows && matches!(self.expected, Expected::Fails(_)) {
             Some(Surprise::NotShown)
-        } else if (error.wrong_surface > 0 && kind != Kind::Any) || others as f64 > blur * error.compared as f64 {
+        } else if (error.wrong_surface > 0 && kind != Kind::Any)
+            || others as f64 > blur * error.compared as f64
+            || kind == Kind::Mixed && is_one_sided && shows
+        {
             Some(Surprise::OtherKind)
         } else if error.wrong() as f64 > most * error.compared as f64 {
             Some(Surprise::TooMany)

@@ -6,8 +6,17 @@
 //! at one value and `compared` how many were compared there; a row's `compared` is its own.
 //! `frame_ms` is the median of `timed_frames` frames, and `setup_from_nothing` says that no pipeline of
 //! an earlier row was used; geometry never is.
+//!
+//! `surprise` says in words why a row is unexpected, and a summary's is that of the first such row, whose
+//! value is `surprise_at`; both are null where nothing is. A summary's `course` tells how the rows of a
+//! case change from value to value, where that is the case's lesson: `text`, and whether it `holds`; one
+//! that does not makes the summary unexpected without a surprise. `breaks_at` is the first value with a
+//! wrong pixel, `too_many_excused_at` the first at which so many pixels differ along edges that excusing
+//! them hides an error: a known failure may show by that alone. Of a row's pixels, summed over lights,
+//! `lit` and `shadow` are so in truth. Expectations are those of pictures of `measured_at` pixels: at
+//! another `size` a failure may not show, or show more.
 
-use super::{Case, Row, Stress, Summary};
+use super::{Case, Course, MEASURED_AT, Row, Stress, Summary};
 use crate::capture::AdapterInfo;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -23,7 +32,14 @@ impl Stress {
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let rows = self.rows.iter().map(RowEntry::new).collect();
         let summary = self.summary().iter().map(SummaryEntry::new).collect();
-        let document = Document { schema: SCHEMA, adapter: &self.adapter, size: self.size, rows, summary };
+        let document = Document {
+            schema: SCHEMA,
+            adapter: &self.adapter,
+            size: self.size,
+            measured_at: MEASURED_AT,
+            rows,
+            summary,
+        };
         Ok(serde_json::to_string_pretty(&document)? + "\n")
     }
 }
@@ -33,6 +49,7 @@ struct Document<'a> {
     schema: u32,
     adapter: &'a AdapterInfo,
     size: [u32; 2],
+    measured_at: [u32; 2],
     rows: Vec<RowEntry<'a>>,
     summary: Vec<SummaryEntry>,
 }
@@ -55,10 +72,13 @@ struct RowEntry<'a> {
     missing_shadow: u64,
     wrong_surface: u64,
     edge_band: u64,
+    lit: u64,
+    shadow: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
     flips: Option<u64>,
     expected: &'static str,
     verdict: &'static str,
+    surprise: Option<String>,
     frame_ms: f64,
     timed_frames: usize,
     setup_ms: f64,
@@ -79,9 +99,12 @@ impl<'a> RowEntry<'a> {
             missing_shadow: row.error.missing_shadow,
             wrong_surface: row.error.wrong_surface,
             edge_band: row.error.edge_band,
+            lit: row.seen.lit,
+            shadow: row.seen.shadow,
             flips: row.flips,
             expected: row.expected.name(),
             verdict: row.verdict().name(),
+            surprise: row.surprise().map(|surprise| surprise.to_string()),
             frame_ms: row.frame_ms,
             timed_frames: case.map_or(1, Case::timed_frames),
             setup_ms: row.setup_ms,
@@ -97,6 +120,7 @@ struct SummaryEntry {
     entrant: String,
     settings: BTreeMap<&'static str, &'static str>,
     breaks_at: Option<f64>,
+    too_many_excused_at: Option<f64>,
     worst: u64,
     compared: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -104,6 +128,16 @@ struct SummaryEntry {
     expected: &'static str,
     because: &'static str,
     verdict: &'static str,
+    surprise: Option<String>,
+    surprise_at: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    course: Option<CourseEntry>,
+}
+
+#[derive(Serialize)]
+struct CourseEntry {
+    text: String,
+    holds: bool,
 }
 
 impl SummaryEntry {
@@ -114,12 +148,16 @@ impl SummaryEntry {
             entrant: summary.entrant.to_string(),
             settings: summary.entrant.settings.iter().copied().collect(),
             breaks_at: summary.breaks_at,
+            too_many_excused_at: summary.blurred_at,
             worst: summary.worst.0,
             compared: summary.worst.1,
             flips: summary.flips,
             expected: summary.expected.name(),
             because: Case::named(summary.case).map_or("", |case| case.because(&summary.entrant)),
             verdict: summary.verdict.name(),
+            surprise: summary.surprise.map(|(_, surprise)| surprise.to_string()),
+            surprise_at: summary.surprise.map(|(at, _)| at),
+            course: summary.course.clone().map(|Course { text, holds }| CourseEntry { text, holds }),
         }
     }
 }
@@ -158,7 +196,13 @@ mod tests {
             let is_timed = row["case"] == "triangle-count";
             assert_eq!(row["timed_frames"], if is_timed { 3 } else { 1 });
             assert_eq!(row["setup_from_nothing"], is_timed);
+            assert_eq!(row["surprise"].is_string(), row["verdict"] == "unexpected", "{row}");
         }
+        for entry in summary {
+            assert_eq!(entry["course"]["holds"].is_boolean(), entry["case"] == "triangle-count", "{entry}");
+            assert_eq!(entry["surprise"].is_string(), entry["surprise_at"].is_number(), "{entry}");
+        }
+        assert_eq!(json["measured_at"], serde_json::json!([320, 240]));
         assert!(rows.iter().any(|row| row["entrant"] == "z-fail operations=clamp"));
     }
 }

@@ -89,6 +89,8 @@ pub struct Summary {
     pub entrant: Entrant,
     /// The first value with a wrong pixel; `None` where there is none.
     pub breaks_at: Option<f64>,
+    /// The first value with too many pixels excused along edges; `None` where there is none.
+    pub blurred_at: Option<f64>,
     /// Most wrong pixels at one value, of how many compared.
     pub worst: (u64, u64),
     /// Flips over the whole motion.
@@ -182,6 +184,7 @@ impl Summary {
             case: rows[0].case,
             entrant: rows[0].entrant,
             breaks_at: rows.iter().find(wrong).map(|row| row.parameter.1),
+            blurred_at: rows.iter().find(|row| row.is_blurred()).map(|row| row.parameter.1),
             worst: (worst.error.wrong(), worst.error.compared),
             flips: rows.iter().filter_map(|row| row.flips).reduce(|a, b| a + b),
             expected: must.or_else(may).unwrap_or(Expected::Right),

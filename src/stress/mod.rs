@@ -27,6 +27,10 @@ use crate::scene::{MeshError, Scene};
 use crate::technique::{Choice, ChoiceError, Technique};
 use std::fmt;
 
+/// Width and height of the pictures at which expectations were measured: at another size a failure of
+/// few pixels may not show, or a larger share be wrong.
+pub const MEASURED_AT: [u32; 2] = [320, 240];
+
 /// Timed frames of each row where times are the point.
 const TIMED_FRAMES: usize = 3;
 

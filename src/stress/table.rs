@@ -1,7 +1,8 @@
 //! The table for people, a line a case and technique; and one for a README, a row a case.
 
-use super::{Case, Stress, Summary, USUAL, Verdict};
+use super::{Case, Course, MEASURED_AT, Stress, Summary, USUAL, Verdict};
 use crate::numbers;
+use std::fmt;
 
 impl Stress {
     /// Case by case: who holds, who breaks where, and whether that was known.
@@ -26,6 +27,9 @@ impl Stress {
             count(Verdict::FailsAsKnown),
             count(Verdict::Unexpected)
         ));
+        if let Some(note) = self.size_note() {
+            text.push_str(&format!("{note}\n"));
+        }
         text
     }
 
@@ -52,7 +56,20 @@ impl Stress {
             let cells: Vec<String> = cells.chain([others.join("; ")]).collect();
             text.push_str(&format!("| {name} | {} | {} |\n", range(name), cells.join(" | ")));
         }
+        if let Some(note) = self.size_note() {
+            text.push_str(&format!("\n{note}\n"));
+        }
         text
+    }
+
+    /// Where the pictures are of another size than expectations were measured at.
+    fn size_note(&self) -> Option<String> {
+        let [width, height] = MEASURED_AT;
+        (self.size != MEASURED_AT).then(|| {
+            format!(
+                "expectations are measured at {width}x{height}: at other sizes a failure may not show, or show more"
+            )
+        })
     }
 }
 
@@ -77,10 +94,47 @@ pub fn value_text(value: f64) -> String {
     }
 }
 
+impl Summary {
+    /// Where it breaks.
+    #[must_use]
+    pub fn found_text(&self) -> String {
+        let breaks = self.breaks_at.map(|at| format!("breaks at {}", value_text(at)));
+        let blurred = self.blurred_at.filter(|at| self.breaks_at != Some(*at));
+        let blurred = blurred.map(|at| format!("too many pixels excused along edges at {}", value_text(at)));
+        match (breaks, blurred) {
+            (None, None) => "no wrong pixel".to_owned(),
+            (Some(text), None) => text,
+            (None, Some(blurred)) => format!("no wrong pixel, but {blurred}"),
+            (Some(text), Some(blurred)) => format!("{text}, {blurred}"),
+        }
+    }
+
+    /// What came of it: why it is unexpected, or by which failures it was known to fail.
+    #[must_use]
+    pub fn verdict_text(&self) -> String {
+        let shown: Vec<&str> = self.shown.iter().map(|(_, name)| *name).collect();
+        match (self.surprise, &shown[..]) {
+            (Some((at, surprise)), _) => format!("{}, at {}: {surprise}", self.verdict.name(), value_text(at)),
+            (None, []) => self.verdict.name().to_owned(),
+            (None, names) => format!("{} ({})", self.verdict.name(), names.join(", ")),
+        }
+    }
+}
+
+impl fmt::Display for Course {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let word = if self.holds { "" } else { "not as it must be: " };
+        write!(f, "{word}{}", self.text)
+    }
+}
+
 fn cell(summary: &Summary) -> String {
     let mark = if summary.verdict == Verdict::Unexpected { " (!)" } else { "" };
     let is_sweep = Case::named(summary.case).is_some_and(|case| case.values.len() > 1);
-    let part = |(at, name): (f64, &str)| if is_sweep { format!("{} {name}", value_text(at)) } else { name.to_owned() };
+    let part = |(at, name): (f64, &str)| {
+        let blur = if summary.blurred_at == Some(at) { " (too many excused)" } else { "" };
+        if is_sweep { format!("{} {name}{blur}", value_text(at)) } else { format!("{name}{blur}") }
+    };
     let surprise = summary.surprise.map(|(at, surprise)| part((at, &surprise.to_string())));
     let parts: Vec<String> = summary.shown.iter().copied().map(part).chain(surprise).collect();
     if parts.is_empty() { format!("·{mark}") } else { format!("{}{mark}", parts.join(", ")) }
@@ -89,23 +143,15 @@ fn cell(summary: &Summary) -> String {
 fn line(summary: &Summary, width: usize) -> String {
     let mark = if summary.verdict == Verdict::Unexpected { "!!" } else { "  " };
     let found = match summary.breaks_at {
-        None => "no wrong pixel".to_owned(),
-        Some(value) => {
+        None => summary.found_text(),
+        Some(_) => {
             let (worst, compared) = summary.worst;
             let [worst, compared] = [worst, compared].map(numbers::count);
-            format!("breaks at {}, at most {worst} of {compared} wrong", value_text(value))
+            format!("{}, at most {worst} of {compared} wrong", summary.found_text())
         }
     };
     let flips = summary.flips.map_or_else(String::new, |flips| format!(", {flips} flips"));
-    let shown: Vec<&str> = summary.shown.iter().map(|(_, name)| *name).collect();
-    let verdict = match (summary.surprise, &shown[..]) {
-        (Some((at, surprise)), _) => format!("{}, at {}: {surprise}", summary.verdict.name(), value_text(at)),
-        (None, []) => summary.verdict.name().to_owned(),
-        (None, names) => format!("{} ({})", summary.verdict.name(), names.join(", ")),
-    };
-    let course = summary.course.as_ref().map_or_else(String::new, |course| {
-        let word = if course.holds { "" } else { "not as it must be: " };
-        format!("      {:width$}  {word}{}\n", "", course.text)
-    });
+    let verdict = summary.verdict_text();
+    let course = summary.course.as_ref().map_or_else(String::new, |course| format!("      {:width$}  {course}\n", ""));
     format!("{mark}  {:width$}  {verdict}: {found}{flips}\n{course}", summary.entrant.to_string())
 }

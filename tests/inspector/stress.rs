@@ -50,6 +50,9 @@ fn running(done: usize, of: usize, rows: (usize, usize), what: &str) -> StressPr
 }
 
 fn select(harness: &mut Harness<Seen>, row: &str) {
+    // Rows below the fold take no click.
+    harness.get_by_role_and_label(Role::Row, row).scroll_to_me();
+    harness.run_steps(30);
     harness.get_by_role_and_label(Role::Row, row).click();
     harness.run_steps(2);
 }
@@ -79,7 +82,12 @@ fn a_case_that_was_run_says_who_broke_where_and_opens_there() {
     select(&mut harness, "nested: unexpected");
     harness.get_by_role_and_label(Role::Row, "shadow-map: no wrong pixel, holds");
     // It was known to fail, and did not: our knowledge is wrong.
-    harness.get_by_role_and_label(Role::Row, "z-fail: no wrong pixel, unexpected (wrap-256)");
+    harness.get_by_role_and_label(
+        Role::Row,
+        "z-fail: no wrong pixel, unexpected, at 256: right where it is known to fail",
+    );
+    select(&mut harness, "z-fail: no wrong pixel, unexpected, at 256: right where it is known to fail");
+    assert!(matches!(harness.state().actions.last(), Some(Action::OpenStress { value: 256.0, .. })));
     select(&mut harness, "z-pass: breaks at 256, fails as known (wrap-256)");
     let Some(Action::OpenStress { case: "nested", value: 256.0, entrant: Some(entrant) }) =
         harness.state().actions.last()
@@ -98,6 +106,27 @@ fn any_value_opens_as_a_scene_and_an_error_is_said() {
     click_button(&mut harness, "1e-4");
     let expected = Action::OpenStress { case: "grazing", value: 1e-4, entrant: None };
     assert_eq!(harness.state().actions, [expected]);
+}
+
+#[test]
+fn what_is_unexpected_opens_and_a_course_is_told() {
+    // Wrong at 256 is known, at 600 it is not.
+    let wrong =
+        |entrant: &str, value: f64| u64::from(entrant == "z-fail" && [256.0, 512.0, 600.0].contains(&value)) * 7;
+    let mut harness = showing(|inspector| {
+        inspector.add_stress(rows("nested", wrong));
+        let row = |mut row: Row| {
+            row.off_limit = Some(1);
+            row
+        };
+        inspector.add_stress(rows("light-far", |_, _| 0).into_iter().map(row).collect());
+    });
+    select(&mut harness, "light-far: unexpected");
+    let course = "not as it must be: 1, 1, 1, 1, 1, 1 pixels differ from the limit";
+    assert!(harness.query_all_by_label(course).count() > 0);
+    select(&mut harness, "nested: unexpected");
+    select(&mut harness, "z-fail: breaks at 256, unexpected, at 600: wrong where it must be right");
+    assert!(matches!(harness.state().actions.last(), Some(Action::OpenStress { value: 600.0, .. })));
 }
 
 #[test]

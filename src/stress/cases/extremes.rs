@@ -5,6 +5,8 @@ mod lights;
 mod meshes;
 mod receivers;
 
+pub use eyes::under_a_roof;
+
 use crate::stress::Case;
 
 /// All of them.

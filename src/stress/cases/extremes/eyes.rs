@@ -1,8 +1,8 @@
 //! Extremes of where the eye and the near plane are.
 
 use super::ulps;
-use crate::scene::Light;
 use crate::scene::builtin::shapes;
+use crate::scene::{Light, MeshError, Scene};
 use crate::stress::cases::stage::{cuboid, floor, lamp, moved, object, scene, still_life, turned};
 use crate::stress::cases::who::*;
 use crate::stress::{Case, Drives, Least};
@@ -15,14 +15,17 @@ pub const ALL: &[Case] =
 const EYE_IN_VOLUME: Case = Case {
     name: "eye-in-volume",
     lesson: "a roof over the eye: whoever counts from the eye on begins with a count that is not zero",
-    drives: Drives::Scene(|_| {
-        let roof = moved(object("roof", shapes::quad([2.5; 2])?), [1.3, 4.0, 3.2]);
-        let objects = vec![floor(3.0)?, roof, cuboid("box", [0.0, 0.5, 0.0], [0.6; 3])?];
-        Ok(scene([1.5, 2.0, 3.5], [0.0, 0.3, 0.0], lamp(1.2, 6.0, 3.0), objects))
-    }),
-    failures: &[CUT_BY_NEAR],
+    drives: Drives::Scene(|_| under_a_roof()),
+    failures: &[CUT_BY_NEAR.is_mixed().at_most(0.999)],
     ..PLAIN
 };
+
+/// A box on a floor, and a roof whose shadow the eye is in.
+pub fn under_a_roof() -> Result<Scene, MeshError> {
+    let roof = moved(object("roof", shapes::quad([2.5; 2])?), [1.3, 4.0, 3.2]);
+    let objects = vec![floor(3.0)?, roof, cuboid("box", [0.0, 0.5, 0.0], [0.6; 3])?];
+    Ok(scene([1.5, 2.0, 3.5], [0.0, 0.3, 0.0], lamp(1.2, 6.0, 3.0), objects))
+}
 
 const EYE_ON_SIDE_PLANE: Case = Case {
     name: "eye-on-side-plane",
@@ -35,7 +38,7 @@ const EYE_ON_SIDE_PLANE: Case = Case {
         let eye = [ulps(1.5, steps), 1.0, 1.0];
         Ok(scene(eye, [-0.5, 0.0, -1.0], lamp(0.0, 4.0, 0.0), vec![floor(3.0)?, board]))
     }),
-    failures: &[CUT_BY_NEAR],
+    failures: &[CUT_BY_NEAR.is_mixed().at_most(0.999)],
     ..PLAIN
 };
 
@@ -49,7 +52,7 @@ const LIGHT_BEHIND_EYE: Case = Case {
         scene.camera.near = 1.0;
         Ok(scene)
     }),
-    failures: &[CUT_BY_NEAR, BETWEEN],
+    failures: &[CUT_BY_NEAR.is_mixed().at_most(0.3), BETWEEN.at_most(0.75)],
     ..PLAIN
 };
 

@@ -5,13 +5,15 @@ use crate::scene::builtin::shapes;
 use crate::scene::{Light, MeshError, Scene};
 use crate::stress::cases::stage::{cuboid, floor, lamp, moved, object, scene, still_life, turned};
 use crate::stress::cases::who::*;
-use crate::stress::{Case, Drives, Least};
-use glam::DVec3;
+use crate::stress::{Case, Drives, Failure, Least};
+use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
 /// All of them.
 pub const ALL: &[Case] = &[
     LIGHT_AT_SHEET,
+    TURNED_SHEET,
+    LAMP_AT_CEILING,
     LIGHT_IN_NEAR_PLANE,
     LIGHT_INSIDE_MESH,
     LIGHT_IN_TORUS_HOLE,
@@ -37,23 +39,68 @@ const LIGHT_AT_SHEET: Case = Case {
     }),
     least: |_| Least { lit: 0.005, because: "only the sheet's top is lit", ..Least::USUAL },
     failures: &[
-        fails(MAP, "map-near-plane", "it begins at a millionth of the scene: what is nearer to the light is not in it")
-            .at(|distance| distance < 5e-7)
-            .is_missing(),
-        fails(PLANAR, "f32-limit", "a shadow of a thousand kilometres has corners that 24 bits can't place to a pixel")
-            .at(|distance| distance < 5e-6)
-            .is_missing()
-            .at_most(0.005)
-            .perhaps(),
-        fails(
-            TEXTURE,
-            "f32-limit",
-            "the sheet is thrown by one matrix, in which 24 bits no longer tell its height from the light's",
-        )
-        .at(|distance| distance < 5e-6)
-        .is_missing(),
+        NEARER_THAN_MAP.at(|distance| distance < 5e-7).at_most(0.99),
+        FAR_CORNERS,
+        ONE_MATRIX.at_most(0.99),
         NO_FIT,
     ],
+    ..PLAIN
+};
+
+const NEARER_THAN_MAP: Failure =
+    fails(MAP, "map-near-plane", "it begins at a millionth of the scene: what is nearer to the light is not in it")
+        .is_missing();
+
+const FAR_CORNERS: Failure =
+    fails(PLANAR, "f32-limit", "a shadow of a thousand kilometres has corners that 24 bits can't place to a pixel")
+        .at(|distance| distance < 5e-6)
+        .is_missing()
+        .at_most(0.004)
+        .perhaps();
+
+const ONE_MATRIX: Failure = fails(
+    TEXTURE,
+    "f32-limit",
+    "the sheet is thrown by one matrix, in which 24 bits no longer tell its height from the light's",
+)
+.at(|distance| distance < 5e-6)
+.is_missing();
+
+const TURNED_SHEET: Case = Case {
+    name: "turned-sheet",
+    lesson: "the same with the sheet turned: no coordinate of its corners or of the light is alike",
+    drives: Drives::Scene(|distance| {
+        let sheet = moved(turned(object("sheet", shapes::quad([0.8; 2])?), [30.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
+        let over = DMat3::from_rotation_x(30.0_f64.to_radians()) * DVec3::new(0.1, 0.8 * distance, 0.15);
+        let light = Light::point(DVec3::Y + over);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, sheet]))
+    }),
+    least: |_| Least::USUAL,
+    failures: &[
+        NEARER_THAN_MAP.at(|distance| distance < 5e-7).at_most(0.62),
+        NEARER_THAN_MAP.at(|distance| distance < 5e-6).at_most(0.1),
+        fails(MAP, "aliasing", "the sheet's edge is a few texels from where the map begins")
+            .at(|distance| distance < 5e-4)
+            .is_missing()
+            .at_most(0.007)
+            .perhaps(),
+        FAR_CORNERS,
+        ONE_MATRIX.at_most(0.62),
+        NO_FIT,
+    ],
+    ..LIGHT_AT_SHEET
+};
+
+const LAMP_AT_CEILING: Case = Case {
+    name: "lamp-at-ceiling",
+    lesson: "inside a room, a lamp just under its ceiling: the room casts too, and is around eye and lamp",
+    parameter: "metres below the ceiling",
+    values: LIGHT_AT_SHEET.values,
+    drives: Drives::Scene(|distance| {
+        let room = cuboid("room", [0.0, 1.5, 0.0], [6.0, 3.0, 6.0])?;
+        let ring = moved(object("ring", shapes::torus(0.6, 0.25, 32, 16)?), [0.0, 1.0, 0.0]);
+        Ok(scene([1.5, 2.0, 2.8], [0.0, 0.6, 0.0], lamp(0.3, 3.0 - distance, 0.2), vec![room, ring]))
+    }),
     ..PLAIN
 };
 
@@ -72,12 +119,14 @@ const LIGHT_IN_NEAR_PLANE: Case = Case {
         Ok(scene)
     }),
     failures: &[
-        CUT_BY_NEAR,
+        CUT_BY_NEAR.is_false().at_most(0.975),
         fails(
             Z_PASS_PLUS,
             "light-in-near-plane",
             "the light sees the near rectangle as a line, so what the eye is inside of is not counted",
-        ),
+        )
+        .is_false()
+        .at_most(0.975),
     ],
     ..PLAIN
 };
@@ -93,9 +142,11 @@ const LIGHT_INSIDE_MESH: Case = Case {
     also: &[LIGHT_FACING, BY_TOPOLOGY],
     least: |_| Least::all_dark("outside the mesh all is dark"),
     failures: &[
-        CUT_BY_NEAR,
+        CUT_BY_NEAR.is_missing().at_most(0.999),
         NO_FIT,
-        fails(LIGHT_FACING, "light-facing-inside", "from inside, no outer face is turned to the light: nothing casts"),
+        fails(LIGHT_FACING, "light-facing-inside", "from inside, no outer face is turned to the light: nothing casts")
+            .is_missing()
+            .at_most(0.999),
     ],
     ..PLAIN
 };
@@ -157,7 +208,9 @@ const CASTER_AROUND_LIGHT: Case = Case {
             LIGHT_FACING,
             "light-facing-open",
             "the shade has only outer faces, and none of them is turned to the light",
-        ),
+        )
+        .is_missing()
+        .at_most(0.69),
     ],
     ..PLAIN
 };
@@ -170,7 +223,7 @@ const SUN_ALONG_RECEIVER: Case = Case {
         let objects = vec![floor(3.0)?, wall, cuboid("box", [0.0, 0.8, 0.0], [0.8, 0.6, 0.8])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::directional(DVec3::new(0.2, 0.0, 1.0)), objects))
     }),
-    failures: &[BETWEEN],
+    failures: &[BETWEEN.at_most(0.12)],
     ..PLAIN
 };
 

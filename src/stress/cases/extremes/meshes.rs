@@ -61,7 +61,9 @@ const OPEN_MESH: Case = Case {
         LIGHT_FACING,
         "light-facing-open",
         "light falls through the open top on faces that are turned away and do not cast",
-    )],
+    )
+    .is_missing()
+    .at_most(0.018)],
     ..PLAIN
 };
 
@@ -86,7 +88,7 @@ const MOBIUS: Case = Case {
         let strip = object("strip", mesh(&points, &quads.collect::<Vec<_>>())?);
         over_floor(vec![moved(turned(strip, [20.0, 0.0, 0.0]), [0.0, 1.0, 0.0])])
     }),
-    failures: &[NO_SELF_SHADOW],
+    failures: &[NO_SELF_SHADOW.at_most(0.0006)],
     ..PLAIN
 };
 
@@ -107,7 +109,9 @@ const FINS: Case = Case {
         over_floor(vec![moved(object("fins", mesh(&points, &quads.collect::<Vec<_>>())?), [0.0, 0.8, 0.0])])
     }),
     also: &[LIGHT_FACING],
-    failures: &[fails(LIGHT_FACING, "light-facing-open", "fins that show the light their other side do not cast")],
+    failures: &[fails(LIGHT_FACING, "light-facing-open", "fins that show the light their other side do not cast")
+        .is_missing()
+        .at_most(0.009)],
     ..PLAIN
 };
 
@@ -232,6 +236,8 @@ const UNDRAWN: Case = Case {
         CAPS_NEVER,
         "light-caps-never",
         "a cap in front of a surface passes the test, but is counted as if it were behind",
-    )],
+    )
+    .is_mixed()
+    .at_most(0.08)],
     ..PLAIN
 };

@@ -29,7 +29,9 @@ const ACROSS_LIGHT: Case = Case {
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.3, 1.7, 0.8), vec![floor(3.0)?, wall]))
     }),
     also: &[UNCLIPPED],
-    failures: &[fails(UNCLIPPED, "anti-shadow", "what is above the light is thrown through it, upside down")],
+    failures: &[fails(UNCLIPPED, "anti-shadow", "what is above the light is thrown through it, upside down")
+        .is_mixed()
+        .at_most(0.56)],
     ..PLAIN
 };
 
@@ -41,7 +43,10 @@ const THROUGH_FLOOR: Case = Case {
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.6, 1.5, 0.6), objects))
     }),
     also: &[UNCLIPPED],
-    failures: &[BETWEEN, fails(UNCLIPPED, "false-shadow", "what is below the floor is thrown up on it")],
+    failures: &[
+        BETWEEN,
+        fails(UNCLIPPED, "false-shadow", "what is below the floor is thrown up on it").is_false().at_most(0.065),
+    ],
     ..PLAIN
 };
 
@@ -55,7 +60,9 @@ const BEHIND_PROJECTOR: Case = Case {
     }),
     also: &[REVERSED],
     least: |_| Least::all_lit("the slide's shadow falls beyond the floor"),
-    failures: &[fails(REVERSED, "reverse-projection", "behind the light, where q is negative, the slide shows again")],
+    failures: &[fails(REVERSED, "reverse-projection", "behind the light, where q is negative, the slide shows again")
+        .is_false()
+        .at_most(0.08)],
     ..PLAIN
 };
 
@@ -67,7 +74,7 @@ const SHELF_BETWEEN: Case = Case {
         let objects = vec![floor(3.0)?, shelf, cuboid("box", [0.1, 0.6, 0.1], [0.4; 3])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.4, 4.0, 0.6), objects))
     }),
-    failures: &[BETWEEN],
+    failures: &[BETWEEN.at_most(0.005)],
     ..PLAIN
 };
 
@@ -80,7 +87,7 @@ const ROUND_RECEIVER: Case = Case {
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(2.5, 3.0, 0.5), vec![floor(3.0)?, ring, board]))
     }),
     also: &[LIGHT_FACING, BY_TOPOLOGY],
-    failures: &[NOT_PLANAR, NOT_PLANAR_TEXTURE, BETWEEN],
+    failures: &[NOT_PLANAR, NOT_PLANAR_TEXTURE, BETWEEN.at_most(0.003)],
     ..PLAIN
 };
 
