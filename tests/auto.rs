@@ -135,6 +135,38 @@ fn a_closed_mesh_casts_with_what_faces_the_light_alone() {
     assert_decides(Decision::AwayTriangles, what, &torus(false), &torus(true));
 }
 
+/// A turned room whose walls face the sun overhead by a rounding of their places: what faces the light
+/// alone lost the whole shadow.
+#[test]
+fn a_wall_that_is_edge_on_keeps_all_triangles() {
+    let mut room = cuboid("room", [-3.0, -3.0, -3.0], [3.0, 3.0, 3.0]);
+    room.pose.rotate_degrees = DVec3::new(90.0, 0.0, 0.0);
+    let mut scene = from_above(vec![room]);
+    scene.lights = vec![Light::directional(DVec3::Y)];
+    let scene = looking(scene, [0.5, 1.0, 2.0], [0.0, 0.5, -2.0]);
+    let found = left_out(&mut session(), &scene);
+    assert!(!found.iter().any(|left| left == "triangles that face away of room"), "{found:?}");
+}
+
+/// Depth with few bits ties what is apart, and a far plane cuts volumes: there nothing is left out that a
+/// depth might miss.
+#[test]
+fn other_depths_leave_out_nothing_that_asks_for_depth() {
+    let mut session = session();
+    let scene = from_above(vec![ball(10, 1.0, [2.0, 2.0, 0.0])]);
+    for depth in ["standard-infinite", "standard-finite", "standard-finite-clamp"] {
+        let with = |leave_out: &str| {
+            let mut request = auto(leave_out);
+            request.choice.set("depth", depth).expect("a setting");
+            request
+        };
+        let [all, none] = ["all", "none"].map(|what| session.capture(&scene, &with(what)).expect("a capture"));
+        assert_eq!(labels(&all), labels(&none), "{depth}");
+        assert!(picture(&all) == picture(&none), "{depth}");
+        assert!(!all.left_out.iter().any(|left| left.what == "caps"), "{depth}");
+    }
+}
+
 /// The eye stands beside a shadow, and in it.
 #[test]
 fn who_cannot_hold_the_eye_needs_no_caps() {

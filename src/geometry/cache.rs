@@ -1,7 +1,7 @@
 //! What geometry is worth keeping between plans: edge lists by the mesh's content, planes by the
 //! mesh and its place, and buffers.
 
-use super::hugging::put_hugging_last;
+use super::hugging::{has_edge_on, put_hugging_last};
 use super::planar::Flattened;
 use super::{
     Casters, EdgeList, Extruder, Facings, Fan, FarEnd, Planes, SilhouetteEdge, Topology, VolumeParts, silhouette,
@@ -149,6 +149,9 @@ impl GeometryCache {
         let key = (mesh.content_hash(), pose_bits(caster.pose));
         let check = || solid::check(caster.world, mesh.triangles(), &topology);
         self.solids.entry(key).or_insert_with(check).clone().map_err(|doubt| doubt.to_string())?;
+        if has_edge_on(caster, light) {
+            return Err("some triangle is edge-on to it, as far as single precision can tell".to_owned());
+        }
         match solid::light_is_outside(caster.world, mesh.triangles(), light) {
             true => Ok(()),
             false => Err("the light is inside it, or on it".to_owned()),

@@ -11,6 +11,9 @@ use glam::DVec4;
 /// within rounding of a side is within a tenth of a pixel of the edge.
 const GRAZING: f64 = 0.002;
 
+/// The sine below which rounding to single precision may turn a triangle to the light's other side.
+const EDGE_ON: f64 = 1e-6;
+
 /// Puts the edges whose sides hug a triangle of `caster` last, the order kept otherwise; how many they are.
 pub fn put_hugging_last(
     silhouette: &mut [SilhouetteEdge],
@@ -19,12 +22,7 @@ pub fn put_hugging_last(
     edges: Option<&EdgeList>,
 ) -> usize {
     let triangles = caster.mesh.triangles();
-    let is_grazed = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|corner| caster.world[corner as usize]);
-        let normal = (b - a).cross(c - a);
-        let to_light = light.truncate() - a * light.w;
-        normal.dot(to_light).abs() <= GRAZING * normal.length() * to_light.length()
-    };
+    let is_grazed = |corners: &[u32; 3]| is_grazed(caster, *corners, light, GRAZING);
     let hugs: Box<dyn Fn(Edge) -> bool> = match edges {
         Some(edges) => Box::new(move |edge| {
             let index = edges.edges().binary_search(&edge);
@@ -39,6 +37,18 @@ pub fn put_hugging_last(
     };
     silhouette.sort_by_cached_key(|edge| hugs(edge.edge));
     silhouette.len() - silhouette.partition_point(|edge| !hugs(edge.edge))
+}
+
+/// Does the light lie so nearly in the plane of some triangle that single precision can't tell its side?
+pub fn has_edge_on(caster: Caster, light: DVec4) -> bool {
+    caster.mesh.triangles().iter().any(|corners| is_grazed(caster, *corners, light, EDGE_ON))
+}
+
+fn is_grazed(caster: Caster, corners: [u32; 3], light: DVec4, sine: f64) -> bool {
+    let [a, b, c] = corners.map(|corner| caster.world[corner as usize]);
+    let normal = (b - a).cross(c - a);
+    let to_light = light.truncate() - a * light.w;
+    normal.dot(to_light).abs() <= sine * normal.length() * to_light.length()
 }
 
 fn edges_of(&[a, b, c]: &[u32; 3]) -> [Edge; 3] {

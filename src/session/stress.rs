@@ -248,18 +248,23 @@ fn flips_between(last: &Before, now: &mut Before, width: usize) -> u64 {
 mod tests {
     use super::*;
 
+    /// Three by three pixels that stand still.
+    fn nine_pixels() -> Before {
+        Before {
+            entrant: Entrant::of(Technique::ZFail),
+            light: 0,
+            labels: vec![0; 9],
+            truth: vec![0; 9],
+            excused: vec![false; 9],
+            ahead: vec![0; 9],
+        }
+    }
+
     /// Flips of the middle of three by three pixels, step by step; the others stand still, but for
     /// a corner of the truth.
     fn flips(labels: &[u8], truth: &[u8], corner: &[u8]) -> Vec<u64> {
         let at = |step: usize| {
-            let mut now = Before {
-                entrant: Entrant::of(Technique::ZFail),
-                light: 0,
-                labels: vec![0; 9],
-                truth: vec![0; 9],
-                excused: vec![false; 9],
-                ahead: vec![0; 9],
-            };
+            let mut now = nine_pixels();
             (now.labels[4], now.truth[4], now.truth[8]) = (labels[step], truth[step], corner[step]);
             now
         };
@@ -288,14 +293,7 @@ mod tests {
     /// Flips where these of three by three pixels change there and back.
     fn flips_of(pixels: &[usize], is_excused: bool) -> u64 {
         let at = |label: u8| {
-            let mut now = Before {
-                entrant: Entrant::of(Technique::ZFail),
-                light: 0,
-                labels: vec![0; 9],
-                truth: vec![0; 9],
-                excused: vec![false; 9],
-                ahead: vec![0; 9],
-            };
+            let mut now = nine_pixels();
             pixels.iter().for_each(|pixel| now.labels[*pixel] = label);
             pixels.iter().for_each(|pixel| now.excused[*pixel] = is_excused && label == 1);
             now

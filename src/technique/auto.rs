@@ -94,9 +94,7 @@ impl Questions {
         if let Some(other) = self.holder(frame, index) {
             return no_volume(format!("{} holds all of it in its umbra", frame.placed[other].object.name));
         }
-        // Clamped depth would let z-pass count what lies before the near plane.
-        let may_pass = allowed(Decision::Caps) && !frame.depth_mapping().clamps();
-        if let Some(outside) = self.near_clip.outside(&near).filter(|_| may_pass) {
+        if let Some(outside) = self.near_clip.outside(&near).filter(|_| allowed(Decision::Caps)) {
             let plane = format!("plane {} of the near-clip volume", outside.plane + 1);
             frame.leave_out("caps", &object.name, &format!("it lies {}: z-pass counts it", beyond(outside, &plane)));
             // What is not drawn has no surface where its volume begins.

@@ -1,6 +1,7 @@
 //! What may be left out of a frame: one decision each, taken where it is proven to change nothing.
 
 use super::Choice;
+use crate::math::depth::DepthMapping;
 
 /// Something that a scene may not need.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -75,8 +76,13 @@ impl Decision {
         }
     }
 
-    /// May it be taken?
+    /// May it be taken? Depth that is not reversed and infinite cuts volumes off, or lets surfaces tie that
+    /// are apart: what hides nothing elsewhere may decide a pixel there.
     pub(super) fn is_allowed(self, choice: &Choice) -> bool {
+        let asks_no_depth = matches!(self, Decision::Light | Decision::Stencil | Decision::Clear | Decision::MapFaces);
+        if !asks_no_depth && choice.word("depth") != DepthMapping::ReversedInfinite.name() {
+            return false;
+        }
         match choice.word("leave-out") {
             "none" => false,
             "all" => true,

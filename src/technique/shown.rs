@@ -74,6 +74,9 @@ fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
     let touches = |corners: &[u32; 3]| corners.iter().any(|vertex| is_neighbour[*vertex as usize]);
     let shows: Vec<bool> = object.mesh.triangles().iter().map(touches).collect();
     let hidden = shows.iter().filter(|shows| !**shows).count();
+    if hidden == 0 {
+        return Shown::All;
+    }
     let because = "the mesh is closed and wound outwards, the eye is outside it, and the near plane does not cut it";
     frame.leave_out(
         &format!("{} triangles that face away from the eye", numbers::count(hidden as u64)),
