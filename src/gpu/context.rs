@@ -1,6 +1,6 @@
 //! The adapter and its device.
 
-use super::GpuError;
+use super::{GpuError, features};
 use crate::capture::AdapterInfo;
 use wgpu::{Adapter, Backends, Device, DeviceType, Features, Limits, Queue};
 
@@ -8,16 +8,15 @@ use wgpu::{Adapter, Backends, Device, DeviceType, Features, Limits, Queue};
 const BACKENDS: Backends = Backends::VULKAN.union(Backends::METAL).union(Backends::DX12);
 /// The stencil buffer's format, with a depth that can be copied.
 const REQUIRED: Features = Features::DEPTH32FLOAT_STENCIL8;
-/// Times of passes, depth that is clamped instead of clipped, and counts in floats, where the
-/// adapter has them.
-const OPTIONAL: Features =
-    Features::TIMESTAMP_QUERY.union(Features::DEPTH_CLIP_CONTROL).union(Features::FLOAT32_BLENDABLE);
+/// What captures and reports measure, where the adapter can.
+const MEASURED: Features = Features::TIMESTAMP_QUERY;
 
 /// An adapter with a device on it.
 #[derive(Debug)]
 pub struct Context {
     /// Who runs the plans.
     pub info: AdapterInfo,
+    adapter: Adapter,
     pub(super) device: Device,
     pub(super) queue: Queue,
     /// Nanoseconds a timestamp tick; `None` where passes can't be timed.
@@ -36,12 +35,25 @@ impl Context {
         });
         let adapters = pollster::block_on(instance.enumerate_adapters(BACKENDS));
         let adapter = choose(adapters, wanted)?;
+        let features = REQUIRED | (adapter.features() & MEASURED);
+        Context::open(adapter, features)
+    }
+
+    /// Another device on the same adapter, that can do what this one can and `needed` too.
+    ///
+    /// # Errors
+    /// The adapter can't do that, or gives no device.
+    pub(super) fn with(&self, needed: Features) -> Result<Context, GpuError> {
+        features::check(needed, self.adapter.features())?;
+        Context::open(self.adapter.clone(), self.device.features() | needed)
+    }
+
+    fn open(adapter: Adapter, features: Features) -> Result<Context, GpuError> {
         let info = info_of(&adapter);
-        let can_time = adapter.features().contains(Features::TIMESTAMP_QUERY);
         let available = adapter.limits();
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("stencilscope"),
-            required_features: REQUIRED | (adapter.features() & OPTIONAL),
+            required_features: features,
             // Defaults, but for how large pictures and meshes may be.
             required_limits: Limits {
                 max_texture_dimension_2d: available.max_texture_dimension_2d,
@@ -53,8 +65,9 @@ impl Context {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: one_line(&error.to_string()) })?;
+        let can_time = features.contains(Features::TIMESTAMP_QUERY);
         let timestamp_period = can_time.then(|| queue.get_timestamp_period());
-        Ok(Context { info, device, queue, timestamp_period })
+        Ok(Context { info, adapter, device, queue, timestamp_period })
     }
 
     /// Runs `work` and turns whatever the driver complained about into an error.

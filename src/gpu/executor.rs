@@ -4,18 +4,19 @@ use super::buffers::Buffers;
 use super::fragment_log::LogKeeper;
 use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
+use super::queries::{Notes, Samples, Timestamps};
 use super::readback::{self, Change, StagedPass, color_change, depth_change, stencil_change};
-use super::{Context, GpuError};
+use super::{Context, GpuError, features};
 use crate::capture::{Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
 use crate::plan::{AttachmentRole, Draw, FramePlan, Pass, lint};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use wgpu::{CommandEncoder, LoadOp, Operations, QuerySet, RenderPass, StoreOp};
+use wgpu::{CommandEncoder, LoadOp, Operations, RenderPass, StoreOp};
 
 /// Runs plans; keeps pipelines and buffers between them.
 #[derive(Debug)]
 pub struct Executor {
-    pub(super) context: Context,
+    pub(super) context: Arc<Context>,
     pub(super) pipelines: Pipelines,
     buffers: Buffers,
     pub(super) log: LogKeeper,
@@ -55,7 +56,7 @@ impl Executor {
             pipelines: Pipelines::new(&context.device),
             buffers: Buffers::default(),
             log: LogKeeper::default(),
-            context,
+            context: Arc::new(context),
         }
     }
 
@@ -80,8 +81,20 @@ impl Executor {
         if let Some(error) = lint::check(plan).into_iter().next() {
             return Err(GpuError::Plan(error));
         }
+        self.provide(plan)?;
         let Executor { context, pipelines, buffers, .. } = self;
         context.guarded(|| Prepared::new(context, pipelines, buffers, plan))
+    }
+
+    /// Opens another device where this one can't do what the plan needs. What has been prepared keeps
+    /// its own.
+    pub(super) fn provide(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
+        let needed = features::needed(plan);
+        if !self.context.device.features().contains(needed) {
+            self.context = Arc::new(self.context.with(needed)?);
+            self.forget();
+        }
+        Ok(())
     }
 
     /// Runs the timed passes and waits for the GPU: recording, submitting, executing and, with
@@ -92,7 +105,7 @@ impl Executor {
     pub fn time(&self, prepared: &Prepared, snapshots: bool) -> Result<Duration, GpuError> {
         let mode = if snapshots { Mode::Snapshots } else { Mode::Frame };
         let start = Instant::now();
-        self.context.guarded(|| self.submit(prepared, mode, None))?;
+        prepared.context.guarded(|| submit(prepared, mode, &Notes::default()))?;
         let took = start.elapsed();
         if snapshots {
             staged(prepared, mode).flat_map(StagedPass::iter).for_each(readback::Staging::unmap);
@@ -106,13 +119,30 @@ impl Executor {
     /// # Errors
     /// A driver that fails.
     pub fn gpu_ms(&self, prepared: &Prepared) -> Result<Option<f64>, GpuError> {
-        let timestamps = self.context.guarded(|| Ok(Timestamps::new(&self.context, prepared.plan, Mode::Frame)))?;
-        let Some(timestamps) = timestamps else { return Ok(None) };
-        self.context.guarded(|| self.submit(prepared, Mode::Frame, Some(&timestamps)))?;
-        let times = timestamps.read(&self.context)?;
+        let context = &prepared.context;
+        let notes = context.guarded(|| Ok(Notes::of_times(context, prepared.plan, Mode::Frame)))?;
+        let Some(timestamps) = &notes.timestamps else { return Ok(None) };
+        context.guarded(|| submit(prepared, Mode::Frame, &notes))?;
+        let times = timestamps.read(context)?;
         // What the CPU makes takes the GPU no time.
         let passes = prepared.plan.passes.iter().zip(times).filter(|(pass, _)| pass.timed && pass.image.is_none());
         Ok(passes.map(|(_, ms)| ms).sum())
+    }
+
+    /// Runs the timed passes and counts, for each draw of each pass, the samples that passed its tests;
+    /// `None` for draws that do something where they fail them, and where there are too many to ask.
+    ///
+    /// # Errors
+    /// A driver that fails.
+    pub fn samples(&self, prepared: &Prepared) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
+        let context = &prepared.context;
+        let samples = context.guarded(|| Ok(Samples::new(&context.device, prepared.plan)))?;
+        let notes = Notes { samples, ..Notes::default() };
+        context.guarded(|| submit(prepared, Mode::Frame, &notes))?;
+        match &notes.samples {
+            Some(samples) => samples.read(),
+            None => Ok(prepared.plan.passes.iter().map(|pass| vec![None; pass.draws.len()]).collect()),
+        }
     }
 
     /// Runs all passes and keeps every attachment after each. With `bracket`, an attached
@@ -121,57 +151,26 @@ impl Executor {
     /// # Errors
     /// A driver that fails.
     pub fn capture(&self, prepared: Prepared, bracket: bool) -> Result<Output, GpuError> {
-        let timestamps =
-            self.context.guarded(|| Ok(Timestamps::new(&self.context, prepared.plan, Mode::Everything)))?;
-        let run = || self.context.guarded(|| self.submit(&prepared, Mode::Everything, timestamps.as_ref()));
+        let context = &prepared.context;
+        let notes = context.guarded(|| Ok(Notes::of_times(context, prepared.plan, Mode::Everything)))?;
+        let run = || context.guarded(|| submit(&prepared, Mode::Everything, &notes));
         if bracket {
-            self.context.bracketed(run)?
+            context.bracketed(run)?
         } else {
             run()?
         }
-        let times = match &timestamps {
-            Some(timestamps) => timestamps.read(&self.context)?,
+        let times = match &notes.timestamps {
+            Some(timestamps) => timestamps.read(context)?,
             None => vec![None; prepared.plan.passes.len()],
         };
         collect(&prepared, &times)
     }
+}
 
-    /// Makes the pictures that come from the CPU and hands them to the GPU, before the frame.
-    fn upload_images(&self, prepared: &Prepared, mode: Mode) {
-        for (pass, targets) in prepared.plan.passes.iter().zip(&prepared.passes) {
-            if let (Some(image), Some(texture), true) = (&pass.image, &targets.image_target, mode.runs(pass)) {
-                let texels = image.source.make();
-                let bytes_per_row = texels.len() as u32 / texture.height().max(1);
-                let layout =
-                    wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(bytes_per_row), rows_per_image: None };
-                self.context.queue.write_texture(texture.as_image_copy(), &texels, layout, texture.size());
-            }
-        }
-    }
-
-    fn submit(&self, prepared: &Prepared, mode: Mode, timestamps: Option<&Timestamps>) -> Result<(), GpuError> {
-        self.upload_images(prepared, mode);
-        let mut encoder = self.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        for (index, pass) in prepared.plan.passes.iter().enumerate() {
-            if !mode.runs(pass) {
-                continue;
-            }
-            record_pass(&mut encoder, prepared, index, timestamps);
-            if mode != Mode::Frame {
-                prepared.staged[index].iter().for_each(|staging| staging.record(&mut encoder));
-            }
-        }
-        if let Some(timestamps) = timestamps {
-            timestamps.resolve(&mut encoder);
-        }
-        self.context.queue.submit([encoder.finish()]);
-        if mode != Mode::Frame {
-            staged(prepared, mode).flat_map(StagedPass::iter).for_each(readback::Staging::request_map);
-        }
-        if let Some(timestamps) = timestamps {
-            timestamps.request_map();
-        }
-        self.context.wait()
+impl Notes {
+    /// When the passes of a mode begin and end.
+    fn of_times(context: &Context, plan: &FramePlan, mode: Mode) -> Notes {
+        Notes { timestamps: Timestamps::new(context, plan, |pass| mode.runs(pass)), ..Notes::default() }
     }
 }
 
@@ -186,7 +185,41 @@ fn staged<'a>(prepared: &'a Prepared, mode: Mode) -> impl Iterator<Item = &'a St
     passes.filter(move |(pass, _)| mode.runs(pass)).map(|(_, staged)| staged)
 }
 
-fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, timestamps: Option<&Timestamps>) {
+/// Makes the pictures that come from the CPU and hands them to the GPU, before the frame.
+fn upload_images(prepared: &Prepared, mode: Mode) {
+    for (pass, targets) in prepared.plan.passes.iter().zip(&prepared.passes) {
+        if let (Some(image), Some(texture), true) = (&pass.image, &targets.image_target, mode.runs(pass)) {
+            let texels = image.source.make();
+            let bytes_per_row = texels.len() as u32 / texture.height().max(1);
+            let layout =
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(bytes_per_row), rows_per_image: None };
+            prepared.context.queue.write_texture(texture.as_image_copy(), &texels, layout, texture.size());
+        }
+    }
+}
+
+fn submit(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError> {
+    upload_images(prepared, mode);
+    let mut encoder = prepared.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    for (index, pass) in prepared.plan.passes.iter().enumerate() {
+        if !mode.runs(pass) {
+            continue;
+        }
+        record_pass(&mut encoder, prepared, index, notes);
+        if mode != Mode::Frame {
+            prepared.staged[index].iter().for_each(|staging| staging.record(&mut encoder));
+        }
+    }
+    notes.resolve(&mut encoder);
+    prepared.context.queue.submit([encoder.finish()]);
+    if mode != Mode::Frame {
+        staged(prepared, mode).flat_map(StagedPass::iter).for_each(readback::Staging::request_map);
+    }
+    notes.request_map();
+    prepared.context.wait()
+}
+
+fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, notes: &Notes) {
     let pass = &prepared.plan.passes[index];
     let targets = &prepared.passes[index];
     let color = pass.color.as_ref().zip(targets.color.as_ref()).map(|(target, view)| {
@@ -207,13 +240,17 @@ fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, 
         label: Some(&pass.name),
         color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
         depth_stencil_attachment: depth_stencil,
-        timestamp_writes: timestamps.and_then(|timestamps| timestamps.of_pass(index)),
+        timestamp_writes: notes.timestamps.as_ref().and_then(|timestamps| timestamps.of_pass(index)),
+        occlusion_query_set: notes.samples.as_ref().map(Samples::set),
         ..wgpu::RenderPassDescriptor::default()
     });
     render_pass.set_bind_group(0, &prepared.view_group, &[prepared.views.offset(pass.view.0)]);
-    for (draw, ready) in pass.draws.iter().zip(&targets.draws) {
+    for (at, (draw, ready)) in pass.draws.iter().zip(&targets.draws).enumerate() {
         let light_offset = pass.light.map_or(0, |light| prepared.lights.offset(light.0));
+        let query = notes.samples.as_ref().and_then(|samples| samples.slot(index, at));
+        query.inspect(|query| render_pass.begin_occlusion_query(*query));
         record_draw(&mut render_pass, prepared, draw, ready, light_offset);
+        query.inspect(|_| render_pass.end_occlusion_query());
     }
 }
 
@@ -359,65 +396,5 @@ fn step(pass: &Pass, gpu_ms: Option<f64>, snapshot: Snapshot) -> Step {
         draws: pass.draws.iter().map(summary).collect(),
         gpu_ms,
         snapshot,
-    }
-}
-
-/// When each pass began and ended, on adapters that can tell.
-struct Timestamps {
-    /// Which pair of queries is a pass's.
-    slots: Vec<Option<u32>>,
-    queries: QuerySet,
-    count: u32,
-    resolved: wgpu::Buffer,
-    readable: wgpu::Buffer,
-}
-
-impl Timestamps {
-    /// For the passes that run in a mode.
-    fn new(context: &Context, plan: &FramePlan, mode: Mode) -> Option<Timestamps> {
-        context.timestamp_period?;
-        let mut next_slot = 0..;
-        let slots: Vec<Option<u32>> =
-            plan.passes.iter().map(|pass| mode.runs(pass).then(|| next_slot.next()).flatten()).collect();
-        let count = slots.iter().flatten().count() as u32 * 2;
-        // A query set holds 4096 at most; a frame of more passes goes untimed.
-        if count == 0 || count > wgpu::QUERY_SET_MAX_QUERIES {
-            return None;
-        }
-        let device = &context.device;
-        let ty = wgpu::QueryType::Timestamp;
-        let queries = device.create_query_set(&wgpu::QuerySetDescriptor { label: None, ty, count });
-        let buffer = |usage| {
-            let size = u64::from(count) * 8;
-            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
-        };
-        let resolved = buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
-        let readable = buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-        Some(Timestamps { slots, queries, count, resolved, readable })
-    }
-
-    fn of_pass(&self, index: usize) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
-        self.slots[index].map(|slot| wgpu::RenderPassTimestampWrites {
-            query_set: &self.queries,
-            beginning_of_pass_write_index: Some(slot * 2),
-            end_of_pass_write_index: Some(slot * 2 + 1),
-        })
-    }
-
-    fn resolve(&self, encoder: &mut CommandEncoder) {
-        encoder.resolve_query_set(&self.queries, 0..self.count, &self.resolved, 0);
-        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.resolved.size());
-    }
-
-    fn request_map(&self) {
-        // A failure shows when the mapped range is asked for.
-        self.readable.map_async(wgpu::MapMode::Read, .., |_| {});
-    }
-
-    fn read(&self, context: &Context) -> Result<Vec<Option<f64>>, GpuError> {
-        let bytes = readback::mapped_bytes(&self.readable)?;
-        let ticks: Vec<u64> = bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
-        let times = readback::milliseconds(context, &ticks);
-        Ok(self.slots.iter().map(|slot| slot.and_then(|slot| times.get(slot as usize).copied()).flatten()).collect())
     }
 }

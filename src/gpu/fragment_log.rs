@@ -98,6 +98,7 @@ impl Executor {
         covering: &[Covering],
         room: u64,
     ) -> Result<FragmentLog, GpuError> {
+        self.provide(plan)?;
         let Executor { context, pipelines, log, .. } = self;
         let device = &context.device;
         let readable = context.guarded(|| {

@@ -4,8 +4,10 @@
 //! Context      adapter and device
 //! Pipelines    shaders and pipelines, interned by description
 //! Buffers      vertices and indices, by the hash of their content
+//! features     what few plans need, asked for when one does
 //! Executor     a plan → prepared textures, bind groups and draws → one command buffer
 //! fragment_log every fragment of one pixel, tests or no tests
+//! queries      times of passes, samples of draws
 //! readback     snapshots: copies recorded between passes, mapped, never copied again
 //! ```
 
@@ -13,9 +15,11 @@ mod buffers;
 mod context;
 mod error;
 mod executor;
+mod features;
 mod fragment_log;
 mod pipelines;
 mod prepared;
+mod queries;
 mod readback;
 mod shaders;
 mod uniforms;

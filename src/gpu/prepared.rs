@@ -7,6 +7,7 @@ use super::readback::{Change, StagedPass, Staging, color_change, depth_change, s
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError};
 use crate::plan::{Attachment, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility};
+use std::sync::Arc;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, Buffer, Device, RenderPipeline, Texture,
     TextureAspect, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
@@ -16,6 +17,8 @@ use wgpu::{
 #[derive(Debug)]
 pub struct Prepared<'a> {
     pub(super) plan: &'a FramePlan,
+    /// Its device stays open as long as it is used, though a later plan may have asked for another.
+    pub(super) context: Arc<Context>,
     pub(super) passes: Vec<PreparedPass>,
     pub(super) staged: Vec<StagedPass>,
     pub(super) views: UniformArray,
@@ -48,13 +51,12 @@ pub(super) struct PreparedDraw {
 
 impl<'a> Prepared<'a> {
     pub(super) fn new(
-        context: &Context,
+        context: &Arc<Context>,
         pipelines: &mut Pipelines,
         buffers: &mut Buffers,
         plan: &'a FramePlan,
     ) -> Result<Prepared<'a>, GpuError> {
         let device = &context.device;
-        check_features(device, plan)?;
         check_size(device, plan)?;
         buffers.next_plan();
         let textures: Vec<Texture> = plan.attachments.iter().map(|attachment| create(device, attachment)).collect();
@@ -88,7 +90,8 @@ impl<'a> Prepared<'a> {
         let staged = plan.passes.iter().map(|pass| stage(device, plan, pass, &textures)).collect::<Result<_, _>>()?;
         let view_group = views.bind_group(device, &pipelines.layouts.view);
         let draw_group = draws.bind_group(device, &pipelines.layouts.draw);
-        Ok(Prepared { plan, passes, staged, views, view_group, draws, draw_group, lights })
+        let context = context.clone();
+        Ok(Prepared { plan, context, passes, staged, views, view_group, draws, draw_group, lights })
     }
 
     /// Bytes that snapshots of the timed passes copy.
@@ -97,21 +100,6 @@ impl<'a> Prepared<'a> {
         let timed = self.plan.passes.iter().zip(&self.staged).filter(|(pass, _)| pass.timed);
         timed.flat_map(|(_, staged)| staged.iter()).map(Staging::byte_len).sum()
     }
-}
-
-fn check_features(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
-    let clamps = plan.passes.iter().flat_map(|pass| &pass.draws).any(|draw| draw.raster.unclipped_depth);
-    let missing = |feature, name: &'static str, instead: &'static str| match device.features().contains(feature) {
-        true => Ok(()),
-        false => Err(GpuError::MissingFeature { name, instead }),
-    };
-    if clamps {
-        missing(wgpu::Features::DEPTH_CLIP_CONTROL, "depth clamping", "choose another `depth`")?;
-    }
-    if plan.lights.iter().any(|light| light.count.is_some()) {
-        missing(wgpu::Features::FLOAT32_BLENDABLE, "blending of 32-bit floats", "count in the stencil")?;
-    }
-    Ok(())
 }
 
 fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {

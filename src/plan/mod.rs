@@ -20,6 +20,7 @@ pub mod lint;
 mod raster;
 mod split;
 pub mod text;
+mod unseen;
 
 pub use buffers::{Blob, DrawMesh, SurfaceData};
 pub use coverage::{Clip, Coverage, Covering, Face, FragmentLog, LoggedFragment};

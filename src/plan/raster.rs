@@ -94,6 +94,13 @@ impl RasterState {
         self
     }
 
+    /// Does a fragment that fails a test leave everything as it was?
+    #[must_use]
+    pub fn acts_only_where_it_passes(&self) -> bool {
+        let keeps = |face: &StencilFace| [face.fail_op, face.depth_fail_op] == [StencilOperation::Keep; 2];
+        self.stencil.write_mask == 0 || (keeps(&self.stencil.front) && keeps(&self.stencil.back))
+    }
+
     /// Can a draw with this state change the stored stencil?
     #[must_use]
     pub fn writes_stencil(&self) -> bool {

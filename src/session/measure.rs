@@ -120,6 +120,7 @@ impl Session {
             let start = Instant::now();
             let cache = &mut crate::geometry::GeometryCache::default();
             let plan = technique::plan(Job { scene, size: what.size, choice, cache })?;
+            let plan = self.without_unseen(plan)?;
             Ok((plan, start.elapsed()))
         };
         what.choices.iter().map(plan).collect()

@@ -135,13 +135,25 @@ impl Session {
         &self.executor.context().info
     }
 
-    /// The frame as data, without running it.
+    /// The frame as data, without running it; with `occlusion=queries` it runs once to see what shows.
     ///
     /// # Errors
-    /// A scene that can't be drawn.
+    /// A scene that can't be drawn; with queries, a lost GPU.
     pub fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
         let job = Job { scene, size: request.size, choice: &request.choice, cache: &mut self.geometry };
-        Ok(technique::plan(job)?)
+        let plan = technique::plan(job)?;
+        self.without_unseen(plan)
+    }
+
+    /// The plan without the draws that show nothing, where its settings ask for that: it runs once.
+    fn without_unseen(&mut self, plan: FramePlan) -> Result<FramePlan, SessionError> {
+        if plan.settings.get("occlusion").is_none_or(|occlusion| occlusion != "queries") {
+            return Ok(plan);
+        }
+        let prepared = self.executor.prepare(&plan)?;
+        let samples = self.executor.samples(&prepared)?;
+        drop(prepared);
+        Ok(plan.without_unseen(&samples))
     }
 
     /// How the mesh of each object hangs together, with the object's name.

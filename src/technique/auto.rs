@@ -26,8 +26,9 @@ use crate::numbers;
 use crate::plan::{FramePlan, LeftOut, LightId};
 use glam::{DVec3, DVec4};
 
-/// With all that may be left out, and with nothing left out.
-pub(super) const REPORT_ROWS: ReportRows = &[&[], &[("leave-out", "none")]];
+/// With all that may be left out, without what a look at the frame shows to be hidden, and with nothing
+/// left out.
+pub(super) const REPORT_ROWS: ReportRows = &[&[], &[("occlusion", "queries")], &[("leave-out", "none")]];
 
 /// What eight bits hold.
 const MOST_IN_STENCIL: usize = 255;

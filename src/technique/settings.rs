@@ -125,12 +125,18 @@ const LEAVE_OUT: SettingSpec = SettingSpec {
     default: "all",
     meaning: "what the frame may do without where that is proven to change nothing",
 };
-const NONE: &[SettingSpec] = &[DEPTH, EPSILON, DIFFUSE, LEAVE_OUT];
+const OCCLUSION: SettingSpec = word(
+    "occlusion",
+    &["off", "queries"],
+    "a frame before the frame asks what shows; draws that show nothing are left out of the next",
+);
+const NONE: &[SettingSpec] = &[DEPTH, EPSILON, DIFFUSE, LEAVE_OUT, OCCLUSION];
 const PLANAR: &[SettingSpec] = &[
     DEPTH,
     EPSILON,
     DIFFUSE,
     LEAVE_OUT,
+    OCCLUSION,
     word("stencil", &["on", "off"], "keeps shadows on their receiver"),
     word("blend", &["once", "twice"], "how often overlapping triangles darken a pixel"),
     word("clip", &["on", "off"], "drops what is beyond the light or below the receiver"),
@@ -142,6 +148,7 @@ const VOLUME: &[SettingSpec] = &[
     EPSILON,
     DIFFUSE,
     LEAVE_OUT,
+    OCCLUSION,
     word("casters", &["all", "by-topology", "light-facing", "light-back-facing"], "which triangles cast"),
     SettingSpec {
         key: "extrusion",
@@ -157,12 +164,13 @@ const VOLUME: &[SettingSpec] = &[
     word("silhouette", &["adjacency", "edge-list"], "how shared edges are found: built once, or searched each time"),
 ];
 const PLANAR_TEXTURE: &[SettingSpec] =
-    &[DEPTH, EPSILON, DIFFUSE, LEAVE_OUT, size("256", 4096, "texels along each side of a receiver's texture")];
+    &[DEPTH, EPSILON, DIFFUSE, LEAVE_OUT, OCCLUSION, size("256", 4096, "texels along each side of a receiver's texture")];
 const PROJECTIVE: &[SettingSpec] = &[
     DEPTH,
     EPSILON,
     DIFFUSE,
     LEAVE_OUT,
+    OCCLUSION,
     size("512", 4096, "texels along each side of a silhouette's picture"),
     word("passes", &["single", "multi"], "silhouettes are read while lighting, or darken the lit picture one by one"),
     word("reverse", &["off", "on"], "silhouettes also fall on what is behind the light"),
@@ -172,6 +180,7 @@ const SHADOW_MAP: &[SettingSpec] = &[
     EPSILON,
     DIFFUSE,
     LEAVE_OUT,
+    OCCLUSION,
     size("1024", 8192, "texels along each side of the map"),
     SettingSpec {
         key: "bias-constant",

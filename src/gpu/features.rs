@@ -1,0 +1,48 @@
+//! What a plan asks of a device beyond what every frame uses. A device is opened with nothing that no plan
+//! has asked for yet.
+
+use super::GpuError;
+use crate::plan::FramePlan;
+use wgpu::Features;
+
+/// A feature that few plans need.
+struct OnDemand {
+    feature: Features,
+    is_needed: fn(&FramePlan) -> bool,
+    /// In plain words.
+    name: &'static str,
+    /// What to do without it.
+    instead: &'static str,
+}
+
+const ON_DEMAND: [OnDemand; 2] = [
+    OnDemand {
+        feature: Features::DEPTH_CLIP_CONTROL,
+        is_needed: |plan| plan.passes.iter().flat_map(|pass| &pass.draws).any(|draw| draw.raster.unclipped_depth),
+        name: "depth clamping",
+        instead: "choose another `depth`",
+    },
+    OnDemand {
+        feature: Features::FLOAT32_BLENDABLE,
+        is_needed: |plan| plan.lights.iter().any(|light| light.count.is_some()),
+        name: "blending of 32-bit floats",
+        instead: "count in the stencil",
+    },
+];
+
+/// What this plan needs.
+pub(super) fn needed(plan: &FramePlan) -> Features {
+    let needed = ON_DEMAND.iter().filter(|one| (one.is_needed)(plan));
+    needed.fold(Features::empty(), |all, one| all | one.feature)
+}
+
+/// Are all of `needed` among what an adapter offers?
+///
+/// # Errors
+/// The first that is not.
+pub(super) fn check(needed: Features, offered: Features) -> Result<(), GpuError> {
+    match ON_DEMAND.iter().find(|one| needed.contains(one.feature) && !offered.contains(one.feature)) {
+        Some(OnDemand { name, instead, .. }) => Err(GpuError::MissingFeature { name, instead }),
+        None => Ok(()),
+    }
+}

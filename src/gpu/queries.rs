@@ -1,0 +1,147 @@
+//! What the GPU notes while it runs: when a pass began and ended, and how many samples of a draw passed.
+
+use super::readback;
+use super::{Context, GpuError};
+use crate::plan::{FramePlan, Pass};
+use wgpu::{BufferUsages, CommandEncoder, Device, QuerySet, QueryType};
+
+/// Queries of one kind, with the way back to the CPU.
+struct Queries {
+    set: QuerySet,
+    count: u32,
+    resolved: wgpu::Buffer,
+    readable: wgpu::Buffer,
+}
+
+impl Queries {
+    /// `None` of none, and of more than a query set holds (4096).
+    fn new(device: &Device, ty: QueryType, count: u32) -> Option<Queries> {
+        if count == 0 || count > wgpu::QUERY_SET_MAX_QUERIES {
+            return None;
+        }
+        let set = device.create_query_set(&wgpu::QuerySetDescriptor { label: None, ty, count });
+        let buffer = |usage| {
+            let size = u64::from(count) * 8;
+            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+        };
+        let resolved = buffer(BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC);
+        let readable = buffer(BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+        Some(Queries { set, count, resolved, readable })
+    }
+
+    fn resolve(&self, encoder: &mut CommandEncoder) {
+        encoder.resolve_query_set(&self.set, 0..self.count, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.resolved.size());
+    }
+
+    fn request_map(&self) {
+        // A failure shows when the mapped range is asked for.
+        self.readable.map_async(wgpu::MapMode::Read, .., |_| {});
+    }
+
+    fn read(&self) -> Result<Vec<u64>, GpuError> {
+        let bytes = readback::mapped_bytes(&self.readable)?;
+        Ok(bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect())
+    }
+}
+
+/// What a frame notes.
+#[derive(Default)]
+pub(super) struct Notes {
+    pub timestamps: Option<Timestamps>,
+    pub samples: Option<Samples>,
+}
+
+impl Notes {
+    fn queries(&self) -> impl Iterator<Item = &Queries> {
+        let timestamps = self.timestamps.as_ref().map(|timestamps| &timestamps.queries);
+        timestamps.into_iter().chain(self.samples.as_ref().map(|samples| &samples.queries))
+    }
+
+    /// After the last pass.
+    pub fn resolve(&self, encoder: &mut CommandEncoder) {
+        self.queries().for_each(|queries| queries.resolve(encoder));
+    }
+
+    /// After the frame was submitted.
+    pub fn request_map(&self) {
+        self.queries().for_each(Queries::request_map);
+    }
+}
+
+/// When each pass began and ended, on adapters that can tell.
+pub(super) struct Timestamps {
+    /// Which pair of queries is a pass's.
+    slots: Vec<Option<u32>>,
+    queries: Queries,
+}
+
+impl Timestamps {
+    /// For the passes that run. A frame of too many goes untimed.
+    pub fn new(context: &Context, plan: &FramePlan, runs: impl Fn(&Pass) -> bool) -> Option<Timestamps> {
+        context.timestamp_period?;
+        let mut next_slot = 0..;
+        let slots: Vec<Option<u32>> =
+            plan.passes.iter().map(|pass| runs(pass).then(|| next_slot.next()).flatten()).collect();
+        let count = slots.iter().flatten().count() as u32 * 2;
+        let queries = Queries::new(&context.device, QueryType::Timestamp, count)?;
+        Some(Timestamps { slots, queries })
+    }
+
+    pub fn of_pass(&self, index: usize) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+        self.slots[index].map(|slot| wgpu::RenderPassTimestampWrites {
+            query_set: &self.queries.set,
+            beginning_of_pass_write_index: Some(slot * 2),
+            end_of_pass_write_index: Some(slot * 2 + 1),
+        })
+    }
+
+    /// By pass.
+    pub fn read(&self, context: &Context) -> Result<Vec<Option<f64>>, GpuError> {
+        let times = readback::milliseconds(context, &self.queries.read()?);
+        Ok(self.slots.iter().map(|slot| slot.and_then(|slot| times.get(slot as usize).copied()).flatten()).collect())
+    }
+}
+
+/// How many samples of each draw passed its tests, where nothing else of it can matter.
+pub(super) struct Samples {
+    /// By pass and draw.
+    slots: Vec<Vec<Option<u32>>>,
+    queries: Queries,
+}
+
+impl Samples {
+    /// Of the timed passes; `None` where there is nothing to ask. What is beyond a query set's room is not
+    /// asked about.
+    pub fn new(device: &Device, plan: &FramePlan) -> Option<Samples> {
+        let mut next_slot = 0..wgpu::QUERY_SET_MAX_QUERIES;
+        let of_pass = |pass: &Pass| -> Vec<Option<u32>> {
+            let slots = pass.draws.iter().map(|draw| {
+                let is_asked = pass.timed && draw.raster.acts_only_where_it_passes();
+                if is_asked { next_slot.next() } else { None }
+            });
+            slots.collect()
+        };
+        let slots: Vec<Vec<Option<u32>>> = plan.passes.iter().map(of_pass).collect();
+        let count = slots.iter().flatten().flatten().count() as u32;
+        let queries = Queries::new(device, QueryType::Occlusion, count)?;
+        Some(Samples { slots, queries })
+    }
+
+    /// What a pass hands its samples to.
+    pub fn set(&self) -> &QuerySet {
+        &self.queries.set
+    }
+
+    /// The query of a draw.
+    pub fn slot(&self, pass: usize, draw: usize) -> Option<u32> {
+        self.slots[pass][draw]
+    }
+
+    /// By pass and draw; `None` where it was not asked.
+    pub fn read(&self) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
+        let counts = self.queries.read()?;
+        let of_draw = |slot: &Option<u32>| slot.and_then(|slot| counts.get(slot as usize).copied());
+        Ok(self.slots.iter().map(|pass| pass.iter().map(of_draw).collect()).collect())
+    }
+}

@@ -1,0 +1,27 @@
+//! The same frame without draws of which nothing shows.
+
+use super::{FramePlan, LeftOut};
+
+impl FramePlan {
+    /// Leaves out of the timed passes each draw of which no sample passed its tests. `samples`: by pass and
+    /// draw, of this very plan; `None` where that is not known, or not all that a draw does.
+    ///
+    /// A draw that changes nothing where it fails its tests, and passes them nowhere, changes nothing: so
+    /// those beside it leave the same without it.
+    #[must_use]
+    pub fn without_unseen(mut self, samples: &[Vec<Option<u64>>]) -> FramePlan {
+        for (pass, samples) in self.passes.iter_mut().zip(samples).filter(|(pass, _)| pass.timed) {
+            let mut samples = samples.iter();
+            let (draws, name, left_out) = (&mut pass.draws, &pass.name, &mut self.left_out);
+            draws.retain(|draw| {
+                let is_unseen = samples.next().is_some_and(|samples| *samples == Some(0));
+                if is_unseen {
+                    let because = "no sample of it passed its tests in the last frame, and nothing has moved";
+                    left_out.push(LeftOut::new(draw.name.clone(), format!("the pass `{name}`"), because));
+                }
+                !is_unseen
+            });
+        }
+        self
+    }
+}
