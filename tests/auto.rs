@@ -1,6 +1,8 @@
 //! What `auto` leaves out: taken where it changes nothing, not taken in the scene beside it, and never a
 //! pixel of difference.
 
+mod unseen;
+
 use crate::common::{cuboid, from_above, judged, mesh, request, session, square};
 use glam::DVec3;
 use std::sync::Arc;

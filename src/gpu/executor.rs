@@ -66,6 +66,12 @@ impl Executor {
         &self.context
     }
 
+    /// What few plans need, and one so far has asked for, in plain words.
+    #[must_use]
+    pub fn features(&self) -> Vec<&'static str> {
+        features::names(self.context.device.features())
+    }
+
     /// Forgets pipelines and buffers, so that the next plan is set up from nothing.
     pub fn forget(&mut self) {
         self.pipelines = Pipelines::new(&self.context.device);

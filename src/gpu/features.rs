@@ -36,6 +36,11 @@ pub(super) fn needed(plan: &FramePlan) -> Features {
     needed.fold(Features::empty(), |all, one| all | one.feature)
 }
 
+/// Those among `open`, in plain words.
+pub(super) fn names(open: Features) -> Vec<&'static str> {
+    ON_DEMAND.iter().filter(|one| open.contains(one.feature)).map(|one| one.name).collect()
+}
+
 /// Are all of `needed` among what an adapter offers?
 ///
 /// # Errors

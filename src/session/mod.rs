@@ -135,6 +135,12 @@ impl Session {
         &self.executor.context().info
     }
 
+    /// What the GPU was asked for beyond what every frame uses, in plain words: nothing until a plan needs it.
+    #[must_use]
+    pub fn features(&self) -> Vec<&'static str> {
+        self.executor.features()
+    }
+
     /// The frame as data, without running it; with `occlusion=queries` it runs once to see what shows.
     ///
     /// # Errors
