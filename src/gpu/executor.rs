@@ -2,6 +2,7 @@
 
 use super::buffers::Buffers;
 use super::fragment_log::LogKeeper;
+use super::maps::Maps;
 use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
 use super::queries::{Notes, Samples, Timestamps};
@@ -19,6 +20,7 @@ pub struct Executor {
     pub(super) context: Arc<Context>,
     pub(super) pipelines: Pipelines,
     buffers: Buffers,
+    maps: Maps,
     pub(super) log: LogKeeper,
 }
 
@@ -35,6 +37,8 @@ pub struct Output {
     pub counts: Vec<Option<Arc<Image>>>,
     /// One a light: the faces of its map, left-out ones at their clear value.
     pub maps: Vec<Option<Vec<Arc<Image>>>>,
+    /// One a pass: it did not run, since what it draws was there from the frame before.
+    pub kept: Vec<bool>,
 }
 
 /// Which passes run, and what is kept.
@@ -55,6 +59,7 @@ impl Executor {
         Executor {
             pipelines: Pipelines::new(&context.device),
             buffers: Buffers::default(),
+            maps: Maps::default(),
             log: LogKeeper::default(),
             context: Arc::new(context),
         }
@@ -76,6 +81,7 @@ impl Executor {
     pub fn forget(&mut self) {
         self.pipelines = Pipelines::new(&self.context.device);
         self.buffers = Buffers::default();
+        self.maps = Maps::default();
         self.log = LogKeeper::default();
     }
 
@@ -88,8 +94,8 @@ impl Executor {
             return Err(GpuError::Plan(error));
         }
         self.provide(plan)?;
-        let Executor { context, pipelines, buffers, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, buffers, plan))
+        let Executor { context, pipelines, buffers, maps, .. } = self;
+        context.guarded(|| Prepared::new(context, pipelines, buffers, maps, plan))
     }
 
     /// Opens another device where this one can't do what the plan needs. What has been prepared keeps
@@ -126,7 +132,7 @@ impl Executor {
     /// A driver that fails.
     pub fn gpu_ms(&self, prepared: &Prepared) -> Result<Option<f64>, GpuError> {
         let context = &prepared.context;
-        let notes = context.guarded(|| Ok(Notes::of_times(context, prepared.plan, Mode::Frame)))?;
+        let notes = context.guarded(|| Ok(Notes::of_times(prepared, Mode::Frame)))?;
         let Some(timestamps) = &notes.timestamps else { return Ok(None) };
         context.guarded(|| submit(prepared, Mode::Frame, &notes))?;
         let times = timestamps.read(context)?;
@@ -158,7 +164,8 @@ impl Executor {
     /// A driver that fails.
     pub fn capture(&self, prepared: Prepared, bracket: bool) -> Result<Output, GpuError> {
         let context = &prepared.context;
-        let notes = context.guarded(|| Ok(Notes::of_times(context, prepared.plan, Mode::Everything)))?;
+        let kept: Vec<bool> = prepared.plan.passes.iter().map(|pass| prepared.is_kept(pass)).collect();
+        let notes = context.guarded(|| Ok(Notes::of_times(&prepared, Mode::Everything)))?;
         let run = || context.guarded(|| submit(&prepared, Mode::Everything, &notes));
         if bracket {
             context.bracketed(run)?
@@ -169,14 +176,15 @@ impl Executor {
             Some(timestamps) => timestamps.read(context)?,
             None => vec![None; prepared.plan.passes.len()],
         };
-        collect(&prepared, &times)
+        collect(&prepared, &times, kept)
     }
 }
 
 impl Notes {
     /// When the passes of a mode begin and end.
-    fn of_times(context: &Context, plan: &FramePlan, mode: Mode) -> Notes {
-        Notes { timestamps: Timestamps::new(context, plan, |pass| mode.runs(pass)), ..Notes::default() }
+    fn of_times(prepared: &Prepared, mode: Mode) -> Notes {
+        let runs = |pass: &Pass| mode.runs(pass) && !prepared.is_kept(pass);
+        Notes { timestamps: Timestamps::new(&prepared.context, prepared.plan, runs), ..Notes::default() }
     }
 }
 
@@ -211,7 +219,9 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError
         if !mode.runs(pass) {
             continue;
         }
-        record_pass(&mut encoder, prepared, index, notes);
+        if !prepared.is_kept(pass) {
+            record_pass(&mut encoder, prepared, index, notes);
+        }
         if mode != Mode::Frame {
             prepared.staged[index].iter().for_each(|staging| staging.record(&mut encoder));
         }
@@ -222,7 +232,9 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError
         staged(prepared, mode).flat_map(StagedPass::iter).for_each(readback::Staging::request_map);
     }
     notes.request_map();
-    prepared.context.wait()
+    prepared.context.wait()?;
+    prepared.set_drawn();
+    Ok(())
 }
 
 fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, notes: &Notes) {
@@ -279,7 +291,7 @@ fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &
 }
 
 /// Turns mapped copies into steps, sharing what did not change.
-fn collect(prepared: &Prepared, times: &[Option<f64>]) -> Result<Output, GpuError> {
+fn collect(prepared: &Prepared, times: &[Option<f64>], kept: Vec<bool>) -> Result<Output, GpuError> {
     let plan = prepared.plan;
     let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
     // wgpu clears new textures to zero.
@@ -288,7 +300,7 @@ fn collect(prepared: &Prepared, times: &[Option<f64>]) -> Result<Output, GpuErro
     let mut stencil = zero(PixelFormat::U8);
     let none = vec![None; plan.lights.len()];
     let maps = empty_maps(plan);
-    let mut output = Output { steps: Vec::new(), targets: Vec::new(), labels: none.clone(), counts: none, maps };
+    let mut output = Output { steps: Vec::new(), targets: Vec::new(), labels: none.clone(), counts: none, maps, kept };
     for (index, pass) in plan.passes.iter().enumerate() {
         let staged = &prepared.staged[index];
         let role = |target| plan.attachment(target).role;

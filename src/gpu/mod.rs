@@ -4,6 +4,7 @@
 //! Context      adapter and device
 //! Pipelines    shaders and pipelines, interned by description
 //! Buffers      vertices and indices, by the hash of their content
+//! Maps         what lights see, kept while nothing that makes it changes
 //! features     what few plans need, asked for when one does
 //! Executor     a plan → prepared textures, bind groups and draws → one command buffer
 //! fragment_log every fragment of one pixel, tests or no tests
@@ -16,6 +17,7 @@ mod context;
 mod error;
 mod executor;
 mod features;
+mod maps;
 mod fragment_log;
 mod pipelines;
 mod prepared;

@@ -2,11 +2,12 @@
 //! the buffers that snapshots are copied to. Made once, run as often as wanted.
 
 use super::buffers::Buffers;
+use super::maps::{KeptMap, Maps};
 use super::pipelines::{PipelineKey, Pipelines};
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError};
-use crate::plan::{Attachment, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility};
+use crate::plan::{Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility};
 use std::sync::Arc;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, Buffer, Device, RenderPipeline, Texture,
@@ -26,6 +27,8 @@ pub struct Prepared<'a> {
     pub(super) draws: UniformArray,
     pub(super) draw_group: BindGroup,
     pub(super) lights: UniformArray,
+    /// By attachment: the texture that stays from frame to frame.
+    pub(super) kept: Vec<Option<Arc<KeptMap>>>,
 }
 
 #[derive(Debug)]
@@ -54,12 +57,21 @@ impl<'a> Prepared<'a> {
         context: &Arc<Context>,
         pipelines: &mut Pipelines,
         buffers: &mut Buffers,
+        maps: &mut Maps,
         plan: &'a FramePlan,
     ) -> Result<Prepared<'a>, GpuError> {
         let device = &context.device;
         check_size(device, plan)?;
         buffers.next_plan();
-        let textures: Vec<Texture> = plan.attachments.iter().map(|attachment| create(device, attachment)).collect();
+        maps.next_plan();
+        let create = |index: usize| create(device, &plan.attachments[index]);
+        let attachments = 0..plan.attachments.len();
+        let kept: Vec<Option<Arc<KeptMap>>> =
+            attachments.map(|index| maps.get(plan, AttachmentId(index), || create(index))).collect();
+        let texture = |(index, kept): (usize, &Option<Arc<KeptMap>>)| {
+            kept.as_ref().map_or_else(|| create(index), |map| map.texture.clone())
+        };
+        let textures: Vec<Texture> = kept.iter().enumerate().map(texture).collect();
         clear_left_out_faces(context, plan, &textures);
         let views = uniforms::views(device, plan);
         let draws = uniforms::draws(device, plan);
@@ -91,7 +103,18 @@ impl<'a> Prepared<'a> {
         let view_group = views.bind_group(device, &pipelines.layouts.view);
         let draw_group = draws.bind_group(device, &pipelines.layouts.draw);
         let context = context.clone();
-        Ok(Prepared { plan, context, passes, staged, views, view_group, draws, draw_group, lights })
+        Ok(Prepared { plan, context, passes, staged, views, view_group, draws, draw_group, lights, kept })
+    }
+
+    /// What this pass would draw is still there.
+    pub(super) fn is_kept(&self, pass: &Pass) -> bool {
+        let is_drawn = |id: AttachmentId| self.kept[id.0].as_ref().is_some_and(|map| map.is_drawn());
+        pass.targets().any(is_drawn)
+    }
+
+    /// All passes have run.
+    pub(super) fn set_drawn(&self) {
+        self.kept.iter().flatten().for_each(|map| map.set_drawn());
     }
 
     /// Bytes that snapshots of the timed passes copy.

@@ -15,6 +15,7 @@
 mod buffers;
 mod coverage;
 mod image;
+mod kept;
 mod left_out;
 pub mod lint;
 mod raster;
@@ -164,6 +165,8 @@ pub struct PlanMap {
     pub lookup: Option<MapLookup>,
     /// Projected colours reach behind the light too.
     pub projects_backwards: bool,
+    /// Its texture stays from frame to frame while what draws it is the same.
+    pub is_kept: bool,
 }
 
 impl PlanMap {
@@ -380,6 +383,12 @@ impl Program {
             Program::Light(_) | Program::Label(_) | Program::Through if depth > 1.0 => Some(Clip::Far),
             _ => None,
         }
+    }
+
+    /// Reads nothing but positions and the draw's flat colour.
+    #[must_use]
+    pub fn is_flat(self) -> bool {
+        matches!(self, Program::Position | Program::Flat)
     }
 
     /// What it asks how much light arrives; `None` for programs that do not light.

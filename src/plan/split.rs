@@ -24,7 +24,10 @@ impl FramePlan {
     fn split_where(&self, is_split: impl Fn(usize) -> bool) -> FramePlan {
         let parts = |(index, pass)| if is_split(index) { split(pass) } else { vec![pass.clone()] };
         let passes = self.passes.iter().enumerate().flat_map(parts).collect();
-        FramePlan { passes, ..self.clone() }
+        let mut plan = FramePlan { passes, ..self.clone() };
+        // What a draw leaves in a map is seen only if it is drawn again.
+        plan.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_kept = false);
+        plan
     }
 }
 

@@ -25,7 +25,7 @@ pub use volumes::{VolumeCost, volume_cost};
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::{GeometryCache, Topology};
 use crate::gpu::{Context, Executor, GpuError, Output, Prepared};
-use crate::plan::FramePlan;
+use crate::plan::{FramePlan, LeftOut};
 use crate::scene::{Object, Scene};
 use crate::technique::{self, Choice, ChoiceError, Job, PlanError};
 use crate::truth::TruthError;
@@ -245,6 +245,12 @@ impl Session {
     }
 
     fn assemble(&self, scene: &Scene, plan: &FramePlan, output: Output, timing: Timing) -> Capture {
+        let kept = plan.passes.iter().zip(&output.kept).filter(|(_, is_kept)| **is_kept);
+        let kept = kept.map(|(pass, _)| {
+            let of = pass.light.map_or_else(|| "the frame".to_owned(), |light| format!("light {}", light.0 + 1));
+            LeftOut::new(format!("drawing `{}` again", pass.name), of, "nothing that makes it has changed since")
+        });
+        let left_out = plan.left_out.iter().cloned().chain(kept).collect();
         let lights =
             scene.lights.iter().zip(&plan.lights).zip(output.labels.into_iter().zip(output.counts).zip(output.maps));
         let lights = lights.map(|((light, planned), ((shadow, count), faces))| CapturedLight {
@@ -268,7 +274,7 @@ impl Session {
             depth: plan.depth,
             steps: output.steps,
             lights: lights.collect(),
-            left_out: plan.left_out.clone(),
+            left_out,
             timing,
             plan_text: plan.to_string(),
         }

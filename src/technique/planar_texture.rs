@@ -18,7 +18,8 @@ use glam::{DMat4, DVec4};
 use std::collections::HashSet;
 
 /// Sizes of textures.
-pub(super) const REPORT_ROWS: ReportRows = &[&[("size", "64")], &[("size", "256")], &[("size", "1024")]];
+pub(super) const REPORT_ROWS: ReportRows =
+    &[&[("size", "64")], &[("size", "256")], &[("size", "256"), ("redraw", "changed")], &[("size", "1024")]];
 
 /// Plans receiver textures.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

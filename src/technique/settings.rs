@@ -163,8 +163,20 @@ const VOLUME: &[SettingSpec] = &[
     word("light-caps", &["tested", "never"], "caps nearest the light pass the depth test, or never do"),
     word("silhouette", &["adjacency", "edge-list"], "how shared edges are found: built once, or searched each time"),
 ];
-const PLANAR_TEXTURE: &[SettingSpec] =
-    &[DEPTH, EPSILON, DIFFUSE, LEAVE_OUT, OCCLUSION, size("256", 4096, "texels along each side of a receiver's texture")];
+const REDRAW: SettingSpec = word(
+    "redraw",
+    &["always", "changed"],
+    "maps and textures are drawn in every frame, or only where what makes them has changed",
+);
+const PLANAR_TEXTURE: &[SettingSpec] = &[
+    DEPTH,
+    EPSILON,
+    DIFFUSE,
+    LEAVE_OUT,
+    OCCLUSION,
+    size("256", 4096, "texels along each side of a receiver's texture"),
+    REDRAW,
+];
 const PROJECTIVE: &[SettingSpec] = &[
     DEPTH,
     EPSILON,
@@ -174,6 +186,7 @@ const PROJECTIVE: &[SettingSpec] = &[
     size("512", 4096, "texels along each side of a silhouette's picture"),
     word("passes", &["single", "multi"], "silhouettes are read while lighting, or darken the lit picture one by one"),
     word("reverse", &["off", "on"], "silhouettes also fall on what is behind the light"),
+    REDRAW,
 ];
 const SHADOW_MAP: &[SettingSpec] = &[
     DEPTH,
@@ -209,6 +222,7 @@ const SHADOW_MAP: &[SettingSpec] = &[
         default: "none",
         meaning: "how many texels along each side are compared and averaged",
     },
+    REDRAW,
 ];
 
 impl Technique {
@@ -328,6 +342,11 @@ impl Choice {
     #[must_use]
     pub(super) fn word(&self, key: &str) -> &str {
         self.settings.get(key).map_or("", String::as_str)
+    }
+
+    /// Maps and textures stay from frame to frame while nothing that makes them changes.
+    pub(super) fn keeps_maps(&self) -> bool {
+        self.word("redraw") == "changed"
     }
 
     /// The number behind a setting's prefix, as in `pcf:3`; `None` where a word is set.

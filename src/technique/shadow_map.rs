@@ -43,6 +43,7 @@ pub(super) const REPORT_ROWS: ReportRows = &[
     &[("bias-slope", "0"), ("bias-normal", "1.5")],
     &[("bias-slope", "1"), ("bias-receiver-plane", "on"), ("bias-constant", "64")],
     &[("filter", "pcf:3")],
+    &[("redraw", "changed")],
 ];
 
 /// Plans a frame with shadow maps.
@@ -104,6 +105,7 @@ fn add_map(frame: &mut Frame, light: LightId) {
         clip_from_light: light_frame.clip_from_light,
         lookup: Some(lookup(frame)),
         projects_backwards: false,
+        is_kept: frame.job.choice.keeps_maps(),
     });
 }
 

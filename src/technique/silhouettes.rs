@@ -69,6 +69,7 @@ pub fn add_map(
         clip_from_relative,
         lookup: None,
         projects_backwards: false,
+        is_kept: frame.job.choice.keeps_maps(),
     });
 }
 

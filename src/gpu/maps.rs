@@ -1,0 +1,53 @@
+//! Maps and textures of lights that are kept from frame to frame while nothing that makes them changes.
+
+use crate::plan::{AttachmentId, FramePlan};
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use wgpu::Texture;
+
+/// By [`FramePlan::kept_by`]; they stay as long as the newest plan uses them.
+#[derive(Debug, Default)]
+pub(super) struct Maps {
+    kept: HashMap<u64, (Arc<KeptMap>, bool)>,
+}
+
+/// A texture, and whether its passes have run.
+#[derive(Debug)]
+pub(super) struct KeptMap {
+    pub texture: Texture,
+    is_drawn: AtomicBool,
+}
+
+impl KeptMap {
+    /// Its passes need not run.
+    pub fn is_drawn(&self) -> bool {
+        self.is_drawn.load(Ordering::Relaxed)
+    }
+
+    /// They have run.
+    pub fn set_drawn(&self) {
+        self.is_drawn.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Maps {
+    /// Forgets what has not been asked for since the last call.
+    pub fn next_plan(&mut self) {
+        self.kept.retain(|_, (_, used)| std::mem::take(used));
+    }
+
+    /// The kept texture of an attachment, made by `create` if it is new; `None` where it is drawn in every
+    /// frame.
+    pub fn get(
+        &mut self,
+        plan: &FramePlan,
+        id: AttachmentId,
+        create: impl FnOnce() -> Texture,
+    ) -> Option<Arc<KeptMap>> {
+        let new = || (Arc::new(KeptMap { texture: create(), is_drawn: AtomicBool::new(false) }), true);
+        let (map, used) = self.kept.entry(plan.kept_by(id)?).or_insert_with(new);
+        *used = true;
+        Some(map.clone())
+    }
+}

@@ -1,0 +1,61 @@
+//! What a light's map is made from: equal inputs make equal texels, so a map may be kept from frame to frame.
+
+use super::{AttachmentId, Attachment, Draw, FramePlan, Pass};
+use foldhash::quality::FixedState;
+use std::hash::{BuildHasher, Hash, Hasher};
+
+impl FramePlan {
+    /// A hash of all that decides what an attachment holds when the frame is done; stable within a process
+    /// only. `None` where that is more than the passes that draw into it alone, by position or in one colour,
+    /// and where the plan does not say that it is kept.
+    #[must_use]
+    pub fn kept_by(&self, id: AttachmentId) -> Option<u64> {
+        let map = self.lights.iter().filter_map(|light| light.map.as_ref()).find(|map| map.attachment == id)?;
+        if !map.is_kept {
+            return None;
+        }
+        let mut hasher = FixedState::default().build_hasher();
+        let Attachment { name: _, role: _, format, size, layers } = self.attachment(id);
+        (format, size, layers).hash(&mut hasher);
+        // What left-out faces are cleared to.
+        map.lookup.map(|lookup| lookup.clear_depth.to_bits()).hash(&mut hasher);
+        for pass in self.passes.iter().filter(|pass| pass.targets().any(|target| target == id)) {
+            if pass.image.is_some() || pass.targets().any(|target| target != id) {
+                return None;
+            }
+            self.hash_pass(pass, &mut hasher)?;
+        }
+        Some(hasher.finish())
+    }
+
+    fn hash_pass(&self, pass: &Pass, hasher: &mut impl Hasher) -> Option<()> {
+        let bits = |value: f64| value.to_bits();
+        let color = pass.color.as_ref().map(|target| (target.layer, target.clear.map(|clear| clear.map(bits))));
+        let depth = pass.depth_stencil.as_ref();
+        let depth = depth.map(|target| (target.layer, target.clear_depth.map(f32::to_bits), target.clear_stencil));
+        (color, depth).hash(hasher);
+        let clip_from_relative = self.views[pass.view.0].clip_from_relative.to_cols_array();
+        clip_from_relative.map(f32::to_bits).hash(hasher);
+        pass.draws.iter().try_for_each(|draw| self.hash_draw(draw, hasher))
+    }
+
+    fn hash_draw(&self, draw: &Draw, hasher: &mut impl Hasher) -> Option<()> {
+        // Other programs read more than this.
+        if !draw.program.is_flat() {
+            return None;
+        }
+        let mesh = &self.meshes[draw.mesh.0];
+        (draw.program, &draw.raster, &draw.triangles, draw.base_vertex).hash(hasher);
+        draw.constants.flat.map(f32::to_bits).hash(hasher);
+        mesh.blobs().hash(hasher);
+        Some(())
+    }
+}
+
+impl Pass {
+    /// The pictures that it draws into.
+    pub(crate) fn targets(&self) -> impl Iterator<Item = AttachmentId> {
+        let color = self.color.iter().map(|target| target.attachment);
+        color.chain(self.depth_stencil.iter().map(|target| target.attachment))
+    }
+}
