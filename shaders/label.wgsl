@@ -1,4 +1,4 @@
-// The label of a visible surface: 0 lit, 1 shadow, 3 faces away.
+// The label of a visible surface: 0 lit, 1 shadow, 3 out of the light's reach: facing away, or beyond its range.
 
 @fragment
 fn fs_label(surface: Surface) -> @location(0) u32 {
@@ -6,5 +6,6 @@ fn fs_label(surface: Surface) -> @location(0) u32 {
         discard;
     }
     let label = select(draw.label, SHADOW, arriving(surface).a < 0.5);
-    return select(label, AWAY, faces_away(surface.sides));
+    let fades = falloff(length(light.position.xyz - surface.relative * light.position.w)) == 0.0;
+    return select(label, AWAY, faces_away(surface.sides) || fades);
 }

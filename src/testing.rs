@@ -41,7 +41,7 @@ pub enum Label {
     Shadow,
     /// No surface is here.
     Background,
-    /// The light is on the surface's other side.
+    /// The light is on the surface's other side, or its range ends before it.
     FacesAway,
 }
 

@@ -2,6 +2,7 @@
 //! pixel of difference.
 
 mod kept;
+mod range;
 mod unseen;
 
 use crate::common::{cuboid, from_above, judged, mesh, request, session, square};

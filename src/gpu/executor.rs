@@ -262,6 +262,9 @@ fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, 
         occlusion_query_set: notes.samples.as_ref().map(Samples::set),
         ..wgpu::RenderPassDescriptor::default()
     });
+    if let Some([left, top, columns, rows]) = pass.scissor {
+        render_pass.set_scissor_rect(left, top, columns, rows);
+    }
     render_pass.set_bind_group(0, &prepared.view_group, &[prepared.views.offset(pass.view.0)]);
     for (at, (draw, ready)) in pass.draws.iter().zip(&targets.draws).enumerate() {
         let light_offset = pass.light.map_or(0, |light| prepared.lights.offset(light.0));

@@ -288,7 +288,7 @@ impl fmt::Display for LightPass {
         f.write_str(match self {
             LightPass::Adds => "the light pass adds the light",
             LightPass::Skips => "the light pass skips it",
-            LightPass::FacesAway => "the light pass lets it through; but it faces away from the light, and stays dark",
+            LightPass::FacesAway => "the light pass lets it through; but it faces away from the light or is beyond its range, and stays dark",
             LightPass::AsksNothing => {
                 "it would be lit only at 0; but the object receives no shadows, and the light pass adds the light"
             }

@@ -115,7 +115,8 @@ impl FramePlan {
     pub fn covering(&self, pixel: [u32; 2]) -> Vec<Covering> {
         let mut search = Search { plan: self, pixel, sieve: Vec::new(), sieve_of: None, found: BTreeMap::new() };
         let mut covering = Vec::new();
-        for (pass_index, pass) in self.passes.iter().enumerate().filter(|(_, pass)| self.is_of_picture(pass)) {
+        let passes = self.passes.iter().enumerate();
+        for (pass_index, pass) in passes.filter(|(_, pass)| self.is_of_picture(pass) && pass.reaches(pixel)) {
             for (draw_index, draw) in pass.draws.iter().enumerate() {
                 search.add(pass_index, pass.view, draw_index, draw, &mut covering);
             }

@@ -1,6 +1,6 @@
 //! What a light's map is made from: equal inputs make equal texels, so a map may be kept from frame to frame.
 
-use super::{AttachmentId, Attachment, Draw, FramePlan, Pass};
+use super::{Attachment, AttachmentId, Draw, FramePlan, Pass};
 use foldhash::quality::FixedState;
 use std::hash::{BuildHasher, Hash, Hasher};
 

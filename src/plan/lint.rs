@@ -1,6 +1,6 @@
 //! Checks a plan without a GPU: what would be a driver error, or silently wrong, is named here.
 
-use super::{AttachmentRole, Draw, DrawMesh, FramePlan, Pass, PlanMap, Program, Visibility};
+use super::{AttachmentId, AttachmentRole, Draw, DrawMesh, FramePlan, Pass, PlanMap, Program, Visibility};
 
 /// A rule that a plan breaks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -53,6 +53,17 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<St
         if target.clear_stencil.is_some() && !has_stencil {
             problems.push("it clears a stencil that its target does not have".to_owned());
         }
+    }
+    let fits = |[left, top, columns, rows]: [u32; 4]| {
+        let [end_x, end_y] = [u64::from(left) + u64::from(columns), u64::from(top) + u64::from(rows)];
+        let is_in = |id: AttachmentId| {
+            let size = plan.attachments.get(id.0).map(|target| target.size.map(u64::from));
+            size.is_some_and(|[width, height]| end_x <= width && end_y <= height)
+        };
+        pass.targets().all(is_in)
+    };
+    if !pass.scissor.is_none_or(fits) {
+        problems.push("its scissor reaches out of a target".to_owned());
     }
     if pass.image.is_some() && (pass.color.is_none() || !pass.draws.is_empty()) {
         problems.push("an image made on the CPU needs a colour target and no draws".to_owned());

@@ -204,10 +204,23 @@ pub struct Pass {
     pub color: Option<ColorTarget>,
     /// Depth-stencil target, if any.
     pub depth_stencil: Option<DepthStencilTarget>,
+    /// Draws change nothing outside of these pixels: left, top, columns, rows. Clears do.
+    pub scissor: Option<[u32; 4]>,
     /// In order.
     pub draws: Vec<Draw>,
     /// What it leaves in its colour target where no draw makes it.
     pub image: Option<CpuImage>,
+}
+
+impl Pass {
+    /// May its draws change a pixel?
+    #[must_use]
+    pub fn reaches(&self, [x, y]: [u32; 2]) -> bool {
+        let holds = |[left, top, columns, rows]: [u32; 4]| {
+            (left..left + columns).contains(&x) && (top..top + rows).contains(&y)
+        };
+        self.scissor.is_none_or(holds)
+    }
 }
 
 /// The colour target of a pass.
@@ -323,7 +336,7 @@ pub enum Program {
     Light(Visibility),
     /// What the draw's layer of the light's map lets through, to darken what is there.
     Through,
-    /// Writes a label: 3 where the triangle faces away from the light, 1 where less than half of
+    /// Writes a label: 3 where the triangle faces away from the light or is beyond its range, 1 where less than half of
     /// the light arrives, else the draw's `label`. Triangles run in reverse order, so that of
     /// surfaces at one depth the first drawn decides, as it did for the picture.
     Label(Visibility),

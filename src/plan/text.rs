@@ -63,6 +63,9 @@ impl FramePlan {
         if let Some(target) = &pass.depth_stencil {
             self.fmt_depth_stencil(f, target)?;
         }
+        if let Some([left, top, columns, rows]) = pass.scissor {
+            writeln!(f, "  only {columns}x{rows} pixels from {left},{top}")?;
+        }
         if let Some(image) = &pass.image {
             writeln!(f, "  image made on the CPU: {}", image.name)?;
         }

@@ -81,6 +81,12 @@ impl Questions {
             let light = Frame::light_name(self.light);
             return no_volume(format!("all that receives lies on the side of {light}, or in its plane"));
         }
+        if allowed(Decision::Caster)
+            && let Some(distance) = frame.beyond_range(self.light, index)
+        {
+            let light = Frame::light_name(self.light);
+            return no_volume(format!("it lies {} beyond the range of {light}", numbers::metres(distance)));
+        }
         let eye = frame.eye();
         let near: Vec<DVec4> = outline(&frame.placed[index].world).map(|point| (point - eye).extend(1.0)).collect();
         let light = relative(self.position, eye);

@@ -5,10 +5,10 @@
 
 use super::left_out::Decision;
 use super::{Choice, PlanError, surfaces};
-use crate::geometry::GeometryCache;
-use crate::geometry::relative;
+use crate::geometry::{self, GeometryCache, RangeInView, relative};
 use crate::math::depth::{DepthCurve, DepthMapping};
 use crate::math::projection;
+use crate::numbers;
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, ColorTarget, ColorWrite, DepthStencilTarget, Draw, DrawConstants,
     DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Pass, PlanLight, PlanView, Program, RasterState, StencilFace,
@@ -85,6 +85,8 @@ pub struct Frame<'a> {
     has_stencil: bool,
     /// The light whose passes have last written the stencil.
     stencil_of: Option<LightId>,
+    /// By light: the pixels that its passes are cut to.
+    scissors: Vec<Option<[u32; 4]>>,
 }
 
 /// How surfaces are drawn in a pass.
@@ -183,6 +185,7 @@ impl<'a> Frame<'a> {
             depth_stencil: no_target,
             has_stencil: stencil == StencilUse::Always || !Decision::Stencil.is_allowed(job.choice),
             stencil_of: None,
+            scissors: Vec::new(),
             job,
         };
         frame.place_objects()?;
@@ -272,6 +275,7 @@ impl<'a> Frame<'a> {
         self.plan.passes.push(Pass {
             name: name.to_owned(),
             image: None,
+            scissor: self.scissors.get(light.0).copied().flatten(),
             purpose: purpose.to_owned(),
             light: Some(light),
             timed: true,
@@ -319,6 +323,7 @@ impl<'a> Frame<'a> {
         self.plan.passes.push(Pass {
             name: "ambient".to_owned(),
             image: None,
+            scissor: None,
             purpose: purpose.to_owned(),
             light: None,
             timed: true,
@@ -348,6 +353,42 @@ impl<'a> Frame<'a> {
             None => self.surface_draws(look),
         };
         self.push_pass(light, "light", purpose, Some(self.kept_color()), draws);
+    }
+
+    /// From here on, passes of a lamp whose light ends somewhere are cut to the pixels that it can reach.
+    /// `true` for the lights that reach none.
+    pub fn cut_to_ranges(&mut self) -> Vec<bool> {
+        let scene = self.job.scene;
+        let mut misses = vec![false; scene.lights.len()];
+        self.scissors = vec![None; scene.lights.len()];
+        for id in self.light_ids() {
+            let light = &scene.lights[id.0];
+            let Some(range) = light.range.filter(|_| !light.is_directional()) else { continue };
+            if !Decision::Scissor.is_allowed(self.job.choice) {
+                continue;
+            }
+            match geometry::range_in_view(&scene.camera, self.job.size, light.position.truncate(), range) {
+                RangeInView::All => {}
+                RangeInView::Nothing => misses[id.0] = true,
+                RangeInView::Pixels(pixels) => {
+                    let [_, _, columns, rows] = pixels;
+                    let because = format!(
+                        "its light ends {} from it, which is within {columns}x{rows} pixels",
+                        numbers::metres(range)
+                    );
+                    self.leave_out("pixels out of reach", &Frame::light_name(id), &because);
+                    self.scissors[id.0] = Some(pixels);
+                }
+            }
+        }
+        misses
+    }
+
+    /// By how many metres an object lies beyond the light's range.
+    pub fn beyond_range(&self, light: LightId, index: usize) -> Option<f64> {
+        let light = &self.job.scene.lights[light.0];
+        let range = light.range.filter(|_| !light.is_directional())?;
+        geometry::beyond_range(&self.placed[index].world, light.position.truncate(), range)
     }
 
     /// Blends draws over the picture, and tests depth and stencil without changing them.
@@ -380,6 +421,7 @@ impl<'a> Frame<'a> {
         self.plan.passes.push(Pass {
             name: "mask".to_owned(),
             image: None,
+            scissor: None,
             purpose: purpose.to_owned(),
             light: Some(light),
             timed: false,

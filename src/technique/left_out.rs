@@ -34,11 +34,13 @@ pub enum Decision {
     Clear,
     /// Faces of a cube map that no caster shows in.
     MapFaces,
+    /// Pixels that a light of limited range does not reach.
+    Scissor,
 }
 
 impl Decision {
     /// The names that `leave-out` knows, in order.
-    pub const NAMES: [&str; 14] = [
+    pub const NAMES: [&str; 15] = [
         Decision::Light.name(),
         Decision::Caster.name(),
         Decision::View.name(),
@@ -53,6 +55,7 @@ impl Decision {
         Decision::Stencil.name(),
         Decision::Clear.name(),
         Decision::MapFaces.name(),
+        Decision::Scissor.name(),
     ];
 
     /// As in `--set leave-out=caps,umbra`.
@@ -73,13 +76,15 @@ impl Decision {
             Decision::Stencil => "stencil",
             Decision::Clear => "clear",
             Decision::MapFaces => "map-faces",
+            Decision::Scissor => "scissor",
         }
     }
 
     /// May it be taken? Depth that is not reversed and infinite cuts volumes off, or lets surfaces tie that
     /// are apart: what hides nothing elsewhere may decide a pixel there.
     pub(super) fn is_allowed(self, choice: &Choice) -> bool {
-        let asks_no_depth = matches!(self, Decision::Light | Decision::Stencil | Decision::Clear | Decision::MapFaces);
+        use Decision::{Clear, Light, MapFaces, Scissor, Stencil};
+        let asks_no_depth = matches!(self, Light | Stencil | Clear | MapFaces | Scissor);
         if !asks_no_depth && choice.word("depth") != DepthMapping::ReversedInfinite.name() {
             return false;
         }

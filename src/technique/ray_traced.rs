@@ -50,6 +50,7 @@ fn ray_pass(frame: &mut Frame, light: LightId, rays: LightRays) {
     let attachment = frame.plan.lights[light.0].labels;
     let content = content_hash(frame.job.scene, light);
     frame.plan.passes.push(Pass {
+        scissor: None,
         name: "rays".to_owned(),
         purpose: "Follows a ray from the eye through every pixel to the surface it meets, and one from the light to \
                   that point: whatever lies between keeps the light away. This is done on the CPU."

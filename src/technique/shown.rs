@@ -114,6 +114,9 @@ pub fn lit_by(frame: &mut Frame, light: LightId) -> Vec<Piece> {
     let all = total(&pieces);
     let mut lit = Vec::new();
     for piece in pieces {
+        if frame.beyond_range(light, piece.object).is_some() {
+            continue;
+        }
         let surface = frame.plan.meshes[piece.mesh.0].surface.as_ref();
         let Some(sides) = surface.map(|surface| surface.sides.clone()) else { continue };
         let faces_light = |triangle: u32| sides.data()[triangle as usize] & (1 << light.0) == 0;
@@ -121,7 +124,8 @@ pub fn lit_by(frame: &mut Frame, light: LightId) -> Vec<Piece> {
     }
     let unlit = all - total(&lit);
     if unlit > 0 {
-        let what = format!("{} triangles that face away", numbers::count(unlit));
+        let or_far = if frame.job.scene.lights[light.0].range.is_some() { " or are out of range" } else { "" };
+        let what = format!("{} triangles that face away{or_far}", numbers::count(unlit));
         frame.leave_out(&what, &format!("the pass of {}", Frame::light_name(light)), "it adds nothing to them");
     }
     lit

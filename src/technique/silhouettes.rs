@@ -52,6 +52,7 @@ pub fn add_map(
         frame.plan.passes.push(Pass {
             name,
             image: None,
+            scissor: None,
             purpose: purpose.to_owned(),
             light: Some(light),
             timed: true,

@@ -69,11 +69,17 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         shown::leave_out_hidden(&mut frame);
     }
     frame.ambient_pass();
+    let misses = frame.cut_to_ranges();
     for light in frame.light_ids() {
+        if misses[light.0] {
+            frame.leave_out("all passes", &Frame::light_name(light), "its light ends before it reaches the view");
+            frame.mask_pass(light, &[Drawn::lit()]);
+            continue;
+        }
         if technique == Technique::Auto {
             let lit = shown::lit_by(&mut frame, light);
             if lit.is_empty() && Decision::Light.is_allowed(frame.job.choice) {
-                let because = "every surface in view faces away from it";
+                let because = "every surface in view faces away from it or lies beyond its range";
                 frame.leave_out("all passes", &Frame::light_name(light), because);
                 frame.mask_pass(light, &[Drawn::lit()]);
                 continue;

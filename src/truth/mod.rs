@@ -40,7 +40,8 @@ pub const LIT: u8 = 0;
 pub const SHADOW: u8 = 1;
 /// No surface at this pixel.
 pub const BACKGROUND: u8 = 2;
-/// Light and eye are on different sides of the surface's plane.
+/// The light adds nothing: it and the eye are on different sides of the surface's plane, or the point is
+/// not within the light's range.
 pub const FACES_AWAY: u8 = 3;
 
 /// Pixels along each side of the tiles whose rays are followed together.
@@ -88,7 +89,16 @@ pub struct Tracer {
 #[derive(Debug)]
 struct LightPencil {
     position: DVec4,
+    /// Of a lamp that fades: nothing at this distance, metres, is lit.
+    range: Option<f64>,
     pencil: Pencil,
+}
+
+impl LightPencil {
+    /// The light has faded to nothing there.
+    fn is_out_of_range(&self, point: DVec3) -> bool {
+        self.range.is_some_and(|range| self.position.truncate().distance_squared(point) >= range * range)
+    }
 }
 
 /// What a ray of sight meets first.
@@ -135,12 +145,16 @@ impl Tracer {
         let is_seen = |index: usize| world.object(index).visible;
         let casts = |index: usize| world.object(index).casts;
         let triangles = &world.triangles;
-        let pencil_of =
-            |position: DVec4| LightPencil { position, pencil: Pencil::new(Whose::Light, position, triangles, casts) };
-        let positions: Vec<DVec4> = scene.lights.iter().map(crate::scene::Light::homogeneous).collect();
+        let pencil_of = |(position, range)| LightPencil {
+            position,
+            range,
+            pencil: Pencil::new(Whose::Light, position, triangles, casts),
+        };
+        let range = |light: &crate::scene::Light| light.range.filter(|_| !light.is_directional());
+        let lights: Vec<_> = scene.lights.iter().map(|light| (light.homogeneous(), range(light))).collect();
         let (eye, lights) = rayon::join(
             || Pencil::new(Whose::Eye, scene.camera.eye.extend(1.0), triangles, is_seen),
-            || positions.into_par_iter().map(pencil_of).collect(),
+            || lights.into_par_iter().map(pencil_of).collect(),
         );
         Ok(Tracer { view: View::new(&scene.camera, size), world, size, eye, lights })
     }
@@ -292,7 +306,7 @@ impl Tracer {
             if last.0 != surface.triangle {
                 last = (surface.triangle, side_of_triangle(self.world.triangles[surface.triangle], light.position));
             }
-            if last.1 != surface.eye_side {
+            if last.1 != surface.eye_side || light.is_out_of_range(surface.point) {
                 labels[index] = FACES_AWAY;
                 continue;
             }

@@ -74,7 +74,8 @@ fn draws_of_a_kept_map_are_told_apart() {
         let request = CaptureRequest { every: Every::Draw, ..asked(Technique::ShadowMap, redraw) };
         session.capture(&scene, &request).expect("a capture");
         let capture = session.capture(&scene, &request).expect("a capture");
-        let step = capture.steps.iter().find(|step| matches!(step.snapshot, Snapshot::Map { .. }) && step.draws.len() > 1);
+        let step =
+            capture.steps.iter().find(|step| matches!(step.snapshot, Snapshot::Map { .. }) && step.draws.len() > 1);
         format!("{:?}", step.expect("a map of two casters").draws)
     };
     assert!(after_draws("always") == after_draws("changed"));

@@ -1,0 +1,125 @@
+//! Where in the picture a light of limited range reaches, and whom it does not reach at all.
+//!
+//! A light's sphere lies in the cube round it, and the cube's corners are projected: what is outside of
+//! their rectangle is beyond the range. Like all of `reach`, that errs to the safe side.
+
+use crate::math::projection;
+use crate::scene::Camera;
+use glam::DVec3;
+
+/// The sphere is taken to be so much larger, for rounding on the GPU.
+const MARGIN: f64 = 1e-4;
+
+/// Which pixels a light of limited range can reach.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RangeInView {
+    /// Perhaps all.
+    All,
+    /// Those between left, top, and so many columns and rows.
+    Pixels([u32; 4]),
+    /// None.
+    Nothing,
+}
+
+/// The pixels of a picture of `size` pixels that points within `range` metres of `light` may show in.
+#[must_use]
+pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) -> RangeInView {
+    let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
+    let center = rotation * (light - camera.eye);
+    let radius = range * (1.0 + MARGIN) + center.length() * MARGIN;
+    let ahead = -center.z;
+    if ahead + radius < camera.near {
+        return RangeInView::Nothing;
+    }
+    if ahead - radius < camera.near / 2.0 {
+        return RangeInView::All;
+    }
+    let up = (camera.fov_y_degrees.to_radians() / 2.0).tan();
+    let [width, height] = size.map(f64::from);
+    let right = up * width / height;
+    // Each end is farthest out where the cube is nearest or farthest, whichever it is.
+    let ends = |middle: f64, half: f64, pixels: f64| {
+        let at = |offset: f64, depth: f64| (0.5 + 0.5 * offset / (depth * half)) * pixels;
+        let depths = [ahead - radius, ahead + radius];
+        let low = depths.map(|depth| at(middle - radius, depth)).into_iter().fold(f64::INFINITY, f64::min);
+        let high = depths.map(|depth| at(middle + radius, depth)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+        // A pixel more on each side, as edges are rasterised in steps.
+        [low.floor() - 1.0, high.ceil() + 1.0].map(|end| end.clamp(0.0, pixels) as u32)
+    };
+    let [left, end_x] = ends(center.x, right, width);
+    let [top, end_y] = ends(-center.y, up, height);
+    match (end_x.saturating_sub(left), end_y.saturating_sub(top)) {
+        (0, _) | (_, 0) => RangeInView::Nothing,
+        (columns, rows) if [columns, rows] == size => RangeInView::All,
+        (columns, rows) => RangeInView::Pixels([left, top, columns, rows]),
+    }
+}
+
+/// By how many metres all of some points lie beyond the range of a light; `None` where one may be within it.
+#[must_use]
+pub fn beyond_range(points: &[DVec3], light: DVec3, range: f64) -> Option<f64> {
+    let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let nearest = light.clamp(low.min(high), high.max(low));
+    let size = points.iter().fold(light.abs().max_element(), |most, point| most.max(point.abs().max_element()));
+    let distance = nearest.distance(light) - range - MARGIN * range - MARGIN * MARGIN * size;
+    (!points.is_empty() && distance > 0.0).then_some(distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> Camera {
+        let (eye, target) = (DVec3::new(0.0, 0.0, 10.0), DVec3::ZERO);
+        Camera { eye, target, up: DVec3::Y, fov_y_degrees: 90.0, near: 0.1, far: None }
+    }
+
+    /// Every point of the sphere shows inside the rectangle, and the rectangle is not much larger.
+    #[test]
+    fn the_rectangle_holds_the_sphere_and_little_more() {
+        let size = [200, 200];
+        for light in [DVec3::ZERO, DVec3::new(4.0, -3.0, 2.0), DVec3::new(-9.5, 0.0, 0.0)] {
+            let RangeInView::Pixels([left, top, columns, rows]) = range_in_view(&camera(), size, light, 2.0) else {
+                panic!("{light}: no rectangle");
+            };
+            let mut seen = [u32::MAX, u32::MAX, 0, 0];
+            for step in 0..40_000 {
+                let (a, b) = (f64::from(step % 200) * 0.0315, f64::from(step / 200) * 0.0158);
+                let point = light + DVec3::new(b.sin() * a.cos(), b.cos(), b.sin() * a.sin()) * 2.0;
+                let depth = 10.0 - point.z;
+                let pixel = [point.x, -point.y].map(|offset| ((0.5 + 0.5 * offset / depth) * 200.0).floor());
+                if pixel.iter().all(|at| (0.0..200.0).contains(at)) {
+                    let [x, y] = pixel.map(|at| at as u32);
+                    assert!((left..left + columns).contains(&x) && (top..top + rows).contains(&y), "{light}: {x},{y}");
+                    seen = [seen[0].min(x), seen[1].min(y), seen[2].max(x), seen[3].max(y)];
+                }
+            }
+            let spare = columns.abs_diff(seen[2] - seen[0]).max(rows.abs_diff(seen[3] - seen[1]));
+            assert!(spare < 20, "{light}: {spare} pixels more than needed");
+        }
+    }
+
+    #[test]
+    fn behind_the_eye_it_reaches_nothing_and_round_the_eye_everything() {
+        let at = |z: f64, range: f64| range_in_view(&camera(), [64, 48], DVec3::new(0.0, 0.0, z), range);
+        assert_eq!(at(13.0, 3.05), RangeInView::Nothing);
+        assert_eq!(at(13.0, 3.2), RangeInView::All);
+        assert_eq!(at(10.0, 0.01), RangeInView::Nothing);
+        assert_eq!(range_in_view(&camera(), [64, 48], DVec3::new(50.0, 0.0, 0.0), 3.0), RangeInView::Nothing);
+    }
+
+    /// At the exact border, and within rounding of it far from the origin, nothing counts as beyond.
+    #[test]
+    fn at_the_border_of_the_range_all_is_within() {
+        for offset in [DVec3::ZERO, DVec3::new(1e6, -3e6, 2e6)] {
+            let box_of = |x: f64| [DVec3::new(x, -1.0, -1.0) + offset, DVec3::new(x + 1.0, 1.0, 1.0) + offset];
+            assert_eq!(beyond_range(&box_of(3.0), offset, 3.0), None);
+            assert_eq!(beyond_range(&box_of(3.0 + 1e-9), offset, 3.0), None);
+            let beyond = beyond_range(&box_of(3.2), offset, 3.0).expect("beyond");
+            assert!((0.1..=0.2).contains(&beyond), "{beyond}");
+            assert_eq!(beyond_range(&box_of(-0.5), offset, 3.0), None);
+        }
+        assert_eq!(beyond_range(&[], DVec3::ZERO, 1.0), None);
+    }
+}
