@@ -5,10 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 21] = [
+const MAY_USE: [(&str, &[&str]); 23] = [
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
+    ("picture", &[]),
     ("scene", &["math"]),
     ("truth", &["math", "scene", "progress"]),
     ("accuracy", &["truth"]),
@@ -19,6 +20,7 @@ const MAY_USE: [(&str, &[&str]); 21] = [
     ("stencil_machine", &["plan"]),
     ("gpu", &["math", "scene", "plan", "capture"]),
     ("history", &["math", "numbers", "plan", "capture", "stencil_machine", "truth"]),
+    ("difference", &["capture", "accuracy", "numbers", "picture"]),
     ("report", &["capture", "numbers"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
@@ -48,6 +50,7 @@ const MAY_USE: [(&str, &[&str]); 21] = [
             "plan",
             "technique",
             "capture",
+            "picture",
             "stencil_machine",
             "accuracy",
             "report",
@@ -63,7 +66,20 @@ const MAY_USE: [(&str, &[&str]); 21] = [
     ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers"]),
     (
         "cli",
-        &["math", "scene", "plan", "technique", "capture", "history", "session", "app", "progress", "report", "stress"],
+        &[
+            "math",
+            "scene",
+            "plan",
+            "technique",
+            "capture",
+            "difference",
+            "history",
+            "session",
+            "app",
+            "progress",
+            "report",
+            "stress",
+        ],
     ),
     ("main", &["cli"]),
 ];
