@@ -5,6 +5,7 @@ mod auto;
 mod capture_folder;
 mod commands;
 mod common;
+mod diff;
 mod draws;
 mod history;
 #[cfg(feature = "inspector")]

@@ -59,6 +59,15 @@ pub enum CliError {
         /// How many cases times techniques.
         count: usize,
     },
+    /// Two captures that can't be compared.
+    #[error(transparent)]
+    Difference(#[from] crate::difference::DifferenceError),
+    /// Two captures differ.
+    #[error("they differ, first in {place}")]
+    Different {
+        /// The first pass that differs.
+        place: String,
+    },
     /// Nobody reads standard output any more.
     #[error("standard output was closed")]
     ClosedOutput,
@@ -72,7 +81,7 @@ impl CliError {
         match self {
             CliError::Session(error) if error.is_missing_adapter() => 3,
             CliError::ClosedOutput => 0,
-            CliError::WrongHistory { .. } | CliError::Unexpected { .. } => 1,
+            CliError::WrongHistory { .. } | CliError::Unexpected { .. } | CliError::Different { .. } => 1,
             _ => 2,
         }
     }

@@ -6,6 +6,7 @@
 
 mod bench;
 mod capture;
+mod diff;
 mod error;
 mod options;
 mod output;
@@ -25,9 +26,9 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// The commands that exist.
-const COMMANDS: [&str; 8] = ["view", "capture", "pixel", "report", "stress", "scenes", "bench", "help"];
+const COMMANDS: [&str; 9] = ["view", "capture", "pixel", "diff", "report", "stress", "scenes", "bench", "help"];
 /// Commands that are planned, but not built.
-const COMMANDS_TO_COME: [&str; 2] = ["diagnose", "diff"];
+const COMMANDS_TO_COME: [&str; 1] = ["diagnose"];
 
 /// An interactive visual debugger for stencil shadows and shadow maps
 #[derive(Debug, Parser)]
@@ -45,6 +46,8 @@ enum Command {
     Capture(Box<capture::CaptureArguments>),
     /// Tell the history of a pixel, fragment by fragment
     Pixel(Box<pixel::PixelArguments>),
+    /// Say where two captures, or two techniques of a scene, first differ
+    Diff(Box<diff::DiffArguments>),
     /// Measure how wrong each technique is, and what it costs
     Report(Box<report::ReportArguments>),
     /// Drive every technique until it breaks
@@ -63,7 +66,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
     let arguments = with_command(arguments.into_iter().collect());
     let first = arguments.get(1).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
     if COMMANDS_TO_COME.contains(&first.as_str()) {
-        let instead = "use view, capture, pixel, report, stress, scenes or bench".to_owned();
+        let instead = "use view, capture, pixel, diff, report, stress, scenes or bench".to_owned();
         return Err(CliError::NotThereYet { what: format!("`{first}`"), instead });
     }
     let second = arguments.get(2).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
@@ -78,6 +81,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
         Command::View(arguments) => view::run(&arguments),
         Command::Capture(arguments) => capture::run(&arguments),
         Command::Pixel(arguments) => pixel::run(&arguments),
+        Command::Diff(arguments) => diff::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Stress(arguments) => stress::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),

@@ -139,15 +139,19 @@ fn texel(image: &Image, at: [u32; 2]) -> Option<Texel> {
 
 fn apart(values: [Texel; 2]) -> f64 {
     match values {
-        [Texel::Color(a), Texel::Color(b)] => {
-            a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().map_or(0.0, f64::from)
-        }
+        [Texel::Color(a), Texel::Color(b)] => a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().map_or(0.0, f64::from),
         [Texel::Byte(a), Texel::Byte(b)] => f64::from(a.wrapping_sub(b).min(b.wrapping_sub(a))),
         [Texel::Float(a), Texel::Float(b)] if a.is_nan() && b.is_nan() => 0.0,
         [Texel::Float(a), Texel::Float(b)] => {
             let by = (f64::from(a) - f64::from(b)).abs();
             // Equal infinities are 0 apart, and what is no number is nowhere near one.
-            if a == b { 0.0 } else if by.is_nan() { f64::INFINITY } else { by }
+            if a == b {
+                0.0
+            } else if by.is_nan() {
+                f64::INFINITY
+            } else {
+                by
+            }
         }
         _ => f64::INFINITY,
     }

@@ -183,9 +183,7 @@ impl Difference {
     /// Is every pass and every pixel of both the same, seen and lit alike?
     #[must_use]
     pub fn is_none(&self) -> bool {
-        self.conditions.is_empty()
-            && self.first().is_none()
-            && self.lights.iter().all(|light| light.aspects.is_empty())
+        self.conditions.is_empty() && self.first().is_none() && self.lights.iter().all(|light| light.aspects.is_empty())
     }
 
     /// The first pass that differs, or that only one frame has.

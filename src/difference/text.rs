@@ -36,10 +36,16 @@ impl Difference {
         out
     }
 
-    /// One line for whoever only wants to know where: `pass 2, light 1: volumes`.
+    /// Where the first difference is, in a few words: `pass 2, light 1: volumes`; `None` where there is none.
     #[must_use]
     pub fn first_place(&self) -> Option<String> {
-        self.first().map(title).or_else(|| self.conditions.first().map(|note| note.what.clone()))
+        let of_light = |light: &LightDifference| {
+            let aspect = light.aspects.first()?.aspect.title();
+            Some(format!("{}: {aspect}", numbers::light(light.light)))
+        };
+        let of_pass = self.first().map(title);
+        let of_lights = || self.lights.iter().find_map(of_light);
+        of_pass.or_else(of_lights).or_else(|| self.conditions.first().map(|note| note.what.clone()))
     }
 }
 

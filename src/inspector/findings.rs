@@ -44,9 +44,12 @@ pub enum Pattern {
 pub fn style(finding: Finding) -> Style {
     let (name, meaning, color, pattern) = match finding {
         Finding::Agrees => ("agrees", "Truth and technique agree.", colors::AGREES, Pattern::Plain),
-        Finding::FalseShadow => {
-            ("false shadow", "False shadow: dark here, but the light reaches it.", colors::FALSE_SHADOW, Pattern::Rising)
-        }
+        Finding::FalseShadow => (
+            "false shadow",
+            "False shadow: dark here, but the light reaches it.",
+            colors::FALSE_SHADOW,
+            Pattern::Rising,
+        ),
         Finding::MissingShadow => (
             "missing shadow",
             "Missing shadow: lit here, but something lies between.",

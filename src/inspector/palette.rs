@@ -12,11 +12,7 @@ pub const LABELS: [Label; 4] = [
     Label { name: "lit", meaning: "the light reaches the surface", color: opaque(colors::LABELS[0]) },
     Label { name: "shadow", meaning: "something lies between", color: opaque(colors::LABELS[1]) },
     Label { name: "background", meaning: "no surface is here", color: opaque(colors::LABELS[2]) },
-    Label {
-        name: "faces away",
-        meaning: "the light is on the surface's other side",
-        color: opaque(colors::LABELS[3]),
-    },
+    Label { name: "faces away", meaning: "the light is on the surface's other side", color: opaque(colors::LABELS[3]) },
 ];
 
 /// What a byte of a shadow mask means.
