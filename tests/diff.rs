@@ -1,14 +1,14 @@
 //! Two captures compared: folders with one bit flipped, passes that only one has, two techniques, and the command.
 
 use crate::commands::{assert_fails, run, text};
-use crate::common::{cuboid, from_above, judged, names, request, session, square};
+use crate::common::{cuboid, from_above, judged, mesh, names, request, session, square};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use stencilscope::capture::disk::{read, write};
 use stencilscope::capture::{Capture, Image, PixelFormat, Snapshot};
 use stencilscope::difference::{AspectKind, DifferenceError, Found, PassDifference, Side, Texel, compare};
-use stencilscope::scene::{Light, Scene};
+use stencilscope::scene::{Light, Material, Object, Scene};
 use stencilscope::session::Every;
 use stencilscope::technique::{Choice, Technique};
 
@@ -164,8 +164,9 @@ fn a_difference_that_goes_on_is_told_as_carried() {
         let mut request = request(Technique::ZFail, SIZE);
         request.choice = choice;
         // A square that faces away from the light casts only among all.
-        let mut scene = scene();
-        scene.camera.eye.y = 9.0;
+        let corners = [[-1.0, 2.0, -1.0], [-1.0, 2.0, 1.0], [1.0, 2.0, 1.0], [1.0, 2.0, -1.0]];
+        let turned = mesh(&corners, &[[0, 2, 1], [0, 3, 2]]);
+        let scene = from_above(vec![Object::new("turned", turned, Material::default())]);
         session.capture(&scene, &request).expect("a capture")
     });
     let difference = compare(&good, &other).expect("one size");
@@ -244,12 +245,17 @@ fn the_draw_that_differs_is_named() {
 fn conditions_count_and_what_was_asked_does_not() {
     let good = session().capture(&scene(), &request(Technique::ZFail, SIZE)).expect("a capture");
     let mut asked = good.clone();
-    asked.technique = "z-pass".to_owned();
+    asked.settings.insert("operations".to_owned(), "clamp".to_owned());
+    asked.adapter.name = "another".to_owned();
     asked.plan_text = asked.plan_text.replacen("pass", "step", 1);
     let difference = compare(&good, &asked).expect("one size");
     assert!(difference.is_none() && difference.first_place().is_none());
     assert_eq!(difference.asked.len(), 2);
     assert!(difference.to_text().ends_with("the same: all 7 passes, every pixel\n"), "{}", difference.to_text());
+    let mut planned = good.clone();
+    planned.plan_text = planned.plan_text.replacen("\nlight", "\nlamp", 1) + "one line more\n";
+    let difference = compare(&good, &planned).expect("one size");
+    assert!(difference.is_none() && difference.asked[0].what.starts_with("plan, from line "), "{difference:?}");
     let mut seen = good.clone();
     seen.camera.eye.x += 1e-9;
     seen.lights[1].position.x = 2.0;

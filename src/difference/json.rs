@@ -12,11 +12,11 @@
 //!   "lights": [ { "light": 0, "labels": [ { "a": 0, "b": 1, "pixels": 1 } ], "aspects": [] } ] }
 //! ```
 //!
-//! Floats have their bits beside them; a value that is no number is null, and so is a distance to it.
+//! Floats have their bits beside them; a value that is no number is null, and so is a distance to it and between labels.
 
 use super::{
-    AspectDifference, Difference, DifferingRegion, Found, Frame, LightDifference, Note, PassDifference, Side, Texel,
-    TexelDifference,
+    AspectDifference, AspectKind, Difference, DifferingRegion, Found, Frame, LightDifference, Note, PassDifference,
+    Side, Texel, TexelDifference,
 };
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -99,16 +99,16 @@ fn aspect(AspectDifference { aspect, found, carried }: &AspectDifference) -> Val
         "only_in": only_in,
         "sizes": sizes,
         "pixels": pixels.map(|difference| difference.pixels),
-        "largest": pixels.map(|difference| texel(&difference.largest)),
-        "region": pixels.map(|difference| region(&difference.region)),
+        "largest": pixels.map(|difference| texel(*aspect, &difference.largest)),
+        "region": pixels.map(|difference| region(*aspect, &difference.region)),
     })
 }
 
-fn region(DifferingRegion { pixels, bounds, largest }: &DifferingRegion) -> Value {
-    json!({"pixels": pixels, "box": bounds, "largest": texel(largest)})
+fn region(aspect: AspectKind, DifferingRegion { pixels, bounds, largest }: &DifferingRegion) -> Value {
+    json!({"pixels": pixels, "box": bounds, "largest": texel(aspect, largest)})
 }
 
-fn texel(TexelDifference { at, values, by }: &TexelDifference) -> Value {
+fn texel(aspect: AspectKind, TexelDifference { at, values, by }: &TexelDifference) -> Value {
     let value = |value: &Texel| match value {
         Texel::Byte(byte) => json!(byte),
         Texel::Color(channels) => json!(channels),
@@ -119,6 +119,7 @@ fn texel(TexelDifference { at, values, by }: &TexelDifference) -> Value {
         Texel::Float(number) => Some(format!("0x{:08x}", number.to_bits())),
         Texel::Byte(_) | Texel::Color(_) => None,
     };
+    let by = aspect.has_distances().then_some(by);
     let [a, b] = values;
     let bits = bits(a).zip(bits(b)).map(|(a, b)| [a, b]);
     json!({"at": at, "a": value(a), "b": value(b), "bits": bits, "by": by})

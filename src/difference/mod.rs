@@ -257,6 +257,12 @@ impl AspectKind {
         }
     }
 
+    /// Can two values be nearer to each other than two others? Labels and findings can't.
+    #[must_use]
+    pub fn has_distances(self) -> bool {
+        !matches!(self, AspectKind::Labels | AspectKind::Truth | AspectKind::Findings)
+    }
+
     /// The face of a map, or the layer of textures.
     #[must_use]
     pub fn layer(self) -> Option<usize> {

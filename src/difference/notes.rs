@@ -25,13 +25,18 @@ pub(super) fn asked(a: &Capture, b: &Capture) -> Vec<Note> {
     notes.add("scene", &a.scene, &b.scene);
     notes.add("technique", &a.technique, &b.technique);
     let keys: BTreeSet<&String> = a.settings.keys().chain(b.settings.keys()).collect();
-    for key in keys {
+    // Another technique has other settings; told is then only what both have.
+    let is_of_both = |key: &&String| a.settings.contains_key(*key) && b.settings.contains_key(*key);
+    for key in keys.into_iter().filter(|key| a.technique == b.technique || is_of_both(key)) {
         let [in_a, in_b] = [a, b].map(|capture| capture.settings.get(key).map_or(NONE, String::as_str));
         notes.add(&format!("setting {key}"), in_a, in_b);
     }
     notes.add("adapter", &a.adapter.name, &b.adapter.name);
     notes.add("driver", &a.adapter.driver, &b.adapter.driver);
-    notes.plans(&a.plan_text, &b.plan_text);
+    if notes.0.is_empty() {
+        // Where nothing else was asked differently: two versions of the program, or of a scene.
+        notes.plans(&a.plan_text, &b.plan_text);
+    }
     notes.0
 }
 

@@ -71,8 +71,8 @@ impl AspectKind {
     #[must_use]
     pub fn title(self) -> String {
         match self {
-            AspectKind::Map(face) => format!("map, face {}", face + 1),
-            AspectKind::Textures(layer) => format!("textures, layer {}", layer + 1),
+            AspectKind::Map(face) => format!("face {} of the map", face + 1),
+            AspectKind::Textures(layer) => format!("layer {} of the textures", layer + 1),
             AspectKind::Truth => "ground truth".to_owned(),
             AspectKind::Findings => "error picture".to_owned(),
             plain => plain.name().to_owned(),
@@ -130,10 +130,10 @@ fn aspect_lines(difference: &AspectDifference, indent: &str) -> String {
         Found::Pixels(PixelDifference { pixels, largest, region }) => {
             let [left, top, right, bottom] = region.bounds;
             let mut out = format!("{indent}{title}: {}{carried}\n", pixel_count(*pixels));
-            out += &format!("{indent}  most at {}\n", texel(*aspect, largest));
+            out += &format!("{indent}  {}\n", texel(*aspect, largest));
             if *pixels > 1 {
                 out += &format!(
-                    "{indent}  largest region: {}, columns {left} to {right}, rows {top} to {bottom}, most at {}\n",
+                    "{indent}  largest region: {}, columns {left} to {right}, rows {top} to {bottom}\n{indent}    {}\n",
                     pixel_count(region.pixels),
                     texel(*aspect, &region.largest),
                 );
@@ -148,17 +148,18 @@ fn pixel_count(pixels: u64) -> String {
     format!("{} {noun}", numbers::count(pixels))
 }
 
-/// `160,120: 1 in A, 3 in B (by 2)`.
+/// `most at 160,120: 1 in A, 3 in B, 2 apart`; labels are other ones, no more or less.
 fn texel(aspect: AspectKind, TexelDifference { at, values, by }: &TexelDifference) -> String {
     let [a, b] = values.map(|value| value_text(aspect, value));
     let by = match (aspect, values) {
-        (AspectKind::Labels | AspectKind::Truth | AspectKind::Findings, _) => String::new(),
+        _ if !aspect.has_distances() => String::new(),
         _ if *by == 0.0 => ": in bits alone".to_owned(),
         _ if by.is_infinite() => ": one is no number".to_owned(),
-        (_, [Texel::Float(_), _]) => format!(", {by:e} apart"),
+        (_, [Texel::Float(_), _]) => format!(", {} apart", numbers::digits(*by)),
         _ => format!(", {by} apart"),
     };
-    format!("{},{}: {a} in A, {b} in B{by}", at[0], at[1])
+    let most = if aspect.has_distances() { "most at" } else { "such as at" };
+    format!("{most} {},{}: {a} in A, {b} in B{by}", at[0], at[1])
 }
 
 fn value_text(aspect: AspectKind, value: Texel) -> String {
@@ -204,7 +205,7 @@ fn summary(AspectDifference { aspect, found, carried }: &AspectDifference) -> St
         Found::Sizes(_) => "another size".to_owned(),
     };
     let carried = if *carried { " as before" } else { "" };
-    format!("{} {found}{carried}", aspect.title())
+    format!("{}: {found}{carried}", aspect.title())
 }
 
 /// The light's labels at the end, and what else differs of it.
@@ -212,12 +213,26 @@ fn of_light(light: &LightDifference) -> String {
     if light.aspects.is_empty() {
         return String::new();
     }
-    let mut out = format!("{} at the end: {}\n", numbers::light(light.light), {
-        light.aspects.iter().map(summary).collect::<Vec<_>>().join("; ")
-    });
+    let mut summaries: Vec<String> = Vec::new();
+    for difference in &light.aspects {
+        let whole_map = matches!(difference.found, Found::OnlyIn(_)) && difference.aspect.layer().is_some();
+        let one = if whole_map { of_map(difference) } else { summary(difference) };
+        if summaries.last() != Some(&one) {
+            summaries.push(one);
+        }
+    }
+    let mut out = format!("{} at the end: {}\n", numbers::light(light.light), summaries.join("; "));
     for ([a, b], pixels) in &light.labels {
         let [a, b] = [*a, *b].map(|label| value_text(AspectKind::Labels, Texel::Byte(label)));
         out += &format!("  {}: {a} in A, {b} in B\n", pixel_count(*pixels));
     }
     out
+}
+
+/// All layers that only one has, as one.
+fn of_map(AspectDifference { aspect, found, .. }: &AspectDifference) -> String {
+    match found {
+        Found::OnlyIn(side) => format!("{}: only in {}", aspect.name(), side.name()),
+        Found::Pixels(_) | Found::Sizes(_) => aspect.name().to_owned(),
+    }
 }
