@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 21] = [
+const MAY_USE: [(&str, &[&str]); 22] = [
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
@@ -19,6 +19,10 @@ const MAY_USE: [(&str, &[&str]); 21] = [
     ("stencil_machine", &["plan"]),
     ("gpu", &["math", "scene", "plan", "capture"]),
     ("history", &["math", "numbers", "plan", "capture", "stencil_machine", "truth"]),
+    (
+        "diagnosis",
+        &["math", "scene", "geometry", "plan", "technique", "capture", "truth", "accuracy", "history", "numbers"],
+    ),
     ("report", &["capture", "numbers"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
@@ -36,6 +40,7 @@ const MAY_USE: [(&str, &[&str]); 21] = [
             "progress",
             "report",
             "history",
+            "diagnosis",
             "stress",
         ],
     ),
@@ -53,6 +58,7 @@ const MAY_USE: [(&str, &[&str]); 21] = [
             "report",
             "numbers",
             "history",
+            "diagnosis",
             "stress",
         ],
     ),
