@@ -10,7 +10,12 @@
 //! is called proven. No rule knows how a fault came to be.
 
 mod cause;
+pub(crate) mod facts;
 mod mend;
+pub(crate) mod mesh_facts;
+pub(crate) mod proof;
+pub(crate) mod regions;
+pub(crate) mod rules;
 
 pub use cause::Cause;
 pub use mend::{Mend, ObjectChange, PlanEdit, SceneEdit};
