@@ -1,10 +1,10 @@
 //! What rules look at: the frame as it was given and run, its truth, and a few pixels closely.
 
+use super::RegionKind;
 use super::cause::Cause;
 use super::mend::Mend;
 use super::mesh_facts::MeshFacts;
 use super::regions::Region;
-use super::RegionKind;
 use crate::accuracy::Finding;
 use crate::capture::Capture;
 use crate::history::PixelHistory;
@@ -181,7 +181,10 @@ impl Sample {
 
     /// What a caster's volume added to the count of a light here, as if no count had limits.
     pub fn counted(&self, light: usize, caster: &str) -> i32 {
-        self.volume_events(light).filter(|(_, one)| one.caster.as_deref() == Some(caster)).map(|(event, _)| event.step()).sum()
+        self.volume_events(light)
+            .filter(|(_, one)| one.caster.as_deref() == Some(caster))
+            .map(|(event, _)| event.step())
+            .sum()
     }
 
     /// The faces of a light's volumes here.

@@ -1,9 +1,11 @@
 //! What to change so that a cause is gone.
 
-use crate::plan::Part;
-use crate::technique::Technique;
+use crate::plan::{FramePlan, Part};
+use crate::scene::{MeshError, Scene};
+use crate::technique::{Choice, ChoiceError, Technique};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::Arc;
 
 /// Changes of settings, scene and plan; empty where nothing helps.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -16,6 +18,30 @@ pub struct Mend {
     pub scene: Vec<SceneEdit>,
     /// Changes of the plan: what no setting of ours could make wrong.
     pub plan: Vec<PlanEdit>,
+}
+
+/// Why a mend can't be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MendError {
+    /// The technique has no such setting or value.
+    #[error(transparent)]
+    Choice(#[from] ChoiceError),
+    /// A mesh can't be welded.
+    #[error("{name}: {source}")]
+    Mesh {
+        /// Of the object.
+        name: String,
+        /// Why.
+        source: MeshError,
+    },
+    /// The scene has no such object.
+    #[error("the scene has no object number {} ({name})", object + 1)]
+    NoObject {
+        /// Index of the object.
+        object: usize,
+        /// The name that it had.
+        name: String,
+    },
 }
 
 /// A change of one object of the scene.
@@ -137,6 +163,57 @@ impl Mend {
         both
     }
 
+    /// Makes its changes of scene and settings. Settings that another technique shares are kept.
+    ///
+    /// # Errors
+    /// A setting that the technique does not have, an object that is not there.
+    pub fn apply(&self, scene: &mut Scene, choice: &mut Choice) -> Result<(), MendError> {
+        for SceneEdit { object, name, change } in &self.scene {
+            let missing = || MendError::NoObject { object: *object, name: name.clone() };
+            let object = scene.objects.get_mut(*object).ok_or_else(missing)?;
+            match change {
+                ObjectChange::Weld => {
+                    let welded = object.mesh.welded();
+                    let welded = welded.map_err(|source| MendError::Mesh { name: name.clone(), source })?;
+                    object.mesh = Arc::new(welded);
+                }
+                ObjectChange::Receives => object.receives = true,
+                ObjectChange::Casts => object.casts = true,
+                ObjectChange::Visible => object.visible = true,
+            }
+        }
+        if let Some(technique) = self.technique.filter(|technique| *technique != choice.technique()) {
+            let mut other = Choice::new(technique);
+            for spec in technique.settings() {
+                if let Some(value) = choice.settings().get(spec.key) {
+                    // A size means another thing to another technique, and may be one that it refuses.
+                    if spec.key != "size" {
+                        other.set(spec.key, value)?;
+                    }
+                }
+            }
+            *choice = other;
+        }
+        self.settings.iter().try_for_each(|(key, value)| choice.set(key, value))?;
+        Ok(())
+    }
+
+    /// Makes its changes of a plan; `fresh` is the technique's own plan of the same scene and settings.
+    pub fn edit(&self, plan: &mut FramePlan, fresh: &FramePlan) {
+        for edit in &self.plan {
+            match edit {
+                PlanEdit::DrawLightCaps | PlanEdit::DrawDarkCaps => draw_missing(plan, fresh, edit.part()),
+                PlanEdit::SurfaceOrder => draw_caps_in_order(plan, fresh),
+                PlanEdit::Refit => {
+                    plan.views.clone_from(&fresh.views);
+                    for (light, fresh) in plan.lights.iter_mut().zip(&fresh.lights) {
+                        light.map.clone_from(&fresh.map);
+                    }
+                }
+            }
+        }
+    }
+
     /// How much it changes: a setting less than an object, an object less than a technique.
     #[must_use]
     pub fn weight(&self) -> usize {
@@ -165,6 +242,33 @@ impl Mend {
             .to_owned()
         }));
         if words.is_empty() { "nothing mends it".to_owned() } else { words.join(", ") }
+    }
+}
+
+/// Adds the draws of a part that the plan does not have.
+fn draw_missing(plan: &mut FramePlan, fresh: &FramePlan, part: Option<Part>) {
+    for (pass, fresh) in plan.passes.iter_mut().zip(&fresh.passes) {
+        let missing = fresh.draws.iter().filter(|draw| Some(draw.part) == part);
+        for draw in missing {
+            if !pass.draws.iter().any(|other| (&other.name, other.part) == (&draw.name, draw.part)) {
+                pass.draws.push(draw.clone());
+            }
+        }
+    }
+}
+
+/// Draws caps as the technique does: the triangles of the surface in its own vertex order.
+fn draw_caps_in_order(plan: &mut FramePlan, fresh: &FramePlan) {
+    for (pass, fresh_pass) in plan.passes.iter_mut().zip(&fresh.passes) {
+        for draw in pass.draws.iter_mut().filter(|draw| matches!(draw.part, Part::LightCap | Part::DarkCap)) {
+            let same = fresh_pass.draws.iter().find(|other| (&other.name, other.part) == (&draw.name, draw.part));
+            let Some(same) = same else { continue };
+            *draw = same.clone();
+            let meshes = plan.meshes.get_mut(draw.mesh.0).zip(fresh.meshes.get(draw.mesh.0));
+            if let Some((mesh, fresh_mesh)) = meshes {
+                mesh.clone_from(fresh_mesh);
+            }
+        }
     }
 }
 

@@ -52,7 +52,12 @@ impl MeshFacts {
         };
         let corners = |of: &[u32; 3]| of.map(|vertex| world[vertex as usize]);
         let middle = |of: &[u32; 3]| corners(of).iter().sum::<DVec3>() / 3.0;
-        let volume: f64 = mesh.triangles().iter().map(corners).map(|[a, b, c]| (a - world[0]).dot((b - world[0]).cross(c - world[0]))).sum();
+        let volume: f64 = mesh
+            .triangles()
+            .iter()
+            .map(corners)
+            .map(|[a, b, c]| (a - world[0]).dot((b - world[0]).cross(c - world[0])))
+            .sum();
         MeshFacts {
             name: object.name.clone(),
             is_inside_out: is_whole && !mesh.triangles().is_empty() && volume < 0.0,
@@ -93,7 +98,9 @@ impl MeshFacts {
             MeshTrouble::Cause(Cause::OpenMesh),
             self.open.len(),
             &self.open,
-            &format!("the mesh has holes: {only_facing} it casts less than its shadow, and as a textbook has it, streaks"),
+            &format!(
+                "the mesh has holes: {only_facing} it casts less than its shadow, and as a textbook has it, streaks"
+            ),
         );
         tell(
             MeshTrouble::Cause(Cause::NonManifold),
@@ -127,8 +134,18 @@ impl MeshFacts {
             &inside,
             &format!("a light is inside: {only_facing} nothing that should cast faces it"),
         );
-        tell(MeshTrouble::FlatTriangles, self.flat.0, &self.flat.1, "triangles without area cast nothing, and are no harm");
-        tell(MeshTrouble::DroppedTriangles, self.dropped, &[], "triangles with two equal corners were left out, and are no harm");
+        tell(
+            MeshTrouble::FlatTriangles,
+            self.flat.0,
+            &self.flat.1,
+            "triangles without area cast nothing, and are no harm",
+        );
+        tell(
+            MeshTrouble::DroppedTriangles,
+            self.dropped,
+            &[],
+            "triangles with two equal corners were left out, and are no harm",
+        );
         tell(
             MeshTrouble::DuplicateTriangles,
             self.duplicates.len(),

@@ -18,7 +18,7 @@ pub(crate) mod regions;
 pub(crate) mod rules;
 
 pub use cause::Cause;
-pub use mend::{Mend, ObjectChange, PlanEdit, SceneEdit};
+pub use mend::{Mend, MendError, ObjectChange, PlanEdit, SceneEdit};
 
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::technique::Technique;

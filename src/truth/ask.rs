@@ -62,7 +62,16 @@ impl Tracer {
     /// The name of a triangle's object.
     #[must_use]
     pub fn name(&self, place: Place) -> &str {
-        self.world.name(place)
+        self.world.object_name(place.object)
+    }
+
+    /// The name of an object by its index.
+    ///
+    /// # Panics
+    /// If there is no such object.
+    #[must_use]
+    pub fn object_name(&self, object: usize) -> &str {
+        self.world.object_name(object)
     }
 
     /// The casting triangles between a light and a seen surface, the nearest to the surface first: there

@@ -57,9 +57,8 @@ impl World {
         self.places[index]
     }
 
-    /// Of a triangle's object.
-    pub fn name(&self, place: Place) -> &str {
-        &self.objects[place.object].name
+    pub fn object_name(&self, object: usize) -> &str {
+        &self.objects[object].name
     }
 
     /// No corner is farther than this from a point along any axis.

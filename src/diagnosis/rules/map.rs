@@ -4,11 +4,11 @@
 //! without a bias. Wrong with that as well, the texel is too coarse; else the bias is too small or too large.
 
 use super::planar::larger;
+use crate::accuracy::Finding;
 use crate::diagnosis::RegionKind;
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion};
 use crate::diagnosis::mend::{Mend, PlanEdit};
-use crate::accuracy::Finding;
 use crate::numbers;
 use crate::plan::{Part, PlanMap};
 use crate::technique::Technique;
@@ -42,7 +42,8 @@ pub(crate) fn look(facts: &Facts, light: usize, kind: RegionKind, seen: &SeenSur
     }
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
     map.lookup?;
-    let nothing = MapLook { cause: Cause::OutsideMap, caster: None, texel: 0.0, slope: 0.0, gap: 0.0, bias: 0.0, place: 0.0 };
+    let nothing =
+        MapLook { cause: Cause::OutsideMap, caster: None, texel: 0.0, slope: 0.0, gap: 0.0, bias: 0.0, place: 0.0 };
     let relative = seen.point - facts.scene.camera.eye;
     let Some((face, device)) = find_face(map, relative) else {
         let caster = facts.tracer.between(light, seen).last().map(|met| met.place.object);
@@ -79,7 +80,8 @@ fn texel_look(
 ) -> Option<MapLook> {
     let image = facts.capture.lights.get(light)?.map.as_ref()?.faces.get(face)?.clone();
     let size = f64::from(image.size()[0]);
-    let texel = ((device.truncate() * DVec2::new(0.5, -0.5) + 0.5) * size).floor().clamp(DVec2::ZERO, DVec2::splat(size - 1.0));
+    let texel =
+        ((device.truncate() * DVec2::new(0.5, -0.5) + 0.5) * size).floor().clamp(DVec2::ZERO, DVec2::splat(size - 1.0));
     let stored = f64::from(image.depth_at([texel.x as u32, texel.y as u32])?);
     let clip_from_world: DMat4 = *map.clip_from_light.get(face)? * map.light_from_world;
     let world_from_clip = clip_from_world.inverse();

@@ -34,7 +34,11 @@ fn suspects<'f>(facts: &'f Facts, case: &Case) -> Vec<Suspect<'f>> {
                 if !of_it.iter().any(|met| facts.casts(met)) {
                     let what = format!(
                         "{} between light and surface, and none of them looks {way} the light",
-                        if of_it.len() == 1 { "1 triangle lies".to_owned() } else { format!("{} triangles lie", of_it.len()) }
+                        if of_it.len() == 1 {
+                            "1 triangle lies".to_owned()
+                        } else {
+                            format!("{} triangles lie", of_it.len())
+                        }
                     );
                     at_fault.push((name, what));
                 }
@@ -65,10 +69,13 @@ fn rule(
     measure: impl Fn(&MeshFacts) -> Option<(String, usize)>,
 ) -> Option<Suspicion> {
     let all = suspects(facts, case).into_iter();
-    let (suspect, (measured, weight)) = all.filter_map(|suspect| Some((measure(suspect.mesh)?, suspect))).map(|(m, s)| (s, m)).next()?;
+    let (suspect, (measured, weight)) =
+        all.filter_map(|suspect| Some((measure(suspect.mesh)?, suspect))).map(|(m, s)| (s, m)).next()?;
     let Suspect { index, mesh, what, shown_by } = suspect;
     let mends = match cause {
-        Cause::SplitVertices => vec![Mend::scene(index, &mesh.name, ObjectChange::Weld), Mend::setting("casters", "all")],
+        Cause::SplitVertices => {
+            vec![Mend::scene(index, &mesh.name, ObjectChange::Weld), Mend::setting("casters", "all")]
+        }
         _ => vec![Mend::setting("casters", "all")],
     };
     let evidence = format!("{} {measured}; {what}", mesh.name);

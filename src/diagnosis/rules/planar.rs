@@ -25,7 +25,8 @@ const OFF_PLANE: f64 = 1e-3;
 pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec<usize> {
     let mut found = BTreeSet::new();
     for (index, pass) in plan.passes.iter().enumerate() {
-        let is_blend = pass.draws.iter().any(|draw| draw.part == Part::PlanarShadow && draw.raster.color == ColorWrite::Multiply);
+        let is_blend =
+            pass.draws.iter().any(|draw| draw.part == Part::PlanarShadow && draw.raster.color == ColorWrite::Multiply);
         let is_of_light = pass.timed && pass.light.is_some_and(|of| of.0 == light);
         let once = pass.draws.first().map_or(1.0, |draw| f64::from(draw.constants.flat[0]));
         if !is_blend || !is_of_light || index == 0 {
@@ -118,10 +119,8 @@ fn off_receiver(facts: &Facts, case: &Case) -> Option<Suspicion> {
             .collect();
         (offs.len() == passing.len()).then(|| offs.into_iter().next()).flatten()
     })?;
-    let evidence = format!(
-        "the {name} darkens a surface that lies {} off the plane it is flattened onto",
-        numbers::metres(off)
-    );
+    let evidence =
+        format!("the {name} darkens a surface that lies {} off the plane it is flattened onto", numbers::metres(off));
     Suspicion::new(Cause::OffReceiver, evidence, vec![Mend::setting("stencil", "on")], shown_by)
 }
 
@@ -161,7 +160,8 @@ pub(crate) fn hint(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<Ca
 /// Casters on the line from a light to a surface that lie beyond the light, and below the surface; with how far.
 fn on_the_line(facts: &Facts, light: usize, seen: &SeenSurface) -> (Vec<(String, f64)>, Vec<(String, f64)>) {
     let distance = facts.tracer.light_distance(light, seen.point);
-    let plane = Plane::through(seen.point, (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]));
+    let plane =
+        Plane::through(seen.point, (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]));
     let off = |point: DVec3| plane.at(point.extend(1.0)).abs();
     let towards = facts.tracer.towards(light, seen.point);
     let (mut beyond, mut below) = (Vec::new(), Vec::new());
@@ -239,7 +239,8 @@ fn is_served(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
     parts.into_iter().flat_map(|part| facts.draws(light, part)).any(|draw| {
         let Some(mesh) = facts.plan.meshes.get(draw.mesh.0) else { return false };
         let is_own = draw.part == Part::PlanarShadow || draw.caster.as_deref() == Some(facts.tracer.name(seen.place));
-        let first = draw.triangles.clone().find_map(|index| triangle(mesh, index as usize).filter(|of| of[0].is_finite()));
+        let first =
+            draw.triangles.clone().find_map(|index| triangle(mesh, index as usize).filter(|of| of[0].is_finite()));
         is_own && first.is_some_and(plane)
     })
 }
@@ -248,14 +249,19 @@ fn is_served(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
 fn has_texture(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
     let corners = seen.corners;
     let name = facts.tracer.name(seen.place);
-    let is_of_piece = |draw: &&crate::plan::Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
+    let is_of_piece =
+        |draw: &&crate::plan::Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
     let light_passes = facts.passes(light).filter(|pass| pass.view.0 == 0).flat_map(|pass| &pass.draws);
     let eye = facts.scene.camera.eye;
     light_passes.filter(|draw| draw.part == Part::Surface).filter(is_of_piece).any(|draw| {
         let Some(mesh) = facts.plan.meshes.get(draw.mesh.0) else { return false };
         draw.triangles.clone().any(|index| {
             (0..3).all(|corner| {
-                let vertex = mesh.indices.data().get(index as usize * 3 + corner).and_then(|v| mesh.vertices.data().get(*v as usize));
+                let vertex = mesh
+                    .indices
+                    .data()
+                    .get(index as usize * 3 + corner)
+                    .and_then(|v| mesh.vertices.data().get(*v as usize));
                 vertex.is_some_and(|[x, y, z, _]| {
                     let point = DVec3::new((*x).into(), (*y).into(), (*z).into());
                     let off = (corners[corner] - eye - point).length();

@@ -14,7 +14,12 @@ use crate::truth::SeenSurface;
 pub(crate) const RULES: &[Rule] = &[reverse_projection, between, self_shadow, aliasing, no_fit];
 
 /// Why a silhouette's answer is wrong at a surface point, with the caster and a distance that tells.
-pub(crate) fn look(facts: &Facts, light: usize, kind: RegionKind, seen: &SeenSurface) -> Option<(Cause, Option<usize>, f64)> {
+pub(crate) fn look(
+    facts: &Facts,
+    light: usize,
+    kind: RegionKind,
+    seen: &SeenSurface,
+) -> Option<(Cause, Option<usize>, f64)> {
     if facts.technique() != Technique::Projective {
         return None;
     }
@@ -28,8 +33,7 @@ pub(crate) fn look(facts: &Facts, light: usize, kind: RegionKind, seen: &SeenSur
             let along = facts.tracer.along(light, seen.point);
             let mut others =
                 along.iter().filter(|met| met.place.object != seen.place.object && drawn(met.place.object));
-            let reverses =
-                facts.plan.lights.get(light)?.map.as_ref().is_some_and(|map| map.projects_backwards);
+            let reverses = facts.plan.lights.get(light)?.map.as_ref().is_some_and(|map| map.projects_backwards);
             let behind = others.clone().find(|met| met.towards_light > distance && reverses);
             let below = others.rfind(|met| met.towards_light < 0.0);
             Some(match (behind, below) {
@@ -71,14 +75,19 @@ fn reverse_projection(facts: &Facts, case: &Case) -> Option<Suspicion> {
 
 fn between(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let ((caster, far), shown_by) = shown(facts, case, Cause::Between)?;
-    let evidence = format!("the surface lies {} nearer to the light than {caster}, whose silhouette falls on it", numbers::metres(far));
+    let evidence = format!(
+        "the surface lies {} nearer to the light than {caster}, whose silhouette falls on it",
+        numbers::metres(far)
+    );
     Suspicion::new(Cause::Between, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
 }
 
 fn self_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let ((caster, far), shown_by) = shown(facts, case, Cause::SelfShadow)?;
-    let evidence =
-        format!("{caster} itself lies between light and surface, {} before it, and its silhouette spares it", numbers::metres(far));
+    let evidence = format!(
+        "{caster} itself lies between light and surface, {} before it, and its silhouette spares it",
+        numbers::metres(far)
+    );
     Suspicion::new(Cause::SelfShadow, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
 }
 

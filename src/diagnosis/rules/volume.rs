@@ -101,7 +101,8 @@ fn near_plane_crack(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let crossing = meeting_near_clip(facts, light).into_iter().filter_map(|name| {
         let (_, object) = facts.object(&name)?;
         let depths: Vec<f64> = object.world_positions().iter().map(|point| facts.tracer.depth_of(*point)).collect();
-        let (low, high) = depths.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| (low.min(*d), high.max(*d)));
+        let (low, high) =
+            depths.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| (low.min(*d), high.max(*d)));
         (low < near && near < high).then_some((name, low, high))
     });
     let crossing: Vec<(String, f64, f64)> = crossing.collect();
@@ -132,9 +133,7 @@ fn is_excused(facts: &Facts, caster: &str, what: &[&str]) -> bool {
 
 /// The first caster counted wrongly at a sample of which `lacks` says so.
 fn lacking(facts: &Facts, case: &Case, lacks: impl Fn(&str) -> bool) -> Option<((String, i32, i32), usize)> {
-    case.shown(|sample: &Sample| {
-        sample.miscounted(facts, case.light()).into_iter().find(|(caster, ..)| lacks(caster))
-    })
+    case.shown(|sample: &Sample| sample.miscounted(facts, case.light()).into_iter().find(|(caster, ..)| lacks(caster)))
 }
 
 fn missing_dark_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
@@ -212,17 +211,20 @@ fn far_clip(facts: &Facts, case: &Case) -> Option<Suspicion> {
         let is_beyond = sample.seen.zip(far).is_some_and(|(seen, far)| facts.tracer.depth_of(seen.point) >= far);
         match (faces, is_beyond) {
             (_, true) => Some(("the surface itself lies".to_owned(), 1)),
-            (1.., _) if !sample.miscounted(facts, light).is_empty() => {
-                Some((format!("{} over this pixel {}", amount(faces as u64, "volume face"), if faces == 1 { "lies" } else { "lie" }), faces))
-            }
+            (1.., _) if !sample.miscounted(facts, light).is_empty() => Some((
+                format!(
+                    "{} over this pixel {}",
+                    amount(faces as u64, "volume face"),
+                    if faces == 1 { "lies" } else { "lie" }
+                ),
+                faces,
+            )),
             _ => None,
         }
     })?;
     let place = far.map_or_else(|| "at infinity".to_owned(), |far| format!("{} away", numbers::metres(far)));
-    let evidence = format!(
-        "{what} beyond the far plane, {place}, and {} cut away",
-        if count == 1 { "is" } else { "are" }
-    );
+    let evidence =
+        format!("{what} beyond the far plane, {place}, and {} cut away", if count == 1 { "is" } else { "are" });
     let mends = vec![Mend::setting("depth", "reversed-infinite"), Mend::setting("depth", "standard-finite-clamp")];
     Suspicion::new(Cause::FarClip, evidence, mends, shown_by)
 }
@@ -268,7 +270,7 @@ fn size_of(facts: &Facts, name: &str) -> f64 {
     (high - low).length()
 }
 
-fn cap_fighting(facts: &Facts, case: &Case) -> Option<Suspicion> {
+fn cap_fighting(_: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
     let ((caster, cap, surface), shown_by) = case.shown(|sample| {
         let history = sample.history.as_ref()?;
