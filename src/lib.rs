@@ -36,6 +36,7 @@ pub mod accuracy;
 pub mod app;
 pub mod capture;
 pub mod cli;
+pub mod diagnosis;
 pub mod difference;
 pub mod geometry;
 pub mod gpu;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 23] = [
+const MAY_USE: [(&str, &[&str]); 24] = [
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
@@ -21,6 +21,10 @@ const MAY_USE: [(&str, &[&str]); 23] = [
     ("gpu", &["math", "scene", "plan", "capture"]),
     ("history", &["math", "numbers", "plan", "capture", "stencil_machine", "truth"]),
     ("difference", &["capture", "accuracy", "numbers", "picture"]),
+    (
+        "diagnosis",
+        &["math", "scene", "geometry", "plan", "technique", "capture", "truth", "accuracy", "history", "numbers"],
+    ),
     ("report", &["capture", "numbers"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
@@ -38,6 +42,7 @@ const MAY_USE: [(&str, &[&str]); 23] = [
             "progress",
             "report",
             "history",
+            "diagnosis",
             "stress",
         ],
     ),
@@ -56,6 +61,7 @@ const MAY_USE: [(&str, &[&str]); 23] = [
             "report",
             "numbers",
             "history",
+            "diagnosis",
             "stress",
         ],
     ),

@@ -1,6 +1,7 @@
 //! Two pictures of one kind, texel by texel: bits are compared, so that a NaN equals itself and
 //! `−0` is not `0`.
 
+use crate::accuracy::{place, take_connected};
 use crate::capture::{Image, PixelFormat};
 
 /// Where and how much two pictures of one size differ.
@@ -63,16 +64,15 @@ pub(super) fn compare(a: &Image, b: &Image) -> Option<PixelDifference> {
     for (row_a, row_b) in a.rows().zip(b.rows()) {
         differs.extend(row_a.chunks_exact(texel_bytes).zip(row_b.chunks_exact(texel_bytes)).map(|(a, b)| a != b));
     }
-    let texel = |index: usize| {
-        let at = [(index % width as usize) as u32, (index / width as usize) as u32];
-        texel_difference(a, b, at)
-    };
+    let texel = |index: usize| texel_difference(a, b, place(index, a.size()));
     let mut found: Option<PixelDifference> = None;
     for start in 0..differs.len() {
         if !differs[start] {
             continue;
         }
-        let members = take_region(&mut differs, start, [width, height]);
+        let mut members = Vec::new();
+        take_connected(&mut differs, false, start, a.size(), 1, |index| members.push(index));
+        members.sort_unstable();
         let region = describe(&members, &texel)?;
         found = Some(match found {
             None => PixelDifference { pixels: region.pixels, largest: region.largest, region },
@@ -84,28 +84,6 @@ pub(super) fn compare(a: &Image, b: &Image) -> Option<PixelDifference> {
         });
     }
     found
-}
-
-/// Takes the texels that hang together with one out of those that differ, in reading order.
-fn take_region(differs: &mut [bool], start: usize, [width, height]: [u32; 2]) -> Vec<usize> {
-    let (width, height) = (width as usize, height as usize);
-    let mut members = vec![start];
-    differs[start] = false;
-    let mut next = 0;
-    while let Some(&index) = members.get(next) {
-        next += 1;
-        let (x, y) = (index % width, index / width);
-        for near_y in y.saturating_sub(1)..=(y + 1).min(height - 1) {
-            for near_x in x.saturating_sub(1)..=(x + 1).min(width - 1) {
-                let near = near_y * width + near_x;
-                if std::mem::take(&mut differs[near]) {
-                    members.push(near);
-                }
-            }
-        }
-    }
-    members.sort_unstable();
-    members
 }
 
 fn describe(members: &[usize], texel: &impl Fn(usize) -> Option<TexelDifference>) -> Option<DifferingRegion> {
