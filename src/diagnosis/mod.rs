@@ -11,14 +11,20 @@
 
 mod cause;
 pub(crate) mod facts;
+mod json;
 mod mend;
 pub(crate) mod mesh_facts;
 pub(crate) mod proof;
 pub(crate) mod regions;
 pub(crate) mod rules;
+mod shown;
+mod suited;
+mod text;
 
 pub use cause::Cause;
 pub use mend::{Mend, MendError, ObjectChange, PlanEdit, SceneEdit};
+pub use shown::wrong_pixels;
+pub use suited::Suited;
 
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::technique::Technique;

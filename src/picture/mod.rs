@@ -7,6 +7,23 @@ pub mod colors;
 
 use colors::Rgb;
 
+/// Digits as rows of three dots, the left one the highest bit.
+const DIGITS: [[u8; 5]; 10] = [
+    [0b111, 0b101, 0b101, 0b101, 0b111],
+    [0b010, 0b110, 0b010, 0b010, 0b111],
+    [0b111, 0b001, 0b111, 0b100, 0b111],
+    [0b111, 0b001, 0b111, 0b001, 0b111],
+    [0b101, 0b101, 0b111, 0b001, 0b001],
+    [0b111, 0b100, 0b111, 0b001, 0b111],
+    [0b111, 0b100, 0b111, 0b101, 0b111],
+    [0b111, 0b001, 0b010, 0b010, 0b010],
+    [0b111, 0b101, 0b111, 0b101, 0b111],
+    [0b111, 0b101, 0b111, 0b001, 0b111],
+];
+/// Dots of a digit with the gap after it, and of a number's height; a dot of paper is all round.
+const DIGIT_WIDTH: u32 = 4;
+const DIGIT_HEIGHT: u32 = 5;
+
 /// Opaque pixels, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Picture {
@@ -65,6 +82,28 @@ impl Picture {
         }
     }
 
+    /// Writes a number with its top left corner at a place; a dot of it is `dot` × `dot` pixels.
+    pub fn number(&mut self, [left, top]: [u32; 2], number: usize, dot: u32, ink: Rgb, paper: Rgb) {
+        self.paste(&Picture::filled(Picture::number_size(number, dot), paper), [left, top]);
+        let square = Picture::filled([dot, dot], ink);
+        let digits = number.to_string().into_bytes().into_iter().map(|digit| usize::from(digit - b'0'));
+        for (place, digit) in (0..).zip(digits) {
+            for (row, dots) in (0..).zip(DIGITS[digit]) {
+                for column in (0..3).filter(|column| dots >> (2 - column) & 1 == 1) {
+                    let x = 1 + place * DIGIT_WIDTH + column;
+                    self.paste(&square, [left + x * dot, top + (1 + row) * dot]);
+                }
+            }
+        }
+    }
+
+    /// Width and height that a number takes.
+    #[must_use]
+    pub fn number_size(number: usize, dot: u32) -> [u32; 2] {
+        let digits = number.to_string().len() as u32;
+        [(digits * DIGIT_WIDTH + 1) * dot, (DIGIT_HEIGHT + 2) * dot]
+    }
+
     /// The picture as a PNG file.
     ///
     /// # Errors
@@ -115,6 +154,20 @@ mod tests {
         // Partly outside.
         picture.frame([0, 0, 5, 4], 0, 2, RED);
         assert_eq!(places(&picture, RED).len(), 10);
+    }
+
+    #[test]
+    fn numbers_differ_and_stay_within_their_room() {
+        let written = |number: usize| {
+            let mut picture = Picture::filled([40, 20], BLACK);
+            picture.number([2, 3], number, 2, RED, [1; 3]);
+            places(&picture, RED)
+        };
+        let all: std::collections::BTreeSet<Vec<[u32; 2]>> = (0..=12).map(written).collect();
+        assert_eq!(all.len(), 13);
+        let [width, height] = Picture::number_size(12, 2);
+        assert!(written(12).iter().all(|[x, y]| (4..2 + width).contains(x) && (5..1 + height).contains(y)));
+        assert_eq!(written(1).len(), 8 * 4, "eight dots of four pixels");
     }
 
     #[test]

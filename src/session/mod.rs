@@ -11,6 +11,7 @@ mod measure;
 mod report;
 mod stress;
 mod stress_steps;
+mod suited;
 mod truth;
 mod volumes;
 
