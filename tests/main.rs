@@ -5,6 +5,7 @@ mod auto;
 mod capture_folder;
 mod commands;
 mod common;
+mod diagnosis;
 mod draws;
 mod history;
 #[cfg(feature = "inspector")]
