@@ -87,6 +87,7 @@ const MAY_USE: [(&str, &[&str]); 24] = [
         &[
             "math",
             "scene",
+            "picture",
             "plan",
             "technique",
             "capture",

@@ -5,6 +5,8 @@ mod auto;
 mod capture_folder;
 mod commands;
 mod common;
+mod diagnose;
+mod diagnosis;
 mod diff;
 mod draws;
 mod history;

@@ -133,9 +133,9 @@ fn mended(loaded: &Scene, mut choice: Choice, mend: &Mend) -> Result<Scene, CliE
 /// The path of a model as a scene file beside `file` names it.
 fn from_beside(file: &Path, model: &Path) -> String {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let relative = folder.canonicalize().ok().zip(model.canonicalize().ok());
-    let relative = relative.and_then(|(folder, model)| relative(&folder, &model));
-    relative.unwrap_or_else(|| model.to_owned()).to_string_lossy().into_owned()
+    let both = folder.canonicalize().ok().zip(model.canonicalize().ok());
+    let way = both.and_then(|(folder, model)| relative(&folder, &model));
+    way.unwrap_or_else(|| model.to_owned()).to_string_lossy().into_owned()
 }
 
 /// The way from a folder to a file, both from the root; `None` where there is none, as between two drives.

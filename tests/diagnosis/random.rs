@@ -1,0 +1,1 @@
+//! A hundred things made wrong at random: the first named cause is the true one.
