@@ -6,6 +6,9 @@ use std::fs;
 use std::path::Path;
 
 const SMALL: [&str; 2] = ["--size", "160x120"];
+
+fn diagnose(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let output = run(folder, &[&["diagnose"], &SMALL[..], arguments].concat());
     (output.status.code(), text(&output.stdout), text(&output.stderr))
 }
 
@@ -27,7 +30,11 @@ fn a_right_frame_needs_nothing() {
     let folder = crate::commands::folder();
     let (code, told, error) = diagnose(folder.path(), &["tori", "-t", "z-fail", "--fix", "right.toml"]);
     assert_eq!((code, error.as_str()), (Some(0), ""), "{told}");
-    for words in ["tori, z-fail, 160x120: none of ", "right, the fastest first: ", "what to do: nothing: the shadows are right\n"] {
+    for words in [
+        "tori, z-fail, 160x120: none of ",
+        "right, the fastest first: ",
+        "what to do: nothing: the shadows are right\n",
+    ] {
         assert!(told.contains(words), "`{words}` is not in\n{told}");
     }
     assert!(told.ends_with("right.toml: not written, as nothing is wrong\n"), "{told}");
@@ -64,7 +71,10 @@ fn the_document_has_the_names_of_the_contract() {
     let (code, told, _) = diagnose(folder.path(), &["shaded.toml", "-t", "z-pass", "--no-techniques", "--json"]);
     assert_eq!(code, Some(1));
     let document: serde_json::Value = serde_json::from_str(&told).expect("JSON alone");
-    assert_eq!((&document["schema"], &document["scene"], &document["technique"]), (&1.into(), &"shaded".into(), &"z-pass".into()));
+    assert_eq!(
+        (&document["schema"], &document["scene"], &document["technique"]),
+        (&1.into(), &"shaded".into(), &"z-pass".into())
+    );
     assert!(document["settings"].is_object() && document["mesh_findings"].is_array());
     for key in ["compared", "false_shadow", "missing_shadow", "wrong_surface", "edge_band"] {
         assert!(document["error"][key].is_u64(), "{key}");

@@ -42,7 +42,8 @@ pub fn textbook_silhouettes() -> PlanFault {
         }
         let surface = |plan: &FramePlan, caster: &Option<String>| {
             let all = plan.passes.iter().flat_map(|pass| &pass.draws);
-            let mesh = all.filter(|draw| draw.part == Part::Surface && draw.caster == *caster).map(|draw| draw.mesh).next();
+            let mesh =
+                all.filter(|draw| draw.part == Part::Surface && draw.caster == *caster).map(|draw| draw.mesh).next();
             mesh.map(|mesh| plan.meshes[mesh.0].indices.data().to_vec())
         };
         let sides: Vec<Draw> = draws(plan, Part::Side).map(|draw| draw.clone()).collect();

@@ -164,8 +164,12 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::EyeInVolume => (eye_in_shadow(dice), set(Technique::ZPass, &[]), None),
         Cause::NearPlaneCut => (near_in_shadow(dice), set(Technique::ZPass, &[]), None),
         Cause::NearPlaneCrack => (near_through_roof(dice), set(Technique::ZPassPlus, &[]), None),
-        Cause::MissingDarkCap => (beside_the_lamp(dice), set(Technique::ZFail, &[]), Some(faults::without(Part::DarkCap))),
-        Cause::MissingLightCap => (dice.still_life(), set(Technique::ZFail, &[]), Some(faults::without(Part::LightCap))),
+        Cause::MissingDarkCap => {
+            (beside_the_lamp(dice), set(Technique::ZFail, &[]), Some(faults::without(Part::DarkCap)))
+        }
+        Cause::MissingLightCap => {
+            (dice.still_life(), set(Technique::ZFail, &[]), Some(faults::without(Part::LightCap)))
+        }
         Cause::FarClip => (dice.still_life(), set(Technique::ZFail, &[("depth", "standard-finite")]), None),
         Cause::FiniteExtrusion => {
             let reach = format!("finite:{:.2}", dice.between(0.05, 0.2));
@@ -279,7 +283,8 @@ fn near_through_roof(dice: &mut Dice) -> Scene {
         [f64::from(step) / f64::from(steps) * 3.0 - 1.5, if step % 2 == 0 { 0.15 } else { -0.15 }, z]
     };
     let points: Vec<[f64; 3]> = (0..=steps).flat_map(|step| [at(step, -0.4), at(step, 0.4)]).collect();
-    let quads = (0..steps).flat_map(|step| [[2 * step, 2 * step + 1, 2 * step + 3], [2 * step, 2 * step + 3, 2 * step + 2]]);
+    let quads =
+        (0..steps).flat_map(|step| [[2 * step, 2 * step + 1, 2 * step + 3], [2 * step, 2 * step + 3, 2 * step + 2]]);
     let roof = rebuilt(points.into_iter().map(DVec3::from_array).collect(), quads.collect());
     let roof = Object { visible: false, ..object("roof", roof, [0.0, 1.0, 1.2]) };
     let light = lamp(dice.between(-0.4, 0.4), dice.between(2.4, 2.9), dice.between(2.0, 2.4));
@@ -374,13 +379,23 @@ fn flat_scene(dice: &mut Dice) -> Scene {
 
 fn over_a_table(dice: &mut Dice) -> Scene {
     let top = cuboid("table", [0.0, 0.6, 0.0], [1.2, 0.08, 1.0]);
-    let ball = object("ball", shapes::sphere(0.25, 12, 6).expect("a ball"), [dice.between(0.3, 0.5), dice.between(1.0, 1.3), 0.0]);
-    scene(dice.eye(), [0.0, 0.3, 0.0], lamp(dice.between(-1.5, -0.5), 3.0, dice.between(-0.5, 0.8)), vec![floor(), top, ball])
+    let ball = object(
+        "ball",
+        shapes::sphere(0.25, 12, 6).expect("a ball"),
+        [dice.between(0.3, 0.5), dice.between(1.0, 1.3), 0.0],
+    );
+    scene(
+        dice.eye(),
+        [0.0, 0.3, 0.0],
+        lamp(dice.between(-1.5, -0.5), 3.0, dice.between(-0.5, 0.8)),
+        vec![floor(), top, ball],
+    )
 }
 
 fn beyond_the_lamp(dice: &mut Dice) -> Scene {
     let light = [dice.between(-0.3, 0.3), dice.between(1.2, 1.6), dice.between(-0.3, 0.3)];
-    let above = [light[0] + dice.between(-0.2, 0.2), light[1] + dice.between(0.5, 0.9), light[2] + dice.between(-0.2, 0.2)];
+    let above =
+        [light[0] + dice.between(-0.2, 0.2), light[1] + dice.between(0.5, 0.9), light[2] + dice.between(-0.2, 0.2)];
     let caster = cuboid("box", above, [0.3; 3]);
     scene(dice.eye(), [0.0, 0.3, 0.0], lamp(light[0], light[1], light[2]), vec![floor(), caster])
 }
@@ -393,7 +408,11 @@ fn through_the_floor(dice: &mut Dice) -> Scene {
 
 fn round_receiver(dice: &mut Dice) -> Scene {
     let ring = object("ring", shapes::torus(0.6, 0.25, 32, 16).expect("a ring"), [dice.between(-0.2, 0.2), 0.5, 0.0]);
-    let board = object("board", shapes::quad([0.5, 0.9]).expect("a board"), [0.4, dice.between(1.5, 1.8), dice.between(-0.2, 0.2)]);
+    let board = object(
+        "board",
+        shapes::quad([0.5, 0.9]).expect("a board"),
+        [0.4, dice.between(1.5, 1.8), dice.between(-0.2, 0.2)],
+    );
     scene(dice.eye(), [0.0, 0.3, 0.0], lamp(dice.between(1.0, 2.0), 3.5, 0.5), vec![floor(), ring, board])
 }
 
@@ -417,8 +436,16 @@ fn shelf_between(dice: &mut Dice) -> Scene {
 }
 
 fn ring_alone(dice: &mut Dice) -> Scene {
-    let ring = turned(object("ring", shapes::torus(0.8, 0.3, 32, 16).expect("a ring"), [0.0, 1.0, 0.0]), [dice.between(60.0, 100.0), dice.between(0.0, 60.0), 0.0]);
-    scene(dice.eye(), [0.0, 0.8, 0.0], lamp(dice.between(1.5, 2.5), dice.between(2.0, 3.0), dice.between(0.5, 1.5)), vec![floor(), ring])
+    let ring = turned(
+        object("ring", shapes::torus(0.8, 0.3, 32, 16).expect("a ring"), [0.0, 1.0, 0.0]),
+        [dice.between(60.0, 100.0), dice.between(0.0, 60.0), 0.0],
+    );
+    scene(
+        dice.eye(),
+        [0.0, 0.8, 0.0],
+        lamp(dice.between(1.5, 2.5), dice.between(2.0, 3.0), dice.between(0.5, 1.5)),
+        vec![floor(), ring],
+    )
 }
 
 /// A sun so low that single precision loses the shadow's edge.
@@ -429,4 +456,3 @@ fn low_sun(dice: &mut Dice) -> Scene {
     let objects = vec![floor(), Object { visible: false, ..board }];
     scene([dice.between(-0.3, 0.3), 2.0, 4.0], [0.0; 3], sun, objects)
 }
-
