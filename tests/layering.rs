@@ -42,6 +42,7 @@ const MAY_USE: [(&str, &[&str]); 24] = [
     (
         "session",
         &[
+            "numbers",
             "math",
             "scene",
             "geometry",
@@ -67,6 +68,7 @@ const MAY_USE: [(&str, &[&str]); 24] = [
             "plan",
             "technique",
             "capture",
+            "diagnosis",
             "picture",
             "stencil_machine",
             "accuracy",
@@ -79,12 +81,25 @@ const MAY_USE: [(&str, &[&str]); 24] = [
     ),
     (
         "app",
-        &["scene", "plan", "technique", "capture", "session", "inspector", "progress", "report", "history", "stress"],
+        &[
+            "scene",
+            "plan",
+            "technique",
+            "capture",
+            "diagnosis",
+            "session",
+            "inspector",
+            "progress",
+            "report",
+            "history",
+            "stress",
+        ],
     ),
     ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers"]),
     (
         "cli",
         &[
+            "numbers",
             "math",
             "scene",
             "picture",

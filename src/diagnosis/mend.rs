@@ -182,6 +182,14 @@ impl Mend {
                 ObjectChange::Visible => object.visible = true,
             }
         }
+        self.choose(choice)
+    }
+
+    /// Makes its changes of technique and settings alone.
+    ///
+    /// # Errors
+    /// A setting that the technique does not have.
+    pub fn choose(&self, choice: &mut Choice) -> Result<(), MendError> {
         if let Some(technique) = self.technique.filter(|technique| *technique != choice.technique()) {
             let mut other = Choice::new(technique);
             for spec in technique.settings() {
@@ -212,6 +220,12 @@ impl Mend {
                 }
             }
         }
+    }
+
+    /// Does it change nothing but technique and settings, which the window can change?
+    #[must_use]
+    pub fn is_a_choice(&self) -> bool {
+        self.scene.is_empty() && self.plan.is_empty() && !self.is_empty()
     }
 
     /// How much it changes: a setting less than an object, an object less than a technique.
