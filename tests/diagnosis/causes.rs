@@ -1,8 +1,12 @@
 //! Each cause in scenes of its own.
 
-use super::provoke::{CAUSES, provoke};
-use super::{diagnose, first, session, told};
-use stencilscope::diagnosis::{Cause, Proof};
+use super::provoke::{CAUSES, PlanFault, Provocation, provoke, set};
+use super::{diagnose, faults, first, session, told};
+use std::collections::BTreeSet;
+use stencilscope::diagnosis::{Cause, Diagnosis, MeshTrouble, Proof};
+use stencilscope::plan::Part;
+use stencilscope::scene::{Object, builtin};
+use stencilscope::technique::Technique;
 
 /// Scenes that are looked at until one has wrong pixels.
 const SEEDS: u64 = 12;
@@ -24,4 +28,104 @@ fn every_cause_is_named_first_and_proven() {
         }
     }
     assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+/// The causes that are proven for some region, together or alone.
+fn proven(diagnosis: &Diagnosis) -> BTreeSet<Cause> {
+    let causes = diagnosis.regions.iter().flat_map(|region| &region.causes);
+    causes.filter(|cause| cause.proof == Proof::Proven).map(|cause| cause.cause).collect()
+}
+
+#[test]
+fn two_causes_at_once_are_both_named() {
+    let mut session = session();
+    let both_caps: PlanFault = Box::new(|plan| {
+        faults::without(Part::LightCap)(plan);
+        faults::without(Part::DarkCap)(plan);
+    });
+    let mut caps = provoke(Cause::MissingDarkCap, 3);
+    caps.fault = Some(both_caps);
+    let mut eye = provoke(Cause::EyeInVolume, 1);
+    eye.choice.set("extrusion", "finite:0.1").expect("a setting");
+    let mut open = provoke(Cause::OpenMesh, 2);
+    open.choice.set("operations", "clamp").expect("a setting");
+    open.fault = None;
+    let mut flat = provoke(Cause::AntiShadow, 1);
+    flat.choice.set("blend", "twice").expect("a setting");
+    let mut missed = Vec::new();
+    for (provoked, expected) in [
+        (caps, [Cause::MissingDarkCap, Cause::MissingLightCap]),
+        (eye, [Cause::EyeInVolume, Cause::FiniteExtrusion]),
+        (open, [Cause::OpenMesh, Cause::OperationOrder]),
+        (flat, [Cause::AntiShadow, Cause::DoubleBlend]),
+    ] {
+        let diagnosis = diagnose(&mut session, &provoked);
+        if !proven(&diagnosis).is_superset(&expected.into()) {
+            missed.push(format!("{expected:?}: {}", told(&diagnosis)));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+#[test]
+fn a_right_frame_has_no_cause() {
+    let mut session = session();
+    for builtin in builtin::ALL {
+        let scene = builtin.scene().expect("a scene");
+        for technique in [Technique::Auto, Technique::ZFail] {
+            if technique == Technique::ZFail && builtin.name == "gate" {
+                continue;
+            }
+            let provoked =
+                Provocation { cause: Cause::Undrawn, scene: scene.clone(), choice: set(technique, &[]), fault: None };
+            let diagnosis = diagnose(&mut session, &provoked);
+            assert!(!diagnosis.is_bad() && diagnosis.advice.is_none(), "{}: {}", builtin.name, told(&diagnosis));
+            assert_eq!(diagnosis.error.wrong(), 0);
+        }
+    }
+}
+
+/// The truth honours flags: they are told of apart, and nothing is wrong.
+#[test]
+fn flags_are_told_of_with_what_they_take_away() {
+    let mut session = session();
+    let changes: [(Cause, fn(&mut Object)); 3] = [
+        (Cause::NotReceiving, |object| object.receives = false),
+        (Cause::NotCasting, |object| object.casts = false),
+        (Cause::Undrawn, |object| object.visible = false),
+    ];
+    for (cause, change) in changes {
+        let mut provoked = provoke(Cause::FarClip, 0);
+        provoked.choice = set(Technique::ZFail, &[]);
+        let object = usize::from(cause != Cause::NotReceiving);
+        change(&mut provoked.scene.objects[object]);
+        let diagnosis = diagnose(&mut session, &provoked);
+        assert!(!diagnosis.is_bad(), "{}", told(&diagnosis));
+        let [flag] = &diagnosis.flags[..] else { panic!("{:?}", diagnosis.flags) };
+        assert_eq!((flag.cause, &flag.object), (cause, &provoked.scene.objects[object].name));
+        assert!(flag.pixels > 100 && flag.at.is_some(), "{flag:?}");
+    }
+}
+
+#[test]
+fn advice_mends_the_whole_frame() {
+    let mut session = session();
+    let provoked = provoke(Cause::FarClip, 0);
+    let advice = diagnose(&mut session, &provoked).advice.expect("advice");
+    assert_eq!((advice.mend.settings.get("depth").map(String::as_str), advice.wrong_left), (Some("reversed-infinite"), 0));
+}
+
+/// What meshes are like is told where all casts right, too.
+#[test]
+fn meshes_are_told_of_with_places() {
+    let mut session = session();
+    for (cause, count) in [(Cause::OpenMesh, 4), (Cause::SplitVertices, 36), (Cause::NonManifold, 4)] {
+        let mut provoked = provoke(cause, 0);
+        (provoked.choice, provoked.fault) = (set(Technique::ZFail, &[]), None);
+        let diagnosis = diagnose(&mut session, &provoked);
+        assert!(!diagnosis.is_bad(), "{}", told(&diagnosis));
+        let of_caster = diagnosis.mesh_findings.iter().filter(|found| found.object == "caster");
+        let found: Vec<_> = of_caster.map(|found| (found.kind, found.count, found.at.is_empty())).collect();
+        assert!(found.contains(&(MeshTrouble::Cause(cause), count, false)), "{cause}: {found:?}");
+    }
 }

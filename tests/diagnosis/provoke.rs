@@ -241,6 +241,10 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::SelfShadow => (ring_alone(dice), set(Technique::Projective, &[("size", "2048")]), None),
         _ => (low_sun(dice), set(Technique::ZFail, &[]), None),
     };
+    let mut scene = scene;
+    // A floor is a mesh with an edge too, and a silhouette that falls on what stands on it.
+    let floor_tells = choice.settings().get("casters").is_some_and(|casters| casters == "light-facing");
+    scene.objects[0].casts = !floor_tells && choice.technique() != Technique::Projective;
     Provocation { cause, scene, choice, fault }
 }
 

@@ -7,7 +7,7 @@ use crate::diagnosis::mend::Mend;
 use crate::history::{Event, Fate, Test, TriangleEvent};
 use crate::math::{Plane, Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{ColorWrite, FramePlan, Part};
+use crate::plan::{ColorWrite, Draw, FramePlan, Part};
 use crate::technique::Technique;
 use crate::truth::SeenSurface;
 use glam::DVec3;
@@ -20,6 +20,8 @@ pub(crate) const RULES: &[Rule] =
 const MOST_PIECES: usize = 64;
 /// Part of a surface's distance from the eye by which it may lie off a plane that it lies in.
 const OFF_PLANE: f64 = 1e-3;
+/// Planes whose normals have a larger cosine are one, as far as single precision tells.
+const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
 /// Pixels that a pass of a light has darkened more than one flattened triangle would, by number.
 pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec<usize> {
@@ -92,11 +94,23 @@ fn flattened(sample: &Sample, light: usize) -> impl Iterator<Item = (&Event, &Tr
     })
 }
 
-/// The plane of a flattened triangle, world space; `None` where its corners tell none.
+/// The plane of a flattened triangle, world space; `None` where its corners tell none. Corners may be at
+/// infinity, or beyond it.
 fn plane_of(facts: &Facts, one: &TriangleEvent) -> Option<Plane> {
-    let [a, b, c] = one.corners.map(|[x, y, z, w]| DVec3::new(x.into(), y.into(), z.into()) / f64::from(w));
-    let normal = (b - a).cross(c - a);
-    (normal.is_finite() && normal.length() > 0.0).then(|| Plane::through(a + facts.scene.camera.eye, normal))
+    through(one.corners, facts.scene.camera.eye)
+}
+
+/// The plane through homogeneous corners relative to the eye.
+fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
+    let [a, b, c] = corners.map(|[x, y, z, w]| (DVec3::new(x.into(), y.into(), z.into()), f64::from(w)));
+    let normal = b.0.cross(c.0) * a.1 + c.0.cross(a.0) * b.1 + a.0.cross(b.0) * c.1;
+    let offset = -a.0.dot(b.0.cross(c.0));
+    let length = normal.length();
+    let is_usable = normal.is_finite() && length > 0.0 && offset.is_finite();
+    is_usable.then(|| {
+        let normal = normal / length;
+        Plane { normal, offset: offset / length - normal.dot(eye) }
+    })
 }
 
 /// How far a seen surface lies off a flattened triangle's plane, if it does.
@@ -112,7 +126,9 @@ fn off_receiver(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
     let ((name, off), shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
-        let passing: Vec<_> = flattened(sample, light).filter(|(_, one)| one.fate.passed()).collect();
+        let has_plane = |one: &TriangleEvent| plane_of(facts, one).is_some();
+        let passing = flattened(sample, light).filter(|(_, one)| one.fate.passed() && has_plane(one));
+        let passing: Vec<_> = passing.collect();
         let offs: Vec<(String, f64)> = passing
             .iter()
             .filter_map(|(_, one)| Some((one.draw_name.clone(), off_plane(facts, one, &seen)?)))
@@ -221,28 +237,32 @@ fn flat_pieces(facts: &Facts, name: &str) -> Option<usize> {
 /// Does the plan serve the flat piece that a triangle lies in?
 fn is_served(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
     let eye = facts.scene.camera.eye;
-    let plane = |corners: [DVec3; 3]| {
-        let size = corners.iter().map(|corner| (*corner - eye).length()).fold(0.0, f64::max);
-        let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]);
-        let plane = Plane::through(seen.corners[0], normal);
-        corners.iter().all(|corner| plane.at(corner.extend(1.0)).abs() <= 1e-5 * size)
+    let distance = (seen.point - eye).length();
+    let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
+    let is_here = |plane: &Plane| {
+        plane.normal.dot(normal).abs() > SAME_NORMAL && plane.at(seen.point.extend(1.0)).abs() <= OFF_PLANE * distance
     };
-    let triangle = |mesh: &crate::plan::DrawMesh, index: usize| -> Option<[DVec3; 3]> {
-        let at = |corner: usize| {
-            let vertex = *mesh.indices.data().get(index * 3 + corner)? as usize;
-            let [x, y, z, w] = *mesh.vertices.data().get(vertex)?;
-            Some(DVec3::new(x.into(), y.into(), z.into()) / f64::from(w) + eye)
-        };
-        Some([at(0)?, at(1)?, at(2)?])
+    let first_plane = |draw: &Draw| {
+        let mesh = facts.plan.meshes.get(draw.mesh.0)?;
+        draw.triangles.clone().find_map(|index| {
+            let vertex = |corner: usize| {
+                let vertex = *mesh.indices.data().get(index as usize * 3 + corner)?;
+                mesh.vertices.data().get(vertex as usize).copied()
+            };
+            through([vertex(0)?, vertex(1)?, vertex(2)?], eye)
+        })
     };
-    let parts = [Part::Receiver, Part::PlanarShadow];
-    parts.into_iter().flat_map(|part| facts.draws(light, part)).any(|draw| {
-        let Some(mesh) = facts.plan.meshes.get(draw.mesh.0) else { return false };
-        let is_own = draw.part == Part::PlanarShadow || draw.caster.as_deref() == Some(facts.tracer.name(seen.place));
-        let first =
-            draw.triangles.clone().find_map(|index| triangle(mesh, index as usize).filter(|of| of[0].is_finite()));
-        is_own && first.is_some_and(plane)
-    })
+    let name = facts.tracer.name(seen.place);
+    let mut marks = facts.draws(light, Part::Receiver).filter(|draw| draw.caster.as_deref() == Some(name)).peekable();
+    match marks.peek() {
+        Some(_) => marks.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane))),
+        // Without marks, receivers are known by what falls on them.
+        None => {
+            let suffix = format!(" on {name},");
+            let mut onto = facts.draws(light, Part::PlanarShadow).filter(|draw| draw.name.contains(&suffix));
+            onto.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane)))
+        }
+    }
 }
 
 /// Is a triangle's flat piece among those that have a texture?
@@ -250,7 +270,7 @@ fn has_texture(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
     let corners = seen.corners;
     let name = facts.tracer.name(seen.place);
     let is_of_piece =
-        |draw: &&crate::plan::Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
+        |draw: &&Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
     let light_passes = facts.passes(light).filter(|pass| pass.view.0 == 0).flat_map(|pass| &pass.draws);
     let eye = facts.scene.camera.eye;
     light_passes.filter(|draw| draw.part == Part::Surface).filter(is_of_piece).any(|draw| {
