@@ -52,14 +52,9 @@ fn before_and_after(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
 fn cause(ui: &mut Ui, state: &mut State, found: &CauseFound, is_first: bool, actions: &mut Vec<Action>) {
     ui.add_space(4.0);
     let color = proof_color(found.proof);
-    let sign = match found.proof {
-        Proof::Proven => "✓ ",
-        Proof::NotIt => "✗ ",
-        Proof::Part | Proof::NotRun => "",
-    };
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::number(found.cause.name()).color(theme::TEXT));
-        ui.label(theme::note(format!("{sign}{}", found.proof.name())).color(color));
+        ui.label(theme::note(found.proof.name()).color(color));
         if let Some(left) = found.pixels_left.filter(|left| *left > 0) {
             ui.label(theme::note(format!("{} stay wrong", format::counted(left, "pixel"))));
         }

@@ -112,7 +112,10 @@ fn advice_mends_the_whole_frame() {
     let mut session = session();
     let provoked = provoke(Cause::FarClip, 0);
     let advice = diagnose(&mut session, &provoked).advice.expect("advice");
-    assert_eq!((advice.mend.settings.get("depth").map(String::as_str), advice.wrong_left), (Some("reversed-infinite"), 0));
+    assert_eq!(
+        (advice.mend.settings.get("depth").map(String::as_str), advice.wrong_left),
+        (Some("reversed-infinite"), 0)
+    );
 }
 
 /// What meshes are like is told where all casts right, too.

@@ -269,8 +269,7 @@ fn is_served(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
 fn has_texture(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
     let corners = seen.corners;
     let name = facts.tracer.name(seen.place);
-    let is_of_piece =
-        |draw: &&Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
+    let is_of_piece = |draw: &&Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
     let light_passes = facts.passes(light).filter(|pass| pass.view.0 == 0).flat_map(|pass| &pass.draws);
     let eye = facts.scene.camera.eye;
     light_passes.filter(|draw| draw.part == Part::Surface).filter(is_of_piece).any(|draw| {
