@@ -33,7 +33,10 @@ fn told(diagnosis: &Diagnosis) -> String {
         for cause in &region.causes {
             let mend = cause.mend.as_ref().map_or("nothing".to_owned(), ToString::to_string);
             let (proof, left) = (cause.proof.name(), cause.pixels_left);
-            text += &format!("    {} {proof} {left:?}: {}; {mend} {:?}\n", cause.cause, cause.evidence, cause.together_with);
+            text += &format!(
+                "    {} {proof} {left:?}: {}; {mend} {:?}\n",
+                cause.cause, cause.evidence, cause.together_with
+            );
         }
     }
     text

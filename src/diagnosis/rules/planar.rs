@@ -173,8 +173,11 @@ pub(crate) fn hint(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<Ca
     }
 }
 
-/// Casters on the line from a light to a surface that lie beyond the light, and below the surface; with how far.
-fn on_the_line(facts: &Facts, light: usize, seen: &SeenSurface) -> (Vec<(String, f64)>, Vec<(String, f64)>) {
+/// Names of casters, each with how far it is, metres.
+type Far = Vec<(String, f64)>;
+
+/// Casters on the line from a light to a surface that lie beyond the light, and below the surface.
+fn on_the_line(facts: &Facts, light: usize, seen: &SeenSurface) -> (Far, Far) {
     let distance = facts.tracer.light_distance(light, seen.point);
     let plane =
         Plane::through(seen.point, (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]));
@@ -269,8 +272,7 @@ fn is_served(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
 fn has_texture(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
     let corners = seen.corners;
     let name = facts.tracer.name(seen.place);
-    let is_of_piece =
-        |draw: &&Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
+    let is_of_piece = |draw: &&Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
     let light_passes = facts.passes(light).filter(|pass| pass.view.0 == 0).flat_map(|pass| &pass.draws);
     let eye = facts.scene.camera.eye;
     light_passes.filter(|draw| draw.part == Part::Surface).filter(is_of_piece).any(|draw| {
