@@ -294,6 +294,7 @@ impl Session {
                 continue;
             }
             let all = mends.iter().fold(Mend::default(), |all, mend| all.and(mend));
+            // What can't be run proves nothing; why, each has said of its own mend.
             let Ok(after) = self.run_once(runs, &all)? else { continue };
             let (Proof::Proven, left) = judge(region, before, &after, runs.request.size) else { continue };
             let causes: Vec<Cause> = group.iter().map(|index| tried[*index].suspicion.cause).collect();
@@ -332,6 +333,7 @@ impl Session {
 
     /// What leaves the least wrong in the whole frame.
     fn advice(&mut self, runs: &mut Runs, regions: &[RegionFound], run: &Run) -> Result<Option<Advice>, SessionError> {
+        // Whatever can't be run is no candidate: only what was run is asked below.
         let before = run.wrong.count();
         let proven = |region: &RegionFound| {
             let first = region.causes.iter().filter(|cause| cause.proof == Proof::Proven);

@@ -299,7 +299,7 @@ fn near_in_shadow(dice: &mut Dice) -> Scene {
 fn near_through_roof(dice: &mut Dice) -> Scene {
     let steps = 60_u32;
     let at = |step: u32, z: f64| {
-        [f64::from(step) / f64::from(steps) * 3.0 - 1.5, if step % 2 == 0 { 0.15 } else { -0.15 }, z]
+        [f64::from(step) / f64::from(steps) * 3.0 - 1.5, if step.is_multiple_of(2) { 0.15 } else { -0.15 }, z]
     };
     let points: Vec<[f64; 3]> = (0..=steps).flat_map(|step| [at(step, -0.4), at(step, 0.4)]).collect();
     let quads =
