@@ -27,6 +27,7 @@ pub use shown::wrong_pixels;
 pub use suited::Suited;
 
 use crate::accuracy::{ErrorCounts, Finding};
+use crate::numbers;
 use crate::technique::Technique;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -229,4 +230,17 @@ pub struct Advice {
     pub wrong_left: u64,
     /// In a sentence.
     pub sentence: String,
+}
+
+impl Advice {
+    /// To make these changes, which leave so many pixels wrong of those that are now.
+    pub(crate) fn new(mend: &Mend, wrong_left: u64, wrong_now: u64) -> Advice {
+        let outcome = match wrong_left {
+            0 => "then no pixel is wrong".to_owned(),
+            1 => "then 1 pixel is wrong".to_owned(),
+            left => format!("then {} pixels are wrong", numbers::count(left)),
+        };
+        let sentence = format!("To mend it, {mend}: {outcome}, of {} now.", numbers::count(wrong_now));
+        Advice { mend: mend.clone(), wrong_left, sentence }
+    }
 }

@@ -19,7 +19,8 @@ impl Diagnosis {
         let mut explained = BTreeSet::new();
         for (index, region) in self.regions.iter().enumerate() {
             out += &format!("\n{}. {}\n", index + 1, region.place());
-            out += &causes(region, &mut explained);
+            let like = self.regions[..index].iter().position(|earlier| is_like(earlier, region));
+            out += &like.map_or_else(|| causes(region, &mut explained), |like| as_before(region, like));
         }
         if self.rest.regions > 0 {
             let regions = counted(self.rest.regions as u64, "smaller region", "smaller regions");
@@ -121,6 +122,21 @@ impl Mend {
         let settings = self.settings.iter().map(|(key, value)| format!("--set {key}={value}"));
         technique.into_iter().chain(settings).collect()
     }
+}
+
+/// Do two regions have the same causes with the same mends and proofs?
+fn is_like(one: &RegionFound, other: &RegionFound) -> bool {
+    let said = |region: &RegionFound| -> Vec<(Cause, Option<Mend>, Proof)> {
+        region.causes.iter().map(|found| (found.cause, found.mend.clone(), found.proof)).collect()
+    };
+    !one.causes.is_empty() && said(one) == said(other)
+}
+
+/// What was told of region number `like`, counted from 0, holds for this one.
+fn as_before(region: &RegionFound, like: usize) -> String {
+    let first = region.causes.first();
+    let evidence = first.map_or_else(String::new, |found| format!(": {}: {}", found.cause, found.evidence));
+    format!("   as {}{evidence}\n", like + 1)
 }
 
 fn causes(region: &RegionFound, explained: &mut BTreeSet<Cause>) -> String {

@@ -15,7 +15,7 @@ use crate::diagnosis::{
 use crate::plan::{FramePlan, Part};
 use crate::progress::Progress;
 use crate::scene::{Light, Scene};
-use crate::technique::{self, Choice, Job};
+use crate::technique::{self, Choice, Job, Technique};
 use crate::truth::Tracer;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -103,7 +103,15 @@ impl Session {
             settings: request.choice.settings().clone(),
             size,
             error: run.error,
-            mesh_findings: meshes.iter().flat_map(|mesh| mesh.findings(&lights)).collect(),
+            // How the mesh of what casts nothing hangs together is no matter.
+            mesh_findings: run
+                .scene
+                .objects
+                .iter()
+                .zip(&meshes)
+                .filter(|(object, _)| object.casts)
+                .flat_map(|(_, mesh)| mesh.findings(&lights))
+                .collect(),
             flags: flags(scene, &traced, progress)?,
             regions: told,
             rest,
@@ -218,6 +226,7 @@ impl Session {
         let mut tried = Vec::new();
         for mut suspicion in suspicions {
             let mut best: Option<(Mend, Proof, u64)> = None;
+            let mut small: Option<(Mend, u64)> = None;
             for mend in std::mem::take(&mut suspicion.mends) {
                 let (proof, left) = match self.run_once(runs, &mend)? {
                     Ok(after) => judge(region, before, &after, size),
@@ -227,11 +236,21 @@ impl Session {
                     }
                 };
                 if best.as_ref().is_none_or(|(_, of_best, least)| (proof, left) < (*of_best, *least)) {
-                    best = Some((mend, proof, left));
+                    best = Some((mend.clone(), proof, left));
                 }
                 if proof == Proof::Proven {
                     break;
                 }
+                let is_smaller = mend.technique.is_none() && proof == Proof::Part;
+                if is_smaller && small.as_ref().is_none_or(|(_, least)| left < *least) {
+                    small = Some((mend, left));
+                }
+            }
+            // What another technique mends wholly, this one may mend nearly.
+            if let (Some((mend, left)), Some((best, ..))) = (small, &best)
+                && best.technique.is_some()
+            {
+                suspicion.evidence.push_str(&format!("; to {mend} leaves {left} of {}", region.pixels.len()));
             }
             let (mend, proof, left) = match best {
                 Some((mend, proof, left)) => (Some(mend), proof, Some(left)),
@@ -275,6 +294,7 @@ impl Session {
                 continue;
             }
             let all = mends.iter().fold(Mend::default(), |all, mend| all.and(mend));
+            // What can't be run proves nothing; why, each has said of its own mend.
             let Ok(after) = self.run_once(runs, &all)? else { continue };
             let (Proof::Proven, left) = judge(region, before, &after, runs.request.size) else { continue };
             let causes: Vec<Cause> = group.iter().map(|index| tried[*index].suspicion.cause).collect();
@@ -313,6 +333,7 @@ impl Session {
 
     /// What leaves the least wrong in the whole frame.
     fn advice(&mut self, runs: &mut Runs, regions: &[RegionFound], run: &Run) -> Result<Option<Advice>, SessionError> {
+        // Whatever can't be run is no candidate: only what was run is asked below.
         let before = run.wrong.count();
         let proven = |region: &RegionFound| {
             let first = region.causes.iter().filter(|cause| cause.proof == Proof::Proven);
@@ -324,17 +345,14 @@ impl Session {
         if !all.is_empty() {
             self.run_once(runs, &all)?.ok();
         }
+        let is_proven = |region: &RegionFound| region.causes.first().is_some_and(|first| first.proof == Proof::Proven);
+        if !regions.iter().all(is_proven) {
+            // Of what no rule explains, much is right there.
+            self.run_once(runs, &Mend::technique(Technique::Auto))?.ok();
+        }
         let left = runs.done.iter().filter_map(|(mend, done)| Some((done.as_ref().ok()?.count(), mend.weight(), mend)));
         let best = left.min_by_key(|(left, weight, _)| (*left, *weight)).filter(|(left, ..)| *left < before);
-        Ok(best.map(|(wrong_left, _, mend)| {
-            let outcome = match wrong_left {
-                0 => "then no pixel is wrong".to_owned(),
-                1 => "then 1 pixel is wrong".to_owned(),
-                left => format!("then {} pixels are wrong", crate::numbers::count(left)),
-            };
-            let sentence = format!("To mend it, {mend}: {outcome}, of {} now.", crate::numbers::count(before));
-            Advice { mend: mend.clone(), wrong_left, sentence }
-        }))
+        Ok(best.map(|(wrong_left, _, mend)| Advice::new(mend, wrong_left, before)))
     }
 }
 

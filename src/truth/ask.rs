@@ -115,9 +115,8 @@ impl Tracer {
     pub fn along(&self, light: usize, point: DVec3) -> Vec<Met> {
         let of = &self.lights[light];
         let away = -self.towards(light, point);
-        // A directional light is no place that the line would have to reach.
-        let to_light = if of.position.w == 0.0 { 0.0 } else { self.light_distance(light, point) };
-        let reach = 4.0 * (self.world.reach(point) + to_light);
+        let distance = self.light_distance(light, point);
+        let reach = 4.0 * (self.world.reach(point) + if distance.is_finite() { distance } else { 0.0 });
         let mut ends = vec![point + away * reach];
         if of.position.w != 0.0 {
             ends.push(of.position.truncate() - away * reach);

@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::diagnosis::Cause;
 use stencilscope::plan::{FramePlan, Part};
-use stencilscope::scene::builtin::shapes;
+use stencilscope::scene::builtin::{self, shapes};
 use stencilscope::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Pose, Scene};
 use stencilscope::technique::{Choice, Technique};
 use stencilscope::truth::Tracer;
@@ -136,6 +136,15 @@ impl Dice {
         scene
     }
 
+    /// That, or a built-in scene, from any place.
+    fn any_scene(&mut self) -> Scene {
+        let name = ["", "", "table", "steps", "rings", "tori", "two-lights", "panels"][self.one_of(8)];
+        let Some(builtin) = builtin::Builtin::named(name) else { return self.still_life() };
+        let mut scene = builtin.scene().expect("a scene");
+        scene.camera = scene.camera.anywhere(self.one_of(1 << 20) as u64);
+        scene
+    }
+
     /// A box with corners of its own for each triangle, moved apart by a part of its size.
     fn seams(&mut self, apart: f64) -> MeshBuilder {
         let size = self.between(0.6, 0.9);
@@ -167,13 +176,18 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::MissingDarkCap => {
             (beside_the_lamp(dice), set(Technique::ZFail, &[]), Some(faults::without(Part::DarkCap)))
         }
+<<<<<<< HEAD
         Cause::MissingLightCap => {
             (dice.still_life(), set(Technique::ZFail, &[]), Some(faults::without(Part::LightCap)))
         }
         Cause::FarClip => (dice.still_life(), set(Technique::ZFail, &[("depth", "standard-finite")]), None),
+=======
+        Cause::MissingLightCap => (dice.any_scene(), set(Technique::ZFail, &[]), Some(faults::without(Part::LightCap))),
+        Cause::FarClip => (dice.any_scene(), set(Technique::ZFail, &[("depth", "standard-finite")]), None),
+>>>>>>> diag
         Cause::FiniteExtrusion => {
             let reach = format!("finite:{:.2}", dice.between(0.05, 0.2));
-            (dice.still_life(), set(Technique::ZFail, &[("extrusion", &reach)]), None)
+            (dice.any_scene(), set(Technique::ZFail, &[("extrusion", &reach)]), None)
         }
         Cause::OpenMesh => {
             let open = open_box(dice);
@@ -209,8 +223,8 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             (before_many(dice), set(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]), None)
         }
         Cause::Wrap256 => (under_panes(dice, 256), set(Technique::ZFail, &[]), None),
-        Cause::OperationOrder => (dice.still_life(), set(Technique::ZFail, &[("operations", "clamp")]), None),
-        Cause::CapFighting => (dice.still_life(), set(Technique::ZFail, &[]), Some(faults::turned_caps())),
+        Cause::OperationOrder => (dice.any_scene(), set(Technique::ZFail, &[("operations", "clamp")]), None),
+        Cause::CapFighting => (dice.any_scene(), set(Technique::ZFail, &[]), Some(faults::turned_caps())),
         Cause::DoubleBlend => (flat_scene(dice), set(Technique::Planar, &[("blend", "twice")]), None),
         Cause::ZFighting => (flat_scene(dice), set(Technique::Planar, &[("z-fighting", "none")]), None),
         Cause::OffReceiver => (over_a_table(dice), set(Technique::Planar, &[("stencil", "off")]), None),
@@ -221,11 +235,11 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             (round_receiver(dice), set(technique, &[]), None)
         }
         Cause::Acne => {
-            (dice.still_life(), set(Technique::ShadowMap, &[("bias-constant", "0"), ("bias-slope", "0")]), None)
+            (dice.any_scene(), set(Technique::ShadowMap, &[("bias-constant", "0"), ("bias-slope", "0")]), None)
         }
         Cause::PeterPanning => {
             let slope = format!("{:.0}", dice.between(100.0, 400.0));
-            (dice.still_life(), set(Technique::ShadowMap, &[("bias-slope", &slope)]), None)
+            (dice.any_scene(), set(Technique::ShadowMap, &[("bias-slope", &slope)]), None)
         }
         Cause::Aliasing => {
             let size = ["16", "32", "64"][dice.one_of(3)];
@@ -234,7 +248,7 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         }
         Cause::OutsideMap => {
             let factor = dice.between(1.6, 3.0);
-            (dice.still_life(), set(Technique::ShadowMap, &[]), Some(faults::narrowed_map(factor)))
+            (dice.any_scene(), set(Technique::ShadowMap, &[]), Some(faults::narrowed_map(factor)))
         }
         Cause::ReverseProjection => (wall_behind_lamp(dice), set(Technique::Projective, &[("reverse", "on")]), None),
         Cause::Between => (shelf_between(dice), set(Technique::Projective, &[("size", "2048")]), None),
@@ -244,7 +258,9 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
     let mut scene = scene;
     // A floor is a mesh with an edge too, and a silhouette that falls on what stands on it.
     let floor_tells = choice.settings().get("casters").is_some_and(|casters| casters == "light-facing");
-    scene.objects[0].casts = !floor_tells && choice.technique() != Technique::Projective;
+    if floor_tells || choice.technique() == Technique::Projective {
+        scene.objects[0].casts = false;
+    }
     Provocation { cause, scene, choice, fault }
 }
 
@@ -254,6 +270,9 @@ fn eye_in_shadow(dice: &mut Dice) -> Scene {
     scene.objects[1] = object("caster", shapes::cuboid([1.0, 0.2, 1.0]).expect("a box"), place.to_array());
     let light = scene.lights[0].position.truncate();
     scene.camera.eye = light + (place - light) * ((light.y - dice.between(0.5, 0.9)) / (light.y - place.y));
+    if dice.one_of(2) == 1 {
+        scene.lights = vec![Light::directional(light - place)];
+    }
     let around = dice.between(0.0, 6.2);
     scene.camera.target = scene.camera.eye + DVec3::new(around.sin(), dice.between(-0.5, -0.2), around.cos());
     scene
@@ -265,6 +284,9 @@ fn near_in_shadow(dice: &mut Dice) -> Scene {
     let place = DVec3::new(0.0, 1.6, 0.0);
     scene.objects[1] = object("caster", shapes::cuboid([0.8, 0.2, 0.8]).expect("a box"), place.to_array());
     scene.camera.near = dice.between(0.3, 0.5);
+    if dice.one_of(2) == 1 {
+        scene.lights = vec![Light::directional(scene.lights[0].position.truncate())];
+    }
     for _ in 0..500 {
         let around = dice.between(0.0, 6.2);
         let out = dice.between(0.6, 1.4);
@@ -284,7 +306,7 @@ fn near_in_shadow(dice: &mut Dice) -> Scene {
 fn near_through_roof(dice: &mut Dice) -> Scene {
     let steps = 60_u32;
     let at = |step: u32, z: f64| {
-        [f64::from(step) / f64::from(steps) * 3.0 - 1.5, if step % 2 == 0 { 0.15 } else { -0.15 }, z]
+        [f64::from(step) / f64::from(steps) * 3.0 - 1.5, if step.is_multiple_of(2) { 0.15 } else { -0.15 }, z]
     };
     let points: Vec<[f64; 3]> = (0..=steps).flat_map(|step| [at(step, -0.4), at(step, 0.4)]).collect();
     let quads =

@@ -173,8 +173,11 @@ pub(crate) fn hint(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<Ca
     }
 }
 
-/// Casters on the line from a light to a surface that lie beyond the light, and below the surface; with how far.
-fn on_the_line(facts: &Facts, light: usize, seen: &SeenSurface) -> (Vec<(String, f64)>, Vec<(String, f64)>) {
+/// Names of casters, each with how far it is, metres.
+type Far = Vec<(String, f64)>;
+
+/// Casters on the line from a light to a surface that lie beyond the light, and below the surface.
+fn on_the_line(facts: &Facts, light: usize, seen: &SeenSurface) -> (Far, Far) {
     let distance = facts.tracer.light_distance(light, seen.point);
     let plane =
         Plane::through(seen.point, (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]));
