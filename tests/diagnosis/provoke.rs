@@ -176,15 +176,8 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
         Cause::MissingDarkCap => {
             (beside_the_lamp(dice), set(Technique::ZFail, &[]), Some(faults::without(Part::DarkCap)))
         }
-<<<<<<< HEAD
-        Cause::MissingLightCap => {
-            (dice.still_life(), set(Technique::ZFail, &[]), Some(faults::without(Part::LightCap)))
-        }
-        Cause::FarClip => (dice.still_life(), set(Technique::ZFail, &[("depth", "standard-finite")]), None),
-=======
         Cause::MissingLightCap => (dice.any_scene(), set(Technique::ZFail, &[]), Some(faults::without(Part::LightCap))),
         Cause::FarClip => (dice.any_scene(), set(Technique::ZFail, &[("depth", "standard-finite")]), None),
->>>>>>> diag
         Cause::FiniteExtrusion => {
             let reach = format!("finite:{:.2}", dice.between(0.05, 0.2));
             (dice.any_scene(), set(Technique::ZFail, &[("extrusion", &reach)]), None)
