@@ -58,9 +58,11 @@ fn the_text_says_what_is_wrong_why_and_what_to_do() {
         "techniques on this scene, seen from here\n   right, the fastest first: ",
         "\nwhat to do: To mend it, use z-fail: then no pixel is wrong, of ",
         "As options: `-t z-fail`.",
+        "\n   as 1: eye-in-volume: ",
     ] {
         assert!(told.contains(words), "`{words}` is not in\n{told}");
     }
+    assert_eq!(told.matches("The eye stands in shadow").count(), 1, "{told}");
 }
 
 /// Field by field as `spec/commands.md` has it.
@@ -170,6 +172,7 @@ fn what_can_not_be_diagnosed_is_refused_in_one_line_with_the_mend() {
         (&["tory"], &["did you mean `tori`?"]),
         (&["tori", "-t", "z-fial"], &["did you mean `z-fail`?"]),
         (&["tori", "--every", "draw"], &["leave it out"]),
+        (&["tori", "--external-capture"], &["leave it out"]),
         (&["tori", "--fix", "out.obj"], &["ends in .toml"]),
         (&["good.toml", "--fix", "good.toml"], &["is the scene itself"]),
         (&["tori", "--fix", "good.toml"], &["is there already", "--overwrite"]),

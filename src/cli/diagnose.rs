@@ -55,6 +55,10 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
         let line = "`--every draw` is for captures; a diagnosis looks at draws by itself: leave it out";
         return Err(CliError::Usage(line.to_owned()));
     }
+    if request.external_capture {
+        let line = "`--external-capture` is for captures; a diagnosis runs many frames: leave it out";
+        return Err(CliError::Usage(line.to_owned()));
+    }
     request.timing_runs = 0;
     let json = arguments.json.as_ref().and_then(Option::as_deref);
     json.map_or(Ok(()), output::check_target)?;
@@ -159,13 +163,10 @@ fn broken(source: std::io::Error) -> CliError {
 /// technique without a wrong pixel.
 pub fn mend_for(diagnosis: &Diagnosis, suited: &[Suited]) -> Option<Mend> {
     let best = || {
-        let best = Suited::best(suited)?;
-        let technique = best.choice.technique();
-        let changed = technique.settings().iter().filter_map(|spec| {
-            let value = best.choice.settings().get(spec.key)?;
-            (value != spec.default).then(|| (spec.key.to_owned(), value.clone()))
-        });
-        Some(Mend { technique: Some(technique), settings: changed.collect(), ..Mend::default() })
+        let choice = &Suited::best(suited)?.choice;
+        // All of them: what was set for another technique is to be kept in none.
+        let settings = choice.settings().clone();
+        Some(Mend { technique: Some(choice.technique()), settings, ..Mend::default() })
     };
     let advised = diagnosis.advice.as_ref().map(|advice| advice.mend.clone());
     if diagnosis.is_mended() { advised } else { best().or(advised) }

@@ -40,10 +40,12 @@ impl Suited {
         changed.fold(technique.name().to_owned(), |name, setting| name + &setting)
     }
 
-    /// The fastest that has no wrong pixel.
+    /// The fastest that has no wrong pixel: as it is by default where any is right so.
     #[must_use]
     pub fn best(suited: &[Suited]) -> Option<&Suited> {
-        suited.iter().filter(|one| one.wrong == 0).min_by(|a, b| a.frame_ms.total_cmp(&b.frame_ms))
+        let is_plain = |one: &Suited| one.choice == Choice::new(one.choice.technique());
+        let right = suited.iter().filter(|one| one.wrong == 0);
+        right.min_by(|a, b| is_plain(b).cmp(&is_plain(a)).then(a.frame_ms.total_cmp(&b.frame_ms)))
     }
 }
 
@@ -52,5 +54,22 @@ impl Diagnosis {
     #[must_use]
     pub fn is_mended(&self) -> bool {
         self.advice.as_ref().is_some_and(|advice| advice.wrong_left == 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_is_right_then_plain_then_fast() {
+        let choices = Suited::candidates();
+        assert!(choices.len() > 7, "{}", choices.len());
+        let one = |choice: &Choice, wrong, frame_ms| Suited { choice: choice.clone(), wrong, frame_ms };
+        let in_float = choices.last().expect("a candidate");
+        let all = [one(&choices[0], 3, 1.0), one(in_float, 0, 2.0), one(&choices[1], 0, 4.0), one(&choices[2], 0, 3.0)];
+        assert_eq!(Suited::best(&all), Some(&all[3]));
+        assert_eq!(Suited::best(&all[..2]).map(Suited::name).as_deref(), Some("z-fail counter=float"));
+        assert_eq!(Suited::best(&all[..1]), None);
     }
 }

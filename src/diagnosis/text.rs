@@ -44,8 +44,11 @@ impl Diagnosis {
         let name = format!("{}, {}, {width}x{height}", self.scene, self.technique.name());
         let compared = numbers::count(error.compared);
         let excused = numbers::count(error.edge_band);
+        let twice = self.regions.iter().filter(|region| region.kind == RegionKind::TooDark);
+        let twice: u64 = twice.map(|region| region.pixels).sum();
+        let twice = if twice > 0 { format!("; {} darkened more than once", pixels(twice)) } else { String::new() };
         if error.wrong() == 0 {
-            return format!("{name}: none of {compared} compared pixels is wrong; {excused} at edges excused\n");
+            return format!("{name}: none of {compared} compared pixels is wrong{twice}; {excused} at edges excused\n");
         }
         let kinds = [
             (error.missing_shadow, "lit that should be dark"),
@@ -55,7 +58,7 @@ impl Diagnosis {
         let kinds = kinds.iter().filter(|(count, _)| *count > 0);
         let kinds: Vec<String> = kinds.map(|(count, what)| format!("{} {what}", numbers::count(*count))).collect();
         format!(
-            "{name}: {} of {compared} compared pixels are wrong ({}); {excused} at edges excused\n",
+            "{name}: {} of {compared} compared pixels are wrong ({}){twice}; {excused} at edges excused\n",
             numbers::count(error.wrong()),
             kinds.join(", "),
         )
