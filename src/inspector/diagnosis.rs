@@ -242,6 +242,6 @@ fn deciding_step(capture: &Capture, light: usize) -> Option<usize> {
         (0..capture.steps.len()).filter(|index| capture.steps[*index].light == Some(light)).collect();
     let mask = of_light.iter().copied().find(|index| target(*index) == Some(FrameTarget::Labels));
     let counts = |index: &usize| matches!(target(*index), Some(FrameTarget::Picture | FrameTarget::Count));
-    let before = of_light.iter().copied().filter(|index| mask.is_some_and(|mask| *index < mask) && counts(index));
-    before.last().or(mask).or(of_light.last().copied())
+    let before = of_light.iter().copied().rfind(|index| mask.is_some_and(|mask| *index < mask) && counts(index));
+    before.or(mask).or(of_light.last().copied())
 }
