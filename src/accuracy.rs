@@ -209,30 +209,50 @@ fn worst_region(findings: &[u8], [width, height]: [u32; 2]) -> Option<Region> {
 }
 
 /// Removes the region around a wrong pixel and describes it.
-fn take_region(left: &mut [u8], start: usize, [width, height]: [u32; 2]) -> Region {
-    let place = |index: usize| [(index % width as usize) as u32, (index / width as usize) as u32];
-    let byte = left[start];
-    let at = place(start);
-    let kind = Finding::from_byte(byte).unwrap_or(Finding::WrongSurface);
+fn take_region(left: &mut [u8], start: usize, size: [u32; 2]) -> Region {
+    let kind = Finding::from_byte(left[start]).unwrap_or(Finding::WrongSurface);
+    let at = place(start, size);
     let mut region = Region { pixels: 0, kind, bounds: [at[0], at[1], at[0], at[1]], at };
-    let mut open = vec![start];
-    left[start] = Finding::NotCompared as u8;
-    while let Some(index) = open.pop() {
-        let [x, y] = place(index);
+    take_connected(left, Finding::NotCompared as u8, start, size, 1, |index| {
+        let [x, y] = place(index, size);
         let [low_x, low_y, high_x, high_y] = region.bounds;
         region.bounds = [low_x.min(x), low_y.min(y), high_x.max(x), high_y.max(y)];
         region.pixels += 1;
-        for near_y in y.saturating_sub(1)..=(y + 1).min(height - 1) {
-            for near_x in x.saturating_sub(1)..=(x + 1).min(width - 1) {
+    });
+    region
+}
+
+/// Column and row of a pixel by its number.
+pub(crate) fn place(index: usize, [width, _]: [u32; 2]) -> [u32; 2] {
+    [(index % width as usize) as u32, (index / width as usize) as u32]
+}
+
+/// Takes the pixels that hang together with `start` and hold what it holds: each is handed to `taken` and
+/// then holds `none`. Pixels hang together that are at most `reach` columns and rows apart.
+pub(crate) fn take_connected<T: Copy + PartialEq>(
+    left: &mut [T],
+    none: T,
+    start: usize,
+    [width, height]: [u32; 2],
+    reach: u32,
+    mut taken: impl FnMut(usize),
+) {
+    let held = left[start];
+    let mut open = vec![start];
+    left[start] = none;
+    while let Some(index) = open.pop() {
+        taken(index);
+        let [x, y] = place(index, [width, height]);
+        for near_y in y.saturating_sub(reach)..=(y + reach).min(height - 1) {
+            for near_x in x.saturating_sub(reach)..=(x + reach).min(width - 1) {
                 let near = near_y as usize * width as usize + near_x as usize;
-                if left[near] == byte {
-                    left[near] = Finding::NotCompared as u8;
+                if left[near] == held {
+                    left[near] = none;
                     open.push(near);
                 }
             }
         }
     }
-    region
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! An interactive visual debugger for stencil shadows and shadow maps.
 //!
 //! ```text
-//! scene ──► technique ──► FramePlan ──► gpu::Executor ──► Capture ──┬─► history ──► cli, inspector, testing
+//! scene ──► technique ──► FramePlan ──► gpu::Executor ──► Capture ──┬─► history, difference ──► cli, inspector, testing
 //!    └────► truth ──────────────────────────────────► accuracy ◄─────┴─► report, stress
 //! ```
 //!
@@ -36,6 +36,8 @@ pub mod accuracy;
 pub mod app;
 pub mod capture;
 pub mod cli;
+pub mod diagnosis;
+pub mod difference;
 pub mod geometry;
 pub mod gpu;
 pub mod history;
@@ -43,6 +45,7 @@ pub mod history;
 pub mod inspector;
 pub mod math;
 pub mod numbers;
+pub mod picture;
 pub mod plan;
 pub mod progress;
 pub mod report;

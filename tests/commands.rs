@@ -106,9 +106,6 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
     }
     assert_fails(&["capture", "tori"], 2, &["--output"]);
     assert_fails(&["captur", "tori"], 2, &["did you mean `capture`?"]);
-    for command in ["diagnose", "diff"] {
-        assert_fails(&[command, "tori"], 2, &[command, "not there yet"]);
-    }
     assert_fails(&["pixel", "tori"], 2, &["--at"]);
     assert_fails(&["pixel", "tori", "--at", "3,3", "--every", "draw"], 2, &["--every draw", "leave it out"]);
     assert_fails(&["pixel", "tori", "--at", "3"], 2, &["give X,Y"]);

@@ -5,6 +5,9 @@ mod auto;
 mod capture_folder;
 mod commands;
 mod common;
+mod diagnose;
+mod diagnosis;
+mod diff;
 mod draws;
 mod history;
 #[cfg(feature = "inspector")]

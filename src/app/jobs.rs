@@ -1,11 +1,15 @@
-//! The worker's long work, as the window watches and stops it: a truth, a report, stress cases.
+//! The worker's long work, as the window watches and stops it: a truth, a diagnosis, a report, stress cases.
 
 use super::orders::{Measure, StressRun};
-use crate::inspector::{Inspector, ReportProgress, ReportView, StressProgress, TruthState};
+use crate::diagnosis::Diagnosis;
+use crate::inspector::{
+    DiagnosisProgress, DiagnosisView, Inspector, ReportProgress, ReportView, StressProgress, TruthState,
+};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::stress::{Case, Row};
 use crate::technique::Choice;
+use std::sync::Arc;
 
 /// Timed frames of each row of a report.
 const RUNS: usize = 5;
@@ -16,9 +20,10 @@ const OTHER_STEPS: usize = 2;
 #[derive(Debug, Default)]
 pub struct Jobs {
     judging: Option<Progress>,
+    diagnosing: Option<(u64, Progress)>,
     measuring: Option<Measuring>,
     stressing: Option<Stressing>,
-    /// How often measuring or stress cases were begun.
+    /// How often diagnosing, measuring or stress cases were begun.
     count: u64,
 }
 
@@ -47,6 +52,12 @@ impl Jobs {
             let (done, of) = progress.steps();
             inspector.set_truth(TruthState::Running { done, of });
         }
+        if let Some((_, progress)) = &self.diagnosing {
+            let (done, of) = progress.steps();
+            let diagnosis = inspector.diagnosis().diagnosis.clone();
+            let running = Some(DiagnosisProgress { done, of });
+            inspector.set_diagnosis(DiagnosisView { diagnosis, running, error: None });
+        }
         if let Some(measuring) = &self.measuring {
             let report = inspector.report().report.clone();
             inspector.set_report(ReportView { report, running: Some(measuring.steps()), error: None });
@@ -54,7 +65,8 @@ impl Jobs {
         if let Some(stressing) = &self.stressing {
             inspector.set_stress(Some(stressing.steps()), None);
         }
-        self.judging.is_some() || self.measuring.is_some() || self.stressing.is_some()
+        let frame = self.judging.is_some() || self.diagnosing.is_some();
+        frame || self.measuring.is_some() || self.stressing.is_some()
     }
 
     /// A truth is asked for.
@@ -68,6 +80,36 @@ impl Jobs {
         if let Some(progress) = self.judging.take() {
             progress.cancel();
         }
+    }
+
+    /// A diagnosis is asked for: its number, and what stops it.
+    pub fn diagnose(&mut self, inspector: &mut Inspector) -> (u64, Progress) {
+        self.stop_diagnosing(None, inspector);
+        self.count += 1;
+        let begun = self.diagnosing.insert((self.count, Progress::default())).clone();
+        self.watch(inspector);
+        begun
+    }
+
+    /// Stops diagnosing, where anything is diagnosed; what was found before stays, with `reason`.
+    pub fn stop_diagnosing(&mut self, reason: Option<&str>, inspector: &mut Inspector) {
+        if let Some((_, progress)) = self.diagnosing.take() {
+            progress.cancel();
+            let diagnosis = inspector.diagnosis().diagnosis.clone();
+            inspector.set_diagnosis(DiagnosisView { diagnosis, running: None, error: reason.map(str::to_owned) });
+        }
+    }
+
+    /// What was found, or why nothing was.
+    pub fn end_diagnosing(&mut self, job: u64, result: Result<Arc<Diagnosis>, String>, inspector: &mut Inspector) {
+        if self.diagnosing.take_if(|(of, _)| *of == job).is_none() {
+            return;
+        }
+        let (diagnosis, error) = match result {
+            Ok(diagnosis) => (Some(diagnosis), None),
+            Err(reason) => (inspector.diagnosis().diagnosis.clone(), Some(reason)),
+        };
+        inspector.set_diagnosis(DiagnosisView { diagnosis, running: None, error });
     }
 
     /// A report over the default grid is asked for; `None` where there can be none, which the
@@ -147,6 +189,8 @@ impl Jobs {
     /// Another picture is asked for, and must not wait. Stress cases give way by themselves.
     pub fn make_way(&mut self, inspector: &mut Inspector) {
         self.pause_judging(inspector);
+        let stopped = "stopped for another picture: diagnose again when it is the one you want";
+        self.stop_diagnosing(Some(stopped), inspector);
         self.stop_measuring(Some("stopped for another picture: measure again when it is the one you want"), inspector);
     }
 
@@ -206,8 +250,13 @@ mod tests {
         let (mut jobs, mut inspector) = (Jobs::default(), Inspector::default());
         let judging = jobs.judge();
         let measure = jobs.measure(1, &mut inspector).expect("a grid");
-        assert!(jobs.watch(&mut inspector));
+        let (job, diagnosing) = jobs.diagnose(&mut inspector);
+        assert!(jobs.watch(&mut inspector) && inspector.diagnosis().running.is_some());
         jobs.make_way(&mut inspector);
+        assert!(diagnosing.is_cancelled() && inspector.diagnosis().running.is_none());
+        assert!(inspector.diagnosis().error.as_ref().is_some_and(|error| error.contains("diagnose again")));
+        jobs.end_diagnosing(job, Err("too late".to_owned()), &mut inspector);
+        assert!(inspector.diagnosis().error.as_ref().is_some_and(|error| error.contains("diagnose again")));
         assert!(judging.is_cancelled() && measure.progress.is_cancelled());
         assert!(!jobs.watch(&mut inspector) && inspector.report().running.is_none());
         assert!(inspector.report().error.as_ref().is_some_and(|error| error.contains("measure again")));

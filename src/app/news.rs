@@ -1,6 +1,7 @@
 //! What wakes the window: news of the worker, a chosen file, a wish to repaint.
 
 use crate::capture::Capture;
+use crate::diagnosis::Diagnosis;
 use crate::history::PixelHistory;
 use crate::inspector::{ObjectMesh, RunRequest};
 use crate::report::Report;
@@ -92,6 +93,13 @@ pub enum News {
         job: u64,
         /// The report, or why there is none.
         result: Result<Report, String>,
+    },
+    /// A frame was diagnosed, or could not be; not told of what was cancelled.
+    Diagnosed {
+        /// The diagnosing that is meant.
+        job: u64,
+        /// The diagnosis, or why there is none.
+        result: Result<Arc<Diagnosis>, String>,
     },
     /// The rows of a stress case.
     Stressed {

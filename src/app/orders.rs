@@ -56,6 +56,15 @@ pub enum Order {
     },
     /// Techniques measured on the open scene, as it was captured last.
     Measure(Measure),
+    /// Why the frame that was captured last is wrong.
+    Diagnose {
+        /// The frame that is meant.
+        frame: u64,
+        /// Tells one diagnosing from another.
+        job: u64,
+        /// Watched and stopped by the window.
+        progress: Progress,
+    },
 }
 
 /// Techniques to measure.
@@ -103,6 +112,7 @@ pub struct Waiting {
     draws: Option<Order>,
     history: Option<Order>,
     judge: Option<Order>,
+    diagnose: Option<Order>,
     measure: Option<Order>,
     stress: Option<Order>,
 }
@@ -114,6 +124,7 @@ impl Waiting {
             Order::Draws { .. } => self.draws = Some(order),
             Order::History { .. } => self.history = Some(order),
             Order::Judge { .. } => self.judge = Some(order),
+            Order::Diagnose { .. } => self.diagnose = Some(order),
             Order::Measure(_) => self.measure = Some(order),
             Order::Stress(_) => self.stress = Some(order),
             Order::Open(_) | Order::OpenCase { .. } | Order::Run { .. } => {
@@ -139,7 +150,8 @@ impl Waiting {
     /// The next to obey: what is seen first, what is known of it later.
     pub fn next(&mut self) -> Option<Order> {
         let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
-        seen.or_else(|| self.judge.take()).or_else(|| self.measure.take()).or_else(|| self.stress.take())
+        let of_frame = seen.or_else(|| self.judge.take()).or_else(|| self.diagnose.take());
+        of_frame.or_else(|| self.measure.take()).or_else(|| self.stress.take())
     }
 }
 
@@ -262,6 +274,16 @@ mod tests {
         assert!(still.next_short().is_none(), "a truth takes long");
         assert!(matches!(still.next(), Some(Order::Judge { .. })));
         assert!(waiting([history(), run(1)]).next_short().is_none());
+    }
+
+    #[test]
+    fn a_diagnosis_comes_after_the_truth_and_before_a_report() {
+        let diagnose = |job| Order::Diagnose { frame: 1, job, progress: Progress::default() };
+        let measure = Measure { generation: 1, job: 1, choices: Vec::new(), runs: 1, progress: Progress::default() };
+        let mut waiting = waiting([Order::Measure(measure), diagnose(1), judge(1), diagnose(2)]);
+        assert!(matches!(waiting.next(), Some(Order::Judge { .. })));
+        assert!(matches!(waiting.next(), Some(Order::Diagnose { job: 2, .. })));
+        assert!(matches!(waiting.next(), Some(Order::Measure(_))));
     }
 
     #[test]

@@ -125,6 +125,7 @@ impl App {
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
             News::Draws { .. } | News::NoDraws { .. } | News::History { .. } => {}
             News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
+            News::Diagnosed { job, result } => self.jobs.end_diagnosing(job, result, &mut self.inspector),
             News::Stressed { job, rows } => self.jobs.add_stress(job, rows, &mut self.inspector),
             News::StressEnded { job, error } => self.jobs.end_stress(job, error, &mut self.inspector),
             News::Failed(reason) => self.inspector.push_error(reason),
@@ -176,6 +177,14 @@ impl App {
             },
             Action::CancelReport => {
                 self.jobs.stop_measuring(None, &mut self.inspector);
+                return self.redraw();
+            }
+            Action::Diagnose => {
+                let (job, progress) = self.jobs.diagnose(&mut self.inspector);
+                Order::Diagnose { frame: self.frame, job, progress }
+            }
+            Action::CancelDiagnosis => {
+                self.jobs.stop_diagnosing(None, &mut self.inspector);
                 return self.redraw();
             }
             Action::RunStress { cases } => Order::Stress(Box::new(self.jobs.stress(&cases, &mut self.inspector))),

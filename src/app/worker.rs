@@ -167,6 +167,7 @@ impl Bench {
             Order::Run { generation, request } if generation == self.generation => self.run(&request),
             Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant),
             Order::Draws { frame, step } => return self.fill_draws(frame, step),
+            Order::Diagnose { frame, job, progress } => return self.diagnose(frame, job, &progress),
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
             Order::History { frame, at } => return self.history(frame, at),
             // Of a scene that is open no more.

@@ -88,13 +88,22 @@ pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> 
 /// A folder that is there already and may not be replaced, or a place that can't be written to.
 pub fn write(capture: &Capture, folder: &Path, overwrite: bool) -> Result<f64, CaptureError> {
     check_target(folder, overwrite)?;
+    put_folder(folder, |new| write_files(capture, new))
+}
+
+/// Makes a folder whole or not at all: `fill` makes and fills it beside its place, where it is renamed to. One that
+/// it replaces is moved aside until then; whether it may be replaced is the caller's to know.
+///
+/// # Errors
+/// What `fill` says; a place that can't be written to.
+pub fn put_folder<T>(folder: &Path, fill: impl FnOnce(&Path) -> Result<T, CaptureError>) -> Result<T, CaptureError> {
     // A link to a folder stays a link: what it points to is replaced.
     let folder = &fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
     let [new, old] = ["new", "old"].map(|which| beside(folder, which));
     let made: Vec<&Path> = new.ancestors().take_while(|ancestor| !ancestor.exists()).collect();
-    let result = write_files(capture, &new).and_then(|write_ms| {
+    let result = fill(&new).and_then(|filled| {
         put_in_place(folder, &new, &old)?;
-        Ok(write_ms)
+        Ok(filled)
     });
     result.map_err(|error| {
         // What could not be finished is not left behind, nor are the folders made for it; what

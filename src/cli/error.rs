@@ -59,6 +59,29 @@ pub enum CliError {
         /// How many cases times techniques.
         count: usize,
     },
+    /// Two captures that can't be compared.
+    #[error(transparent)]
+    Difference(#[from] crate::difference::DifferenceError),
+    /// Two captures differ.
+    #[error("they differ, first in {place}")]
+    Different {
+        /// The first pass that differs.
+        place: String,
+    },
+    /// A diagnosis has found wrong pixels.
+    #[error("{pixels} pixels are wrong{because}")]
+    Wrong {
+        /// How many.
+        pixels: u64,
+        /// The first cause, in words that follow.
+        because: String,
+    },
+    /// The mended scene can't be written.
+    #[error(transparent)]
+    Save(#[from] crate::scene::file::SaveError),
+    /// A mend can't be made.
+    #[error(transparent)]
+    Mend(#[from] crate::diagnosis::MendError),
     /// Nobody reads standard output any more.
     #[error("standard output was closed")]
     ClosedOutput,
@@ -72,7 +95,10 @@ impl CliError {
         match self {
             CliError::Session(error) if error.is_missing_adapter() => 3,
             CliError::ClosedOutput => 0,
-            CliError::WrongHistory { .. } | CliError::Unexpected { .. } => 1,
+            CliError::WrongHistory { .. }
+            | CliError::Unexpected { .. }
+            | CliError::Different { .. }
+            | CliError::Wrong { .. } => 1,
             _ => 2,
         }
     }

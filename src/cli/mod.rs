@@ -6,7 +6,10 @@
 
 mod bench;
 mod capture;
+mod diagnose;
+mod diff;
 mod error;
+mod fix;
 mod options;
 mod output;
 mod pixel;
@@ -25,9 +28,8 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// The commands that exist.
-const COMMANDS: [&str; 8] = ["view", "capture", "pixel", "report", "stress", "scenes", "bench", "help"];
-/// Commands that are planned, but not built.
-const COMMANDS_TO_COME: [&str; 2] = ["diagnose", "diff"];
+const COMMANDS: [&str; 10] =
+    ["view", "capture", "pixel", "diagnose", "diff", "report", "stress", "scenes", "bench", "help"];
 
 /// An interactive visual debugger for stencil shadows and shadow maps
 #[derive(Debug, Parser)]
@@ -45,6 +47,10 @@ enum Command {
     Capture(Box<capture::CaptureArguments>),
     /// Tell the history of a pixel, fragment by fragment
     Pixel(Box<pixel::PixelArguments>),
+    /// Say where shadows are wrong, why, and what mends it, with the proof
+    Diagnose(Box<diagnose::DiagnoseArguments>),
+    /// Say where two captures, or two techniques of a scene, first differ
+    Diff(Box<diff::DiffArguments>),
     /// Measure how wrong each technique is, and what it costs
     Report(Box<report::ReportArguments>),
     /// Drive every technique until it breaks
@@ -62,10 +68,6 @@ enum Command {
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
     let arguments = with_command(arguments.into_iter().collect());
     let first = arguments.get(1).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
-    if COMMANDS_TO_COME.contains(&first.as_str()) {
-        let instead = "use view, capture, pixel, report, stress, scenes or bench".to_owned();
-        return Err(CliError::NotThereYet { what: format!("`{first}`"), instead });
-    }
     let second = arguments.get(2).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
     if let Some(near) = misspelled_command(&second).filter(|_| first == "view") {
         return Err(CliError::Usage(format!("`{second}` is neither a command nor a scene: did you mean `{near}`?")));
@@ -78,6 +80,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
         Command::View(arguments) => view::run(&arguments),
         Command::Capture(arguments) => capture::run(&arguments),
         Command::Pixel(arguments) => pixel::run(&arguments),
+        Command::Diagnose(arguments) => diagnose::run(&arguments),
+        Command::Diff(arguments) => diff::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Stress(arguments) => stress::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
@@ -90,7 +94,7 @@ fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
     let is_known = |word: &OsString| {
         let text = word.to_string_lossy();
         let is_about_program = ["-h", "--help", "-V", "--version"].contains(&text.as_ref());
-        is_about_program || COMMANDS.contains(&text.as_ref()) || COMMANDS_TO_COME.contains(&text.as_ref())
+        is_about_program || COMMANDS.contains(&text.as_ref())
     };
     if arguments.is_empty() {
         arguments.push("stencilscope".into());
@@ -106,8 +110,7 @@ fn misspelled_command(word: &str) -> Option<&'static str> {
     /// Above this two words differ in a letter or two.
     const NEARLY: f64 = 0.9;
     let is_scene = Builtin::named(word).is_some() || Path::new(word).exists();
-    let commands = COMMANDS.into_iter().chain(COMMANDS_TO_COME);
-    let rated = commands.map(|command| (strsim::jaro_winkler(word, command), command));
+    let rated = COMMANDS.into_iter().map(|command| (strsim::jaro_winkler(word, command), command));
     let nearest = rated.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(likeness, _)| *likeness > NEARLY && !is_scene);
     nearest.map(|(_, command)| command)
 }

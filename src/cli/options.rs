@@ -53,7 +53,7 @@ pub struct SceneOptions {
 /// How the picture is made.
 #[derive(Debug, Clone, Args)]
 pub struct FrameOptions {
-    /// How shadows are made [default: the scene's, else z-fail]
+    /// How shadows are made [default: the scene's, else auto]
     #[arg(short, long, value_name = "NAME")]
     pub technique: Option<String>,
     /// A setting of the technique; repeatable

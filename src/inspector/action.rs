@@ -32,6 +32,10 @@ pub enum Action {
     RunReport,
     /// Stop measuring; the rows so far stay.
     CancelReport,
+    /// Say where the frame that is shown is wrong, why, and what mends it.
+    Diagnose,
+    /// Stop diagnosing.
+    CancelDiagnosis,
     /// Run stress cases.
     RunStress {
         /// Their names.

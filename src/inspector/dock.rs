@@ -6,7 +6,7 @@
 
 use super::action::Action;
 use super::state::State;
-use super::{passes, picture, pixel, report, settings, stress, theme};
+use super::{diagnosis, passes, picture, pixel, report, settings, stress, theme};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
@@ -30,6 +30,7 @@ enum Panel {
     Picture,
     Pixel,
     Report,
+    Diagnosis,
     Stress,
 }
 
@@ -54,7 +55,7 @@ impl Dock {
         let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
         let left = tiles.insert_tab_tile(sides.to_vec());
         let [picture, report, right] =
-            [&[Panel::Picture][..], &[Panel::Report, Panel::Stress], &[Panel::Pixel]].map(|panels| {
+            [&[Panel::Picture][..], &[Panel::Report, Panel::Diagnosis, Panel::Stress], &[Panel::Pixel]].map(|panels| {
                 let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
                 tiles.insert_tab_tile(panes)
             });
@@ -69,7 +70,8 @@ impl Dock {
         if !self.arranged_by_user {
             self.keep_widths(ui.available_width());
             // What was shown in the frame before is what is shown.
-            let is_empty = state.report.is_empty() && !std::mem::take(&mut state.stress.is_shown);
+            let others = [&mut state.stress.is_shown, &mut state.diagnosis.is_shown].map(std::mem::take);
+            let is_empty = state.report.is_empty() && !others.contains(&true);
             self.keep_heights(ui.available_height(), is_empty);
         }
         let mut behavior = Panels { state, actions, edited: false };
@@ -117,6 +119,10 @@ impl Behavior<Panel> for Panels<'_> {
                 Panel::Picture => picture::ui(ui, self.state, self.actions),
                 Panel::Pixel => pixel::ui(ui, self.state),
                 Panel::Report => report::ui(ui, self.state, self.actions),
+                Panel::Diagnosis => {
+                    self.state.diagnosis.is_shown = true;
+                    diagnosis::ui(ui, self.state, self.actions);
+                }
                 Panel::Stress => {
                     self.state.stress.is_shown = true;
                     stress::ui(ui, self.state, self.actions);
@@ -133,6 +139,7 @@ impl Behavior<Panel> for Panels<'_> {
             Panel::Picture => "Picture",
             Panel::Pixel => "Pixel",
             Panel::Report => "Report",
+            Panel::Diagnosis => "Diagnosis",
             Panel::Stress => "Stress",
         };
         title.into()

@@ -8,6 +8,7 @@ use super::format;
 use super::palette;
 use crate::accuracy::{ErrorCounts, Finding, Region};
 use crate::capture::Image;
+use crate::picture::colors;
 use egui::{Color32, ColorImage};
 
 /// How a finding is drawn and called.
@@ -42,43 +43,41 @@ pub enum Pattern {
 #[must_use]
 pub fn style(finding: Finding) -> Style {
     let (name, meaning, color, pattern) = match finding {
-        Finding::Agrees => ("agrees", "Truth and technique agree.", AGREES, Pattern::Plain),
-        Finding::FalseShadow => {
-            ("false shadow", "False shadow: dark here, but the light reaches it.", FALSE_SHADOW, Pattern::Rising)
-        }
+        Finding::Agrees => ("agrees", "Truth and technique agree.", colors::AGREES, Pattern::Plain),
+        Finding::FalseShadow => (
+            "false shadow",
+            "False shadow: dark here, but the light reaches it.",
+            colors::FALSE_SHADOW,
+            Pattern::Rising,
+        ),
         Finding::MissingShadow => (
             "missing shadow",
             "Missing shadow: lit here, but something lies between.",
-            MISSING_SHADOW,
+            colors::MISSING_SHADOW,
             Pattern::Falling,
         ),
         Finding::WrongSurface => (
             "wrong surface",
             "Another surface than the truth's is seen here, or none.",
-            WRONG_SURFACE,
+            colors::WRONG_SURFACE,
             Pattern::Crossed,
         ),
         Finding::EdgeBand => (
             "edge, excused",
             "They differ, but the truth changes within this pixel: excused.",
-            EDGE_BAND,
+            colors::EDGE_BAND,
             Pattern::Dotted,
         ),
         Finding::NotCompared => (
             "not compared",
             "Not compared: here the truth is background, or faces away from the light.",
-            palette::NO_SURFACE,
+            colors::NOTHING,
             Pattern::Plain,
         ),
     };
-    Style { name, meaning, color, pattern }
+    Style { name, meaning, color: palette::opaque(color), pattern }
 }
 
-const AGREES: Color32 = Color32::from_rgb(0x2a, 0x2f, 0x3a);
-const FALSE_SHADOW: Color32 = Color32::from_rgb(0xe6, 0x9f, 0x00);
-const MISSING_SHADOW: Color32 = Color32::from_rgb(0xcc, 0x79, 0xa7);
-const WRONG_SURFACE: Color32 = Color32::from_rgb(0x56, 0xb4, 0xe9);
-const EDGE_BAND: Color32 = Color32::from_rgb(0x7b, 0x82, 0x90);
 /// How far a line of the hatching goes from the colour towards black.
 const LINE_DARKNESS: f32 = 0.5;
 /// Texels from one line of the hatching to the next.

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! Inspector::ui ─ keys ─ top_bar ─ messages ─ docked panels ─ status_bar ─ open_dialog
-//!                                             passes │ settings │ picture │ pixel │ report
+//!                                             passes │ settings │ picture │ pixel │ report │ diagnosis │ stress
 //! state.rs     what is remembered, and its rules   view.rs       which picture is shown
 //! depth.rs     what a stored depth means           placement.rs  where it is on the screen
 //! coloring.rs  what a texel means                  texture.rs    pictures as textures, cached
@@ -21,6 +21,8 @@ mod canvas;
 mod coloring;
 mod counts;
 mod depth;
+mod diagnosis;
+mod diagnosis_detail;
 mod dock;
 mod draw_level;
 mod draws;
@@ -65,6 +67,7 @@ mod verdict;
 mod view;
 
 pub use action::{Action, RunRequest};
+pub use diagnosis::{DiagnosisProgress, DiagnosisView};
 pub use draw_level::DrawsState;
 pub use meshes::ObjectMesh;
 pub use report::{ReportProgress, ReportView};
@@ -212,6 +215,17 @@ impl Inspector {
     #[must_use]
     pub fn report(&self) -> &ReportView {
         self.state.report.view()
+    }
+
+    /// Shows a diagnosis, how far it is, or why there is none.
+    pub fn set_diagnosis(&mut self, diagnosis: DiagnosisView) {
+        self.state.diagnosis.show(diagnosis);
+    }
+
+    /// What the Diagnosis tab shows.
+    #[must_use]
+    pub fn diagnosis(&self) -> &DiagnosisView {
+        self.state.diagnosis.view()
     }
 
     /// Adds the rows of a stress case that was run; those of the same case before go.

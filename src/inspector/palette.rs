@@ -4,18 +4,15 @@
 //! itself is always shown too, in the legend and on large texels.
 
 pub use crate::numbers::signed;
+use crate::picture::colors::{self, Rgb};
 use egui::Color32;
 
 /// Labels of `techniques.md` section 2, by value.
 pub const LABELS: [Label; 4] = [
-    Label { name: "lit", meaning: "the light reaches the surface", color: Color32::from_rgb(0xf2, 0xd1, 0x6b) },
-    Label { name: "shadow", meaning: "something lies between", color: Color32::from_rgb(0x46, 0x55, 0x7d) },
-    Label { name: "background", meaning: "no surface is here", color: Color32::from_rgb(0x14, 0x17, 0x1d) },
-    Label {
-        name: "faces away",
-        meaning: "the light is on the surface's other side",
-        color: Color32::from_rgb(0x7b, 0x82, 0x90),
-    },
+    Label { name: "lit", meaning: "the light reaches the surface", color: opaque(colors::LABELS[0]) },
+    Label { name: "shadow", meaning: "something lies between", color: opaque(colors::LABELS[1]) },
+    Label { name: "background", meaning: "no surface is here", color: opaque(colors::LABELS[2]) },
+    Label { name: "faces away", meaning: "the light is on the surface's other side", color: opaque(colors::LABELS[3]) },
 ];
 
 /// What a byte of a shadow mask means.
@@ -29,59 +26,35 @@ pub struct Label {
     pub color: Color32,
 }
 
-/// A stencil count of 0.
-const STENCIL_ZERO: Color32 = Color32::from_rgb(0x14, 0x17, 0x1d);
-/// Counts 1 to 7.
-const STENCIL_CYCLE: [Color32; 7] = [
-    Color32::from_rgb(0x56, 0xb4, 0xe9),
-    Color32::from_rgb(0x00, 0x9e, 0x73),
-    Color32::from_rgb(0xf0, 0xe4, 0x42),
-    Color32::from_rgb(0xe6, 0x9f, 0x00),
-    Color32::from_rgb(0xd5, 0x5e, 0x00),
-    Color32::from_rgb(0xcc, 0x79, 0xa7),
-    Color32::from_rgb(0x96, 0x78, 0xdc),
-];
-/// A count of −1, stored as 255.
-const STENCIL_MINUS_ONE: Color32 = Color32::from_rgb(0xff, 0x59, 0x64);
-/// What −128 ends at: lighter further away.
-const STENCIL_MINUS_MOST: Color32 = Color32::from_rgb(0xff, 0xe3, 0xe5);
+/// The same colour for the window.
+pub(super) const fn opaque([red, green, blue]: Rgb) -> Color32 {
+    Color32::from_rgb(red, green, blue)
+}
 
 /// The colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle darker by a step
 /// each turn; 255 (−1) downwards in reds, lighter further away.
 #[must_use]
 pub fn stencil(value: u8) -> Color32 {
-    match value {
-        0 => STENCIL_ZERO,
-        1..=127 => {
-            let turn = f32::from((value - 1) / 7);
-            // 18 turns fit below 128; the last one keeps a third of its brightness.
-            STENCIL_CYCLE[usize::from((value - 1) % 7)].lerp_to_gamma(Color32::BLACK, turn * (2.0 / 3.0) / 18.0)
-        }
-        128..=255 => {
-            let away = f32::from(255 - value) / 127.0;
-            STENCIL_MINUS_ONE.lerp_to_gamma(STENCIL_MINUS_MOST, away.sqrt())
-        }
-    }
+    opaque(colors::stencil(value))
 }
 
 /// The colour of a label; a value that is none is drawn as its stencil colour would be.
 #[must_use]
 pub fn label(value: u8) -> Color32 {
-    LABELS.get(usize::from(value)).map_or_else(|| stencil(value), |label| label.color)
+    opaque(colors::label(value))
 }
 
 /// Grey for a place between near (0) and far (1): near is light.
 #[must_use]
 pub fn near_far(place: f32) -> Color32 {
-    let gray = 238.0 - 196.0 * place.clamp(0.0, 1.0);
-    Color32::from_gray(gray as u8)
+    opaque(colors::near_far(place))
 }
 
 /// A count that is not zero, but a multiple of 256: eight bits would take it for zero.
 pub const READS_ZERO: Color32 = Color32::from_rgb(0xff, 0x2b, 0xf2);
 
 /// Nothing was drawn here: the depth buffer's clear value.
-pub const NO_SURFACE: Color32 = STENCIL_ZERO;
+pub const NO_SURFACE: Color32 = opaque(colors::NOTHING);
 
 /// Black or white, whichever is read more easily on `background`.
 #[must_use]

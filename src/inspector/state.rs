@@ -1,6 +1,7 @@
 //! What the panels show and remember, and how it changes. No widget is drawn here.
 
 use super::action::{Action, RunRequest};
+use super::diagnosis::DiagnosisState;
 use super::draw_level::DrawsState;
 use super::history::HistoryState;
 use super::meshes::ObjectMesh;
@@ -107,6 +108,8 @@ pub struct State {
     pub history: HistoryState,
     /// The Report tab.
     pub report: ReportState,
+    /// The Diagnosis tab.
+    pub diagnosis: DiagnosisState,
     /// The stress cases and what they came to.
     pub stress: StressState,
     /// Errors that were not dismissed yet.
@@ -226,6 +229,7 @@ impl State {
     /// Another scene is open; `None` for a capture folder, which can't be run again.
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>) {
         self.meshes = None;
+        self.diagnosis.forget();
         if scene.is_none() {
             self.history.close();
         }

@@ -2,7 +2,7 @@
 //!
 //! The text becomes plain tables (`tables`) that know where each value stands; those are
 //! checked and become a [`Scene`] (`build`), meshes by `shape`. Whatever is wrong ends as one
-//! line: file, line, what, mend.
+//! line: file, line, what, mend. [`save()`] goes the other way.
 //!
 //! Objects and lights move by keys of their tables, all optional. A lamp that hangs and swings is
 //! an object and a light with the same `swing`:
@@ -18,8 +18,11 @@
 
 mod build;
 mod problem;
+mod save;
 mod shape;
 mod tables;
+
+pub use save::{SaveError, SavedScene, save};
 
 use super::open::stem;
 use super::read_text::read_text;

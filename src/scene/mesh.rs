@@ -100,6 +100,21 @@ impl Mesh {
         self.hash
     }
 
+    /// The same mesh with bit-identical positions as one vertex each. Any mesh is so already but one of
+    /// [`MeshBuilder::build_unwelded`].
+    ///
+    /// # Errors
+    /// As [`MeshBuilder::build`]: never, for a mesh that was built.
+    pub fn welded(&self) -> Result<Mesh, MeshError> {
+        let builder = MeshBuilder {
+            positions: self.positions.clone(),
+            triangles: self.triangles.clone(),
+            corner_normals: self.corner_normals.clone().unwrap_or_default(),
+            groups: self.groups.clone(),
+        };
+        Ok(Mesh { dropped: self.dropped, ..builder.build()? })
+    }
+
     /// Smallest and largest corner of the bounding box; `None` without vertices.
     #[must_use]
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
@@ -127,8 +142,20 @@ impl MeshBuilder {
     /// # Errors
     /// A coordinate that is not finite, an index out of range, too many vertices.
     pub fn build(self) -> Result<Mesh, MeshError> {
+        self.build_with(Welder::default())
+    }
+
+    /// The same without welding, as a renderer that trusts a file's indices has it: for showing what that
+    /// does to shadows. Scenes and models never are.
+    ///
+    /// # Errors
+    /// As [`MeshBuilder::build`].
+    pub fn build_unwelded(self) -> Result<Mesh, MeshError> {
+        self.build_with(Welder { keeps_apart: true, ..Welder::default() })
+    }
+
+    fn build_with(self, mut welder: Welder) -> Result<Mesh, MeshError> {
         self.check()?;
-        let mut welder = Welder::default();
         let mut triangles = Vec::with_capacity(self.triangles.len());
         let mut corner_normals = Vec::with_capacity(self.corner_normals.len());
         // How many triangles are kept before each old triangle: where a group's ends move to.
@@ -139,7 +166,7 @@ impl MeshBuilder {
             if a == b || b == c || c == a {
                 continue;
             }
-            triangles.push(corners.map(|index| welder.weld(self.positions[index as usize])));
+            triangles.push(corners.map(|index| welder.weld(index, self.positions[index as usize])));
             corner_normals.extend(self.corner_normals.get(old));
         }
         kept_before.push(triangles.len());
@@ -189,15 +216,18 @@ impl MeshBuilder {
 /// Gives every distinct position one index, in the order of first use.
 #[derive(Default)]
 struct Welder {
+    /// Every vertex that was given stays one of its own.
+    keeps_apart: bool,
     positions: Vec<DVec3>,
-    index_of: HashMap<[u64; 3], u32>,
+    index_of: HashMap<([u64; 3], u32), u32>,
 }
 
 impl Welder {
-    fn weld(&mut self, position: DVec3) -> u32 {
+    fn weld(&mut self, given: u32, position: DVec3) -> u32 {
         let position = position + 0.0; // −0 + 0 = 0: the two zeros are one place
         let next = self.positions.len() as u32;
-        let index = *self.index_of.entry(bits(position)).or_insert(next);
+        let apart = if self.keeps_apart { given } else { 0 };
+        let index = *self.index_of.entry((bits(position), apart)).or_insert(next);
         if index == next {
             self.positions.push(position);
         }

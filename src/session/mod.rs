@@ -4,12 +4,14 @@
 //! lists). Commands, the window and tests all go through it.
 
 mod counts;
+mod diagnose;
 mod draws;
 mod history;
 mod measure;
 mod report;
 mod stress;
 mod stress_steps;
+mod suited;
 mod truth;
 mod volumes;
 
@@ -82,6 +84,9 @@ pub enum SessionError {
         /// Of the picture.
         size: [u32; 2],
     },
+    /// A mend can't be made.
+    #[error(transparent)]
+    Mend(#[from] crate::diagnosis::MendError),
     /// A scene made by code is broken.
     #[error(transparent)]
     Scene(#[from] crate::scene::SceneError),

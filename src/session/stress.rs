@@ -202,7 +202,7 @@ impl Session {
 
 impl Fault<'_> {
     /// What the technique is given in place of these.
-    fn applied<'a>(self, scene: &'a Scene, choice: &Choice) -> (Cow<'a, Scene>, Choice) {
+    pub(super) fn applied<'a>(self, scene: &'a Scene, choice: &Choice) -> (Cow<'a, Scene>, Choice) {
         let (mut scene, mut choice) = (Cow::Borrowed(scene), choice.clone());
         match self {
             Fault::Scene(change) => change(scene.to_mut()),

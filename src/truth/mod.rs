@@ -15,6 +15,7 @@
 //! A pencil is all lines through one centre. All rays of a frame belong to one pencil
 //! or another, which makes a test cheap enough for a picture in a tenth of a second.
 
+mod ask;
 mod chart;
 mod pencil;
 #[cfg(test)]
@@ -22,6 +23,7 @@ mod tests;
 mod view;
 mod world;
 
+pub use ask::{Met, SeenSurface};
 pub use world::Place;
 
 use crate::math::{Sign, side_of_triangle};

@@ -25,11 +25,14 @@ pub struct World {
     /// Parallel to `triangles`.
     places: Vec<Place>,
     objects: Vec<Object>,
+    /// Smallest and largest coordinates of all corners.
+    bounds: [DVec3; 2],
 }
 
 impl World {
     pub fn new(scene: &Scene) -> Result<World, TruthError> {
-        let mut world = World { triangles: Vec::new(), places: Vec::new(), objects: scene.objects.clone() };
+        let bounds = [scene.camera.eye; 2];
+        let mut world = World { triangles: Vec::new(), places: Vec::new(), objects: scene.objects.clone(), bounds };
         for (index, object) in scene.objects.iter().enumerate() {
             let positions = object.world_positions();
             let is_usable = |position: &DVec3| (*position - scene.camera.eye).abs().max_element() <= FARTHEST;
@@ -41,6 +44,8 @@ impl World {
                     ),
                 });
             }
+            let [low, high] = &mut world.bounds;
+            positions.iter().for_each(|position| (*low, *high) = (low.min(*position), high.max(*position)));
             let triangles = object.mesh.triangles();
             world.triangles.extend(triangles.iter().map(|corners| corners.map(|vertex| positions[vertex as usize])));
             world.places.extend((0..triangles.len()).map(|triangle| Place { object: index, triangle }));
@@ -50,6 +55,16 @@ impl World {
 
     pub fn place(&self, index: usize) -> Place {
         self.places[index]
+    }
+
+    pub fn object_name(&self, object: usize) -> &str {
+        &self.objects[object].name
+    }
+
+    /// No corner is farther than this from a point along any axis.
+    pub fn reach(&self, point: DVec3) -> f64 {
+        let [low, high] = self.bounds;
+        (point - low).abs().max((high - point).abs()).max_element().max(f64::MIN_POSITIVE)
     }
 
     pub fn object(&self, index: usize) -> &Object {

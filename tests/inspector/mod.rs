@@ -2,6 +2,7 @@
 
 mod by_hand;
 mod counts;
+mod diagnosis;
 mod draws;
 mod history;
 mod history_by_hand;

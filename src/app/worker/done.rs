@@ -1,5 +1,5 @@
 //! What is asked of the frame that was captured last: its time, its truth, its draws, what happened
-//! to a pixel, and how other techniques do in its place.
+//! to a pixel, why it is wrong, and how other techniques do in its place.
 
 use super::Bench;
 use crate::app::news::News;
@@ -9,7 +9,7 @@ use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::scene::Scene;
-use crate::session::{CaptureRequest, Measurement, Session, SessionError, median_ms, report_rows};
+use crate::session::{CaptureRequest, Fault, Measurement, Session, SessionError, median_ms, report_rows};
 use std::sync::Arc;
 
 /// Frames that are timed, each with and without snapshots.
@@ -105,6 +105,27 @@ impl Bench {
             // The window knows: it has asked for it.
             Err(SessionError::Cancelled) => {}
             Err(error) => (self.tell)(News::NotJudged { frame, reason: error.to_string() }),
+        }
+        (self.tell)(News::Idle);
+    }
+
+    /// Says why the frame that was captured last is wrong, if it is the one that is meant.
+    pub(super) fn diagnose(&mut self, frame: u64, job: u64, progress: &Progress) {
+        if progress.is_cancelled() {
+            return;
+        }
+        (self.tell)(News::Busy("diagnosing".to_owned()));
+        let meant = self.last.as_ref().filter(|done| done.frame == frame);
+        let result = match (&mut self.session, meant) {
+            (Some(session), Some(done)) => {
+                let found = session.diagnose(&done.scene, &done.request, Fault::None, progress);
+                found.map(Arc::new).map_err(|error| error.to_string())
+            }
+            _ => Err("another picture came meanwhile: diagnose again when it is the one you want".to_owned()),
+        };
+        // Where it was cancelled, the window has asked for it.
+        if !progress.is_cancelled() {
+            (self.tell)(News::Diagnosed { job, result });
         }
         (self.tell)(News::Idle);
     }

@@ -304,3 +304,36 @@ fn the_open_scene_is_measured_in_the_size_that_is_shown() {
     let rows: Vec<_> = report.rows.iter().map(|row| (row.technique.as_str(), row.size)).collect();
     assert_eq!((job, rows), (7, vec![("z-fail", [64, 36]), ("planar", [64, 36])]));
 }
+
+#[test]
+fn a_frame_is_diagnosed_and_what_was_cancelled_is_not_told() {
+    let (worker, frame, news) = started();
+    let diagnose = |frame, job, progress: &Progress| {
+        assert!(worker.order(Order::Diagnose { frame, job, progress: progress.clone() }));
+    };
+    let result =
+        || wait(&news, |news| if let News::Diagnosed { job, result } = news { Some((job, result)) } else { None });
+    let cancelled = Progress::default();
+    cancelled.cancel();
+    diagnose(frame, 1, &cancelled);
+    wait_for_history(&worker, frame, &news);
+    diagnose(frame, 2, &Progress::default());
+    let (job, found) = result();
+    let found = found.expect("a diagnosis");
+    assert_eq!((job, found.technique, found.size), (2, Technique::Planar, [64, 36]));
+    assert!(found.is_bad() && found.regions.iter().all(|region| !region.causes.is_empty()), "{found:?}");
+    diagnose(frame + 7, 3, &Progress::default());
+    let (job, none) = result();
+    assert_eq!(job, 3);
+    assert!(none.expect_err("of no frame that is there").contains("diagnose again"));
+}
+
+/// An answer that comes after all that was ordered before it.
+fn wait_for_history(worker: &Worker, frame: u64, news: &Receiver<News>) {
+    assert!(worker.order(Order::History { frame, at: [1, 1] }));
+    wait(news, |news| match news {
+        News::Diagnosed { .. } => panic!("what was cancelled is told"),
+        News::History { .. } => Some(()),
+        _ => None,
+    });
+}

@@ -1,0 +1,173 @@
+//! `stencilscope diagnose`: where shadows are wrong, why, what mends it, and the proof.
+
+use super::fix::Fix;
+use super::options::{FrameOptions, SceneOptions};
+use super::progress::with_bar;
+use super::{CliError, output};
+use crate::capture::{CaptureError, disk};
+use crate::diagnosis::{Diagnosis, Mend, Suited, wrong_pixels};
+use crate::picture::Picture;
+use crate::progress::Progress;
+use crate::scene::Scene;
+use crate::session::{CaptureRequest, Every, Fault, Session};
+use clap::Args;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The file by which a diagnosis' folder is known.
+const DOCUMENT: &str = "diagnosis.json";
+
+#[derive(Debug, Args)]
+pub struct DiagnoseArguments {
+    /// A built-in scene, a scene file (.toml) or a model (.obj)
+    scene: String,
+    #[command(flatten)]
+    scene_options: SceneOptions,
+    #[command(flatten)]
+    frame: FrameOptions,
+    /// Machine-readable, to a file or to standard output in place of the text
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    json: Option<Option<String>>,
+    /// A folder to make, with pictures of what is wrong and of the frame mended, the text and the JSON
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// A scene file to write, mended
+    #[arg(long, value_name = "FILE.toml")]
+    fix: Option<String>,
+    /// Replace the folder of an earlier diagnosis, and the scene file
+    #[arg(long)]
+    overwrite: bool,
+    /// Do not measure which techniques are right for the scene
+    #[arg(long)]
+    no_techniques: bool,
+}
+
+/// Diagnoses a frame.
+///
+/// # Errors
+/// A scene, option or place that can't be used; no GPU; [`CliError::Wrong`] where pixels are wrong.
+pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
+    let DiagnoseArguments { scene_options, frame, output: folder, .. } = arguments;
+    let loaded = scene_options.load(&arguments.scene)?;
+    let scene = loaded.at(scene_options.time);
+    let mut request = frame.request(&scene)?;
+    if request.every == Every::Draw {
+        let line = "`--every draw` is for captures; a diagnosis looks at draws by itself: leave it out";
+        return Err(CliError::Usage(line.to_owned()));
+    }
+    if request.external_capture {
+        let line = "`--external-capture` is for captures; a diagnosis runs many frames: leave it out";
+        return Err(CliError::Usage(line.to_owned()));
+    }
+    request.timing_runs = 0;
+    let json = arguments.json.as_ref().and_then(Option::as_deref);
+    json.map_or(Ok(()), output::check_target)?;
+    folder.as_deref().map_or(Ok(()), |folder| check_folder(folder, arguments.overwrite))?;
+    let fix = arguments.fix.as_deref().map(|file| Fix::new(file, &arguments.scene, arguments.overwrite)).transpose()?;
+
+    let mut session = Session::new(frame.adapter.as_deref())?;
+    let diagnosis = with_bar("diagnosis", &Progress::default(), |progress| {
+        session.diagnose(&scene, &request, Fault::None, progress)
+    })?;
+    let suited = if arguments.no_techniques {
+        Vec::new()
+    } else {
+        with_bar("techniques", &Progress::default(), |progress| session.suited(&scene, request.size, progress))?
+    };
+    let text = diagnosis.to_text(&suited);
+    let document = diagnosis.to_json(&suited).map_err(|error| broken(error.into()))?;
+    match &arguments.json {
+        Some(_) => output::deliver(&document, json)?,
+        None => output::print(&text)?,
+    }
+    let mut notes = String::new();
+    if let Some(folder) = folder {
+        let files = files(&mut session, &scene, &request, &diagnosis, &text, &document)?;
+        notes += &write_folder(folder, &files)?;
+    }
+    if let Some(fix) = fix {
+        notes += &fix.write(&mut session, &loaded, scene_options.time, &request, &diagnosis, &suited)?;
+    }
+    if arguments.json.is_none() {
+        output::print(&notes)?;
+    }
+    verdict(&diagnosis)
+}
+
+fn verdict(diagnosis: &Diagnosis) -> Result<(), CliError> {
+    if !diagnosis.is_bad() {
+        return Ok(());
+    }
+    let told: u64 = diagnosis.regions.iter().map(|region| region.pixels).sum();
+    let first = diagnosis.regions.first().and_then(|region| region.causes.first());
+    let because = first.map_or_else(String::new, |found| format!(", most of them by {}", found.cause));
+    Err(CliError::Wrong { pixels: told + diagnosis.rest.pixels, because })
+}
+
+/// A diagnosis may go where nothing is, or replace another.
+fn check_folder(folder: &Path, overwrite: bool) -> Result<(), CliError> {
+    let name = folder.display();
+    let is_empty = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
+    if folder.file_name().is_some() && (!folder.exists() || is_empty) {
+        Ok(())
+    } else if !folder.join(DOCUMENT).is_file() {
+        Err(CliError::Usage(format!("{name}: it is there already and holds no diagnosis; choose another name")))
+    } else if overwrite {
+        Ok(())
+    } else {
+        Err(CliError::Usage(format!("{name}: there is a diagnosis already; replace it with --overwrite")))
+    }
+}
+
+type Files = Vec<(&'static str, Vec<u8>)>;
+
+/// Pictures before and after, text and document.
+fn files(
+    session: &mut Session,
+    scene: &Scene,
+    request: &CaptureRequest,
+    diagnosis: &Diagnosis,
+    text: &str,
+    document: &str,
+) -> Result<Files, CliError> {
+    let mut pictured = |mend: &Mend| {
+        let (mut capture, _) = session.capture_mended(scene, request, Fault::None, mend)?;
+        session.judge(scene, &mut capture, &Progress::default())?;
+        Ok::<_, CliError>(capture)
+    };
+    let png = |picture: &Picture| picture.to_png().map_err(|error| broken(std::io::Error::other(error.to_string())));
+    let mut files = vec![("regions.png", png(&diagnosis.shown(&pictured(&Mend::default())?))?)];
+    if let Some(advice) = &diagnosis.advice {
+        files.push(("mended.png", png(&wrong_pixels(&pictured(&advice.mend)?))?));
+    }
+    files.push(("diagnosis.txt", text.as_bytes().to_vec()));
+    files.push((DOCUMENT, document.as_bytes().to_vec()));
+    Ok(files)
+}
+
+fn write_folder(folder: &Path, files: &Files) -> Result<String, CliError> {
+    disk::put_folder(folder, |new| {
+        let failed = |source| CaptureError::Write { file: new.to_owned(), source };
+        fs::create_dir_all(new).map_err(failed)?;
+        files.iter().try_for_each(|(name, bytes)| fs::write(new.join(name), bytes).map_err(failed))
+    })?;
+    let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
+    Ok(format!("{}: {}\n", folder.display(), names.join(", ")))
+}
+
+fn broken(source: std::io::Error) -> CliError {
+    CliError::Output { path: "the diagnosis".to_owned(), source }
+}
+
+/// The choice that a fix writes, where any is better than what was asked for: what is advised, or the fastest
+/// technique without a wrong pixel.
+pub fn mend_for(diagnosis: &Diagnosis, suited: &[Suited]) -> Option<Mend> {
+    let best = || {
+        let choice = &Suited::best(suited)?.choice;
+        // All of them: what was set for another technique is to be kept in none.
+        let settings = choice.settings().clone();
+        Some(Mend { technique: Some(choice.technique()), settings, ..Mend::default() })
+    };
+    let advised = diagnosis.advice.as_ref().map(|advice| advice.mend.clone());
+    if diagnosis.is_mended() { advised } else { best().or(advised) }
+}

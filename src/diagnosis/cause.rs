@@ -1,0 +1,310 @@
+//! Every way in which a shadow is known to go wrong.
+
+use std::fmt;
+
+/// Why pixels are wrong. In the order of families: volumes, meshes, counts, planes, maps, silhouettes,
+/// numbers, flags.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Cause {
+    /// Z-pass starts to count inside a volume.
+    EyeInVolume,
+    /// Z-pass starts to count on a near plane that cuts volumes open.
+    NearPlaneCut,
+    /// Z-pass-plus cuts a caster twice at the near plane, and the cuts round apart.
+    NearPlaneCrack,
+    /// A volume is open at its far end.
+    MissingDarkCap,
+    /// A volume is open at its caster.
+    MissingLightCap,
+    /// Volumes are cut at a far plane.
+    FarClip,
+    /// Volumes end before the receiver.
+    FiniteExtrusion,
+    /// A caster's mesh has edges of one triangle, and only its light-facing triangles cast.
+    OpenMesh,
+    /// A caster's mesh has edges of more than two triangles, and only light-facing triangles cast.
+    NonManifold,
+    /// Neighbouring triangles of a caster disagree on which side is out, or all face inwards.
+    InconsistentWinding,
+    /// Vertices at bit-equal positions are told apart.
+    SplitVertices,
+    /// Vertices lie within a millionth of the size of each other.
+    NearVertices,
+    /// The light is inside a caster whose light-facing triangles alone cast.
+    LightInside,
+    /// A count stops at 255.
+    Clamped,
+    /// A count of a multiple of 256 reads as none.
+    Wrap256,
+    /// A count stops at 0, as what takes away came before what adds.
+    OperationOrder,
+    /// A light cap's depths are not those of the surface that it lies on.
+    CapFighting,
+    /// A flattened shadow darkens the same pixel more than once.
+    DoubleBlend,
+    /// A flattened shadow and its receiver have the same depths, but for rounding.
+    ZFighting,
+    /// A flattened shadow is drawn beyond its receiver.
+    OffReceiver,
+    /// What lies beyond the light is flattened onto the receiver.
+    AntiShadow,
+    /// What lies under the receiver's plane is flattened onto it.
+    FalseShadow,
+    /// A receiver is no plane that shadows are flattened onto.
+    NotPlanar,
+    /// A surface shadows itself, as texels of the map are coarser than its slope.
+    Acne,
+    /// The bias is larger than the gap between caster and receiver.
+    PeterPanning,
+    /// Texels are coarser than the shadow's outline.
+    Aliasing,
+    /// Surfaces lie outside what the map shows.
+    OutsideMap,
+    /// A silhouette is projected behind the light too.
+    ReverseProjection,
+    /// A silhouette falls on what lies between the light and its caster.
+    Between,
+    /// A silhouette is not projected onto its own caster.
+    SelfShadow,
+    /// Single precision cannot tell the two sides apart.
+    F32Limit,
+    /// The scene says that an object receives no shadows.
+    NotReceiving,
+    /// The scene says that an object casts no shadow.
+    NotCasting,
+    /// The scene says that an object is not drawn.
+    Undrawn,
+}
+
+impl Cause {
+    /// Every one, in order.
+    pub const ALL: [Cause; 34] = [
+        Cause::EyeInVolume,
+        Cause::NearPlaneCut,
+        Cause::NearPlaneCrack,
+        Cause::MissingDarkCap,
+        Cause::MissingLightCap,
+        Cause::FarClip,
+        Cause::FiniteExtrusion,
+        Cause::OpenMesh,
+        Cause::NonManifold,
+        Cause::InconsistentWinding,
+        Cause::SplitVertices,
+        Cause::NearVertices,
+        Cause::LightInside,
+        Cause::Clamped,
+        Cause::Wrap256,
+        Cause::OperationOrder,
+        Cause::CapFighting,
+        Cause::DoubleBlend,
+        Cause::ZFighting,
+        Cause::OffReceiver,
+        Cause::AntiShadow,
+        Cause::FalseShadow,
+        Cause::NotPlanar,
+        Cause::Acne,
+        Cause::PeterPanning,
+        Cause::Aliasing,
+        Cause::OutsideMap,
+        Cause::ReverseProjection,
+        Cause::Between,
+        Cause::SelfShadow,
+        Cause::F32Limit,
+        Cause::NotReceiving,
+        Cause::NotCasting,
+        Cause::Undrawn,
+    ];
+
+    /// The name in JSON and text.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Cause::EyeInVolume => "eye-in-volume",
+            Cause::NearPlaneCut => "near-plane-cut",
+            Cause::NearPlaneCrack => "near-plane-crack",
+            Cause::MissingDarkCap => "missing-dark-cap",
+            Cause::MissingLightCap => "missing-light-cap",
+            Cause::FarClip => "far-clip",
+            Cause::FiniteExtrusion => "finite-extrusion",
+            Cause::OpenMesh => "open-mesh",
+            Cause::NonManifold => "non-manifold",
+            Cause::InconsistentWinding => "inconsistent-winding",
+            Cause::SplitVertices => "split-vertices",
+            Cause::NearVertices => "near-vertices",
+            Cause::LightInside => "light-inside",
+            Cause::Clamped => "clamped",
+            Cause::Wrap256 => "wrap-256",
+            Cause::OperationOrder => "operation-order",
+            Cause::CapFighting => "cap-fighting",
+            Cause::DoubleBlend => "double-blend",
+            Cause::ZFighting => "z-fighting",
+            Cause::OffReceiver => "off-receiver",
+            Cause::AntiShadow => "anti-shadow",
+            Cause::FalseShadow => "false-shadow",
+            Cause::NotPlanar => "not-planar",
+            Cause::Acne => "acne",
+            Cause::PeterPanning => "peter-panning",
+            Cause::Aliasing => "aliasing",
+            Cause::OutsideMap => "outside-map",
+            Cause::ReverseProjection => "reverse-projection",
+            Cause::Between => "between",
+            Cause::SelfShadow => "self-shadow",
+            Cause::F32Limit => "f32-limit",
+            Cause::NotReceiving => "not-receiving",
+            Cause::NotCasting => "not-casting",
+            Cause::Undrawn => "undrawn",
+        }
+    }
+
+    /// The cause of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Cause> {
+        Cause::ALL.into_iter().find(|cause| cause.name() == name)
+    }
+
+    /// What it is and what to do, for someone who meets it for the first time.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Cause::EyeInVolume => {
+                "The eye stands in shadow: z-pass counts from the eye on and misses the volumes that it is already in. \
+                 Count from behind with z-fail."
+            }
+            Cause::NearPlaneCut => {
+                "The near plane cuts a shadow volume open, and z-pass misses the faces that are cut away. Count from \
+                 behind with z-fail."
+            }
+            Cause::NearPlaneCrack => {
+                "A caster crosses the near plane, where z-pass-plus joins two pictures whose edges round apart. Count \
+                 from behind with z-fail."
+            }
+            Cause::MissingDarkCap => {
+                "Z-fail needs volumes that are closed at their far end, and this one is not. Draw the dark cap."
+            }
+            Cause::MissingLightCap => {
+                "Z-fail needs volumes that are closed at their caster, and this one is not. Draw the light cap, and \
+                 test its depth."
+            }
+            Cause::FarClip => {
+                "A far plane cuts the shadow volumes, and what is cut away is not counted. Use an infinite depth \
+                 mapping, or clamp depth."
+            }
+            Cause::FiniteExtrusion => "The shadow volumes end before they reach the surface. Extrude them to infinity.",
+            Cause::OpenMesh => {
+                "The mesh has holes, so its light-facing triangles do not bound a volume as those of a closed mesh do. \
+                 Let all triangles cast."
+            }
+            Cause::NonManifold => {
+                "More than two triangles share an edge, so the outline of the light-facing ones is not the whole \
+                 story. Let all triangles cast."
+            }
+            Cause::InconsistentWinding => {
+                "Triangles of the mesh are wound the wrong way, and are taken to face the light when they do not. Let \
+                 all triangles cast, or turn them."
+            }
+            Cause::SplitVertices => {
+                "Neighbouring triangles have vertices of their own at the very same positions, so the mesh looks open \
+                 along their seam. Weld them."
+            }
+            Cause::NearVertices => {
+                "Vertices that look like one lie a hair apart, so the mesh is open between them. Let all triangles \
+                 cast; welding by a tolerance would move the surface."
+            }
+            Cause::LightInside => {
+                "The light is inside the caster, and no triangle that should cast faces it. Let all triangles cast."
+            }
+            Cause::Clamped => {
+                "More volumes overlap here than eight bits count, and the count stops at 255. Let counts wrap, or \
+                 count in a float."
+            }
+            Cause::Wrap256 => {
+                "Exactly a multiple of 256 volumes overlap here, which eight bits hold as 0. Count in a float."
+            }
+            Cause::OperationOrder => {
+                "Counts stop at 0, and what takes away is drawn before what adds. Let counts wrap: then the order \
+                 does not matter."
+            }
+            Cause::CapFighting => {
+                "The light cap lies on the surface itself, but its depths round differently, as its corners are \
+                 drawn in another order. Draw caps in the surface's own vertex order."
+            }
+            Cause::DoubleBlend => {
+                "Flattened triangles overlap, and each darkens the pixel again. Let the stencil count what is \
+                 darkened, and blend once."
+            }
+            Cause::ZFighting => {
+                "The flattened shadow lies in its receiver's plane, and rounding decides which is in front. Turn the \
+                 depth test off for shadows, or offset them."
+            }
+            Cause::OffReceiver => {
+                "The flattened shadow runs on beyond the end of its receiver. Mark the receiver in the stencil and \
+                 draw the shadow only there."
+            }
+            Cause::AntiShadow => {
+                "What lies beyond the light cannot shadow the receiver, but flattening carries it there all the same. \
+                 Clip casters at the light."
+            }
+            Cause::FalseShadow => {
+                "What lies under the receiver's plane cannot shadow it, but flattening carries it there all the same. \
+                 Clip casters at the plane."
+            }
+            Cause::NotPlanar => {
+                "Shadows are flattened onto planes only, and this receiver has none here. Use shadow volumes."
+            }
+            Cause::Acne => {
+                "A surface shadows itself: within one texel of the map it slopes by more than the bias. Raise the bias \
+                 with the slope."
+            }
+            Cause::PeterPanning => {
+                "The bias is larger than the gap between the caster and what lies behind it, so the shadow begins too \
+                 late. Lower the bias."
+            }
+            Cause::Aliasing => {
+                "Texels of the map cover more than the detail of the shadow's outline. Use a larger map or a volume."
+            }
+            Cause::OutsideMap => {
+                "These surfaces or their casters are outside what the light's map shows. Fit the map again."
+            }
+            Cause::ReverseProjection => {
+                "The silhouette is projected behind the light too, as a slide would never be. Leave out what lies \
+                 behind it."
+            }
+            Cause::Between => {
+                "A silhouette is projected with no regard to distance, and falls on what stands before its caster. Use \
+                 a shadow volume or a map."
+            }
+            Cause::SelfShadow => {
+                "A silhouette is not projected onto its own caster, which cannot shadow itself. Use a shadow volume or \
+                 a map."
+            }
+            Cause::F32Limit => {
+                "The light lies so nearly in the triangle's plane that single precision cannot tell on which side. \
+                 No setting mends it: move the light or the triangle."
+            }
+            Cause::NotReceiving => "The scene says that this object receives no shadows. Set `receives` if it should.",
+            Cause::NotCasting => "The scene says that this object casts no shadow. Set `casts` if it should.",
+            Cause::Undrawn => "The scene says that this object is not drawn. Set `visible` if it should be.",
+        }
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_lead_back() {
+        for (at, cause) in Cause::ALL.into_iter().enumerate() {
+            assert_eq!(Cause::from_name(cause.name()), Some(cause));
+            assert_eq!(cause as usize, at);
+            assert!(cause.meaning().ends_with('.'));
+        }
+        assert_eq!(Cause::from_name("bad-luck"), None);
+    }
+}

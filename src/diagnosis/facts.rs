@@ -1,0 +1,231 @@
+//! What rules look at: the frame as it was given and run, its truth, and a few pixels closely.
+
+use super::RegionKind;
+use super::cause::Cause;
+use super::mend::Mend;
+use super::mesh_facts::MeshFacts;
+use super::regions::Region;
+use crate::accuracy::Finding;
+use crate::capture::Capture;
+use crate::history::PixelHistory;
+use crate::plan::{Draw, FramePlan, Part, Pass};
+use crate::scene::{Object, Scene};
+use crate::technique::{Choice, Technique};
+use crate::truth::{Met, SeenSurface, Tracer};
+use std::collections::BTreeSet;
+
+/// One frame. Nothing here tells whether, or how, something was made wrong on purpose.
+pub(crate) struct Facts<'a> {
+    /// As the technique was given it.
+    pub scene: &'a Scene,
+    /// As it was used.
+    pub choice: &'a Choice,
+    /// As it was run.
+    pub plan: &'a FramePlan,
+    pub capture: &'a Capture,
+    /// Of the scene as it should be.
+    pub tracer: &'a Tracer,
+    /// Parallel to the scene's objects.
+    pub meshes: &'a [MeshFacts],
+}
+
+/// A region with a close look at some of its pixels.
+pub(crate) struct Case<'a> {
+    pub region: &'a Region,
+    pub samples: Vec<Sample>,
+}
+
+/// One pixel of a region.
+pub(crate) struct Sample {
+    pub pixel: [u32; 2],
+    pub seen: Option<SeenSurface>,
+    /// What in truth lies between light and surface, the nearest to the surface first.
+    pub between: Vec<Met>,
+    /// `None` where the technique leaves no events that tell.
+    pub history: Option<PixelHistory>,
+}
+
+/// A cause that may be it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Suspicion {
+    pub cause: Cause,
+    pub evidence: String,
+    /// In the order in which they are tried; none where nothing helps.
+    pub mends: Vec<Mend>,
+    /// How many samples show it.
+    pub shown_by: usize,
+    /// How much it says about this very frame: larger before smaller.
+    pub weight: usize,
+}
+
+impl Suspicion {
+    pub fn new(cause: Cause, evidence: String, mends: Vec<Mend>, shown_by: usize) -> Option<Suspicion> {
+        (shown_by > 0).then_some(Suspicion { cause, evidence, mends, shown_by, weight: 0 })
+    }
+}
+
+/// Looks for the evidence of one cause.
+pub(crate) type Rule = fn(&Facts, &Case) -> Option<Suspicion>;
+
+impl<'a> Facts<'a> {
+    /// The value of a setting; empty where the technique has none of that name.
+    pub fn setting(&self, key: &str) -> &'a str {
+        self.choice.settings().get(key).map_or("", String::as_str)
+    }
+
+    /// A setting as a number; 0 where it is none.
+    pub fn number(&self, key: &str) -> f64 {
+        self.setting(key).parse().unwrap_or(0.0)
+    }
+
+    pub fn technique(&self) -> Technique {
+        self.choice.technique()
+    }
+
+    /// The object of that name as the technique was given it, with its index.
+    pub fn object(&self, name: &str) -> Option<(usize, &'a Object)> {
+        self.scene.objects.iter().enumerate().find(|(_, object)| object.name == name)
+    }
+
+    /// The passes of a light that are part of the frame.
+    pub fn passes(&self, light: usize) -> impl Iterator<Item = &'a Pass> {
+        self.plan.passes.iter().filter(move |pass| pass.timed && pass.light.is_some_and(|of| of.0 == light))
+    }
+
+    /// The draws of a part of a light's shadows, as the camera sees them.
+    pub fn draws(&self, light: usize, part: Part) -> impl Iterator<Item = &'a Draw> {
+        let passes = self.passes(light).filter(move |pass| part == Part::Map || pass.view.0 == 0);
+        passes.flat_map(|pass| &pass.draws).filter(move |draw| draw.part == part)
+    }
+
+    /// Are volumes counted for a light?
+    pub fn counts_volumes(&self, light: usize) -> bool {
+        [Part::Side, Part::LightCap, Part::DarkCap].into_iter().any(|part| self.draws(light, part).next().is_some())
+    }
+
+    /// Is a caster's volume counted behind the visible surface?
+    pub fn counts_behind(&self, light: usize, caster: &str) -> bool {
+        let of_caster = |draw: &&Draw| draw.caster.as_deref() == Some(caster);
+        let mut sides = self.draws(light, Part::Side).filter(of_caster);
+        sides.any(|draw| {
+            let stencil = &draw.raster.stencil;
+            let keeps = wgpu::StencilOperation::Keep;
+            let in_stencil = stencil.front.depth_fail_op != keeps || stencil.back.depth_fail_op != keeps;
+            let is_plain = draw.raster.depth_compare == self.nearer();
+            in_stencil || (draw.program == crate::plan::Program::Count && !is_plain)
+        })
+    }
+
+    /// The test that lets through what is nearer.
+    fn nearer(&self) -> wgpu::CompareFunction {
+        let is_reversed = self.plan.depth.mapping.is_reversed();
+        if is_reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less }
+    }
+
+    /// Does a casting triangle cast as the settings say?
+    pub fn casts(&self, met: &Met) -> bool {
+        match self.setting("casters") {
+            "light-facing" => met.faces_light,
+            "light-back-facing" => !met.faces_light,
+            _ => true,
+        }
+    }
+
+    /// `light 1`.
+    pub fn light_name(light: usize) -> String {
+        format!("light {}", light + 1)
+    }
+
+    /// Metres that a pixel is wide at a distance along the view's axis.
+    pub fn pixel_width(&self, depth: f64) -> f64 {
+        let half = (self.scene.camera.fov_y_degrees.to_radians() / 2.0).tan();
+        2.0 * half * depth / f64::from(self.plan.size[1])
+    }
+
+    /// The names of the objects that rays have met, in order.
+    pub fn names(&self, met: &[Met]) -> BTreeSet<String> {
+        met.iter().map(|met| self.tracer.name(met.place).to_owned()).collect()
+    }
+}
+
+impl Case<'_> {
+    pub fn light(&self) -> usize {
+        self.region.light
+    }
+
+    pub fn is_missing(&self) -> bool {
+        self.region.key.kind == RegionKind::Wrong(Finding::MissingShadow)
+    }
+
+    pub fn is_false(&self) -> bool {
+        self.region.key.kind == RegionKind::Wrong(Finding::FalseShadow)
+    }
+
+    pub fn is_too_dark(&self) -> bool {
+        self.region.key.kind == RegionKind::TooDark
+    }
+
+    /// How many samples show something, with what the first of them tells.
+    pub fn shown<T>(&self, look: impl FnMut(&Sample) -> Option<T>) -> Option<(T, usize)> {
+        let mut found: Vec<T> = self.samples.iter().filter_map(look).collect();
+        let count = found.len();
+        (count > 0).then(|| (found.swap_remove(0), count))
+    }
+}
+
+impl Sample {
+    /// The middle of the pixel.
+    pub fn center(&self) -> [f64; 2] {
+        self.pixel.map(|n| f64::from(n) + 0.5)
+    }
+
+    /// What a caster's volume added to the count of a light here, as if no count had limits.
+    pub fn counted(&self, light: usize, caster: &str) -> i32 {
+        self.volume_events(light)
+            .filter(|(_, one)| one.caster.as_deref() == Some(caster))
+            .map(|(event, _)| event.step())
+            .sum()
+    }
+
+    /// The faces of a light's volumes here.
+    pub fn volume_events(
+        &self,
+        light: usize,
+    ) -> impl Iterator<Item = (&crate::history::Event, &crate::history::TriangleEvent)> {
+        let all = self.history.iter().flat_map(|history| history.triangles());
+        all.filter(move |(event, _)| event.light == Some(light) && event.is_of_volume())
+    }
+
+    /// Casters whose volume was counted otherwise than their triangles between light and surface say: name, as
+    /// counted, and as it should be.
+    pub fn miscounted(&self, facts: &Facts, light: usize) -> Vec<(String, i32, i32)> {
+        if self.history.is_none() || self.seen.is_none() {
+            return Vec::new();
+        }
+        let mut found = Vec::new();
+        for object in facts.scene.objects.iter().filter(|object| object.casts) {
+            let is_of = |met: &&Met| facts.tracer.name(met.place) == object.name && facts.casts(met);
+            let expected = self.between.iter().filter(is_of).count() as i32;
+            let counted = self.counted(light, &object.name);
+            if counted != expected {
+                found.push((object.name.clone(), counted, expected));
+            }
+        }
+        found
+    }
+}
+
+/// `3 volumes`.
+pub(crate) fn amount(count: u64, noun: &str) -> String {
+    format!("{} {noun}{}", crate::numbers::count(count), if count == 1 { "" } else { "s" })
+}
+
+/// `box, ring and floor`.
+pub(crate) fn listed<'n>(names: impl IntoIterator<Item = &'n String>) -> String {
+    let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
+    match names.split_last() {
+        None => "nothing".to_owned(),
+        Some((last, [])) => (*last).to_owned(),
+        Some((last, rest)) => format!("{} and {last}", rest.join(", ")),
+    }
+}

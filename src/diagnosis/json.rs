@@ -1,0 +1,97 @@
+//! A diagnosis as JSON, as `spec/commands.md` has it: pixels, lights and regions count from 0.
+
+use super::{CauseFound, Diagnosis, FlagFound, Mend, MeshFinding, Proof, RegionFound, Suited};
+use crate::technique::Technique;
+use serde_json::{Map, Value, json};
+
+/// The version of the document's layout.
+const SCHEMA: u32 = 1;
+
+impl Diagnosis {
+    /// Machine-readable. `suited` tells how techniques do on this scene; empty where that was not measured.
+    ///
+    /// # Errors
+    /// What the serialiser refuses; nothing here is known to be refused.
+    pub fn to_json(&self, suited: &[Suited]) -> Result<String, serde_json::Error> {
+        let suited = suited.iter().map(|one| {
+            json!({
+                "technique": one.choice.technique().name(),
+                "settings": one.choice.settings(),
+                "wrong": one.wrong,
+                "frame_ms": one.frame_ms,
+            })
+        });
+        let advice = self.advice.as_ref().map(
+            |advice| json!({"mend": mend(&advice.mend), "wrong_left": advice.wrong_left, "sentence": advice.sentence}),
+        );
+        let document = json!({
+            "schema": SCHEMA,
+            "scene": self.scene,
+            "technique": self.technique.name(),
+            "settings": self.settings,
+            "size": self.size,
+            "error": self.error,
+            "mesh_findings": self.mesh_findings.iter().map(mesh).collect::<Vec<_>>(),
+            "flags": self.flags.iter().map(flag).collect::<Vec<_>>(),
+            "regions": self.regions.iter().map(region).collect::<Vec<_>>(),
+            "rest": {"regions": self.rest.regions, "pixels": self.rest.pixels},
+            "advice": advice,
+            "suited": suited.collect::<Vec<_>>(),
+        });
+        Ok(serde_json::to_string_pretty(&document)? + "\n")
+    }
+}
+
+fn mesh(MeshFinding { object, kind, count, at, effect }: &MeshFinding) -> Value {
+    let at: Vec<[f64; 3]> = at.iter().map(|place| place.to_array()).collect();
+    json!({"object": object, "cause": kind.name(), "count": count, "at": at, "effect": effect})
+}
+
+fn flag(FlagFound { object, cause, pixels, at, mend: of }: &FlagFound) -> Value {
+    json!({"object": object, "cause": cause.name(), "pixels": pixels, "at": at, "mend": mend(of)})
+}
+
+fn region(region: &RegionFound) -> Value {
+    json!({
+        "pixels": region.pixels,
+        "kind": region.kind.name(),
+        "light": region.light,
+        "box": region.bounds,
+        "at": region.at,
+        "casters": region.casters,
+        "receivers": region.receivers,
+        "causes": region.causes.iter().map(cause).collect::<Vec<_>>(),
+    })
+}
+
+fn cause(found: &CauseFound) -> Value {
+    json!({
+        "cause": found.cause.name(),
+        "meaning": found.cause.meaning(),
+        "evidence": found.evidence,
+        "mend": found.mend.as_ref().map(mend),
+        "proof": Proof::name(found.proof),
+        "pixels_left": found.pixels_left,
+        "together_with": found.together_with.iter().map(|cause| cause.name()).collect::<Vec<_>>(),
+    })
+}
+
+/// Only what it changes, and the same in words.
+fn mend(mend: &Mend) -> Value {
+    let mut table = Map::new();
+    if let Some(technique) = mend.technique.map(Technique::name) {
+        table.insert("technique".to_owned(), technique.into());
+    }
+    if !mend.settings.is_empty() {
+        table.insert("settings".to_owned(), json!(mend.settings));
+    }
+    if !mend.scene.is_empty() {
+        let edits = mend.scene.iter().map(|edit| json!({"object": edit.name, "change": edit.change.name()}));
+        table.insert("objects".to_owned(), edits.collect::<Vec<_>>().into());
+    }
+    if !mend.plan.is_empty() {
+        table.insert("plan".to_owned(), mend.plan.iter().map(|edit| edit.name()).collect::<Vec<_>>().into());
+    }
+    table.insert("words".to_owned(), mend.describe().into());
+    Value::Object(table)
+}

@@ -1,0 +1,307 @@
+//! What to change so that a cause is gone.
+
+use crate::plan::{FramePlan, Part};
+use crate::scene::{MeshError, Scene};
+use crate::technique::{Choice, ChoiceError, Technique};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+/// Changes of settings, scene and plan; empty where nothing helps.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub struct Mend {
+    /// Another technique. Settings that it shares with the one before are kept.
+    pub technique: Option<Technique>,
+    /// Settings, as in `--set`.
+    pub settings: BTreeMap<String, String>,
+    /// Changes of the scene.
+    pub scene: Vec<SceneEdit>,
+    /// Changes of the plan: what no setting of ours could make wrong.
+    pub plan: Vec<PlanEdit>,
+}
+
+/// Why a mend can't be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MendError {
+    /// The technique has no such setting or value.
+    #[error(transparent)]
+    Choice(#[from] ChoiceError),
+    /// A mesh can't be welded.
+    #[error("{name}: {source}")]
+    Mesh {
+        /// Of the object.
+        name: String,
+        /// Why.
+        source: MeshError,
+    },
+    /// The scene has no such object.
+    #[error("the scene has no object number {} ({name})", object + 1)]
+    NoObject {
+        /// Index of the object.
+        object: usize,
+        /// The name that it had.
+        name: String,
+    },
+}
+
+/// A change of one object of the scene.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SceneEdit {
+    /// Index of the object in the scene.
+    pub object: usize,
+    /// Its name.
+    pub name: String,
+    /// What is changed.
+    pub change: ObjectChange,
+}
+
+/// What is changed in an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ObjectChange {
+    /// Vertices at bit-equal positions become one.
+    Weld,
+    /// `receives = true`.
+    Receives,
+    /// `casts = true`.
+    Casts,
+    /// `visible = true`.
+    Visible,
+}
+
+/// A change of a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PlanEdit {
+    /// Draws the light caps that are missing.
+    DrawLightCaps,
+    /// Draws the dark caps that are missing.
+    DrawDarkCaps,
+    /// Draws light caps in the vertex order of the surface.
+    SurfaceOrder,
+    /// Fits the views of maps and textures to the scene again.
+    Refit,
+}
+
+impl PlanEdit {
+    /// The part of a volume that it draws again.
+    #[must_use]
+    pub fn part(self) -> Option<Part> {
+        match self {
+            PlanEdit::DrawLightCaps | PlanEdit::SurfaceOrder => Some(Part::LightCap),
+            PlanEdit::DrawDarkCaps => Some(Part::DarkCap),
+            PlanEdit::Refit => None,
+        }
+    }
+
+    /// The name in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            PlanEdit::DrawLightCaps => "draw-light-caps",
+            PlanEdit::DrawDarkCaps => "draw-dark-caps",
+            PlanEdit::SurfaceOrder => "surface-order",
+            PlanEdit::Refit => "refit",
+        }
+    }
+}
+
+impl ObjectChange {
+    /// The name in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            ObjectChange::Weld => "weld",
+            ObjectChange::Receives => "receives",
+            ObjectChange::Casts => "casts",
+            ObjectChange::Visible => "visible",
+        }
+    }
+}
+
+impl Mend {
+    /// Changes the technique.
+    #[must_use]
+    pub fn technique(technique: Technique) -> Mend {
+        Mend { technique: Some(technique), ..Mend::default() }
+    }
+
+    /// Changes one setting.
+    #[must_use]
+    pub fn setting(key: &str, value: &str) -> Mend {
+        Mend { settings: BTreeMap::from([(key.to_owned(), value.to_owned())]), ..Mend::default() }
+    }
+
+    /// Changes an object of the scene.
+    #[must_use]
+    pub fn scene(object: usize, name: &str, change: ObjectChange) -> Mend {
+        Mend { scene: vec![SceneEdit { object, name: name.to_owned(), change }], ..Mend::default() }
+    }
+
+    /// Changes the plan.
+    #[must_use]
+    pub fn plan(edit: PlanEdit) -> Mend {
+        Mend { plan: vec![edit], ..Mend::default() }
+    }
+
+    /// Nothing is changed.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        *self == Mend::default()
+    }
+
+    /// Both at once; where they differ on a setting, the other's holds.
+    #[must_use]
+    pub fn and(&self, other: &Mend) -> Mend {
+        let mut both = self.clone();
+        both.technique = other.technique.or(self.technique);
+        both.settings.extend(other.settings.clone());
+        both.scene.extend(other.scene.iter().cloned());
+        both.plan.extend(&other.plan);
+        both.scene.sort();
+        both.scene.dedup();
+        both.plan.sort();
+        both.plan.dedup();
+        both
+    }
+
+    /// Makes its changes of scene and settings. Settings that another technique shares are kept.
+    ///
+    /// # Errors
+    /// A setting that the technique does not have, an object that is not there.
+    pub fn apply(&self, scene: &mut Scene, choice: &mut Choice) -> Result<(), MendError> {
+        for SceneEdit { object, name, change } in &self.scene {
+            let missing = || MendError::NoObject { object: *object, name: name.clone() };
+            let object = scene.objects.get_mut(*object).ok_or_else(missing)?;
+            match change {
+                ObjectChange::Weld => {
+                    let welded = object.mesh.welded();
+                    let welded = welded.map_err(|source| MendError::Mesh { name: name.clone(), source })?;
+                    object.mesh = Arc::new(welded);
+                }
+                ObjectChange::Receives => object.receives = true,
+                ObjectChange::Casts => object.casts = true,
+                ObjectChange::Visible => object.visible = true,
+            }
+        }
+        self.choose(choice)
+    }
+
+    /// Makes its changes of technique and settings alone.
+    ///
+    /// # Errors
+    /// A setting that the technique does not have.
+    pub fn choose(&self, choice: &mut Choice) -> Result<(), MendError> {
+        if let Some(technique) = self.technique.filter(|technique| *technique != choice.technique()) {
+            let mut other = Choice::new(technique);
+            for spec in technique.settings() {
+                if let Some(value) = choice.settings().get(spec.key) {
+                    // A size means another thing to another technique, and may be one that it refuses.
+                    if spec.key != "size" {
+                        other.set(spec.key, value)?;
+                    }
+                }
+            }
+            *choice = other;
+        }
+        self.settings.iter().try_for_each(|(key, value)| choice.set(key, value))?;
+        Ok(())
+    }
+
+    /// Makes its changes of a plan; `fresh` is the technique's own plan of the same scene and settings.
+    pub fn edit(&self, plan: &mut FramePlan, fresh: &FramePlan) {
+        for edit in &self.plan {
+            match edit {
+                PlanEdit::DrawLightCaps | PlanEdit::DrawDarkCaps => draw_missing(plan, fresh, edit.part()),
+                PlanEdit::SurfaceOrder => draw_caps_in_order(plan, fresh),
+                PlanEdit::Refit => {
+                    plan.views.clone_from(&fresh.views);
+                    for (light, fresh) in plan.lights.iter_mut().zip(&fresh.lights) {
+                        light.map.clone_from(&fresh.map);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Does it change nothing but technique and settings, which the window can change?
+    #[must_use]
+    pub fn is_a_choice(&self) -> bool {
+        self.scene.is_empty() && self.plan.is_empty() && !self.is_empty()
+    }
+
+    /// How much it changes: a setting less than an object, an object less than a technique.
+    #[must_use]
+    pub fn weight(&self) -> usize {
+        self.settings.len() + 2 * self.plan.len() + 3 * self.scene.len() + 10 * usize::from(self.technique.is_some())
+    }
+
+    /// In words: `use z-fail`, `set casters = all`.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        let mut words = Vec::new();
+        words.extend(self.technique.map(|technique| format!("use {}", technique.name())));
+        words.extend(self.settings.iter().map(|(key, value)| format!("set {key} = {value}")));
+        words.extend(self.scene.iter().map(|SceneEdit { name, change, .. }| match change {
+            ObjectChange::Weld => format!("weld the vertices of {name}"),
+            ObjectChange::Receives => format!("let {name} receive shadows (receives = true)"),
+            ObjectChange::Casts => format!("let {name} cast a shadow (casts = true)"),
+            ObjectChange::Visible => format!("draw {name} (visible = true)"),
+        }));
+        words.extend(self.plan.iter().map(|edit| {
+            match edit {
+                PlanEdit::DrawLightCaps => "draw the light caps",
+                PlanEdit::DrawDarkCaps => "draw the dark caps",
+                PlanEdit::SurfaceOrder => "draw light caps in the surface's vertex order",
+                PlanEdit::Refit => "fit the light's view to the scene again",
+            }
+            .to_owned()
+        }));
+        if words.is_empty() { "nothing mends it".to_owned() } else { words.join(", ") }
+    }
+}
+
+/// Adds the draws of a part that the plan does not have.
+fn draw_missing(plan: &mut FramePlan, fresh: &FramePlan, part: Option<Part>) {
+    for (pass, fresh) in plan.passes.iter_mut().zip(&fresh.passes) {
+        let missing = fresh.draws.iter().filter(|draw| Some(draw.part) == part);
+        for draw in missing {
+            if !pass.draws.iter().any(|other| (&other.name, other.part) == (&draw.name, draw.part)) {
+                pass.draws.push(draw.clone());
+            }
+        }
+    }
+}
+
+/// Draws caps as the technique does: the triangles of the surface in its own vertex order.
+fn draw_caps_in_order(plan: &mut FramePlan, fresh: &FramePlan) {
+    for (pass, fresh_pass) in plan.passes.iter_mut().zip(&fresh.passes) {
+        for draw in pass.draws.iter_mut().filter(|draw| matches!(draw.part, Part::LightCap | Part::DarkCap)) {
+            let same = fresh_pass.draws.iter().find(|other| (&other.name, other.part) == (&draw.name, draw.part));
+            let Some(same) = same else { continue };
+            *draw = same.clone();
+            let meshes = plan.meshes.get_mut(draw.mesh.0).zip(fresh.meshes.get(draw.mesh.0));
+            if let Some((mesh, fresh_mesh)) = meshes {
+                mesh.clone_from(fresh_mesh);
+            }
+        }
+    }
+}
+
+impl fmt::Display for Mend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.describe())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_mends_are_one_that_says_both() {
+        let both = Mend::setting("casters", "all").and(&Mend::setting("operations", "wrap"));
+        assert_eq!(both.describe(), "set casters = all, set operations = wrap");
+        assert_eq!(both.and(&both), both);
+        assert!(Mend::default().is_empty() && !both.is_empty());
+        assert!(both.weight() < Mend::technique(Technique::ZFail).weight());
+    }
+}

@@ -1,0 +1,246 @@
+//! Why shadows are wrong, and the proof.
+//!
+//! ```text
+//! truth, capture ─► wrong regions ─► rules ─► causes with evidence ─► mend, run again ─► proof
+//! ```
+//!
+//! Wrong pixels are grouped into connected regions. Every [`Cause`] has a rule that looks for its
+//! evidence in numbers: in the scene, in the plan as it was run, and in what the GPU left. What fits
+//! is mended, and the frame is run again (`Session::diagnose`): only what takes the wrong pixels away
+//! is called proven. No rule knows how a fault came to be.
+
+mod cause;
+pub(crate) mod facts;
+mod json;
+mod mend;
+pub(crate) mod mesh_facts;
+pub(crate) mod proof;
+pub(crate) mod regions;
+pub(crate) mod rules;
+mod shown;
+mod suited;
+mod text;
+
+pub use cause::Cause;
+pub use mend::{Mend, MendError, ObjectChange, PlanEdit, SceneEdit};
+pub use shown::wrong_pixels;
+pub use suited::Suited;
+
+use crate::accuracy::{ErrorCounts, Finding};
+use crate::numbers;
+use crate::technique::Technique;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// What is wrong in one frame, and why.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Diagnosis {
+    /// Name of the scene.
+    pub scene: String,
+    /// The technique that was asked for.
+    pub technique: Technique,
+    /// Its settings, defaults included.
+    pub settings: BTreeMap<String, String>,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Wrong pixels, summed over the lights.
+    pub error: ErrorCounts,
+    /// What is to be known of the meshes, whether it shows here or not.
+    pub mesh_findings: Vec<MeshFinding>,
+    /// What the scene's own flags take away. The truth honours them: nothing of it is wrong.
+    pub flags: Vec<FlagFound>,
+    /// The largest first; at most [`Diagnosis::MOST_REGIONS`].
+    pub regions: Vec<RegionFound>,
+    /// The regions that are smaller than those.
+    pub rest: Rest,
+    /// What to do; `None` where nothing is wrong or nothing helps.
+    pub advice: Option<Advice>,
+}
+
+impl Diagnosis {
+    /// As many regions are told of.
+    pub const MOST_REGIONS: usize = 12;
+
+    /// Is any pixel wrong, or darkened twice?
+    #[must_use]
+    pub fn is_bad(&self) -> bool {
+        !self.regions.is_empty()
+    }
+}
+
+/// Regions that are not told of one by one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rest {
+    /// How many.
+    pub regions: usize,
+    /// Their wrong pixels.
+    pub pixels: u64,
+}
+
+/// Wrong pixels that hang together: of one light, one kind, one caster and one receiver.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RegionFound {
+    /// How many pixels.
+    pub pixels: u64,
+    /// How they are wrong.
+    pub kind: RegionKind,
+    /// Index of the light.
+    pub light: usize,
+    /// First and last column and row: left, top, right, bottom.
+    pub bounds: [u32; 4],
+    /// One of its pixels, well inside where there is an inside.
+    pub at: [u32; 2],
+    /// Names of the objects whose shadow is missing, or which cast it falsely, as far as is known.
+    pub casters: Vec<String>,
+    /// Names of the objects that are seen there.
+    pub receivers: Vec<String>,
+    /// The most likely first.
+    pub causes: Vec<CauseFound>,
+}
+
+/// How a region's pixels are wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum RegionKind {
+    /// Their labels differ from the truth's.
+    Wrong(Finding),
+    /// In shadow as in truth, but darkened more than once.
+    TooDark,
+}
+
+impl RegionKind {
+    /// The name in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            RegionKind::Wrong(finding) => finding.name(),
+            RegionKind::TooDark => "too_dark",
+        }
+    }
+}
+
+/// A cause that fits a region.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CauseFound {
+    /// Which.
+    pub cause: Cause,
+    /// What was measured, in a sentence without its stop.
+    pub evidence: String,
+    /// What to change; `None` where nothing helps.
+    pub mend: Option<Mend>,
+    /// What running it again has shown.
+    pub proof: Proof,
+    /// Wrong pixels of the region that the mend leaves, with those that it makes newly wrong in the
+    /// region's box; `None` where it was not run.
+    pub pixels_left: Option<u64>,
+    /// Causes without whose mends, made at the same time, this one proves nothing; mostly none.
+    pub together_with: Vec<Cause>,
+}
+
+/// What a mend's run has shown of a cause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Proof {
+    /// No pixel of the region is wrong any more.
+    Proven,
+    /// Some are right now.
+    Part,
+    /// None is right now.
+    NotIt,
+    /// There is nothing to run.
+    NotRun,
+}
+
+impl Proof {
+    /// The name in JSON and text.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Proof::Proven => "proven",
+            Proof::Part => "part",
+            Proof::NotIt => "not it",
+            Proof::NotRun => "not run",
+        }
+    }
+}
+
+/// Something about an object's mesh, before any pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshFinding {
+    /// Name of the object.
+    pub object: String,
+    /// What it is.
+    pub kind: MeshTrouble,
+    /// How often.
+    pub count: usize,
+    /// The first places, world space, metres.
+    pub at: Vec<DVec3>,
+    /// What it does to which technique, and what to do, in a sentence.
+    pub effect: String,
+}
+
+/// What can be to be known of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum MeshTrouble {
+    /// It breaks techniques in a known way.
+    Cause(Cause),
+    /// Triangles whose corners lie on a line.
+    FlatTriangles,
+    /// Triangles that loading left out, as two of their corners were equal.
+    DroppedTriangles,
+    /// Triangles that are there twice.
+    DuplicateTriangles,
+    /// Triangles a thousand times longer than high.
+    Slivers,
+}
+
+impl MeshTrouble {
+    /// The name in JSON and text.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            MeshTrouble::Cause(cause) => cause.name(),
+            MeshTrouble::FlatTriangles => "flat-triangles",
+            MeshTrouble::DroppedTriangles => "dropped-triangles",
+            MeshTrouble::DuplicateTriangles => "duplicate-triangles",
+            MeshTrouble::Slivers => "slivers",
+        }
+    }
+}
+
+/// A flag of the scene that takes a shadow or a surface away.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlagFound {
+    /// Name of the object.
+    pub object: String,
+    /// [`Cause::NotReceiving`], [`Cause::NotCasting`] or [`Cause::Undrawn`].
+    pub cause: Cause,
+    /// Pixels of the truth that would change if it were set, summed over the lights.
+    pub pixels: u64,
+    /// One of them; `None` where there is none.
+    pub at: Option<[u32; 2]>,
+    /// What sets it.
+    pub mend: Mend,
+}
+
+/// What to do about the whole frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Advice {
+    /// All that is to be changed, at once.
+    pub mend: Mend,
+    /// Wrong pixels that were left when it was run, summed over the lights.
+    pub wrong_left: u64,
+    /// In a sentence.
+    pub sentence: String,
+}
+
+impl Advice {
+    /// To make these changes, which leave so many pixels wrong of those that are now.
+    pub(crate) fn new(mend: &Mend, wrong_left: u64, wrong_now: u64) -> Advice {
+        let outcome = match wrong_left {
+            0 => "then no pixel is wrong".to_owned(),
+            1 => "then 1 pixel is wrong".to_owned(),
+            left => format!("then {} pixels are wrong", numbers::count(left)),
+        };
+        let sentence = format!("To mend it, {mend}: {outcome}, of {} now.", numbers::count(wrong_now));
+        Advice { mend: mend.clone(), wrong_left, sentence }
+    }
+}

@@ -1,0 +1,102 @@
+//! What the run of a mend shows of a region, and which cause is named first.
+
+use super::facts::Suspicion;
+use super::mend::Mend;
+use super::regions::Region;
+use super::{Cause, CauseFound, Proof};
+
+/// Which pixels of one light are wrong in one run, by number; too dark counts as wrong.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Wrong {
+    /// By light.
+    pub lights: Vec<Vec<bool>>,
+}
+
+impl Wrong {
+    /// How many, over all lights.
+    pub fn count(&self) -> u64 {
+        self.lights.iter().flatten().filter(|wrong| **wrong).count() as u64
+    }
+}
+
+/// What a run proves of a region, with the pixels that are left.
+pub(crate) fn judge(region: &Region, before: &Wrong, after: &Wrong, size: [u32; 2]) -> (Proof, u64) {
+    let (before, after) = (&before.lights[region.light], &after.lights[region.light]);
+    let still = region.pixels.iter().filter(|index| after[**index]).count();
+    let new = region.boxed(size).filter(|index| after[*index] && !before[*index]).count();
+    let proof = match (still, new) {
+        (0, 0) => Proof::Proven,
+        (still, _) if still < region.pixels.len() => Proof::Part,
+        _ => Proof::NotIt,
+    };
+    (proof, (still + new) as u64)
+}
+
+/// A suspicion with the best that its mends have shown.
+#[derive(Debug, Clone)]
+pub(crate) struct Tried {
+    pub suspicion: Suspicion,
+    pub mend: Option<Mend>,
+    pub proof: Proof,
+    pub left: Option<u64>,
+    pub together_with: Vec<Cause>,
+}
+
+impl Tried {
+    /// Smaller is named sooner.
+    fn rank(&self) -> (u8, u64, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>, usize, Cause) {
+        let is_limit = self.suspicion.cause == Cause::F32Limit;
+        let proof = match self.proof {
+            Proof::Proven => 0,
+            // Nothing can prove it; but what takes only some pixels away is hardly it.
+            Proof::NotRun if is_limit => 1,
+            Proof::Part => 2,
+            Proof::NotIt => 3,
+            Proof::NotRun => 4,
+        };
+        (
+            proof,
+            self.left.unwrap_or(0),
+            std::cmp::Reverse(self.suspicion.shown_by),
+            std::cmp::Reverse(self.suspicion.weight),
+            self.mend.as_ref().map_or(0, Mend::weight),
+            self.suspicion.cause,
+        )
+    }
+}
+
+/// The most likely first.
+pub(crate) fn ranked(mut tried: Vec<Tried>) -> Vec<CauseFound> {
+    tried.sort_by_key(Tried::rank);
+    let found = |tried: Tried| CauseFound {
+        cause: tried.suspicion.cause,
+        evidence: tried.suspicion.evidence,
+        mend: tried.mend,
+        proof: tried.proof,
+        pixels_left: tried.left,
+        together_with: tried.together_with,
+    };
+    tried.into_iter().map(found).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::RegionKind;
+    use super::super::regions::Key;
+    use super::*;
+    use crate::accuracy::Finding;
+
+    #[test]
+    fn proven_is_only_what_leaves_nothing_wrong_in_the_box() {
+        let key = Key { kind: RegionKind::Wrong(Finding::FalseShadow), caster: None, receiver: None, hint: None };
+        let region = Region { key, light: 0, pixels: vec![0, 5], bounds: [0, 0, 1, 1] };
+        let wrong = |pixels: &[usize]| Wrong { lights: vec![(0..8).map(|index| pixels.contains(&index)).collect()] };
+        let before = wrong(&[0, 5, 7]);
+        let judged = |after: &[usize]| judge(&region, &before, &wrong(after), [4, 2]);
+        assert_eq!(judged(&[7]), (Proof::Proven, 0), "what lies outside is not asked");
+        assert_eq!(judged(&[5]), (Proof::Part, 1));
+        assert_eq!(judged(&[1]), (Proof::Part, 1), "newly wrong");
+        assert_eq!(judged(&[0, 5]), (Proof::NotIt, 2));
+        assert_eq!(before.count(), 3);
+    }
+}

@@ -1,0 +1,132 @@
+//! Wrong pixels, grouped: by light, kind, caster, receiver and what they look like.
+
+use super::RegionKind;
+use super::cause::Cause;
+use crate::accuracy::{place, take_connected};
+
+/// Pixels that are so many columns and rows apart still hang together: speckle is one thing.
+const REACH: u32 = 3;
+
+/// What the pixels of a region have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Key {
+    pub kind: RegionKind,
+    /// Index of the object whose shadow is missing, in the truth's scene.
+    pub caster: Option<usize>,
+    /// Index of the object that is seen.
+    pub receiver: Option<usize>,
+    /// What the pixel alone tells of the cause.
+    pub hint: Option<Cause>,
+}
+
+/// A region with its pixels.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Region {
+    pub key: Key,
+    pub light: usize,
+    /// Numbers of its pixels, ascending.
+    pub pixels: Vec<usize>,
+    /// First and last column and row.
+    pub bounds: [u32; 4],
+}
+
+/// The regions of a light, one key a pixel and none where it is right.
+pub(crate) fn find(light: usize, mut keys: Vec<Option<Key>>, size: [u32; 2]) -> Vec<Region> {
+    let mut regions = Vec::new();
+    for start in 0..keys.len() {
+        let Some(key) = keys[start] else { continue };
+        let mut pixels = Vec::new();
+        take_connected(&mut keys, None, start, size, REACH, |index| pixels.push(index));
+        pixels.sort_unstable();
+        let [x, y] = place(start, size);
+        let grow = |[left, top, right, bottom]: [u32; 4], index: &usize| {
+            let [x, y] = place(*index, size);
+            [left.min(x), top.min(y), right.max(x), bottom.max(y)]
+        };
+        let bounds = pixels.iter().fold([x, y, x, y], grow);
+        regions.push(Region { key, light, pixels, bounds });
+    }
+    regions
+}
+
+impl Region {
+    /// Some of its pixels: the one farthest from its rim first, then others spread over it.
+    pub fn samples(&self, size: [u32; 2], most: usize) -> Vec<[u32; 2]> {
+        let count = self.pixels.len();
+        let inmost = self.inmost(size);
+        let spread = (0..most).map(|step| self.pixels[(2 * step + 1) * count / (2 * most)]);
+        let mut samples = vec![inmost];
+        for index in spread {
+            if samples.len() < most && !samples.contains(&index) {
+                samples.push(index);
+            }
+        }
+        samples.into_iter().map(|index| place(index, size)).collect()
+    }
+
+    /// The pixel whose square of the region's own pixels is the largest.
+    fn inmost(&self, size: [u32; 2]) -> usize {
+        let [left, top, right, bottom] = self.bounds;
+        let [width, height] = [right - left + 3, bottom - top + 3].map(|n| n as usize);
+        let local = |index: usize| {
+            let [x, y] = place(index, size);
+            (y - top + 1) as usize * width + (x - left + 1) as usize
+        };
+        // Rings taken away one by one: what is left last is inmost.
+        let mut inside = vec![false; width * height];
+        self.pixels.iter().for_each(|index| inside[local(*index)] = true);
+        let mut left_over = self.pixels.clone();
+        loop {
+            let is_inner = |index: &usize| {
+                let at = local(*index);
+                [at - 1, at + 1, at - width, at + width].iter().all(|near| inside[*near])
+            };
+            let inner: Vec<usize> = left_over.iter().copied().filter(is_inner).collect();
+            if inner.is_empty() {
+                return left_over[left_over.len() / 2];
+            }
+            inside.fill(false);
+            inner.iter().for_each(|index| inside[local(*index)] = true);
+            left_over = inner;
+        }
+    }
+
+    /// Numbers of all pixels of its box.
+    pub fn boxed(&self, [width, _]: [u32; 2]) -> impl Iterator<Item = usize> + use<> {
+        let [left, top, right, bottom] = self.bounds;
+        (top..=bottom).flat_map(move |y| (left..=right).map(move |x| y as usize * width as usize + x as usize))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accuracy::Finding;
+
+    fn key(caster: usize) -> Option<Key> {
+        let kind = RegionKind::Wrong(Finding::FalseShadow);
+        Some(Key { kind, caster: Some(caster), receiver: None, hint: None })
+    }
+
+    #[test]
+    fn speckle_is_one_region_and_another_caster_is_another() {
+        let mut keys = vec![None; 40];
+        (keys[0], keys[3], keys[9], keys[1]) = (key(0), key(0), key(0), key(1));
+        let regions = find(0, keys, [20, 2]);
+        let pixels: Vec<&[usize]> = regions.iter().map(|region| &region.pixels[..]).collect();
+        assert_eq!(pixels, [&[0, 3][..], &[1], &[9]]);
+        assert_eq!(regions[0].bounds, [0, 0, 3, 0]);
+    }
+
+    #[test]
+    fn the_first_sample_lies_well_inside() {
+        let size = [9, 9];
+        let keys = (0..81).map(|index| key(0).filter(|_| index % 9 < 5 && index / 9 < 5)).collect();
+        let regions = find(0, keys, size);
+        let samples = regions[0].samples(size, 3);
+        assert_eq!((samples.len(), samples[0]), (3, [2, 2]));
+        assert_eq!(regions[0].boxed(size).count(), 25);
+        let alone = find(0, (0..81).map(|index| key(0).filter(|_| index == 80)).collect(), size);
+        assert_eq!(alone[0].samples(size, 3), [[8, 8]]);
+    }
+}

@@ -1,0 +1,218 @@
+//! Shadow maps: what the texel holds, and what it should hold.
+//!
+//! The texel's own ray is followed through the truth's scene: what it meets first is what the map would hold
+//! without a bias. Wrong with that as well, the texel is too coarse; else the bias is too small or too large.
+
+use super::planar::larger;
+use crate::accuracy::Finding;
+use crate::diagnosis::RegionKind;
+use crate::diagnosis::cause::Cause;
+use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion};
+use crate::diagnosis::mend::{Mend, PlanEdit};
+use crate::numbers;
+use crate::plan::{Part, PlanMap};
+use crate::technique::Technique;
+use crate::truth::SeenSurface;
+use glam::{DMat4, DVec2, DVec3};
+
+pub(crate) const RULES: &[Rule] = &[acne, peter_panning, aliasing, outside_map];
+
+/// What a shadow map does at a surface point.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MapLook {
+    pub cause: Cause,
+    /// Whose texel it is, or would be.
+    pub caster: Option<usize>,
+    /// Width of a texel there, metres.
+    texel: f64,
+    /// How much farther from the light the receiver gets over one texel, metres.
+    slope: f64,
+    /// How far behind what the texel's ray meets the receiver lies, metres.
+    gap: f64,
+    /// How far the map holds it to be away from where it is, metres.
+    bias: f64,
+    /// Distance from the map's middle, in halves of its width.
+    place: f64,
+}
+
+/// Why the map's answer is wrong at a surface point; `None` where there is no map of depths.
+pub(crate) fn look(facts: &Facts, light: usize, kind: RegionKind, seen: &SeenSurface) -> Option<MapLook> {
+    if facts.technique() != Technique::ShadowMap {
+        return None;
+    }
+    let map = facts.plan.lights.get(light)?.map.as_ref()?;
+    map.lookup?;
+    let nothing =
+        MapLook { cause: Cause::OutsideMap, caster: None, texel: 0.0, slope: 0.0, gap: 0.0, bias: 0.0, place: 0.0 };
+    let relative = seen.point - facts.scene.camera.eye;
+    let Some((face, device)) = find_face(map, relative) else {
+        let caster = facts.tracer.between(light, seen).last().map(|met| met.place.object);
+        return Some(MapLook { caster, place: farthest(map, relative), ..nothing });
+    };
+    texel_look(facts, light, kind, seen, (map, face, device), nothing)
+}
+
+/// The face that a point is on, and where.
+fn find_face(map: &PlanMap, relative: DVec3) -> Option<(usize, DVec3)> {
+    map.clip_from_relative.iter().enumerate().find_map(|(face, matrix)| {
+        let clip = matrix.as_dmat4() * relative.extend(1.0);
+        let is_on = clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w;
+        is_on.then(|| (face, clip.truncate() / clip.w))
+    })
+}
+
+/// How far outside the nearest face a point is, in halves of its width.
+fn farthest(map: &PlanMap, relative: DVec3) -> f64 {
+    let off = map.clip_from_relative.iter().map(|matrix| {
+        let clip = matrix.as_dmat4() * relative.extend(1.0);
+        if clip.w > 0.0 { clip.x.abs().max(clip.y.abs()) / clip.w } else { f64::INFINITY }
+    });
+    off.fold(f64::INFINITY, f64::min)
+}
+
+fn texel_look(
+    facts: &Facts,
+    light: usize,
+    kind: RegionKind,
+    seen: &SeenSurface,
+    (map, face, device): (&PlanMap, usize, DVec3),
+    nothing: MapLook,
+) -> Option<MapLook> {
+    let image = facts.capture.lights.get(light)?.map.as_ref()?.faces.get(face)?.clone();
+    let size = f64::from(image.size()[0]);
+    let texel =
+        ((device.truncate() * DVec2::new(0.5, -0.5) + 0.5) * size).floor().clamp(DVec2::ZERO, DVec2::splat(size - 1.0));
+    let stored = f64::from(image.depth_at([texel.x as u32, texel.y as u32])?);
+    let clip_from_world: DMat4 = *map.clip_from_light.get(face)? * map.light_from_world;
+    let world_from_clip = clip_from_world.inverse();
+    let center = ((texel + 0.5) / size - 0.5) * DVec2::new(2.0, -2.0);
+    let unproject = |x: f64, y: f64, z: f64| world_from_clip.project_point3(DVec3::new(x, y, z));
+    let target = unproject(center.x, center.y, device.z);
+    let beside = unproject(center.x + 2.0 / size, center.y, device.z);
+    let width = (beside - target).length();
+    let origin_side = facts.tracer.light_distance(light, target);
+    let drawn = |name: &str| facts.draws(light, Part::Map).any(|draw| draw.caster.as_deref() == Some(name));
+    // From the light on, in order.
+    let mut met = facts.tracer.along(light, target);
+    met.retain(|met| met.towards_light < origin_side && drawn(facts.tracer.name(met.place)));
+    let first = met.last();
+    let towards = facts.tracer.towards(light, target);
+    let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
+    let cosine = normal.dot(towards).abs().max(1e-9);
+    let slope = width * (1.0 - cosine * cosine).max(0.0).sqrt() / cosine;
+    // Where the texel's ray meets the receiver's plane, towards the light from the target.
+    let receiver = normal.dot(seen.point - target) / normal.dot(towards);
+    let is_reversed = map.lookup.is_some_and(|lookup| lookup.clear_depth == 0.0);
+    let clear = map.lookup.map_or(0.0, |lookup| f64::from(lookup.clear_depth));
+    let height_of = |z: f64| facts.tracer.towards(light, target).dot(unproject(center.x, center.y, z) - target);
+    let bias = first.filter(|_| stored != clear).map_or(0.0, |first| first.towards_light - height_of(stored));
+    let look = MapLook {
+        caster: first.map(|first| first.place.object),
+        texel: width,
+        slope,
+        gap: first.map_or(0.0, |first| first.towards_light - receiver),
+        bias,
+        place: device.truncate().abs().max_element(),
+        ..nothing
+    };
+    let filter = map.lookup.map_or(1, |lookup| lookup.filter_width).max(1);
+    let cause = match (kind, first) {
+        (RegionKind::Wrong(Finding::FalseShadow), Some(first)) => {
+            let is_own = first.place.object == seen.place.object;
+            let reach = (slope + width) * 1.5 * f64::from(filter) + 1e-6 * origin_side.min(1e6);
+            if is_own && look.gap.abs() <= reach { Cause::Acne } else { Cause::Aliasing }
+        }
+        (RegionKind::Wrong(Finding::MissingShadow), Some(first)) => {
+            let point = seen.point;
+            let unbiased = clip_from_world.project_point3(target + towards * first.towards_light).z;
+            let here = clip_from_world.project_point3(point).z;
+            let is_nearer = if is_reversed { unbiased > here } else { unbiased < here };
+            if is_nearer { Cause::PeterPanning } else { Cause::Aliasing }
+        }
+        _ => Cause::Aliasing,
+    };
+    Some(MapLook { cause, ..look })
+}
+
+/// The look of the first sample that shows a cause, and how many do.
+fn shown(facts: &Facts, case: &Case, cause: Cause) -> Option<(MapLook, usize)> {
+    case.shown(|sample| {
+        let look = look(facts, case.light(), case.region.key.kind, &sample.seen?)?;
+        (look.cause == cause).then_some(look)
+    })
+}
+
+/// Biases as they are by default, and some that are more or less.
+fn bias(constant: i64, slope: f64) -> Mend {
+    let mut mend = Mend::setting("bias-slope", &format!("{slope}"));
+    mend.settings.insert("bias-constant".to_owned(), constant.to_string());
+    mend
+}
+
+fn acne(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let (look, shown_by) = shown(facts, case, Cause::Acne)?;
+    let evidence = format!(
+        "a texel is {} wide here, over which the surface gets {} farther from the light; the bias is {}",
+        numbers::metres(look.texel),
+        numbers::metres(look.slope),
+        numbers::metres(look.bias.max(0.0))
+    );
+    let steps = [(16, 2.0), (64, 4.0), (256, 8.0)];
+    let (constant, slope) = (facts.number("bias-constant"), facts.number("bias-slope"));
+    let more = steps.into_iter().filter(|(c, s)| *c as f64 > constant || *s > slope);
+    let mut mends: Vec<Mend> = more.map(|(c, s)| bias(c.max(constant as i64), s.max(slope))).collect();
+    mends.push(Mend::technique(Technique::ZFail));
+    Suspicion::new(Cause::Acne, evidence, mends, shown_by)
+}
+
+fn peter_panning(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let (look, shown_by) = shown(facts, case, Cause::PeterPanning)?;
+    let evidence = match facts.number("bias-normal") {
+        texels if texels > 0.0 => format!(
+            "the surface is looked up {} of {} along its normal, and the caster is only {} before it",
+            texels,
+            numbers::metres(look.texel),
+            numbers::metres(look.gap)
+        ),
+        _ => format!(
+            "the bias moves the caster {} away from the light, and the surface is only {} behind it",
+            numbers::metres(look.bias),
+            numbers::metres(look.gap)
+        ),
+    };
+    let steps = [(16, 2.0), (16, 1.0), (4, 0.5)];
+    let (constant, slope) = (facts.number("bias-constant"), facts.number("bias-slope"));
+    let less = steps.into_iter().filter(|(c, s)| (*c as f64) < constant || *s < slope);
+    let mut mends: Vec<Mend> = less.map(|(c, s)| bias(c.min(constant as i64), s.min(slope))).collect();
+    if facts.number("bias-normal") != 0.0 {
+        mends = vec![Mend::setting("bias-normal", "0")];
+    }
+    mends.push(Mend::technique(Technique::ZFail));
+    Suspicion::new(Cause::PeterPanning, evidence, mends, shown_by)
+}
+
+fn aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let ((look, pixels), shown_by) = case.shown(|sample| {
+        let seen = sample.seen?;
+        let look = look(facts, case.light(), case.region.key.kind, &seen)?;
+        let pixels = look.texel / facts.pixel_width(facts.tracer.depth_of(seen.point));
+        (look.cause == Cause::Aliasing).then_some((look, pixels))
+    })?;
+    let evidence = format!(
+        "a texel is {} wide here, {} pixels of the picture, and the outline of the shadow runs through it",
+        numbers::metres(look.texel),
+        numbers::digits(pixels)
+    );
+    Suspicion::new(Cause::Aliasing, evidence, larger(facts.number("size"), 8192.0), shown_by)
+}
+
+fn outside_map(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let (look, shown_by) = shown(facts, case, Cause::OutsideMap).filter(|_| case.is_missing())?;
+    let place = match look.place.is_finite() {
+        true => format!("{} times as far from the map's middle as its border", numbers::digits(look.place)),
+        false => "behind what the map looks at".to_owned(),
+    };
+    let evidence = format!("the surface lies {place}, where nothing is looked up");
+    let mends = vec![Mend::plan(PlanEdit::Refit), Mend::technique(Technique::ZFail)];
+    Suspicion::new(Cause::OutsideMap, evidence, mends, shown_by)
+}

@@ -1,0 +1,132 @@
+//! Casters of which only some triangles cast, although their mesh does not allow that.
+
+use crate::diagnosis::cause::Cause;
+use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion, amount};
+use crate::diagnosis::mend::{Mend, ObjectChange};
+use crate::diagnosis::mesh_facts::MeshFacts;
+
+pub(crate) const RULES: &[Rule] =
+    &[light_inside, split_vertices, near_vertices, inconsistent_winding, non_manifold, open_mesh];
+
+/// A caster that is at fault at a sample.
+struct Suspect<'f> {
+    index: usize,
+    mesh: &'f MeshFacts,
+    /// What is wrong with its shadow there.
+    what: String,
+    shown_by: usize,
+}
+
+/// Casters whose casting triangles alone do not make their shadow here.
+fn suspects<'f>(facts: &'f Facts, case: &Case) -> Vec<Suspect<'f>> {
+    let light = case.light();
+    let way = match facts.setting("casters") {
+        "light-facing" => "towards",
+        "light-back-facing" => "away from",
+        _ => return Vec::new(),
+    };
+    let mut found: Vec<Suspect> = Vec::new();
+    for sample in &case.samples {
+        let mut at_fault: Vec<(String, String)> = Vec::new();
+        if case.is_missing() {
+            for name in facts.names(&sample.between) {
+                let of_it: Vec<_> = sample.between.iter().filter(|met| facts.tracer.name(met.place) == name).collect();
+                if !of_it.iter().any(|met| facts.casts(met)) {
+                    let what = format!(
+                        "{} between light and surface, and none of them looks {way} the light",
+                        if of_it.len() == 1 {
+                            "1 triangle lies".to_owned()
+                        } else {
+                            format!("{} triangles lie", of_it.len())
+                        }
+                    );
+                    at_fault.push((name, what));
+                }
+            }
+        }
+        for (name, counted, expected) in sample.miscounted(facts, light) {
+            if !at_fault.iter().any(|(other, _)| *other == name) {
+                let what = format!("its volume counts {counted} here instead of {expected}, as it does not close");
+                at_fault.push((name, what));
+            }
+        }
+        for (name, what) in at_fault {
+            let Some((index, _)) = facts.object(&name) else { continue };
+            match found.iter_mut().find(|suspect| suspect.index == index) {
+                Some(suspect) => suspect.shown_by += 1,
+                None => found.push(Suspect { index, mesh: &facts.meshes[index], what, shown_by: 1 }),
+            }
+        }
+    }
+    found
+}
+
+/// The rule of a cause: `measure` tells what is the matter with a mesh and how often.
+fn rule(
+    facts: &Facts,
+    case: &Case,
+    cause: Cause,
+    measure: impl Fn(&MeshFacts) -> Option<(String, usize)>,
+) -> Option<Suspicion> {
+    let all = suspects(facts, case).into_iter();
+    let (suspect, (measured, weight)) =
+        all.filter_map(|suspect| Some((measure(suspect.mesh)?, suspect))).map(|(m, s)| (s, m)).next()?;
+    let Suspect { index, mesh, what, shown_by } = suspect;
+    let mends = match cause {
+        Cause::SplitVertices => {
+            vec![Mend::scene(index, &mesh.name, ObjectChange::Weld), Mend::setting("casters", "all")]
+        }
+        _ => vec![Mend::setting("casters", "all")],
+    };
+    let evidence = format!("{} {measured}; {what}", mesh.name);
+    Suspicion::new(cause, evidence, mends, shown_by).map(|suspicion| Suspicion { weight, ..suspicion })
+}
+
+fn edges(count: usize) -> String {
+    amount(count as u64, "edge")
+}
+
+fn light_inside(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = facts.tracer.light_position(case.light());
+    rule(facts, case, Cause::LightInside, |mesh| {
+        let winding = mesh.winding_around(light)?;
+        Some((format!("winds around {} {winding} times", Facts::light_name(case.light())), usize::MAX))
+    })
+}
+
+fn split_vertices(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    rule(facts, case, Cause::SplitVertices, |mesh| {
+        let count = mesh.split.len();
+        let text = format!("has {} along which equal positions have different indices", edges(count));
+        (count > 0).then_some((text, count))
+    })
+}
+
+fn near_vertices(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    rule(facts, case, Cause::NearVertices, |mesh| {
+        let count = mesh.near.len();
+        let text = format!("has {} within a millionth of its size of another that they do not share", edges(count));
+        (count > 0).then_some((text, count))
+    })
+}
+
+fn inconsistent_winding(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    rule(facts, case, Cause::InconsistentWinding, |mesh| match mesh.inconsistent.0 {
+        0 => mesh.is_inside_out.then(|| ("has its inside out".to_owned(), usize::MAX / 2)),
+        count => Some((format!("has {} whose two triangles disagree on which side is out", edges(count)), count)),
+    })
+}
+
+fn non_manifold(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    rule(facts, case, Cause::NonManifold, |mesh| {
+        let count = mesh.non_manifold.0;
+        (count > 0).then(|| (format!("has {} of more than two triangles", edges(count)), count))
+    })
+}
+
+fn open_mesh(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    rule(facts, case, Cause::OpenMesh, |mesh| {
+        let count = mesh.open.len();
+        (count > 0).then(|| (format!("is open along {}", edges(count)), count))
+    })
+}

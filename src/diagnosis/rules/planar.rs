@@ -1,0 +1,339 @@
+//! Casters flattened onto planes, or drawn into their textures.
+
+use crate::capture::{Aspect, Capture, Snapshot};
+use crate::diagnosis::cause::Cause;
+use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount, listed};
+use crate::diagnosis::mend::Mend;
+use crate::history::{Event, Fate, Test, TriangleEvent};
+use crate::math::{Plane, Sign, side_of_triangle};
+use crate::numbers;
+use crate::plan::{ColorWrite, Draw, FramePlan, Part};
+use crate::technique::Technique;
+use crate::truth::SeenSurface;
+use glam::DVec3;
+use std::collections::BTreeSet;
+
+pub(crate) const RULES: &[Rule] =
+    &[double_blend, z_fighting, off_receiver, anti_shadow, false_shadow, not_planar, texture_aliasing];
+
+/// As many flat pieces have a shadow of their own.
+const MOST_PIECES: usize = 64;
+/// Part of a surface's distance from the eye by which it may lie off a plane that it lies in.
+const OFF_PLANE: f64 = 1e-3;
+/// Planes whose normals have a larger cosine are one, as far as single precision tells.
+const SAME_NORMAL: f64 = 1.0 - 1e-6;
+
+/// Pixels that a pass of a light has darkened more than one flattened triangle would, by number.
+pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec<usize> {
+    let mut found = BTreeSet::new();
+    for (index, pass) in plan.passes.iter().enumerate() {
+        let is_blend =
+            pass.draws.iter().any(|draw| draw.part == Part::PlanarShadow && draw.raster.color == ColorWrite::Multiply);
+        let is_of_light = pass.timed && pass.light.is_some_and(|of| of.0 == light);
+        let once = pass.draws.first().map_or(1.0, |draw| f64::from(draw.constants.flat[0]));
+        if !is_blend || !is_of_light || index == 0 {
+            continue;
+        }
+        let color = |step: usize| match &capture.steps.get(step)?.snapshot {
+            Snapshot::Frame(frame) => Some(&frame.color),
+            Snapshot::Map { .. } => None,
+        };
+        let (Some(before), Some(after)) = (color(index - 1), color(index)) else { continue };
+        found.extend(darkened_below(before, after, once.powf(1.5)));
+    }
+    found.into_iter().collect()
+}
+
+/// Pixels of which less than a part is left, as bright as that can be told.
+fn darkened_below(before: &Aspect, after: &Aspect, part: f64) -> Vec<usize> {
+    let mut found = Vec::new();
+    let width = before.image.size()[0] as usize;
+    for (y, (before, after)) in before.image.rows().zip(after.image.rows()).enumerate() {
+        for (x, (before, after)) in before.chunks_exact(4).zip(after.chunks_exact(4)).enumerate() {
+            let brightest = (0..3).max_by_key(|channel| before[*channel]).unwrap_or(0);
+            // Below that, eight bits can't tell once from twice.
+            let is_bright = before[brightest] >= 40;
+            if is_bright && linear(after[brightest]) < linear(before[brightest]) * part {
+                found.push(y * width + x);
+            }
+        }
+    }
+    found
+}
+
+/// Light from an sRGB byte.
+fn linear(byte: u8) -> f64 {
+    let value = f64::from(byte) / 255.0;
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
+fn double_blend(_: &Facts, case: &Case) -> Option<Suspicion> {
+    if !case.is_too_dark() {
+        return None;
+    }
+    let light = case.light();
+    let (count, shown_by) = case.shown(|sample| {
+        let passing = flattened(sample, light).filter(|(_, one)| one.fate.passed()).count();
+        (passing > 1).then_some(passing)
+    })?;
+    let evidence = format!("{count} flattened triangles cover this pixel, and each darkens it");
+    let mut mend = Mend::setting("blend", "once");
+    mend.settings.insert("stencil".to_owned(), "on".to_owned());
+    let mends = vec![Mend::setting("blend", "once"), mend];
+    Suspicion::new(Cause::DoubleBlend, evidence, mends, shown_by)
+}
+
+/// The flattened triangles of a light over a sample.
+fn flattened(sample: &Sample, light: usize) -> impl Iterator<Item = (&Event, &TriangleEvent)> {
+    let all = sample.history.iter().flat_map(|history| history.triangles());
+    // What writes labels runs the same triangles again.
+    all.filter(move |(event, one)| {
+        event.light == Some(light)
+            && one.part == Part::PlanarShadow
+            && event.target == crate::capture::FrameTarget::Picture
+    })
+}
+
+/// The plane of a flattened triangle, world space; `None` where its corners tell none. Corners may be at
+/// infinity, or beyond it.
+fn plane_of(facts: &Facts, one: &TriangleEvent) -> Option<Plane> {
+    through(one.corners, facts.scene.camera.eye)
+}
+
+/// The plane through homogeneous corners relative to the eye.
+fn through(corners: [[f32; 4]; 3], eye: DVec3) -> Option<Plane> {
+    let [a, b, c] = corners.map(|[x, y, z, w]| (DVec3::new(x.into(), y.into(), z.into()), f64::from(w)));
+    let normal = b.0.cross(c.0) * a.1 + c.0.cross(a.0) * b.1 + a.0.cross(b.0) * c.1;
+    let offset = -a.0.dot(b.0.cross(c.0));
+    let length = normal.length();
+    let is_usable = normal.is_finite() && length > 0.0 && offset.is_finite();
+    is_usable.then(|| {
+        let normal = normal / length;
+        Plane { normal, offset: offset / length - normal.dot(eye) }
+    })
+}
+
+/// How far a seen surface lies off a flattened triangle's plane, if it does.
+fn off_plane(facts: &Facts, one: &TriangleEvent, seen: &SeenSurface) -> Option<f64> {
+    let off = plane_of(facts, one)?.at(seen.point.extend(1.0)).abs();
+    (off > OFF_PLANE * (seen.point - facts.scene.camera.eye).length()).then_some(off)
+}
+
+fn off_receiver(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    if !case.is_false() || facts.setting("stencil") != "off" {
+        return None;
+    }
+    let light = case.light();
+    let ((name, off), shown_by) = case.shown(|sample| {
+        let seen = sample.seen?;
+        let has_plane = |one: &TriangleEvent| plane_of(facts, one).is_some();
+        let passing = flattened(sample, light).filter(|(_, one)| one.fate.passed() && has_plane(one));
+        let passing: Vec<_> = passing.collect();
+        let offs: Vec<(String, f64)> = passing
+            .iter()
+            .filter_map(|(_, one)| Some((one.draw_name.clone(), off_plane(facts, one, &seen)?)))
+            .collect();
+        (offs.len() == passing.len()).then(|| offs.into_iter().next()).flatten()
+    })?;
+    let evidence =
+        format!("the {name} darkens a surface that lies {} off the plane it is flattened onto", numbers::metres(off));
+    Suspicion::new(Cause::OffReceiver, evidence, vec![Mend::setting("stencil", "on")], shown_by)
+}
+
+fn z_fighting(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    let ((name, shadow, surface), shown_by) = case.shown(|sample| {
+        let seen = sample.seen?;
+        let fails = |fate: Fate| matches!(fate, Fate::Tested { depth: Test::Failed, .. });
+        let mut failing = flattened(sample, light).filter(|(_, one)| fails(one.fate));
+        let (event, one) = failing.find(|(_, one)| off_plane(facts, one, &seen).is_none())?;
+        Some((one.draw_name.clone(), one.depth, event.before.depth))
+    })?;
+    let steps = (i64::from(shadow.to_bits()) - i64::from(surface.to_bits())).unsigned_abs();
+    let evidence = format!(
+        "the {name} lies in the surface's plane, but its depth is {} here and the surface's {}: {} behind it",
+        numbers::depth(shadow),
+        numbers::depth(surface),
+        amount(steps, "step")
+    );
+    let mends = vec![Mend::setting("z-fighting", "depth-off"), Mend::setting("z-fighting", "polygon-offset")];
+    Suspicion::new(Cause::ZFighting, evidence, mends, shown_by)
+}
+
+/// What a pixel of planar shadows alone tells: what lies on the light's line, but not between.
+pub(crate) fn hint(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<Cause> {
+    if facts.setting("clip") != "off" {
+        return None;
+    }
+    let (beyond, below) = on_the_line(facts, light, seen);
+    match (beyond.is_empty(), below.is_empty()) {
+        (false, _) => Some(Cause::AntiShadow),
+        (true, false) => Some(Cause::FalseShadow),
+        (true, true) => None,
+    }
+}
+
+/// Names of casters, each with how far it is, metres.
+type Far = Vec<(String, f64)>;
+
+/// Casters on the line from a light to a surface that lie beyond the light, and below the surface.
+fn on_the_line(facts: &Facts, light: usize, seen: &SeenSurface) -> (Far, Far) {
+    let distance = facts.tracer.light_distance(light, seen.point);
+    let plane =
+        Plane::through(seen.point, (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]));
+    let off = |point: DVec3| plane.at(point.extend(1.0)).abs();
+    let towards = facts.tracer.towards(light, seen.point);
+    let (mut beyond, mut below) = (Vec::new(), Vec::new());
+    for met in facts.tracer.along(light, seen.point) {
+        let name = facts.tracer.name(met.place).to_owned();
+        let is_flat = off(seen.point + towards * met.towards_light) <= OFF_PLANE * 1e-3;
+        if met.towards_light > distance {
+            beyond.push((name, met.towards_light - distance));
+        } else if met.towards_light < 0.0 && !is_flat {
+            below.push((name, -met.towards_light));
+        }
+    }
+    (beyond, below)
+}
+
+fn is_flattened_unclipped(facts: &Facts, case: &Case) -> bool {
+    facts.technique() == Technique::Planar && facts.setting("clip") == "off" && case.is_false()
+}
+
+fn anti_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    if !is_flattened_unclipped(facts, case) {
+        return None;
+    }
+    let ((name, far), shown_by) =
+        case.shown(|sample| on_the_line(facts, case.light(), &sample.seen?).0.into_iter().next())?;
+    let evidence = format!(
+        "nothing lies between light and surface, but {name} lies on their line, {} beyond the light",
+        numbers::metres(far)
+    );
+    Suspicion::new(Cause::AntiShadow, evidence, vec![Mend::setting("clip", "on")], shown_by)
+}
+
+fn false_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    if !is_flattened_unclipped(facts, case) {
+        return None;
+    }
+    let ((name, far), shown_by) = case.shown(|sample| {
+        let (beyond, below) = on_the_line(facts, case.light(), &sample.seen?);
+        below.into_iter().next().filter(|_| beyond.is_empty())
+    })?;
+    let evidence = format!(
+        "nothing lies between light and surface, but {name} lies on their line, {} under the surface",
+        numbers::metres(far)
+    );
+    Suspicion::new(Cause::FalseShadow, evidence, vec![Mend::setting("clip", "on")], shown_by)
+}
+
+/// How many flat pieces an object shows, by the exact planes of its triangles; `None` of unknown objects.
+fn flat_pieces(facts: &Facts, name: &str) -> Option<usize> {
+    let (_, object) = facts.object(name)?;
+    let mesh = &object.mesh;
+    let edges = crate::geometry::EdgeList::new(mesh.triangles(), mesh.positions().len());
+    let world = object.world_positions();
+    Some(crate::geometry::planar::receivers(mesh.positions(), &world, mesh.triangles(), &edges).len())
+}
+
+/// Does the plan serve the flat piece that a triangle lies in?
+fn is_served(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
+    let eye = facts.scene.camera.eye;
+    let distance = (seen.point - eye).length();
+    let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
+    let is_here = |plane: &Plane| {
+        plane.normal.dot(normal).abs() > SAME_NORMAL && plane.at(seen.point.extend(1.0)).abs() <= OFF_PLANE * distance
+    };
+    let first_plane = |draw: &Draw| {
+        let mesh = facts.plan.meshes.get(draw.mesh.0)?;
+        draw.triangles.clone().find_map(|index| {
+            let vertex = |corner: usize| {
+                let vertex = *mesh.indices.data().get(index as usize * 3 + corner)?;
+                mesh.vertices.data().get(vertex as usize).copied()
+            };
+            through([vertex(0)?, vertex(1)?, vertex(2)?], eye)
+        })
+    };
+    let name = facts.tracer.name(seen.place);
+    let mut marks = facts.draws(light, Part::Receiver).filter(|draw| draw.caster.as_deref() == Some(name)).peekable();
+    match marks.peek() {
+        Some(_) => marks.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane))),
+        // Without marks, receivers are known by what falls on them.
+        None => {
+            let suffix = format!(" on {name},");
+            let mut onto = facts.draws(light, Part::PlanarShadow).filter(|draw| draw.name.contains(&suffix));
+            onto.any(|draw| first_plane(draw).is_some_and(|plane| is_here(&plane)))
+        }
+    }
+}
+
+/// Is a triangle's flat piece among those that have a texture?
+fn has_texture(facts: &Facts, light: usize, seen: &SeenSurface) -> bool {
+    let corners = seen.corners;
+    let name = facts.tracer.name(seen.place);
+    let is_of_piece = |draw: &&Draw| draw.constants.layer.is_some() && draw.caster.as_deref() == Some(name);
+    let light_passes = facts.passes(light).filter(|pass| pass.view.0 == 0).flat_map(|pass| &pass.draws);
+    let eye = facts.scene.camera.eye;
+    light_passes.filter(|draw| draw.part == Part::Surface).filter(is_of_piece).any(|draw| {
+        let Some(mesh) = facts.plan.meshes.get(draw.mesh.0) else { return false };
+        draw.triangles.clone().any(|index| {
+            (0..3).all(|corner| {
+                let vertex = mesh
+                    .indices
+                    .data()
+                    .get(index as usize * 3 + corner)
+                    .and_then(|v| mesh.vertices.data().get(*v as usize));
+                vertex.is_some_and(|[x, y, z, _]| {
+                    let point = DVec3::new((*x).into(), (*y).into(), (*z).into());
+                    let off = (corners[corner] - eye - point).length();
+                    off <= 1e-6 * (point.length() + 1e-30)
+                })
+            })
+        })
+    })
+}
+
+fn not_planar(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    let is_texture = facts.technique() == Technique::PlanarTexture;
+    if !case.is_missing() || !(facts.technique() == Technique::Planar || is_texture) {
+        return None;
+    }
+    let (name, shown_by) = case.shown(|sample| {
+        let seen = sample.seen?;
+        let serves = if is_texture { has_texture(facts, light, &seen) } else { is_served(facts, light, &seen) };
+        let is_lit_side = side_of_triangle(seen.corners, facts.tracer.light_position(light)) != Sign::Zero;
+        (!serves && is_lit_side).then(|| facts.tracer.name(seen.place).to_owned())
+    })?;
+    let pieces = flat_pieces(facts, &name)? as u64;
+    let casters = case.samples.iter().flat_map(|sample| facts.names(&sample.between)).collect::<BTreeSet<_>>();
+    let evidence = format!(
+        "{name} is no plane but {}, of which the {MOST_PIECES} largest of the scene have a shadow: none of {} is \
+         flattened onto the one here",
+        amount(pieces, "flat piece"),
+        listed(&casters)
+    );
+    Suspicion::new(Cause::NotPlanar, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+}
+
+fn texture_aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    if facts.technique() != Technique::PlanarTexture {
+        return None;
+    }
+    let light = case.light();
+    let (_, shown_by) = case.shown(|sample| {
+        let seen = sample.seen?;
+        (case.is_false() || (case.is_missing() && has_texture(facts, light, &seen))).then_some(())
+    })?;
+    let size = facts.number("size");
+    let evidence = format!("the receiver's texture has {size} texels a side, and the outline runs between two of them");
+    Suspicion::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
+}
+
+/// A map of four times the size, and what needs none.
+pub(crate) fn larger(size: f64, most: f64) -> Vec<Mend> {
+    let larger = (size * 4.0).min(most);
+    let grow = (larger > size).then(|| Mend::setting("size", &format!("{larger}")));
+    grow.into_iter().chain([Mend::technique(Technique::ZFail)]).collect()
+}

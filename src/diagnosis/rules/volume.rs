@@ -1,0 +1,299 @@
+//! Where volumes are counted from, and whether they are closed.
+
+use crate::diagnosis::cause::Cause;
+use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount, listed};
+use crate::diagnosis::mend::{Mend, PlanEdit};
+use crate::geometry::ViewVolume;
+use crate::history::Fate;
+use crate::numbers;
+use crate::plan::{Clip, Draw, Part};
+use crate::technique::Technique;
+use glam::{DVec3, DVec4};
+use std::collections::BTreeSet;
+
+pub(crate) const RULES: &[Rule] = &[
+    eye_in_volume,
+    near_plane_cut,
+    near_plane_crack,
+    missing_dark_cap,
+    missing_light_cap,
+    far_clip,
+    finite_extrusion,
+    cap_fighting,
+];
+
+/// Counting in front of surfaces begins at the near plane with 0, whatever is there.
+fn begins_at_zero(facts: &Facts, light: usize) -> bool {
+    let has_near_count = facts.passes(light).any(|pass| pass.name == "near plane");
+    matches!(facts.technique(), Technique::ZPass | Technique::ZPassPlus) && !has_near_count
+}
+
+/// Casters whose volumes hold a point, with how many volumes those are.
+fn holding(facts: &Facts, light: usize, point: DVec3) -> (BTreeSet<String>, u64) {
+    let mut met = facts.tracer.between_points(light, point);
+    met.retain(|met| facts.casts(met));
+    (facts.names(&met), met.len() as u64)
+}
+
+fn eye_in_volume(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    if !begins_at_zero(facts, light) {
+        return None;
+    }
+    let (eye_in, volumes) = holding(facts, light, facts.scene.camera.eye);
+    let (_, shown_by) = case.shown(|sample| {
+        let (near_in, count) = holding(facts, light, facts.tracer.near_point(sample.center()));
+        (count > 0 && near_in.intersection(&eye_in).next().is_some()).then_some(())
+    })?;
+    let evidence = format!(
+        "the eye is inside {} of {} ({}), which z-pass does not count",
+        amount(volumes, "shadow volume"),
+        Facts::light_name(light),
+        listed(&eye_in)
+    );
+    Suspicion::new(Cause::EyeInVolume, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+}
+
+fn near_plane_cut(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    if !begins_at_zero(facts, light) {
+        return None;
+    }
+    let (eye_in, _) = holding(facts, light, facts.scene.camera.eye);
+    let ((near_in, count), shown_by) = case.shown(|sample| {
+        let (near_in, count) = holding(facts, light, facts.tracer.near_point(sample.center()));
+        (count > 0 && near_in.intersection(&eye_in).next().is_none()).then_some((near_in, count))
+    })?;
+    let meeting = meeting_near_clip(facts, light);
+    let evidence = format!(
+        "the near plane, {} ahead, cuts {} of {} open here: {} of the {} that meet the space between near plane and light",
+        numbers::metres(facts.scene.camera.near),
+        amount(count, "shadow volume"),
+        listed(&near_in),
+        near_in.len(),
+        amount(meeting.len() as u64, "caster"),
+    );
+    Suspicion::new(Cause::NearPlaneCut, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+}
+
+/// Casters that meet the space between near rectangle and light.
+fn meeting_near_clip(facts: &Facts, light: usize) -> Vec<String> {
+    let camera = &facts.scene.camera;
+    let [width, height] = facts.plan.size.map(f64::from);
+    let position = facts.tracer.light_position(light);
+    let relative = (position.truncate() - camera.eye * position.w).extend(position.w);
+    let near_clip = ViewVolume::new(camera, width / height).near_clip(relative);
+    let casting = facts.scene.objects.iter().filter(|object| object.casts);
+    let meets = casting.filter(|object| {
+        let points: Vec<DVec4> =
+            object.world_positions().iter().map(|point| (*point - camera.eye).extend(1.0)).collect();
+        near_clip.outside(&points).is_none()
+    });
+    meets.map(|object| object.name.clone()).collect()
+}
+
+fn near_plane_crack(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    if facts.technique() != Technique::ZPassPlus || begins_at_zero(facts, light) {
+        return None;
+    }
+    let near = facts.scene.camera.near;
+    let crossing = meeting_near_clip(facts, light).into_iter().filter_map(|name| {
+        let (_, object) = facts.object(&name)?;
+        let depths: Vec<f64> = object.world_positions().iter().map(|point| facts.tracer.depth_of(*point)).collect();
+        let (low, high) =
+            depths.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| (low.min(*d), high.max(*d)));
+        (low < near && near < high).then_some((name, low, high))
+    });
+    let crossing: Vec<(String, f64, f64)> = crossing.collect();
+    let (name, low, high) = crossing.first()?;
+    let (_, shown_by) = case.shown(|sample| {
+        let wrong = sample.miscounted(facts, light);
+        (sample.history.is_none() || !wrong.is_empty()).then_some(())
+    })?;
+    let evidence = format!(
+        "{name} reaches from {} to {} along the view and crosses the near plane at {}, where the light's picture and \
+         the camera's are cut and round apart",
+        numbers::metres(*low),
+        numbers::metres(*high),
+        numbers::metres(near)
+    );
+    Suspicion::new(Cause::NearPlaneCrack, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
+}
+
+/// Draws of a part of a caster's volume.
+fn part_of<'f>(facts: &'f Facts, light: usize, caster: &'f str, part: Part) -> impl Iterator<Item = &'f Draw> {
+    facts.draws(light, part).filter(move |draw| draw.caster.as_deref() == Some(caster) && !draw.triangles.is_empty())
+}
+
+/// The plan says why a caster does without something.
+fn is_excused(facts: &Facts, caster: &str, what: &[&str]) -> bool {
+    facts.plan.left_out.iter().any(|left| left.of == caster && what.contains(&left.what.as_str()))
+}
+
+/// The first caster counted wrongly at a sample of which `lacks` says so.
+fn lacking(facts: &Facts, case: &Case, lacks: impl Fn(&str) -> bool) -> Option<((String, i32, i32), usize)> {
+    case.shown(|sample: &Sample| sample.miscounted(facts, case.light()).into_iter().find(|(caster, ..)| lacks(caster)))
+}
+
+fn missing_dark_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    let is_finite = facts.setting("extrusion").starts_with("finite:");
+    let is_point = facts.tracer.light_position(light).w != 0.0;
+    let lacks = |caster: &str| {
+        let needs = is_finite || (is_point && facts.counts_behind(light, caster));
+        needs
+            && part_of(facts, light, caster, Part::Side).next().is_some()
+            && part_of(facts, light, caster, Part::DarkCap).next().is_none()
+            && !is_excused(facts, caster, &["dark cap", "caps"])
+    };
+    let ((caster, counted, expected), shown_by) = lacking(facts, case, lacks)?;
+    let evidence = format!(
+        "the volume of {caster} has no dark cap in this frame, and z-fail needs one: it counts {counted} here where \
+         {} between light and surface",
+        lie(expected)
+    );
+    Suspicion::new(Cause::MissingDarkCap, evidence, vec![Mend::plan(PlanEdit::DrawDarkCaps)], shown_by)
+}
+
+fn missing_light_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    let needs = |caster: &str| {
+        let is_drawn = facts.object(caster).is_none_or(|(_, object)| object.visible);
+        facts.counts_behind(light, caster) || !is_drawn
+    };
+    let lacks = |caster: &str| {
+        needs(caster)
+            && part_of(facts, light, caster, Part::Side).next().is_some()
+            && part_of(facts, light, caster, Part::LightCap).next().is_none()
+            && !is_excused(facts, caster, &["light cap", "caps"])
+    };
+    if let Some(((caster, counted, expected), shown_by)) = lacking(facts, case, lacks) {
+        let evidence = format!(
+            "the volume of {caster} has no light cap in this frame, and z-fail needs one: it counts {counted} here \
+             where {} between light and surface",
+            lie(expected)
+        );
+        return Suspicion::new(Cause::MissingLightCap, evidence, vec![Mend::plan(PlanEdit::DrawLightCaps)], shown_by);
+    }
+    let is_untested = |caster: &str| {
+        let never = wgpu::CompareFunction::Never;
+        part_of(facts, light, caster, Part::LightCap).any(|draw| draw.raster.depth_compare == never)
+    };
+    let ((caster, counted, expected), shown_by) = lacking(facts, case, is_untested)?;
+    let evidence = format!(
+        "the light cap of {caster} is drawn but never passes the depth test, though it is in front of the surface \
+         here: it counts {counted} where {} between",
+        lie(expected)
+    );
+    Suspicion::new(Cause::MissingLightCap, evidence, vec![Mend::setting("light-caps", "tested")], shown_by)
+}
+
+/// `1 of its triangles lies`.
+fn lie(count: i32) -> String {
+    match count {
+        0 => "none of its triangles lies".to_owned(),
+        1 => "1 of its triangles lies".to_owned(),
+        count => format!("{count} of its triangles lie"),
+    }
+}
+
+fn far_clip(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    let mapping = facts.plan.depth.mapping;
+    if mapping.clamps() || mapping.is_reversed() {
+        return None;
+    }
+    let far = facts.plan.depth.far;
+    let ((what, count), shown_by) = case.shown(|sample| {
+        let is_clipped = |fate: Fate| fate == Fate::Clipped(Clip::Far);
+        let faces = sample.volume_events(light).filter(|(_, one)| is_clipped(one.fate)).count();
+        let is_beyond = sample.seen.zip(far).is_some_and(|(seen, far)| facts.tracer.depth_of(seen.point) >= far);
+        match (faces, is_beyond) {
+            (_, true) => Some(("the surface itself lies".to_owned(), 1)),
+            (1.., _) if !sample.miscounted(facts, light).is_empty() => Some((
+                format!(
+                    "{} over this pixel {}",
+                    amount(faces as u64, "volume face"),
+                    if faces == 1 { "lies" } else { "lie" }
+                ),
+                faces,
+            )),
+            _ => None,
+        }
+    })?;
+    let place = far.map_or_else(|| "at infinity".to_owned(), |far| format!("{} away", numbers::metres(far)));
+    let evidence =
+        format!("{what} beyond the far plane, {place}, and {} cut away", if count == 1 { "is" } else { "are" });
+    let mends = vec![Mend::setting("depth", "reversed-infinite"), Mend::setting("depth", "standard-finite-clamp")];
+    Suspicion::new(Cause::FarClip, evidence, mends, shown_by)
+}
+
+fn finite_extrusion(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    let factor: f64 = facts.setting("extrusion").strip_prefix("finite:")?.parse().ok()?;
+    if !case.is_missing() {
+        return None;
+    }
+    let ((caster, reach, needed), shown_by) = case.shown(|sample| {
+        let seen = sample.seen?;
+        let distance = facts.tracer.light_distance(light, seen.point);
+        let mut casting = sample.between.iter().filter(|met| facts.casts(met)).peekable();
+        casting.peek()?;
+        // How far the volume goes on behind the caster, and how far it would have to.
+        let reaches = casting.map(|met| {
+            let caster = facts.tracer.name(met.place);
+            let reach = match distance.is_finite() {
+                true => factor * (distance - met.towards_light),
+                false => factor * size_of(facts, caster),
+            };
+            (caster.to_owned(), reach, met.towards_light)
+        });
+        let best = reaches.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)))?;
+        // The end is flat, so its middle may be nearer than the corners are carried.
+        (best.1 < best.2 * 1.02).then_some(best)
+    })?;
+    let evidence = format!(
+        "the volume of {caster} goes on for {} behind it, and the surface lies {} behind it",
+        numbers::metres(reach),
+        numbers::metres(needed)
+    );
+    Suspicion::new(Cause::FiniteExtrusion, evidence, vec![Mend::setting("extrusion", "infinite")], shown_by)
+}
+
+/// The diagonal of an object's bounding box, world space.
+fn size_of(facts: &Facts, name: &str) -> f64 {
+    let Some((_, object)) = facts.object(name) else { return 0.0 };
+    let world = object.world_positions();
+    let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    (high - low).length()
+}
+
+fn cap_fighting(_: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    let ((caster, cap, surface), shown_by) = case.shown(|sample| {
+        let history = sample.history.as_ref()?;
+        let corners = |one: &crate::history::TriangleEvent| {
+            let mut bits = one.corners.map(|corner| corner.map(f32::to_bits));
+            bits.sort_unstable();
+            bits
+        };
+        let visible = history.triangles().filter(|(event, one)| event.light.is_none() && one.part == Part::Surface);
+        let visible: Vec<_> = visible.filter(|(_, one)| one.fate.passed()).map(|(_, one)| one).collect();
+        let visible = visible.last()?;
+        let mut caps = sample.volume_events(light).filter(|(_, one)| one.part == Part::LightCap);
+        let (event, cap) = caps.find(|(_, one)| corners(one) == corners(visible))?;
+        let differs = cap.depth.to_bits() != event.before.depth.to_bits();
+        differs.then(|| (cap.caster.clone().unwrap_or_default(), cap.depth, event.before.depth))
+    })?;
+    let steps = (i64::from(cap.to_bits()) - i64::from(surface.to_bits())).unsigned_abs();
+    let evidence = format!(
+        "the light cap of {caster} is the very triangle that is seen, but its depth is {} here and the surface's {}: \
+         {} apart",
+        numbers::depth(cap),
+        numbers::depth(surface),
+        amount(steps, "step")
+    );
+    Suspicion::new(Cause::CapFighting, evidence, vec![Mend::plan(PlanEdit::SurfaceOrder)], shown_by)
+}

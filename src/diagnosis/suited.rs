@@ -1,0 +1,75 @@
+//! Which techniques are right for a scene, as measured on it.
+
+use super::Diagnosis;
+use crate::technique::{Choice, Technique};
+
+/// How a technique did on a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Suited {
+    /// Technique and settings.
+    pub choice: Choice,
+    /// Wrong pixels, summed over the lights.
+    pub wrong: u64,
+    /// Median time of a frame, milliseconds.
+    pub frame_ms: f64,
+}
+
+impl Suited {
+    /// What is worth trying on any scene: every technique that makes shadows on the GPU as it is by default, and
+    /// volumes that count in floats.
+    #[must_use]
+    pub fn candidates() -> Vec<Choice> {
+        let makes_shadows = |technique: &Technique| !matches!(technique, Technique::None | Technique::RayTraced);
+        let mut choices: Vec<Choice> = Technique::ALL.into_iter().filter(makes_shadows).map(Choice::new).collect();
+        let mut in_float = Choice::new(Technique::ZFail);
+        // A setting of the table above: were it gone, there would be a candidate less.
+        if in_float.set("counter", "float").is_ok() {
+            choices.push(in_float);
+        }
+        choices
+    }
+
+    /// The technique with the settings that differ from its defaults: `z-fail counter=float`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let technique = self.choice.technique();
+        let changed = technique.settings().iter().filter_map(|spec| {
+            let value = self.choice.settings().get(spec.key)?;
+            (value != spec.default).then(|| format!(" {}={value}", spec.key))
+        });
+        changed.fold(technique.name().to_owned(), |name, setting| name + &setting)
+    }
+
+    /// The fastest that has no wrong pixel: as it is by default where any is right so.
+    #[must_use]
+    pub fn best(suited: &[Suited]) -> Option<&Suited> {
+        let is_plain = |one: &Suited| one.choice == Choice::new(one.choice.technique());
+        let right = suited.iter().filter(|one| one.wrong == 0);
+        right.min_by(|a, b| is_plain(b).cmp(&is_plain(a)).then(a.frame_ms.total_cmp(&b.frame_ms)))
+    }
+}
+
+impl Diagnosis {
+    /// Does what it advises leave nothing wrong?
+    #[must_use]
+    pub fn is_mended(&self) -> bool {
+        self.advice.as_ref().is_some_and(|advice| advice.wrong_left == 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_is_right_then_plain_then_fast() {
+        let choices = Suited::candidates();
+        assert!(choices.len() > 7, "{}", choices.len());
+        let one = |choice: &Choice, wrong, frame_ms| Suited { choice: choice.clone(), wrong, frame_ms };
+        let in_float = choices.last().expect("a candidate");
+        let all = [one(&choices[0], 3, 1.0), one(in_float, 0, 2.0), one(&choices[1], 0, 4.0), one(&choices[2], 0, 3.0)];
+        assert_eq!(Suited::best(&all), Some(&all[3]));
+        assert_eq!(Suited::best(&all[..2]).map(Suited::name).as_deref(), Some("z-fail counter=float"));
+        assert_eq!(Suited::best(&all[..1]), None);
+    }
+}

@@ -1,0 +1,231 @@
+//! A diagnosis in words: where, who, why, what mends it and how sure that is; last what to do.
+//!
+//! Regions and lights count from 1, pixels from 0 as in `pixel --at`.
+
+use super::{Cause, CauseFound, Diagnosis, FlagFound, Mend, MeshFinding, Proof, RegionFound, RegionKind, Suited};
+use crate::accuracy::Finding;
+use crate::numbers;
+use std::collections::BTreeSet;
+
+/// Places of a mesh finding that are told.
+const MOST_PLACES: usize = 8;
+
+impl Diagnosis {
+    /// The whole diagnosis, for someone who meets these words for the first time. `suited` tells how techniques do
+    /// on this scene; empty where that was not measured.
+    #[must_use]
+    pub fn to_text(&self, suited: &[Suited]) -> String {
+        let mut out = self.heading();
+        let mut explained = BTreeSet::new();
+        for (index, region) in self.regions.iter().enumerate() {
+            out += &format!("\n{}. {}\n", index + 1, region.place());
+            let like = self.regions[..index].iter().position(|earlier| is_like(earlier, region));
+            out += &like.map_or_else(|| causes(region, &mut explained), |like| as_before(region, like));
+        }
+        if self.rest.regions > 0 {
+            let regions = counted(self.rest.regions as u64, "smaller region", "smaller regions");
+            out += &format!("\nand {regions} of {}\n", pixels(self.rest.pixels));
+        }
+        if !self.mesh_findings.is_empty() {
+            out += "\nmeshes, whether it shows here or not\n";
+            self.mesh_findings.iter().for_each(|found| out += &mesh(found));
+        }
+        if !self.flags.is_empty() {
+            out += "\nby the scene's own wish, so not wrong\n";
+            self.flags.iter().for_each(|found| out += &flag(found));
+        }
+        out += &techniques(suited);
+        out + &format!("\nwhat to do: {}\n", self.what_to_do(suited))
+    }
+
+    fn heading(&self) -> String {
+        let [width, height] = self.size;
+        let error = &self.error;
+        let name = format!("{}, {}, {width}x{height}", self.scene, self.technique.name());
+        let compared = numbers::count(error.compared);
+        let excused = numbers::count(error.edge_band);
+        let twice = self.regions.iter().filter(|region| region.kind == RegionKind::TooDark);
+        let twice: u64 = twice.map(|region| region.pixels).sum();
+        let twice = if twice > 0 { format!("; {} darkened more than once", pixels(twice)) } else { String::new() };
+        if error.wrong() == 0 {
+            return format!("{name}: none of {compared} compared pixels is wrong{twice}; {excused} at edges excused\n");
+        }
+        let kinds = [
+            (error.missing_shadow, "lit that should be dark"),
+            (error.false_shadow, "dark that should be lit"),
+            (error.wrong_surface, "of another surface"),
+        ];
+        let kinds = kinds.iter().filter(|(count, _)| *count > 0);
+        let kinds: Vec<String> = kinds.map(|(count, what)| format!("{} {what}", numbers::count(*count))).collect();
+        format!(
+            "{name}: {} of {compared} compared pixels are wrong ({}){twice}; {excused} at edges excused\n",
+            numbers::count(error.wrong()),
+            kinds.join(", "),
+        )
+    }
+
+    /// The last line.
+    #[must_use]
+    pub fn what_to_do(&self, suited: &[Suited]) -> String {
+        if !self.is_bad() {
+            return "nothing: the shadows are right".to_owned();
+        }
+        let better = Suited::best(suited).filter(|_| !self.is_mended());
+        let better = better.map(|best| format!("`-t {}` has no wrong pixel here", best.name().replace(' ', " --set ")));
+        match (&self.advice, better) {
+            (Some(advice), better) => {
+                let options = advice.mend.options();
+                let run =
+                    if options.is_empty() { String::new() } else { format!(" As options: `{}`.", options.join(" ")) };
+                let better = better.map_or_else(String::new, |better| format!(" {better}."));
+                format!("{}{run}{better}", advice.sentence)
+            }
+            (None, Some(better)) => format!("no single change mends it, but {better}"),
+            (None, None) => {
+                "nothing that was tried helps; `pixel SCENE --at X,Y` tells how a pixel came about".to_owned()
+            }
+        }
+    }
+}
+
+impl RegionFound {
+    /// What is wrong, where, and who is concerned: one line.
+    #[must_use]
+    pub fn place(&self) -> String {
+        let [left, top, right, bottom] = self.bounds;
+        let [x, y] = self.at;
+        format!(
+            "{}: {}, columns {left} to {right}, rows {top} to {bottom}, such as {x},{y}; {}",
+            self.title(),
+            pixels(self.pixels),
+            numbers::light(self.light),
+        )
+    }
+
+    /// What is wrong, and who is concerned: `missing shadow of bunny on floor`.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let casters = names(&self.casters);
+        let on = names(&self.receivers).map_or_else(String::new, |receivers| format!(" on {receivers}"));
+        let of = casters.map_or_else(String::new, |casters| format!(" of {casters}"));
+        match self.kind {
+            RegionKind::Wrong(Finding::MissingShadow) => format!("missing shadow{of}{on}"),
+            RegionKind::Wrong(Finding::FalseShadow) => format!("false shadow{of}{on}"),
+            RegionKind::Wrong(_) => format!("wrong surface{on}"),
+            RegionKind::TooDark => format!("shadow{of}{on} darkened more than once"),
+        }
+    }
+}
+
+impl Mend {
+    /// What of it can be said on a command line: `-t z-fail`, `--set bias-slope=2`.
+    #[must_use]
+    pub fn options(&self) -> Vec<String> {
+        let technique = self.technique.map(|technique| format!("-t {}", technique.name()));
+        let settings = self.settings.iter().map(|(key, value)| format!("--set {key}={value}"));
+        technique.into_iter().chain(settings).collect()
+    }
+}
+
+/// Do two regions have the same causes with the same mends and proofs?
+fn is_like(one: &RegionFound, other: &RegionFound) -> bool {
+    let said = |region: &RegionFound| -> Vec<(Cause, Option<Mend>, Proof)> {
+        region.causes.iter().map(|found| (found.cause, found.mend.clone(), found.proof)).collect()
+    };
+    !one.causes.is_empty() && said(one) == said(other)
+}
+
+/// What was told of region number `like`, counted from 0, holds for this one.
+fn as_before(region: &RegionFound, like: usize) -> String {
+    let first = region.causes.first();
+    let evidence = first.map_or_else(String::new, |found| format!(": {}: {}", found.cause, found.evidence));
+    format!("   as {}{evidence}\n", like + 1)
+}
+
+fn causes(region: &RegionFound, explained: &mut BTreeSet<Cause>) -> String {
+    let mut out = String::new();
+    let is_told = |cause: &&CauseFound| cause.proof != Proof::NotIt;
+    for found in region.causes.iter().filter(is_told) {
+        out += &format!("   {} ({}): {}\n", found.cause, found.proof.name(), found.evidence);
+        if explained.insert(found.cause) {
+            out += &format!("     {}\n", found.cause.meaning());
+        }
+        out += &format!("     {}\n", proof(found));
+    }
+    let ruled_out: Vec<&str> =
+        region.causes.iter().filter(|cause| !is_told(cause)).map(|found| found.cause.name()).collect();
+    if !ruled_out.is_empty() {
+        out += &format!("   ruled out by running their mends: {}\n", ruled_out.join(", "));
+    }
+    if region.causes.is_empty() {
+        let [x, y] = region.at;
+        out += &format!("   no known cause fits; `pixel SCENE --at {x},{y}` tells how a pixel came about\n");
+    }
+    out
+}
+
+/// What the mend is, and what running it has shown.
+fn proof(CauseFound { mend, proof, pixels_left, .. }: &CauseFound) -> String {
+    let Some(mend) = mend else { return "no mend to run".to_owned() };
+    let options = mend.options();
+    let options = if options.is_empty() { String::new() } else { format!(" (`{}`)", options.join(" ")) };
+    let left = pixels_left.unwrap_or(0);
+    let outcome = match proof {
+        Proof::Proven => "none of these pixels is wrong any more".to_owned(),
+        Proof::Part | Proof::NotIt => format!("{} of these stay wrong", pixels(left)),
+        Proof::NotRun => "not run".to_owned(),
+    };
+    format!("to mend it: {mend}{options}; run so, {outcome}")
+}
+
+fn mesh(MeshFinding { object, kind, count, at, effect }: &MeshFinding) -> String {
+    let place = |point: &glam::DVec3| {
+        let [x, y, z] = point.to_array().map(numbers::digits);
+        format!("({x}, {y}, {z})")
+    };
+    let mut places: Vec<String> = at.iter().take(MOST_PLACES).map(place).collect();
+    if at.len() > MOST_PLACES || (!at.is_empty() && *count > at.len()) {
+        places.push("…".to_owned());
+    }
+    let places = if places.is_empty() { String::new() } else { format!("\n     at {}", places.join(" ")) };
+    format!("   {object}: {} {}: {effect}{places}\n", numbers::count(*count as u64), kind.name())
+}
+
+fn flag(FlagFound { object, cause, pixels: changed, at, mend }: &FlagFound) -> String {
+    let at = at.map_or_else(String::new, |[x, y]| format!(", such as {x},{y}"));
+    format!("   {object}: {cause}: {} would change{at}; to do so, {mend}\n", pixels(*changed))
+}
+
+fn techniques(suited: &[Suited]) -> String {
+    if suited.is_empty() {
+        return String::new();
+    }
+    let right = suited.iter().filter(|one| one.wrong == 0);
+    let right: Vec<String> =
+        right.map(|one| format!("{} ({} ms)", one.name(), numbers::milliseconds(one.frame_ms))).collect();
+    let wrong = suited.iter().filter(|one| one.wrong > 0);
+    let wrong: Vec<String> = wrong.map(|one| format!("{} ({})", one.name(), numbers::count(one.wrong))).collect();
+    let mut out = "\ntechniques on this scene, seen from here\n".to_owned();
+    let list = |names: &[String]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    out += &format!("   right, the fastest first: {}\n", list(&right));
+    if !wrong.is_empty() {
+        out += &format!("   with wrong pixels: {}\n", list(&wrong));
+    }
+    out
+}
+
+fn names(names: &[String]) -> Option<String> {
+    match names {
+        [] => None,
+        [one] => Some(one.clone()),
+        [first @ .., last] => Some(format!("{} and {last}", first.join(", "))),
+    }
+}
+
+fn pixels(count: u64) -> String {
+    counted(count, "pixel", "pixels")
+}
+
+fn counted(count: u64, one: &str, more: &str) -> String {
+    format!("{} {}", numbers::count(count), if count == 1 { one } else { more })
+}

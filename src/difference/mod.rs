@@ -1,0 +1,427 @@
+//! What differs between two frames, pass by pass: from two [`Capture`]s, without a GPU.
+//!
+//! Passes are matched by name and light, in order. Of each pair every aspect is compared bit by bit: colour,
+//! depth, stencil, what the pass draws into elsewhere (labels, a count, a face of a map), and the states after
+//! its draws where both captures hold them. After the passes come the lights: final labels, and what no pass
+//! shows. What was asked for (technique, settings, plan, adapter) is told, but makes no difference of its own.
+//!
+//! A count or a face of a map is kept as the frame left it, so a difference in it is told at the first
+//! pass that draws into it, even if a later one made it.
+
+mod align;
+mod images;
+mod json;
+mod notes;
+mod shown;
+mod text;
+
+pub use images::{DifferingRegion, PixelDifference, Texel, TexelDifference};
+pub use notes::Note;
+pub use shown::Shown;
+
+use crate::capture::{Capture, CapturedLight, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step};
+use align::{Pair, align};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Why two captures can't be compared.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum DifferenceError {
+    /// Pixels have no partners.
+    #[error(
+        "the pictures are {}x{} and {}x{} pixels: capture both with one --size", sizes[0][0], sizes[0][1], sizes[1][0], sizes[1][1]
+    )]
+    Sizes {
+        /// Width and height of each.
+        sizes: [[u32; 2]; 2],
+    },
+}
+
+/// Which of the two captures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    /// The first.
+    A,
+    /// The second.
+    B,
+}
+
+/// Two frames compared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    /// Scene, technique and settings of each.
+    pub sides: [Frame; 2],
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// What was asked for differently; no difference by itself.
+    pub asked: Vec<Note>,
+    /// What makes pixels mean something else: camera, lights, how depth is stored.
+    pub conditions: Vec<Note>,
+    /// Passes in their common order.
+    pub passes: Vec<PassDifference>,
+    /// Parallel to the lights that both have.
+    pub lights: Vec<LightDifference>,
+}
+
+/// What a frame was made of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Frame {
+    /// Name of the scene.
+    pub scene: String,
+    /// Name of the technique.
+    pub technique: String,
+    /// Its settings.
+    pub settings: BTreeMap<String, String>,
+}
+
+/// A pass of both frames, or of one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PassDifference {
+    /// Short: `volumes`.
+    pub name: String,
+    /// The light it belongs to.
+    pub light: Option<usize>,
+    /// Its index in each; at least one has it.
+    pub index: [Option<usize>; 2],
+    /// Aspects that differ after it; empty where only one frame has it.
+    pub aspects: Vec<AspectDifference>,
+    /// Draws after which something differs, where both captures hold the states after draws.
+    pub draws: Vec<DrawDifference>,
+}
+
+/// A draw of both frames.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawDifference {
+    /// Short: `sides of bunny`.
+    pub name: String,
+    /// Its index within the pass, in each.
+    pub index: [usize; 2],
+    /// Aspects that differ after it.
+    pub aspects: Vec<AspectDifference>,
+}
+
+/// An aspect that differs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AspectDifference {
+    /// Which.
+    pub aspect: AspectKind,
+    /// How.
+    pub found: Found,
+    /// Neither pass wrote to it: the difference is an earlier one's.
+    pub carried: bool,
+}
+
+/// How an aspect differs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Found {
+    /// In texels.
+    Pixels(PixelDifference),
+    /// Only one frame has it.
+    OnlyIn(Side),
+    /// Maps of different sizes, whose texels have no partners.
+    Sizes([[u32; 2]; 2]),
+}
+
+/// What can differ after a pass, or of a light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum AspectKind {
+    /// The picture, sRGB.
+    Color,
+    /// Depth as stored.
+    Depth,
+    /// The stencil buffer.
+    Stencil,
+    /// A light's labels.
+    Labels,
+    /// A light's count, in floats.
+    Count,
+    /// This face of a light's shadow map.
+    Map(usize),
+    /// This layer of what a light lets through.
+    Textures(usize),
+    /// A light's labels by the ground truth.
+    Truth,
+    /// Labels held against the truth.
+    Findings,
+}
+
+/// What differs of a light at the end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightDifference {
+    /// Which.
+    pub light: usize,
+    /// Pixels by their label in the first and in the second, where these differ.
+    pub labels: BTreeMap<[u8; 2], u64>,
+    /// Its pictures that differ.
+    pub aspects: Vec<AspectDifference>,
+}
+
+/// Compares two captures.
+///
+/// # Errors
+/// Pictures of different sizes.
+pub fn compare(a: &Capture, b: &Capture) -> Result<Difference, DifferenceError> {
+    if a.size != b.size {
+        return Err(DifferenceError::Sizes { sizes: [a.size, b.size] });
+    }
+    let mut pictures = Pictures::default();
+    let key = |step: &Step| (step.name.clone(), step.light);
+    let keys = [a, b].map(|capture| capture.steps.iter().map(key).collect::<Vec<_>>());
+    let pairs = align(&keys[0], &keys[1]);
+    let lights = a.lights.iter().zip(&b.lights).enumerate();
+    Ok(Difference {
+        sides: [a, b].map(Frame::of),
+        size: a.size,
+        asked: notes::asked(a, b),
+        conditions: notes::conditions(a, b),
+        passes: pairs.into_iter().map(|pair| pass(&mut pictures, [a, b], pair)).collect(),
+        lights: lights.map(|(light, (a, b))| of_light(&mut pictures, light, a, b)).collect(),
+    })
+}
+
+impl Difference {
+    /// Is every pass and every pixel of both the same, seen and lit alike?
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        self.conditions.is_empty() && self.first().is_none() && self.lights.iter().all(|light| light.aspects.is_empty())
+    }
+
+    /// The first pass that differs, or that only one frame has.
+    #[must_use]
+    pub fn first(&self) -> Option<&PassDifference> {
+        self.passes.iter().find(|pass| pass.differs())
+    }
+
+    /// The first pass after which texels differ.
+    #[must_use]
+    pub fn first_in_pixels(&self) -> Option<&PassDifference> {
+        self.passes.iter().find(|pass| pass.states().flatten().any(|aspect| aspect.pixels().is_some()))
+    }
+}
+
+impl Frame {
+    fn of(capture: &Capture) -> Frame {
+        let (scene, technique) = (capture.scene.clone(), capture.technique.clone());
+        Frame { scene, technique, settings: capture.settings.clone() }
+    }
+}
+
+impl PassDifference {
+    /// Does anything after it differ, or has only one frame such a pass?
+    #[must_use]
+    pub fn differs(&self) -> bool {
+        self.only_in().is_some() || self.states().any(|aspects| !aspects.is_empty())
+    }
+
+    /// The only frame that has it.
+    #[must_use]
+    pub fn only_in(&self) -> Option<Side> {
+        match self.index {
+            [Some(_), None] => Some(Side::A),
+            [None, Some(_)] => Some(Side::B),
+            _ => None,
+        }
+    }
+
+    /// What differs after the pass, then after each draw.
+    fn states(&self) -> impl Iterator<Item = &Vec<AspectDifference>> {
+        std::iter::once(&self.aspects).chain(self.draws.iter().map(|draw| &draw.aspects))
+    }
+}
+
+impl AspectDifference {
+    /// Where texels differ.
+    #[must_use]
+    pub fn pixels(&self) -> Option<&PixelDifference> {
+        match &self.found {
+            Found::Pixels(pixels) => Some(pixels),
+            Found::OnlyIn(_) | Found::Sizes(_) => None,
+        }
+    }
+}
+
+impl AspectKind {
+    /// The name in JSON, without the face or layer.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            AspectKind::Color => "color",
+            AspectKind::Depth => "depth",
+            AspectKind::Stencil => "stencil",
+            AspectKind::Labels => "labels",
+            AspectKind::Count => "count",
+            AspectKind::Map(_) => "map",
+            AspectKind::Textures(_) => "textures",
+            AspectKind::Truth => "truth",
+            AspectKind::Findings => "findings",
+        }
+    }
+
+    /// Can two values be nearer to each other than two others? Labels and findings can't.
+    #[must_use]
+    pub fn has_distances(self) -> bool {
+        !matches!(self, AspectKind::Labels | AspectKind::Truth | AspectKind::Findings)
+    }
+
+    /// The face of a map, or the layer of textures.
+    #[must_use]
+    pub fn layer(self) -> Option<usize> {
+        match self {
+            AspectKind::Map(layer) | AspectKind::Textures(layer) => Some(layer),
+            _ => None,
+        }
+    }
+}
+
+/// The pictures of one state, each with whether it is an earlier one's.
+type State<'a> = BTreeMap<AspectKind, (&'a Arc<Image>, bool)>;
+
+/// Comparisons by the pictures' places in memory: what passes share is compared once.
+#[derive(Default)]
+struct Pictures(BTreeMap<[*const Image; 2], Option<Found>>);
+
+impl Pictures {
+    fn compare(&mut self, a: &Arc<Image>, b: &Arc<Image>) -> Option<Found> {
+        let compared = || {
+            let sizes = [a.size(), b.size()];
+            if sizes[0] == sizes[1] { images::compare(a, b).map(Found::Pixels) } else { Some(Found::Sizes(sizes)) }
+        };
+        *self.0.entry([Arc::as_ptr(a), Arc::as_ptr(b)]).or_insert_with(compared)
+    }
+
+    /// The aspects that differ between two states, in the order of their kinds.
+    fn states(&mut self, a: &State, b: &State) -> Vec<AspectDifference> {
+        let mut kinds: Vec<AspectKind> = a.keys().chain(b.keys()).copied().collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        let one = |aspect: AspectKind| {
+            let (found, carried) = match (a.get(&aspect), b.get(&aspect)) {
+                (Some((in_a, kept_a)), Some((in_b, kept_b))) => (self.compare(in_a, in_b)?, *kept_a && *kept_b),
+                (Some((_, kept)), None) => (Found::OnlyIn(Side::A), *kept),
+                (None, Some((_, kept))) => (Found::OnlyIn(Side::B), *kept),
+                (None, None) => return None,
+            };
+            Some(AspectDifference { aspect, found, carried })
+        };
+        kinds.into_iter().filter_map(one).collect()
+    }
+}
+
+fn pass(pictures: &mut Pictures, [a, b]: [&Capture; 2], pair: Pair) -> PassDifference {
+    let alone = |step: &Step, index| PassDifference {
+        name: step.name.clone(),
+        light: step.light,
+        index,
+        aspects: Vec::new(),
+        draws: Vec::new(),
+    };
+    match pair {
+        Pair::First(in_a) => alone(&a.steps[in_a], [Some(in_a), None]),
+        Pair::Second(in_b) => alone(&b.steps[in_b], [None, Some(in_b)]),
+        Pair::Both(in_a, in_b) => {
+            let (step_a, step_b) = (&a.steps[in_a], &b.steps[in_b]);
+            PassDifference {
+                aspects: pictures.states(&after_step(a, step_a), &after_step(b, step_b)),
+                draws: if a.holds_draws(in_a) && b.holds_draws(in_b) {
+                    draws(pictures, step_a, step_b)
+                } else {
+                    Vec::new()
+                },
+                ..alone(step_a, [Some(in_a), Some(in_b)])
+            }
+        }
+    }
+}
+
+/// Draws that both have, by name, caster and part.
+fn draws(pictures: &mut Pictures, a: &Step, b: &Step) -> Vec<DrawDifference> {
+    let keys = |step: &Step| {
+        step.draws.iter().map(|draw| (draw.name.clone(), draw.caster.clone(), draw.part)).collect::<Vec<_>>()
+    };
+    let mut differing = Vec::new();
+    for pair in align(&keys(a), &keys(b)) {
+        let Pair::Both(in_a, in_b) = pair else { continue };
+        let (draw_a, draw_b) = (&a.draws[in_a], &b.draws[in_b]);
+        let (Some(after_a), Some(after_b)) = (&draw_a.after, &draw_b.after) else { continue };
+        let aspects = pictures.states(&after_draw(a, after_a), &after_draw(b, after_b));
+        if !aspects.is_empty() {
+            differing.push(DrawDifference { name: draw_a.name.clone(), index: [in_a, in_b], aspects });
+        }
+    }
+    differing
+}
+
+fn after_step<'a>(capture: &'a Capture, step: &'a Step) -> State<'a> {
+    let mut state = of_snapshot(&step.snapshot);
+    match &step.snapshot {
+        Snapshot::Frame(frame) => {
+            let light = step.light.and_then(|light| capture.lights.get(light));
+            let target = light.and_then(|light| match frame.target {
+                FrameTarget::Picture => None,
+                FrameTarget::Labels => Some((AspectKind::Labels, light.shadow.as_ref()?)),
+                FrameTarget::Count => Some((AspectKind::Count, light.count.as_ref()?)),
+            });
+            state.extend(target.map(|(kind, image)| (kind, (image, false))));
+        }
+        Snapshot::Map { light, face } => {
+            let map = capture.lights.get(*light).and_then(|light| light.map.as_ref());
+            let image = map.and_then(|map| map.faces.get(*face));
+            state.extend(image.map(|image| (layer(image, *face), (image, false))));
+        }
+    }
+    state
+}
+
+fn after_draw<'a>(step: &Step, after: &'a DrawState) -> State<'a> {
+    let mut state = of_snapshot(&after.snapshot);
+    let kind = |image: &Image| match &step.snapshot {
+        Snapshot::Map { face, .. } => layer(image, *face),
+        Snapshot::Frame(frame) if frame.target == FrameTarget::Count => AspectKind::Count,
+        Snapshot::Frame(_) => AspectKind::Labels,
+    };
+    state.extend(after.target.iter().map(|target| (kind(&target.image), (&target.image, target.unchanged))));
+    state
+}
+
+/// The picture's aspects.
+fn of_snapshot(snapshot: &Snapshot) -> State<'_> {
+    let Snapshot::Frame(frame) = snapshot else { return State::new() };
+    let stencil = frame.stencil.as_ref().map(|stencil| (AspectKind::Stencil, stencil));
+    let aspects = [(AspectKind::Color, &frame.color), (AspectKind::Depth, &frame.depth)].into_iter().chain(stencil);
+    aspects.map(|(kind, aspect)| (kind, (&aspect.image, aspect.unchanged))).collect()
+}
+
+/// A layer of a map holds depths or colours.
+fn layer(image: &Image, index: usize) -> AspectKind {
+    if image.format() == PixelFormat::Rgba8 { AspectKind::Textures(index) } else { AspectKind::Map(index) }
+}
+
+/// What differs of a light at the end of the frame.
+fn of_light(pictures: &mut Pictures, light: usize, a: &CapturedLight, b: &CapturedLight) -> LightDifference {
+    let labels = match (&a.shadow, &b.shadow) {
+        (Some(in_a), Some(in_b)) => changes(in_a, in_b),
+        _ => BTreeMap::new(),
+    };
+    LightDifference { light, labels, aspects: pictures.states(&at_the_end(a), &at_the_end(b)) }
+}
+
+fn at_the_end(light: &CapturedLight) -> State<'_> {
+    let mut state = State::new();
+    state.extend(light.shadow.iter().map(|image| (AspectKind::Labels, (image, false))));
+    state.extend(light.count.iter().map(|image| (AspectKind::Count, (image, false))));
+    let faces = light.map.iter().flat_map(|map| map.faces.iter().enumerate());
+    state.extend(faces.map(|(index, image)| (layer(image, index), (image, false))));
+    if let Some(truth) = &light.truth {
+        state.insert(AspectKind::Truth, (&truth.labels, false));
+        state.insert(AspectKind::Findings, (&truth.findings, false));
+    }
+    state
+}
+
+/// How many pixels have which other label.
+fn changes(a: &Image, b: &Image) -> BTreeMap<[u8; 2], u64> {
+    let mut counts = BTreeMap::new();
+    let pairs = a.rows().flatten().zip(b.rows().flatten());
+    pairs.filter(|(a, b)| a != b).for_each(|(a, b)| *counts.entry([*a, *b]).or_default() += 1);
+    counts
+}

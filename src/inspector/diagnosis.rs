@@ -1,0 +1,247 @@
+//! The Diagnosis tab: where the frame is wrong, why, and what mends it.
+//!
+//! Regions are rows; a click goes to a pixel of one, to its history and to the step that decided it. The
+//! causes of the selected region, their mends and what they left are in `diagnosis_detail.rs`. It shows data and
+//! asks for it; running is the app's.
+
+use super::action::Action;
+use super::state::State;
+use super::view::PictureKind;
+use super::{diagnosis_detail, format, theme};
+use crate::accuracy::Finding;
+use crate::capture::{Capture, FrameTarget, Snapshot};
+use crate::diagnosis::{Diagnosis, RegionFound, RegionKind};
+use crate::technique::Choice;
+use egui::{Align, Layout, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use std::sync::Arc;
+
+/// Width of the list of regions, points, and the most it may take of the panel.
+const LIST_WIDTH: f32 = 320.0;
+const LIST_SHARE: f32 = 0.5;
+/// Height of a region's row: two lines, points.
+const ROW: f32 = 40.0;
+
+/// What the tab shows.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct DiagnosisView {
+    /// What was found last.
+    pub diagnosis: Option<Arc<Diagnosis>>,
+    /// How far diagnosing is; `None` while nothing is diagnosed.
+    pub running: Option<DiagnosisProgress>,
+    /// Why diagnosing failed, with its mend.
+    pub error: Option<String>,
+}
+
+/// How far diagnosing is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct DiagnosisProgress {
+    /// Steps that are done: of the truth first, of regions then.
+    pub done: usize,
+    /// Steps in all.
+    pub of: usize,
+}
+
+/// A mend that was applied from the tab: how shadows were made before, and are after.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Applied {
+    pub before: Choice,
+    pub after: Choice,
+}
+
+/// The view, and what is selected in it.
+#[derive(Debug, Default)]
+pub struct DiagnosisState {
+    view: DiagnosisView,
+    /// Index of the selected region.
+    selected: usize,
+    /// The mend that was applied last.
+    pub(super) applied: Option<Applied>,
+    /// The tab was drawn in the frame before: it wants room.
+    pub is_shown: bool,
+}
+
+impl DiagnosisState {
+    /// Shows something else.
+    pub fn show(&mut self, view: DiagnosisView) {
+        if view.diagnosis != self.view.diagnosis {
+            self.selected = 0;
+            self.applied = None;
+        }
+        self.view = view;
+    }
+
+    /// What is shown.
+    pub fn view(&self) -> &DiagnosisView {
+        &self.view
+    }
+
+    /// Another scene is open: what was found is of the one before.
+    pub fn forget(&mut self) {
+        self.show(DiagnosisView { running: self.view.running, ..DiagnosisView::default() });
+    }
+}
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    top_line(ui, state, actions);
+    if let Some(error) = &state.diagnosis.view.error {
+        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::ERROR)).wrap());
+    }
+    let Some(diagnosis) = state.diagnosis.view.diagnosis.clone() else { return };
+    ui.add_space(4.0);
+    let size = ui.available_size();
+    let list = LIST_WIDTH.min(size.x * LIST_SHARE);
+    ui.horizontal_top(|ui| {
+        ui.allocate_ui_with_layout(vec2(list, size.y), Layout::top_down(Align::Min), |ui| {
+            let scroll = ScrollArea::vertical().id_salt("wrong regions").auto_shrink([false, false]);
+            scroll.show(ui, |ui| regions(ui, state, &diagnosis));
+        });
+        ui.allocate_ui_with_layout(vec2(ui.available_width(), size.y), Layout::top_down(Align::Min), |ui| {
+            let scroll = ScrollArea::vertical().id_salt("causes").auto_shrink([false, false]);
+            let selected = diagnosis.regions.get(state.diagnosis.selected);
+            scroll.show(ui, |ui| diagnosis_detail::ui(ui, state, &diagnosis, selected, actions));
+        });
+    });
+}
+
+/// What can be done, and how far it is.
+fn top_line(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
+    let can_run = state.scene.is_some() && state.capture.is_some();
+    ui.horizontal_wrapped(|ui| match state.diagnosis.view.running {
+        Some(DiagnosisProgress { done, of }) => {
+            if ui.button("Cancel").on_hover_text("Stop diagnosing; what was found before stays").clicked() {
+                actions.push(Action::CancelDiagnosis);
+            }
+            let bar = egui::ProgressBar::new(done as f32 / of.max(1) as f32);
+            let width = ui.available_width().min(180.0);
+            ui.add(bar.desired_width(width).desired_height(8.0)).accessible_name("Diagnosing");
+            ui.label(theme::note("following rays, and running what may mend it"));
+        }
+        None => {
+            let is_new = state.diagnosis.view.diagnosis.is_none();
+            let words = if is_new { "Diagnose" } else { "Diagnose again" };
+            let button = ui.add_enabled(can_run, egui::Button::new(words));
+            if button.on_hover_text("Say where this frame is wrong, why, and what mends it").clicked() {
+                actions.push(Action::Diagnose);
+            }
+            ui.add(egui::Label::new(theme::note(summary(state, can_run))).wrap());
+        }
+    });
+}
+
+/// What was found, in a sentence.
+fn summary(state: &State, can_run: bool) -> String {
+    match &state.diagnosis.view.diagnosis {
+        Some(diagnosis) => {
+            let error = &diagnosis.error;
+            let of = format!("{}, {}", diagnosis.scene, diagnosis.technique.name());
+            let compared = format::count(error.compared);
+            let earlier = if is_current(state, diagnosis) { "" } else { " (not as it is shown now)" };
+            match error.wrong() {
+                0 => format!("{of}{earlier}: none of {compared} compared pixels is wrong"),
+                wrong => format!("{of}{earlier}: {} of {compared} compared pixels are wrong", format::count(wrong)),
+            }
+        }
+        None if can_run => {
+            "Follows rays through the scene, groups wrong pixels, and runs what may mend them: only what \
+                            takes them away is called proven."
+                .to_owned()
+        }
+        None => "Open a scene to find out why its shadows are wrong.".to_owned(),
+    }
+}
+
+/// Is the diagnosis of what is shown now: the same technique and settings?
+fn is_current(state: &State, diagnosis: &Diagnosis) -> bool {
+    state.scene.as_ref().is_some_and(|scene| {
+        let choice = &scene.draft.choice;
+        choice.technique() == diagnosis.technique && *choice.settings() == diagnosis.settings
+    })
+}
+
+fn regions(ui: &mut Ui, state: &mut State, diagnosis: &Diagnosis) {
+    if diagnosis.regions.is_empty() {
+        ui.label(theme::note("No pixel is wrong."));
+    }
+    for (index, region) in diagnosis.regions.iter().enumerate() {
+        region_row(ui, state, region, index);
+    }
+    if diagnosis.rest.regions > 0 {
+        let pixels = format::counted(diagnosis.rest.pixels, "pixel");
+        ui.label(theme::note(format!("and {} smaller of {pixels}", format::count(diagnosis.rest.regions as u64))));
+    }
+}
+
+fn region_row(ui: &mut Ui, state: &mut State, region: &RegionFound, index: usize) {
+    let is_selected = state.diagnosis.selected == index;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+    let (title, because) = (region.title(), because(region));
+    let pixels = format::counted(region.pixels, "pixel");
+    let name = format!("{} · {title}: {pixels}, {because}", index + 1);
+    response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, &name));
+    theme::row_background(ui, rect, is_selected, &response);
+    let left = rect.left() + 12.0;
+    let painter = ui.painter();
+    let swatch = egui::Rect::from_min_size(pos2(left, rect.top() + 8.0), vec2(10.0, 10.0));
+    painter.rect_filled(swatch, 2.0, color(region.kind));
+    let font = TextStyle::Small.resolve(ui.style());
+    let count = painter.text(
+        pos2(rect.right() - 8.0, rect.top() + 13.0),
+        egui::Align2::RIGHT_CENTER,
+        &pixels,
+        font,
+        theme::DIM,
+    );
+    let title_at = pos2(left + 16.0, rect.top() + 5.0);
+    let numbered = format!("{} · {title}", index + 1);
+    theme::line(ui, title_at, count.left() - title_at.x - 8.0, &numbered, TextStyle::Body, theme::TEXT);
+    let second = pos2(left + 16.0, rect.top() + 22.0);
+    theme::line(ui, second, rect.right() - second.x - 8.0, &because, TextStyle::Small, theme::DIM);
+    let hover = "Click to go to a pixel of it, to what happened there, and to the step that decided it.";
+    if response.on_hover_text(hover).clicked() {
+        state.diagnosis.selected = index;
+        go_to(state, region);
+    }
+}
+
+/// The most likely cause, and how sure it is.
+fn because(region: &RegionFound) -> String {
+    region
+        .causes
+        .first()
+        .map_or_else(|| "no known cause fits".to_owned(), |found| format!("{} ({})", found.cause, found.proof.name()))
+}
+
+/// As in the error picture.
+fn color(kind: RegionKind) -> egui::Color32 {
+    let finding = match kind {
+        RegionKind::Wrong(finding) => finding,
+        RegionKind::TooDark => Finding::FalseShadow,
+    };
+    super::findings::style(finding).color
+}
+
+/// Picks a pixel of a region, shows what is wrong around it, and selects the step that decided it.
+fn go_to(state: &mut State, region: &RegionFound) {
+    let [left, top, right, bottom] = region.bounds;
+    if let Some(step) = state.capture.as_ref().and_then(|capture| deciding_step(capture, region.light)) {
+        state.select_step(step);
+    }
+    state.choose_picture(PictureKind::Error);
+    state.go_to(region.at, (right - left).max(bottom - top) + 1);
+}
+
+/// The last pass of a light that draws into the picture before its labels are written: where its shadow was
+/// counted or drawn. Else where the labels are written.
+fn deciding_step(capture: &Capture, light: usize) -> Option<usize> {
+    let target = |index: usize| match &capture.steps.get(index)?.snapshot {
+        Snapshot::Frame(frame) => Some(frame.target),
+        Snapshot::Map { .. } => None,
+    };
+    let of_light: Vec<usize> =
+        (0..capture.steps.len()).filter(|index| capture.steps[*index].light == Some(light)).collect();
+    let mask = of_light.iter().copied().find(|index| target(*index) == Some(FrameTarget::Labels));
+    let counts = |index: &usize| matches!(target(*index), Some(FrameTarget::Picture | FrameTarget::Count));
+    let before = of_light.iter().copied().rfind(|index| mask.is_some_and(|mask| *index < mask) && counts(index));
+    before.or(mask).or(of_light.last().copied())
+}

@@ -1,0 +1,100 @@
+//! The colours of numbers, labels and findings: alike in the window and in the pictures of commands.
+//!
+//! Hues are Okabe and Ito's (2008), safe for the common kinds of colour blindness.
+
+/// sRGB.
+pub type Rgb = [u8; 3];
+
+/// A stencil count of 0; also where nothing is.
+pub const NOTHING: Rgb = [0x14, 0x17, 0x1d];
+/// Labels by value: lit, in shadow, background, faces away.
+pub const LABELS: [Rgb; 4] = [[0xf2, 0xd1, 0x6b], [0x46, 0x55, 0x7d], NOTHING, [0x7b, 0x82, 0x90]];
+/// Truth and technique agree.
+pub const AGREES: Rgb = [0x2a, 0x2f, 0x3a];
+/// Lit in truth, in shadow in the picture.
+pub const FALSE_SHADOW: Rgb = [0xe6, 0x9f, 0x00];
+/// In shadow in truth, lit in the picture.
+pub const MISSING_SHADOW: Rgb = [0xcc, 0x79, 0xa7];
+/// The picture shows another surface, or none.
+pub const WRONG_SURFACE: Rgb = [0x56, 0xb4, 0xe9];
+/// A difference that is excused, at an edge.
+pub const EDGE_BAND: Rgb = [0x7b, 0x82, 0x90];
+/// Behind pictures that stand side by side.
+pub const BACKGROUND: Rgb = [0x14, 0x16, 0x1b];
+
+/// Counts 1 to 7.
+const STENCIL_CYCLE: [Rgb; 7] = [
+    [0x56, 0xb4, 0xe9],
+    [0x00, 0x9e, 0x73],
+    [0xf0, 0xe4, 0x42],
+    [0xe6, 0x9f, 0x00],
+    [0xd5, 0x5e, 0x00],
+    [0xcc, 0x79, 0xa7],
+    [0x96, 0x78, 0xdc],
+];
+/// A count of −1, stored as 255.
+const STENCIL_MINUS_ONE: Rgb = [0xff, 0x59, 0x64];
+/// What −128 ends at: lighter further away.
+const STENCIL_MINUS_MOST: Rgb = [0xff, 0xe3, 0xe5];
+
+/// The colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle darker by a step
+/// each turn; 255 (−1) downwards in reds, lighter further away.
+#[must_use]
+pub fn stencil(value: u8) -> Rgb {
+    match value {
+        0 => NOTHING,
+        1..=127 => {
+            let turn = f32::from((value - 1) / 7);
+            // 18 turns fit below 128; the last one keeps a third of its brightness.
+            between(STENCIL_CYCLE[usize::from((value - 1) % 7)], [0; 3], turn * (2.0 / 3.0) / 18.0)
+        }
+        128..=255 => {
+            let away = f32::from(255 - value) / 127.0;
+            between(STENCIL_MINUS_ONE, STENCIL_MINUS_MOST, away.sqrt())
+        }
+    }
+}
+
+/// The colour of a label; a value that is none is drawn as its stencil colour would be.
+#[must_use]
+pub fn label(value: u8) -> Rgb {
+    LABELS.get(usize::from(value)).copied().unwrap_or_else(|| stencil(value))
+}
+
+/// The colour of a finding's number, as in error pictures; a number that is none is drawn as its stencil
+/// colour would be.
+#[must_use]
+pub fn finding(value: u8) -> Rgb {
+    [AGREES, FALSE_SHADOW, MISSING_SHADOW, WRONG_SURFACE, EDGE_BAND, NOTHING]
+        .get(usize::from(value))
+        .copied()
+        .unwrap_or_else(|| stencil(value))
+}
+
+/// Grey for a place between near (0) and far (1): near is light.
+#[must_use]
+pub fn near_far(place: f32) -> Rgb {
+    [(238.0 - 196.0 * place.clamp(0.0, 1.0)) as u8; 3]
+}
+
+/// From one colour (0) to another (1), in sRGB.
+#[must_use]
+pub fn between(from: Rgb, to: Rgb, share: f32) -> Rgb {
+    std::array::from_fn(|channel| {
+        let [from, to] = [from, to].map(|color| f32::from(color[channel]));
+        (from + (to - from) * share + 0.5) as u8
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mixture_begins_and_ends_at_its_colours() {
+        assert_eq!(between([0, 10, 255], [255, 20, 0], 0.0), [0, 10, 255]);
+        assert_eq!(between([0, 10, 255], [255, 20, 0], 1.0), [255, 20, 0]);
+        assert_eq!(between([0, 10, 255], [255, 20, 0], 0.5), [128, 15, 128]);
+        assert_eq!(near_far(0.0), [238; 3]);
+    }
+}

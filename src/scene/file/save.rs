@@ -1,0 +1,381 @@
+//! A scene as a scene file, and the models that it needs beside it.
+//!
+//! Numbers are written in the fewest digits that read back as the same bits, so that the scene that is
+//! read is the one that was written. Small meshes stand in the file itself; others become models.
+
+use crate::scene::{Group, Light, Material, Mesh, Motion, Object, Scene, Shading};
+use glam::{DVec3, Vec3};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Triangles of the largest mesh that stands in the scene file.
+const MOST_INLINE: usize = 32;
+
+/// A scene as text, with the files that it names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SavedScene {
+    /// The scene file.
+    pub toml: String,
+    /// Models and their materials: name, beside the scene file, and contents.
+    pub files: Vec<(String, String)>,
+}
+
+/// Why a scene can't be written.
+#[derive(Debug, thiserror::Error)]
+#[error("the scene can't be written as a scene file ({0})")]
+pub struct SaveError(#[from] toml::ser::Error);
+
+/// Writes a scene. New models are called `stem-object.obj`; meshes that are there as files already are named by
+/// `known`, by their content's hash.
+///
+/// # Errors
+/// What the serialiser refuses; nothing here is known to be refused.
+pub fn save(scene: &Scene, stem: &str, known: &BTreeMap<u64, String>) -> Result<SavedScene, SaveError> {
+    let mut names = known.clone();
+    let mut files: Vec<(String, String)> = Vec::new();
+    let mut objects = Vec::with_capacity(scene.objects.len());
+    for object in &scene.objects {
+        let mesh = mesh(object, stem, &mut names, &mut files);
+        objects.push(object_table(object, mesh));
+    }
+    let camera = &scene.camera;
+    let table = SceneTable {
+        name: &scene.name,
+        ambient: scene.ambient.map(short),
+        camera: CameraTable {
+            eye: camera.eye.to_array(),
+            target: camera.target.to_array(),
+            up: camera.up.to_array(),
+            fov_y_degrees: camera.fov_y_degrees,
+            near: camera.near,
+            far: camera.far,
+        },
+        lights: scene.lights.iter().map(light_table).collect(),
+        objects,
+        technique: scene
+            .technique
+            .as_ref()
+            .map(|technique| TechniqueTable { name: &technique.name, settings: &technique.settings }),
+    };
+    Ok(SavedScene { toml: toml::to_string(&table)?, files })
+}
+
+#[derive(Serialize)]
+struct SceneTable<'a> {
+    name: &'a str,
+    ambient: [f64; 3],
+    camera: CameraTable,
+    lights: Vec<LightTable>,
+    objects: Vec<ObjectTable<'a>>,
+    technique: Option<TechniqueTable<'a>>,
+}
+
+#[derive(Serialize)]
+struct CameraTable {
+    eye: [f64; 3],
+    target: [f64; 3],
+    up: [f64; 3],
+    fov_y_degrees: f64,
+    near: f64,
+    far: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct LightTable {
+    kind: &'static str,
+    position: Option<[f64; 3]>,
+    towards: Option<[f64; 3]>,
+    color: [f64; 3],
+    intensity: f64,
+    range: Option<f64>,
+    orbit: Option<OrbitTable>,
+    swing: Option<SwingTable>,
+}
+
+#[derive(Serialize)]
+struct OrbitTable {
+    center: [f64; 3],
+    axis: [f64; 3],
+    degrees_per_second: f64,
+}
+
+#[derive(Serialize)]
+struct SwingTable {
+    pivot: [f64; 3],
+    axis: [f64; 3],
+    degrees: f64,
+    period_seconds: f64,
+}
+
+#[derive(Serialize)]
+struct ObjectTable<'a> {
+    name: &'a str,
+    translate: [f64; 3],
+    rotate_degrees: [f64; 3],
+    scale: [f64; 3],
+    spin_degrees_per_second: Option<[f64; 3]>,
+    casts: bool,
+    receives: bool,
+    visible: bool,
+    mesh: MeshSource,
+    orbit: Option<OrbitTable>,
+    swing: Option<SwingTable>,
+    material: MaterialTable,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum MeshSource {
+    File(String),
+    Triangles { shape: &'static str, points: Vec<[f64; 3]>, indices: Vec<[u32; 3]> },
+}
+
+#[derive(Serialize)]
+struct MaterialTable {
+    color: [f64; 3],
+    specular: f64,
+    shininess: f64,
+    shading: &'static str,
+    opacity: f64,
+}
+
+#[derive(Serialize)]
+struct TechniqueTable<'a> {
+    name: &'a str,
+    settings: &'a BTreeMap<String, String>,
+}
+
+fn light_table(light: &Light) -> LightTable {
+    let at = light.position.truncate().to_array();
+    let (kind, position, towards) =
+        if light.is_directional() { ("directional", None, Some(at)) } else { ("point", Some(at), None) };
+    let (orbit, swing) = motion(&light.motion);
+    let (color, intensity) = (light.color.map(short), short(light.intensity));
+    LightTable { kind, position, towards, color, intensity, range: light.range, orbit, swing }
+}
+
+fn motion(motion: &Motion) -> (Option<OrbitTable>, Option<SwingTable>) {
+    let orbit = motion.orbit.as_ref().map(|orbit| OrbitTable {
+        center: orbit.center.to_array(),
+        axis: orbit.axis.to_array(),
+        degrees_per_second: orbit.degrees_per_second,
+    });
+    let swing = motion.swing.as_ref().map(|swing| SwingTable {
+        pivot: swing.pivot.to_array(),
+        axis: swing.axis.to_array(),
+        degrees: swing.degrees,
+        period_seconds: swing.period_seconds,
+    });
+    (orbit, swing)
+}
+
+fn object_table(object: &Object, mesh: MeshSource) -> ObjectTable<'_> {
+    let (orbit, swing) = motion(&object.motion);
+    let spin = object.motion.spin_degrees_per_second;
+    let Material { color, specular, shininess, shading, opacity } = object.material;
+    ObjectTable {
+        name: &object.name,
+        translate: object.pose.translate.to_array(),
+        rotate_degrees: object.pose.rotate_degrees.to_array(),
+        scale: object.pose.scale.to_array(),
+        spin_degrees_per_second: (spin != DVec3::ZERO).then(|| spin.to_array()),
+        casts: object.casts,
+        receives: object.receives,
+        visible: object.visible,
+        mesh,
+        orbit,
+        swing,
+        material: MaterialTable {
+            color: color.map(short),
+            specular: short(specular),
+            shininess: short(shininess),
+            shading: match shading {
+                Shading::Flat => "flat",
+                Shading::Gouraud => "gouraud",
+                Shading::Phong => "phong",
+            },
+            opacity: short(opacity),
+        },
+    }
+}
+
+/// The file of a mesh, which is made unless an earlier object has it; or its triangles.
+fn mesh(
+    object: &Object,
+    stem: &str,
+    names: &mut BTreeMap<u64, String>,
+    files: &mut Vec<(String, String)>,
+) -> MeshSource {
+    let mesh = &object.mesh;
+    if let Some(name) = names.get(&mesh.content_hash()) {
+        return MeshSource::File(name.clone());
+    }
+    let has_parts = mesh.groups().iter().any(|group| group.material.is_some() || !group.name.is_empty());
+    if mesh.triangles().len() <= MOST_INLINE && mesh.corner_normals().is_none() && !has_parts {
+        let points = mesh.positions().iter().map(|point| point.to_array()).collect();
+        return MeshSource::Triangles { shape: "triangles", points, indices: mesh.triangles().to_vec() };
+    }
+    let plain: String = object.name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
+    let taken = |name: &str| files.iter().any(|(other, _)| other == &format!("{name}.obj"));
+    let base = format!("{stem}-{plain}");
+    let mut name = base.clone();
+    let mut number = 2;
+    while taken(&name) {
+        name = format!("{base}-{number}");
+        number += 1;
+    }
+    let library = library(mesh);
+    let of_library = (!library.is_empty()).then(|| format!("{name}.mtl"));
+    files.push((format!("{name}.obj"), obj(mesh, of_library.as_deref())));
+    files.extend(of_library.map(|file| (file, library)));
+    names.insert(mesh.content_hash(), format!("{name}.obj"));
+    MeshSource::File(format!("{name}.obj"))
+}
+
+/// A mesh as an OBJ model.
+fn obj(mesh: &Mesh, library: Option<&str>) -> String {
+    let mut out = String::new();
+    let mut line = |text: std::fmt::Arguments| {
+        // Writing to a string can't fail.
+        let _ = writeln!(out, "{text}");
+    };
+    if let Some(library) = library {
+        line(format_args!("mtllib {library}"));
+    }
+    mesh.positions().iter().for_each(|DVec3 { x, y, z }| line(format_args!("v {x:?} {y:?} {z:?}")));
+    let normals = mesh.corner_normals();
+    for Vec3 { x, y, z } in normals.into_iter().flatten().flatten() {
+        line(format_args!("vn {x:?} {y:?} {z:?}"));
+    }
+    let whole = [Group { name: String::new(), triangles: 0..mesh.triangles().len(), material: None }];
+    let groups = if mesh.groups().is_empty() { &whole } else { mesh.groups() };
+    for (index, group) in groups.iter().enumerate() {
+        if groups.len() > 1 || !group.name.is_empty() {
+            let name = if group.name.is_empty() { "unnamed_object" } else { &group.name };
+            line(format_args!("g {name}"));
+        }
+        if group.material.is_some() {
+            line(format_args!("usemtl {}", material_name(index)));
+        }
+        for triangle in group.triangles.clone() {
+            let Some(corners) = mesh.triangles().get(triangle) else { continue };
+            let [a, b, c] = corners.map(|vertex| vertex + 1);
+            if normals.is_some() {
+                let first = 3 * triangle + 1;
+                line(format_args!("f {a}//{first} {b}//{} {c}//{}", first + 1, first + 2));
+            } else {
+                line(format_args!("f {a} {b} {c}"));
+            }
+        }
+    }
+    out
+}
+
+/// The materials of a mesh's groups; empty where they have none.
+fn library(mesh: &Mesh) -> String {
+    let mut out = String::new();
+    for (index, group) in mesh.groups().iter().enumerate() {
+        let Some(Material { color: [red, green, blue], specular, shininess, opacity, .. }) = group.material else {
+            continue;
+        };
+        // Writing to a string can't fail.
+        let _ = writeln!(
+            out,
+            "newmtl {}\nKd {red} {green} {blue}\nKs {specular} {specular} {specular}\nNs {shininess}\nd {opacity}",
+            material_name(index)
+        );
+    }
+    out
+}
+
+fn material_name(group: usize) -> String {
+    format!("material-{}", group + 1)
+}
+
+/// The number with the fewest digits that is this one in single precision.
+fn short(value: f32) -> f64 {
+    value.to_string().parse().unwrap_or(f64::from(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin;
+    use crate::scene::file::load;
+    use std::path::Path;
+
+    /// The scene as it is read again.
+    fn again(scene: &Scene, known: &BTreeMap<u64, String>) -> (Scene, SavedScene) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saved = save(scene, "fixed", known).expect("saved");
+        let put = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");
+        saved.files.iter().for_each(|(name, text)| put(name, text));
+        put("fixed.toml", &saved.toml);
+        (load(&folder.path().join("fixed.toml")).expect("it opens again"), saved)
+    }
+
+    fn assert_same(scene: &Scene, again: &Scene) {
+        assert_eq!(again.objects.len(), scene.objects.len());
+        for (object, other) in scene.objects.iter().zip(&again.objects) {
+            assert_eq!(other.mesh.content_hash(), object.mesh.content_hash(), "{}: {}", scene.name, object.name);
+            assert_eq!(other.mesh.corner_normals(), object.mesh.corner_normals());
+            assert_eq!(Object { mesh: object.mesh.clone(), ..other.clone() }, *object, "{}", scene.name);
+        }
+        assert_eq!(Scene { objects: scene.objects.clone(), ..again.clone() }, *scene);
+    }
+
+    #[test]
+    fn every_built_in_scene_reads_back_as_it_was() {
+        for builtin in builtin::ALL {
+            let scene = builtin.scene().expect("a scene");
+            assert_same(&scene, &again(&scene, &BTreeMap::new()).0);
+        }
+    }
+
+    #[test]
+    fn scene_files_with_models_materials_and_motion_read_back_as_they_were() {
+        let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes");
+        for file in ["knot.toml", "shade.toml"] {
+            let scene = load(&scenes.join(file)).expect("a scene");
+            assert_same(&scene, &again(&scene, &BTreeMap::new()).0);
+        }
+        let mut scene = builtin::ALL[0].scene().expect("a scene");
+        scene.technique = Some(crate::scene::TechniqueRequest {
+            name: "z-fail".to_owned(),
+            settings: BTreeMap::from([("casters".to_owned(), "all".to_owned())]),
+        });
+        (scene.objects[0].casts, scene.objects[0].receives, scene.objects[1].visible) = (false, false, false);
+        scene.lights[0].intensity = 0.1;
+        assert_same(&scene, &again(&scene, &BTreeMap::new()).0);
+    }
+
+    #[test]
+    fn parts_with_materials_keep_them() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let put = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");
+        put("two.mtl", "newmtl red\nKd 0.8 0.1 0.1\nd 0.5\nnewmtl blue\nKd 0.1 0.1 0.8\nKs 0.3 0.3 0.3\nNs 20\n");
+        put(
+            "two.obj",
+            "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0.1\nv 1 1 0.3\ng left\nusemtl red\nf 1 2 3\ng right\nusemtl blue\nf 2 4 3\n",
+        );
+        put("scene.toml", "[[objects]]\nmesh = \"two.obj\"\n");
+        let scene = load(&folder.path().join("scene.toml")).expect("a scene");
+        assert!(scene.objects[0].mesh.groups().iter().all(|group| group.material.is_some()));
+        let (same, saved) = again(&scene, &BTreeMap::new());
+        assert_same(&scene, &same);
+        assert_eq!(same.objects[0].mesh.groups(), scene.objects[0].mesh.groups());
+        assert_eq!(
+            saved.files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+            ["fixed-two.obj", "fixed-two.mtl"]
+        );
+    }
+
+    #[test]
+    fn a_mesh_that_is_a_file_already_is_named() {
+        let scene = builtin::ALL[0].scene().expect("a scene");
+        let known = BTreeMap::from([(scene.objects[0].mesh.content_hash(), "../model.obj".to_owned())]);
+        let saved = save(&scene, "fixed", &known).expect("saved");
+        assert!(saved.toml.contains("mesh = \"../model.obj\""), "{}", saved.toml);
+    }
+}

@@ -1,0 +1,184 @@
+//! Questions about single rays: what is seen at a point of the picture, and what its light meets.
+//!
+//! Which triangles a ray meets is decided as for the truth itself. Where along it, is not exact: that
+//! is for people, and for telling causes apart.
+
+use super::chart::Line;
+use super::pencil::{Bundle, Then};
+use super::{Place, Surface, Tracer};
+use crate::math::{Sign, side_of_triangle};
+use glam::{DVec3, DVec4};
+
+/// The surface at a point of the picture.
+#[derive(Debug, Clone, Copy)]
+pub struct SeenSurface {
+    /// Which triangle.
+    pub place: Place,
+    /// Where it is met, world space.
+    pub point: DVec3,
+    /// The triangle's corners, world space.
+    pub corners: [DVec3; 3],
+    surface: Surface,
+}
+
+/// A casting triangle that a ray of light meets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Met {
+    /// Which triangle.
+    pub place: Place,
+    /// Its corners, world space.
+    pub corners: [DVec3; 3],
+    /// How far from the ray's point towards the light, metres; negative on the other side of the point.
+    pub towards_light: f64,
+    /// The light is on the side from which its corners run counter-clockwise.
+    pub faces_light: bool,
+}
+
+impl Tracer {
+    /// What is seen at a point of the picture; the first pixel's centre is (0.5, 0.5).
+    #[must_use]
+    pub fn seen_at(&self, point: [f64; 2]) -> Option<SeenSurface> {
+        let [surface] = self.surfaces_at([point]);
+        surface.map(|surface| SeenSurface {
+            place: self.world.place(surface.triangle),
+            point: surface.point,
+            corners: self.world.triangles[surface.triangle],
+            surface,
+        })
+    }
+
+    /// Where the ray of sight through a point of the picture begins: on the near plane, world space.
+    #[must_use]
+    pub fn near_point(&self, point: [f64; 2]) -> DVec3 {
+        self.eye.origin + self.view.direction(point) * self.view.near
+    }
+
+    /// How far a world position is along the view's axis, metres.
+    #[must_use]
+    pub fn depth_of(&self, position: DVec3) -> f64 {
+        (position - self.eye.origin).dot(self.view.axis())
+    }
+
+    /// The name of a triangle's object.
+    #[must_use]
+    pub fn name(&self, place: Place) -> &str {
+        self.world.object_name(place.object)
+    }
+
+    /// The name of an object by its index.
+    ///
+    /// # Panics
+    /// If there is no such object.
+    #[must_use]
+    pub fn object_name(&self, object: usize) -> &str {
+        self.world.object_name(object)
+    }
+
+    /// The casting triangles between a light and a seen surface, the nearest to the surface first: there
+    /// are some exactly where the truth is in shadow, but for objects that receive none.
+    ///
+    /// # Panics
+    /// If there is no such light.
+    #[must_use]
+    pub fn between(&self, light: usize, seen: &SeenSurface) -> Vec<Met> {
+        let of = &self.lights[light];
+        let mut found = Vec::new();
+        let mut bundle = Bundle::new();
+        bundle.push(Line::To(seen.point));
+        of.pencil.for_each_meeting(&self.world.triangles, &bundle, |met, _| {
+            if self.lies_between(of, met, &seen.surface) {
+                found.push(met.index as usize);
+            }
+            Then::Continue
+        });
+        self.met(light, seen.point, found)
+    }
+
+    /// The casting triangles between a light and any point of space, the nearest to the point first.
+    ///
+    /// # Panics
+    /// If there is no such light.
+    #[must_use]
+    pub fn between_points(&self, light: usize, point: DVec3) -> Vec<Met> {
+        let farthest = self.light_distance(light, point);
+        let mut all = self.along(light, point);
+        all.retain(|met| met.towards_light > 0.0 && met.towards_light < farthest);
+        all
+    }
+
+    /// The casting triangles that the whole line through a light and a point meets: before the point,
+    /// behind it, and beyond the light.
+    ///
+    /// # Panics
+    /// If there is no such light.
+    #[must_use]
+    pub fn along(&self, light: usize, point: DVec3) -> Vec<Met> {
+        let of = &self.lights[light];
+        let away = -self.towards(light, point);
+        let distance = self.light_distance(light, point);
+        let reach = 4.0 * (self.world.reach(point) + if distance.is_finite() { distance } else { 0.0 });
+        let mut ends = vec![point + away * reach];
+        if of.position.w != 0.0 {
+            ends.push(of.position.truncate() - away * reach);
+        }
+        let mut found = Vec::new();
+        for end in ends {
+            let mut bundle = Bundle::new();
+            bundle.push(Line::To(end));
+            of.pencil.for_each_meeting(&self.world.triangles, &bundle, |met, _| {
+                found.push(met.index as usize);
+                Then::Continue
+            });
+        }
+        self.met(light, point, found)
+    }
+
+    /// How far a light is from a point, metres; infinite for a directional one.
+    ///
+    /// # Panics
+    /// If there is no such light.
+    #[must_use]
+    pub fn light_distance(&self, light: usize, point: DVec3) -> f64 {
+        let position = self.lights[light].position;
+        if position.w == 0.0 { f64::INFINITY } else { (position.truncate() - point).length() }
+    }
+
+    /// The unit direction from a point to a light.
+    ///
+    /// # Panics
+    /// If there is no such light.
+    #[must_use]
+    pub fn towards(&self, light: usize, point: DVec3) -> DVec3 {
+        let position = self.lights[light].position;
+        (position.truncate() - point * position.w).normalize_or_zero()
+    }
+
+    /// Homogeneous world position of a light.
+    ///
+    /// # Panics
+    /// If there is no such light.
+    #[must_use]
+    pub fn light_position(&self, light: usize) -> DVec4 {
+        self.lights[light].position
+    }
+
+    fn met(&self, light: usize, point: DVec3, mut triangles: Vec<usize>) -> Vec<Met> {
+        let towards = self.towards(light, point);
+        triangles.sort_unstable();
+        triangles.dedup();
+        let met = |triangle: usize| {
+            let corners = self.world.triangles[triangle];
+            let [a, b, c] = corners;
+            let normal = (b - a).cross(c - a);
+            Met {
+                place: self.world.place(triangle),
+                corners,
+                towards_light: normal.dot(a - point) / normal.dot(towards),
+                faces_light: side_of_triangle(corners, self.lights[light].position) == Sign::Positive,
+            }
+        };
+        let mut all: Vec<Met> = triangles.into_iter().map(met).filter(|met| met.towards_light.is_finite()).collect();
+        all.sort_by(|a, b| a.towards_light.total_cmp(&b.towards_light));
+        all
+    }
+}

@@ -1,0 +1,188 @@
+//! The command `diagnose`: what it says in text, JSON and pictures, and the scene that it writes mended.
+
+use crate::commands::{assert_fails, run, text};
+use crate::common::names;
+use std::fs;
+use std::path::Path;
+
+const SMALL: [&str; 2] = ["--size", "160x120"];
+
+fn diagnose(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let output = run(folder, &[&["diagnose"], &SMALL[..], arguments].concat());
+    (output.status.code(), text(&output.stdout), text(&output.stderr))
+}
+
+/// An eye within the shadow of a board over the floor.
+fn shaded(folder: &Path) {
+    fs::write(
+        folder.join("shaded.toml"),
+        "[camera]\neye = [0.0, 1.0, 3.0]\ntarget = [0.0, 0.5, 0.0]\nnear = 0.05\n\
+         [[lights]]\nkind = \"directional\"\ntowards = [0.0, 1.0, 1.0]\n\
+         [[objects]]\nname = \"floor\"\nmesh = { shape = \"quad\", size = [20.0, 20.0] }\n\
+         [[objects]]\nname = \"board\"\nmesh = { shape = \"box\", size = [2.0, 0.1, 2.0] }\ntranslate = [0.0, 3.0, 5.0]\n\
+         [[objects]]\nname = \"ball\"\nmesh = { shape = \"sphere\", radius = 0.4, segments = [24, 12] }\ntranslate = [0.0, 0.6, 0.0]\n",
+    )
+    .expect("written");
+}
+
+#[test]
+fn a_right_frame_needs_nothing() {
+    let folder = crate::commands::folder();
+    let (code, told, error) = diagnose(folder.path(), &["tori", "-t", "z-fail", "--fix", "right.toml"]);
+    assert_eq!((code, error.as_str()), (Some(0), ""), "{told}");
+    for words in [
+        "tori, z-fail, 160x120: none of ",
+        "right, the fastest first: ",
+        "what to do: nothing: the shadows are right\n",
+    ] {
+        assert!(told.contains(words), "`{words}` is not in\n{told}");
+    }
+    assert!(told.ends_with("right.toml: not written, as nothing is wrong\n"), "{told}");
+    assert!(!folder.path().join("right.toml").exists());
+}
+
+#[test]
+fn the_text_says_what_is_wrong_why_and_what_to_do() {
+    let folder = crate::commands::folder();
+    shaded(folder.path());
+    let (code, told, error) = diagnose(folder.path(), &["shaded.toml", "-t", "z-pass"]);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(error.contains("pixels are wrong, most of them by eye-in-volume"), "{error}");
+    assert_eq!(error.lines().count(), 1);
+    for words in [
+        "compared pixels are wrong (",
+        "\n1. ",
+        "   eye-in-volume (proven): ",
+        "The eye stands in shadow",
+        "to mend it: use z-fail (`-t z-fail`); run so, none of these pixels is wrong any more",
+        "techniques on this scene, seen from here\n   right, the fastest first: ",
+        "\nwhat to do: To mend it, use z-fail: then no pixel is wrong, of ",
+        "As options: `-t z-fail`.",
+        "\n   as 1: eye-in-volume: ",
+    ] {
+        assert!(told.contains(words), "`{words}` is not in\n{told}");
+    }
+    assert_eq!(told.matches("The eye stands in shadow").count(), 1, "{told}");
+}
+
+/// Field by field as `spec/commands.md` has it.
+#[test]
+fn the_document_has_the_names_of_the_contract() {
+    let folder = crate::commands::folder();
+    shaded(folder.path());
+    let (code, told, _) = diagnose(folder.path(), &["shaded.toml", "-t", "z-pass", "--no-techniques", "--json"]);
+    assert_eq!(code, Some(1));
+    let document: serde_json::Value = serde_json::from_str(&told).expect("JSON alone");
+    assert_eq!(
+        (&document["schema"], &document["scene"], &document["technique"]),
+        (&1.into(), &"shaded".into(), &"z-pass".into())
+    );
+    assert!(document["settings"].is_object() && document["mesh_findings"].is_array());
+    for key in ["compared", "false_shadow", "missing_shadow", "wrong_surface", "edge_band"] {
+        assert!(document["error"][key].is_u64(), "{key}");
+    }
+    let region = &document["regions"][0];
+    assert!(region["pixels"].as_u64().is_some_and(|pixels| pixels > 100));
+    assert!(["false_shadow", "missing_shadow"].contains(&region["kind"].as_str().expect("a kind")));
+    assert_eq!((region["light"].as_u64(), region["box"].as_array().map(Vec::len)), (Some(0), Some(4)));
+    assert!(region["at"].is_array() && region["casters"].is_array() && region["receivers"].is_array());
+    let cause = &region["causes"][0];
+    assert_eq!((&cause["cause"], &cause["mend"]["technique"]), (&"eye-in-volume".into(), &"z-fail".into()));
+    assert_eq!((&cause["proof"], &cause["pixels_left"]), (&"proven".into(), &0.into()));
+    assert!(cause["evidence"].as_str().is_some_and(|evidence| !evidence.is_empty()));
+    assert_eq!(document["suited"], serde_json::json!([]));
+}
+
+#[test]
+fn a_mesh_with_holes_is_told_of_before_any_pixel() {
+    let folder = crate::commands::folder();
+    let (_, told, _) = diagnose(folder.path(), &["triangle.obj", "-t", "z-fail", "--no-techniques", "--json"]);
+    let document: serde_json::Value = serde_json::from_str(&told).expect("JSON");
+    let found = document["mesh_findings"].as_array().expect("findings");
+    let open = found.iter().find(|one| one["object"] == "triangle").expect("the triangle");
+    assert_eq!((&open["cause"], &open["count"]), (&"open-mesh".into(), &3.into()));
+    assert_eq!(open["at"].as_array().map(Vec::len), Some(3));
+    let (code, told, _) = diagnose(folder.path(), &["triangle.obj", "-t", "z-fail", "--no-techniques"]);
+    assert_eq!(code, Some(0));
+    assert!(told.contains("triangle: 3 open-mesh: ") && told.contains("\n     at ("), "{told}");
+}
+
+#[test]
+fn a_folder_has_pictures_text_and_document_and_is_replaced_only_on_request() {
+    let folder = crate::commands::folder();
+    shaded(folder.path());
+    let arguments = ["shaded.toml", "-t", "z-pass", "--no-techniques", "-o", "why"];
+    let (code, told, error) = diagnose(folder.path(), &arguments);
+    assert_eq!(code, Some(1), "{error}");
+    assert!(told.ends_with("why: regions.png, mended.png, diagnosis.txt, diagnosis.json\n"), "{told}");
+    let why = folder.path().join("why");
+    assert_eq!(names(&why), ["diagnosis.json", "diagnosis.txt", "mended.png", "regions.png"]);
+    assert!(told.starts_with(&fs::read_to_string(why.join("diagnosis.txt")).expect("text")));
+    let colors = |name: &str| {
+        let file = fs::File::open(why.join(name)).expect("a picture");
+        let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+        let info = reader.next_frame(&mut pixels).expect("pixels");
+        assert_eq!([info.width, info.height], [160, 120]);
+        let wrong: [[u8; 3]; 2] = [[0xe6, 0x9f, 0x00], [0xcc, 0x79, 0xa7]];
+        pixels.chunks_exact(3).filter(|pixel| wrong.iter().any(|color| color == pixel)).count()
+    };
+    assert!(colors("regions.png") > 100);
+    assert_eq!(colors("mended.png"), 0, "the mend leaves nothing wrong");
+
+    let again = diagnose(folder.path(), &arguments);
+    assert!(again.0 == Some(2) && again.2.contains("--overwrite"), "{}", again.2);
+    assert_eq!(diagnose(folder.path(), &[&arguments[..], &["--overwrite"]].concat()).0, Some(1));
+    assert!(!names(folder.path()).iter().any(|name| name.starts_with('.')));
+    assert!(diagnose(folder.path(), &["tori", "-o", "models/.."]).2.contains("holds no diagnosis"));
+}
+
+#[test]
+fn the_mended_scene_opens_again_and_is_right() {
+    let folder = crate::commands::folder();
+    shaded(folder.path());
+    // From a file, from a built-in scene with meshes of its own, from a model.
+    let model = fs::canonicalize("assets/models/knot.obj").expect("a model");
+    let model = model.to_str().expect("a path");
+    let cases: [(&[&str], &str); 3] = [
+        (&["shaded.toml", "-t", "z-pass"], "use z-fail"),
+        (&["tori", "-t", "shadow-map", "--set", "bias-slope=0", "--set", "bias-constant=0"], ""),
+        (&[model, "-t", "none"], ""),
+    ];
+    for (index, (arguments, mend)) in cases.into_iter().enumerate() {
+        let file = format!("fixed-{index}.toml");
+        let (code, told, error) = diagnose(folder.path(), &[arguments, &["--fix", &file]].concat());
+        assert_eq!(code, Some(1), "{error}");
+        let last = told.lines().last().expect("a line");
+        assert!(last.starts_with(&format!("{file}: written so that it says: {mend}")), "{told}");
+        assert!(last.contains("opened again, 0 of "), "{told}");
+        let (code, told, error) = diagnose(folder.path(), &[&file, "--no-techniques"]);
+        assert_eq!(code, Some(0), "{told}{error}");
+    }
+    let fixed = fs::read_to_string(folder.path().join("fixed-2.toml")).expect("a scene file");
+    assert!(fixed.contains("knot.obj\"") && !names(folder.path()).contains(&"fixed-2-knot.obj".to_owned()), "{fixed}");
+    assert!(names(folder.path()).iter().any(|name| name.starts_with("fixed-1-") && name.ends_with(".obj")));
+    let again = diagnose(folder.path(), &["shaded.toml", "-t", "z-pass", "--fix", "fixed-0.toml"]);
+    assert!(again.0 == Some(2) && again.2.contains("is there already"), "{}", again.2);
+}
+
+#[test]
+fn what_can_not_be_diagnosed_is_refused_in_one_line_with_the_mend() {
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["tory"], &["did you mean `tori`?"]),
+        (&["tori", "-t", "z-fial"], &["did you mean `z-fail`?"]),
+        (&["tori", "--every", "draw"], &["leave it out"]),
+        (&["tori", "--external-capture"], &["leave it out"]),
+        (&["tori", "--fix", "out.obj"], &["ends in .toml"]),
+        (&["good.toml", "--fix", "good.toml"], &["is the scene itself"]),
+        (&["tori", "--fix", "good.toml"], &["is there already", "--overwrite"]),
+        (&["tori", "--fix", "missing/a.toml"], &["missing/a.toml"]),
+        (&["tori", "-o", "good.toml"], &["holds no diagnosis"]),
+        (&["tori", "--json", "models"], &["models"]),
+        (&[], &["<SCENE>"]),
+    ];
+    for (arguments, words) in cases {
+        assert_fails(&[&["diagnose"], *arguments].concat(), 2, words);
+    }
+    assert_fails(&["diagnose", "tori", "--adapter", "no such gpu"], 3, &["mesa-vulkan-drivers"]);
+}

@@ -1,0 +1,43 @@
+//! Diagnosis: every cause is provoked, and named first and proven; what is right has none.
+
+mod causes;
+mod faults;
+mod provoke;
+mod random;
+
+use crate::common::session;
+use provoke::Provocation;
+use stencilscope::diagnosis::{Cause, Diagnosis};
+use stencilscope::progress::Progress;
+use stencilscope::session::{CaptureRequest, Fault, Session};
+
+const SMALL: [u32; 2] = [160, 120];
+
+fn diagnose(session: &mut Session, provoked: &Provocation) -> Diagnosis {
+    let request = CaptureRequest::new(provoked.choice.clone(), SMALL);
+    let fault = provoked.fault.as_deref().map_or(Fault::None, |change| Fault::Plan(change));
+    session.diagnose(&provoked.scene, &request, fault, &Progress::default()).expect("a diagnosis")
+}
+
+/// What is named first: the first cause of the first region.
+fn first(diagnosis: &Diagnosis) -> Option<Cause> {
+    diagnosis.regions.first()?.causes.first().map(|cause| cause.cause)
+}
+
+/// All regions with their causes, for failing tests.
+fn told(diagnosis: &Diagnosis) -> String {
+    let mut text = format!("{} {:?}\n", diagnosis.technique.name(), diagnosis.error);
+    for region in &diagnosis.regions {
+        let (kind, at) = (region.kind.name(), region.at);
+        text += &format!("  {} {kind} at {at:?} of {:?} on {:?}\n", region.pixels, region.casters, region.receivers);
+        for cause in &region.causes {
+            let mend = cause.mend.as_ref().map_or("nothing".to_owned(), ToString::to_string);
+            let (proof, left) = (cause.proof.name(), cause.pixels_left);
+            text += &format!(
+                "    {} {proof} {left:?}: {}; {mend} {:?}\n",
+                cause.cause, cause.evidence, cause.together_with
+            );
+        }
+    }
+    text
+}

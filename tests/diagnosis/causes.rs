@@ -1,0 +1,151 @@
+//! Each cause in scenes of its own.
+
+use super::provoke::{CAUSES, PlanFault, Provocation, provoke, set};
+use super::{diagnose, faults, first, session, told};
+use std::collections::BTreeSet;
+use stencilscope::diagnosis::{Cause, Diagnosis, MeshTrouble, Proof};
+use stencilscope::plan::Part;
+use stencilscope::scene::builtin;
+use stencilscope::technique::Technique;
+
+/// Scenes that are looked at until one has wrong pixels.
+const SEEDS: u64 = 12;
+
+#[test]
+fn every_cause_is_named_first_and_proven() {
+    let mut session = session();
+    let mut missed = Vec::new();
+    for cause in CAUSES {
+        let found = (0..SEEDS).map(|seed| diagnose(&mut session, &provoke(cause, seed)));
+        let Some(diagnosis) = found.into_iter().find(|diagnosis| diagnosis.is_bad()) else {
+            missed.push(format!("{cause}: nothing is wrong"));
+            continue;
+        };
+        let expected = if cause == Cause::F32Limit { Proof::NotRun } else { Proof::Proven };
+        let proof = diagnosis.regions[0].causes.first().map(|cause| cause.proof);
+        let has_numbers = |text: &str| text.contains(|c: char| c.is_ascii_digit());
+        let measures = diagnosis.regions.iter().flat_map(|region| &region.causes).all(|one| has_numbers(&one.evidence));
+        if first(&diagnosis) != Some(cause) || proof != Some(expected) || !measures {
+            missed.push(format!("{cause}: {}", told(&diagnosis)));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+/// The causes that are proven for some region, together or alone.
+fn proven(diagnosis: &Diagnosis) -> BTreeSet<Cause> {
+    let causes = diagnosis.regions.iter().flat_map(|region| &region.causes);
+    causes.filter(|cause| cause.proof == Proof::Proven).map(|cause| cause.cause).collect()
+}
+
+#[test]
+fn two_causes_at_once_are_both_named() {
+    let mut session = session();
+    let both_caps: PlanFault = Box::new(|plan| {
+        faults::without(Part::LightCap)(plan);
+        faults::without(Part::DarkCap)(plan);
+    });
+    let mut caps = provoke(Cause::MissingDarkCap, 3);
+    caps.fault = Some(both_caps);
+    let mut eye = provoke(Cause::EyeInVolume, 1);
+    eye.choice.set("extrusion", "finite:0.1").expect("a setting");
+    let mut open = provoke(Cause::OpenMesh, 2);
+    open.choice.set("operations", "clamp").expect("a setting");
+    open.fault = None;
+    // Nothing keeps shadows on their receiver, nor from darkening it twice.
+    let flat = provoke(Cause::OffReceiver, 1);
+    let mut missed = Vec::new();
+    for (provoked, expected) in [
+        (caps, [Cause::MissingDarkCap, Cause::MissingLightCap]),
+        (eye, [Cause::EyeInVolume, Cause::FiniteExtrusion]),
+        (open, [Cause::OpenMesh, Cause::OperationOrder]),
+        (flat, [Cause::OffReceiver, Cause::DoubleBlend]),
+    ] {
+        let diagnosis = diagnose(&mut session, &provoked);
+        if !proven(&diagnosis).is_superset(&expected.into()) {
+            missed.push(format!("{expected:?}: {}", told(&diagnosis)));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+#[test]
+fn a_right_frame_has_no_cause() {
+    let mut session = session();
+    for builtin in builtin::ALL {
+        let scene = builtin.scene().expect("a scene");
+        for technique in [Technique::Auto, Technique::ZFail] {
+            if technique == Technique::ZFail && builtin.name == "gate" {
+                continue;
+            }
+            let provoked =
+                Provocation { cause: Cause::Undrawn, scene: scene.clone(), choice: set(technique, &[]), fault: None };
+            let diagnosis = diagnose(&mut session, &provoked);
+            assert!(!diagnosis.is_bad() && diagnosis.advice.is_none(), "{}: {}", builtin.name, told(&diagnosis));
+            assert_eq!(diagnosis.error.wrong(), 0);
+        }
+    }
+}
+
+/// The sun has no place: what asks how far it is must not.
+#[test]
+fn the_eye_in_the_shadow_of_the_sun_is_named_too() {
+    let mut session = session();
+    let scene = builtin::Builtin::named("inside").expect("a scene").scene().expect("a scene");
+    let choice = set(Technique::ZPass, &[]);
+    let diagnosis = diagnose(&mut session, &Provocation { cause: Cause::EyeInVolume, scene, choice, fault: None });
+    assert!(diagnosis.regions.len() > 3, "{}", told(&diagnosis));
+    for region in &diagnosis.regions {
+        let first = region.causes.first().map(|found| (found.cause, found.proof));
+        let is_named = matches!(first, Some((Cause::EyeInVolume | Cause::NearPlaneCut, Proof::Proven)));
+        assert!(is_named, "{:?}: {}", region.at, told(&diagnosis));
+    }
+}
+
+/// The truth honours flags: they are told of apart, and nothing is wrong.
+#[test]
+fn flags_are_told_of_with_what_they_take_away() {
+    let mut session = session();
+    for cause in [Cause::NotReceiving, Cause::NotCasting, Cause::Undrawn] {
+        let mut provoked = provoke(Cause::DoubleBlend, 0);
+        provoked.choice = set(Technique::ZFail, &[]);
+        let object = usize::from(cause != Cause::NotReceiving);
+        let flagged = &mut provoked.scene.objects[object];
+        match cause {
+            Cause::NotReceiving => flagged.receives = false,
+            Cause::NotCasting => flagged.casts = false,
+            _ => flagged.visible = false,
+        }
+        let diagnosis = diagnose(&mut session, &provoked);
+        assert!(!diagnosis.is_bad(), "{}", told(&diagnosis));
+        let [flag] = &diagnosis.flags[..] else { panic!("{:?}", diagnosis.flags) };
+        assert_eq!((flag.cause, &flag.object), (cause, &provoked.scene.objects[object].name));
+        assert!(flag.pixels > 10 && flag.at.is_some(), "{flag:?}");
+    }
+}
+
+#[test]
+fn advice_mends_the_whole_frame() {
+    let mut session = session();
+    let provoked = provoke(Cause::FarClip, 0);
+    let advice = diagnose(&mut session, &provoked).advice.expect("advice");
+    assert_eq!(
+        (advice.mend.settings.get("depth").map(String::as_str), advice.wrong_left),
+        (Some("reversed-infinite"), 0)
+    );
+}
+
+/// What meshes are like is told where all casts right, too.
+#[test]
+fn meshes_are_told_of_with_places() {
+    let mut session = session();
+    for (cause, count) in [(Cause::OpenMesh, 4), (Cause::SplitVertices, 36), (Cause::NonManifold, 4)] {
+        let mut provoked = provoke(cause, 0);
+        (provoked.choice, provoked.fault) = (set(Technique::ZFail, &[]), None);
+        let diagnosis = diagnose(&mut session, &provoked);
+        assert!(!diagnosis.is_bad(), "{}", told(&diagnosis));
+        let of_caster = diagnosis.mesh_findings.iter().filter(|found| found.object == "caster");
+        let found: Vec<_> = of_caster.map(|found| (found.kind, found.count, found.at.is_empty())).collect();
+        assert!(found.contains(&(MeshTrouble::Cause(cause), count, false)), "{cause}: {found:?}");
+    }
+}

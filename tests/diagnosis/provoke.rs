@@ -1,0 +1,477 @@
+//! Scenes, settings and plans in which one thing is wrong, from a seed.
+
+use super::faults;
+use crate::common::random::Random;
+use glam::DVec3;
+use std::sync::Arc;
+use stencilscope::diagnosis::Cause;
+use stencilscope::plan::{FramePlan, Part};
+use stencilscope::scene::builtin::{self, shapes};
+use stencilscope::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Pose, Scene};
+use stencilscope::technique::{Choice, Technique};
+use stencilscope::truth::Tracer;
+
+/// Something wrong in a plan.
+pub type PlanFault = Box<dyn Fn(&mut FramePlan)>;
+
+/// A frame with one known cause of wrong pixels.
+pub struct Provocation {
+    pub cause: Cause,
+    pub scene: Scene,
+    pub choice: Choice,
+    pub fault: Option<PlanFault>,
+}
+
+/// The causes of wrong pixels that can be provoked.
+pub const CAUSES: [Cause; 31] = {
+    let mut causes = [Cause::EyeInVolume; 31];
+    let mut index = 0;
+    while index < causes.len() {
+        causes[index] = Cause::ALL[index];
+        index += 1;
+    }
+    causes
+};
+
+pub fn set(technique: Technique, settings: &[(&str, &str)]) -> Choice {
+    let mut choice = Choice::new(technique);
+    settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
+    choice
+}
+
+pub fn object(name: &str, mesh: Mesh, at: [f64; 3]) -> Object {
+    let pose = Pose { translate: DVec3::from_array(at), ..Pose::default() };
+    Object { pose, ..Object::new(name, Arc::new(mesh), Material::default()) }
+}
+
+pub fn cuboid(name: &str, at: [f64; 3], size: [f64; 3]) -> Object {
+    object(name, shapes::cuboid(size).expect("a box"), at)
+}
+
+pub fn floor() -> Object {
+    object("floor", shapes::quad([6.0; 2]).expect("a floor"), [0.0; 3])
+}
+
+pub fn turned(mut object: Object, degrees: [f64; 3]) -> Object {
+    object.pose.rotate_degrees = DVec3::from_array(degrees);
+    object
+}
+
+pub fn scene(eye: [f64; 3], target: [f64; 3], light: Light, objects: Vec<Object>) -> Scene {
+    Scene {
+        name: "provoked".to_owned(),
+        ambient: [0.15; 3],
+        camera: Camera {
+            eye: DVec3::from_array(eye),
+            target: DVec3::from_array(target),
+            up: DVec3::Y,
+            fov_y_degrees: 45.0,
+            near: 0.05,
+            far: None,
+        },
+        lights: vec![light],
+        objects,
+        technique: None,
+    }
+}
+
+pub fn lamp(x: f64, y: f64, z: f64) -> Light {
+    Light::point(DVec3::new(x, y, z))
+}
+
+struct Dice(Random);
+
+impl Dice {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.0.unit()
+    }
+
+    /// Of so many.
+    fn one_of(&mut self, count: usize) -> usize {
+        (self.0.unit() * count as f64) as usize
+    }
+
+    fn lamp(&mut self) -> Light {
+        lamp(self.between(-1.2, 1.2), self.between(3.0, 4.5), self.between(-0.5, 1.5))
+    }
+
+    fn eye(&mut self) -> [f64; 3] {
+        let around = self.between(-1.2, 1.2);
+        let far = self.between(4.0, 6.0);
+        [far * around.sin(), self.between(2.0, 3.5), far * around.cos()]
+    }
+
+    /// A place over the middle of the floor.
+    fn place(&mut self) -> [f64; 3] {
+        [self.between(-0.6, 0.6), self.between(0.7, 1.2), self.between(-0.6, 0.6)]
+    }
+
+    fn degrees(&mut self) -> [f64; 3] {
+        [self.between(-30.0, 30.0), self.between(0.0, 90.0), self.between(-20.0, 20.0)]
+    }
+
+    fn closed(&mut self) -> Mesh {
+        let size = self.between(0.5, 0.9);
+        let made = match self.one_of(3) {
+            0 => shapes::cuboid([size, size * 0.8, size * 1.1]),
+            1 => shapes::sphere(size * 0.6, 16, 8),
+            _ => shapes::torus(size * 0.6, size * 0.25, 20, 10),
+        };
+        made.expect("a shape")
+    }
+
+    /// A mesh over the floor, under a lamp.
+    fn with(&mut self, mesh: Mesh) -> Scene {
+        let caster = turned(object("caster", mesh, self.place()), self.degrees());
+        scene(self.eye(), [0.0, 0.3, 0.0], self.lamp(), vec![floor(), caster])
+    }
+
+    fn still_life(&mut self) -> Scene {
+        let mesh = self.closed();
+        let mut scene = self.with(mesh);
+        if self.one_of(2) == 1 {
+            let place = [self.between(1.0, 1.6), self.between(0.4, 0.8), self.between(-1.0, 1.0)];
+            scene.objects.push(cuboid("crate", place, [0.4; 3]));
+        }
+        scene
+    }
+
+    /// That, or a built-in scene, from any place.
+    fn any_scene(&mut self) -> Scene {
+        let name = ["", "", "table", "steps", "rings", "tori", "two-lights", "panels"][self.one_of(8)];
+        let Some(builtin) = builtin::Builtin::named(name) else { return self.still_life() };
+        let mut scene = builtin.scene().expect("a scene");
+        scene.camera = scene.camera.anywhere(self.one_of(1 << 20) as u64);
+        scene
+    }
+
+    /// A box with corners of its own for each triangle, moved apart by a part of its size.
+    fn seams(&mut self, apart: f64) -> MeshBuilder {
+        let size = self.between(0.6, 0.9);
+        let cube = shapes::cuboid([size, size * 0.7, size]).expect("a box");
+        let mut builder = MeshBuilder::default();
+        for (index, corners) in cube.triangles().iter().enumerate() {
+            // Both triangles of a side alike.
+            let shift = DVec3::new(0.3, 0.5, 0.2) * apart * size * ((index / 2) as f64);
+            builder.positions.extend(corners.map(|corner| cube.positions()[corner as usize] + shift));
+            let first = 3 * index as u32;
+            builder.triangles.push([first, first + 1, first + 2]);
+        }
+        builder
+    }
+}
+
+fn rebuilt(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Mesh {
+    MeshBuilder { positions, triangles, ..MeshBuilder::default() }.build().expect("a mesh")
+}
+
+/// A cause made to happen, one way or another for each seed.
+pub fn provoke(cause: Cause, seed: u64) -> Provocation {
+    let dice = &mut Dice(Random::new(seed.wrapping_mul(64) + cause as u64 + 1));
+    let facing = [("casters", "light-facing")];
+    let (scene, choice, fault): (Scene, Choice, Option<PlanFault>) = match cause {
+        Cause::EyeInVolume => (eye_in_shadow(dice), set(Technique::ZPass, &[]), None),
+        Cause::NearPlaneCut => (near_in_shadow(dice), set(Technique::ZPass, &[]), None),
+        Cause::NearPlaneCrack => (near_through_roof(dice), set(Technique::ZPassPlus, &[]), None),
+        Cause::MissingDarkCap => {
+            (beside_the_lamp(dice), set(Technique::ZFail, &[]), Some(faults::without(Part::DarkCap)))
+        }
+        Cause::MissingLightCap => (dice.any_scene(), set(Technique::ZFail, &[]), Some(faults::without(Part::LightCap))),
+        Cause::FarClip => (dice.any_scene(), set(Technique::ZFail, &[("depth", "standard-finite")]), None),
+        Cause::FiniteExtrusion => {
+            let reach = format!("finite:{:.2}", dice.between(0.05, 0.2));
+            (dice.any_scene(), set(Technique::ZFail, &[("extrusion", &reach)]), None)
+        }
+        Cause::OpenMesh => {
+            let open = open_box(dice);
+            let fault = (dice.one_of(2) == 1).then(faults::textbook_silhouettes);
+            (dice.with(open), set(Technique::ZFail, &facing), fault)
+        }
+        Cause::NonManifold => {
+            let mesh = walled_box(dice);
+            (dice.with(mesh), set(Technique::ZFail, &facing), Some(faults::textbook_silhouettes()))
+        }
+        Cause::InconsistentWinding => {
+            let mesh = dice.closed();
+            let mut scene = dice.with(mesh);
+            let light = scene.lights[0].homogeneous().truncate();
+            flip_some(&mut scene.objects[1], light, dice.between(0.2, 0.6));
+            (scene, set(Technique::ZFail, &facing), None)
+        }
+        Cause::SplitVertices => {
+            let mesh = dice.seams(0.0).build_unwelded().expect("a mesh");
+            (dice.with(mesh), set(Technique::ZFail, &facing), Some(faults::textbook_silhouettes()))
+        }
+        Cause::NearVertices => {
+            let mesh = dice.seams(2e-8).build().expect("a mesh");
+            (dice.with(mesh), set(Technique::ZFail, &facing), Some(faults::textbook_silhouettes()))
+        }
+        Cause::LightInside => {
+            let mut scene = dice.still_life();
+            let [x, y, z] = scene.lights[0].position.truncate().to_array();
+            scene.objects.push(cuboid("lantern", [x, y, z], [dice.between(0.3, 0.5); 3]));
+            (scene, set(Technique::ZFail, &facing), None)
+        }
+        Cause::Clamped => {
+            (before_many(dice), set(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]), None)
+        }
+        Cause::Wrap256 => (under_panes(dice, 256), set(Technique::ZFail, &[]), None),
+        Cause::OperationOrder => (dice.any_scene(), set(Technique::ZFail, &[("operations", "clamp")]), None),
+        Cause::CapFighting => (dice.any_scene(), set(Technique::ZFail, &[]), Some(faults::turned_caps())),
+        Cause::DoubleBlend => (flat_scene(dice), set(Technique::Planar, &[("blend", "twice")]), None),
+        Cause::ZFighting => (flat_scene(dice), set(Technique::Planar, &[("z-fighting", "none")]), None),
+        Cause::OffReceiver => (over_a_table(dice), set(Technique::Planar, &[("stencil", "off")]), None),
+        Cause::AntiShadow => (beyond_the_lamp(dice), set(Technique::Planar, &[("clip", "off")]), None),
+        Cause::FalseShadow => (through_the_floor(dice), set(Technique::Planar, &[("clip", "off")]), None),
+        Cause::NotPlanar => {
+            let technique = [Technique::Planar, Technique::PlanarTexture][dice.one_of(2)];
+            (round_receiver(dice), set(technique, &[]), None)
+        }
+        Cause::Acne => {
+            (dice.any_scene(), set(Technique::ShadowMap, &[("bias-constant", "0"), ("bias-slope", "0")]), None)
+        }
+        Cause::PeterPanning => {
+            let slope = format!("{:.0}", dice.between(100.0, 400.0));
+            (dice.any_scene(), set(Technique::ShadowMap, &[("bias-slope", &slope)]), None)
+        }
+        Cause::Aliasing => {
+            let size = ["16", "32", "64"][dice.one_of(3)];
+            let technique = [Technique::ShadowMap, Technique::Projective, Technique::PlanarTexture][dice.one_of(3)];
+            (lone_sphere(dice), set(technique, &[("size", size)]), None)
+        }
+        Cause::OutsideMap => {
+            let factor = dice.between(1.6, 3.0);
+            (dice.any_scene(), set(Technique::ShadowMap, &[]), Some(faults::narrowed_map(factor)))
+        }
+        Cause::ReverseProjection => (wall_behind_lamp(dice), set(Technique::Projective, &[("reverse", "on")]), None),
+        Cause::Between => (shelf_between(dice), set(Technique::Projective, &[("size", "2048")]), None),
+        Cause::SelfShadow => (ring_alone(dice), set(Technique::Projective, &[("size", "2048")]), None),
+        _ => (low_sun(dice), set(Technique::ZFail, &[]), None),
+    };
+    let mut scene = scene;
+    // A floor is a mesh with an edge too, and a silhouette that falls on what stands on it.
+    let floor_tells = choice.settings().get("casters").is_some_and(|casters| casters == "light-facing");
+    if floor_tells || choice.technique() == Technique::Projective {
+        scene.objects[0].casts = false;
+    }
+    Provocation { cause, scene, choice, fault }
+}
+
+fn eye_in_shadow(dice: &mut Dice) -> Scene {
+    let mut scene = dice.still_life();
+    let place = DVec3::new(dice.between(-0.3, 0.3), 1.5, dice.between(-0.3, 0.3));
+    scene.objects[1] = object("caster", shapes::cuboid([1.0, 0.2, 1.0]).expect("a box"), place.to_array());
+    let light = scene.lights[0].position.truncate();
+    scene.camera.eye = light + (place - light) * ((light.y - dice.between(0.5, 0.9)) / (light.y - place.y));
+    if dice.one_of(2) == 1 {
+        scene.lights = vec![Light::directional(light - place)];
+    }
+    let around = dice.between(0.0, 6.2);
+    scene.camera.target = scene.camera.eye + DVec3::new(around.sin(), dice.between(-0.5, -0.2), around.cos());
+    scene
+}
+
+/// The eye is lit, and a part of the near rectangle is not.
+fn near_in_shadow(dice: &mut Dice) -> Scene {
+    let mut scene = dice.still_life();
+    let place = DVec3::new(0.0, 1.6, 0.0);
+    scene.objects[1] = object("caster", shapes::cuboid([0.8, 0.2, 0.8]).expect("a box"), place.to_array());
+    scene.camera.near = dice.between(0.3, 0.5);
+    if dice.one_of(2) == 1 {
+        scene.lights = vec![Light::directional(scene.lights[0].position.truncate())];
+    }
+    for _ in 0..500 {
+        let around = dice.between(0.0, 6.2);
+        let out = dice.between(0.6, 1.4);
+        scene.camera.eye = DVec3::new(out * around.sin(), dice.between(0.5, 1.1), out * around.cos());
+        scene.camera.target = DVec3::new(dice.between(-0.3, 0.3), 0.3, dice.between(-0.3, 0.3));
+        let tracer = Tracer::new(&scene, super::SMALL).expect("a tracer");
+        let is_in = |point: DVec3| !tracer.between_points(0, point).is_empty();
+        let corners = [[0.5, 0.5], [159.5, 0.5], [0.5, 119.5], [159.5, 119.5], [80.0, 60.0]];
+        if !is_in(scene.camera.eye) && corners.iter().any(|corner| is_in(tracer.near_point(*corner))) {
+            return scene;
+        }
+    }
+    scene
+}
+
+/// The near plane runs through a roof in many folds.
+fn near_through_roof(dice: &mut Dice) -> Scene {
+    let steps = 60_u32;
+    let at = |step: u32, z: f64| {
+        [f64::from(step) / f64::from(steps) * 3.0 - 1.5, if step.is_multiple_of(2) { 0.15 } else { -0.15 }, z]
+    };
+    let points: Vec<[f64; 3]> = (0..=steps).flat_map(|step| [at(step, -0.4), at(step, 0.4)]).collect();
+    let quads =
+        (0..steps).flat_map(|step| [[2 * step, 2 * step + 1, 2 * step + 3], [2 * step, 2 * step + 3, 2 * step + 2]]);
+    let roof = rebuilt(points.into_iter().map(DVec3::from_array).collect(), quads.collect());
+    let roof = Object { visible: false, ..object("roof", roof, [0.0, 1.0, 1.2]) };
+    let light = lamp(dice.between(-0.4, 0.4), dice.between(2.4, 2.9), dice.between(2.0, 2.4));
+    let mut scene = scene([dice.between(-0.2, 0.2), 1.2, 3.0], [0.0, 0.6, 0.0], light, vec![floor(), roof]);
+    scene.camera.near = dice.between(1.55, 2.0);
+    scene
+}
+
+fn beside_the_lamp(dice: &mut Dice) -> Scene {
+    let mut scene = dice.still_life();
+    let light = scene.lights[0].position.truncate();
+    let place = scene.objects[1].pose.translate;
+    scene.camera.eye = light + DVec3::new(dice.between(-1.0, 1.0), dice.between(-0.5, 0.5), dice.between(0.4, 1.2));
+    scene.camera.target = DVec3::new(place.x, 0.0, place.z);
+    scene
+}
+
+/// A box of which one side is missing that the light would be shown.
+fn open_box(dice: &mut Dice) -> Mesh {
+    let size = dice.between(0.6, 1.0);
+    let cube = shapes::cuboid([size, size * 0.7, size]).expect("a box");
+    let is_top = |corners: &&[u32; 3]| corners.iter().all(|vertex| cube.positions()[*vertex as usize].y > 0.0);
+    let open = cube.triangles().iter().filter(|corners| !is_top(corners)).copied().collect();
+    rebuilt(cube.positions().to_vec(), open)
+}
+
+/// A closed box with a wall inside from edge to edge, along the halves of top and bottom.
+fn walled_box(dice: &mut Dice) -> Mesh {
+    let size = dice.between(0.6, 1.0);
+    let [h, v] = [size / 2.0, size * 0.35];
+    let corner = |x: f64, z: f64, y: f64| DVec3::new(x * h, y * v, z * h);
+    let ring = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let mut positions: Vec<DVec3> = ring.iter().map(|[x, z]| corner(*x, *z, -1.0)).collect();
+    positions.extend(ring.iter().map(|[x, z]| corner(*x, *z, 1.0)));
+    let mut triangles = vec![[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]];
+    for side in 0..4_u32 {
+        let next = (side + 1) % 4;
+        triangles.extend([[side, side + 4, next + 4], [side, next + 4, next]]);
+    }
+    triangles.extend([[0, 2, 6], [0, 6, 4]]);
+    rebuilt(positions, triangles)
+}
+
+/// Turns a part of the triangles that face a light.
+fn flip_some(object: &mut Object, light: DVec3, part: f64) {
+    let world = object.world_positions();
+    let mut triangles = object.mesh.triangles().to_vec();
+    let faces = |[a, b, c]: [u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|corner| world[corner as usize]);
+        (b - a).cross(c - a).dot(light - a) > 0.0
+    };
+    let facing: Vec<usize> = (0..triangles.len()).filter(|index| faces(triangles[*index])).collect();
+    let count = ((facing.len() as f64 * part) as usize).max(1);
+    facing.iter().take(count).for_each(|index| triangles[*index].swap(0, 1));
+    object.mesh = Arc::new(rebuilt(object.mesh.positions().to_vec(), triangles));
+}
+
+/// Panes over each other that throw the same shadow, none of them drawn.
+fn panes(light: DVec3, onto: DVec3, half: f64, count: u32) -> impl Iterator<Item = Object> {
+    (0..count).map(move |index| {
+        let up = (0.5 + f64::from(index) * 0.002) / light.y;
+        let pane = shapes::quad([2.0 * half * (1.0 - up); 2]).expect("a pane");
+        let at = onto + (light - onto) * up;
+        Object { visible: false, ..object(&format!("pane {}", index + 1), pane, at.to_array()) }
+    })
+}
+
+fn under_panes(dice: &mut Dice, count: u32) -> Scene {
+    let light = DVec3::new(dice.between(-0.5, 0.5), dice.between(7.0, 9.0), dice.between(-0.5, 0.5));
+    let onto = DVec3::new(dice.between(-0.4, 0.4), 0.0, dice.between(-0.4, 0.4));
+    let mut objects = vec![floor()];
+    objects.extend(panes(light, onto, 0.45, count));
+    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point(light), objects)
+}
+
+/// A shadow before so many volumes that their faces behind the floor are more than eight bits count.
+fn before_many(dice: &mut Dice) -> Scene {
+    let light = DVec3::new(dice.between(-0.3, 0.3), 8.0, dice.between(0.0, 0.5));
+    let onto = DVec3::new(0.0, 0.0, dice.between(-1.4, -1.0));
+    let mut objects = vec![floor()];
+    objects.extend(panes(light, onto, 0.6, 270));
+    objects.push(cuboid("box", [dice.between(-0.2, 0.2), 0.4, dice.between(0.0, 0.2)], [0.5, 0.2, 0.5]));
+    let eye = [dice.between(-0.5, 0.5), dice.between(2.2, 3.0), 4.5];
+    scene(eye, [0.0, 0.2, 0.0], Light::point(light), objects)
+}
+
+/// Nothing but what is flat.
+fn flat_scene(dice: &mut Dice) -> Scene {
+    let caster = turned(cuboid("box", dice.place(), [dice.between(0.4, 0.9), 0.4, 0.6]), dice.degrees());
+    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), caster])
+}
+
+fn over_a_table(dice: &mut Dice) -> Scene {
+    let top = cuboid("table", [0.0, 0.6, 0.0], [1.2, 0.08, 1.0]);
+    let ball = object(
+        "ball",
+        shapes::sphere(0.25, 12, 6).expect("a ball"),
+        [dice.between(0.3, 0.5), dice.between(1.0, 1.3), 0.0],
+    );
+    scene(
+        dice.eye(),
+        [0.0, 0.3, 0.0],
+        lamp(dice.between(-1.5, -0.5), 3.0, dice.between(-0.5, 0.8)),
+        vec![floor(), top, ball],
+    )
+}
+
+fn beyond_the_lamp(dice: &mut Dice) -> Scene {
+    let light = [dice.between(-0.3, 0.3), dice.between(1.2, 1.6), dice.between(-0.3, 0.3)];
+    let above =
+        [light[0] + dice.between(-0.2, 0.2), light[1] + dice.between(0.5, 0.9), light[2] + dice.between(-0.2, 0.2)];
+    let caster = cuboid("box", above, [0.3; 3]);
+    scene(dice.eye(), [0.0, 0.3, 0.0], lamp(light[0], light[1], light[2]), vec![floor(), caster])
+}
+
+fn through_the_floor(dice: &mut Dice) -> Scene {
+    let post = cuboid("post", [dice.between(-0.3, 0.3), -0.4, dice.between(-0.3, 0.3)], [0.5, 1.5, 0.5]);
+    let light = lamp(dice.between(1.2, 1.8), dice.between(1.3, 1.8), dice.between(0.2, 0.8));
+    scene(dice.eye(), [0.0, 0.3, 0.0], light, vec![floor(), post])
+}
+
+fn round_receiver(dice: &mut Dice) -> Scene {
+    let ring = object("ring", shapes::torus(0.6, 0.25, 32, 16).expect("a ring"), [dice.between(-0.2, 0.2), 0.5, 0.0]);
+    let board = object(
+        "board",
+        shapes::quad([0.5, 0.9]).expect("a board"),
+        [0.4, dice.between(1.5, 1.8), dice.between(-0.2, 0.2)],
+    );
+    scene(dice.eye(), [0.0, 0.3, 0.0], lamp(dice.between(1.0, 2.0), 3.5, 0.5), vec![floor(), ring, board])
+}
+
+fn lone_sphere(dice: &mut Dice) -> Scene {
+    let flat = Object { receives: false, ..object("board", shapes::quad([0.8, 0.5]).expect("a board"), dice.place()) };
+    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), turned(flat, dice.degrees())])
+}
+
+fn wall_behind_lamp(dice: &mut Dice) -> Scene {
+    let wall = turned(object("wall", shapes::quad([6.0, 3.0]).expect("a wall"), [0.0, 1.5, -2.0]), [90.0, 0.0, 0.0]);
+    let board = [dice.between(0.0, 0.2), dice.between(1.2, 1.4), 1.5];
+    let board = turned(object("board", shapes::quad([0.5; 2]).expect("a board"), board), [90.0, 0.0, 0.0]);
+    let eye = [dice.between(0.6, 1.4), 3.0, 4.5];
+    scene(eye, [0.0, 0.8, -1.0], lamp(0.0, 1.2, dice.between(0.3, 0.6)), vec![floor(), wall, board])
+}
+
+fn shelf_between(dice: &mut Dice) -> Scene {
+    let shelf = object("shelf", shapes::quad([1.2; 2]).expect("a shelf"), [0.0, dice.between(1.3, 1.6), 0.0]);
+    let small = cuboid("box", [dice.between(-0.1, 0.1), 0.6, dice.between(-0.1, 0.1)], [0.5; 3]);
+    scene(dice.eye(), [0.0, 0.3, 0.0], lamp(dice.between(0.2, 0.5), 4.0, 0.6), vec![floor(), shelf, small])
+}
+
+fn ring_alone(dice: &mut Dice) -> Scene {
+    let ring = turned(
+        object("ring", shapes::torus(0.8, 0.3, 32, 16).expect("a ring"), [0.0, 1.0, 0.0]),
+        [dice.between(60.0, 100.0), dice.between(0.0, 60.0), 0.0],
+    );
+    scene(
+        dice.eye(),
+        [0.0, 0.8, 0.0],
+        lamp(dice.between(1.5, 2.5), dice.between(2.0, 3.0), dice.between(0.5, 1.5)),
+        vec![floor(), ring],
+    )
+}
+
+/// A sun so low that single precision loses the shadow's edge.
+fn low_sun(dice: &mut Dice) -> Scene {
+    let slope = dice.between(5e-5, 2e-4_f64).to_radians().tan();
+    let board = object("board", shapes::quad([2.0, 1.0]).expect("a board"), [0.0, 2.0 * slope, 1.5]);
+    let sun = Light::directional(DVec3::new(dice.between(-0.1, 0.1), slope, 1.0));
+    let objects = vec![floor(), Object { visible: false, ..board }];
+    scene([dice.between(-0.3, 0.3), 2.0, 4.0], [0.0; 3], sun, objects)
+}

@@ -1,0 +1,236 @@
+//! The Diagnosis tab.
+
+use super::pictures::{self, MARGIN, draw, sizes};
+use super::{SIZE, Seen, click, click_button, harness_of, inspector, press, run_request, scene, z_fail};
+use crate::common;
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::sync::Arc;
+use stencilscope::accuracy::{ErrorCounts, Finding};
+use stencilscope::diagnosis::{
+    Advice, Cause, CauseFound, Diagnosis, Mend, MeshFinding, MeshTrouble, ObjectChange, Proof, RegionFound, RegionKind,
+    Rest,
+};
+use stencilscope::inspector::{Action, DiagnosisProgress, DiagnosisView, Inspector};
+use stencilscope::progress::Progress;
+use stencilscope::scene::{OpenSpec, open};
+use stencilscope::session::Fault;
+use stencilscope::technique::{Choice, Technique};
+
+fn cause(cause: Cause, mend: Mend, proof: Proof, left: u64) -> CauseFound {
+    let evidence = format!("evidence of {cause}");
+    CauseFound { cause, evidence, mend: Some(mend), proof, pixels_left: Some(left), together_with: Vec::new() }
+}
+
+/// A diagnosis by hand: two regions of z-pass, holes in a mesh.
+fn found() -> Diagnosis {
+    let region = |pixels, kind, at, causes| RegionFound {
+        pixels,
+        kind: RegionKind::Wrong(kind),
+        light: 0,
+        bounds: [2, 3, 12, 9],
+        at,
+        casters: vec!["box".to_owned()],
+        receivers: vec!["floor".to_owned()],
+        causes,
+    };
+    let z_fail = || Mend::technique(Technique::ZFail);
+    Diagnosis {
+        scene: "by hand".to_owned(),
+        technique: Technique::ZPass,
+        settings: Choice::new(Technique::ZPass).settings().clone(),
+        size: SIZE,
+        error: ErrorCounts { compared: 1200, false_shadow: 30, missing_shadow: 70, wrong_surface: 0, edge_band: 4 },
+        mesh_findings: vec![MeshFinding {
+            object: "box".to_owned(),
+            kind: MeshTrouble::Cause(Cause::OpenMesh),
+            count: 3,
+            at: Vec::new(),
+            effect: "it has holes".to_owned(),
+        }],
+        flags: Vec::new(),
+        regions: vec![
+            region(
+                70,
+                Finding::MissingShadow,
+                [5, 6],
+                vec![
+                    cause(Cause::EyeInVolume, z_fail(), Proof::Proven, 0),
+                    cause(Cause::OpenMesh, Mend::setting("casters", "all"), Proof::NotIt, 70),
+                ],
+            ),
+            region(
+                30,
+                Finding::FalseShadow,
+                [9, 4],
+                vec![cause(Cause::SplitVertices, Mend::scene(0, "box", ObjectChange::Weld), Proof::Part, 12)],
+            ),
+        ],
+        rest: Rest { regions: 2, pixels: 5 },
+        advice: Some(Advice { mend: z_fail(), wrong_left: 0, sentence: "To mend it, use z-fail.".to_owned() }),
+    }
+}
+
+fn opened(view: DiagnosisView) -> Harness<'static, Seen> {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.set_scene(&scene(), run_request(Technique::ZPass));
+    inspector.set_diagnosis(view);
+    let mut harness = harness_of(inspector, [1280.0, 900.0]);
+    click(&mut harness, "Diagnosis");
+    harness.run_steps(2);
+    harness
+}
+
+fn with_regions() -> Harness<'static, Seen> {
+    opened(DiagnosisView { diagnosis: Some(Arc::new(found())), ..DiagnosisView::default() })
+}
+
+const FIRST: &str = "1 · missing shadow of box on floor: 70 pixels, eye-in-volume (proven)";
+const SECOND: &str = "2 · false shadow of box on floor: 30 pixels, split-vertices (part)";
+
+#[test]
+fn before_anything_is_diagnosed_it_says_what_it_does() {
+    let mut harness = opened(DiagnosisView::default());
+    harness.get_by_label_contains("only what takes them away is called proven");
+    click_button(&mut harness, "Diagnose");
+    assert_eq!(harness.state().actions, [Action::Diagnose]);
+}
+
+#[test]
+fn without_a_scene_nothing_can_be_diagnosed() {
+    let mut harness = harness_of(Inspector::default(), [1280.0, 800.0]);
+    click(&mut harness, "Diagnosis");
+    harness.get_by_label_contains("Open a scene to find out");
+    click_button(&mut harness, "Diagnose");
+    assert!(harness.state().actions.is_empty());
+}
+
+#[test]
+fn while_it_runs_it_can_be_stopped_and_errors_are_shown() {
+    let running = Some(DiagnosisProgress { done: 3, of: 9 });
+    let mut harness = opened(DiagnosisView { running, ..DiagnosisView::default() });
+    harness.get_by_label("Diagnosing");
+    assert!(harness.query_by_role_and_label(Role::Button, "Diagnose").is_none());
+    click_button(&mut harness, "Cancel");
+    assert_eq!(harness.state().actions, [Action::CancelDiagnosis]);
+    let error = Some("the scene is too large: scale it down".to_owned());
+    let harness = opened(DiagnosisView { error, ..DiagnosisView::default() });
+    harness.get_by_label("× the scene is too large: scale it down");
+}
+
+#[test]
+fn a_region_goes_to_its_pixel_its_history_and_the_step_that_decided() {
+    let mut harness = with_regions();
+    harness.get_by_label_contains("by hand, z-pass: 100 of 1\u{2009}200 compared pixels are wrong");
+    harness.get_by_label("and 2 smaller of 5 pixels");
+    harness.get_by_role_and_label(Role::Row, FIRST).click();
+    harness.run_steps(3);
+    let seen = harness.state();
+    assert_eq!((seen.inspector.picked(), seen.inspector.step()), (Some([5, 6]), 1), "after the volumes");
+    assert!(seen.actions.contains(&Action::History { at: [5, 6] }), "{:?}", seen.actions);
+    assert!(seen.actions.contains(&Action::Judge), "the error picture is wished for");
+    // By keyboard alike.
+    harness.get_by_role_and_label(Role::Row, SECOND).focus();
+    harness.run_steps(2);
+    press(&mut harness, Key::Enter);
+    assert_eq!(harness.state().inspector.picked(), Some([9, 4]));
+    harness.get_by_label("evidence of split-vertices");
+    harness.get_by_label("12 pixels stay wrong");
+    harness.get_by_label("To mend it in the scene: weld the vertices of box");
+}
+
+#[test]
+fn causes_have_their_evidence_proof_and_meaning() {
+    let harness = with_regions();
+    for words in ["eye-in-volume", "proven", "evidence of eye-in-volume", "not it", "To mend it, use z-fail."] {
+        harness.get_by_label(words);
+    }
+    harness.get_by_label(Cause::EyeInVolume.meaning());
+    harness.get_by_label("box: 3 open-mesh: it has holes");
+}
+
+#[test]
+fn a_mend_is_applied_and_shown_before_and_after() {
+    let mut harness = with_regions();
+    harness.state_mut().actions.clear();
+    click_button(&mut harness, "Apply the mend: use z-fail");
+    let technique = |harness: &Harness<Seen>| match harness.state().actions.last() {
+        Some(Action::Run(request)) => request.choice.technique(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(technique(&harness), Technique::ZFail);
+    harness.get_by_label("shown: after, with the mend");
+    harness.get_by_label_contains("(not as it is shown now)");
+    click_button(&mut harness, "Show before");
+    assert_eq!(technique(&harness), Technique::ZPass);
+    harness.get_by_label("shown: before, without the mend");
+    click_button(&mut harness, "Show after");
+    assert_eq!(technique(&harness), Technique::ZFail);
+}
+
+#[test]
+fn another_scene_forgets_what_was_found() {
+    let mut harness = with_regions();
+    let mut other = scene();
+    other.name = "another".to_owned();
+    harness.state_mut().inspector.set_scene(&other, run_request(Technique::ZFail));
+    harness.run_steps(2);
+    assert!(harness.state().inspector.diagnosis().diagnosis.is_none());
+    assert!(harness.query_by_role_and_label(Role::Row, FIRST).is_none());
+}
+
+#[test]
+fn a_right_frame_says_so_and_small_windows_hold_it() {
+    let right = Diagnosis {
+        regions: Vec::new(),
+        rest: Rest::default(),
+        advice: None,
+        error: ErrorCounts { compared: 1200, ..ErrorCounts::default() },
+        ..found()
+    };
+    let harness = opened(DiagnosisView { diagnosis: Some(Arc::new(right)), ..DiagnosisView::default() });
+    harness.get_by_label("No pixel is wrong.");
+    harness.get_by_label_contains("none of 1\u{2009}200 compared pixels is wrong");
+    for size in [[1920.0, 1080.0], [700.0, 500.0], [320.0, 240.0]] {
+        let mut inspector = inspector(z_fail(SIZE));
+        inspector.set_diagnosis(DiagnosisView { diagnosis: Some(Arc::new(found())), ..DiagnosisView::default() });
+        harness_of(inspector, size);
+    }
+}
+
+/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of` writes them.
+#[test]
+fn pictures_of_a_diagnosis_can_be_drawn() {
+    let folder = std::env::var_os("INSPECTOR_PICTURES").map(std::path::PathBuf::from);
+    let size = if folder.is_some() { [1280, 720] } else { [160, 90] };
+    let mut session = common::session();
+    let scene = open(&OpenSpec::new("assets/scenes/shade.toml")).expect("a scene");
+    for technique in [Technique::ZPass, Technique::Planar] {
+        let request = common::request(technique, size);
+        let mut capture = session.capture(&scene, &request).expect("a capture");
+        let progress = Progress::default();
+        session.judge(&scene, &mut capture, &progress).expect("a truth");
+        let diagnosis = session.diagnose(&scene, &request, Fault::None, &progress).expect("a diagnosis");
+        assert!(diagnosis.is_bad(), "{}", technique.name());
+        for shown in sizes(folder.is_some()) {
+            let at = diagnosis.regions[0].at;
+            let mut inspector = pictures::inspector(&scene, &request, &Arc::new(capture.clone()), at);
+            let view = DiagnosisView { diagnosis: Some(Arc::new(diagnosis.clone())), ..DiagnosisView::default() };
+            inspector.set_diagnosis(view);
+            let mut harness = harness_of(inspector, shown.map(|side| (side + 2 * MARGIN) as f32));
+            click(&mut harness, "Diagnosis");
+            harness.run_steps(2);
+            let first = harness.query_all_by_role(Role::Row).find(|row| {
+                row.rect().width() > 0.0 && {
+                    let label = row.accesskit_node().label().unwrap_or_default();
+                    label.starts_with("1 · ")
+                }
+            });
+            first.expect("the first region").click();
+            harness.run_steps(3);
+            draw(&mut harness, folder.as_deref(), &format!("diagnosis-{}", technique.name()), *shown);
+        }
+    }
+}
