@@ -4,7 +4,7 @@ mod command;
 mod faults;
 
 use crate::commands::{assert_fails, folder, run, text};
-use crate::common::session;
+use crate::common::{apart, session};
 use glam::DVec4;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -258,6 +258,10 @@ fn one(session: &mut Session, (name, value): (&str, f64), entrant: Entrant, size
 /// The extremes at which z-fail must not blink; the command runs all of them at full size.
 #[test]
 fn z_fail_holds_in_extremes() {
+    apart("stress::z_fail_holds_in_extremes", &["all"], |_| see_extremes());
+}
+
+fn see_extremes() {
     let names = [
         "eye-in-volume",
         "eye-on-side-plane",
@@ -324,6 +328,10 @@ fn seeds_that_failed_hold() {
 /// A sample; `stress --case random` runs the thousand.
 #[test]
 fn random_scenes_have_no_wrong_pixel_under_z_fail() {
+    apart("stress::random_scenes_have_no_wrong_pixel_under_z_fail", &["all"], |_| see_random_scenes());
+}
+
+fn see_random_scenes() {
     let (mut session, mut compared) = (session(), 0);
     for seed in (0..1000).step_by(17) {
         let z_fail = Entrant::of(Technique::ZFail);

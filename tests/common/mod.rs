@@ -1,10 +1,12 @@
 //! What tests share: a session on the reference adapter, and small scenes with known answers.
 
+mod apart;
 pub mod random;
 pub mod ray_cast;
 #[cfg(feature = "inspector")]
 pub mod report;
 
+pub use apart::apart;
 use glam::DVec3;
 use std::fs;
 use std::path::Path;

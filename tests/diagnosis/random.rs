@@ -2,6 +2,7 @@
 
 use super::provoke::{CAUSES, Provocation, provoke};
 use super::{diagnose, first, session, told};
+use crate::common::apart;
 use stencilscope::session::Session;
 
 /// As many provocations.
@@ -23,6 +24,14 @@ fn wrong_without(session: &mut Session, provoked: &Provocation) -> u64 {
 
 #[test]
 fn of_a_hundred_random_provocations_the_first_named_cause_is_the_true_one() {
+    apart(
+        "diagnosis::random::of_a_hundred_random_provocations_the_first_named_cause_is_the_true_one",
+        &["all"],
+        |_| name_a_hundred_provocations(),
+    );
+}
+
+fn name_a_hundred_provocations() {
     let mut session = session();
     let (mut missed, mut drawn_again) = (Vec::new(), 0);
     for index in 0..COUNT {

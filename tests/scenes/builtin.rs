@@ -2,7 +2,7 @@
 
 use super::{assert_eye_is_free, crosses, crossings, is_eye_lit, near_points, open_edges, place_of, volume};
 use crate::common::random::Random;
-use crate::common::{judged, session};
+use crate::common::{apart, judged, session};
 use glam::DVec3;
 use std::time::Instant;
 use stencilscope::accuracy::Finding;
@@ -187,23 +187,25 @@ fn builtin_scenes_show_their_shadows_and_z_fail_is_right() {
 /// From three places around what is looked at, near and far, where light and shadow can be seen.
 #[test]
 fn z_fail_is_right_in_every_builtin_scene_from_anywhere() {
-    let mut session = session();
-    for builtin in ALL {
-        let mut random = Random::new(11);
-        let (mut views, mut tries) = (0, 0);
-        while views < 10 {
-            tries += 1;
-            assert!(tries <= 120, "{}: {views} of {tries} views show light and shadow", builtin.name);
-            let scene = from_anywhere(&named(builtin.name), &mut random);
-            let capture = judged(&mut session, &scene, Technique::ZFail, SIZE);
-            assert_z_fail_holds(&scene, &capture, &format!("{:?}", scene.camera));
-            // Walls seen from behind say little.
-            let labels: Vec<[u64; 4]> = (0..scene.lights.len()).map(|light| seen(&capture, light)).collect();
-            views += u32::from(labels.iter().all(|labels| labels[0] >= 300 && labels[1] >= 100));
-            if is_eye_lit(&scene, ASPECT) && scene.name != "gate" {
-                let capture = judged(&mut session, &scene, Technique::ZPass, SIZE);
-                assert_eq!(wrong(&capture), 0, "{}, {:?}: {}", scene.name, scene.camera, worst(&capture));
-            }
+    let names: Vec<&str> = ALL.iter().map(|builtin| builtin.name).collect();
+    apart("scenes::builtin::z_fail_is_right_in_every_builtin_scene_from_anywhere", &names, z_fail_is_right_in);
+}
+
+fn z_fail_is_right_in(name: &str) {
+    let (mut session, mut random) = (session(), Random::new(11));
+    let (mut views, mut tries) = (0, 0);
+    while views < 10 {
+        tries += 1;
+        assert!(tries <= 120, "{name}: {views} of {tries} views show light and shadow");
+        let scene = from_anywhere(&named(name), &mut random);
+        let capture = judged(&mut session, &scene, Technique::ZFail, SIZE);
+        assert_z_fail_holds(&scene, &capture, &format!("{:?}", scene.camera));
+        // Walls seen from behind say little.
+        let labels: Vec<[u64; 4]> = (0..scene.lights.len()).map(|light| seen(&capture, light)).collect();
+        views += u32::from(labels.iter().all(|labels| labels[0] >= 300 && labels[1] >= 100));
+        if is_eye_lit(&scene, ASPECT) && scene.name != "gate" {
+            let capture = judged(&mut session, &scene, Technique::ZPass, SIZE);
+            assert_eq!(wrong(&capture), 0, "{name}, {:?}: {}", scene.camera, worst(&capture));
         }
     }
 }

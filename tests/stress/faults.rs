@@ -27,6 +27,10 @@ const LIGHT_FACING: Entrant = Entrant::with(Technique::ZFail, &[("casters", "lig
 /// the failure does: it loses all the shadow there is.
 #[test]
 fn casting_nothing_is_no_known_failure() {
+    apart("stress::faults::casting_nothing_is_no_known_failure", &["all"], |_| cast_nothing_in_every_case());
+}
+
+fn cast_nothing_in_every_case() {
     let lose_all = [
         "light-far depth-bits",
         "sliver aliasing",
