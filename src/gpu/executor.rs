@@ -142,13 +142,16 @@ impl Executor {
     }
 
     /// Runs the timed passes and counts, for each draw of each pass, the samples that passed its tests;
-    /// `None` for draws that do something where they fail them, and where there are too many to ask.
+    /// `None` for draws that do something where they fail them, for those of maps that are kept, and where
+    /// there are too many to ask.
     ///
     /// # Errors
     /// A driver that fails.
     pub fn samples(&self, prepared: &Prepared) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
         let context = &prepared.context;
-        let samples = context.guarded(|| Ok(Samples::new(&context.device, prepared.plan)))?;
+        // A map that stays is drawn once: a pass that does not run shows no sample of what it holds.
+        let asks = |pass: &Pass| !prepared.may_keep(pass);
+        let samples = context.guarded(|| Ok(Samples::new(&context.device, prepared.plan, asks)))?;
         let notes = Notes { samples, ..Notes::default() };
         context.guarded(|| submit(prepared, Mode::Frame, &notes))?;
         match &notes.samples {
