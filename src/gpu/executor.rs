@@ -117,7 +117,7 @@ impl Executor {
     pub fn time(&self, prepared: &Prepared, snapshots: bool) -> Result<Duration, GpuError> {
         let mode = if snapshots { Mode::Snapshots } else { Mode::Frame };
         let start = Instant::now();
-        prepared.context.guarded(|| submit(prepared, mode, &Notes::default()))?;
+        run(prepared, mode, &Notes::default())?;
         let took = start.elapsed();
         if snapshots {
             staged(prepared, mode).flat_map(StagedPass::iter).for_each(readback::Staging::unmap);
@@ -134,7 +134,7 @@ impl Executor {
         let context = &prepared.context;
         let notes = context.guarded(|| Ok(Notes::of_times(prepared, Mode::Frame)))?;
         let Some(timestamps) = &notes.timestamps else { return Ok(None) };
-        context.guarded(|| submit(prepared, Mode::Frame, &notes))?;
+        run(prepared, Mode::Frame, &notes)?;
         let times = timestamps.read(context)?;
         // What the CPU makes takes the GPU no time.
         let passes = prepared.plan.passes.iter().zip(times).filter(|(pass, _)| pass.timed && pass.image.is_none());
@@ -142,15 +142,18 @@ impl Executor {
     }
 
     /// Runs the timed passes and counts, for each draw of each pass, the samples that passed its tests;
-    /// `None` for draws that do something where they fail them, and where there are too many to ask.
+    /// `None` for draws that do something where they fail them, for those of maps that are kept, and where
+    /// there are too many to ask.
     ///
     /// # Errors
     /// A driver that fails.
     pub fn samples(&self, prepared: &Prepared) -> Result<Vec<Vec<Option<u64>>>, GpuError> {
         let context = &prepared.context;
-        let samples = context.guarded(|| Ok(Samples::new(&context.device, prepared.plan)))?;
+        // A map that stays is drawn once: a pass that does not run shows no sample of what it holds.
+        let asks = |pass: &Pass| !prepared.may_keep(pass);
+        let samples = context.guarded(|| Ok(Samples::new(&context.device, prepared.plan, asks)))?;
         let notes = Notes { samples, ..Notes::default() };
-        context.guarded(|| submit(prepared, Mode::Frame, &notes))?;
+        run(prepared, Mode::Frame, &notes)?;
         match &notes.samples {
             Some(samples) => samples.read(),
             None => Ok(prepared.plan.passes.iter().map(|pass| vec![None; pass.draws.len()]).collect()),
@@ -166,7 +169,7 @@ impl Executor {
         let context = &prepared.context;
         let kept: Vec<bool> = prepared.plan.passes.iter().map(|pass| prepared.is_kept(pass)).collect();
         let notes = context.guarded(|| Ok(Notes::of_times(&prepared, Mode::Everything)))?;
-        let run = || context.guarded(|| submit(&prepared, Mode::Everything, &notes));
+        let run = || run(&prepared, Mode::Everything, &notes);
         if bracket {
             context.bracketed(run)?
         } else {
@@ -212,6 +215,13 @@ fn upload_images(prepared: &Prepared, mode: Mode) {
     }
 }
 
+/// Submits and waits. What is kept is kept only of frames that nothing went wrong in.
+fn run(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError> {
+    prepared.context.guarded(|| submit(prepared, mode, notes))?;
+    prepared.set_drawn();
+    Ok(())
+}
+
 fn submit(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError> {
     upload_images(prepared, mode);
     let mut encoder = prepared.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -232,9 +242,7 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError
         staged(prepared, mode).flat_map(StagedPass::iter).for_each(readback::Staging::request_map);
     }
     notes.request_map();
-    prepared.context.wait()?;
-    prepared.set_drawn();
-    Ok(())
+    prepared.context.wait()
 }
 
 fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, notes: &Notes) {

@@ -106,6 +106,11 @@ impl<'a> Prepared<'a> {
         Ok(Prepared { plan, context, passes, staged, views, view_group, draws, draw_group, lights, kept })
     }
 
+    /// What this pass draws stays for the next frame.
+    pub(super) fn may_keep(&self, pass: &Pass) -> bool {
+        pass.targets().any(|id| self.kept[id.0].is_some())
+    }
+
     /// What this pass would draw is still there.
     pub(super) fn is_kept(&self, pass: &Pass) -> bool {
         let is_drawn = |id: AttachmentId| self.kept[id.0].as_ref().is_some_and(|map| map.is_drawn());

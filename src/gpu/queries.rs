@@ -111,13 +111,13 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Of the timed passes; `None` where there is nothing to ask. What is beyond a query set's room is not
-    /// asked about.
-    pub fn new(device: &Device, plan: &FramePlan) -> Option<Samples> {
+    /// Of the timed passes among those that `asks` takes; `None` where there is nothing to ask. What is beyond
+    /// a query set's room is not asked about.
+    pub fn new(device: &Device, plan: &FramePlan, asks: impl Fn(&Pass) -> bool) -> Option<Samples> {
         let mut next_slot = 0..wgpu::QUERY_SET_MAX_QUERIES;
         let of_pass = |pass: &Pass| -> Vec<Option<u32>> {
             let slots = pass.draws.iter().map(|draw| {
-                let is_asked = pass.timed && draw.raster.acts_only_where_it_passes();
+                let is_asked = pass.timed && asks(pass) && draw.raster.acts_only_where_it_passes();
                 if is_asked { next_slot.next() } else { None }
             });
             slots.collect()

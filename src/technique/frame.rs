@@ -388,7 +388,7 @@ impl<'a> Frame<'a> {
     pub fn beyond_range(&self, light: LightId, index: usize) -> Option<f64> {
         let light = &self.job.scene.lights[light.0];
         let range = light.range.filter(|_| !light.is_directional())?;
-        geometry::beyond_range(&self.placed[index].world, light.position.truncate(), range)
+        geometry::beyond_range(&self.placed[index].world, light.position.truncate(), range, self.eye())
     }
 
     /// Blends draws over the picture, and tests depth and stencil without changing them.

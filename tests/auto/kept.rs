@@ -80,3 +80,22 @@ fn draws_of_a_kept_map_are_told_apart() {
     };
     assert!(after_draws("always") == after_draws("changed"));
 }
+
+/// A map that is there already is not drawn, so no sample of it passes: its casters are not left out for that.
+#[test]
+fn a_kept_map_keeps_its_casters_where_samples_are_counted() {
+    let mut session = session();
+    for technique in [Technique::ShadowMap, Technique::PlanarTexture, Technique::Projective] {
+        let whole = session.capture(&scene(), &asked(technique, "always")).expect("a capture");
+        let mut counted = asked(technique, "changed");
+        counted.choice.set("occlusion", "queries").expect("a setting");
+        for frame in 0..3 {
+            let less = session.capture(&scene(), &counted).expect("a capture");
+            // The frame that counts samples has drawn the map for the one after it.
+            assert!(kept(&less) > 0, "{technique:?}, frame {frame}: the map is drawn again");
+            assert!(labels(&less) == labels(&whole), "{technique:?}, frame {frame}: the labels differ");
+            assert!(maps(&less) == maps(&whole), "{technique:?}, frame {frame}: the map differs");
+            assert!(picture(&less) == picture(&whole), "{technique:?}, frame {frame}: the picture differs");
+        }
+    }
+}
