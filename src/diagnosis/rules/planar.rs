@@ -10,7 +10,7 @@ use crate::numbers;
 use crate::plan::{ColorWrite, Draw, FramePlan, Part};
 use crate::technique::Technique;
 use crate::truth::SeenSurface;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 use std::collections::BTreeSet;
 
 pub(crate) const RULES: &[Rule] =
@@ -210,10 +210,11 @@ fn spans_the_light(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<(S
     let light_height = over_plane(source);
     let turned = if light_height < 0.0 { -1.0 } else { 1.0 };
     let over_light = |point: &DVec3| turned * (over_plane(*point) - light_height);
-    // On the line of light and corner, where it meets the plane; a corner level with the light has no such place.
+    // On the line of light and corner, where it meets the plane; a corner level with the light goes to infinity.
     let flattened = |point: &DVec3| {
-        let part = light_height / (light_height - over_plane(*point));
-        source + (*point - source) * part
+        let under = light_height - over_plane(*point);
+        let away = *point - source;
+        if under == 0.0 { away.extend(0.0) } else { (source + away * (light_height / under)).extend(1.0) }
     };
     for object in facts.scene.objects.iter().filter(|object| object.casts) {
         let world = object.world_positions();
@@ -222,7 +223,8 @@ fn spans_the_light(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<(S
             let heights = corners.each_ref().map(over_light);
             let (under, over) =
                 heights.iter().fold((0.0f64, 0.0f64), |(low, high), height| (low.min(*height), high.max(*height)));
-            let spans = under < 0.0 && over > 0.0 && holds(corners.each_ref().map(flattened), seen.point, normal);
+            let reaches_past = over > 0.0 && heights.iter().any(|height| *height <= 0.0);
+            let spans = reaches_past && holds(corners.each_ref().map(flattened), seen.point, normal);
             if spans {
                 return Some((object.name.clone(), -under, over));
             }
@@ -231,9 +233,10 @@ fn spans_the_light(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<(S
     None
 }
 
-/// Does a triangle hold a point of its plane?
-fn holds(corners: [DVec3; 3], point: DVec3, normal: DVec3) -> bool {
-    let side = |from: usize, to: usize| normal.dot((corners[to] - corners[from]).cross(point - corners[from]));
+/// Does a triangle of homogeneous corners, `w >= 0`, hold a point of its plane?
+fn holds(corners: [DVec4; 3], point: DVec3, normal: DVec3) -> bool {
+    let from_point = corners.map(|corner| corner.truncate() - point * corner.w);
+    let side = |from: usize, to: usize| normal.dot(from_point[from].cross(from_point[to]));
     let sides = [side(0, 1), side(1, 2), side(2, 0)];
     sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
 }
