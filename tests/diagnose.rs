@@ -65,6 +65,36 @@ fn the_text_says_what_is_wrong_why_and_what_to_do() {
     assert_eq!(told.matches("The eye stands in shadow").count(), 1, "{told}");
 }
 
+/// The light stands in the hole of a torus: no point of it is on a line through the light to the plane's wrong pixels.
+#[test]
+fn a_triangle_across_the_lights_height_is_an_anti_shadow() {
+    let folder = crate::commands::folder();
+    let arguments = ["rings", "-t", "planar", "--set", "clip=off", "--light", "0,0.5,0", "--no-techniques"];
+    let (code, told, error) = diagnose(folder.path(), &arguments);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(error.contains("most of them by anti-shadow"), "{error}");
+    assert!(told.contains("anti-shadow (proven): nothing lies between light and surface, but a triangle of torus on"));
+    assert!(!told.contains("no known cause fits"), "{told}");
+    assert!(told.contains("set clip = on: then no pixel is wrong"), "{told}");
+}
+
+/// What a map is blamed for holds in its own numbers, and who wants to keep it hears what to set.
+#[test]
+fn maps_are_told_how_to_stay_maps() {
+    let folder = crate::commands::folder();
+    let arguments = ["steps", "-t", "shadow-map", "--set", "size=128", "--no-techniques"];
+    let (code, told, _) = diagnose(folder.path(), &arguments);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("what to do: To mend it, use z-fail: then no pixel is wrong, of "), "{told}");
+    assert!(told.contains(" To stay with shadow-map, set "), "{told}");
+    let metres = |words: &str| -> Option<f64> { words.split(' ').next()?.parse().ok() };
+    let blamed = told.split("the bias moves the caster ").skip(1);
+    let numbers: Vec<(f64, f64)> =
+        blamed.filter_map(|words| Some((metres(words)?, metres(words.split_once("surface is only ")?.1)?))).collect();
+    assert!(!numbers.is_empty(), "{told}");
+    assert!(numbers.iter().all(|(bias, gap)| bias >= gap && *gap > 1e-9), "{numbers:?}");
+}
+
 /// Field by field as `spec/commands.md` has it.
 #[test]
 fn the_document_has_the_names_of_the_contract() {

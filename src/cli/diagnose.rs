@@ -5,12 +5,13 @@ use super::options::{FrameOptions, SceneOptions};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::{CaptureError, disk};
-use crate::diagnosis::{Diagnosis, Mend, Suited, wrong_pixels};
+use crate::diagnosis::{Cause, Diagnosis, Mend, Proof, Suited, wrong_pixels};
 use crate::picture::Picture;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, Every, Fault, Session};
 use clap::Args;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -99,9 +100,20 @@ fn verdict(diagnosis: &Diagnosis) -> Result<(), CliError> {
         return Ok(());
     }
     let told: u64 = diagnosis.regions.iter().map(|region| region.pixels).sum();
-    let first = diagnosis.regions.first().and_then(|region| region.causes.first());
-    let because = first.map_or_else(String::new, |found| format!(", most of them by {}", found.cause));
-    Err(CliError::Wrong { pixels: told + diagnosis.rest.pixels, because })
+    let all = told + diagnosis.rest.pixels;
+    let mut by_cause: BTreeMap<Cause, u64> = BTreeMap::new();
+    for region in &diagnosis.regions {
+        let first = region.causes.first().filter(|found| found.proof != Proof::NotIt);
+        if let Some(found) = first {
+            *by_cause.entry(found.cause).or_default() += region.pixels;
+        }
+    }
+    let most = by_cause.into_iter().max_by_key(|(_, pixels)| *pixels);
+    let because = most.map_or_else(String::new, |(cause, pixels)| match pixels * 2 > all {
+        true => format!(", most of them by {cause}"),
+        false => format!(", {pixels} of them by {cause}"),
+    });
+    Err(CliError::Wrong { pixels: all, because })
 }
 
 /// A diagnosis may go where nothing is, or replace another.

@@ -92,8 +92,8 @@ impl<'a> Fix<'a> {
         Ok(save(scene, &stem, &known)?)
     }
 
-    /// The models first, so that the scene file is never there without them; what was written goes again where
-    /// something fails.
+    /// The models first, so that the scene file is never there without them; what was not there before goes again
+    /// where something fails.
     fn write_files(&self, saved: &SavedScene) -> Result<(), CliError> {
         let beside = |name: &str| Path::new(self.file).with_file_name(name).to_string_lossy().into_owned();
         let models: Vec<(String, &String)> = saved.files.iter().map(|(name, text)| (beside(name), text)).collect();
@@ -106,12 +106,13 @@ impl<'a> Fix<'a> {
         let all = models.iter().map(|(file, text)| (file.as_str(), *text)).chain([(self.file, &saved.toml)]);
         let mut written: Vec<&str> = Vec::new();
         for (file, text) in all {
+            let is_new = !Path::new(file).exists();
             if let Err(error) = output::write(file, text.as_bytes()) {
                 // What failed is the error already.
                 written.iter().for_each(|file| drop(std::fs::remove_file(file)));
                 return Err(error);
             }
-            written.push(file);
+            written.extend(is_new.then_some(file));
         }
         Ok(())
     }

@@ -235,12 +235,26 @@ pub struct Advice {
 impl Advice {
     /// To make these changes, which leave so many pixels wrong of those that are now.
     pub(crate) fn new(mend: &Mend, wrong_left: u64, wrong_now: u64) -> Advice {
-        let outcome = match wrong_left {
-            0 => "then no pixel is wrong".to_owned(),
-            1 => "then 1 pixel is wrong".to_owned(),
-            left => format!("then {} pixels are wrong", numbers::count(left)),
-        };
+        let outcome = outcome(wrong_left);
         let sentence = format!("To mend it, {mend}: {outcome}, of {} now.", numbers::count(wrong_now));
         Advice { mend: mend.clone(), wrong_left, sentence }
+    }
+
+    /// Where another technique is advised: what to change who stays with this one, and how many pixels that leaves
+    /// wrong.
+    pub(crate) fn or_staying(mut self, technique: Technique, staying: Option<(&Mend, u64)>) -> Advice {
+        if let (Some(_), Some((mend, left))) = (self.mend.technique, staying) {
+            self.sentence += &format!(" To stay with {}, {mend}: {}.", technique.name(), outcome(left));
+        }
+        self
+    }
+}
+
+/// How many pixels are wrong then.
+fn outcome(wrong_left: u64) -> String {
+    match wrong_left {
+        0 => "then no pixel is wrong".to_owned(),
+        1 => "then 1 pixel is wrong".to_owned(),
+        left => format!("then {} pixels are wrong", numbers::count(left)),
     }
 }

@@ -350,9 +350,19 @@ impl Session {
             // Of what no rule explains, much is right there.
             self.run_once(runs, &Mend::technique(Technique::Auto))?.ok();
         }
+        // For who wants to keep the technique: all that its settings can do.
+        self.run_once(runs, &Mend { technique: None, ..all })?.ok();
         let left = runs.done.iter().filter_map(|(mend, done)| Some((done.as_ref().ok()?.count(), mend.weight(), mend)));
-        let best = left.min_by_key(|(left, weight, _)| (*left, *weight)).filter(|(left, ..)| *left < before);
-        Ok(best.map(|(wrong_left, _, mend)| Advice::new(mend, wrong_left, before)))
+        let helps: Vec<_> = left.filter(|(left, ..)| *left < before).collect();
+        let least = |keeps: bool| {
+            let asked = helps.iter().filter(|(.., mend)| !keeps || mend.technique.is_none());
+            asked.min_by_key(|(left, weight, _)| (*left, *weight))
+        };
+        let staying = least(true).map(|(left, _, mend)| (*mend, *left));
+        let technique = run.choice.technique();
+        let advice =
+            |(left, _, mend): &(u64, usize, &Mend)| Advice::new(mend, *left, before).or_staying(technique, staying);
+        Ok(least(false).map(advice))
     }
 }
 

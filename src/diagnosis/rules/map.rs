@@ -27,7 +27,8 @@ pub(crate) struct MapLook {
     texel: f64,
     /// How much farther from the light the receiver gets over one texel, metres.
     slope: f64,
-    /// How far behind what the texel's ray meets the receiver lies, metres.
+    /// How far behind what the texel's ray meets the receiver lies, metres: its plane, or for a shadow that begins
+    /// too late the depth that is looked up.
     gap: f64,
     /// How far the map holds it to be away from where it is, metres.
     bias: f64,
@@ -131,7 +132,12 @@ fn texel_look(
         }
         _ => Cause::Aliasing,
     };
-    Some(MapLook { cause, ..look })
+    // What misses a shadow was looked up at the target, which the bias has to pass.
+    let gap = match (cause, first) {
+        (Cause::PeterPanning, Some(first)) => first.towards_light,
+        _ => look.gap,
+    };
+    Some(MapLook { cause, gap, ..look })
 }
 
 /// The look of the first sample that shows a cause, and how many do.

@@ -10,7 +10,7 @@ use crate::numbers;
 use crate::plan::{ColorWrite, Draw, FramePlan, Part};
 use crate::technique::Technique;
 use crate::truth::SeenSurface;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 use std::collections::BTreeSet;
 
 pub(crate) const RULES: &[Rule] =
@@ -196,6 +196,51 @@ fn on_the_line(facts: &Facts, light: usize, seen: &SeenSurface) -> (Far, Far) {
     (beyond, below)
 }
 
+/// A caster with a triangle that reaches past the light's height over the surface's plane, and whose corners span the
+/// surface when each is carried through the light on its own: its name, and how far the triangle reaches under and
+/// over that height, metres.
+fn spans_the_light(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<(String, f64, f64)> {
+    let position = facts.tracer.light_position(light);
+    if position.w == 0.0 {
+        return None;
+    }
+    let source = position.truncate() / position.w;
+    let normal = (seen.corners[1] - seen.corners[0]).cross(seen.corners[2] - seen.corners[0]).normalize_or_zero();
+    let over_plane = |point: DVec3| normal.dot(point - seen.corners[0]);
+    let light_height = over_plane(source);
+    let turned = if light_height < 0.0 { -1.0 } else { 1.0 };
+    let over_light = |point: &DVec3| turned * (over_plane(*point) - light_height);
+    // On the line of light and corner, where it meets the plane; a corner level with the light goes to infinity.
+    let flattened = |point: &DVec3| {
+        let under = light_height - over_plane(*point);
+        let away = *point - source;
+        if under == 0.0 { away.extend(0.0) } else { (source + away * (light_height / under)).extend(1.0) }
+    };
+    for object in facts.scene.objects.iter().filter(|object| object.casts) {
+        let world = object.world_positions();
+        for triangle in object.mesh.triangles() {
+            let corners = triangle.map(|vertex| world[vertex as usize]);
+            let heights = corners.each_ref().map(over_light);
+            let (under, over) =
+                heights.iter().fold((0.0f64, 0.0f64), |(low, high), height| (low.min(*height), high.max(*height)));
+            let reaches_past = over > 0.0 && heights.iter().any(|height| *height <= 0.0);
+            let spans = reaches_past && holds(corners.each_ref().map(flattened), seen.point, normal);
+            if spans {
+                return Some((object.name.clone(), -under, over));
+            }
+        }
+    }
+    None
+}
+
+/// Does a triangle of homogeneous corners, `w >= 0`, hold a point of its plane?
+fn holds(corners: [DVec4; 3], point: DVec3, normal: DVec3) -> bool {
+    let from_point = corners.map(|corner| corner.truncate() - point * corner.w);
+    let side = |from: usize, to: usize| normal.dot(from_point[from].cross(from_point[to]));
+    let sides = [side(0, 1), side(1, 2), side(2, 0)];
+    sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
+}
+
 fn is_flattened_unclipped(facts: &Facts, case: &Case) -> bool {
     facts.technique() == Technique::Planar && facts.setting("clip") == "off" && case.is_false()
 }
@@ -204,12 +249,23 @@ fn anti_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
     if !is_flattened_unclipped(facts, case) {
         return None;
     }
-    let ((name, far), shown_by) =
-        case.shown(|sample| on_the_line(facts, case.light(), &sample.seen?).0.into_iter().next())?;
-    let evidence = format!(
-        "nothing lies between light and surface, but {name} lies on their line, {} beyond the light",
-        numbers::metres(far)
-    );
+    let light = case.light();
+    let (evidence, shown_by) = case.shown(|sample| {
+        let seen = sample.seen?;
+        let beyond = on_the_line(facts, light, &seen).0.into_iter().next().map(|(name, far)| {
+            let far = numbers::metres(far);
+            format!("nothing lies between light and surface, but {name} lies on their line, {far} beyond the light")
+        });
+        beyond.or_else(|| {
+            let (name, under, over) = spans_the_light(facts, light, &seen)?;
+            Some(format!(
+                "nothing lies between light and surface, but a triangle of {name} reaches from {} under the light's \
+                 height to {} over it, and its corners, flattened one by one, span the surface",
+                numbers::metres(under),
+                numbers::metres(over)
+            ))
+        })
+    })?;
     Suspicion::new(Cause::AntiShadow, evidence, vec![Mend::setting("clip", "on")], shown_by)
 }
 
