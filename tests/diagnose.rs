@@ -216,3 +216,25 @@ fn what_can_not_be_diagnosed_is_refused_in_one_line_with_the_mend() {
     }
     assert_fails(&["diagnose", "tori", "--adapter", "no such gpu"], 3, &["mesa-vulkan-drivers"]);
 }
+
+/// A model beside the mended scene is never replaced: it may be what the scene is made of.
+#[test]
+fn a_mended_scene_replaces_no_model() {
+    let folder = crate::commands::folder();
+    let path = |name: &str| folder.path().join(name);
+    let fixed = ["tori", "-t", "z-fail", "--set", "extrusion=finite:1", "--fix", "mended.toml", "--overwrite"];
+    let (code, told, error) = diagnose(folder.path(), &fixed);
+    assert_eq!(code, Some(1), "{told}{error}");
+    let is_model = |name: &String| name.starts_with("mended-") && name.ends_with(".obj");
+    let models: Vec<String> = names(folder.path()).into_iter().filter(is_model).collect();
+    assert!(!models.is_empty(), "{told}");
+    // Written again with the same models, it is there as before.
+    assert_eq!(diagnose(folder.path(), &fixed).0, Some(1));
+    let mine = "# somebody's work\nv 0 0 0\n";
+    fs::write(path(&models[0]), mine).expect("written");
+    let before = fs::read_to_string(path("mended.toml")).expect("a scene file");
+    let (code, _, error) = diagnose(folder.path(), &fixed);
+    assert!(code == Some(2) && error.contains(&models[0]) && error.contains("choose another name"), "{error}");
+    assert_eq!(fs::read_to_string(path(&models[0])).expect("a model"), mine);
+    assert_eq!(fs::read_to_string(path("mended.toml")).expect("a scene file"), before);
+}

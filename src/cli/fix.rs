@@ -17,7 +17,6 @@ pub struct Fix<'a> {
     file: &'a str,
     /// The name by which the scene was opened.
     source: &'a str,
-    overwrite: bool,
 }
 
 impl<'a> Fix<'a> {
@@ -38,7 +37,7 @@ impl<'a> Fix<'a> {
             usage("is there already: replace it with --overwrite or choose another name")
         } else {
             output::check_target(file)?;
-            Ok(Fix { file, source, overwrite })
+            Ok(Fix { file, source })
         }
     }
 
@@ -96,10 +95,14 @@ impl<'a> Fix<'a> {
     /// where something fails.
     fn write_files(&self, saved: &SavedScene) -> Result<(), CliError> {
         let beside = |name: &str| Path::new(self.file).with_file_name(name).to_string_lossy().into_owned();
-        let models: Vec<(String, &String)> = saved.files.iter().map(|(name, text)| (beside(name), text)).collect();
-        if let Some((taken, _)) = models.iter().find(|(file, _)| Path::new(file).exists() && !self.overwrite) {
+        let mut models: Vec<(String, &String)> = saved.files.iter().map(|(name, text)| (beside(name), text)).collect();
+        // A model that holds the same already stays; another may be somebody's work, or what the scene is made of.
+        let is_there =
+            |(file, text): &(String, &String)| std::fs::read(file).is_ok_and(|bytes| bytes == text.as_bytes());
+        models.retain(|model| !is_there(model));
+        if let Some((taken, _)) = models.iter().find(|(file, _)| Path::new(file).exists()) {
             return Err(CliError::Usage(format!(
-                "`{}` is there already: replace it with --overwrite or choose another name for `--fix`",
+                "`{}` is another model, and stays as it is: choose another name for `--fix`",
                 taken.escape_debug()
             )));
         }
