@@ -4,6 +4,7 @@ mod command;
 mod faults;
 
 use crate::commands::{assert_fails, folder, run, text};
+use crate::common::faults::draws;
 use crate::common::{apart, session};
 use glam::DVec4;
 use std::collections::BTreeSet;
@@ -341,11 +342,6 @@ fn see_random_scenes() {
     }
     assert!(compared > 30_000, "{compared} pixels say little");
 }
-
-fn draws(plan: &mut FramePlan, part: Part) -> impl Iterator<Item = &mut Draw> {
-    plan.passes.iter_mut().flat_map(|pass| &mut pass.draws).filter(move |draw| draw.part == part)
-}
-
 #[test]
 fn a_known_failure_that_does_not_show_is_unexpected_too() {
     let mut session = session();

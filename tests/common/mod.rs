@@ -1,6 +1,7 @@
 //! What tests share: a session on the reference adapter, and small scenes with known answers.
 
 mod apart;
+pub mod faults;
 pub mod random;
 pub mod ray_cast;
 #[cfg(feature = "inspector")]

@@ -1,13 +1,10 @@
 //! Plans made wrong: what no setting does.
 
 use super::provoke::PlanFault;
+use crate::common::faults::{draws, turn_caps};
 use glam::{DMat4, DVec3, Mat4};
 use std::collections::BTreeMap;
 use stencilscope::plan::{Blob, Draw, FramePlan, Part};
-
-fn draws(plan: &mut FramePlan, part: Part) -> impl Iterator<Item = &mut Draw> {
-    plan.passes.iter_mut().flat_map(|pass| &mut pass.draws).filter(move |draw| draw.part == part)
-}
 
 /// A part of volumes is not drawn.
 pub fn without(part: Part) -> PlanFault {
@@ -16,21 +13,7 @@ pub fn without(part: Part) -> PlanFault {
 
 /// Caps with their corners in another order: the same triangles, counted the same way.
 pub fn turned_caps() -> PlanFault {
-    Box::new(|plan| {
-        for part in [Part::LightCap, Part::DarkCap] {
-            for draw in draws(plan, part).filter(|draw| part == Part::LightCap || draw.base_vertex != 0) {
-                let stencil = &mut draw.raster.stencil;
-                std::mem::swap(&mut stencil.front, &mut stencil.back);
-            }
-        }
-        let mut caps: Vec<_> = draws(plan, Part::LightCap).map(|draw| (draw.mesh, draw.triangles.clone())).collect();
-        caps.dedup();
-        for (mesh, triangles) in caps {
-            let mut indices = plan.meshes[mesh.0].indices.data().to_vec();
-            triangles.for_each(|triangle| indices.swap(triangle as usize * 3, triangle as usize * 3 + 1));
-            plan.meshes[mesh.0].indices = Blob::new(indices);
-        }
-    })
+    Box::new(turn_caps)
 }
 
 /// Silhouettes as a textbook has them, where only light-facing triangles cast: an edge that has not exactly

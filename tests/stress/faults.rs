@@ -1,6 +1,7 @@
 //! Faults put into scenes, plans and settings: each is found where `stress` judges it.
 
 use super::*;
+use crate::common::faults::turn_caps;
 
 /// Runs a case as `stress` does, without the fault and with it: nothing is unexpected without it, and
 /// with it something is, judged by what is expected of that very case, value and technique.
@@ -151,20 +152,8 @@ fn dropped_slivers_and_closed_slits_are_found() {
 /// longer those of the surface, bit for bit.
 #[test]
 fn caps_in_turned_vertex_order_are_found() {
-    let turn = |plan: &mut FramePlan| {
-        for part in [Part::LightCap, Part::DarkCap] {
-            draws(plan, part).for_each(swap_operations);
-        }
-        let mut caps: Vec<_> = draws(plan, Part::LightCap).map(|draw| (draw.mesh, draw.triangles.clone())).collect();
-        caps.dedup();
-        for (mesh, triangles) in caps {
-            let mut indices = plan.meshes[mesh.0].indices.data().to_vec();
-            triangles.for_each(|triangle| indices.swap(triangle as usize * 3, triangle as usize * 3 + 1));
-            plan.meshes[mesh.0].indices = Blob::new(indices);
-        }
-    };
     let seeds: Vec<f64> = (0..60).map(f64::from).collect();
-    assert_found(&mut session(), ("random", &seeds), Z_FAIL, Fault::Plan(&turn), "turned caps");
+    assert_found(&mut session(), ("random", &seeds), Z_FAIL, Fault::Plan(&turn_caps), "turned caps");
 }
 
 /// Faults of numbers: where counts stop, where positions are rounded, where depth ends.
