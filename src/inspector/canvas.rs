@@ -43,7 +43,12 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: C
         let whole = if block > 1 { Rect::from_min_size(whole.min, covered.into()) } else { whole };
         painter.image(texture.id(), visible, uv_of(whole, visible), Color32::WHITE);
     }
-    painter.rect_stroke(placement.rect(), CornerRadius::ZERO, Stroke::new(1.0, theme::LINE), StrokeKind::Outside);
+    painter.rect_stroke(
+        placement.rect(),
+        CornerRadius::ZERO,
+        Stroke::new(1.0, theme::of(ui).line),
+        StrokeKind::Outside,
+    );
     if placement.pixels(pixels_per_point) >= NUMBERS_FROM {
         numbers(ui, rect, image, coloring, placement);
     }
@@ -51,7 +56,12 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: C
         crosshair(&painter, placement.rect_of(at));
     }
     if response.has_focus() {
-        painter.rect_stroke(rect.shrink(1.0), CornerRadius::ZERO, Stroke::new(1.0, theme::FOCUS), StrokeKind::Inside);
+        painter.rect_stroke(
+            rect.shrink(1.0),
+            CornerRadius::ZERO,
+            Stroke::new(1.0, theme::of(ui).focus),
+            StrokeKind::Inside,
+        );
     }
     placement
 }

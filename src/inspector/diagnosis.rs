@@ -85,7 +85,7 @@ impl DiagnosisState {
 pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     top_line(ui, state, actions);
     if let Some(error) = &state.diagnosis.view.error {
-        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::ERROR)).wrap());
+        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
     }
     let Some(diagnosis) = state.diagnosis.view.diagnosis.clone() else { return };
     ui.add_space(4.0);
@@ -190,13 +190,13 @@ fn region_row(ui: &mut Ui, state: &mut State, region: &RegionFound, index: usize
         egui::Align2::RIGHT_CENTER,
         &pixels,
         font,
-        theme::DIM,
+        theme::of(ui).dim,
     );
     let title_at = pos2(left + 16.0, rect.top() + 5.0);
     let numbered = format!("{} · {title}", index + 1);
-    theme::line(ui, title_at, count.left() - title_at.x - 8.0, &numbered, TextStyle::Body, theme::TEXT);
+    theme::line(ui, title_at, count.left() - title_at.x - 8.0, &numbered, TextStyle::Body, theme::of(ui).text);
     let second = pos2(left + 16.0, rect.top() + 22.0);
-    theme::line(ui, second, rect.right() - second.x - 8.0, &because, TextStyle::Small, theme::DIM);
+    theme::line(ui, second, rect.right() - second.x - 8.0, &because, TextStyle::Small, theme::of(ui).dim);
     let hover = "Click to go to a pixel of it, to what happened there, and to the step that decided it.";
     if response.on_hover_text(hover).clicked() {
         state.diagnosis.selected = index;

@@ -18,7 +18,7 @@ pub fn ui(
 ) {
     before_and_after(ui, state, actions);
     if let Some(advice) = &diagnosis.advice {
-        wrapped(ui, RichText::new(&advice.sentence).color(theme::TEXT));
+        wrapped(ui, RichText::new(&advice.sentence).color(theme::of(ui).text));
         apply_button(ui, state, &advice.mend, "Apply all", actions);
         ui.add_space(8.0);
     }
@@ -51,15 +51,15 @@ fn before_and_after(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
 
 fn cause(ui: &mut Ui, state: &mut State, found: &CauseFound, is_first: bool, actions: &mut Vec<Action>) {
     ui.add_space(4.0);
-    let color = proof_color(found.proof);
+    let color = proof_color(ui, found.proof);
     ui.horizontal_wrapped(|ui| {
-        ui.label(theme::number(found.cause.name()).color(theme::TEXT));
+        ui.label(theme::number(found.cause.name()).color(theme::of(ui).text));
         ui.label(theme::note(found.proof.name()).color(color));
         if let Some(left) = found.pixels_left.filter(|left| *left > 0) {
             ui.label(theme::note(format!("{} stay wrong", format::counted(left, "pixel"))));
         }
     });
-    wrapped(ui, theme::note(&found.evidence).color(theme::TEXT));
+    wrapped(ui, theme::note(&found.evidence).color(theme::of(ui).text));
     if is_first {
         wrapped(ui, theme::note(found.cause.meaning()));
     }
@@ -107,12 +107,12 @@ fn meshes_and_flags(ui: &mut Ui, diagnosis: &Diagnosis) {
     }
 }
 
-fn proof_color(proof: Proof) -> Color32 {
+fn proof_color(ui: &Ui, proof: Proof) -> Color32 {
     match proof {
-        Proof::Proven => theme::PASSED,
-        Proof::Part => theme::LIT,
-        Proof::NotIt => theme::FAILED,
-        Proof::NotRun => theme::DECIDED,
+        Proof::Proven => theme::of(ui).passed,
+        Proof::Part => theme::of(ui).lit,
+        Proof::NotIt => theme::of(ui).failed,
+        Proof::NotRun => theme::of(ui).decided,
     }
 }
 

@@ -6,6 +6,7 @@
 
 use super::action::Action;
 use super::state::State;
+
 use super::{diagnosis, passes, picture, pixel, report, settings, stress, theme};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
@@ -74,7 +75,7 @@ impl Dock {
             let is_empty = state.report.is_empty() && !others.contains(&true);
             self.keep_heights(ui.available_height(), is_empty);
         }
-        let mut behavior = Panels { state, actions, edited: false };
+        let mut behavior = Panels { state, actions, edited: false, theme: theme::of(ui) };
         self.tree.ui(&mut behavior, ui);
         self.arranged_by_user |= behavior.edited;
     }
@@ -103,13 +104,14 @@ struct Panels<'a> {
     state: &'a mut State,
     actions: &'a mut Vec<Action>,
     edited: bool,
+    theme: &'static theme::Theme,
 }
 
 impl Behavior<Panel> for Panels<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, panel: &mut Panel) -> UiResponse {
         let frame = match panel {
-            Panel::Picture => egui::Frame::new().fill(theme::PANEL),
-            _ => theme::panel_frame(),
+            Panel::Picture => egui::Frame::new().fill(theme::of(ui).panel),
+            _ => theme::panel_frame(ui),
         };
         frame.show(ui, |ui| {
             ui.set_min_size(ui.available_size());
@@ -146,7 +148,7 @@ impl Behavior<Panel> for Panels<'_> {
     }
 
     fn tab_ui(&mut self, tiles: &mut Tiles<Panel>, ui: &mut Ui, id: Id, tile_id: TileId, tab: &TabState) -> Response {
-        let color = if tab.active { theme::TEXT } else { theme::DIM };
+        let color = if tab.active { theme::of(ui).text } else { theme::of(ui).dim };
         let text = self.tab_title_for_tile(tiles, tile_id);
         let font = egui::TextStyle::Button.resolve(ui.style());
         let galley = text.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, font);
@@ -156,11 +158,11 @@ impl Behavior<Panel> for Panels<'_> {
         response.widget_info(|| WidgetInfo::selected(Role::Tab, true, tab.active, &name));
         if ui.is_rect_visible(rect) && !tab.is_being_dragged {
             if tab.active {
-                ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::PANEL);
-                ui.painter().hline(rect.x_range(), rect.top() + 1.0, Stroke::new(2.0, theme::SELECTED));
+                ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).panel);
+                ui.painter().hline(rect.x_range(), rect.top() + 1.0, Stroke::new(2.0, theme::of(ui).selected));
             }
             if response.has_focus() {
-                let outline = Stroke::new(1.0, theme::FOCUS);
+                let outline = Stroke::new(1.0, theme::of(ui).focus);
                 ui.painter().rect_stroke(rect.shrink(2.0), CornerRadius::same(2), outline, egui::StrokeKind::Inside);
             }
             ui.painter().galley(rect.center() - galley.size() / 2.0, galley, color);
@@ -172,8 +174,8 @@ impl Behavior<Panel> for Panels<'_> {
         28.0
     }
 
-    fn tab_bar_color(&self, _visuals: &egui::Visuals) -> Color32 {
-        theme::BACKGROUND
+    fn tab_bar_color(&self, visuals: &egui::Visuals) -> Color32 {
+        theme::in_visuals(visuals).background
     }
 
     fn tab_bar_hline_stroke(&self, _visuals: &egui::Visuals) -> Stroke {
@@ -181,7 +183,7 @@ impl Behavior<Panel> for Panels<'_> {
     }
 
     fn resize_stroke(&self, _style: &egui::Style, state: egui_tiles::ResizeState) -> Stroke {
-        let color = if state == egui_tiles::ResizeState::Idle { theme::LINE } else { theme::SELECTED };
+        let color = if state == egui_tiles::ResizeState::Idle { self.theme.line } else { self.theme.selected };
         Stroke::new(1.0, color)
     }
 

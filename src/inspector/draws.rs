@@ -93,26 +93,26 @@ fn paint_change(ui: &Ui, state: &mut State, capture: &Capture, index: usize, row
     passes::paint_thumbnail(ui, state, changed, place);
     if changes_nothing(&capture.steps[state.step].draws[index]) {
         let font = TextStyle::Monospace.resolve(ui.style());
-        ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, "=", font, theme::FAINT);
+        ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, "=", font, theme::of(ui).faint);
     }
 }
 
 /// The part's swatch, the draw's name, and at the right its triangles.
 fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, right: &str, row: Rect) {
     let left = row.left() + INDENT;
-    if let Some(color) = theme::part_color(draw.part) {
+    if let Some(color) = theme::of(ui).part(draw.part) {
         let swatch = Rect::from_center_size(pos2(left + 5.0, row.center().y), vec2(10.0, 10.0));
-        let outline = Stroke::new(1.0, theme::FAINT);
+        let outline = Stroke::new(1.0, theme::of(ui).faint);
         ui.painter().rect(swatch, CornerRadius::same(2), color, outline, StrokeKind::Inside);
     }
     let left = left + 18.0;
     let at = pos2(row.right() - 8.0, row.center().y);
     let font = TextStyle::Monospace.resolve(ui.style());
-    let right = ui.painter().text(at, egui::Align2::RIGHT_CENTER, right, font, theme::DIM);
+    let right = ui.painter().text(at, egui::Align2::RIGHT_CENTER, right, font, theme::of(ui).dim);
     let color = match (is_selected, changes_nothing(draw)) {
-        (true, _) => theme::TEXT,
-        (false, true) => theme::FAINT,
-        (false, false) => theme::DIM,
+        (true, _) => theme::of(ui).text,
+        (false, true) => theme::of(ui).faint,
+        (false, false) => theme::of(ui).dim,
     };
     let room = right.left() - left - 8.0;
     theme::line(ui, pos2(left, row.center().y - 7.0), room, &draw.name, TextStyle::Small, color);
@@ -141,9 +141,11 @@ fn note(ui: &mut Ui, state: &State, capture: &Capture) {
         _ if state.scene.is_none() => {
             let text = "This folder has no states after draws, so draws can't be stepped through: capture it with \
                         --every draw.";
-            (text.to_owned(), theme::TEXT)
+            (text.to_owned(), theme::of(ui).text)
         }
-        DrawsState::Failed(_, reason) => (format!("× The state after this draw is not known: {reason}"), theme::ERROR),
+        DrawsState::Failed(_, reason) => {
+            (format!("× The state after this draw is not known: {reason}"), theme::of(ui).error)
+        }
         // The row says so, so that nothing moves when it comes.
         DrawsState::Fetching(_) | DrawsState::NotAsked => return,
     };
@@ -186,9 +188,9 @@ pub fn left_out(ui: &mut Ui, left_out: &[LeftOut]) {
                 };
                 for (title, times) in titles {
                     let title = if times > 1 { format!("{title} ×{times}") } else { title };
-                    ui.add(small(title, theme::DIM));
+                    ui.add(small(title, theme::of(ui).dim));
                 }
-                ui.add(small(because.to_owned(), theme::FAINT));
+                ui.add(small(because.to_owned(), theme::of(ui).faint));
             });
         });
         ui.allocate_space(vec2(0.0, 6.0));

@@ -67,9 +67,9 @@ fn one(ui: &mut Ui, state: &mut State, shown: &Shown, index: usize, coloring: Co
         let texture = state.cache.texture(ui.ctx(), image, coloring, size);
         let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         ui.painter().image(texture.id(), square, uv, Color32::WHITE);
-        let outline = if response.hovered() || response.has_focus() { theme::FOCUS } else { theme::LINE };
+        let outline = if response.hovered() || response.has_focus() { theme::of(ui).focus } else { theme::of(ui).line };
         ui.painter().rect_stroke(square, CornerRadius::ZERO, Stroke::new(1.0, outline), StrokeKind::Outside);
-        let (text, ink) = caption(state, shown, index, coloring);
+        let (text, ink) = caption(ui, state, shown, index, coloring);
         let at = pos2(square.left(), square.top() - 18.0);
         theme::line(ui, at, square.width(), &text, egui::TextStyle::Small, ink);
     }
@@ -89,19 +89,19 @@ fn one(ui: &mut Ui, state: &mut State, shown: &Shown, index: usize, coloring: Co
     }
 }
 
-fn caption(state: &mut State, shown: &Shown, index: usize, coloring: Coloring) -> (String, Color32) {
+fn caption(ui: &Ui, state: &mut State, shown: &Shown, index: usize, coloring: Coloring) -> (String, Color32) {
     let Layer { name, note, .. } = &shown.layers[index];
     if let Some(note) = note {
-        return (format!("{name} {note}"), theme::FAINT);
+        return (format!("{name} {note}"), theme::of(ui).faint);
     }
     if matches!(coloring, Coloring::Depth(_)) {
         let clear = state.capture.as_ref().map_or(0.0, |capture| capture.depth.mapping.clear_depth());
         let any_distance = DepthMeasure::Parallel { near: 0.0, length: 1.0, clear };
         if state.cache.depth_range(&shown.images[index], any_distance).is_none() {
-            return (format!("{name} sees no caster"), theme::FAINT);
+            return (format!("{name} sees no caster"), theme::of(ui).faint);
         }
     }
-    (name.clone(), theme::TEXT)
+    (name.clone(), theme::of(ui).text)
 }
 
 fn capitalized(text: &str) -> String {

@@ -32,7 +32,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
         return;
     }
     if let Some(reason) = state.history.failed() {
-        let text = RichText::new(format!("× There is no history: {reason}")).color(theme::ERROR);
+        let text = RichText::new(format!("× There is no history: {reason}")).color(theme::of(ui).error);
         ui.add(egui::Label::new(text).wrap());
         return;
     }
@@ -83,13 +83,14 @@ fn wrong(ui: &mut Ui, wrong: &[String]) {
     if wrong.is_empty() {
         return;
     }
-    let frame = theme::card().stroke(Stroke::new(1.0, theme::ERROR)).inner_margin(Margin::same(8));
+    let frame = theme::card(ui).stroke(Stroke::new(1.0, theme::of(ui).error)).inner_margin(Margin::same(8));
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let title = RichText::new("× This history is wrong, which is our bug. Please report it.").color(theme::ERROR);
+        let title =
+            RichText::new("× This history is wrong, which is our bug. Please report it.").color(theme::of(ui).error);
         ui.add(egui::Label::new(title).wrap());
         for one in wrong.iter().take(MOST_WRONG) {
-            ui.add(egui::Label::new(theme::note(one.as_str()).color(theme::TEXT)).wrap());
+            ui.add(egui::Label::new(theme::note(one.as_str()).color(theme::of(ui).text)).wrap());
         }
         if wrong.len() > MOST_WRONG {
             ui.label(theme::note(format!("and {} more", wrong.len() - MOST_WRONG)));
@@ -178,7 +179,7 @@ fn head(ui: &mut Ui, has_stencil: bool) {
     let columns = Columns::of(rect, has_stencil);
     let write = |x: f32, align: Align2, text: &str| {
         let font = FontId::proportional(theme::SMALL_SIZE);
-        ui.painter().text(pos2(x, rect.center().y), align, text, font, theme::FAINT);
+        ui.painter().text(pos2(x, rect.center().y), align, text, font, theme::of(ui).faint);
     };
     write(columns.pass, Align2::RIGHT_CENTER, "#");
     write(columns.what, Align2::LEFT_CENTER, "face");
@@ -189,7 +190,7 @@ fn head(ui: &mut Ui, has_stencil: bool) {
         write(columns.operation, Align2::LEFT_CENTER, "op");
     }
     write(columns.change, Align2::RIGHT_CENTER, "change");
-    let line = Stroke::new(1.0, theme::LINE);
+    let line = Stroke::new(1.0, theme::of(ui).line);
     ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, line);
 }
 
@@ -209,7 +210,7 @@ fn row(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory
     }
     if ui.is_rect_visible(rect) {
         theme::row_background(ui, rect, is_selected, &response);
-        let ink = if event.does_something() { theme::TEXT } else { theme::DIM };
+        let ink = if event.does_something() { theme::of(ui).text } else { theme::of(ui).dim };
         paint(ui, rect, &cells, history.has_stencil, ink);
     }
     let line = line(history, event, &capture.depth);
@@ -231,34 +232,34 @@ fn paint(ui: &Ui, rect: Rect, cells: &Cells, has_stencil: bool, ink: Color32) {
     let middle = rect.center().y;
     let number = theme::number_font(theme::SMALL_SIZE);
     let words = FontId::proportional(theme::SMALL_SIZE);
-    painter.text(pos2(columns.pass, middle), Align2::RIGHT_CENTER, &cells.pass, number.clone(), theme::DIM);
-    if let Some(color) = cells.part.and_then(theme::part_color) {
+    painter.text(pos2(columns.pass, middle), Align2::RIGHT_CENTER, &cells.pass, number.clone(), theme::of(ui).dim);
+    if let Some(color) = cells.part.and_then(|part| theme::of(ui).part(part)) {
         let swatch = Rect::from_center_size(pos2(columns.pass + 10.0, middle), vec2(8.0, 8.0));
         painter.rect_filled(swatch, CornerRadius::same(2), color);
     }
     // Of both words more has to be seen than the first.
     let what = if cells.part == Some(Part::PlanarShadow) { "flat" } else { cells.what.as_str() };
     theme::two_inks(ui, pos2(columns.what, middle), columns.what_room, [what, &cells.of], ink);
-    painter.text(pos2(columns.side, middle), Align2::LEFT_CENTER, cells.side, words.clone(), theme::DIM);
+    painter.text(pos2(columns.side, middle), Align2::LEFT_CENTER, cells.side, words.clone(), theme::of(ui).dim);
     match cells.outcome {
         Outcome::Cleared => {}
         Outcome::Nothing(why) => {
-            painter.text(pos2(columns.depth, middle), Align2::LEFT_CENTER, why, words, theme::FAINT);
+            painter.text(pos2(columns.depth, middle), Align2::LEFT_CENTER, why, words, theme::of(ui).faint);
         }
         Outcome::Tested { depth, stencil, operation } => {
             test(ui, pos2(columns.depth, middle), depth);
             if let Some(x) = columns.stencil {
                 test(ui, pos2(x, middle), stencil);
                 let (text, color) = match operation {
-                    None => ("", theme::FAINT),
-                    Some(wgpu::StencilOperation::Keep) => (short(wgpu::StencilOperation::Keep), theme::FAINT),
+                    None => ("", theme::of(ui).faint),
+                    Some(wgpu::StencilOperation::Keep) => (short(wgpu::StencilOperation::Keep), theme::of(ui).faint),
                     Some(other) => (short(other), ink),
                 };
                 painter.text(pos2(columns.operation, middle), Align2::LEFT_CENTER, text, number.clone(), color);
             }
         }
     }
-    let color = if cells.has_changed { theme::TEXT } else { theme::FAINT };
+    let color = if cells.has_changed { theme::of(ui).text } else { theme::of(ui).faint };
     painter.text(pos2(columns.change, middle), Align2::RIGHT_CENTER, &cells.change, number, color);
 }
 
@@ -270,14 +271,14 @@ fn test(ui: &Ui, at: Pos2, test: Test) {
         painter.line(points, Stroke::new(1.7, color));
     };
     match test {
-        Test::Passed => mark(&[(0.0, 0.5), (3.0, 3.5), (9.0, -3.5)], theme::PASSED),
+        Test::Passed => mark(&[(0.0, 0.5), (3.0, 3.5), (9.0, -3.5)], theme::of(ui).passed),
         Test::Failed => {
-            mark(&[(0.5, -3.5), (7.5, 3.5)], theme::FAILED);
-            mark(&[(0.5, 3.5), (7.5, -3.5)], theme::FAILED);
+            mark(&[(0.5, -3.5), (7.5, 3.5)], theme::of(ui).failed);
+            mark(&[(0.5, 3.5), (7.5, -3.5)], theme::of(ui).failed);
         }
         Test::Always | Test::NotReached => {
             let font = FontId::proportional(theme::SMALL_SIZE);
-            painter.text(at, Align2::LEFT_CENTER, sign(test), font, theme::DECIDED);
+            painter.text(at, Align2::LEFT_CENTER, sign(test), font, theme::of(ui).decided);
         }
     }
 }
@@ -285,9 +286,9 @@ fn test(ui: &Ui, at: Pos2, test: Test) {
 /// The selected event in full, and the way to its step.
 fn selected(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory) {
     let Some(event) = state.history.selected_in(history).and_then(|index| history.events.get(index)) else { return };
-    theme::card().show(ui, |ui| {
+    theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.add(egui::Label::new(theme::note(line(history, event, &capture.depth)).color(theme::TEXT)).wrap());
+        ui.add(egui::Label::new(theme::note(line(history, event, &capture.depth)).color(theme::of(ui).text)).wrap());
         let text = theme::note(format!("Go to {}, {}", moment_of(event).words(), event.pass_name));
         if moment_of(event) != state.selected() && ui.button(text).clicked() {
             go_to(state, event);

@@ -212,7 +212,7 @@ fn name(history: &PixelHistory, rung: &Rung) -> String {
 /// The line itself, from the eye to infinity.
 fn ray(ui: &Ui, columns: Columns, top: f32, placed: &[Placed]) {
     let [Some(first), Some(last)] = [placed.first(), placed.last()] else { return };
-    let stroke = Stroke::new(1.5, theme::FAINT);
+    let stroke = Stroke::new(1.5, theme::of(ui).faint);
     ui.painter().vline(columns.ray, top + first.1..=top + last.1, stroke);
 }
 
@@ -222,32 +222,38 @@ fn paint_rung(ui: &Ui, history: &PixelHistory, rung: &Rung, rect: Rect) {
     let (painter, y) = (ui.painter(), rect.center().y);
     let counts = rung.added != 0;
     let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(20.0, 6.0));
-    let color = theme::part_color(one.part).unwrap_or(theme::DIM);
+    let color = theme::of(ui).part(one.part).unwrap_or(theme::of(ui).dim);
     if counts {
         painter.rect_filled(bar, CornerRadius::same(1), color);
     } else {
-        painter.rect(bar, CornerRadius::same(1), theme::PANEL, Stroke::new(1.0, theme::FAINT), StrokeKind::Inside);
+        painter.rect(
+            bar,
+            CornerRadius::same(1),
+            theme::of(ui).panel,
+            Stroke::new(1.0, theme::of(ui).faint),
+            StrokeKind::Inside,
+        );
     }
     let (part, of) = named(one);
-    let ink = if counts { theme::TEXT } else { theme::FAINT };
+    let ink = if counts { theme::of(ui).text } else { theme::of(ui).faint };
     let what = format!("{part}, {}", side(one));
     theme::two_inks(ui, pos2(columns.name, y), columns.name_room, [&what, &of], ink);
     let number = theme::number_font(theme::SMALL_SIZE);
-    let ink = if counts { theme::DIM } else { theme::FAINT };
+    let ink = if counts { theme::of(ui).dim } else { theme::of(ui).faint };
     let is_clipped = matches!(one.fate, Fate::Clipped(_) | Fate::Discarded(_) | Fate::Culled);
     let distance = if is_clipped { "clipped".to_owned() } else { short_metres(rung.distance) };
     painter.text(pos2(columns.distance, y), Align2::RIGHT_CENTER, distance, number.clone(), ink);
     if !counts {
         return;
     }
-    let color = if rung.added > 0 { theme::COUNT_UP } else { theme::COUNT_DOWN };
+    let color = if rung.added > 0 { theme::of(ui).count_up } else { theme::of(ui).count_down };
     painter.text(pos2(columns.added, y), Align2::RIGHT_CENTER, added(rung.added), number.clone(), color);
     // Up or down beside the sign.
     let (tip, base) = if rung.added > 0 { (-3.5, 3.0) } else { (3.5, -3.0) };
     let x = columns.added - 24.0;
     let triangle = [vec2(0.0, tip), vec2(3.5, base), vec2(-3.5, base)].map(|corner| pos2(x, y) + corner);
     painter.add(Shape::convex_polygon(triangle.to_vec(), color, Stroke::NONE));
-    painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, signed(rung.running), number, theme::TEXT);
+    painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, signed(rung.running), number, theme::of(ui).text);
 }
 
 /// Metres in as few digits as a column has room for.
@@ -265,10 +271,10 @@ fn paint_more(ui: &Ui, rungs: &[Rung], rect: Rect) {
     let columns = Columns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
     for offset in [-4.0, 0.0, 4.0] {
-        painter.circle_filled(pos2(columns.ray, y + offset), 1.5, theme::DIM);
+        painter.circle_filled(pos2(columns.ray, y + offset), 1.5, theme::of(ui).dim);
     }
     let font = FontId::proportional(theme::SMALL_SIZE);
-    painter.text(pos2(columns.name, y), Align2::LEFT_CENTER, folded(rungs), font, theme::DIM);
+    painter.text(pos2(columns.name, y), Align2::LEFT_CENTER, folded(rungs), font, theme::of(ui).dim);
 }
 
 /// Eye, near plane, surface, infinity.
@@ -282,39 +288,45 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
     };
     match mark {
         Mark::Eye => {
-            painter.circle_filled(pos2(columns.ray, y), 4.0, theme::TEXT);
-            words("eye", theme::DIM);
+            painter.circle_filled(pos2(columns.ray, y), 4.0, theme::of(ui).text);
+            words("eye", theme::of(ui).dim);
         }
         Mark::Near => {
             let [from, to] = [columns.ray - 14.0, columns.ray + 14.0].map(|x| pos2(x, y));
-            painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.5, theme::DIM), 4.0, 3.0));
-            words("near plane", theme::DIM);
-            number(columns.distance, short_metres(capture.camera.near), theme::DIM);
+            painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.5, theme::of(ui).dim), 4.0, 3.0));
+            words("near plane", theme::of(ui).dim);
+            number(columns.distance, short_metres(capture.camera.near), theme::of(ui).dim);
             if ladder.start != 0 && !ladder.is_from_infinity {
-                number(columns.count, signed(ladder.start), theme::TEXT);
+                number(columns.count, signed(ladder.start), theme::of(ui).text);
             }
         }
         Mark::Surface => {
             let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(32.0, 7.0));
-            painter.rect_filled(bar, CornerRadius::same(1), theme::TEXT);
+            painter.rect_filled(bar, CornerRadius::same(1), theme::of(ui).text);
             let of = surface_name(history).unwrap_or("");
             let words = ["surface", of];
-            theme::two_inks(ui, pos2(columns.name, y), columns.name_room, words, theme::TEXT);
-            number(columns.distance, ladder.surface.map(short_metres).unwrap_or_default(), theme::TEXT);
+            theme::two_inks(ui, pos2(columns.name, y), columns.name_room, words, theme::of(ui).text);
+            number(columns.distance, ladder.surface.map(short_metres).unwrap_or_default(), theme::of(ui).text);
             // What the light pass asks about.
             let count = match ladder.tested {
                 Count::Stencil(byte) if !(-128..=255).contains(&ladder.count) => byte.to_string(),
                 _ => signed(ladder.count),
             };
             let size = theme::TEXT_SIZE;
-            let ink = if ladder.tested.is_zero() { theme::LIT } else { theme::TEXT };
+            let ink = if ladder.tested.is_zero() { theme::of(ui).lit } else { theme::of(ui).text };
             painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, count, theme::number_font(size), ink);
         }
         Mark::Infinity => {
-            painter.text(pos2(columns.ray, y + 7.0), Align2::CENTER_CENTER, "∞", theme::number_font(15.0), theme::DIM);
-            words("infinity", theme::DIM);
+            painter.text(
+                pos2(columns.ray, y + 7.0),
+                Align2::CENTER_CENTER,
+                "∞",
+                theme::number_font(15.0),
+                theme::of(ui).dim,
+            );
+            words("infinity", theme::of(ui).dim);
             if ladder.start != 0 && ladder.is_from_infinity {
-                number(columns.count, signed(ladder.start), theme::TEXT);
+                number(columns.count, signed(ladder.start), theme::of(ui).text);
             }
         }
         Mark::Rung(_) | Mark::More(..) => {}
@@ -337,7 +349,7 @@ fn paint_count(ui: &Ui, columns: Columns, top: f32, ladder: &Ladder, stretches: 
     let painter = ui.painter();
     if let (Some(first), Some(last)) = (stretches.first(), stretches.last()) {
         let (low, high) = (first.top.min(last.top), first.bottom.max(last.bottom));
-        painter.vline(x(0), top + low..=top + high, Stroke::new(1.0, theme::LINE));
+        painter.vline(x(0), top + low..=top + high, Stroke::new(1.0, theme::of(ui).line));
     }
     let along = stretches.iter().flat_map(|one| {
         let ends = if ladder.is_from_infinity { [one.bottom, one.top] } else { [one.top, one.bottom] };
@@ -347,7 +359,7 @@ fn paint_count(ui: &Ui, columns: Columns, top: f32, ladder: &Ladder, stretches: 
     if let [.., before, last] = along[..] {
         let back = if before.y > last.y { 6.0 } else { -6.0 };
         let tip = [vec2(-3.5, back), vec2(0.0, 0.0), vec2(3.5, back)].map(|corner| last + corner);
-        painter.line(tip.to_vec(), Stroke::new(1.5, theme::TEXT));
+        painter.line(tip.to_vec(), Stroke::new(1.5, theme::of(ui).text));
     }
-    painter.line(along, Stroke::new(1.5, theme::TEXT));
+    painter.line(along, Stroke::new(1.5, theme::of(ui).text));
 }

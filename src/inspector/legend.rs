@@ -48,7 +48,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, range: [f64
     // Senses clicks, so that they do not reach the picture underneath.
     let builder = UiBuilder::new().max_rect(corner).sense(Sense::click_and_drag()).id_salt("legend");
     ui.scope_builder(builder, |ui| {
-        let frame = theme::card().fill(theme::PANEL.gamma_multiply(0.94));
+        let frame = theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94));
         frame.show(ui, |ui| {
             ui.set_width(width - 16.0);
             ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
@@ -147,7 +147,7 @@ fn let_through(ui: &mut Ui, state: &mut State, shown: &Shown) {
             let slice = Rect::from_min_size(corner, vec2(third, rect.height()));
             ui.painter().rect_filled(slice, CornerRadius::ZERO, color.lerp_to_gamma(Color32::GRAY, 0.4));
         }
-        let outline = egui::Stroke::new(1.0, theme::FAINT);
+        let outline = egui::Stroke::new(1.0, theme::of(ui).faint);
         ui.painter().rect_stroke(rect, CornerRadius::same(2), outline, egui::StrokeKind::Inside);
     });
     line.on_hover_text(part);
@@ -204,9 +204,9 @@ fn findings(ui: &mut Ui, state: &mut State, shown: &Shown) {
         let style = findings::style(finding);
         let line = ui.horizontal(|ui| {
             hatched(ui, style);
-            ui.label(theme::number(format!("{} {}", finding as u8, style.name)).color(theme::TEXT));
+            ui.label(theme::number(format!("{} {}", finding as u8, style.name)).color(theme::of(ui).text));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.label(theme::number(format::count(histogram[finding as usize])).color(theme::DIM));
+                ui.label(theme::number(format::count(histogram[finding as usize])).color(theme::of(ui).dim));
             });
         });
         line.response.on_hover_text(style.meaning);
@@ -240,7 +240,12 @@ pub fn hatched(ui: &mut Ui, style: findings::Style) {
             painter.line_segment([rect.left_top() + aside, rect.right_bottom() + aside], stroke);
         }
     }
-    painter.rect_stroke(rect, CornerRadius::same(2), egui::Stroke::new(1.0, theme::FAINT), egui::StrokeKind::Inside);
+    painter.rect_stroke(
+        rect,
+        CornerRadius::same(2),
+        egui::Stroke::new(1.0, theme::of(ui).faint),
+        egui::StrokeKind::Inside,
+    );
 }
 
 /// A line of the legend: colour, value, how many.
@@ -251,9 +256,9 @@ fn entry(ui: &mut Ui, color: Color32, name: &str, pixels: u64) -> egui::Response
 fn entry_with(ui: &mut Ui, name: &str, pixels: u64, swatch: impl FnOnce(&mut Ui)) -> egui::Response {
     let line = ui.horizontal(|ui| {
         swatch(ui);
-        ui.label(theme::number(name).color(theme::TEXT));
+        ui.label(theme::number(name).color(theme::of(ui).text));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(theme::number(format::count(pixels)).color(theme::DIM));
+            ui.label(theme::number(format::count(pixels)).color(theme::of(ui).dim));
         });
     });
     line.response
@@ -266,9 +271,9 @@ fn depth(ui: &mut Ui, state: &mut State, shown: &Shown, range: [f64; 2]) {
     ramp(ui, is_raw);
     let unit = |value: f64| if is_raw { format::digits(value) } else { format::metres(value) };
     ui.horizontal(|ui| {
-        ui.label(theme::number(unit(range[0])).color(theme::TEXT));
+        ui.label(theme::number(unit(range[0])).color(theme::of(ui).text));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(theme::number(unit(range[1])).color(theme::TEXT));
+            ui.label(theme::number(unit(range[1])).color(theme::of(ui).text));
         });
     });
     let full = picture::full_range(state, shown);
@@ -282,7 +287,7 @@ fn depth(ui: &mut Ui, state: &mut State, shown: &Shown, range: [f64; 2]) {
             state.view.depth_range = None;
         }
         theme::swatch(ui, palette::NO_SURFACE);
-        ui.label(RichText::new("no surface").size(theme::SMALL_SIZE).color(theme::DIM));
+        ui.label(RichText::new("no surface").size(theme::SMALL_SIZE).color(theme::of(ui).dim));
     });
 }
 

@@ -24,7 +24,7 @@ pub fn ui(ui: &Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Color
     }
     let inset = Rect::from_min_size(pos2(rect.left() + 12.0, rect.bottom() - 12.0 - size.y), size);
     let painter = ui.painter_at(rect);
-    painter.rect_filled(inset, CornerRadius::same(4), theme::BACKGROUND);
+    painter.rect_filled(inset, CornerRadius::same(4), theme::of(ui).background);
     let image = &shown.images[0];
     for row in 0..CELLS[1] {
         for column in 0..CELLS[0] {
@@ -42,5 +42,10 @@ pub fn ui(ui: &Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Color
     for (width, color) in [(5.0, Color32::from_black_alpha(170)), (2.0, Color32::WHITE)] {
         painter.rect_stroke(middle, CornerRadius::ZERO, Stroke::new(width, color), StrokeKind::Middle);
     }
-    painter.rect_stroke(inset.expand(1.0), CornerRadius::same(4), Stroke::new(1.0, theme::FAINT), StrokeKind::Outside);
+    painter.rect_stroke(
+        inset.expand(1.0),
+        CornerRadius::same(4),
+        Stroke::new(1.0, theme::of(ui).faint),
+        StrokeKind::Outside,
+    );
 }

@@ -32,7 +32,7 @@ pub fn ui(ui: &mut Ui, meshes: Option<&[ObjectMesh]>) {
         for ObjectMesh { object, topology } in listed {
             let name = egui::Label::new(theme::note(object.as_str())).wrap_mode(egui::TextWrapMode::Extend);
             ui.add(name).on_hover_text(topology.to_string());
-            let ink = if is_whole(topology) { theme::DIM } else { theme::TEXT };
+            let ink = if is_whole(topology) { theme::of(ui).dim } else { theme::of(ui).text };
             let line = egui::RichText::new(line(topology)).size(theme::SMALL_SIZE).color(ink);
             ui.add(egui::Label::new(line).wrap()).on_hover_text(effects(topology));
             ui.end_row();

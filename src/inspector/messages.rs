@@ -9,7 +9,7 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
     if state.errors.is_empty() {
         return;
     }
-    let frame = egui::Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(8, 4));
+    let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 4));
     egui::Panel::top("messages").frame(frame).show(ui, |ui| {
         let mut dismissed = None;
         for (index, error) in state.errors.iter().enumerate() {
@@ -26,13 +26,13 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
 /// One error; true when it is dismissed.
 fn bar(ui: &mut Ui, error: &str) -> bool {
     let frame = egui::Frame::new()
-        .stroke(Stroke::new(1.0, theme::ERROR))
+        .stroke(Stroke::new(1.0, theme::of(ui).error))
         .corner_radius(CornerRadius::same(4))
         .inner_margin(Margin::symmetric(8, 4));
     let contents = |ui: &mut Ui| {
         let dismiss = ui.button("Dismiss").on_hover_text("Hide this message");
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.label(RichText::new("× Error").color(theme::ERROR));
+            ui.label(RichText::new("× Error").color(theme::of(ui).error));
             ui.add(egui::Label::new(error).wrap());
         });
         dismiss.clicked()

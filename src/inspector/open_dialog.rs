@@ -8,7 +8,7 @@ use egui::{Context, Id, Key, RichText, Ui, vec2};
 /// Draws the dialog while it is open.
 pub fn ui(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
     let Some(mut dialog) = state.dialog.take() else { return };
-    let modal = egui::Modal::new(Id::unique("open dialog")).frame(theme::card().fill(theme::PANEL).inner_margin(16));
+    let modal = egui::Modal::new(Id::unique("open dialog")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
         ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0));
         contents(ui, &mut dialog, state)
@@ -70,7 +70,7 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, state: &State) -> Answer {
 
 /// A scene's name and lesson; true when it is chosen.
 fn scene_row(ui: &mut Ui, name: &str, lesson: &str) -> bool {
-    let text = RichText::new(name).color(theme::TEXT);
+    let text = RichText::new(name).color(theme::of(ui).text);
     ui.horizontal(|ui| {
         let button = egui::Button::new(text).truncate();
         let clicked = ui.add_sized(vec2(112.0, theme::ROW_HEIGHT), button).clicked();

@@ -30,11 +30,11 @@ pub fn ui(ui: &Ui, state: &State, rect: Rect, shown: &Shown, placement: Placemen
         return;
     }
     let painter = ui.painter_at(placement.rect().intersect(rect));
-    let fill = theme::SELECTED.gamma_multiply(0.14);
+    let fill = theme::of(ui).selected.gamma_multiply(0.14);
     painter.add(Shape::convex_polygon(points.clone(), fill, Stroke::NONE));
     // Dark under light, so that it shows on any picture.
     painter.add(Shape::closed_line(points.clone(), Stroke::new(4.0, Color32::from_black_alpha(150))));
-    painter.add(Shape::closed_line(points, Stroke::new(1.5, theme::SELECTED)));
+    painter.add(Shape::closed_line(points, Stroke::new(1.5, theme::of(ui).selected)));
 }
 
 /// Corners of what is seen of a triangle, in texels of the capture's picture. `corners` are

@@ -116,31 +116,31 @@ fn pass_row(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>, index: usize
         egui::Align2::RIGHT_CENTER,
         time,
         font,
-        theme::DIM,
+        theme::of(ui).dim,
     );
     let left = thumbnail.right() + 8.0;
     let room = time_rect.left() - left - 4.0;
-    theme::line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, theme::TEXT);
+    theme::line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, theme::of(ui).text);
     let is_touched = state.pick.and_then(|at| state.history.of_frame(at)).is_some_and(|one| one.is_touched_by(index));
     if is_touched {
         pick_mark(ui, pos2(rect.right() - 14.0, rect.top() + 31.0), index);
     }
     let room = rect.right() - if is_touched { 26.0 } else { 8.0 } - left;
-    theme::line(ui, pos2(left, rect.top() + 23.0), room, &summary(step), TextStyle::Small, theme::DIM);
+    theme::line(ui, pos2(left, rect.top() + 23.0), room, &summary(step), TextStyle::Small, theme::of(ui).dim);
 }
 
 /// The background of a row of the tree, and the marks of what is selected or has the focus.
 pub fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool, has_focus: bool) {
     let painter = ui.painter();
     if is_selected {
-        painter.rect_filled(rect, CornerRadius::ZERO, theme::SELECTED_ROW);
+        painter.rect_filled(rect, CornerRadius::ZERO, theme::of(ui).selected_row);
         let bar = Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
-        painter.rect_filled(bar, CornerRadius::ZERO, theme::SELECTED);
+        painter.rect_filled(bar, CornerRadius::ZERO, theme::of(ui).selected);
     } else if is_hovered {
-        painter.rect_filled(rect, CornerRadius::ZERO, theme::RAISED);
+        painter.rect_filled(rect, CornerRadius::ZERO, theme::of(ui).raised);
     }
     if has_focus {
-        painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::FOCUS), StrokeKind::Inside);
+        painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::of(ui).focus), StrokeKind::Inside);
     }
 }
 
@@ -150,7 +150,7 @@ fn pick_mark(ui: &Ui, at: egui::Pos2, index: usize) {
     let response = ui.interact(place, ui.scope_id().with(("pick mark", index)), Sense::hover());
     let name = format!("pass {} touched the picked pixel", index + 1);
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-    let stroke = Stroke::new(1.2, theme::TEXT);
+    let stroke = Stroke::new(1.2, theme::of(ui).text);
     ui.painter().rect_stroke(
         Rect::from_center_size(at, vec2(5.0, 5.0)),
         CornerRadius::ZERO,
@@ -223,7 +223,7 @@ pub fn changed_aspect(state: &mut State, capture: &Capture, frame: &FrameSnapsho
 /// A small picture in its frame; the frame alone where there is none.
 pub fn paint_thumbnail(ui: &Ui, state: &mut State, picture: Option<(Arc<Image>, Coloring)>, rect: Rect) {
     let painter = ui.painter();
-    painter.rect_filled(rect, CornerRadius::ZERO, theme::BACKGROUND);
+    painter.rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
     if let Some((image, coloring)) = picture {
         let texture = state.cache.texture(ui.ctx(), &image, coloring, TextureSize::Thumbnail);
         let size = texture.size_vec2();
@@ -231,7 +231,7 @@ pub fn paint_thumbnail(ui: &Ui, state: &mut State, picture: Option<(Arc<Image>, 
         let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         painter.image(texture.id(), Rect::from_center_size(rect.center(), fitted), uv, Color32::WHITE);
     }
-    painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, theme::LINE), StrokeKind::Outside);
+    painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, theme::of(ui).line), StrokeKind::Outside);
 }
 
 /// "Why this pass", at the panel's foot.
@@ -239,7 +239,7 @@ fn purpose(ui: &mut Ui, step: &Step) {
     let frame = egui::Frame::new().inner_margin(Margin { top: 8, ..Margin::ZERO });
     let panel = egui::Panel::bottom("why this pass").frame(frame).show_separator_line(false).resizable(false);
     panel.show(ui, |ui| {
-        theme::card().show(ui, |ui| {
+        theme::card(ui).show(ui, |ui| {
             ui.set_width(ui.available_width());
             theme::heading(ui, "Why this pass");
             ui.add(egui::Label::new(theme::note(step.purpose.as_str())).wrap());

@@ -24,14 +24,14 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let Some(capture) = state.capture.clone() else { return empty(ui, state) };
     toolbar(ui, state, &capture);
     let rect = ui.available_rect_before_wrap();
-    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::BACKGROUND);
+    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
     let Some(shown) = state.view.shown(&capture, state.moment()) else {
         ui.painter().text(
             rect.center(),
             Align2::CENTER_CENTER,
             "Nothing is drawn into the picture yet at this step.",
             egui::TextStyle::Body.resolve(ui.style()),
-            theme::DIM,
+            theme::of(ui).dim,
         );
         return;
     };
@@ -50,7 +50,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
 
 fn empty(ui: &mut Ui, state: &State) {
     let rect = ui.available_rect_before_wrap();
-    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::BACKGROUND);
+    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
     let lines = match &state.job {
         Some(job) => [job.as_str(), ""],
         None => ["Nothing is open yet.", "Press Open…, or drop a scene, a model or a capture folder here."],
@@ -93,7 +93,7 @@ pub fn full_range(state: &mut State, shown: &Shown) -> [f64; 2] {
 }
 
 fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
-    egui::Frame::new().fill(theme::PANEL).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
+    egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         ui.horizontal(|ui| {
             kinds(ui, state, capture);
             let kind = state.view.shown(capture, state.moment()).map(|shown| shown.kind);
@@ -186,7 +186,7 @@ fn layer_list(ui: &mut Ui, layers: &[layers::Layer], mut chosen: usize) -> Optio
     let combo = combo.show_ui(ui, |ui| {
         ui.selectable_value(&mut chosen, 0, all.as_str());
         for (index, layer) in layers.iter().enumerate() {
-            let ink = if layer.note.is_some() { theme::DIM } else { theme::TEXT };
+            let ink = if layer.note.is_some() { theme::of(ui).dim } else { theme::of(ui).text };
             let text = egui::RichText::new(&layer.full_name).color(ink);
             let response = ui.selectable_value(&mut chosen, index + 1, text);
             if let Some(note) = layer.note {
@@ -212,11 +212,11 @@ fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
     let size = state.view.shown(capture, state.moment()).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };
     if let Zoom::Pixels(pixels) = state.view.zoom {
-        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::DIM));
+        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
     }
     let fits = state.view.zoom == Zoom::Fit;
-    let word =
-        |text: &str, chosen: bool| egui::RichText::new(text).color(if chosen { theme::TEXT } else { theme::DIM });
+    let theme = theme::of(ui);
+    let word = |text: &str, chosen: bool| egui::RichText::new(text).color(if chosen { theme.text } else { theme.dim });
     if ui.add(egui::Button::selectable(fits, word("Fit", fits))).on_hover_text("The whole picture").clicked() {
         state.view.zoom = Zoom::Fit;
     }

@@ -72,7 +72,7 @@ fn sentence(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
         }
     });
     state.history.sentence = Some(verdict.clone());
-    theme::card().show(ui, |ui| {
+    theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         theme::heading(ui, &verdict.title);
         ui.add(egui::Label::new(theme::note(verdict.reason)).wrap());
@@ -127,8 +127,8 @@ fn stencil_row(ui: &mut Ui, stencil: u8) {
     ui.label(theme::note("stencil"));
     ui.horizontal(|ui| {
         theme::swatch(ui, palette::stencil(stencil));
-        ui.label(theme::number(palette::signed(stencil)).color(theme::TEXT));
-        ui.label(theme::number(format!("{:04b} {:04b}", stencil >> 4, stencil & 15)).color(theme::DIM));
+        ui.label(theme::number(palette::signed(stencil)).color(theme::of(ui).text));
+        ui.label(theme::number(format!("{:04b} {:04b}", stencil >> 4, stencil & 15)).color(theme::of(ui).dim));
     });
     ui.end_row();
 }
@@ -142,10 +142,10 @@ fn count_row(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2]) {
     ui.label(theme::note(name));
     ui.horizontal(|ui| {
         theme::swatch(ui, counts::color(count));
-        ui.label(theme::number(counts::text(count)).color(theme::TEXT));
+        ui.label(theme::number(counts::text(count)).color(theme::of(ui).text));
         let read = counts::in_eight_bits(count);
         if f32::from(read) != count {
-            ui.label(theme::number(format!("would read {read} in eight bits")).color(theme::DIM));
+            ui.label(theme::number(format!("would read {read} in eight bits")).color(theme::of(ui).dim));
         }
     });
     ui.end_row();
@@ -158,12 +158,12 @@ fn let_through_values(ui: &mut Ui, what: &str, layer: &str, texel: [u32; 2], [r,
     ui.label(theme::note("lets through")).on_hover_text("Linear shares of the light's red, green and blue");
     ui.horizontal(|ui| {
         theme::swatch(ui, coloring::linear([r, g, b, a]));
-        ui.label(theme::number(format::shares([r, g, b, a])).color(theme::TEXT));
+        ui.label(theme::number(format::shares([r, g, b, a])).color(theme::of(ui).text));
     });
     ui.end_row();
     row(ui, "stored", &format!("{r} {g} {b}, alpha {a}"));
     ui.label(theme::note("for labels")).on_hover_text("Alpha: below a half, labels take the light for blocked");
-    ui.label(theme::number(if a < 128 { "blocked" } else { "arrives" }).color(theme::TEXT));
+    ui.label(theme::number(if a < 128 { "blocked" } else { "arrives" }).color(theme::of(ui).text));
     ui.end_row();
 }
 
@@ -185,7 +185,7 @@ fn map_values(ui: &mut Ui, state: &State, capture: &Capture, texel: [u32; 2]) {
 
 fn row(ui: &mut Ui, name: &str, value: &str) {
     ui.label(theme::note(name));
-    ui.label(theme::number(value).color(theme::TEXT));
+    ui.label(theme::number(value).color(theme::of(ui).text));
     ui.end_row();
 }
 
@@ -212,7 +212,7 @@ fn label_words(ui: &mut Ui, label: Option<u8>, without: &str) {
     match label.and_then(|label| palette::LABELS.get(usize::from(label))) {
         Some(label) => {
             theme::swatch(ui, label.color);
-            ui.label(RichText::new(label.name).color(theme::TEXT)).on_hover_text(label.meaning);
+            ui.label(RichText::new(label.name).color(theme::of(ui).text)).on_hover_text(label.meaning);
         }
         None => {
             ui.label(theme::note(without));
@@ -236,7 +236,7 @@ fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, a
         let style = findings::style(finding);
         ui.horizontal(|ui| {
             legend::hatched(ui, style);
-            ui.add(egui::Label::new(RichText::new(style.meaning).color(theme::TEXT)).wrap());
+            ui.add(egui::Label::new(RichText::new(style.meaning).color(theme::of(ui).text)).wrap());
         });
     }
     ui.add_space(4.0);

@@ -54,7 +54,9 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
                     before = Some(now);
                 }
                 Snapshot::Map { .. } => {
-                    ui.label(RichText::new(format!("{of_map} only")).size(theme::SMALL_SIZE).color(theme::FAINT));
+                    ui.label(
+                        RichText::new(format!("{of_map} only")).size(theme::SMALL_SIZE).color(theme::of(ui).faint),
+                    );
                 }
             }
             ui.end_row();
@@ -78,7 +80,7 @@ fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
 
 /// Number and name of a pass, shortened to so many letters; true when it is clicked.
 fn pass_cell(ui: &mut Ui, index: usize, name: &str, longest: usize, is_selected: bool) -> bool {
-    let color = if is_selected { theme::TEXT } else { theme::DIM };
+    let color = if is_selected { theme::of(ui).text } else { theme::of(ui).dim };
     let short: String = match name.char_indices().nth(longest) {
         Some(_) => name.chars().take(longest - 1).chain(['…']).collect(),
         None => name.to_owned(),
@@ -124,7 +126,7 @@ fn cell(ui: &mut Ui, now: Option<&Value>, before: Option<&Value>) {
         return;
     };
     let unchanged = before == Some(value);
-    let ink = if unchanged { theme::FAINT } else { theme::TEXT };
+    let ink = if unchanged { theme::of(ui).faint } else { theme::of(ui).text };
     let line = ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         if let Some(color) = value.color {

@@ -87,7 +87,7 @@ impl ReportState {
 pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     top_line(ui, state, actions);
     if let Some(error) = &state.report.view.error {
-        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::ERROR)).wrap());
+        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
     }
     if state.report.rows().is_empty() {
         return;

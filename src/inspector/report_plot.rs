@@ -3,7 +3,7 @@
 use super::action::Action;
 use super::report;
 use super::state::State;
-use super::theme;
+use super::theme::{self, Theme};
 use crate::report::plot::{Anchor, Chart, Ink, Line, Plot, RADIUS, Rect as PlotRect, Spot, Style, Text};
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{
@@ -21,7 +21,11 @@ pub fn ui(ui: &mut Ui, state: &State, plot: &Plot, actions: &mut Vec<Action>) {
     let size = vec2(plot.size[0] as f32, plot.size[1] as f32);
     let (rect, canvas) = ui.allocate_exact_size(size, Sense::hover());
     canvas.widget_info(|| WidgetInfo::labeled(Role::Image, true, &plot.summary));
-    let sheet = Sheet { painter: ui.painter().with_clip_rect(ui.clip_rect().intersect(rect)), corner: rect.min };
+    let sheet = Sheet {
+        painter: ui.painter().with_clip_rect(ui.clip_rect().intersect(rect)),
+        corner: rect.min,
+        theme: theme::of(ui),
+    };
     for chart in &plot.charts {
         sheet.chart(chart);
     }
@@ -45,10 +49,10 @@ fn mark(ui: &mut Ui, state: &State, sheet: &Sheet, spot: &Spot, actions: &mut Ve
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, &spot.name));
     let ring = |color, width| sheet.painter.circle_stroke(at, RING, Stroke::new(width, color));
     if response.hovered() || response.has_focus() {
-        ring(theme::FOCUS, 1.0);
+        ring(sheet.theme.focus, 1.0);
     }
     if is_current {
-        ring(theme::SELECTED, 2.0);
+        ring(sheet.theme.selected, 2.0);
     }
     sheet.mark(at, spot.style, spot.filled);
     if response.clicked() {
@@ -58,14 +62,15 @@ fn mark(ui: &mut Ui, state: &State, sheet: &Sheet, spot: &Spot, actions: &mut Ve
 }
 
 /// Draws a technique's mark, as in the plot, around a point.
-pub fn key(painter: &Painter, at: Pos2, style: &Style, filled: bool) {
-    Sheet { painter: painter.clone(), corner: Pos2::ZERO }.mark(at, style, filled);
+pub fn key(ui: &Ui, at: Pos2, style: &Style, filled: bool) {
+    Sheet { painter: ui.painter().clone(), corner: Pos2::ZERO, theme: theme::of(ui) }.mark(at, style, filled);
 }
 
 /// Where a layout is drawn.
 struct Sheet {
     painter: Painter,
     corner: Pos2,
+    theme: &'static Theme,
 }
 
 impl Sheet {
@@ -76,20 +81,20 @@ impl Sheet {
     fn chart(&self, chart: &Chart) {
         let PlotRect { min, max } = chart.band;
         let band = Rect::from_min_max(self.place(min), self.place(max));
-        self.painter.rect_filled(band, CornerRadius::ZERO, theme::RAISED);
+        self.painter.rect_filled(band, CornerRadius::ZERO, self.theme.raised);
         for line in &chart.lines {
             self.line(line);
         }
         for spot in &chart.spots {
             let ends = spot.whisker.map(|x| self.place([x, spot.at[1]]));
-            self.painter.line_segment(ends, Stroke::new(1.0, screen(spot.style)));
+            self.painter.line_segment(ends, Stroke::new(1.0, self.technique(spot.style)));
         }
         for text in &chart.labels {
             // Parts the words from lines that they cover.
             let in_band = text.at[1] > chart.band.min[1];
             let words = text.rect();
             let behind = Rect::from_min_max(self.place(words.min), self.place(words.max)).shrink2(vec2(0.0, 1.5));
-            let fill = if in_band { theme::RAISED } else { theme::PANEL };
+            let fill = if in_band { self.theme.raised } else { self.theme.panel };
             self.painter.rect_filled(behind, CornerRadius::same(2), fill.gamma_multiply(0.8));
             self.text(text);
         }
@@ -99,7 +104,7 @@ impl Sheet {
     }
 
     fn line(&self, line: &Line) {
-        let color = if line.faint { color(line.ink).gamma_multiply(0.45) } else { color(line.ink) };
+        let color = if line.faint { self.ink(line.ink).gamma_multiply(0.45) } else { self.ink(line.ink) };
         let points = line.points.iter().map(|point| self.place(*point)).collect();
         self.painter.line(points, Stroke::new(line.width as f32, color));
     }
@@ -111,7 +116,7 @@ impl Sheet {
             Anchor::End => Align2::RIGHT_CENTER,
         };
         let font = FontId::proportional(text.size as f32);
-        let (at, color) = (self.place(text.at), color(text.ink));
+        let (at, color) = (self.place(text.at), self.ink(text.ink));
         self.painter.text(at, anchor, &text.text, font.clone(), color);
         if text.strong {
             // As in `theme::heading`: the face has one weight.
@@ -122,9 +127,24 @@ impl Sheet {
     fn mark(&self, at: Pos2, style: &Style, filled: bool) {
         let outline: Vec<Pos2> =
             style.mark.outline(RADIUS).into_iter().map(|[x, y]| at + vec2(x as f32, y as f32)).collect();
-        let color = screen(style);
-        self.painter.add(fan(at, &outline, if filled { color } else { theme::PANEL }));
+        let color = self.technique(style);
+        self.painter.add(fan(at, &outline, if filled { color } else { self.theme.panel }));
         self.painter.add(Shape::closed_line(outline, Stroke::new(1.3, color)));
+    }
+
+    /// A technique's hue: on light ground that of the printed report.
+    fn technique(&self, style: &Style) -> Color32 {
+        let [red, green, blue] = if *self.theme == theme::LIGHT { style.paper } else { style.screen };
+        Color32::from_rgb(red, green, blue)
+    }
+
+    fn ink(&self, ink: Ink) -> Color32 {
+        match ink {
+            Ink::Text => self.theme.text,
+            Ink::Dim | Ink::Front => self.theme.dim,
+            Ink::Grid => self.theme.line,
+            Ink::Technique(style) => self.technique(style),
+        }
     }
 }
 
@@ -138,20 +158,6 @@ fn fan(middle: Pos2, outline: &[Pos2], color: Color32) -> Mesh {
         mesh.add_triangle(0, 1 + corner, 1 + (corner + 1) % count);
     }
     mesh
-}
-
-fn screen(style: &Style) -> Color32 {
-    let [red, green, blue] = style.screen;
-    Color32::from_rgb(red, green, blue)
-}
-
-fn color(ink: Ink) -> Color32 {
-    match ink {
-        Ink::Text => theme::TEXT,
-        Ink::Dim | Ink::Front => theme::DIM,
-        Ink::Grid => theme::LINE,
-        Ink::Technique(style) => screen(style),
-    }
 }
 
 /// The middle of a row's sign in the table.

@@ -62,9 +62,9 @@ fn headings(ui: &mut Ui, name: &str, columns: &[&'static Column]) {
     response.widget_info(|| WidgetInfo::labeled(Role::RowHeader, true, name));
     let font = egui::FontId::proportional(theme::SMALL_SIZE);
     let painter = ui.painter();
-    painter.text(rect.left_center() + vec2(8.0, 0.0), Align2::LEFT_CENTER, name, font.clone(), theme::DIM);
+    painter.text(rect.left_center() + vec2(8.0, 0.0), Align2::LEFT_CENTER, name, font.clone(), theme::of(ui).dim);
     for (column, at) in places(columns, rect) {
-        painter.text(at, Align2::RIGHT_CENTER, column.heading, font.clone(), theme::DIM);
+        painter.text(at, Align2::RIGHT_CENTER, column.heading, font.clone(), theme::of(ui).dim);
     }
 }
 
@@ -91,11 +91,11 @@ fn table_row(ui: &mut Ui, state: &State, row: &Row, columns: &[&'static Column],
     }
     if ui.is_rect_visible(rect) {
         theme::row_background(ui, rect, is_current, &response);
-        report_plot::key(ui.painter(), report_plot::sign_at(rect), style_of(&row.technique), row.pareto);
+        report_plot::key(ui, report_plot::sign_at(rect), style_of(&row.technique), row.pareto);
         name(ui, rect, row, columns);
         let font = theme::number_font(theme::SMALL_SIZE);
         for (column, at) in places(columns, rect) {
-            ui.painter().text(at, Align2::RIGHT_CENTER, (column.cell)(row), font.clone(), theme::TEXT);
+            ui.painter().text(at, Align2::RIGHT_CENTER, (column.cell)(row), font.clone(), theme::of(ui).text);
         }
     }
     response.on_hover_text(row.details());
@@ -107,12 +107,12 @@ fn name(ui: &Ui, rect: Rect, row: &Row, columns: &[&'static Column]) {
     let width = (rect.width() - numbers - SIGN_WIDTH - 6.0).max(40.0);
     let mut job = egui::text::LayoutJob::default();
     let part = |color| egui::TextFormat::simple(TextStyle::Body.resolve(ui.style()), color);
-    job.append(&row.technique, 0.0, part(theme::TEXT));
+    job.append(&row.technique, 0.0, part(theme::of(ui).text));
     if !row.label.is_empty() {
-        job.append(&row.label, 6.0, part(theme::DIM));
+        job.append(&row.label, 6.0, part(theme::of(ui).dim));
     }
     job.wrap = egui::text::TextWrapping::truncate_at_width(width);
     let galley = ui.painter().layout_job(job);
     let at = pos2(rect.left() + SIGN_WIDTH, rect.center().y - galley.size().y / 2.0);
-    ui.painter().galley(at, galley, theme::TEXT);
+    ui.painter().galley(at, galley, theme::of(ui).text);
 }

@@ -33,7 +33,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         }
         if let Some(problem) = state.scene.as_ref().and_then(|scene| scene.problem.as_ref()) {
             ui.add_space(8.0);
-            let text = RichText::new(format!("× Not run: {problem}")).color(theme::ERROR);
+            let text = RichText::new(format!("× Not run: {problem}")).color(theme::of(ui).error);
             ui.add(egui::Label::new(text).wrap());
         }
         ui.add_space(12.0);
@@ -49,7 +49,7 @@ fn techniques(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         ui.spacing_mut().item_spacing.x = 4.0;
         for technique in Technique::ALL {
             let is_current = technique == current;
-            let name = RichText::new(technique.name()).color(theme::TEXT);
+            let name = RichText::new(technique.name()).color(theme::of(ui).text);
             let button = egui::Button::selectable(is_current, name).frame_when_inactive(true);
             let button = ui.add(button).accessible_name(format!("Technique {}", technique.name()));
             if button.on_hover_text(technique.summary()).clicked() {
@@ -68,7 +68,7 @@ fn technique_settings(ui: &mut Ui, state: &mut State) -> bool {
     egui::Grid::new("technique settings").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
         for spec in scene.draft.choice.technique().settings() {
             let off = settings_off::reason(&scene.draft.choice, spec.key);
-            let ink = if off.is_some() { theme::FAINT } else { theme::DIM };
+            let ink = if off.is_some() { theme::of(ui).faint } else { theme::of(ui).dim };
             let label = ui.label(theme::note(spec.key).color(ink)).on_hover_text(hover(spec, off));
             let value = ui.add_enabled_ui(off.is_none(), |ui| setting(ui, &scene.draft.choice, spec, label.id, off));
             if let Some(value) = value.inner {
@@ -96,7 +96,7 @@ fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, of
     match spec.values {
         // Nothing to choose: a fact, not a widget.
         SettingValues::OneOf([_] | []) => {
-            explained(ui.label(theme::number(current).color(theme::FAINT)));
+            explained(ui.label(theme::number(current).color(theme::of(ui).faint)));
             None
         }
         SettingValues::OneOf(words) => {

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// Draws the bar.
 pub fn ui(ui: &mut Ui, state: &State) {
-    let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(Margin::symmetric(8, 2));
+    let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 2));
     egui::Panel::bottom("status bar").frame(frame).exact_size(26.0).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
             let shown =
@@ -101,6 +101,6 @@ fn spinner(ui: &mut Ui) {
         let angle = ((turn + f64::from(step) / 12.0) * std::f64::consts::TAU) as f32;
         rect.center() + egui::Vec2::angled(angle) * 5.0
     });
-    ui.painter().line(points.collect(), egui::Stroke::new(1.5, theme::DIM));
+    ui.painter().line(points.collect(), egui::Stroke::new(1.5, theme::of(ui).dim));
     ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(TURN_SECONDS / FRAMES));
 }

@@ -86,7 +86,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let Some(case) = all.get(selected).copied() else { return };
     top_line(ui, state, case, &all, actions);
     if let Some(error) = &state.stress.error {
-        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::ERROR)).wrap());
+        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
     }
     let size = ui.available_size();
     ui.horizontal_top(|ui| {
@@ -143,19 +143,19 @@ fn top_line(ui: &mut Ui, state: &State, case: &Case, all: &[&'static Case], acti
 }
 
 /// A sign and a word for a verdict.
-fn mark(verdict: Option<Verdict>) -> (&'static str, egui::Color32) {
+fn mark(ui: &Ui, verdict: Option<Verdict>) -> (&'static str, egui::Color32) {
     match verdict {
-        None => ("", theme::FAINT),
-        Some(Verdict::Holds) => ("holds", theme::PASSED),
-        Some(Verdict::FailsAsKnown) => ("as known", theme::DIM),
-        Some(Verdict::Unexpected) => ("unexpected", theme::ERROR),
+        None => ("", theme::of(ui).faint),
+        Some(Verdict::Holds) => ("holds", theme::of(ui).passed),
+        Some(Verdict::FailsAsKnown) => ("as known", theme::of(ui).dim),
+        Some(Verdict::Unexpected) => ("unexpected", theme::of(ui).error),
     }
 }
 
 fn list_row(ui: &mut Ui, state: &mut State, case: &Case, index: usize) {
     let is_selected = state.stress.selected == index;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
-    let (word, color) = mark(state.stress.verdict(case));
+    let (word, color) = mark(ui, state.stress.verdict(case));
     let name = if word.is_empty() { case.name.to_owned() } else { format!("{}: {word}", case.name) };
     response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, &name));
     if response.clicked() {
@@ -167,14 +167,14 @@ fn list_row(ui: &mut Ui, state: &mut State, case: &Case, index: usize) {
     let verdict = ui.painter().text(at, egui::Align2::RIGHT_CENTER, word, font, color);
     let left = rect.left() + 8.0;
     let room = verdict.left() - left - 8.0;
-    theme::line(ui, pos2(left, rect.center().y - 8.0), room, case.name, TextStyle::Body, theme::TEXT);
+    theme::line(ui, pos2(left, rect.center().y - 8.0), room, case.name, TextStyle::Body, theme::of(ui).text);
     response.on_hover_text(case.lesson);
 }
 
 /// The selected case: its lesson, its values, and who did what.
 fn detail(ui: &mut Ui, state: &State, case: &'static Case, actions: &mut Vec<Action>) {
     theme::heading(ui, case.name);
-    ui.add(egui::Label::new(theme::note(case.lesson).color(theme::TEXT)).wrap());
+    ui.add(egui::Label::new(theme::note(case.lesson).color(theme::of(ui).text)).wrap());
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::note(format!("Open at {}:", if case.parameter.is_empty() { "value" } else { case.parameter })));
@@ -214,12 +214,12 @@ fn table_row(ui: &mut Ui, case: &'static Case, summary: &Summary, actions: &mut 
     let name = format!("{}: {found}, {verdict}", summary.entrant);
     response.widget_info(|| WidgetInfo::labeled(Role::Row, true, &name));
     theme::row_background(ui, rect, false, &response);
-    let (_, color) = mark(Some(summary.verdict));
+    let (_, color) = mark(ui, Some(summary.verdict));
     let y = rect.center().y - 7.0;
     let [second, third] = COLUMNS.map(|column| rect.left() + column);
     let technique = summary.entrant.to_string();
-    theme::line(ui, pos2(rect.left() + 8.0, y), COLUMNS[0] - 16.0, &technique, TextStyle::Small, theme::TEXT);
-    theme::line(ui, pos2(second, y), third - second - 8.0, &found, TextStyle::Small, theme::DIM);
+    theme::line(ui, pos2(rect.left() + 8.0, y), COLUMNS[0] - 16.0, &technique, TextStyle::Small, theme::of(ui).text);
+    theme::line(ui, pos2(second, y), third - second - 8.0, &found, TextStyle::Small, theme::of(ui).dim);
     theme::line(ui, pos2(third, y), rect.right() - third - 8.0, &verdict, TextStyle::Small, color);
     let (wrong, compared) = summary.worst;
     let [wrong, compared] = [wrong, compared].map(format::count);
@@ -234,7 +234,7 @@ fn table_row(ui: &mut Ui, case: &'static Case, summary: &Summary, actions: &mut 
         actions.push(Action::OpenStress { case: case.name, value, entrant: Some(summary.entrant) });
     }
     if let Some(course) = &summary.course {
-        let color = if course.holds { theme::DIM } else { theme::ERROR };
+        let color = if course.holds { theme::of(ui).dim } else { theme::of(ui).error };
         ui.add(egui::Label::new(theme::note(course.to_string()).color(color)).wrap());
     }
 }

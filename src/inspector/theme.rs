@@ -1,46 +1,132 @@
-//! Colours, spacing and type of every panel (dark theme).
+//! Colours, spacing and type of every panel, in a dark and a light theme.
 //!
 //! One accent means "selected" and nothing else; the same colour means the same thing in every
-//! panel. Palettes of the pictures themselves are in `palette.rs`.
+//! panel and in both themes. Palettes of the pictures themselves are in `palette.rs`.
 
 use crate::plan::Part;
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2};
 
-/// Behind everything.
-pub const BACKGROUND: Color32 = Color32::from_rgb(0x14, 0x16, 0x1b);
-/// A panel.
-pub const PANEL: Color32 = Color32::from_rgb(0x1b, 0x1e, 0x25);
-/// A button or card on a panel.
-pub const RAISED: Color32 = Color32::from_rgb(0x23, 0x27, 0x30);
-/// Separators and outlines.
-pub const LINE: Color32 = Color32::from_rgb(0x2d, 0x32, 0x3d);
-/// Words that matter.
-pub const TEXT: Color32 = Color32::from_rgb(0xd9, 0xdc, 0xe3);
-/// Words beside them.
-pub const DIM: Color32 = Color32::from_rgb(0x8b, 0x92, 0xa1);
-/// What is not there, or did not change.
-pub const FAINT: Color32 = Color32::from_rgb(0x5d, 0x64, 0x73);
-/// The accent: selected.
-pub const SELECTED: Color32 = Color32::from_rgb(0x5a, 0xa9, 0xe6);
-/// The outline of what has the keyboard, apart from the accent.
-pub const FOCUS: Color32 = Color32::from_rgb(0x8b, 0x92, 0xa1);
-/// A selected row.
-pub const SELECTED_ROW: Color32 = Color32::from_rgb(0x22, 0x34, 0x4a);
-/// An error message's bar.
-pub const ERROR: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
+/// What each colour means, and what it is in one theme.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Theme {
+    /// Behind everything.
+    pub background: Color32,
+    /// A panel.
+    pub panel: Color32,
+    /// A button or card on a panel.
+    pub raised: Color32,
+    /// Separators and outlines.
+    pub line: Color32,
+    /// Words that matter.
+    pub text: Color32,
+    /// Words beside them.
+    pub dim: Color32,
+    /// What is not there, or did not change.
+    pub faint: Color32,
+    /// The accent: selected.
+    pub selected: Color32,
+    /// The outline of what has the keyboard, apart from the accent.
+    pub focus: Color32,
+    /// A selected row.
+    pub selected_row: Color32,
+    /// An error message's bar.
+    pub error: Color32,
+    /// A test that was passed.
+    pub passed: Color32,
+    /// A test that failed.
+    pub failed: Color32,
+    /// A test that was decided in advance, or not asked.
+    pub decided: Color32,
+    /// The light reaches it.
+    pub lit: Color32,
+    /// A count goes up by one.
+    pub count_up: Color32,
+    /// A count goes down by one.
+    pub count_down: Color32,
+    /// The side of a shadow volume.
+    pub side: Color32,
+    /// The cap of a shadow volume near the light.
+    pub light_cap: Color32,
+    /// The cap of a shadow volume away from the light.
+    pub dark_cap: Color32,
+}
 
-/// A test that was passed.
-pub const PASSED: Color32 = Color32::from_rgb(0x2f, 0xb5, 0x8a);
-/// A test that failed.
-pub const FAILED: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
-/// A test that was decided in advance, or not asked.
-pub const DECIDED: Color32 = Color32::from_rgb(0x7b, 0x82, 0x90);
-/// The light reaches it.
-pub const LIT: Color32 = Color32::from_rgb(0xf2, 0xd1, 0x6b);
-/// A count goes up by one.
-pub const COUNT_UP: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
-/// A count goes down by one.
-pub const COUNT_DOWN: Color32 = Color32::from_rgb(0x56, 0xb4, 0xe9);
+const fn rgb(hex: u32) -> Color32 {
+    Color32::from_rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8)
+}
+
+/// Light ink on dark ground.
+pub const DARK: Theme = Theme {
+    background: rgb(0x14161b),
+    panel: rgb(0x1b1e25),
+    raised: rgb(0x232730),
+    line: rgb(0x2d323d),
+    text: rgb(0xd9dce3),
+    dim: rgb(0x8b92a1),
+    faint: rgb(0x5d6473),
+    selected: rgb(0x5aa9e6),
+    focus: rgb(0x8b92a1),
+    selected_row: rgb(0x22344a),
+    error: rgb(0xe0703a),
+    passed: rgb(0x2fb58a),
+    failed: rgb(0xe0703a),
+    decided: rgb(0x7b8290),
+    lit: rgb(0xf2d16b),
+    count_up: rgb(0xe0703a),
+    count_down: rgb(0x56b4e9),
+    side: rgb(0x1fae84),
+    light_cap: rgb(0xf0e442),
+    dark_cap: rgb(0x7a86ff),
+};
+
+/// Dark ink on light ground: the same hues, darker, so that words in them can be read.
+pub const LIGHT: Theme = Theme {
+    background: rgb(0xe4e7ec),
+    panel: rgb(0xf6f7f9),
+    raised: rgb(0xffffff),
+    line: rgb(0xcdd2db),
+    text: rgb(0x1c2029),
+    dim: rgb(0x555d6c),
+    faint: rgb(0x8a92a0),
+    selected: rgb(0x12609f),
+    focus: rgb(0x555d6c),
+    selected_row: rgb(0xd5e6f5),
+    error: rgb(0xa84310),
+    passed: rgb(0x0b6b4d),
+    failed: rgb(0xa84310),
+    decided: rgb(0x5a6170),
+    lit: rgb(0x7a5a00),
+    count_up: rgb(0xa84310),
+    count_down: rgb(0x12609f),
+    side: rgb(0x0b6b4d),
+    light_cap: rgb(0x6f6300),
+    dark_cap: rgb(0x4450d0),
+};
+
+/// The theme that `ui` is drawn in.
+#[must_use]
+pub fn of(ui: &Ui) -> &'static Theme {
+    in_visuals(ui.visuals())
+}
+
+/// The theme that goes with egui's own colours.
+#[must_use]
+pub fn in_visuals(visuals: &egui::Visuals) -> &'static Theme {
+    if visuals.dark_mode { &DARK } else { &LIGHT }
+}
+
+impl Theme {
+    /// The colour of a part of a shadow volume; `None` for what has none of its own.
+    #[must_use]
+    pub fn part(&self, part: Part) -> Option<Color32> {
+        match part {
+            Part::Side => Some(self.side),
+            Part::LightCap => Some(self.light_cap),
+            Part::DarkCap => Some(self.dark_cap),
+            Part::Surface | Part::Receiver | Part::PlanarShadow | Part::Map => None,
+        }
+    }
+}
 
 /// Height of a row of text and small widgets, in points.
 pub const ROW_HEIGHT: f32 = 24.0;
@@ -51,33 +137,25 @@ pub const TEXT_SIZE: f32 = 12.5;
 /// Size of numbers and side notes, in points.
 pub const SMALL_SIZE: f32 = 11.5;
 
-/// The colour of a part of a shadow volume; `None` for what has none of its own.
-#[must_use]
-pub fn part_color(part: Part) -> Option<Color32> {
-    match part {
-        Part::Side => Some(Color32::from_rgb(0x1f, 0xae, 0x84)),
-        Part::LightCap => Some(Color32::from_rgb(0xf0, 0xe4, 0x42)),
-        Part::DarkCap => Some(Color32::from_rgb(0x7a, 0x86, 0xff)),
-        Part::Surface | Part::Receiver | Part::PlanarShadow | Part::Map => None,
+/// Gives `ctx` the colours, spacing and type of the inspector.
+pub fn apply(ctx: &egui::Context) {
+    for (egui_theme, theme) in [(egui::Theme::Dark, &DARK), (egui::Theme::Light, &LIGHT)] {
+        ctx.style_mut_of(egui_theme, |style| apply_style(style, theme));
     }
 }
 
-/// Gives `ctx` the colours, spacing and type of the inspector.
-pub fn apply(ctx: &egui::Context) {
-    ctx.set_theme(egui::Theme::Dark);
-    ctx.style_mut_of(egui::Theme::Dark, |style| {
-        style.text_styles = [
-            (TextStyle::Body, FontId::proportional(TEXT_SIZE)),
-            (TextStyle::Button, FontId::proportional(TEXT_SIZE)),
-            (TextStyle::Heading, FontId::proportional(TEXT_SIZE)),
-            (TextStyle::Small, FontId::proportional(SMALL_SIZE)),
-            (TextStyle::Monospace, FontId::monospace(SMALL_SIZE)),
-        ]
-        .into();
-        style.animation_time = 0.0;
-        apply_spacing(&mut style.spacing);
-        apply_colors(&mut style.visuals);
-    });
+fn apply_style(style: &mut egui::Style, theme: &Theme) {
+    style.text_styles = [
+        (TextStyle::Body, FontId::proportional(TEXT_SIZE)),
+        (TextStyle::Button, FontId::proportional(TEXT_SIZE)),
+        (TextStyle::Heading, FontId::proportional(TEXT_SIZE)),
+        (TextStyle::Small, FontId::proportional(SMALL_SIZE)),
+        (TextStyle::Monospace, FontId::monospace(SMALL_SIZE)),
+    ]
+    .into();
+    style.animation_time = 0.0;
+    apply_spacing(&mut style.spacing);
+    apply_colors(&mut style.visuals, theme);
 }
 
 fn apply_spacing(spacing: &mut egui::style::Spacing) {
@@ -90,27 +168,27 @@ fn apply_spacing(spacing: &mut egui::style::Spacing) {
     spacing.scroll = egui::style::ScrollStyle::thin();
 }
 
-fn apply_colors(visuals: &mut egui::Visuals) {
-    visuals.panel_fill = PANEL;
-    visuals.window_fill = PANEL;
-    visuals.window_stroke = Stroke::new(1.0, LINE);
-    visuals.extreme_bg_color = BACKGROUND;
-    visuals.faint_bg_color = RAISED;
-    visuals.weak_text_color = Some(DIM);
-    visuals.hyperlink_color = SELECTED;
-    visuals.error_fg_color = ERROR;
-    visuals.selection.bg_fill = SELECTED_ROW;
-    visuals.selection.stroke = Stroke::new(1.0, SELECTED);
+fn apply_colors(visuals: &mut egui::Visuals, theme: &Theme) {
+    visuals.panel_fill = theme.panel;
+    visuals.window_fill = theme.panel;
+    visuals.window_stroke = Stroke::new(1.0, theme.line);
+    visuals.extreme_bg_color = theme.background;
+    visuals.faint_bg_color = theme.raised;
+    visuals.weak_text_color = Some(theme.dim);
+    visuals.hyperlink_color = theme.selected;
+    visuals.error_fg_color = theme.error;
+    visuals.selection.bg_fill = theme.selected_row;
+    visuals.selection.stroke = Stroke::new(1.0, theme.selected);
     visuals.window_shadow = egui::Shadow::NONE;
     visuals.slider_trailing_fill = true;
     visuals.window_corner_radius = CornerRadius::same(6);
     let widgets = &mut visuals.widgets;
     let states = [
-        (&mut widgets.noninteractive, PANEL, LINE, TEXT),
-        (&mut widgets.inactive, RAISED, LINE, TEXT),
-        (&mut widgets.hovered, LINE, FAINT, TEXT),
-        (&mut widgets.active, SELECTED_ROW, SELECTED, TEXT),
-        (&mut widgets.open, RAISED, FAINT, TEXT),
+        (&mut widgets.noninteractive, theme.panel, theme.line, theme.text),
+        (&mut widgets.inactive, theme.raised, theme.line, theme.text),
+        (&mut widgets.hovered, theme.line, theme.faint, theme.text),
+        (&mut widgets.active, theme.selected_row, theme.selected, theme.text),
+        (&mut widgets.open, theme.raised, theme.faint, theme.text),
     ];
     for (widget, fill, outline, text) in states {
         widget.bg_fill = fill;
@@ -137,17 +215,17 @@ pub fn number_font(size: f32) -> FontId {
 /// A side note.
 #[must_use]
 pub fn note(text: impl Into<String>) -> RichText {
-    RichText::new(text).size(SMALL_SIZE).color(DIM)
+    RichText::new(text).size(SMALL_SIZE).weak()
 }
 
 /// A heading: told apart by weight, not by size. The bundled face has one weight, so its
 /// strokes are thickened by drawing the text twice, half a point apart.
 pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
-    let response = ui.label(RichText::new(text).color(TEXT));
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(TEXT_SIZE), TEXT);
+    let response = ui.label(RichText::new(text).color(of(ui).text));
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(TEXT_SIZE), of(ui).text);
     // Only where it is on one line: a wrapped heading stays as it is.
     if galley.size().x <= response.rect.width() + 1.0 {
-        ui.painter().galley(response.rect.min + vec2(0.4, 0.0), galley, TEXT);
+        ui.painter().galley(response.rect.min + vec2(0.4, 0.0), galley, of(ui).text);
     }
     response
 }
@@ -166,7 +244,7 @@ pub fn two_inks(ui: &Ui, at: egui::Pos2, room: f32, words: [&str; 2], color: Col
     let format = |color| egui::TextFormat::simple(FontId::proportional(SMALL_SIZE), color);
     job.append(words[0], 0.0, format(color));
     if !words[1].is_empty() {
-        job.append(words[1], 4.0, format(DIM));
+        job.append(words[1], 4.0, format(of(ui).dim));
     }
     job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(8.0));
     let galley = ui.painter().layout_job(job);
@@ -177,33 +255,89 @@ pub fn two_inks(ui: &Ui, at: egui::Pos2, room: f32, words: [&str; 2], color: Col
 pub fn row_background(ui: &Ui, rect: egui::Rect, is_selected: bool, response: &egui::Response) {
     let painter = ui.painter();
     if is_selected {
-        painter.rect_filled(rect, CornerRadius::ZERO, SELECTED_ROW);
+        painter.rect_filled(rect, CornerRadius::ZERO, of(ui).selected_row);
         let bar = egui::Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
-        painter.rect_filled(bar, CornerRadius::ZERO, SELECTED);
+        painter.rect_filled(bar, CornerRadius::ZERO, of(ui).selected);
     } else if response.hovered() {
-        painter.rect_filled(rect, CornerRadius::ZERO, RAISED);
+        painter.rect_filled(rect, CornerRadius::ZERO, of(ui).raised);
     }
     if response.has_focus() {
-        painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, FOCUS), egui::StrokeKind::Inside);
+        painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, of(ui).focus), egui::StrokeKind::Inside);
     }
 }
 
 /// A card on a panel.
-pub fn card() -> egui::Frame {
+pub fn card(ui: &Ui) -> egui::Frame {
     egui::Frame::new()
-        .fill(RAISED)
-        .stroke(Stroke::new(1.0, LINE))
+        .fill(of(ui).raised)
+        .stroke(Stroke::new(1.0, of(ui).line))
         .corner_radius(CornerRadius::same(4))
         .inner_margin(Margin::same(8))
 }
 
+/// A frame around a dialog over everything.
+pub fn dialog(ctx: &egui::Context) -> egui::Frame {
+    egui::Frame::window(&ctx.global_style()).corner_radius(CornerRadius::same(4)).inner_margin(Margin::same(16))
+}
+
 /// A frame around the contents of a docked panel.
-pub fn panel_frame() -> egui::Frame {
-    egui::Frame::new().fill(PANEL).inner_margin(Margin::same(8))
+pub fn panel_frame(ui: &Ui) -> egui::Frame {
+    egui::Frame::new().fill(of(ui).panel).inner_margin(Margin::same(8))
 }
 
 /// A small square of colour, as in legends.
 pub fn swatch(ui: &mut Ui, color: Color32) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), egui::Sense::hover());
-    ui.painter().rect(rect, CornerRadius::same(2), color, Stroke::new(1.0, FAINT), egui::StrokeKind::Inside);
+    ui.painter().rect(rect, CornerRadius::same(2), color, Stroke::new(1.0, of(ui).faint), egui::StrokeKind::Inside);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contrast of two colours after WCAG 2.
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let light = |color: Color32| {
+            let [red, green, blue, _] = color.to_array().map(|byte| {
+                let share = f64::from(byte) / 255.0;
+                if share <= 0.04045 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
+            });
+            0.2126 * red + 0.7152 * green + 0.0722 * blue + 0.05
+        };
+        let (a, b) = (light(a), light(b));
+        a.max(b) / a.min(b)
+    }
+
+    #[test]
+    fn words_can_be_read_on_every_ground_of_both_themes() {
+        for (name, theme) in [("dark", &DARK), ("light", &LIGHT)] {
+            let inks = [
+                ("text", theme.text),
+                ("dim", theme.dim),
+                ("error", theme.error),
+                ("passed", theme.passed),
+                ("failed", theme.failed),
+                ("lit", theme.lit),
+                ("count up", theme.count_up),
+                ("count down", theme.count_down),
+                ("selected", theme.selected),
+            ];
+            for (ground_name, ground) in [("panel", theme.panel), ("raised", theme.raised)] {
+                for (ink_name, ink) in inks {
+                    let found = contrast(ink, ground);
+                    assert!(found >= 4.5, "{name}: {ink_name} on {ground_name}: {found:.2}");
+                }
+            }
+            assert!(contrast(theme.text, theme.selected_row) >= 4.5, "{name}: text on a selected row");
+        }
+    }
+
+    #[test]
+    fn parts_of_a_volume_can_be_told_apart_from_the_ground_of_both_themes() {
+        for theme in [&DARK, &LIGHT] {
+            for ink in [theme.side, theme.light_cap, theme.dark_cap] {
+                assert!(contrast(ink, theme.panel) >= 3.0);
+            }
+        }
+    }
 }

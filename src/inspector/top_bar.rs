@@ -8,7 +8,7 @@ use egui::{CornerRadius, Margin, RichText, Stroke, Ui, vec2};
 
 /// Draws the bar.
 pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
-    let frame = egui::Frame::new().fill(theme::BACKGROUND).inner_margin(Margin::symmetric(8, 4));
+    let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 4));
     egui::Panel::top("top bar").frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
             theme::heading(ui, "stencilscope");
@@ -17,7 +17,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
                 state.dialog = Some(OpenDialog::default());
             }
             if let Some(name) = open_name(state) {
-                ui.label(RichText::new(name).color(theme::TEXT)).on_hover_text("What is open");
+                ui.label(RichText::new(name).color(theme::of(ui).text)).on_hover_text("What is open");
             }
             ui.add_space(8.0);
             techniques(ui, state, actions);
@@ -52,8 +52,8 @@ fn techniques(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
 pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
     let mut clicked = None;
     let frame = egui::Frame::new()
-        .fill(theme::RAISED)
-        .stroke(Stroke::new(1.0, theme::LINE))
+        .fill(theme::of(ui).raised)
+        .stroke(Stroke::new(1.0, theme::of(ui).line))
         .corner_radius(CornerRadius::same(4));
     frame.show(ui, |ui| {
         // Laid out left to right whatever surrounds them.
@@ -61,8 +61,8 @@ pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> 
             ui.spacing_mut().item_spacing.x = 0.0;
             for (index, (label, explanation)) in labels.iter().enumerate() {
                 let is_chosen = chosen == Some(index);
-                let color = if is_chosen { theme::TEXT } else { theme::DIM };
-                let fill = if is_chosen { theme::SELECTED_ROW } else { theme::RAISED };
+                let color = if is_chosen { theme::of(ui).text } else { theme::of(ui).dim };
+                let fill = if is_chosen { theme::of(ui).selected_row } else { theme::of(ui).raised };
                 let text = RichText::new(*label).color(color);
                 let button = egui::Button::selectable(is_chosen, text)
                     .fill(fill)

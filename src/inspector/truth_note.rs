@@ -41,7 +41,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, actions: &m
     // Senses clicks, so that they do not reach the picture underneath.
     let builder = UiBuilder::new().max_rect(place).sense(Sense::click_and_drag()).id_salt("truth note");
     ui.scope_builder(builder, |ui| {
-        theme::card().fill(theme::PANEL.gamma_multiply(0.94)).show(ui, |ui| {
+        theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
             ui.set_width(width - 16.0);
             contents(ui, state, shown, actions);
         });
@@ -63,7 +63,7 @@ fn contents(ui: &mut Ui, state: &mut State, shown: &Shown, actions: &mut Vec<Act
         }
         TruthState::Failed(reason) => {
             let text = format!("× There is no truth: {reason}");
-            ui.add(egui::Label::new(RichText::new(text).color(theme::ERROR)).wrap());
+            ui.add(egui::Label::new(RichText::new(text).color(theme::of(ui).error)).wrap());
             ask_again(ui, state, "Try again");
         }
     }
