@@ -5,12 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 24] = [
+const MAY_USE: [(&str, &[&str]); 25] = [
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
+    ("files", &[]),
     ("picture", &[]),
-    ("scene", &["math"]),
+    ("scene", &["math", "files"]),
     ("truth", &["math", "scene", "progress"]),
     ("accuracy", &["truth"]),
     ("geometry", &["math", "scene"]),
@@ -82,6 +83,7 @@ const MAY_USE: [(&str, &[&str]); 24] = [
     (
         "app",
         &[
+            "files",
             "scene",
             "plan",
             "technique",
@@ -99,6 +101,7 @@ const MAY_USE: [(&str, &[&str]); 24] = [
     (
         "cli",
         &[
+            "files",
             "numbers",
             "math",
             "scene",
