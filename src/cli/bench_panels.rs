@@ -80,7 +80,9 @@ mod measured {
         let mut text = String::new();
         for panel in Panel::ALL {
             panels.inspector().show_panel(panel);
-            (0..4).for_each(|_| drop(panels.point([0.5, 0.5]).next));
+            for _ in 0..4 {
+                panels.point([0.5, 0.5]);
+            }
             let costs: Vec<FrameCost> = (0..FRAMES)
                 .map(|frame| {
                     let share = frame as f32 / FRAMES as f32;
@@ -111,7 +113,9 @@ mod measured {
     pub fn idle(panels: &mut Headless) -> String {
         panels.point([0.5, 0.02]);
         // Hints and focus settle for a second.
-        (0..90).for_each(|_| drop(panels.frame(Vec::new()).next));
+        for _ in 0..90 {
+            panels.frame(Vec::new());
+        }
         let wishes = (0..FRAMES).filter(|_| panels.frame(Vec::new()).next.is_some()).count();
         format!("  idle: {wishes} of {FRAMES} frames wish for another one while nothing changes\n")
     }
