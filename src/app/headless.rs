@@ -123,17 +123,10 @@ impl Headless {
     /// The worker is silent for too long.
     pub fn settle(&mut self) -> Result<(), AppError> {
         self.frame(Vec::new());
-        let mut is_busy = true;
         loop {
+            let is_busy = self.desk.inspector.is_busy();
             match self.news.recv_timeout(if is_busy { PATIENCE } else { SILENCE }) {
                 Ok(news) => {
-                    if let WindowNews::Worker(news) = &news {
-                        is_busy = match news {
-                            super::news::News::Busy(_) => true,
-                            super::news::News::Idle => false,
-                            _ => is_busy,
-                        };
-                    }
                     self.desk.wake(news);
                     self.frame(Vec::new());
                 }

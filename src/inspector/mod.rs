@@ -335,6 +335,12 @@ impl Inspector {
         self.state.job = job;
     }
 
+    /// Is anything being done?
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.state.job.is_some()
+    }
+
     /// Shows a report, how far its measuring is, or why there is none.
     pub fn set_report(&mut self, report: ReportView) {
         self.state.report.show(report);
