@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 24] = [
+const MAY_USE: [(&str, &[&str]); 25] = [
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
@@ -37,6 +37,7 @@ const MAY_USE: [(&str, &[&str]); 24] = [
             "picture",
         ],
     ),
+    ("anatomy", &["math", "scene", "geometry", "plan", "technique"]),
     ("report", &["capture", "numbers"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
@@ -48,6 +49,7 @@ const MAY_USE: [(&str, &[&str]); 24] = [
             "geometry",
             "plan",
             "technique",
+            "anatomy",
             "capture",
             "gpu",
             "truth",
@@ -67,6 +69,7 @@ const MAY_USE: [(&str, &[&str]); 24] = [
             "geometry",
             "plan",
             "technique",
+            "anatomy",
             "capture",
             "diagnosis",
             "picture",
@@ -85,6 +88,7 @@ const MAY_USE: [(&str, &[&str]); 24] = [
             "scene",
             "plan",
             "technique",
+            "anatomy",
             "capture",
             "diagnosis",
             "session",

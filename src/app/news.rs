@@ -1,5 +1,6 @@
 //! What wakes the window: news of the worker, a chosen file, a wish to repaint.
 
+use crate::anatomy::Anatomy;
 use crate::capture::Capture;
 use crate::diagnosis::Diagnosis;
 use crate::history::PixelHistory;
@@ -86,6 +87,13 @@ pub enum News {
         at: [u32; 2],
         /// Its history, or why there is none, with the mend.
         history: Result<Arc<PixelHistory>, String>,
+    },
+    /// What a frame is made of in space.
+    Anatomy {
+        /// The frame that is meant.
+        frame: u64,
+        /// Its anatomy, or why there is none, with the mend.
+        anatomy: Result<Arc<Anatomy>, String>,
     },
     /// Techniques were measured, or could not be; not told of what was cancelled.
     Measured {

@@ -54,6 +54,11 @@ pub enum Order {
         /// Column and row.
         at: [u32; 2],
     },
+    /// What the frame that was captured last is made of in space.
+    Anatomy {
+        /// The frame that is meant.
+        frame: u64,
+    },
     /// Techniques measured on the open scene, as it was captured last.
     Measure(Measure),
     /// Why the frame that was captured last is wrong.
@@ -111,6 +116,7 @@ pub struct Waiting {
     picture: Option<Order>,
     draws: Option<Order>,
     history: Option<Order>,
+    anatomy: Option<Order>,
     judge: Option<Order>,
     diagnose: Option<Order>,
     measure: Option<Order>,
@@ -123,6 +129,7 @@ impl Waiting {
         match order {
             Order::Draws { .. } => self.draws = Some(order),
             Order::History { .. } => self.history = Some(order),
+            Order::Anatomy { .. } => self.anatomy = Some(order),
             Order::Judge { .. } => self.judge = Some(order),
             Order::Diagnose { .. } => self.diagnose = Some(order),
             Order::Measure(_) => self.measure = Some(order),
@@ -144,12 +151,14 @@ impl Waiting {
     /// The next that is about the frame that is shown and takes no longer than a frame; none while a
     /// new picture is waited for.
     pub fn next_short(&mut self) -> Option<Order> {
-        if self.picture.is_some() { None } else { self.draws.take().or_else(|| self.history.take()) }
+        let mut of_frame = || self.draws.take().or_else(|| self.history.take()).or_else(|| self.anatomy.take());
+        if self.picture.is_some() { None } else { of_frame() }
     }
 
     /// The next to obey: what is seen first, what is known of it later.
     pub fn next(&mut self) -> Option<Order> {
         let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
+        let seen = seen.or_else(|| self.anatomy.take());
         let of_frame = seen.or_else(|| self.judge.take()).or_else(|| self.diagnose.take());
         of_frame.or_else(|| self.measure.take()).or_else(|| self.stress.take())
     }

@@ -121,9 +121,10 @@ impl App {
                 self.inspector.set_truth(TruthState::Failed(reason));
             }
             News::History { frame, at, history } if frame == self.frame => self.inspector.set_history(at, history),
+            News::Anatomy { frame, anatomy } if frame == self.frame => self.inspector.set_anatomy(anatomy),
             // Of a scene or frame that is shown no more.
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
-            News::Draws { .. } | News::NoDraws { .. } | News::History { .. } => {}
+            News::Draws { .. } | News::NoDraws { .. } | News::History { .. } | News::Anatomy { .. } => {}
             News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
             News::Diagnosed { job, result } => self.jobs.end_diagnosing(job, result, &mut self.inspector),
             News::Stressed { job, rows } => self.jobs.add_stress(job, rows, &mut self.inspector),
@@ -171,6 +172,7 @@ impl App {
                 return self.redraw();
             }
             Action::History { at } => Order::History { frame: self.frame, at },
+            Action::Anatomy => Order::Anatomy { frame: self.frame },
             Action::RunReport => match self.jobs.measure(self.generation, &mut self.inspector) {
                 Some(measure) => Order::Measure(measure),
                 None => return self.redraw(),

@@ -170,6 +170,7 @@ impl Bench {
             Order::Diagnose { frame, job, progress } => return self.diagnose(frame, job, &progress),
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
             Order::History { frame, at } => return self.history(frame, at),
+            Order::Anatomy { frame } => return self.anatomy(frame),
             // Of a scene that is open no more.
             Order::Run { .. } => return,
             // Obeyed by the loop, as others come in between.

@@ -28,6 +28,8 @@ pub enum Action {
         /// Column and row.
         at: [u32; 2],
     },
+    /// Tell what the frame that is shown is made of in space.
+    Anatomy,
     /// Measure every technique on the open scene.
     RunReport,
     /// Stop measuring; the rows so far stay.

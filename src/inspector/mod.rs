@@ -17,6 +17,7 @@
 //! ```
 
 mod action;
+mod anatomy_state;
 mod canvas;
 mod coloring;
 mod counts;
@@ -76,6 +77,7 @@ pub use stress::StressProgress;
 pub use truth_note::TruthState;
 pub use view::{PictureKind, Zoom};
 
+use crate::anatomy::Anatomy;
 use crate::capture::Capture;
 use crate::history::PixelHistory;
 use crate::scene::Scene;
@@ -126,6 +128,7 @@ impl Inspector {
         self.state.ask_for_truth(&mut actions);
         self.state.ask_for_draws(&mut actions);
         self.state.ask_for_history(ui.ctx(), &mut actions);
+        self.state.ask_for_anatomy(&mut actions);
         actions
     }
 
@@ -178,6 +181,14 @@ impl Inspector {
         // One that was on its way when a folder was opened is of what was open before.
         if self.state.pick == Some(at) && self.state.scene.is_some() {
             self.state.history.answer(at, history);
+        }
+    }
+
+    /// Tells what the shown frame is made of in space, or why that can't be told.
+    pub fn set_anatomy(&mut self, anatomy: Result<Arc<Anatomy>, String>) {
+        // One that was on its way when a folder was opened is of what was open before.
+        if self.state.scene.is_some() {
+            self.state.anatomy.answer(anatomy);
         }
     }
 

@@ -1,6 +1,7 @@
 //! What the panels show and remember, and how it changes. No widget is drawn here.
 
 use super::action::{Action, RunRequest};
+use super::anatomy_state::AnatomyState;
 use super::diagnosis::DiagnosisState;
 use super::draw_level::DrawsState;
 use super::history::HistoryState;
@@ -106,6 +107,8 @@ pub struct State {
     pub truth: TruthState,
     /// What happened to the picked pixel.
     pub history: HistoryState,
+    /// What the shown frame is made of in space.
+    pub anatomy: AnatomyState,
     /// The Report tab.
     pub report: ReportState,
     /// The Diagnosis tab.
@@ -158,6 +161,7 @@ impl State {
         }
         self.truth = TruthState::NotAsked;
         self.history.forget_frame();
+        self.anatomy.forget_frame();
         let [width, height] = capture.size;
         self.pick = self.pick.filter(|[x, y]| *x < width && *y < height);
         self.hover = None;
@@ -206,6 +210,13 @@ impl State {
         }
     }
 
+    /// Asks what the frame is made of in space, where something shows that and it was not asked yet.
+    pub fn ask_for_anatomy(&mut self, actions: &mut Vec<Action>) {
+        if self.scene.is_some() && self.capture.is_some() && self.anatomy.ask() {
+            actions.push(Action::Anatomy);
+        }
+    }
+
     /// Tells how far the truth of the shown frame is.
     pub fn set_truth(&mut self, truth: TruthState) {
         if matches!(truth, TruthState::Cancelled | TruthState::Failed(_)) {
@@ -230,6 +241,7 @@ impl State {
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>) {
         self.meshes = None;
         self.diagnosis.forget();
+        self.anatomy.forget();
         if scene.is_none() {
             self.history.close();
         }

@@ -3,6 +3,7 @@
 //! A session owns the GPU and what is worth keeping between runs (pipelines, buffers, edge
 //! lists). Commands, the window and tests all go through it.
 
+mod anatomy;
 mod counts;
 mod diagnose;
 mod draws;
