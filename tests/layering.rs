@@ -71,6 +71,7 @@ const MAY_USE: [(&str, &[&str]); 25] = [
             "technique",
             "anatomy",
             "capture",
+            "difference",
             "diagnosis",
             "picture",
             "stencil_machine",

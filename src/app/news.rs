@@ -42,6 +42,15 @@ pub enum News {
         /// What was seen.
         capture: Arc<Capture>,
     },
+    /// The open scene as another technique draws it.
+    Compared {
+        /// The scene that is meant.
+        generation: u64,
+        /// What was asked.
+        request: Box<RunRequest>,
+        /// What was seen, or why it can't be, with the mend.
+        result: Result<Arc<Capture>, String>,
+    },
     /// The same frame was timed.
     Timed {
         /// The frame that is meant.

@@ -33,6 +33,13 @@ pub enum Order {
         /// The change.
         request: Box<RunRequest>,
     },
+    /// The open scene as another technique draws it, beside the frame that is shown.
+    Compare {
+        /// The scene that is meant.
+        generation: u64,
+        /// How.
+        request: Box<RunRequest>,
+    },
     /// The states after the draws of a step of the frame that was captured last.
     Draws {
         /// The frame that is meant.
@@ -117,6 +124,7 @@ pub struct Waiting {
     draws: Option<Order>,
     history: Option<Order>,
     anatomy: Option<Order>,
+    compare: Option<Order>,
     judge: Option<Order>,
     diagnose: Option<Order>,
     measure: Option<Order>,
@@ -130,6 +138,7 @@ impl Waiting {
             Order::Draws { .. } => self.draws = Some(order),
             Order::History { .. } => self.history = Some(order),
             Order::Anatomy { .. } => self.anatomy = Some(order),
+            Order::Compare { .. } => self.compare = Some(order),
             Order::Judge { .. } => self.judge = Some(order),
             Order::Diagnose { .. } => self.diagnose = Some(order),
             Order::Measure(_) => self.measure = Some(order),
@@ -158,7 +167,7 @@ impl Waiting {
     /// The next to obey: what is seen first, what is known of it later.
     pub fn next(&mut self) -> Option<Order> {
         let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
-        let seen = seen.or_else(|| self.anatomy.take());
+        let seen = seen.or_else(|| self.anatomy.take()).or_else(|| self.compare.take());
         let of_frame = seen.or_else(|| self.judge.take()).or_else(|| self.diagnose.take());
         of_frame.or_else(|| self.measure.take()).or_else(|| self.stress.take())
     }

@@ -122,7 +122,11 @@ impl App {
             }
             News::History { frame, at, history } if frame == self.frame => self.inspector.set_history(at, history),
             News::Anatomy { frame, anatomy } if frame == self.frame => self.inspector.set_anatomy(anatomy),
+            News::Compared { generation, request, result } if generation == self.generation => {
+                self.inspector.set_compared(&request, result);
+            }
             // Of a scene or frame that is shown no more.
+            News::Compared { .. } => {}
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
             News::Draws { .. } | News::NoDraws { .. } | News::History { .. } | News::Anatomy { .. } => {}
             News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
@@ -159,6 +163,10 @@ impl App {
             Action::Run(request) => {
                 self.jobs.make_way(&mut self.inspector);
                 Order::Run { generation: self.generation, request }
+            }
+            Action::Compare(request) => {
+                self.jobs.pause_judging(&mut self.inspector);
+                Order::Compare { generation: self.generation, request }
             }
             Action::Browse => return self.browse(),
             Action::CaptureDraws { step } => {

@@ -167,6 +167,7 @@ impl Bench {
             Order::Run { generation, request } if generation == self.generation => self.run(&request),
             Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant),
             Order::Draws { frame, step } => return self.fill_draws(frame, step),
+            Order::Compare { generation, request } => return self.compare(generation, request),
             Order::Diagnose { frame, job, progress } => return self.diagnose(frame, job, &progress),
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
             Order::History { frame, at } => return self.history(frame, at),
@@ -235,12 +236,27 @@ impl Bench {
         (self.tell)(News::Meshes { generation: self.generation, meshes });
     }
 
-    fn run(&mut self, request: &RunRequest) -> Result<(), String> {
-        let Some(loaded) = &self.scene else { return Ok(()) };
-        let mut scene = Scene::clone(loaded);
+    /// The open scene at the moment of a request.
+    fn scene_of(&self, request: &RunRequest) -> Option<Scene> {
+        let mut scene = Scene::clone(self.scene.as_ref()?);
         scene.camera = request.camera;
         scene.lights.clone_from(&request.lights);
-        let scene = scene.at(request.time);
+        Some(scene.at(request.time))
+    }
+
+    /// Captures the open scene beside the frame that is shown, which stays.
+    fn compare(&mut self, generation: u64, request: Box<RunRequest>) {
+        let Some(scene) = self.scene_of(&request).filter(|_| generation == self.generation) else { return };
+        (self.tell)(News::Busy(format!("capturing {} to compare", request.choice.technique().name())));
+        let what = CaptureRequest::new(request.choice.clone(), request.size);
+        let result = self.session().and_then(|session| session.capture(&scene, &what));
+        let result = result.map(Arc::new).map_err(|error| error.to_string());
+        (self.tell)(News::Compared { generation, request, result });
+        (self.tell)(News::Idle);
+    }
+
+    fn run(&mut self, request: &RunRequest) -> Result<(), String> {
+        let Some(scene) = self.scene_of(request) else { return Ok(()) };
         self.take_over(request);
         self.capture(scene, request).map_err(|error| error.to_string())
     }

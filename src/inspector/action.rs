@@ -14,6 +14,8 @@ pub enum Action {
     Browse,
     /// Render again, with this changed.
     Run(Box<RunRequest>),
+    /// Render as this says, to compare with the frame that is shown, which stays.
+    Compare(Box<RunRequest>),
     /// Trace the truth of the frame that is shown, and hold the technique against it.
     Judge,
     /// Capture the state after each draw of a step of the frame that is shown.

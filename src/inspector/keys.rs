@@ -3,6 +3,7 @@
 //! They act while nothing, or a widget of the pass tree, has the focus; a text field or the
 //! picture keeps its keys. Keys are consumed before widgets see them.
 
+use super::modes::Phase;
 use super::state::{State, StepSearch};
 use egui::{Context, Key, Modifiers};
 
@@ -38,6 +39,22 @@ pub fn handle(ctx: &Context, state: &mut State) {
         state.select_step(usize::MAX);
     } else if pressed(Modifiers::NONE, Key::Space) {
         state.toggle_play(ctx.input(|input| input.time));
+    }
+    picture_keys(ctx, state);
+}
+
+/// How the picture is looked at.
+fn picture_keys(ctx: &Context, state: &mut State) {
+    let pressed = |key| ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let phase = state.modes.phase;
+    if pressed(Key::B) {
+        state.modes.phase = if phase == Phase::Before { Phase::After } else { Phase::Before };
+    } else if pressed(Key::D) {
+        state.modes.phase = if phase == Phase::Diff { Phase::After } else { Phase::Diff };
+    } else if let Some(compare) = &mut state.modes.compare
+        && pressed(Key::X)
+    {
+        compare.flipped = !compare.flipped;
     }
 }
 

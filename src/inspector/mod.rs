@@ -19,11 +19,14 @@
 mod action;
 mod anatomy_state;
 mod canvas;
+mod change;
 mod coloring;
+mod compare;
 mod counts;
 mod depth;
 mod diagnosis;
 mod diagnosis_detail;
+mod divider;
 mod dock;
 mod draw_level;
 mod draws;
@@ -41,6 +44,9 @@ mod legend;
 mod magnifier;
 mod meshes;
 mod messages;
+mod modes;
+mod modes_bar;
+mod modes_legend;
 mod moment;
 mod open_dialog;
 mod outline;
@@ -127,6 +133,7 @@ impl Inspector {
         open_dialog::ui(ui.ctx(), &mut self.state, &mut actions);
         self.state.ask_for_truth(&mut actions);
         self.state.ask_for_draws(&mut actions);
+        self.state.ask_for_compared(&mut actions);
         self.state.ask_for_history(ui.ctx(), &mut actions);
         self.state.ask_for_anatomy(&mut actions);
         actions
@@ -168,6 +175,12 @@ impl Inspector {
     /// Tells how far the truth of the shown frame is.
     pub fn set_truth(&mut self, truth: TruthState) {
         self.state.set_truth(truth);
+    }
+
+    /// The frame of another technique, captured as `request` says, to compare the shown one with; or why
+    /// there is none.
+    pub fn set_compared(&mut self, request: &RunRequest, result: Result<Arc<Capture>, String>) {
+        self.state.modes.compared.answer(request, result);
     }
 
     /// Tells why there are no states after the draws of a step of the shown frame.
@@ -293,7 +306,7 @@ impl Inspector {
     /// The pictures that are shown; none where nothing is drawn yet.
     #[must_use]
     pub fn shown_images(&self) -> Vec<Arc<crate::capture::Image>> {
-        let shown = |capture: &Arc<Capture>| self.state.view.shown(capture, self.state.moment());
+        let shown = |capture: &Arc<Capture>| self.state.shown(capture);
         self.state.capture.as_ref().and_then(shown).map_or_else(Vec::new, |shown| shown.images)
     }
 
@@ -312,7 +325,7 @@ impl Inspector {
     #[must_use]
     pub fn picture_kind(&self) -> Option<PictureKind> {
         let capture = self.state.capture.as_ref()?;
-        self.state.view.shown(capture, self.state.moment()).map(|shown| shown.kind)
+        self.state.shown(capture).map(|shown| shown.kind)
     }
 
     /// Wishes for a kind of picture.

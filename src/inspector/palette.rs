@@ -56,6 +56,21 @@ pub const READS_ZERO: Color32 = Color32::from_rgb(0xff, 0x2b, 0xf2);
 /// Nothing was drawn here: the depth buffer's clear value.
 pub const NO_SURFACE: Color32 = opaque(colors::NOTHING);
 
+/// A count that went up, or a surface that came nearer.
+pub const UP: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
+
+/// A count that went down, or a surface that went farther away.
+pub const DOWN: Color32 = Color32::from_rgb(0x56, 0xb4, 0xe9);
+
+/// A surface where there was none.
+pub const APPEARED: Color32 = Color32::from_rgb(0x2f, 0xb5, 0x8a);
+
+/// No surface where there was one.
+pub const WENT: Color32 = Color32::from_rgb(0xcc, 0x79, 0xa7);
+
+/// The two inks of a bit: not set, set.
+pub const BITS: [Color32; 2] = [Color32::from_rgb(0x1b, 0x2a, 0x3d), Color32::from_rgb(0xf0, 0xe4, 0x42)];
+
 /// Black or white, whichever is read more easily on `background`.
 #[must_use]
 pub fn ink_on(background: Color32) -> Color32 {

@@ -6,6 +6,7 @@ use super::diagnosis::DiagnosisState;
 use super::draw_level::DrawsState;
 use super::history::HistoryState;
 use super::meshes::ObjectMesh;
+use super::modes::Modes;
 use super::moment::Moment;
 use super::report::ReportState;
 use super::stress::StressState;
@@ -97,6 +98,8 @@ pub struct State {
     pub playing: Option<f64>,
     /// The picture panel.
     pub view: PictureView,
+    /// How the picture is looked at.
+    pub modes: Modes,
     /// The picked pixel of the picture.
     pub pick: Option<[u32; 2]>,
     /// The picked texel of the shown map.
@@ -147,7 +150,7 @@ impl State {
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
         let step = self.step;
         self.step = match &self.capture {
-            Some(before) => corresponding_step(before, step, &capture),
+            Some(before) => same_step(before, step, &capture),
             None => capture.steps.len().saturating_sub(1),
         };
         if let Some(before) = self.capture.clone() {
@@ -161,6 +164,7 @@ impl State {
         }
         self.truth = TruthState::NotAsked;
         self.history.forget_frame();
+        self.modes.forget_frame();
         self.anatomy.forget_frame();
         let [width, height] = capture.size;
         self.pick = self.pick.filter(|[x, y]| *x < width && *y < height);
@@ -241,6 +245,7 @@ impl State {
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>) {
         self.meshes = None;
         self.diagnosis.forget();
+        self.modes.forget_scene();
         self.anatomy.forget();
         if scene.is_none() {
             self.history.close();
@@ -329,7 +334,8 @@ impl State {
 
 /// The step of `now` that means what step `index` of `before` meant: the last stays the last,
 /// a pass of the same name and light is the same.
-fn corresponding_step(before: &Capture, index: usize, now: &Capture) -> usize {
+#[must_use]
+pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
     let last = now.steps.len().saturating_sub(1);
     let Some(step) = before.steps.get(index).filter(|_| index + 1 < before.steps.len()) else { return last };
     let is_same = |candidate: &crate::capture::Step| candidate.name == step.name && candidate.light == step.light;
