@@ -57,6 +57,7 @@ const MAY_USE: [(&str, &[&str]); 25] = [
             "progress",
             "report",
             "history",
+            "stencil_machine",
             "diagnosis",
             "stress",
         ],

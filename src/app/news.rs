@@ -1,7 +1,7 @@
 //! What wakes the window: news of the worker, a chosen file, a wish to repaint.
 
 use crate::anatomy::Anatomy;
-use crate::capture::Capture;
+use crate::capture::{Capture, StepTests};
 use crate::diagnosis::Diagnosis;
 use crate::history::PixelHistory;
 use crate::inspector::{ObjectMesh, RunRequest};
@@ -50,6 +50,17 @@ pub enum News {
         request: Box<RunRequest>,
         /// What was seen, or why it can't be, with the mend.
         result: Result<Arc<Capture>, String>,
+    },
+    /// How fragments fared in the tests.
+    Tests {
+        /// The frame that is meant.
+        frame: u64,
+        /// Index of the step.
+        step: usize,
+        /// Index of the draw; `None`: all of the step.
+        draw: Option<usize>,
+        /// What was counted, or why nothing was, with the mend.
+        result: Result<Arc<StepTests>, String>,
     },
     /// The same frame was timed.
     Timed {

@@ -40,6 +40,15 @@ pub enum Order {
         /// How.
         request: Box<RunRequest>,
     },
+    /// How fragments of the frame that was captured last fared in the tests.
+    Tests {
+        /// The frame that is meant.
+        frame: u64,
+        /// Index of the step.
+        step: usize,
+        /// Index of the draw; `None`: all of the step.
+        draw: Option<usize>,
+    },
     /// The states after the draws of a step of the frame that was captured last.
     Draws {
         /// The frame that is meant.
@@ -124,6 +133,7 @@ pub struct Waiting {
     draws: Option<Order>,
     history: Option<Order>,
     anatomy: Option<Order>,
+    tests: Option<Order>,
     compare: Option<Order>,
     judge: Option<Order>,
     diagnose: Option<Order>,
@@ -138,6 +148,7 @@ impl Waiting {
             Order::Draws { .. } => self.draws = Some(order),
             Order::History { .. } => self.history = Some(order),
             Order::Anatomy { .. } => self.anatomy = Some(order),
+            Order::Tests { .. } => self.tests = Some(order),
             Order::Compare { .. } => self.compare = Some(order),
             Order::Judge { .. } => self.judge = Some(order),
             Order::Diagnose { .. } => self.diagnose = Some(order),
@@ -160,14 +171,21 @@ impl Waiting {
     /// The next that is about the frame that is shown and takes no longer than a frame; none while a
     /// new picture is waited for.
     pub fn next_short(&mut self) -> Option<Order> {
-        let mut of_frame = || self.draws.take().or_else(|| self.history.take()).or_else(|| self.anatomy.take());
+        let mut of_frame = || {
+            self.draws
+                .take()
+                .or_else(|| self.history.take())
+                .or_else(|| self.anatomy.take())
+                .or_else(|| self.tests.take())
+        };
         if self.picture.is_some() { None } else { of_frame() }
     }
 
     /// The next to obey: what is seen first, what is known of it later.
     pub fn next(&mut self) -> Option<Order> {
         let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
-        let seen = seen.or_else(|| self.anatomy.take()).or_else(|| self.compare.take());
+        let seen = seen.or_else(|| self.anatomy.take()).or_else(|| self.tests.take());
+        let seen = seen.or_else(|| self.compare.take());
         let of_frame = seen.or_else(|| self.judge.take()).or_else(|| self.diagnose.take());
         of_frame.or_else(|| self.measure.take()).or_else(|| self.stress.take())
     }

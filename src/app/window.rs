@@ -125,7 +125,11 @@ impl App {
             News::Compared { generation, request, result } if generation == self.generation => {
                 self.inspector.set_compared(&request, result);
             }
+            News::Tests { frame, step, draw, result } if frame == self.frame => {
+                self.inspector.set_tests(step, draw, result);
+            }
             // Of a scene or frame that is shown no more.
+            News::Tests { .. } => {}
             News::Compared { .. } => {}
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
             News::Draws { .. } | News::NoDraws { .. } | News::History { .. } | News::Anatomy { .. } => {}
@@ -168,6 +172,7 @@ impl App {
                 self.jobs.pause_judging(&mut self.inspector);
                 Order::Compare { generation: self.generation, request }
             }
+            Action::Tests { step, draw } => Order::Tests { frame: self.frame, step, draw },
             Action::Browse => return self.browse(),
             Action::CaptureDraws { step } => {
                 self.jobs.pause_judging(&mut self.inspector);

@@ -168,6 +168,7 @@ impl Bench {
             Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant),
             Order::Draws { frame, step } => return self.fill_draws(frame, step),
             Order::Compare { generation, request } => return self.compare(generation, request),
+            Order::Tests { frame, step, draw } => return self.tests(frame, step, draw),
             Order::Diagnose { frame, job, progress } => return self.diagnose(frame, job, &progress),
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
             Order::History { frame, at } => return self.history(frame, at),

@@ -16,6 +16,13 @@ pub enum Action {
     Run(Box<RunRequest>),
     /// Render as this says, to compare with the frame that is shown, which stays.
     Compare(Box<RunRequest>),
+    /// Count how fragments of the frame that is shown fare in the tests.
+    Tests {
+        /// Index of the step.
+        step: usize,
+        /// Index of the draw; `None`: all of the step.
+        draw: Option<usize>,
+    },
     /// Trace the truth of the frame that is shown, and hold the technique against it.
     Judge,
     /// Capture the state after each draw of a step of the frame that is shown.

@@ -10,6 +10,9 @@ use egui::Color32;
 use egui::ecolor::gamma_u8_from_linear_f32;
 use std::sync::LazyLock;
 
+/// How much of what lies under an overlay of colours is hidden.
+pub const OVER: f32 = 0.62;
+
 /// What the texels of a picture mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coloring {
@@ -33,6 +36,12 @@ pub enum Coloring {
     CountChange,
     /// How much farther surfaces are, in floats.
     DepthChange,
+    /// How fragments fared in the tests.
+    Outcomes,
+    /// Where objects receive shadows.
+    Receivers,
+    /// How many fragments there were.
+    Overdraw,
     /// sRGB bytes where they changed; alpha 0 where they did not.
     ColorChange,
 }
@@ -50,6 +59,9 @@ impl Coloring {
             Coloring::Findings => image.byte_at(at).map(findings::color),
             Coloring::Depth(scale) => image.depth_at(at).map(|depth| scale.color(depth)),
             Coloring::Bit(bit) => image.byte_at(at).map(|value| bit_color(value, bit)),
+            Coloring::Outcomes => image.byte_at(at).map(|value| palette::outcome(value).gamma_multiply(OVER)),
+            Coloring::Receivers => image.byte_at(at).map(palette::receiver),
+            Coloring::Overdraw => image.byte_at(at).map(palette::overdraw),
             Coloring::CountChange => image.byte_at(at).map(|by| change::count_color(by as i8)),
             Coloring::DepthChange => image.count_at(at).map(change::depth_color),
             Coloring::ColorChange => image.rgba_at(at).map(changed),
@@ -71,6 +83,8 @@ impl Coloring {
                 None => "∞".to_owned(),
             }),
             Coloring::Bit(bit) => image.byte_at(at).map(|value| (value >> bit & 1).to_string()),
+            Coloring::Overdraw => image.byte_at(at).map(|value| value.to_string()),
+            Coloring::Outcomes | Coloring::Receivers => None,
             Coloring::CountChange => image.byte_at(at).and_then(|by| change::signed(by as i8)),
             Coloring::DepthChange => image.count_at(at).filter(|by| *by != 0.0).map(|by| {
                 let sign = if by < 0.0 { '−' } else { '+' };

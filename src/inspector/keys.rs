@@ -51,6 +51,8 @@ fn picture_keys(ctx: &Context, state: &mut State) {
         state.modes.phase = if phase == Phase::Before { Phase::After } else { Phase::Before };
     } else if pressed(Key::D) {
         state.modes.phase = if phase == Phase::Diff { Phase::After } else { Phase::Diff };
+    } else if pressed(Key::O) {
+        state.modes.overlays.open_menu = true;
     } else if let Some(compare) = &mut state.modes.compare
         && pressed(Key::X)
     {

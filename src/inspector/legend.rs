@@ -48,6 +48,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, range: [f64
     card(ui, rect, width(shown.kind), |ui| match (shown.kind, state.modes.bit) {
         (PictureKind::Stencil, Some(bit)) => modes_legend::bit(ui, state, shown, bit),
         (PictureKind::Stencil, None) => stencil(ui, state, shown),
+        (PictureKind::Overdraw, _) => modes_legend::overdraw(ui, state, shown),
         (PictureKind::Count, _) => signed_counts(ui, state, shown),
         (PictureKind::Map, _) if shown.is_let_through() => let_through(ui, state, shown),
         (PictureKind::Mask | PictureKind::Truth, _) => labels(ui, state, shown),

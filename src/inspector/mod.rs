@@ -48,14 +48,18 @@ mod modes;
 mod modes_bar;
 mod modes_legend;
 mod moment;
+mod object_ids;
 mod open_dialog;
 mod outline;
+mod overlay_lines;
+mod overlays;
 mod palette;
 mod passes;
 mod picture;
 mod pixel;
 mod pixel_run;
 mod placement;
+mod projected;
 mod report;
 mod report_plot;
 mod report_table;
@@ -65,6 +69,7 @@ mod settings_scene;
 mod state;
 mod status_bar;
 mod stress;
+mod tests_state;
 mod texture;
 mod theme;
 mod top_bar;
@@ -84,7 +89,7 @@ pub use truth_note::TruthState;
 pub use view::{PictureKind, Zoom};
 
 use crate::anatomy::Anatomy;
-use crate::capture::Capture;
+use crate::capture::{Capture, StepTests};
 use crate::history::PixelHistory;
 use crate::scene::Scene;
 use crate::technique::Choice;
@@ -134,6 +139,7 @@ impl Inspector {
         self.state.ask_for_truth(&mut actions);
         self.state.ask_for_draws(&mut actions);
         self.state.ask_for_compared(&mut actions);
+        self.state.ask_for_tests(&mut actions);
         self.state.ask_for_history(ui.ctx(), &mut actions);
         self.state.ask_for_anatomy(&mut actions);
         actions
@@ -175,6 +181,11 @@ impl Inspector {
     /// Tells how far the truth of the shown frame is.
     pub fn set_truth(&mut self, truth: TruthState) {
         self.state.set_truth(truth);
+    }
+
+    /// Tells how the fragments of a step, or of one of its draws, fared in the tests; or why nobody knows.
+    pub fn set_tests(&mut self, step: usize, draw: Option<usize>, result: Result<Arc<StepTests>, String>) {
+        self.state.set_tests(moment::Moment { step, draw }, result);
     }
 
     /// The frame of another technique, captured as `request` says, to compare the shown one with; or why

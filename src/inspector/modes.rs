@@ -1,12 +1,16 @@
 //! How the picture is looked at: before or after a step, what the step changed, beside another picture,
 //! one bit of it, and what is drawn over it.
 
+use super::action::Action;
 use super::change::ChangeCache;
 use super::compare::{Compare, Compared};
 use super::moment::Moment;
+use super::overlays::Overlays;
 use super::state::State;
+use super::tests_state::TestsState;
 use super::view::{PictureKind, Shown};
-use crate::capture::Capture;
+use crate::capture::{Capture, StepTests};
+use std::sync::Arc;
 
 /// Which side of the selected step or draw is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -62,6 +66,10 @@ pub struct Modes {
     pub compare: Option<Compare>,
     /// Captures of other techniques to compare with.
     pub compared: Compared,
+    /// What is drawn over it.
+    pub overlays: Overlays,
+    /// How the fragments of the selected step fared.
+    pub tests: TestsState,
     /// What changed, made once.
     pub changes: ChangeCache,
 }
@@ -70,6 +78,8 @@ impl Modes {
     /// Another frame is shown.
     pub fn forget_frame(&mut self) {
         self.changes.forget();
+        self.overlays.forget_frame();
+        self.tests.forget();
     }
 
     /// Another scene is open, or none.
@@ -130,5 +140,24 @@ impl State {
     pub fn lacks_draw_before(&self) -> bool {
         let lacks = |capture: &Capture| before(capture, self.selected()) == Err(NoBefore::NotKnown);
         self.modes.phase != Phase::After && self.capture.as_ref().is_some_and(|capture| lacks(capture))
+    }
+
+    /// Asks how the fragments of the selected step fared, where something shows it and nobody knows.
+    pub fn ask_for_tests(&mut self, actions: &mut Vec<Action>) {
+        if self.scene.is_none() || self.capture.is_none() {
+            return;
+        }
+        if self.view.kind == PictureKind::Overdraw {
+            self.modes.tests.want(self.selected());
+        }
+        if let Some(Moment { step, draw }) = self.modes.tests.ask() {
+            actions.push(Action::Tests { step, draw });
+        }
+    }
+
+    /// How the fragments of a moment fared, or why nobody knows.
+    pub fn set_tests(&mut self, at: Moment, result: Result<Arc<StepTests>, String>) {
+        self.modes.tests.answer(at, result);
+        self.view.tests = self.modes.tests.of(at).map(|known| known.tests.clone()).or(self.view.tests.take());
     }
 }

@@ -3,6 +3,7 @@
 
 use super::compare::{self, Compare, With, step_words};
 use super::modes::{Phase, has_phases};
+use super::overlays;
 use super::state::State;
 use super::theme;
 use super::top_bar::segments;
@@ -21,6 +22,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, shown: Option<&Shown>) {
     }
     if is_single {
         toggle(ui, state);
+        overlays::menu(ui, state);
     }
 }
 

@@ -68,6 +68,24 @@ pub fn bit(ui: &mut Ui, state: &mut State, shown: &Shown, bit: u8) {
     entry(ui, palette::BITS[0], "0 not set", all - set);
 }
 
+/// How many pixels had how many fragments.
+pub fn overdraw(ui: &mut Ui, state: &mut State, shown: &Shown) {
+    let histogram = state.cache.histogram(&shown.images[0]);
+    theme::heading(ui, "Fragments a pixel");
+    let all: u64 = (0..=255_u64).zip(histogram).map(|(count, pixels)| count * pixels).sum();
+    ui.label(theme::note(format!("{} in all", format::count(all))));
+    let most = histogram[1..].iter().copied().max().unwrap_or(0);
+    let single = (0..=8_u8).map(|count| (count, count.to_string(), histogram[usize::from(count)]));
+    let ranges = [(9_u8, 16_u8), (17, 32), (33, 64), (65, 128), (129, 254), (255, 255)].map(|(from, to)| {
+        let pixels = histogram[usize::from(from)..=usize::from(to)].iter().sum();
+        (to, if from == to { "255 or more".to_owned() } else { format!("{from} to {to}") }, pixels)
+    });
+    for (count, name, pixels) in single.chain(ranges).filter(|(_, _, pixels)| *pixels > 0) {
+        entry(ui, palette::overdraw(count), &name, pixels);
+        bar(ui, pixels.min(most), most);
+    }
+}
+
 /// A bar under a line of the legend: its share of the largest.
 pub fn bar(ui: &mut Ui, texels: u64, most: u64) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 3.0), Sense::hover());

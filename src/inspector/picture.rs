@@ -15,6 +15,7 @@ use super::magnifier;
 use super::modes::{NoBefore, Phase, has_phases};
 use super::modes_bar;
 use super::outline;
+use super::overlays;
 use super::state::State;
 use super::theme;
 use super::top_bar::segments;
@@ -47,6 +48,9 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         legend::ui(ui, state, rect, &shown, range);
     }
     truth_note::ui(ui, state, rect, &shown, actions);
+    if state.view.kind == PictureKind::Overdraw && shown.kind != PictureKind::Overdraw {
+        overlays::counting_note(ui, state, rect);
+    }
 }
 
 /// One picture with what is over it: what changed, or what is compared.
@@ -71,6 +75,7 @@ fn single(
         sheets.push(sheet(ground, Coloring::Srgb, false));
         sheets.push(sheet(&change.image, change.coloring(), true));
     }
+    sheets.extend(overlays::sheets(state, capture, shown, rect));
     let compared = state.modes.compare.and_then(|compare| Some((compare, state.shown_compared(capture, shown).ok()?)));
     if let Some((compare, other)) = &compared {
         let mut beside = coloring_of(other, range);
@@ -81,6 +86,7 @@ fn single(
         sheets.push(Sheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
     }
     let placement = canvas::ui(ui, state, rect, shown, coloring, &sheets);
+    overlays::ui(ui, state, rect, shown, placement);
     outline::ui(ui, state, rect, shown, placement);
     match &change {
         Some((_, change)) => legend::of_change(ui, rect, change),
@@ -147,6 +153,7 @@ pub fn coloring_of(shown: &Shown, range: [f64; 2]) -> Coloring {
         PictureKind::Count => Coloring::Count,
         PictureKind::Mask | PictureKind::Truth => Coloring::Labels,
         PictureKind::Error => Coloring::Findings,
+        PictureKind::Overdraw => Coloring::Overdraw,
         PictureKind::Map if shown.is_let_through() => Coloring::Linear,
         PictureKind::Depth | PictureKind::Map => Coloring::Depth(DepthScale { measure: shown.measure, range }),
     }
@@ -194,7 +201,7 @@ fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
 
 fn has_options(shown: Option<&Shown>) -> bool {
     let kind = shown.map(|shown| shown.kind);
-    !matches!(kind, None | Some(PictureKind::Color | PictureKind::Stencil))
+    !matches!(kind, None | Some(PictureKind::Color | PictureKind::Stencil | PictureKind::Overdraw))
 }
 
 /// What goes with one kind of picture only.
@@ -222,7 +229,8 @@ fn kinds(ui: &mut Ui, state: &mut State, capture: &Capture) {
     let kinds = available(capture, state.moment());
     let labels: Vec<(&str, &str)> = kinds.iter().map(|kind| (kind.name(capture), kind.meaning(capture))).collect();
     // What was chosen, even while its truth is not known yet.
-    let is_asked_for = state.view.kind.needs_truth() && kinds.contains(&state.view.kind);
+    let is_made_later = state.view.kind.needs_truth() || state.view.kind == PictureKind::Overdraw;
+    let is_asked_for = is_made_later && kinds.contains(&state.view.kind);
     let shown = || state.shown(capture).map(|shown| shown.kind);
     let current = if is_asked_for { Some(state.view.kind) } else { shown() };
     let chosen = kinds.iter().position(|kind| Some(*kind) == current);

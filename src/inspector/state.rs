@@ -165,6 +165,7 @@ impl State {
         self.truth = TruthState::NotAsked;
         self.history.forget_frame();
         self.modes.forget_frame();
+        self.view.tests = None;
         self.anatomy.forget_frame();
         let [width, height] = capture.size;
         self.pick = self.pick.filter(|[x, y]| *x < width && *y < height);

@@ -251,6 +251,10 @@ fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
             Coloring::Bit(bit) => {
                 pixels.extend(row.iter().step_by(step).map(|value| coloring::bit_color(*value, bit)));
             }
+            Coloring::Outcomes => pixels
+                .extend(row.iter().step_by(step).map(|value| palette::outcome(*value).gamma_multiply(coloring::OVER))),
+            Coloring::Receivers => pixels.extend(row.iter().step_by(step).map(|value| palette::receiver(*value))),
+            Coloring::Overdraw => pixels.extend(row.iter().step_by(step).map(|value| palette::overdraw(*value))),
             Coloring::CountChange => {
                 pixels.extend(row.iter().step_by(step).map(|by| change::count_color(*by as i8)));
             }

@@ -10,6 +10,7 @@ mod draws;
 mod history;
 mod measure;
 mod report;
+mod step_tests;
 mod stress;
 mod stress_steps;
 mod suited;
@@ -84,6 +85,12 @@ pub enum SessionError {
         pixel: [u32; 2],
         /// Of the picture.
         size: [u32; 2],
+    },
+    /// No fragments of a step can be counted.
+    #[error("step {} draws no triangles into the picture: select one that does", step + 1)]
+    NoTests {
+        /// Index of the step.
+        step: usize,
     },
     /// A mend can't be made.
     #[error(transparent)]
