@@ -42,9 +42,22 @@ pub fn ui(
     coloring: Coloring,
     sheets: &[Sheet],
 ) -> Placement {
+    named(ui, state, rect, shown, coloring, sheets, "Picture canvas")
+}
+
+/// The same under another name.
+pub fn named(
+    ui: &mut Ui,
+    state: &mut State,
+    rect: Rect,
+    shown: &Shown,
+    coloring: Coloring,
+    sheets: &[Sheet],
+    name: &str,
+) -> Placement {
     let image = &shown.images[0];
-    let response = ui.interact(rect, ui.scope_id().with("canvas"), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture canvas"));
+    let response = ui.interact(rect, ui.scope_id().with(name), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, name));
     let pixels_per_point = ui.pixels_per_point();
     let place = |state: &State| Placement::new(&state.view, image.size(), rect, pixels_per_point);
     move_view(ui, state, &response, place(state), pixels_per_point);

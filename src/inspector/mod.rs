@@ -12,6 +12,8 @@
 //! coloring.rs  what a texel means                  texture.rs    pictures as textures, cached
 //! layers.rs    maps, textures and silhouettes      counts.rs     counts beyond eight bits
 //! findings.rs  the error picture's hatching        truth_note.rs while there is no truth
+//! modes.rs     before, after, compare          overlays.rs    what is drawn over it
+//! change.rs    what a step changed             shadow_map.rs  the map, linked with the picture
 //! moment.rs    after a step, or after a draw       draw_level.rs selecting and fetching draws
 //! history.rs   the pick's history, asked for       history_rows.rs, ladder.rs, outline.rs show it
 //! ```
@@ -42,6 +44,7 @@ mod ladder_layout;
 mod layers;
 mod legend;
 mod magnifier;
+mod map_readers;
 mod meshes;
 mod messages;
 mod modes;
@@ -66,6 +69,7 @@ mod report_table;
 mod settings;
 mod settings_off;
 mod settings_scene;
+mod shadow_map;
 mod state;
 mod status_bar;
 mod stress;
@@ -325,6 +329,13 @@ impl Inspector {
     #[must_use]
     pub fn picked(&self) -> Option<[u32; 2]> {
         self.state.pick
+    }
+
+    /// The texel that a pixel reads of the shadow map in its tab: index of the face, column and row. `None`
+    /// where it reads none, or the tab was not shown for this frame yet.
+    #[must_use]
+    pub fn map_texel_of(&self, pixel: [u32; 2]) -> Option<(usize, [u32; 2])> {
+        self.state.map_tab.texel_of(pixel).map(|texel| (texel.face, texel.at))
     }
 
     /// Picks a pixel.

@@ -16,6 +16,7 @@ use super::modes::{NoBefore, Phase, has_phases};
 use super::modes_bar;
 use super::outline;
 use super::overlays;
+use super::shadow_map;
 use super::state::State;
 use super::theme;
 use super::top_bar::segments;
@@ -87,6 +88,10 @@ fn single(
     }
     let placement = canvas::ui(ui, state, rect, shown, coloring, &sheets);
     overlays::ui(ui, state, rect, shown, placement);
+    if shown.kind != PictureKind::Map {
+        let mesh = shadow_map::marks(placement, state.map_tab.marked(), theme::of(ui).selected);
+        ui.painter_at(placement.rect().intersect(rect)).add(egui::Shape::mesh(mesh));
+    }
     outline::ui(ui, state, rect, shown, placement);
     match &change {
         Some((_, change)) => legend::of_change(ui, rect, change),
@@ -160,7 +165,7 @@ pub fn coloring_of(shown: &Shown, range: [f64; 2]) -> Coloring {
 }
 
 /// The grey ramp's ends: as set by hand, or those of all shown pictures.
-fn shown_range(state: &mut State, shown: &Shown) -> [f64; 2] {
+pub fn shown_range(state: &mut State, shown: &Shown) -> [f64; 2] {
     state.view.depth_range.unwrap_or_else(|| full_range(state, shown))
 }
 

@@ -9,6 +9,7 @@ use super::meshes::ObjectMesh;
 use super::modes::Modes;
 use super::moment::Moment;
 use super::report::ReportState;
+use super::shadow_map::MapTab;
 use super::stress::StressState;
 use super::texture::PictureCache;
 use super::truth_note::TruthState;
@@ -100,6 +101,8 @@ pub struct State {
     pub view: PictureView,
     /// How the picture is looked at.
     pub modes: Modes,
+    /// The Shadow map tab.
+    pub map_tab: MapTab,
     /// The picked pixel of the picture.
     pub pick: Option<[u32; 2]>,
     /// The picked texel of the shown map.
@@ -165,6 +168,7 @@ impl State {
         self.truth = TruthState::NotAsked;
         self.history.forget_frame();
         self.modes.forget_frame();
+        self.map_tab.forget_frame();
         self.view.tests = None;
         self.anatomy.forget_frame();
         let [width, height] = capture.size;

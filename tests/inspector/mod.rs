@@ -13,6 +13,7 @@ mod picture_modes;
 mod pictures;
 mod report;
 mod settings;
+mod shadow_map;
 mod stress;
 mod truth;
 
@@ -215,7 +216,7 @@ fn every_label_has_its_own_sentence() {
 #[test]
 fn only_pictures_that_exist_have_a_button_and_the_legend_counts_pixels() {
     let mut harness = harness(z_fail(SIZE));
-    assert!(harness.query_by_label("Shadow map").is_none());
+    assert!(harness.query_by_role_and_label(Role::Button, "Shadow map").is_none());
     press(&mut harness, Key::Home);
     press(&mut harness, Key::ArrowRight);
     click_button(&mut harness, "Stencil");
