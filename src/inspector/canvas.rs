@@ -91,13 +91,15 @@ pub fn named(
         StrokeKind::Outside,
     );
     if placement.pixels(pixels_per_point) >= NUMBERS_FROM {
-        let on_top = sheets.iter().rev().find(|sheet| sheet.has_numbers);
-        if on_top.is_none_or(|sheet| !sheet.part.contains_rect(visible)) {
-            let clip = on_top.map_or(rect, |sheet| beside(rect, sheet.part));
-            numbers(ui, clip, image, coloring, placement);
-        }
-        if let Some(sheet) = on_top {
-            numbers(ui, rect.intersect(sheet.part), &sheet.image, sheet.coloring, placement);
+        let numbered = || sheets.iter().filter(|sheet| sheet.has_numbers);
+        let whole = numbered().rfind(|sheet| sheet.part.contains_rect(visible));
+        let (image, coloring) = whole.map_or((image, coloring), |sheet| (&sheet.image, sheet.coloring));
+        match numbered().find(|sheet| !sheet.part.contains_rect(visible)) {
+            Some(part) => {
+                numbers(ui, beside(rect, part.part), image, coloring, placement);
+                numbers(ui, rect.intersect(part.part), &part.image, part.coloring, placement);
+            }
+            None => numbers(ui, rect, image, coloring, placement),
         }
     }
     if let Some(at) = *state.shown_pick(shown.kind) {

@@ -50,7 +50,9 @@ impl NoBefore {
     pub fn sentence(self) -> &'static str {
         match self {
             NoBefore::First => "Nothing comes before the first step: its buffers start cleared. Select a later one.",
-            NoBefore::NotKnown => "The state before this draw is not known yet.",
+            NoBefore::NotKnown => {
+                "The state before this draw is not known yet; a folder has it where it was captured with --every draw."
+            }
         }
     }
 }

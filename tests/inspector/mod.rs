@@ -8,6 +8,7 @@ mod history;
 mod history_by_hand;
 mod history_pictures;
 mod layers;
+mod mode_pictures;
 mod overlays;
 mod picture_modes;
 mod pictures;
