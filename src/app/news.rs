@@ -5,8 +5,10 @@ use crate::capture::{Capture, StepTests};
 use crate::diagnosis::Diagnosis;
 use crate::history::PixelHistory;
 use crate::inspector::{ObjectMesh, RunRequest};
+use crate::plan::FramePlan;
 use crate::report::Report;
 use crate::scene::Scene;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -23,6 +25,10 @@ pub enum News {
         generation: u64,
         /// As loaded.
         scene: Box<Scene>,
+        /// What opens it again; `None`: nothing does by name.
+        source: Option<String>,
+        /// The files that it is made of.
+        files: Vec<PathBuf>,
         /// Its first run.
         request: Box<RunRequest>,
     },
@@ -41,6 +47,8 @@ pub enum News {
         frame: u64,
         /// What was seen.
         capture: Arc<Capture>,
+        /// What was run.
+        plan: Arc<FramePlan>,
     },
     /// The open scene as another technique draws it.
     Compared {
@@ -143,9 +151,14 @@ pub enum News {
         /// Why they do not, where it was not that all are done.
         error: Option<String>,
     },
+    /// An export of the scene ended.
+    Exported(super::export::Exported),
     /// Something failed; the text has the mend.
     Failed(String),
 }
+
+/// Wakes whoever draws the panels; one that is gone needs no news.
+pub type Tell = Arc<dyn Fn(WindowNews) + Send + Sync>;
 
 /// An event of the window's loop that is not the system's.
 #[derive(Debug)]
@@ -154,6 +167,12 @@ pub enum WindowNews {
     Worker(News),
     /// The system's dialog gave this path.
     Chosen(String),
+    /// The system's dialog gave this place for an export.
+    ChosenExport(String),
+    /// An export ended.
+    Exported(super::export::Exported),
+    /// A file of the open scene changed.
+    FileChanged(String),
     /// egui wants to draw at this time.
     Repaint(Instant),
     /// From assistive technology.

@@ -218,7 +218,7 @@ pub fn texel_number(painter: &egui::Painter, image: &Image, coloring: Coloring, 
 }
 
 /// A box around the picked texel with four ticks, light on dark so that it shows on any picture.
-fn crosshair(painter: &egui::Painter, texel: Rect) {
+pub fn crosshair(painter: &egui::Painter, texel: Rect) {
     let middle = texel.center();
     let half = vec2(texel.width().max(11.0), texel.height().max(11.0)) / 2.0;
     let frame = Rect::from_center_size(middle, half * 2.0).expand(1.0);

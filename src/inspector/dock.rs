@@ -7,11 +7,13 @@
 use super::action::Action;
 use super::state::State;
 
-use super::{diagnosis, passes, picture, pixel, report, settings, shadow_map, stress, theme};
+use super::{diagnosis, explain, passes, picture, pixel, raster_state, report, settings, shadow_map, stress, theme};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
 };
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Widths of the side panels in points, where the window is wide enough.
 const LEFT_WIDTH: f32 = 264.0;
@@ -24,17 +26,66 @@ const REPORT_HEIGHT: f32 = 312.0;
 /// What the report may take of the window at most.
 const REPORT_SHARE: f32 = 0.42;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Panel {
+/// A tab.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Panel {
+    /// The frame, step by step.
     Passes,
+    /// What can be changed.
     Settings,
+    /// The selected buffer.
     Picture,
+    /// A light's map, linked with the picture.
     ShadowMap,
+    /// Everything about the picked pixel.
     Pixel,
+    /// The raster state of the selected draw.
+    State,
+    /// What the step is for, and tours.
+    Explain,
+    /// Error against time.
     Report,
+    /// What is wrong, and what mends it.
     Diagnosis,
+    /// Extreme cases.
     Stress,
 }
+
+impl Panel {
+    /// On its tab.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Panel::Passes => "Passes",
+            Panel::Settings => "Settings",
+            Panel::Picture => "Picture",
+            Panel::ShadowMap => "Shadow map",
+            Panel::Pixel => "Pixel",
+            Panel::State => "State",
+            Panel::Explain => "Explain",
+            Panel::Report => "Report",
+            Panel::Diagnosis => "Diagnosis",
+            Panel::Stress => "Stress",
+        }
+    }
+
+    /// In the order of their declaration.
+    pub const ALL: [Panel; 10] = [
+        Panel::Passes,
+        Panel::Settings,
+        Panel::Picture,
+        Panel::ShadowMap,
+        Panel::Pixel,
+        Panel::State,
+        Panel::Explain,
+        Panel::Report,
+        Panel::Diagnosis,
+        Panel::Stress,
+    ];
+}
+
+/// A layout as stored: egui's own form of it.
+pub type Layout = serde_json::Value;
 
 /// The panels and where they are.
 #[derive(Debug)]
@@ -59,7 +110,7 @@ impl Dock {
         let [picture, report, right] = [
             &[Panel::Picture, Panel::ShadowMap][..],
             &[Panel::Report, Panel::Diagnosis, Panel::Stress],
-            &[Panel::Pixel],
+            &[Panel::Pixel, Panel::State, Panel::Explain],
         ]
         .map(|panels| {
             let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
@@ -71,6 +122,24 @@ impl Dock {
         Dock { tree, row, left, middle, picture, report, right, arranged_by_user: false }
     }
 
+    /// Where the panels are; `None` while they are where they were at first.
+    #[must_use]
+    pub fn layout(&self) -> Option<Layout> {
+        self.arranged_by_user.then(|| serde_json::to_value(&self.tree).ok()).flatten()
+    }
+
+    /// Puts the panels where they were. A layout that is not one of these panels is not taken.
+    pub fn restore(&mut self, layout: Layout) {
+        let Ok(tree) = serde_json::from_value::<Tree<Panel>>(layout) else { return };
+        let mut panels = Vec::new();
+        let is_whole = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
+        panels.sort_unstable();
+        if is_whole && panels == Panel::ALL {
+            self.tree = tree;
+            self.arranged_by_user = true;
+        }
+    }
+
     /// Draws all panels into what is left of the window.
     pub fn ui(&mut self, ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         if !self.arranged_by_user {
@@ -79,6 +148,9 @@ impl Dock {
             let others = [&mut state.stress.is_shown, &mut state.diagnosis.is_shown].map(std::mem::take);
             let is_empty = state.report.is_empty() && !others.contains(&true);
             self.keep_heights(ui.available_height(), is_empty);
+        }
+        if let Some(wanted) = state.wants_panel.take() {
+            self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(panel) if *panel == wanted));
         }
         let mut behavior = Panels { state, actions, edited: false, theme: theme::of(ui) };
         self.tree.ui(&mut behavior, ui);
@@ -105,6 +177,21 @@ impl Dock {
     }
 }
 
+/// Gathers the panels below a tile; false where a tile is missing or stands twice.
+fn visit(tiles: &Tiles<Panel>, tile: TileId, seen: &mut BTreeSet<u64>, panels: &mut Vec<Panel>) -> bool {
+    if !seen.insert(tile.0) {
+        return false;
+    }
+    match tiles.get(tile) {
+        None => false,
+        Some(Tile::Pane(panel)) => {
+            panels.push(*panel);
+            true
+        }
+        Some(Tile::Container(container)) => container.children().all(|child| visit(tiles, *child, seen, panels)),
+    }
+}
+
 struct Panels<'a> {
     state: &'a mut State,
     actions: &'a mut Vec<Action>,
@@ -126,6 +213,8 @@ impl Behavior<Panel> for Panels<'_> {
                 Panel::Picture => picture::ui(ui, self.state, self.actions),
                 Panel::ShadowMap => shadow_map::ui(ui, self.state),
                 Panel::Pixel => pixel::ui(ui, self.state),
+                Panel::State => raster_state::ui(ui, self.state),
+                Panel::Explain => explain::ui(ui, self.state),
                 Panel::Report => report::ui(ui, self.state, self.actions),
                 Panel::Diagnosis => {
                     self.state.diagnosis.is_shown = true;
@@ -141,17 +230,7 @@ impl Behavior<Panel> for Panels<'_> {
     }
 
     fn tab_title_for_pane(&mut self, panel: &Panel) -> WidgetText {
-        let title = match panel {
-            Panel::Passes => "Passes",
-            Panel::Settings => "Settings",
-            Panel::Picture => "Picture",
-            Panel::ShadowMap => "Shadow map",
-            Panel::Pixel => "Pixel",
-            Panel::Report => "Report",
-            Panel::Diagnosis => "Diagnosis",
-            Panel::Stress => "Stress",
-        };
-        title.into()
+        panel.title().into()
     }
 
     fn tab_ui(&mut self, tiles: &mut Tiles<Panel>, ui: &mut Ui, id: Id, tile_id: TileId, tab: &TabState) -> Response {

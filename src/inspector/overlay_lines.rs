@@ -92,8 +92,8 @@ impl Lines {
 /// Colour and width in points.
 fn style(kind: LineKind, theme: &Theme) -> (Color32, f32) {
     match kind {
-        LineKind::Silhouette(multiplicity) => (theme.lit, 0.9 + 0.7 * multiplicity.unsigned_abs().min(3) as f32),
-        LineKind::Volume(part) => (theme.part(part).unwrap_or(theme.dim).gamma_multiply(0.6), 0.8),
+        LineKind::Silhouette(multiplicity) => (theme.lit, 0.6 + 0.6 * multiplicity.unsigned_abs().min(3) as f32),
+        LineKind::Volume(part) => (theme.part(part).unwrap_or(theme.dim).gamma_multiply(0.32), 0.6),
     }
 }
 

@@ -220,20 +220,26 @@ fn name(ui: &Ui, painter: &egui::Painter, at: egui::Pos2, text: &str) {
     painter.galley(place.min, galley, theme::of(ui).text);
 }
 
-/// In the lower right corner: what is on, in its colours.
+/// In the lower right corner: what is on, in its colours. Its height is that of the frame before.
 fn card(ui: &mut Ui, state: &mut State, rect: Rect) {
-    let corner = Rect::from_min_max(pos2(rect.right() - WIDTH - 12.0, rect.top() + 12.0), rect.max - vec2(12.0, 12.0));
-    let layout = egui::Layout::bottom_up(egui::Align::Min);
-    let builder = UiBuilder::new().max_rect(corner).layout(layout).id_salt("overlay card").sense(Sense::hover());
-    ui.scope_builder(builder, |ui| {
-        theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
-            ui.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
-                ui.set_width(WIDTH - 16.0);
-                ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
-                contents(ui, state);
-            });
-        });
+    let id = ui.scope_id().with("overlay card height");
+    let height: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(96.0);
+    let corner = pos2(rect.right() - WIDTH - 12.0, rect.bottom() - height - 12.0);
+    let place = Rect::from_min_size(corner, vec2(WIDTH, rect.height()));
+    let builder = UiBuilder::new().max_rect(place).id_salt("overlay card").sense(Sense::click_and_drag());
+    let card = ui.scope_builder(builder, |ui| {
+        let frame = theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94));
+        frame.show(ui, |ui| {
+            ui.set_width(WIDTH - 16.0);
+            ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
+            contents(ui, state);
+        })
     });
+    let needed = card.inner.response.rect.height();
+    if needed != height {
+        ui.data_mut(|data| data.insert_temp(id, needed));
+        ui.ctx().request_repaint();
+    }
 }
 
 fn contents(ui: &mut Ui, state: &mut State) {

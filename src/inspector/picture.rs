@@ -91,6 +91,10 @@ fn single(
     if shown.kind != PictureKind::Map {
         let mesh = shadow_map::marks(placement, state.map_tab.marked(), theme::of(ui).selected);
         ui.painter_at(placement.rect().intersect(rect)).add(egui::Shape::mesh(mesh));
+        // Lines and marks must not hide it.
+        if let Some(at) = state.pick {
+            canvas::crosshair(&ui.painter_at(rect), placement.rect_of(at));
+        }
     }
     outline::ui(ui, state, rect, shown, placement);
     match &change {
@@ -118,7 +122,9 @@ fn change_of(state: &mut State, capture: &Capture, shown: &Shown) -> Option<(Arc
     }
     let before = state.shown_before(capture).ok().filter(|before| before.kind == shown.kind)?;
     let change = state.modes.changes.change([&before.images[0], &shown.images[0]], shown.measure)?;
-    let colors = state.moment().frame(capture)?.color.image.clone();
+    // Of counts and depths it is the finished frame that shows where one is.
+    let at = if shown.kind == PictureKind::Color { state.moment() } else { capture.steps.len().checked_sub(1)?.into() };
+    let colors = at.frame(capture)?.color.image.clone();
     Some((state.modes.changes.ground(&colors), change))
 }
 

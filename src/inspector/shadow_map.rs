@@ -12,7 +12,7 @@ use super::state::State;
 use super::texture::TextureSize;
 use super::theme;
 use super::top_bar::segments;
-use super::view::{FaceChoice, PictureKind, PictureView, Shown, Zoom};
+use super::view::{FaceChoice, PictureKind, PictureView, Zoom};
 use crate::capture::{Capture, CapturedMap};
 use egui::epaint::Mesh;
 use egui::{
@@ -158,6 +158,7 @@ fn split(rect: Rect) -> [Rect; 2] {
 fn tools(ui: &mut Ui, state: &mut State, capture: &Capture, lights: &[usize]) {
     let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6));
     frame.show(ui, |ui| {
+        ui.set_min_width(ui.available_width());
         ui.horizontal(|ui| {
             if lights.len() > 1 {
                 let combo = egui::ComboBox::new("map light", "").width(72.0);
@@ -205,22 +206,11 @@ fn face(ui: &mut Ui, state: &mut State, capture: &Capture, rect: Rect, linked: O
     let over = state.hover.map(|hover| hover.at);
     swap(state);
     state.hover = hover;
-    let (placement, shown) = placed?;
+    let placement = placed?;
     let of_face = linked.filter(|texel| texel.face == state.map_tab.face());
     if let Some(texel) = of_face {
         mark_texel(ui, rect, placement, texel.at);
     }
-    let title = shown.title.split(" after ").next().unwrap_or_default();
-    let [width, height] = shown.images[0].size();
-    let text = format!("{title} · {width}×{height}");
-    theme::line(
-        ui,
-        rect.left_top() + vec2(8.0, 6.0),
-        rect.width() - 16.0,
-        &text,
-        egui::TextStyle::Small,
-        theme::of(ui).dim,
-    );
     over
 }
 
@@ -229,13 +219,13 @@ fn swap(state: &mut State) {
     std::mem::swap(&mut state.map_pick, &mut state.map_tab.pick);
 }
 
-fn draw_face(ui: &mut Ui, state: &mut State, capture: &Capture, rect: Rect) -> Option<(Placement, Shown)> {
+fn draw_face(ui: &mut Ui, state: &mut State, capture: &Capture, rect: Rect) -> Option<Placement> {
     let shown = state.view.shown(capture, capture.steps.len().checked_sub(1)?)?;
     let shown = Some(shown).filter(|shown| shown.kind == PictureKind::Map && shown.images.len() == 1)?;
     let range = shown_range(state, &shown);
     let coloring = coloring_of(&shown, range);
     let placement = canvas::named(ui, state, rect, &shown, coloring, &[], "Shadow map canvas");
-    Some((placement, shown))
+    Some(placement)
 }
 
 /// The texel that a pixel reads: a box, light on dark.
@@ -348,7 +338,8 @@ fn values(
     pixels: &[[u32; 2]],
     name: String,
 ) -> Vec<(&'static str, String)> {
-    let mut values = vec![("face", name)];
+    let [width, height] = map.faces.get(texel.face).map_or([0, 0], |face| face.size());
+    let mut values = vec![("map", format!("{name}, {width}×{height}"))];
     let stored = map.faces.get(texel.face).and_then(|face| face.depth_at(texel.at));
     let measure = DepthMeasure::of_map(capture, light, texel.face);
     if let Some(stored) = stored {

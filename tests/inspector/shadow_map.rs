@@ -64,8 +64,8 @@ fn pointing_at_a_texel_counts_the_pixels_that_read_it() {
     let pixels = expected([1, 0]);
     assert!(pixels > 20);
     harness.get_by_label(&format!("{pixels} pixels read it."));
-    harness.get_by_label_contains("0.200 m wide");
-    harness.get_by_label_contains("0.400 m at 45°");
+    harness.get_by_label_contains("0.2000 m wide");
+    harness.get_by_label_contains("0.4000 m at 45°");
 }
 
 #[test]
