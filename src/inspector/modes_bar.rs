@@ -10,7 +10,10 @@ use super::top_bar::segments;
 use super::view::{PictureKind, Shown};
 use crate::capture::Capture;
 use crate::technique::Technique;
-use egui::{Button, RichText, Ui};
+use egui::{Button, Rect, RichText, Ui, UiBuilder, vec2};
+
+/// Width of the note on a comparison, points.
+const NOTE_WIDTH: f32 = 232.0;
 
 /// Draws the tools that go with `shown`.
 pub fn ui(ui: &mut Ui, state: &mut State, shown: Option<&Shown>) {
@@ -57,8 +60,8 @@ fn toggle(ui: &mut Ui, state: &mut State) {
     }
 }
 
-/// What is compared with, and how many texels differ; drawn while comparing.
-pub fn compare_row(ui: &mut Ui, state: &mut State, capture: &Capture, shown: Option<&Shown>) {
+/// What is compared with; drawn while comparing.
+pub fn compare_row(ui: &mut Ui, state: &mut State, capture: &Capture) {
     let Some(mut compare) = state.modes.compare else { return };
     ui.label(theme::note("with"));
     let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
@@ -88,7 +91,13 @@ pub fn compare_row(ui: &mut Ui, state: &mut State, capture: &Capture, shown: Opt
         compare.flipped = !compare.flipped;
     }
     state.modes.compare = Some(compare);
-    let Some(shown) = shown.filter(|shown| shown.images.len() == 1) else { return };
+}
+
+/// In the upper left corner of `rect`: how many texels differ, or why nothing is compared.
+pub fn compare_note(ui: &mut Ui, state: &mut State, capture: &Capture, shown: &Shown, rect: Rect) {
+    if state.modes.compare.is_none() {
+        return;
+    }
     let text = match state.shown_compared(capture, shown) {
         Ok(other) => {
             let [width, height] = shown.images[0].size().map(u64::from);
@@ -97,5 +106,11 @@ pub fn compare_row(ui: &mut Ui, state: &mut State, capture: &Capture, shown: Opt
         }
         Err(reason) => reason,
     };
-    ui.add(egui::Label::new(theme::note(text)).truncate());
+    let place =
+        Rect::from_min_size(rect.min + vec2(12.0, 12.0), vec2(NOTE_WIDTH.min(rect.width() / 2.0), rect.height()));
+    ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("compare note"), |ui| {
+        theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
+            ui.add(egui::Label::new(theme::note(text)).wrap());
+        });
+    });
 }

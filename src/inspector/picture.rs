@@ -104,6 +104,7 @@ fn single(
             legend::ui(ui, state, rect, shown, range);
         }
     }
+    modes_bar::compare_note(ui, state, capture, shown, rect);
     if let Some((mut compare, _)) = compared {
         let now = match compare.with {
             With::Step(_) => state.moment().words(),
@@ -205,7 +206,7 @@ fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
             if !is_wide {
                 modes_bar::ui(ui, state, shown.as_ref());
             }
-            modes_bar::compare_row(ui, state, capture, shown.as_ref());
+            modes_bar::compare_row(ui, state, capture);
         });
     });
 }
