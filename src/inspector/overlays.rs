@@ -87,7 +87,14 @@ struct Made {
     light: usize,
     silhouettes: Option<(Lines, PlacedLines)>,
     volumes: Option<(Lines, PlacedLines)>,
-    ids: Option<(Arc<Image>, Vec<Option<[u32; 2]>>)>,
+    objects: Option<SeenObjects>,
+}
+
+/// Which objects are seen where.
+#[derive(Debug)]
+struct SeenObjects {
+    receivers: Arc<Image>,
+    middles: Vec<Option<[u32; 2]>>,
 }
 
 impl Overlays {
@@ -106,7 +113,7 @@ impl Overlays {
             light,
             silhouettes: None,
             volumes: None,
-            ids: None,
+            objects: None,
         });
         if self.on.contains(&Overlay::Silhouettes) && made.silhouettes.is_none() {
             made.silhouettes = Some((Lines::silhouettes(anatomy, capture, light), PlacedLines::default()));
@@ -114,9 +121,9 @@ impl Overlays {
         if self.on.contains(&Overlay::Volumes) && made.volumes.is_none() {
             made.volumes = Some((Lines::volumes(anatomy, capture, light), PlacedLines::default()));
         }
-        if (self.on.contains(&Overlay::Receivers) || self.on.contains(&Overlay::Names)) && made.ids.is_none() {
+        if (self.on.contains(&Overlay::Receivers) || self.on.contains(&Overlay::Names)) && made.objects.is_none() {
             let ids = ObjectIds::new(anatomy, capture);
-            made.ids = Some((Arc::new(ids.receivers), ids.middles));
+            made.objects = Some(SeenObjects { receivers: Arc::new(ids.receivers), middles: ids.middles });
         }
         self.made.insert(made)
     }
@@ -172,7 +179,7 @@ pub fn sheets(state: &mut State, capture: &Capture, shown: &Shown, rect: Rect) -
         let is_current = state.anatomy.is_of_frame();
         if let Some(anatomy) = state.anatomy.want().filter(|_| is_current) {
             let made = state.modes.overlays.make(&anatomy, capture, light);
-            let receivers = made.ids.as_ref().map(|(receivers, _)| receivers.clone());
+            let receivers = made.objects.as_ref().map(|objects| objects.receivers.clone());
             if let Some(image) = receivers.filter(|_| state.modes.overlays.on.contains(&Overlay::Receivers)) {
                 sheets.push(Sheet { image, coloring: Coloring::Receivers, part: rect, has_numbers: false });
             }
@@ -203,7 +210,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, placement: 
                 painter.add(Shape::mesh(placed.of(lines, placement, theme, is_dark, pixels)));
             }
         }
-        if let Some((_, middles)) = made.ids.as_ref().filter(|_| on.contains(&Overlay::Names)) {
+        if let Some(SeenObjects { middles, .. }) = made.objects.as_ref().filter(|_| on.contains(&Overlay::Names)) {
             let casters = made.anatomy.objects.iter().zip(middles).filter(|(object, _)| object.casts);
             for (object, at) in casters.filter_map(|(object, at)| Some((object, (*at)?))) {
                 name(ui, &painter, middle(placement, at), &object.name);
