@@ -32,6 +32,7 @@
 //! counter-clockwise. Row 0 of a picture is at the top. See [`math`] for the names of transforms.
 
 pub mod accuracy;
+pub mod anatomy;
 #[cfg(feature = "inspector")]
 pub mod app;
 pub mod capture;

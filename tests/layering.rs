@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 25] = [
+const MAY_USE: [(&str, &[&str]); 26] = [
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
@@ -38,6 +38,7 @@ const MAY_USE: [(&str, &[&str]); 25] = [
             "picture",
         ],
     ),
+    ("anatomy", &["math", "scene", "geometry", "plan", "technique"]),
     ("report", &["capture", "numbers"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
@@ -49,6 +50,7 @@ const MAY_USE: [(&str, &[&str]); 25] = [
             "geometry",
             "plan",
             "technique",
+            "anatomy",
             "capture",
             "gpu",
             "truth",
@@ -56,6 +58,7 @@ const MAY_USE: [(&str, &[&str]); 25] = [
             "progress",
             "report",
             "history",
+            "stencil_machine",
             "diagnosis",
             "stress",
         ],
@@ -68,7 +71,9 @@ const MAY_USE: [(&str, &[&str]); 25] = [
             "geometry",
             "plan",
             "technique",
+            "anatomy",
             "capture",
+            "difference",
             "diagnosis",
             "picture",
             "stencil_machine",
@@ -87,6 +92,7 @@ const MAY_USE: [(&str, &[&str]); 25] = [
             "scene",
             "plan",
             "technique",
+            "anatomy",
             "capture",
             "diagnosis",
             "session",

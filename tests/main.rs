@@ -19,6 +19,7 @@ mod ray_cast;
 mod report;
 mod scenes;
 mod stencil_machine;
+mod step_tests;
 mod stress;
 mod techniques;
 mod truth;

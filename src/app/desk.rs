@@ -140,7 +140,15 @@ impl Desk {
                 self.inspector.set_truth(TruthState::Failed(reason));
             }
             News::History { frame, at, history } if frame == self.frame => self.inspector.set_history(at, history),
+            News::Anatomy { frame, anatomy } if frame == self.frame => self.inspector.set_anatomy(anatomy),
+            News::Compared { generation, request, result } if generation == self.generation => {
+                self.inspector.set_compared(&request, result);
+            }
+            News::Tests { frame, step, draw, result } if frame == self.frame => {
+                self.inspector.set_tests(step, draw, result);
+            }
             // Of a scene or frame that is shown no more.
+            News::Anatomy { .. } | News::Tests { .. } | News::Compared { .. } => {}
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
             News::Draws { .. } | News::NoDraws { .. } | News::History { .. } => {}
             News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
@@ -175,6 +183,12 @@ impl Desk {
                 self.jobs.make_way(&mut self.inspector);
                 Order::Run { generation: self.generation, request }
             }
+            Action::Compare(request) => {
+                self.jobs.pause_judging(&mut self.inspector);
+                Order::Compare { generation: self.generation, request }
+            }
+            Action::Tests { step, draw } => Order::Tests { frame: self.frame, step, draw },
+            Action::Anatomy => Order::Anatomy { frame: self.frame },
             Action::Browse => return self.browse(),
             Action::BrowseExport { kind, path } => return self.browse_export(kind, path),
             Action::Reload => {

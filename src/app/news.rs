@@ -1,6 +1,7 @@
 //! What wakes the window: news of the worker, a chosen file, a wish to repaint.
 
-use crate::capture::Capture;
+use crate::anatomy::Anatomy;
+use crate::capture::{Capture, StepTests};
 use crate::diagnosis::Diagnosis;
 use crate::history::PixelHistory;
 use crate::inspector::{ObjectMesh, RunRequest};
@@ -49,6 +50,26 @@ pub enum News {
         /// What was run.
         plan: Arc<FramePlan>,
     },
+    /// The open scene as another technique draws it.
+    Compared {
+        /// The scene that is meant.
+        generation: u64,
+        /// What was asked.
+        request: Box<RunRequest>,
+        /// What was seen, or why it can't be, with the mend.
+        result: Result<Arc<Capture>, String>,
+    },
+    /// How fragments fared in the tests.
+    Tests {
+        /// The frame that is meant.
+        frame: u64,
+        /// Index of the step.
+        step: usize,
+        /// Index of the draw; `None`: all of the step.
+        draw: Option<usize>,
+        /// What was counted, or why nothing was, with the mend.
+        result: Result<Arc<StepTests>, String>,
+    },
     /// The same frame was timed.
     Timed {
         /// The frame that is meant.
@@ -94,6 +115,13 @@ pub enum News {
         at: [u32; 2],
         /// Its history, or why there is none, with the mend.
         history: Result<Arc<PixelHistory>, String>,
+    },
+    /// What a frame is made of in space.
+    Anatomy {
+        /// The frame that is meant.
+        frame: u64,
+        /// Its anatomy, or why there is none, with the mend.
+        anatomy: Result<Arc<Anatomy>, String>,
     },
     /// Techniques were measured, or could not be; not told of what was cancelled.
     Measured {

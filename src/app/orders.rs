@@ -49,6 +49,22 @@ pub enum Order {
         /// The change.
         request: Box<RunRequest>,
     },
+    /// The open scene as another technique draws it, beside the frame that is shown.
+    Compare {
+        /// The scene that is meant.
+        generation: u64,
+        /// How.
+        request: Box<RunRequest>,
+    },
+    /// How fragments of the frame that was captured last fared in the tests.
+    Tests {
+        /// The frame that is meant.
+        frame: u64,
+        /// Index of the step.
+        step: usize,
+        /// Index of the draw; `None`: all of the step.
+        draw: Option<usize>,
+    },
     /// The states after the draws of a step of the frame that was captured last.
     Draws {
         /// The frame that is meant.
@@ -69,6 +85,11 @@ pub enum Order {
         frame: u64,
         /// Column and row.
         at: [u32; 2],
+    },
+    /// What the frame that was captured last is made of in space.
+    Anatomy {
+        /// The frame that is meant.
+        frame: u64,
     },
     /// Techniques measured on the open scene, as it was captured last.
     Measure(Measure),
@@ -128,6 +149,9 @@ pub struct Waiting {
     save: Option<Order>,
     draws: Option<Order>,
     history: Option<Order>,
+    anatomy: Option<Order>,
+    tests: Option<Order>,
+    compare: Option<Order>,
     judge: Option<Order>,
     diagnose: Option<Order>,
     measure: Option<Order>,
@@ -140,6 +164,9 @@ impl Waiting {
         match order {
             Order::Draws { .. } => self.draws = Some(order),
             Order::History { .. } => self.history = Some(order),
+            Order::Anatomy { .. } => self.anatomy = Some(order),
+            Order::Tests { .. } => self.tests = Some(order),
+            Order::Compare { .. } => self.compare = Some(order),
             Order::Judge { .. } => self.judge = Some(order),
             Order::Diagnose { .. } => self.diagnose = Some(order),
             Order::Measure(_) => self.measure = Some(order),
@@ -162,7 +189,14 @@ impl Waiting {
     /// The next that is about the frame that is shown and takes no longer than a frame; none while a
     /// new picture is waited for.
     pub fn next_short(&mut self) -> Option<Order> {
-        if self.picture.is_some() { None } else { self.draws.take().or_else(|| self.history.take()) }
+        let mut of_frame = || {
+            self.draws
+                .take()
+                .or_else(|| self.history.take())
+                .or_else(|| self.anatomy.take())
+                .or_else(|| self.tests.take())
+        };
+        if self.picture.is_some() { None } else { of_frame() }
     }
 
     /// The next to obey: what is seen first, what is known of it later.
@@ -172,6 +206,8 @@ impl Waiting {
             return self.save.take();
         }
         let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
+        let seen = seen.or_else(|| self.anatomy.take()).or_else(|| self.tests.take());
+        let seen = seen.or_else(|| self.compare.take());
         let of_frame = seen.or_else(|| self.judge.take()).or_else(|| self.diagnose.take());
         of_frame.or_else(|| self.measure.take()).or_else(|| self.stress.take())
     }

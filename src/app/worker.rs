@@ -179,9 +179,12 @@ impl Bench {
             Order::Run { generation, request } if generation == self.generation => self.run(&request),
             Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant),
             Order::Draws { frame, step } => return self.fill_draws(frame, step),
+            Order::Compare { generation, request } => return self.compare(generation, request),
+            Order::Tests { frame, step, draw } => return self.tests(frame, step, draw),
             Order::Diagnose { frame, job, progress } => return self.diagnose(frame, job, &progress),
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
             Order::History { frame, at } => return self.history(frame, at),
+            Order::Anatomy { frame } => return self.anatomy(frame),
             // Of a scene that is open no more.
             Order::Run { .. } => return,
             // Obeyed by the loop, as others come in between.
@@ -289,9 +292,24 @@ impl Bench {
         (self.tell)(News::Meshes { generation: self.generation, meshes });
     }
 
+    /// The open scene at the moment of a request.
+    fn scene_of(&self, request: &RunRequest) -> Option<Scene> {
+        Some(changed(self.scene.as_ref()?, request).at(request.time))
+    }
+
+    /// Captures the open scene beside the frame that is shown, which stays.
+    fn compare(&mut self, generation: u64, request: Box<RunRequest>) {
+        let Some(scene) = self.scene_of(&request).filter(|_| generation == self.generation) else { return };
+        (self.tell)(News::Busy(format!("capturing {} to compare", request.choice.technique().name())));
+        let what = CaptureRequest::new(request.choice.clone(), request.size);
+        let result = self.session().and_then(|session| session.capture(&scene, &what));
+        let result = result.map(Arc::new).map_err(|error| error.to_string());
+        (self.tell)(News::Compared { generation, request, result });
+        (self.tell)(News::Idle);
+    }
+
     fn run(&mut self, request: &RunRequest) -> Result<(), String> {
-        let Some(loaded) = &self.scene else { return Ok(()) };
-        let scene = changed(loaded, request).at(request.time);
+        let Some(scene) = self.scene_of(request) else { return Ok(()) };
         self.take_over(request);
         self.capture(scene, request).map_err(|error| error.to_string())
     }

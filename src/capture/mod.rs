@@ -9,9 +9,11 @@ pub mod disk;
 mod files;
 mod image;
 mod manifest;
+mod step_tests;
 
 pub use disk::CaptureError;
 pub use image::{Image, PixelFormat};
+pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
 
 use crate::accuracy::{ErrorCounts, Region};
 use crate::plan::{LeftOut, Part};

@@ -179,6 +179,20 @@ pub fn compare(a: &Capture, b: &Capture) -> Result<Difference, DifferenceError> 
     })
 }
 
+/// How many texels of two pictures differ, bit by bit; `None` where they are of other formats or sizes.
+#[must_use]
+pub fn differing_texels(a: &Image, b: &Image) -> Option<u64> {
+    if (a.format(), a.size()) != (b.format(), b.size()) {
+        return None;
+    }
+    let texel = a.format().texel_bytes();
+    let differing = |(a, b): (&[u8], &[u8])| {
+        let pairs = a.chunks_exact(texel).zip(b.chunks_exact(texel));
+        if a == b { 0 } else { pairs.filter(|(a, b)| a != b).count() as u64 }
+    };
+    Some(a.rows().zip(b.rows()).map(differing).sum())
+}
+
 impl Difference {
     /// Is every pass and every pixel of both the same, seen and lit alike?
     #[must_use]

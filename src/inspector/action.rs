@@ -15,6 +15,15 @@ pub enum Action {
     Browse,
     /// Render again, with this changed.
     Run(Box<RunRequest>),
+    /// Render as this says, to compare with the frame that is shown, which stays.
+    Compare(Box<RunRequest>),
+    /// Count how fragments of the frame that is shown fare in the tests.
+    Tests {
+        /// Index of the step.
+        step: usize,
+        /// Index of the draw; `None`: all of the step.
+        draw: Option<usize>,
+    },
     /// Load the open scene again from its file, which changed.
     Reload,
     /// Write what is shown into a file.
@@ -47,6 +56,8 @@ pub enum Action {
         /// Column and row.
         at: [u32; 2],
     },
+    /// Tell what the frame that is shown is made of in space.
+    Anatomy,
     /// Measure every technique on the open scene.
     RunReport,
     /// Stop measuring; the rows so far stay.

@@ -13,17 +13,51 @@ use egui::{
     Align2, Color32, CornerRadius, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
 };
 use egui::{WidgetInfo, pos2, vec2};
+use std::sync::Arc;
 
 /// Screen pixels a texel from which on each texel shows its number.
 pub const NUMBERS_FROM: f32 = 24.0;
 /// How much one point of wheel movement zooms, as a power of e; a notch is about 50 points.
 const WHEEL_ZOOM: f32 = 0.004;
 
-/// Draws `shown` into `rect` and acts on mouse and keys. Returns where the picture lies.
-pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Coloring) -> Placement {
+/// A picture over the shown one, of the same size.
+#[derive(Debug, Clone)]
+pub struct Sheet {
+    /// Its texels.
+    pub image: Arc<Image>,
+    /// What they mean.
+    pub coloring: Coloring,
+    /// Where on the screen it is seen.
+    pub part: Rect,
+    /// Do its texels show their numbers?
+    pub has_numbers: bool,
+}
+
+/// Draws `shown` with `sheets` over it into `rect` and acts on mouse and keys. Returns where the picture lies.
+pub fn ui(
+    ui: &mut Ui,
+    state: &mut State,
+    rect: Rect,
+    shown: &Shown,
+    coloring: Coloring,
+    sheets: &[Sheet],
+) -> Placement {
+    named(ui, state, rect, shown, coloring, sheets, "Picture canvas")
+}
+
+/// The same under another name.
+pub fn named(
+    ui: &mut Ui,
+    state: &mut State,
+    rect: Rect,
+    shown: &Shown,
+    coloring: Coloring,
+    sheets: &[Sheet],
+    name: &str,
+) -> Placement {
     let image = &shown.images[0];
-    let response = ui.interact(rect, ui.scope_id().with("canvas"), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture canvas"));
+    let response = ui.interact(rect, ui.scope_id().with(name), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, name));
     let pixels_per_point = ui.pixels_per_point();
     let place = |state: &State| Placement::new(&state.view, image.size(), rect, pixels_per_point);
     move_view(ui, state, &response, place(state), pixels_per_point);
@@ -42,6 +76,13 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: C
         let covered = [0, 1].map(|axis| image.size()[axis].next_multiple_of(block) as f32 * placement.scale);
         let whole = if block > 1 { Rect::from_min_size(whole.min, covered.into()) } else { whole };
         painter.image(texture.id(), visible, uv_of(whole, visible), Color32::WHITE);
+        for sheet in sheets {
+            let part = visible.intersect(sheet.part);
+            if part.is_positive() {
+                let texture = state.cache.texture(ui.ctx(), &sheet.image, sheet.coloring, TextureSize::Full);
+                painter.image(texture.id(), part, uv_of(placement.rect(), part), Color32::WHITE);
+            }
+        }
     }
     painter.rect_stroke(
         placement.rect(),
@@ -50,7 +91,16 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: C
         StrokeKind::Outside,
     );
     if placement.pixels(pixels_per_point) >= NUMBERS_FROM {
-        numbers(ui, rect, image, coloring, placement);
+        let numbered = || sheets.iter().filter(|sheet| sheet.has_numbers);
+        let whole = numbered().rfind(|sheet| sheet.part.contains_rect(visible));
+        let (image, coloring) = whole.map_or((image, coloring), |sheet| (&sheet.image, sheet.coloring));
+        match numbered().find(|sheet| !sheet.part.contains_rect(visible)) {
+            Some(part) => {
+                numbers(ui, beside(rect, part.part), image, coloring, placement);
+                numbers(ui, rect.intersect(part.part), &part.image, part.coloring, placement);
+            }
+            None => numbers(ui, rect, image, coloring, placement),
+        }
     }
     if let Some(at) = *state.shown_pick(shown.kind) {
         crosshair(&painter, placement.rect_of(at));
@@ -133,6 +183,11 @@ fn nudge(ui: &Ui) -> [i32; 2] {
     })
 }
 
+/// What of `rect` lies left or right of `part`.
+fn beside(rect: Rect, part: Rect) -> Rect {
+    if part.left() <= rect.left() { rect.with_min_x(part.right()) } else { rect.with_max_x(part.left()) }
+}
+
 /// The number of every visible texel.
 fn numbers(ui: &Ui, rect: Rect, image: &Image, coloring: Coloring, placement: Placement) {
     let painter = ui.painter_at(rect);
@@ -149,7 +204,7 @@ fn numbers(ui: &Ui, rect: Rect, image: &Image, coloring: Coloring, placement: Pl
 /// Draws a texel's number into its cell, as large as fits, in black or white.
 pub fn texel_number(painter: &egui::Painter, image: &Image, coloring: Coloring, at: [u32; 2], cell: Rect) {
     let Some(color) = coloring.color_at(image, at) else { return };
-    let lines = if matches!(coloring, Coloring::Srgb | Coloring::Linear) { 3.0 } else { 1.0 };
+    let lines = coloring.lines() as f32;
     let size = (cell.height() * 0.38).min(cell.height() * 0.86 / (lines * 1.2)).clamp(6.0, 13.0);
     // A character of the monospaced face is 0.6 of its size wide.
     let columns = (cell.width() * 0.94 / (size * 0.6)) as usize;
@@ -163,7 +218,7 @@ pub fn texel_number(painter: &egui::Painter, image: &Image, coloring: Coloring, 
 }
 
 /// A box around the picked texel with four ticks, light on dark so that it shows on any picture.
-fn crosshair(painter: &egui::Painter, texel: Rect) {
+pub fn crosshair(painter: &egui::Painter, texel: Rect) {
     let middle = texel.center();
     let half = vec2(texel.width().max(11.0), texel.height().max(11.0)) / 2.0;
     let frame = Rect::from_center_size(middle, half * 2.0).expand(1.0);

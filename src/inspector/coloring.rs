@@ -1,5 +1,6 @@
 //! What the texels of a picture mean: their colour, and their number where they are large.
 
+use super::change;
 use super::counts;
 use super::depth::DepthScale;
 use super::findings;
@@ -8,6 +9,9 @@ use crate::capture::Image;
 use egui::Color32;
 use egui::ecolor::gamma_u8_from_linear_f32;
 use std::sync::LazyLock;
+
+/// How much of what lies under an overlay of colours is hidden.
+pub const OVER: f32 = 0.62;
 
 /// What the texels of a picture mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +30,20 @@ pub enum Coloring {
     Findings,
     /// Stored depths.
     Depth(DepthScale),
+    /// One bit of a stencil count.
+    Bit(u8),
+    /// How much more is counted, as a signed byte.
+    CountChange,
+    /// How much farther surfaces are, in floats.
+    DepthChange,
+    /// How fragments fared in the tests.
+    Outcomes,
+    /// Where objects receive shadows.
+    Receivers,
+    /// How many fragments there were.
+    Overdraw,
+    /// sRGB bytes where they changed; alpha 0 where they did not.
+    ColorChange,
 }
 
 impl Coloring {
@@ -40,6 +58,13 @@ impl Coloring {
             Coloring::Labels => image.byte_at(at).map(palette::label),
             Coloring::Findings => image.byte_at(at).map(findings::color),
             Coloring::Depth(scale) => image.depth_at(at).map(|depth| scale.color(depth)),
+            Coloring::Bit(bit) => image.byte_at(at).map(|value| bit_color(value, bit)),
+            Coloring::Outcomes => image.byte_at(at).map(|value| palette::outcome(value).gamma_multiply(OVER)),
+            Coloring::Receivers => image.byte_at(at).map(palette::receiver),
+            Coloring::Overdraw => image.byte_at(at).map(palette::overdraw),
+            Coloring::CountChange => image.byte_at(at).map(|by| change::count_color(by as i8)),
+            Coloring::DepthChange => image.count_at(at).map(change::depth_color),
+            Coloring::ColorChange => image.rgba_at(at).map(changed),
         }
     }
 
@@ -57,8 +82,43 @@ impl Coloring {
                 Some(value) => fitted(value, columns),
                 None => "∞".to_owned(),
             }),
+            Coloring::Bit(bit) => image.byte_at(at).map(|value| (value >> bit & 1).to_string()),
+            Coloring::Overdraw => image.byte_at(at).map(|value| value.to_string()),
+            Coloring::Outcomes | Coloring::Receivers => None,
+            Coloring::CountChange => image.byte_at(at).and_then(|by| change::signed(by as i8)),
+            Coloring::DepthChange => image.count_at(at).filter(|by| *by != 0.0).map(|by| {
+                let sign = if by < 0.0 { '−' } else { '+' };
+                let size = f64::from(by.abs());
+                if size.is_finite() {
+                    format!("{sign}{}", fitted(size, columns.saturating_sub(1)))
+                } else {
+                    format!("{sign}∞")
+                }
+            }),
+            Coloring::ColorChange => {
+                let texel = image.rgba_at(at).filter(|texel| texel[3] != 0);
+                texel.map(|[r, g, b, _]| format!("{r}\n{g}\n{b}"))
+            }
         }
     }
+
+    /// Lines that a texel's number takes.
+    #[must_use]
+    pub fn lines(self) -> usize {
+        if matches!(self, Coloring::Srgb | Coloring::Linear | Coloring::ColorChange) { 3 } else { 1 }
+    }
+}
+
+/// The ink of one bit of a value.
+#[must_use]
+pub fn bit_color(value: u8, bit: u8) -> Color32 {
+    palette::BITS[usize::from(value >> bit & 1)]
+}
+
+/// A colour where it changed.
+#[must_use]
+pub fn changed([r, g, b, a]: [u8; 4]) -> Color32 {
+    if a == 0 { Color32::TRANSPARENT } else { Color32::from_rgb(r, g, b) }
 }
 
 /// sRGB bytes of linear ones.

@@ -7,7 +7,7 @@
 use super::action::Action;
 use super::state::State;
 
-use super::{diagnosis, explain, passes, picture, pixel, raster_state, report, settings, stress, theme};
+use super::{diagnosis, explain, passes, picture, pixel, raster_state, report, settings, shadow_map, stress, theme};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
@@ -35,6 +35,8 @@ pub enum Panel {
     Settings,
     /// The selected buffer.
     Picture,
+    /// A light's map, linked with the picture.
+    ShadowMap,
     /// Everything about the picked pixel.
     Pixel,
     /// The raster state of the selected draw.
@@ -57,6 +59,7 @@ impl Panel {
             Panel::Passes => "Passes",
             Panel::Settings => "Settings",
             Panel::Picture => "Picture",
+            Panel::ShadowMap => "Shadow map",
             Panel::Pixel => "Pixel",
             Panel::State => "State",
             Panel::Explain => "Explain",
@@ -67,10 +70,11 @@ impl Panel {
     }
 
     /// In the order of their declaration.
-    pub const ALL: [Panel; 9] = [
+    pub const ALL: [Panel; 10] = [
         Panel::Passes,
         Panel::Settings,
         Panel::Picture,
+        Panel::ShadowMap,
         Panel::Pixel,
         Panel::State,
         Panel::Explain,
@@ -104,7 +108,7 @@ impl Dock {
         let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
         let left = tiles.insert_tab_tile(sides.to_vec());
         let [picture, report, right] = [
-            &[Panel::Picture][..],
+            &[Panel::Picture, Panel::ShadowMap][..],
             &[Panel::Report, Panel::Diagnosis, Panel::Stress],
             &[Panel::Pixel, Panel::State, Panel::Explain],
         ]
@@ -198,7 +202,7 @@ struct Panels<'a> {
 impl Behavior<Panel> for Panels<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, panel: &mut Panel) -> UiResponse {
         let frame = match panel {
-            Panel::Picture => egui::Frame::new().fill(theme::of(ui).panel),
+            Panel::Picture | Panel::ShadowMap => egui::Frame::new().fill(theme::of(ui).panel),
             _ => theme::panel_frame(ui),
         };
         frame.show(ui, |ui| {
@@ -207,6 +211,7 @@ impl Behavior<Panel> for Panels<'_> {
                 Panel::Passes => passes::ui(ui, self.state),
                 Panel::Settings => settings::ui(ui, self.state, self.actions),
                 Panel::Picture => picture::ui(ui, self.state, self.actions),
+                Panel::ShadowMap => shadow_map::ui(ui, self.state),
                 Panel::Pixel => pixel::ui(ui, self.state),
                 Panel::State => raster_state::ui(ui, self.state),
                 Panel::Explain => explain::ui(ui, self.state),

@@ -69,6 +69,7 @@ impl State {
             DrawsState::Fetching(step) | DrawsState::Failed(step, _) => *step == self.step,
         };
         let is_missing = self.capture.as_ref().is_some_and(|capture| !self.selected().is_held(capture));
+        let is_missing = is_missing || self.lacks_draw_before();
         if is_missing && !is_asked && self.scene.is_some() {
             self.draws = DrawsState::Fetching(self.step);
             actions.push(Action::CaptureDraws { step: self.step });

@@ -76,7 +76,7 @@ impl ExportDialog {
     #[must_use]
     pub fn new(kind: ExportKind, state: &State) -> Option<ExportDialog> {
         let capture = state.capture.as_ref()?;
-        let title = || Some(state.view.shown(capture, state.moment())?.title);
+        let title = || Some(state.shown(capture)?.title);
         let stem = format!("{}-{}", capture.scene, capture.technique);
         let name = match kind {
             ExportKind::Picture => format!("{stem}-{}.png", title()?),
@@ -121,7 +121,7 @@ pub fn data(state: &mut State, kind: ExportKind) -> Option<ExportData> {
         ExportKind::Scene => return Some(ExportData::Scene(Box::new(state.scene.as_ref()?.draft.clone()))),
         ExportKind::Picture | ExportKind::Data => {}
     }
-    let shown = state.view.shown(&capture, state.moment())?;
+    let shown = state.shown(&capture)?;
     if kind == ExportKind::Data {
         return Some(ExportData::Data(shown.images));
     }

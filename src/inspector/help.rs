@@ -25,6 +25,7 @@ fn contents(ui: &mut Ui) {
     theme::heading(ui, "Keys");
     section(ui, "Anywhere", of_scope(Scope::Anywhere));
     section(ui, "While the passes, or nothing, have the focus", of_scope(Scope::Passes));
+    section(ui, "How the picture is looked at", of_scope(Scope::Picture));
     section(ui, "On the picture", PICTURE.into_iter());
 }
 

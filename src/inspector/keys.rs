@@ -7,6 +7,7 @@
 
 use super::action::Action;
 use super::export::ExportDialog;
+use super::modes::Phase;
 use super::state::{OpenDialog, State, StepSearch};
 use egui::{Context, Key, Modifiers};
 
@@ -47,6 +48,14 @@ pub enum Command {
     AnimateStep,
     /// Dark or light.
     Theme,
+    /// Before the step, or after it.
+    Before,
+    /// What the step changed, or what it left.
+    Diff,
+    /// Opens the menu of overlays.
+    Overlays,
+    /// Swaps the sides of a comparison.
+    Flip,
 }
 
 /// Where a key acts.
@@ -56,6 +65,8 @@ pub enum Scope {
     Anywhere,
     /// While nothing or the tree of passes has the focus.
     Passes,
+    /// Wherever the focus is, but for a text field and an open menu.
+    Picture,
 }
 
 /// A key and what it does.
@@ -89,7 +100,7 @@ const fn binding(
 const REDO: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// All of them. Of two with the same key the one with more modifiers stands first.
-pub const BINDINGS: [Binding; 20] = [
+pub const BINDINGS: [Binding; 24] = [
     binding(Modifiers::NONE, Key::ArrowLeft, Scope::Passes, Command::PreviousPass, "Left", "the pass before"),
     binding(Modifiers::NONE, Key::ArrowRight, Scope::Passes, Command::NextPass, "Right", "the next pass"),
     binding(Modifiers::NONE, Key::ArrowUp, Scope::Passes, Command::PreviousDraw, "Up", "the draw before"),
@@ -114,6 +125,10 @@ pub const BINDINGS: [Binding; 20] = [
     binding(Modifiers::NONE, Key::T, Scope::Passes, Command::Animate, "T", "run the scene's animation, or stop it"),
     binding(Modifiers::NONE, Key::Period, Scope::Passes, Command::AnimateStep, ".", "the animation, a frame on"),
     binding(Modifiers::COMMAND, Key::L, Scope::Anywhere, Command::Theme, "Ctrl-L", "light or dark theme"),
+    binding(Modifiers::NONE, Key::B, Scope::Picture, Command::Before, "B", "the picture before the step, or after it"),
+    binding(Modifiers::NONE, Key::D, Scope::Picture, Command::Diff, "D", "what the step changed"),
+    binding(Modifiers::NONE, Key::O, Scope::Picture, Command::Overlays, "O", "the menu of overlays"),
+    binding(Modifiers::NONE, Key::X, Scope::Picture, Command::Flip, "X", "swap the sides of a comparison"),
     binding(Modifiers::NONE, Key::F1, Scope::Anywhere, Command::Help, "F1", "this help"),
     binding(Modifiers::NONE, Key::H, Scope::Passes, Command::Help, "H", "this help"),
     binding(Modifiers::NONE, Key::Questionmark, Scope::Passes, Command::Help, "?", "this help"),
@@ -141,6 +156,7 @@ pub fn handle(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
         let acts = match binding.scope {
             Scope::Anywhere => !is_typing || binding.modifiers == Modifiers::NONE || !edits_text(binding.command),
             Scope::Passes => !is_elsewhere,
+            Scope::Picture => !is_typing && !egui::Popup::is_any_open(ctx),
         };
         if !acts {
             continue;
@@ -179,7 +195,20 @@ pub fn act(ctx: &Context, state: &mut State, command: Command, presses: usize, a
         Command::Animate => state.animation.toggle(),
         Command::AnimateStep => state.step_animation(actions),
         Command::Theme => state.theme = state.theme.other(),
+        Command::Before => toggle_phase(state, Phase::Before),
+        Command::Diff => toggle_phase(state, Phase::Diff),
+        Command::Overlays => state.modes.overlays.open_menu = true,
+        Command::Flip => {
+            if let Some(compare) = &mut state.modes.compare {
+                compare.flipped = !compare.flipped;
+            }
+        }
     }
+}
+
+/// There and back between a phase and after.
+fn toggle_phase(state: &mut State, phase: Phase) {
+    state.modes.phase = if state.modes.phase == phase { Phase::After } else { phase };
 }
 
 /// A widget of the pass tree keeps the arrows: they step, and do not move the focus.

@@ -1,11 +1,13 @@
 //! The legend over the picture's upper right corner: what its colours mean, with counts, and the
 //! range of depths.
 
+use super::change::Change;
 use super::counts;
 use super::depth::DepthMeasure;
 use super::findings;
 use super::format;
 use super::layers::MapContent;
+use super::modes_legend;
 use super::palette;
 use super::picture;
 use super::state::State;
@@ -43,7 +45,27 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, range: [f64
     if !fits(rect, shown.kind) {
         return;
     }
-    let width = width(shown.kind);
+    card(ui, rect, width(shown.kind), |ui| match (shown.kind, state.modes.bit) {
+        (PictureKind::Stencil, Some(bit)) => modes_legend::bit(ui, state, shown, bit),
+        (PictureKind::Stencil, None) => stencil(ui, state, shown),
+        (PictureKind::Overdraw, _) => modes_legend::overdraw(ui, state, shown),
+        (PictureKind::Count, _) => signed_counts(ui, state, shown),
+        (PictureKind::Map, _) if shown.is_let_through() => let_through(ui, state, shown),
+        (PictureKind::Mask | PictureKind::Truth, _) => labels(ui, state, shown),
+        (PictureKind::Error, _) => findings(ui, state, shown),
+        _ => depth(ui, state, shown, range),
+    });
+}
+
+/// Draws the legend of what a step changed.
+pub fn of_change(ui: &mut Ui, rect: Rect, change: &Change) {
+    if rect.width() >= WIDTH * 2.0 {
+        card(ui, rect, WIDTH, |ui| modes_legend::change(ui, change));
+    }
+}
+
+/// A card in the upper right corner of `rect`.
+fn card(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
     let corner = Rect::from_min_size(pos2(rect.right() - width - 12.0, rect.top() + 12.0), vec2(width, rect.height()));
     // Senses clicks, so that they do not reach the picture underneath.
     let builder = UiBuilder::new().max_rect(corner).sense(Sense::click_and_drag()).id_salt("legend");
@@ -52,14 +74,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, range: [f64
         frame.show(ui, |ui| {
             ui.set_width(width - 16.0);
             ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
-            match shown.kind {
-                PictureKind::Stencil => stencil(ui, state, shown),
-                PictureKind::Count => signed_counts(ui, state, shown),
-                PictureKind::Map if shown.is_let_through() => let_through(ui, state, shown),
-                PictureKind::Mask | PictureKind::Truth => labels(ui, state, shown),
-                PictureKind::Error => findings(ui, state, shown),
-                _ => depth(ui, state, shown, range),
-            }
+            contents(ui);
         });
     });
 }
@@ -71,8 +86,10 @@ fn stencil(ui: &mut Ui, state: &mut State, shown: &Shown) {
     // 0, 1, 2 … and then −1, −2 …: the order in which people think of them.
     let values = (0..=127).chain((128..=255).rev()).map(|value: u8| (value, histogram[usize::from(value)]));
     let (listed, rest) = most_frequent(values.filter(|(_, pixels)| *pixels > 0).collect(), MOST_VALUES);
+    let most = listed.iter().map(|(_, pixels)| *pixels).max().unwrap_or(0);
     for (value, pixels) in listed {
         entry(ui, palette::stencil(value), &palette::signed(value), pixels);
+        modes_legend::bar(ui, pixels, most);
     }
     more_values(ui, &rest);
 }
@@ -249,7 +266,7 @@ pub fn hatched(ui: &mut Ui, style: findings::Style) {
 }
 
 /// A line of the legend: colour, value, how many.
-fn entry(ui: &mut Ui, color: Color32, name: &str, pixels: u64) -> egui::Response {
+pub fn entry(ui: &mut Ui, color: Color32, name: &str, pixels: u64) -> egui::Response {
     entry_with(ui, name, pixels, |ui| theme::swatch(ui, color))
 }
 
@@ -268,6 +285,10 @@ fn entry_with(ui: &mut Ui, name: &str, pixels: u64, swatch: impl FnOnce(&mut Ui)
 fn depth(ui: &mut Ui, state: &mut State, shown: &Shown, range: [f64; 2]) {
     let is_raw = shown.measure == DepthMeasure::Raw;
     theme::heading(ui, if is_raw { "Depth as stored" } else { "Distance" });
+    let full = picture::full_range(state, shown);
+    if full[1] > full[0] {
+        modes_legend::depth_bars(ui, state, shown, range, full);
+    }
     ramp(ui, is_raw);
     let unit = |value: f64| if is_raw { format::digits(value) } else { format::metres(value) };
     ui.horizontal(|ui| {
@@ -276,7 +297,6 @@ fn depth(ui: &mut Ui, state: &mut State, shown: &Shown, range: [f64; 2]) {
             ui.label(theme::number(unit(range[1])).color(theme::of(ui).text));
         });
     });
-    let full = picture::full_range(state, shown);
     if full[1] > full[0] {
         handles(ui, state, range, full);
     }

@@ -12,19 +12,25 @@
 //! coloring.rs  what a texel means                  texture.rs    pictures as textures, cached
 //! layers.rs    maps, textures and silhouettes      counts.rs     counts beyond eight bits
 //! findings.rs  the error picture's hatching        truth_note.rs while there is no truth
+//! modes.rs     before, after, compare          overlays.rs    what is drawn over it
+//! change.rs    what a step changed             shadow_map.rs  the map, linked with the picture
 //! moment.rs    after a step, or after a draw       draw_level.rs selecting and fetching draws
 //! keys.rs      the table of keys, for help.rs    undo.rs, memory.rs, export.rs, animation.rs: as they say
 //! history.rs   the pick's history, asked for       history_rows.rs, ladder.rs, outline.rs show it
 //! ```
 
 mod action;
+mod anatomy_state;
 mod animation;
 mod canvas;
+mod change;
 mod coloring;
+mod compare;
 mod counts;
 mod depth;
 mod diagnosis;
 mod diagnosis_detail;
+mod divider;
 mod dock;
 mod draw_level;
 mod draws;
@@ -44,18 +50,26 @@ mod ladder_layout;
 mod layers;
 mod legend;
 mod magnifier;
+mod map_readers;
 mod memory;
 mod meshes;
 mod messages;
+mod modes;
+mod modes_bar;
+mod modes_legend;
 mod moment;
+mod object_ids;
 mod open_dialog;
 mod outline;
+mod overlay_lines;
+mod overlays;
 mod palette;
 mod passes;
 mod picture;
 mod pixel;
 mod pixel_run;
 mod placement;
+mod projected;
 mod raster_state;
 mod report;
 mod report_plot;
@@ -63,9 +77,11 @@ mod report_table;
 mod settings;
 mod settings_off;
 mod settings_scene;
+mod shadow_map;
 mod state;
 mod status_bar;
 mod stress;
+mod tests_state;
 mod texture;
 mod theme;
 mod top_bar;
@@ -90,7 +106,8 @@ pub use stress::StressProgress;
 pub use truth_note::TruthState;
 pub use view::{PictureKind, Zoom};
 
-use crate::capture::Capture;
+use crate::anatomy::Anatomy;
+use crate::capture::{Capture, StepTests};
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
 use crate::scene::Scene;
@@ -148,7 +165,10 @@ impl Inspector {
         self.state.animate(ui.ctx(), &mut actions);
         self.state.ask_for_truth(&mut actions);
         self.state.ask_for_draws(&mut actions);
+        self.state.ask_for_compared(&mut actions);
+        self.state.ask_for_tests(&mut actions);
         self.state.ask_for_history(ui.ctx(), &mut actions);
+        self.state.ask_for_anatomy(&mut actions);
         actions
     }
 
@@ -294,6 +314,17 @@ impl Inspector {
         self.state.set_truth(truth);
     }
 
+    /// Tells how the fragments of a step, or of one of its draws, fared in the tests; or why nobody knows.
+    pub fn set_tests(&mut self, step: usize, draw: Option<usize>, result: Result<Arc<StepTests>, String>) {
+        self.state.set_tests(moment::Moment { step, draw }, result);
+    }
+
+    /// The frame of another technique, captured as `request` says, to compare the shown one with; or why
+    /// there is none.
+    pub fn set_compared(&mut self, request: &RunRequest, result: Result<Arc<Capture>, String>) {
+        self.state.modes.compared.answer(request, result);
+    }
+
     /// Tells why there are no states after the draws of a step of the shown frame.
     pub fn set_draws_failed(&mut self, step: usize, reason: String) {
         self.state.set_draws_failed(step, reason);
@@ -305,6 +336,14 @@ impl Inspector {
         // One that was on its way when a folder was opened is of what was open before.
         if self.state.pick == Some(at) && self.state.scene.is_some() {
             self.state.history.answer(at, history);
+        }
+    }
+
+    /// Tells what the shown frame is made of in space, or why that can't be told.
+    pub fn set_anatomy(&mut self, anatomy: Result<Arc<Anatomy>, String>) {
+        // One that was on its way when a folder was opened is of what was open before.
+        if self.state.scene.is_some() {
+            self.state.anatomy.answer(anatomy);
         }
     }
 
@@ -417,7 +456,7 @@ impl Inspector {
     /// The pictures that are shown; none where nothing is drawn yet.
     #[must_use]
     pub fn shown_images(&self) -> Vec<Arc<crate::capture::Image>> {
-        let shown = |capture: &Arc<Capture>| self.state.view.shown(capture, self.state.moment());
+        let shown = |capture: &Arc<Capture>| self.state.shown(capture);
         self.state.capture.as_ref().and_then(shown).map_or_else(Vec::new, |shown| shown.images)
     }
 
@@ -425,6 +464,13 @@ impl Inspector {
     #[must_use]
     pub fn picked(&self) -> Option<[u32; 2]> {
         self.state.pick
+    }
+
+    /// The texel that a pixel reads of the shadow map in its tab: index of the face, column and row. `None`
+    /// where it reads none, or the tab was not shown for this frame yet.
+    #[must_use]
+    pub fn map_texel_of(&self, pixel: [u32; 2]) -> Option<(usize, [u32; 2])> {
+        self.state.map_tab.texel_of(pixel).map(|texel| (texel.face, texel.at))
     }
 
     /// Picks a pixel.
@@ -436,7 +482,7 @@ impl Inspector {
     #[must_use]
     pub fn picture_kind(&self) -> Option<PictureKind> {
         let capture = self.state.capture.as_ref()?;
-        self.state.view.shown(capture, self.state.moment()).map(|shown| shown.kind)
+        self.state.shown(capture).map(|shown| shown.kind)
     }
 
     /// Wishes for a kind of picture.

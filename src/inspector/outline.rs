@@ -46,12 +46,7 @@ pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
     let clip_from_view = projection::perspective(camera.fov_y_degrees, width / height, &capture.depth);
     let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
     let clip_from_relative = clip_from_view * DMat4::from_mat3(rotation);
-    // Near is where depth is 1, or 0; depth that is clamped has no such end.
-    let near = match (capture.depth.mapping.clamps(), capture.depth.mapping.is_reversed()) {
-        (true, _) => DVec4::W,
-        (false, true) => DVec4::W - DVec4::Z,
-        (false, false) => DVec4::Z,
-    };
+    let near = near_plane(capture);
     let sides = [DVec4::X, DVec4::NEG_X, DVec4::Y, DVec4::NEG_Y].map(|side| side + DVec4::W * GUARD);
     let corners = corners.map(|corner| clip_from_relative * DVec4::from_array(corner.map(f64::from)));
     let clipped = std::iter::once(near).chain(sides).fold(corners.to_vec(), |polygon, plane| clip(&polygon, plane));
@@ -61,8 +56,20 @@ pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
     seen.map(|corner| place(corner) * 0.5 * DVec2::new(width, height)).collect()
 }
 
+/// What lies before the near plane, in clip space: near is where depth is 1, or 0; depth that is clamped has
+/// no such end.
+#[must_use]
+pub fn near_plane(capture: &Capture) -> DVec4 {
+    match (capture.depth.mapping.clamps(), capture.depth.mapping.is_reversed()) {
+        (true, _) => DVec4::W,
+        (false, true) => DVec4::W - DVec4::Z,
+        (false, false) => DVec4::Z,
+    }
+}
+
 /// The part of a polygon on one side of a plane through the origin.
-fn clip(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
+#[must_use]
+pub fn clip(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     for (index, &corner) in polygon.iter().enumerate() {
         let next = polygon[(index + 1) % polygon.len()];

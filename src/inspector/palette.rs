@@ -56,6 +56,63 @@ pub const READS_ZERO: Color32 = Color32::from_rgb(0xff, 0x2b, 0xf2);
 /// Nothing was drawn here: the depth buffer's clear value.
 pub const NO_SURFACE: Color32 = opaque(colors::NOTHING);
 
+/// A count that went up, or a surface that came nearer.
+pub const UP: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
+
+/// A count that went down, or a surface that went farther away.
+pub const DOWN: Color32 = Color32::from_rgb(0x56, 0xb4, 0xe9);
+
+/// A surface where there was none.
+pub const APPEARED: Color32 = Color32::from_rgb(0x2f, 0xb5, 0x8a);
+
+/// No surface where there was one.
+pub const WENT: Color32 = Color32::from_rgb(0xcc, 0x79, 0xa7);
+
+/// The two inks of a bit: not set, set.
+pub const BITS: [Color32; 2] = [Color32::from_rgb(0x1b, 0x2a, 0x3d), Color32::from_rgb(0xf0, 0xe4, 0x42)];
+
+/// What becomes of a pixel's fragments, as bits of [`crate::capture::TestCounts`]; see-through where there are none.
+#[must_use]
+pub fn outcome(outcomes: u8) -> Color32 {
+    use crate::capture::TestCounts as Counts;
+    match outcomes {
+        0 => Color32::TRANSPARENT,
+        Counts::PASSED => Color32::from_rgb(0x2f, 0xb5, 0x8a),
+        Counts::DEPTH_FAILED => Color32::from_rgb(0xe0, 0x70, 0x3a),
+        Counts::STENCIL_FAILED => Color32::from_rgb(0x96, 0x78, 0xdc),
+        Counts::UNKNOWN => Color32::from_rgb(0x7b, 0x82, 0x90),
+        _ => Color32::from_rgb(0xf0, 0xe4, 0x42),
+    }
+}
+
+/// The ink of a receiver: 1 on it, 2 at its outline; see-through elsewhere.
+#[must_use]
+pub fn receiver(ink: u8) -> Color32 {
+    let color = Color32::from_rgb(0x56, 0xb4, 0xe9);
+    match ink {
+        0 => Color32::TRANSPARENT,
+        1 => color.gamma_multiply(0.22),
+        _ => color,
+    }
+}
+
+/// How many fragments reached a pixel: dark for none, then lighter, twice as many a step.
+#[must_use]
+pub fn overdraw(fragments: u8) -> Color32 {
+    const RAMP: [(u8, u8, u8); 6] = [
+        (0x14, 0x17, 0x1d),
+        (0x1f, 0x3a, 0x5f),
+        (0x2a, 0x72, 0x9c),
+        (0x1f, 0xae, 0x84),
+        (0xf0, 0xe4, 0x42),
+        (0xff, 0xff, 0xff),
+    ];
+    let place = (f32::from(fragments) + 1.0).log2() / 8.0 * (RAMP.len() - 1) as f32;
+    let index = (place as usize).min(RAMP.len() - 2);
+    let [from, to] = [RAMP[index], RAMP[index + 1]].map(|(r, g, b)| Color32::from_rgb(r, g, b));
+    from.lerp_to_gamma(to, place - index as f32)
+}
+
 /// Black or white, whichever is read more easily on `background`.
 #[must_use]
 pub fn ink_on(background: Color32) -> Color32 {

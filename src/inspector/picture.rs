@@ -1,22 +1,33 @@
 //! The picture panel: which picture, its tools, and the picture itself.
 
 use super::action::Action;
-use super::canvas;
+use super::canvas::{self, Sheet};
+use super::change::Change;
 use super::coloring::Coloring;
+use super::compare::With;
 use super::depth::DepthScale;
+use super::divider;
 use super::face_grid;
 use super::format;
 use super::layers::{self, MapContent};
 use super::legend;
 use super::magnifier;
+use super::modes::{NoBefore, Phase, has_phases};
+use super::modes_bar;
 use super::outline;
+use super::overlays;
+use super::shadow_map;
 use super::state::State;
 use super::theme;
 use super::top_bar::segments;
 use super::truth_note;
 use super::view::{DepthMode, FaceChoice, PictureKind, Shown, Zoom, available};
-use crate::capture::Capture;
-use egui::{Align2, CornerRadius, Margin, Rect, Ui, vec2};
+use crate::capture::{Capture, Image};
+use egui::{CornerRadius, Margin, Rect, Ui, vec2};
+use std::sync::Arc;
+
+/// From this width on all tools are in one row, points.
+const WIDE: f32 = 940.0;
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
@@ -25,27 +36,108 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     toolbar(ui, state, &capture);
     let rect = ui.available_rect_before_wrap();
     ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
-    let Some(shown) = state.view.shown(&capture, state.moment()) else {
-        ui.painter().text(
-            rect.center(),
-            Align2::CENTER_CENTER,
-            "Nothing is drawn into the picture yet at this step.",
-            egui::TextStyle::Body.resolve(ui.style()),
-            theme::of(ui).dim,
-        );
-        return;
-    };
+    let Some(shown) = state.shown(&capture) else { return nothing(ui, state, &capture, rect) };
     let range = shown_range(state, &shown);
-    let coloring = coloring_of(&shown, range);
+    let mut coloring = coloring_of(&shown, range);
+    if let (Coloring::Stencil, Some(bit)) = (coloring, state.modes.bit) {
+        coloring = Coloring::Bit(bit);
+    }
     if shown.images.len() == 1 {
-        let placement = canvas::ui(ui, state, rect, &shown, coloring);
-        outline::ui(ui, state, rect, &shown, placement);
-        magnifier::ui(ui, state, rect, &shown, coloring, placement);
+        single(ui, state, &capture, rect, &shown, coloring, range);
     } else {
         face_grid::ui(ui, state, rect, &shown, coloring);
+        legend::ui(ui, state, rect, &shown, range);
     }
-    legend::ui(ui, state, rect, &shown, range);
     truth_note::ui(ui, state, rect, &shown, actions);
+    if state.view.kind == PictureKind::Overdraw && shown.kind != PictureKind::Overdraw {
+        overlays::counting_note(ui, state, rect);
+    }
+}
+
+/// One picture with what is over it: what changed, or what is compared.
+fn single(
+    ui: &mut Ui,
+    state: &mut State,
+    capture: &Capture,
+    rect: Rect,
+    shown: &Shown,
+    coloring: Coloring,
+    range: [f64; 2],
+) {
+    let change = change_of(state, capture, shown);
+    let mut sheets = Vec::new();
+    if let Some((ground, change)) = &change {
+        let sheet = |image: &Arc<Image>, coloring, has_numbers| Sheet {
+            image: image.clone(),
+            coloring,
+            part: rect,
+            has_numbers,
+        };
+        sheets.push(sheet(ground, Coloring::Srgb, false));
+        sheets.push(sheet(&change.image, change.coloring(), true));
+    }
+    sheets.extend(overlays::sheets(state, capture, shown, rect));
+    let compared = state.modes.compare.and_then(|compare| Some((compare, state.shown_compared(capture, shown).ok()?)));
+    if let Some((compare, other)) = &compared {
+        let mut beside = coloring_of(other, range);
+        if let Coloring::Bit(_) = coloring {
+            beside = coloring;
+        }
+        let part = divider::part(rect, compare);
+        sheets.push(Sheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
+    }
+    let placement = canvas::ui(ui, state, rect, shown, coloring, &sheets);
+    overlays::ui(ui, state, rect, shown, placement);
+    if shown.kind != PictureKind::Map {
+        let mesh = shadow_map::marks(placement, state.map_tab.marked(), theme::of(ui).selected);
+        ui.painter_at(placement.rect().intersect(rect)).add(egui::Shape::mesh(mesh));
+        // Lines and marks must not hide it.
+        if let Some(at) = state.pick {
+            canvas::crosshair(&ui.painter_at(rect), placement.rect_of(at));
+        }
+    }
+    outline::ui(ui, state, rect, shown, placement);
+    match &change {
+        Some((_, change)) => legend::of_change(ui, rect, change),
+        None => {
+            magnifier::ui(ui, state, rect, shown, coloring, placement);
+            legend::ui(ui, state, rect, shown, range);
+        }
+    }
+    modes_bar::compare_note(ui, state, capture, shown, rect);
+    if let Some((mut compare, _)) = compared {
+        let now = match compare.with {
+            With::Step(_) => state.moment().words(),
+            With::Technique(_) => capture.technique.clone(),
+        };
+        let beside = compare.with.words(capture);
+        divider::ui(ui, rect, &mut compare, [&beside, &now]);
+        state.modes.compare = Some(compare);
+    }
+}
+
+/// What the selected step or draw changed, over the frame's colours in grey; `None` where that is not shown.
+fn change_of(state: &mut State, capture: &Capture, shown: &Shown) -> Option<(Arc<Image>, Change)> {
+    if state.modes.phase != Phase::Diff || !has_phases(shown.kind) {
+        return None;
+    }
+    let before = state.shown_before(capture).ok().filter(|before| before.kind == shown.kind)?;
+    let change = state.modes.changes.change([&before.images[0], &shown.images[0]], shown.measure)?;
+    // Of counts and depths it is the finished frame that shows where one is.
+    let at = if shown.kind == PictureKind::Color { state.moment() } else { capture.steps.len().checked_sub(1)?.into() };
+    let colors = at.frame(capture)?.color.image.clone();
+    Some((state.modes.changes.ground(&colors), change))
+}
+
+/// There is no picture, and why.
+fn nothing(ui: &mut Ui, state: &State, capture: &Capture, rect: Rect) {
+    let text = match state.modes.phase {
+        Phase::Before => state.shown_before(capture).err().map(NoBefore::sentence),
+        Phase::After | Phase::Diff => None,
+    };
+    let text = text.unwrap_or("Nothing is drawn into the picture yet at this step.");
+    let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 32.0).min(420.0), 48.0));
+    ui.put(place, egui::Label::new(theme::note(text)).wrap());
 }
 
 fn empty(ui: &mut Ui, state: &State) {
@@ -73,6 +165,7 @@ pub fn coloring_of(shown: &Shown, range: [f64; 2]) -> Coloring {
         PictureKind::Count => Coloring::Count,
         PictureKind::Mask | PictureKind::Truth => Coloring::Labels,
         PictureKind::Error => Coloring::Findings,
+        PictureKind::Overdraw => Coloring::Overdraw,
         PictureKind::Map if shown.is_let_through() => Coloring::Linear,
         PictureKind::Depth | PictureKind::Map => Coloring::Depth(DepthScale { measure: shown.measure, range }),
     }
@@ -92,30 +185,55 @@ pub fn full_range(state: &mut State, shown: &Shown) -> [f64; 2] {
     ranges.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]).unwrap_or([0.0, 1.0])
 }
 
+/// One row where there is room for all tools, else two; a row of its own while comparing.
 fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
+        let is_wide = ui.available_width() >= WIDE;
+        let shown = state.shown(capture);
         ui.horizontal(|ui| {
             kinds(ui, state, capture);
-            let kind = state.view.shown(capture, state.moment()).map(|shown| shown.kind);
-            match kind {
-                Some(PictureKind::Count) => lights(ui, state, capture, |light| light.count.is_some()),
-                Some(PictureKind::Mask) => lights(ui, state, capture, |light| light.shadow.is_some()),
-                Some(PictureKind::Truth | PictureKind::Error) => {
-                    lights(ui, state, capture, |light| light.shadow.is_some() || light.truth.is_some());
-                }
-                Some(PictureKind::Map) => {
-                    lights(ui, state, capture, |light| light.map.is_some());
-                    map_layers(ui, state, capture);
-                    if MapContent::of_capture(capture) == Some(MapContent::Depth) {
-                        depth_mode(ui, state);
-                    }
-                }
-                Some(PictureKind::Depth) => depth_mode(ui, state),
-                _ => {}
+            if is_wide {
+                modes_bar::ui(ui, state, shown.as_ref());
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| zoom(ui, state, capture));
         });
+        let is_comparing = state.modes.compare.is_some();
+        if is_wide && !is_comparing && !has_options(shown.as_ref()) {
+            return;
+        }
+        ui.horizontal(|ui| {
+            options(ui, state, capture, shown.as_ref());
+            if !is_wide {
+                modes_bar::ui(ui, state, shown.as_ref());
+            }
+            modes_bar::compare_row(ui, state, capture);
+        });
     });
+}
+
+fn has_options(shown: Option<&Shown>) -> bool {
+    let kind = shown.map(|shown| shown.kind);
+    !matches!(kind, None | Some(PictureKind::Color | PictureKind::Stencil | PictureKind::Overdraw))
+}
+
+/// What goes with one kind of picture only.
+fn options(ui: &mut Ui, state: &mut State, capture: &Capture, shown: Option<&Shown>) {
+    match shown.map(|shown| shown.kind) {
+        Some(PictureKind::Count) => lights(ui, state, capture, |light| light.count.is_some()),
+        Some(PictureKind::Mask) => lights(ui, state, capture, |light| light.shadow.is_some()),
+        Some(PictureKind::Truth | PictureKind::Error) => {
+            lights(ui, state, capture, |light| light.shadow.is_some() || light.truth.is_some());
+        }
+        Some(PictureKind::Map) => {
+            lights(ui, state, capture, |light| light.map.is_some());
+            map_layers(ui, state, capture);
+            if MapContent::of_capture(capture) == Some(MapContent::Depth) {
+                depth_mode(ui, state);
+            }
+        }
+        Some(PictureKind::Depth) => depth_mode(ui, state),
+        _ => {}
+    }
 }
 
 /// A button for each kind of picture that exists at this step.
@@ -123,8 +241,9 @@ fn kinds(ui: &mut Ui, state: &mut State, capture: &Capture) {
     let kinds = available(capture, state.moment());
     let labels: Vec<(&str, &str)> = kinds.iter().map(|kind| (kind.name(capture), kind.meaning(capture))).collect();
     // What was chosen, even while its truth is not known yet.
-    let is_asked_for = state.view.kind.needs_truth() && kinds.contains(&state.view.kind);
-    let shown = || state.view.shown(capture, state.moment()).map(|shown| shown.kind);
+    let is_made_later = state.view.kind.needs_truth() || state.view.kind == PictureKind::Overdraw;
+    let is_asked_for = is_made_later && kinds.contains(&state.view.kind);
+    let shown = || state.shown(capture).map(|shown| shown.kind);
     let current = if is_asked_for { Some(state.view.kind) } else { shown() };
     let chosen = kinds.iter().position(|kind| Some(*kind) == current);
     if let Some(index) = segments(ui, &labels, chosen) {
@@ -209,7 +328,7 @@ fn depth_mode(ui: &mut Ui, state: &mut State) {
 
 /// Right to left: the zoom in per cent, Fit, 1:1.
 fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
-    let size = state.view.shown(capture, state.moment()).and_then(|shown| Some(shown.images.first()?.size()));
+    let size = state.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };
     if let Zoom::Pixels(pixels) = state.view.zoom {
         ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));

@@ -1,6 +1,7 @@
 //! What the panels show and remember, and how it changes. No widget is drawn here.
 
 use super::action::{Action, RunRequest};
+use super::anatomy_state::AnatomyState;
 use super::animation::Animation;
 use super::diagnosis::DiagnosisState;
 use super::dock::Panel;
@@ -10,8 +11,10 @@ use super::export::ExportState;
 use super::history::HistoryState;
 use super::memory::ThemeChoice;
 use super::meshes::ObjectMesh;
+use super::modes::Modes;
 use super::moment::Moment;
 use super::report::ReportState;
+use super::shadow_map::MapTab;
 use super::stress::StressState;
 use super::texture::PictureCache;
 use super::tour::TourState;
@@ -113,6 +116,10 @@ pub struct State {
     pub playing: Option<f64>,
     /// The picture panel.
     pub view: PictureView,
+    /// How the picture is looked at.
+    pub modes: Modes,
+    /// The Shadow map tab.
+    pub map_tab: MapTab,
     /// The picked pixel of the picture.
     pub pick: Option<[u32; 2]>,
     /// The picked texel of the shown map.
@@ -123,6 +130,8 @@ pub struct State {
     pub truth: TruthState,
     /// What happened to the picked pixel.
     pub history: HistoryState,
+    /// What the shown frame is made of in space.
+    pub anatomy: AnatomyState,
     /// The Report tab.
     pub report: ReportState,
     /// The Diagnosis tab.
@@ -188,7 +197,7 @@ impl State {
         self.is_waiting = false;
         let step = self.step;
         self.step = match &self.capture {
-            Some(before) => corresponding_step(before, step, &capture),
+            Some(before) => same_step(before, step, &capture),
             None => capture.steps.len().saturating_sub(1),
         };
         if let Some(before) = self.capture.clone() {
@@ -202,6 +211,10 @@ impl State {
         }
         self.truth = TruthState::NotAsked;
         self.history.forget_frame();
+        self.modes.forget_frame();
+        self.map_tab.forget_frame();
+        self.view.tests = None;
+        self.anatomy.forget_frame();
         let [width, height] = capture.size;
         self.pick = self.pick.filter(|[x, y]| *x < width && *y < height);
         self.hover = None;
@@ -252,6 +265,13 @@ impl State {
         }
     }
 
+    /// Asks what the frame is made of in space, where something shows that and it was not asked yet.
+    pub fn ask_for_anatomy(&mut self, actions: &mut Vec<Action>) {
+        if self.scene.is_some() && self.capture.is_some() && self.anatomy.ask() {
+            actions.push(Action::Anatomy);
+        }
+    }
+
     /// Tells how far the truth of the shown frame is.
     pub fn set_truth(&mut self, truth: TruthState) {
         if matches!(truth, TruthState::Cancelled | TruthState::Failed(_)) {
@@ -282,6 +302,8 @@ impl State {
             self.note_recent(source);
         }
         self.diagnosis.forget();
+        self.modes.forget_scene();
+        self.anatomy.forget();
         if scene.is_none() {
             self.history.close();
         }
@@ -423,7 +445,8 @@ impl State {
 
 /// The step of `now` that means what step `index` of `before` meant: the last stays the last,
 /// a pass of the same name and light is the same.
-fn corresponding_step(before: &Capture, index: usize, now: &Capture) -> usize {
+#[must_use]
+pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
     let last = now.steps.len().saturating_sub(1);
     let Some(step) = before.steps.get(index).filter(|_| index + 1 < before.steps.len()) else { return last };
     let is_same = |candidate: &crate::capture::Step| candidate.name == step.name && candidate.light == step.light;

@@ -16,8 +16,7 @@ pub fn ui(ui: &mut Ui, state: &State) {
     let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 2));
     egui::Panel::bottom("status bar").frame(frame).exact_size(26.0).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
-            let shown =
-                |capture: &Arc<Capture>| Some((Arc::clone(capture), state.view.shown(capture, state.moment())?));
+            let shown = |capture: &Arc<Capture>| Some((Arc::clone(capture), state.shown(capture)?));
             if let Some((capture, shown)) = state.capture.as_ref().and_then(shown) {
                 picture(ui, state, &capture, &shown);
             }

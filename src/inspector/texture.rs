@@ -4,6 +4,7 @@
 //! shows in the next frame. Images are told apart by their `Arc`, which the cache keeps alive,
 //! so that a new image can't be taken for an old one at the same address.
 
+use super::change;
 use super::coloring::{self, Coloring};
 use super::counts::{self, Tally};
 use super::depth::DepthMeasure;
@@ -27,6 +28,7 @@ pub struct PictureCache {
     tallies: Vec<(Arc<Image>, Arc<Tally>)>,
     shares: Vec<(Arc<Image>, Shares)>,
     ranges: Vec<(Arc<Image>, DepthMeasure, Option<[f64; 2]>)>,
+    depth_histogram: Option<(Arc<Image>, DepthMeasure, [f64; 2], DepthHistogram)>,
     clock: u64,
 }
 
@@ -40,6 +42,11 @@ pub struct Shares {
     /// Any other colour.
     pub part: u64,
 }
+
+/// Bars of a histogram of depths.
+pub const DEPTH_BARS: usize = 48;
+/// How many texels lie in each part of a range of depths.
+pub type DepthHistogram = [u64; DEPTH_BARS];
 
 /// How large a texture is needed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,7 +89,8 @@ impl PictureCache {
             let tallies = self.tallies.iter().filter(|(of, _)| Arc::ptr_eq(of, image)).count();
             let shares = self.shares.iter().filter(|(of, _)| Arc::ptr_eq(of, image)).count();
             let ranges = self.ranges.iter().filter(|(of, _, _)| Arc::ptr_eq(of, image)).count();
-            textures + histograms + tallies + shares + ranges
+            let bars = self.depth_histogram.iter().filter(|(of, ..)| Arc::ptr_eq(of, image)).count();
+            textures + histograms + tallies + shares + ranges + bars
         };
         let is_used = |image: &Arc<Image>| Arc::strong_count(image) > own_uses(image);
         let textures: Vec<bool> = self.textures.iter().map(|texture| is_used(&texture.image)).collect();
@@ -90,6 +98,9 @@ impl PictureCache {
         let tallies: Vec<bool> = self.tallies.iter().map(|(image, _)| is_used(image)).collect();
         let shares: Vec<bool> = self.shares.iter().map(|(image, _)| is_used(image)).collect();
         let ranges: Vec<bool> = self.ranges.iter().map(|(image, _, _)| is_used(image)).collect();
+        if self.depth_histogram.as_ref().is_some_and(|(image, ..)| !is_used(image)) {
+            self.depth_histogram = None;
+        }
         keep_where(&mut self.textures, &textures);
         keep_where(&mut self.histograms, &histograms);
         keep_where(&mut self.tallies, &tallies);
@@ -166,6 +177,19 @@ impl PictureCache {
         shares
     }
 
+    /// How many texels of a depth picture lie in each part of `range`; those outside of it in none.
+    pub fn depth_histogram(&mut self, image: &Arc<Image>, measure: DepthMeasure, range: [f64; 2]) -> DepthHistogram {
+        if let Some((of, by, over, bars)) = &self.depth_histogram
+            && Arc::ptr_eq(of, image)
+            && (*by, *over) == (measure, range)
+        {
+            return *bars;
+        }
+        let bars = depth_bars(image, measure, range);
+        self.depth_histogram = Some((Arc::clone(image), measure, range, bars));
+        bars
+    }
+
     /// The smallest and largest value of a depth picture.
     pub fn depth_range(&mut self, image: &Arc<Image>, measure: DepthMeasure) -> Option<[f64; 2]> {
         let known = self.ranges.iter().find(|(of, by, _)| Arc::ptr_eq(of, image) && *by == measure);
@@ -192,8 +216,8 @@ fn keep_where<T>(items: &mut Vec<T>, keep: &[bool]) {
 /// Exact texels when magnified; counts and labels stay exact when made smaller, too.
 fn options(coloring: Coloring) -> TextureOptions {
     let minification = match coloring {
-        Coloring::Stencil | Coloring::Count | Coloring::Labels | Coloring::Findings => TextureFilter::Nearest,
         Coloring::Srgb | Coloring::Linear | Coloring::Depth(_) => TextureFilter::Linear,
+        _ => TextureFilter::Nearest,
     };
     TextureOptions { magnification: TextureFilter::Nearest, minification, ..TextureOptions::NEAREST }
 }
@@ -225,12 +249,40 @@ fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
             Coloring::Stencil => pixels.extend(row.iter().step_by(step).map(|value| palette::stencil(*value))),
             Coloring::Labels => pixels.extend(row.iter().step_by(step).map(|value| palette::label(*value))),
             Coloring::Findings => pixels.extend(row.iter().step_by(step).map(|value| findings::color(*value))),
+            Coloring::Bit(bit) => {
+                pixels.extend(row.iter().step_by(step).map(|value| coloring::bit_color(*value, bit)));
+            }
+            Coloring::Outcomes => pixels
+                .extend(row.iter().step_by(step).map(|value| palette::outcome(*value).gamma_multiply(coloring::OVER))),
+            Coloring::Receivers => pixels.extend(row.iter().step_by(step).map(|value| palette::receiver(*value))),
+            Coloring::Overdraw => pixels.extend(row.iter().step_by(step).map(|value| palette::overdraw(*value))),
+            Coloring::CountChange => {
+                pixels.extend(row.iter().step_by(step).map(|by| change::count_color(*by as i8)));
+            }
+            Coloring::DepthChange => {
+                pixels.extend(texels(row, 4, step).map(|t| change::depth_color(bytemuck::pod_read_unaligned(t))));
+            }
+            Coloring::ColorChange => {
+                pixels.extend(texels(row, 4, step).map(|t| coloring::changed([t[0], t[1], t[2], t[3]])));
+            }
             Coloring::Depth(scale) => {
                 pixels.extend(texels(row, 4, step).map(|t| scale.color(bytemuck::pod_read_unaligned(t))));
             }
         }
     }
     ColorImage::new(size, pixels)
+}
+
+fn depth_bars(image: &Image, measure: DepthMeasure, [low, high]: [f64; 2]) -> DepthHistogram {
+    let mut bars = [0; DEPTH_BARS];
+    let scale = DEPTH_BARS as f64 / (high - low).max(f64::MIN_POSITIVE);
+    for texel in image.rows().flat_map(|row| row.chunks_exact(4)) {
+        let Some(value) = measure.value(bytemuck::pod_read_unaligned(texel)) else { continue };
+        if (low..=high).contains(&value) {
+            bars[(((value - low) * scale) as usize).min(DEPTH_BARS - 1)] += 1;
+        }
+    }
+    bars
 }
 
 /// The picture in its colours, texel by texel, for a file.

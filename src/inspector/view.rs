@@ -8,7 +8,7 @@ use super::depth::DepthMeasure;
 use super::format;
 use super::layers::{Layer, MapContent};
 use super::moment::Moment;
-use crate::capture::{Capture, CapturedLight, CapturedTruth, Image, Snapshot};
+use crate::capture::{Capture, CapturedLight, CapturedTruth, Image, Snapshot, StepTests};
 use std::sync::Arc;
 
 /// A kind of picture that a capture may hold.
@@ -28,13 +28,15 @@ pub enum PictureKind {
     Truth,
     /// Where the two differ.
     Error,
+    /// How many fragments of the step reached each pixel.
+    Overdraw,
     /// What a light sees: depth, or what casters let through.
     Map,
 }
 
 impl PictureKind {
     /// All, in the order of their buttons.
-    pub const ALL: [PictureKind; 8] = [
+    pub const ALL: [PictureKind; 9] = [
         PictureKind::Color,
         PictureKind::Stencil,
         PictureKind::Count,
@@ -42,6 +44,7 @@ impl PictureKind {
         PictureKind::Mask,
         PictureKind::Truth,
         PictureKind::Error,
+        PictureKind::Overdraw,
         PictureKind::Map,
     ];
 
@@ -56,6 +59,7 @@ impl PictureKind {
             PictureKind::Mask => "Mask",
             PictureKind::Truth => "Truth",
             PictureKind::Error => "Error",
+            PictureKind::Overdraw => "Overdraw",
             PictureKind::Map => MapContent::of_capture(capture).unwrap_or(MapContent::Depth).name(),
         }
     }
@@ -71,6 +75,7 @@ impl PictureKind {
             PictureKind::Mask => "Where the technique says that a light is blocked",
             PictureKind::Truth => "Where rays say that a light is blocked",
             PictureKind::Error => "Where the technique and the truth differ",
+            PictureKind::Overdraw => "How many fragments of the selected step reached every pixel",
             PictureKind::Map => MapContent::of_capture(capture).unwrap_or(MapContent::Depth).meaning(),
         }
     }
@@ -132,6 +137,8 @@ pub struct PictureView {
     pub depth_mode: DepthMode,
     /// The grey ramp's ends as set by hand; `None`: those of the picture.
     pub depth_range: Option<[f64; 2]>,
+    /// How the fragments of a step fared, of which the overdraw is shown.
+    pub tests: Option<Arc<StepTests>>,
     /// The kind to go back to when a map pass is left.
     kind_before_map: Option<PictureKind>,
     /// The kind that is shown until the truth is known.
@@ -150,6 +157,7 @@ impl Default for PictureView {
             center: [0.0; 2],
             depth_mode: DepthMode::Linear,
             depth_range: None,
+            tests: None,
             kind_before_map: None,
             kind_before_truth: None,
             older_truth: Vec::new(),
@@ -252,7 +260,8 @@ impl PictureView {
             PictureKind::Count => PictureKind::Stencil,
             other => other,
         };
-        let wished = [wished, twin].into_iter().find(|kind| kinds.contains(kind));
+        let can_show = |kind: &PictureKind| *kind != PictureKind::Overdraw || self.tests_of(at).is_some();
+        let wished = [wished, twin].into_iter().find(|kind| kinds.contains(kind)).filter(can_show);
         let kind = wished.or_else(|| kinds.iter().copied().find(|kind| !kind.needs_truth()))?;
         let frame = at.frame(capture);
         let after = |what: &str| format!("{what} after {}", at.words());
@@ -279,10 +288,15 @@ impl PictureView {
                     None => (capture.lights.get(light)?.shadow.clone()?, raw, title, "R8Uint"),
                 }
             }
+            PictureKind::Overdraw => (self.tests_of(at)?.fragments.clone(), raw, after("overdraw"), "R8Uint"),
             PictureKind::Truth | PictureKind::Error => return self.shown_truth(capture, kind),
             PictureKind::Map => return self.shown_map(capture, at),
         };
         Some(Shown { kind, images: vec![image], layers: Vec::new(), measure, title, format, is_older: false })
+    }
+
+    fn tests_of(&self, at: Moment) -> Option<&Arc<StepTests>> {
+        self.tests.as_ref().filter(|tests| Moment { step: tests.step, draw: tests.draw } == at)
     }
 
     fn shown_truth(&self, capture: &Capture, kind: PictureKind) -> Option<Shown> {
@@ -331,7 +345,8 @@ pub fn has_truth(capture: &Capture) -> bool {
 /// The kinds of picture that exist at a moment, or can be asked for, in the order of their buttons.
 #[must_use]
 pub fn available(capture: &Capture, at: impl Into<Moment>) -> Vec<PictureKind> {
-    let frame = at.into().frame(capture);
+    let at = at.into();
+    let frame = at.frame(capture);
     let exists = |kind: &PictureKind| match kind {
         PictureKind::Color | PictureKind::Depth => frame.is_some(),
         PictureKind::Stencil => frame.is_some_and(|frame| frame.stencil.is_some()),
@@ -340,9 +355,16 @@ pub fn available(capture: &Capture, at: impl Into<Moment>) -> Vec<PictureKind> {
         PictureKind::Truth | PictureKind::Error => {
             capture.lights.iter().any(|light| light.shadow.is_some() || light.truth.is_some())
         }
+        PictureKind::Overdraw => draws_into_picture(capture, at.step),
         PictureKind::Map => capture.lights.iter().any(|light| light.map.is_some()),
     };
     PictureKind::ALL.into_iter().filter(exists).collect()
+}
+
+/// Does a step draw triangles that the picture's depth test sees?
+fn draws_into_picture(capture: &Capture, step: usize) -> bool {
+    let draws = |step: &crate::capture::Step| !step.draws.is_empty() && matches!(step.snapshot, Snapshot::Frame(_));
+    capture.steps.get(step).is_some_and(draws)
 }
 
 fn has_stencil(capture: &Capture) -> bool {

@@ -3,12 +3,14 @@
 //! A session owns the GPU and what is worth keeping between runs (pipelines, buffers, edge
 //! lists). Commands, the window and tests all go through it.
 
+mod anatomy;
 mod counts;
 mod diagnose;
 mod draws;
 mod history;
 mod measure;
 mod report;
+mod step_tests;
 mod stress;
 mod stress_steps;
 mod suited;
@@ -83,6 +85,12 @@ pub enum SessionError {
         pixel: [u32; 2],
         /// Of the picture.
         size: [u32; 2],
+    },
+    /// No fragments of a step can be counted.
+    #[error("step {} draws no triangles into the picture: select one that does", step + 1)]
+    NoTests {
+        /// Index of the step.
+        step: usize,
     },
     /// A mend can't be made.
     #[error(transparent)]

@@ -24,6 +24,7 @@ mod volume;
 pub use frame::{Job, MOST_LIGHTS};
 pub use left_out::Decision;
 pub use settings::{Choice, ChoiceError, ReportRows, SettingSpec, SettingValues};
+pub use volume::casting;
 
 use crate::plan::FramePlan;
 

@@ -21,9 +21,9 @@ use super::casters::{self, Darkened};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::left_out::Decision;
 use super::settings::ONE_ROW;
-use super::{PlanError, ReportRows, Technique, shown};
+use super::{Choice, PlanError, ReportRows, Technique, shown};
 use crate::geometry::{
-    Caster, Casters, DarkCap, Extruder, Extrusion, Fan, SilhouetteBy, VolumeOf, VolumeParts, relative,
+    Caster, Casters, DarkCap, Extruder, Extrusion, Fan, GeometryCache, SilhouetteBy, VolumeOf, VolumeParts, relative,
 };
 use crate::plan::{
     Blob, Draw, DrawConstants, DrawMesh, FramePlan, LightId, MeshId, Part, Program, RasterState, Visibility,
@@ -31,6 +31,7 @@ use crate::plan::{
 use crate::scene::Object;
 pub use counting::Counting;
 use counting::Step;
+use glam::DVec4;
 use options::{Options, WhoCasts};
 use std::ops::Range;
 
@@ -271,6 +272,20 @@ fn fixed_form(frame: &mut Frame, counting: Counting, options: &Options, caster: 
     }
     // A finite volume ends in front of whatever lies beyond it.
     Form { counting, light_cap, dark_cap: counting == Counting::Behind || options.extrusion != Extrusion::Infinite }
+}
+
+/// Which of a caster's triangles cast a volume's shadow, as `choice` says; all, where its technique has no volumes.
+#[must_use]
+pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> Casters {
+    use Technique::{Auto, ZFail, ZPass, ZPassPlus};
+    if !matches!(choice.technique(), ZPass | ZFail | ZPassPlus | Auto) {
+        return Casters::All;
+    }
+    match Options::of(choice).casters {
+        WhoCasts::Always(casters) => casters,
+        WhoCasts::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => Casters::LightFacing,
+        WhoCasts::ByTopology => Casters::All,
+    }
 }
 
 /// Which triangles of an object cast; for `by-topology`, with what decided it.

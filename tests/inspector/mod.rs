@@ -9,9 +9,13 @@ mod history;
 mod history_by_hand;
 mod history_pictures;
 mod layers;
+mod mode_pictures;
+mod overlays;
+mod picture_modes;
 mod pictures;
 mod report;
 mod settings;
+mod shadow_map;
 mod shell;
 mod stress;
 mod truth;
@@ -222,7 +226,7 @@ fn every_label_has_its_own_sentence() {
 #[test]
 fn only_pictures_that_exist_have_a_button_and_the_legend_counts_pixels() {
     let mut harness = harness(z_fail(SIZE));
-    assert!(harness.query_by_label("Shadow map").is_none());
+    assert!(harness.query_by_role_and_label(Role::Button, "Shadow map").is_none());
     press(&mut harness, Key::Home);
     press(&mut harness, Key::ArrowRight);
     click_button(&mut harness, "Stencil");

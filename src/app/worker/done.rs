@@ -38,6 +38,18 @@ impl Done {
         News::History { frame: self.frame, at, history: history.map(Arc::new).map_err(|error| error.to_string()) }
     }
 
+    /// How the fragments of a step or draw fared in the tests.
+    fn tests(&self, session: &mut Session, step: usize, draw: Option<usize>) -> News {
+        let result = session.step_tests(&self.plan, step, draw);
+        News::Tests { frame: self.frame, step, draw, result: result.map(Arc::new).map_err(|error| error.to_string()) }
+    }
+
+    /// What it is made of in space.
+    fn anatomy(&self, session: &mut Session) -> News {
+        let anatomy = session.anatomy(&self.scene, &self.request.choice, &self.plan);
+        News::Anatomy { frame: self.frame, anatomy: Ok(Arc::new(anatomy)) }
+    }
+
     /// The states after the draws of a step.
     fn fill_draws(&mut self, session: &mut Session, step: usize) -> News {
         let mut capture = Capture::clone(&self.capture);
@@ -56,6 +68,8 @@ impl Done {
         match *order {
             Order::History { frame, at } if frame == self.frame => Some(self.history(session, at)),
             Order::Draws { frame, step } if frame == self.frame => Some(self.fill_draws(session, step)),
+            Order::Anatomy { frame } if frame == self.frame => Some(self.anatomy(session)),
+            Order::Tests { frame, step, draw } if frame == self.frame => Some(self.tests(session, step, draw)),
             _ => None,
         }
     }
@@ -139,6 +153,30 @@ impl Bench {
             _ => {
                 let reason = "the frame that is shown is of a scene that is open no more: mend what the error says";
                 News::History { frame, at, history: Err(reason.to_owned()) }
+            }
+        });
+    }
+
+    /// Tells how fragments of the frame that was captured last fared, if it is the one that is meant.
+    pub(super) fn tests(&mut self, frame: u64, step: usize, draw: Option<usize>) {
+        let meant = self.last.as_ref().filter(|done| done.frame == frame);
+        (self.tell)(match (&mut self.session, meant) {
+            (Some(session), Some(done)) => done.tests(session, step, draw),
+            _ => {
+                let reason = "the frame that is shown is of a scene that is open no more: mend what the error says";
+                News::Tests { frame, step, draw, result: Err(reason.to_owned()) }
+            }
+        });
+    }
+
+    /// Tells what the frame that was captured last is made of in space, if it is the one that is meant.
+    pub(super) fn anatomy(&mut self, frame: u64) {
+        let meant = self.last.as_ref().filter(|done| done.frame == frame);
+        (self.tell)(match (&mut self.session, meant) {
+            (Some(session), Some(done)) => done.anatomy(session),
+            _ => {
+                let reason = "the frame that is shown is of a scene that is open no more: mend what the error says";
+                News::Anatomy { frame, anatomy: Err(reason.to_owned()) }
             }
         });
     }

@@ -1,0 +1,180 @@
+//! Puts an anatomy together.
+
+use super::{Anatomy, PlacedLight, PlacedObject, Silhouette, frusta, volumes};
+use crate::geometry::{Caster, Edge, EdgeList, Facings, GeometryCache, silhouette};
+use crate::plan::FramePlan;
+use crate::scene::{Object, Scene};
+use crate::technique::{Choice, casting};
+use glam::DVec3;
+
+/// Cosine of the angle between neighbours' normals from which on the edge between them is drawn: 25°.
+const CREASE: f64 = 0.906;
+
+/// What the frame of `plan` is made of: of `scene` at its moment, made as `choice` says.
+#[must_use]
+pub fn anatomy(scene: &Scene, choice: &Choice, plan: &FramePlan, cache: &mut GeometryCache) -> Anatomy {
+    let objects: Vec<PlacedObject> = scene.objects.iter().map(|object| placed(object, cache)).collect();
+    let aspect = f64::from(plan.size[0]) / f64::from(plan.size[1].max(1));
+    Anatomy {
+        technique: plan.technique.clone(),
+        camera: scene.camera,
+        aspect,
+        lights: scene
+            .lights
+            .iter()
+            .map(|light| PlacedLight { position: light.position, color: light.color, range: light.range })
+            .collect(),
+        volumes: volumes::of_plan(plan, &objects),
+        silhouettes: silhouettes(scene, choice, &objects, cache),
+        frusta: frusta::all(scene, plan, aspect),
+        near_clips: scene.lights.iter().map(|light| frusta::near_clip(&scene.camera, aspect, light)).collect(),
+        objects,
+    }
+}
+
+fn placed(object: &Object, cache: &mut GeometryCache) -> PlacedObject {
+    let positions = object.world_positions();
+    let edges = worth_drawing(&cache.edges(&object.mesh), &positions, object.mesh.triangles());
+    PlacedObject {
+        name: object.name.clone(),
+        casts: object.casts,
+        receives: object.receives,
+        visible: object.visible,
+        color: object.material.color,
+        mesh: object.mesh.clone(),
+        positions,
+        edges,
+    }
+}
+
+/// Creases, borders, and where more than two triangles meet.
+fn worth_drawing(edges: &EdgeList, positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Edge> {
+    let normal = |triangle: usize| {
+        let [a, b, c] = triangles[triangle].map(|corner| positions[corner as usize]);
+        (b - a).cross(c - a).normalize_or_zero()
+    };
+    let is_worth = |index: &usize| {
+        let incident: Vec<(usize, i32)> = edges.incident(*index).collect();
+        match incident[..] {
+            [(one, way), (other, back)] => normal(one).dot(normal(other)) * -f64::from(way * back) < CREASE,
+            _ => true,
+        }
+    };
+    (0..edges.edges().len()).filter(is_worth).map(|index| edges.edges()[index]).collect()
+}
+
+fn silhouettes(scene: &Scene, choice: &Choice, placed: &[PlacedObject], cache: &mut GeometryCache) -> Vec<Silhouette> {
+    let mut found = Vec::new();
+    let mut facings = Facings::default();
+    for (light, position) in scene.lights.iter().map(crate::scene::Light::homogeneous).enumerate() {
+        for (index, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.casts) {
+            let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed[index].positions };
+            let casters = casting(choice, cache, caster, position);
+            cache.planes(caster).facings(caster.world, object.mesh.triangles(), position, &mut facings);
+            facings.keep_casting(casters);
+            let mut edges = Vec::new();
+            silhouette(&cache.edges(&object.mesh), &facings, &mut edges);
+            found.push(Silhouette { light, caster: index, edges });
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::anatomy::ViewOf;
+    use crate::plan::Part;
+    use crate::scene::{OpenSpec, open};
+    use crate::technique::{Job, Technique, plan};
+
+    fn of(name: &str, technique: Technique, settings: &[(&str, &str)]) -> Anatomy {
+        let scene = open(&OpenSpec::new(name)).expect("a scene");
+        let mut choice = Choice::new(technique);
+        settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
+        let mut cache = GeometryCache::default();
+        let plan = plan(Job { scene: &scene, size: [320, 180], choice: &choice, cache: &mut cache }).expect("a plan");
+        anatomy(&scene, &choice, &plan, &mut cache)
+    }
+
+    /// Each side of a triangle is run back by another one: by vertex where they are near, by position
+    /// where they are made anew at the far end.
+    fn is_closed(anatomy: &Anatomy, volume: usize) -> bool {
+        let volume = &anatomy.volumes[volume];
+        let mut edges = std::collections::BTreeMap::new();
+        let bits = |index: u32| volume.vertices[index as usize].to_array().map(|v| (v + 0.0).to_bits());
+        for [a, b, c] in volume.parts.iter().flat_map(|part| &part.triangles) {
+            for (from, to) in [(a, b), (b, c), (c, a)].map(|(from, to)| (bits(*from), bits(*to))) {
+                *edges.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { -1 };
+            }
+        }
+        !edges.is_empty() && edges.values().all(|sum| *sum == 0)
+    }
+
+    #[test]
+    fn the_volumes_of_z_fail_close_and_stand_on_the_silhouette() {
+        for settings in [&[][..], &[("extrusion", "finite:3")], &[("casters", "light-facing")]] {
+            let anatomy = of("tori", Technique::ZFail, settings);
+            assert!(!anatomy.volumes.is_empty());
+            for (index, volume) in anatomy.volumes.iter().enumerate() {
+                assert!(is_closed(&anatomy, index), "{settings:?}: {}", anatomy.objects[volume.caster].name);
+                let is_of = |one: &&Silhouette| one.light == volume.light && one.caster == volume.caster;
+                let silhouette = anatomy.silhouettes.iter().find(is_of).expect("a silhouette");
+                let quads: i32 = silhouette.edges.iter().map(|edge| edge.multiplicity.abs()).sum();
+                let sides = volume.parts.iter().find(|part| part.part == Part::Side).expect("sides");
+                assert_eq!(sides.triangles.len(), 2 * quads as usize, "{settings:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn two_passes_over_both_faces_are_one_volume() {
+        let once = of("tori", Technique::ZFail, &[]);
+        let twice = of("tori", Technique::ZFail, &[("faces", "two-pass")]);
+        assert_eq!(once.volumes, twice.volumes);
+    }
+
+    #[test]
+    fn without_volumes_there_are_silhouettes_still_and_a_map_has_its_frustum() {
+        let anatomy = of("tori", Technique::ShadowMap, &[]);
+        assert!(anatomy.volumes.is_empty());
+        assert!(anatomy.silhouettes.iter().any(|silhouette| !silhouette.edges.is_empty()));
+        let maps: Vec<_> = anatomy.frusta.iter().filter(|frustum| frustum.of != ViewOf::Camera).collect();
+        assert!(!maps.is_empty());
+        for frustum in maps {
+            let corners = frustum.near.iter().chain(&frustum.far);
+            assert!(corners.clone().all(|corner| corner.is_finite() && corner.w >= 0.0), "{frustum:?}");
+        }
+    }
+
+    /// The camera's frustum begins at the near rectangle and has no end.
+    #[test]
+    fn the_cameras_frustum_is_what_it_sees() {
+        let anatomy = of("tori", Technique::ZFail, &[]);
+        let frustum = anatomy.frusta[0];
+        let camera = anatomy.camera;
+        let forward = (camera.target - camera.eye).normalize();
+        let tangent = (camera.fov_y_degrees.to_radians() / 2.0).tan();
+        for (near, far) in frustum.near.into_iter().zip(frustum.far) {
+            let offset = near.truncate() / near.w - camera.eye;
+            assert!((offset.dot(forward) / camera.near - 1.0).abs() < 1e-9);
+            assert_eq!(far.w, 0.0);
+            assert!(far.truncate().normalize().dot(offset.normalize()) > 1.0 - 1e-12);
+        }
+        let height = (frustum.near[0] - frustum.near[3]).length();
+        assert!((height / (2.0 * tangent * camera.near) - 1.0).abs() < 1e-9, "{height}");
+        let near_clip = anatomy.near_clips[0].expect("a near-clip volume");
+        assert_eq!(near_clip.apex, anatomy.lights[0].position);
+        assert!((near_clip.rectangle[0] - frustum.near[0].truncate()).length() < 1e-9);
+    }
+
+    #[test]
+    fn a_box_shows_its_twelve_edges_and_a_torus_none() {
+        let anatomy = of("table", Technique::None, &[]);
+        let cuboid = anatomy.objects.iter().find(|object| object.mesh.triangles().len() == 12).expect("a box");
+        assert_eq!(cuboid.edges.len(), 12);
+        let torus = of("tori", Technique::None, &[]);
+        let torus = torus.objects.iter().max_by_key(|object| object.mesh.triangles().len()).expect("a torus");
+        assert!(torus.edges.is_empty());
+    }
+}

@@ -1,0 +1,172 @@
+//! What a frame is made of in space: objects, shadow volumes, silhouettes, frusta. Data for views that
+//! look at a frame from outside.
+//!
+//! Volumes are taken from the frame's plan, so that what is shown is what is drawn; silhouettes come
+//! from the same geometry, and exist whatever the technique. Everything is in world space; corners
+//! are homogeneous, and `w = 0` lies at infinity.
+//!
+//! ```text
+//! mod.rs      the data         volumes.rs   volumes out of a plan
+//! make.rs     puts it together  frusta.rs    what camera and maps see, and the near-clip volume
+//! ```
+
+mod frusta;
+mod make;
+mod volumes;
+
+pub use make::anatomy;
+
+use crate::geometry::{Edge, SilhouetteEdge};
+use crate::plan::Part;
+use crate::scene::{Camera, Mesh};
+use glam::{DVec3, DVec4};
+use std::sync::Arc;
+
+/// What a frame is made of in space.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Anatomy {
+    /// Name of the technique.
+    pub technique: String,
+    /// The camera that the frame is seen by.
+    pub camera: Camera,
+    /// Width over height of the picture.
+    pub aspect: f64,
+    /// In the scene's order.
+    pub objects: Vec<PlacedObject>,
+    /// In the scene's order.
+    pub lights: Vec<PlacedLight>,
+    /// The shadow volumes that the frame draws: at most one a light and caster.
+    pub volumes: Vec<ShadowVolume>,
+    /// One a light and caster.
+    pub silhouettes: Vec<Silhouette>,
+    /// The camera's first, then those of the lights' maps.
+    pub frusta: Vec<Frustum>,
+    /// The near-clip volume of each light; `None` where the light lies in the near plane.
+    pub near_clips: Vec<Option<NearClip>>,
+}
+
+/// An object where it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedObject {
+    /// Unique within its scene.
+    pub name: String,
+    /// Throws shadows.
+    pub casts: bool,
+    /// Is darkened by shadows.
+    pub receives: bool,
+    /// Is drawn.
+    pub visible: bool,
+    /// Linear RGB of its material.
+    pub color: [f32; 3],
+    /// Its triangles name these positions.
+    pub mesh: Arc<Mesh>,
+    /// The welded vertices, world space.
+    pub positions: Vec<DVec3>,
+    /// Edges worth drawing: creases, borders, and where more than two triangles meet.
+    pub edges: Vec<Edge>,
+}
+
+/// A light where it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedLight {
+    /// Homogeneous: `w = 1` a point, `w = 0` the direction towards it.
+    pub position: DVec4,
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// Distance in metres at which it has faded to nothing.
+    pub range: Option<f64>,
+}
+
+/// A shadow volume as it is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShadowVolume {
+    /// Index of the light.
+    pub light: usize,
+    /// Index of the object that throws it.
+    pub caster: usize,
+    /// Homogeneous corners, rounded as the GPU has them.
+    pub vertices: Vec<DVec4>,
+    /// The parts that are drawn: sides, light cap, dark cap.
+    pub parts: Vec<VolumePart>,
+}
+
+/// One part of a shadow volume.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct VolumePart {
+    /// [`Part::Side`], [`Part::LightCap`] or [`Part::DarkCap`].
+    pub part: Part,
+    /// Indices of vertices, counter-clockwise seen from outside the volume.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// The edges of a caster that bound its shadow.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Silhouette {
+    /// Index of the light.
+    pub light: usize,
+    /// Index of the object; edges name its positions.
+    pub caster: usize,
+    /// With their multiplicities.
+    pub edges: Vec<SilhouetteEdge>,
+}
+
+/// Whose view a frustum is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ViewOf {
+    /// The camera's.
+    Camera,
+    /// A face of a light's map.
+    Map {
+        /// Index of the light.
+        light: usize,
+        /// Index of the face.
+        face: usize,
+    },
+}
+
+/// A frustum by its eight corners.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frustum {
+    /// Whose.
+    pub of: ViewOf,
+    /// Right top, left top, left bottom, right bottom.
+    pub near: [DVec4; 4],
+    /// The same; directions where there is no far plane.
+    pub far: [DVec4; 4],
+}
+
+/// The space between the near rectangle and a light: what casts within it may hold the eye in its shadow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearClip {
+    /// Corners of the near rectangle, in order round it.
+    pub rectangle: [DVec3; 4],
+    /// The light: a point, or a direction.
+    pub apex: DVec4,
+}
+
+impl Anatomy {
+    /// Smallest and largest corner of all objects that are drawn or cast, and of the camera and point lights;
+    /// `None` where there is nothing.
+    #[must_use]
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        let objects = self.objects.iter().flat_map(|object| object.positions.iter().copied());
+        let lights = self.lights.iter().filter(|light| light.position.w != 0.0);
+        let points = objects.chain(lights.map(|light| light.position.truncate() / light.position.w));
+        let all = points.chain([self.camera.eye]);
+        all.map(|point| (point, point)).reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
+    }
+
+    /// The volume of a light and caster, where one is drawn.
+    #[must_use]
+    pub fn volume(&self, light: usize, caster: usize) -> Option<&ShadowVolume> {
+        self.volumes.iter().find(|volume| volume.light == light && volume.caster == caster)
+    }
+
+    /// Triangles of all objects and volumes.
+    #[must_use]
+    pub fn triangles(&self) -> usize {
+        let objects = self.objects.iter().map(|object| object.mesh.triangles().len());
+        let parts = self.volumes.iter().flat_map(|volume| &volume.parts).map(|part| part.triangles.len());
+        objects.chain(parts).sum()
+    }
+}

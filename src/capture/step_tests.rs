@@ -1,0 +1,106 @@
+//! How the fragments of a step, or of one of its draws, fared in the depth and stencil tests, pixel by
+//! pixel.
+
+use super::Image;
+use std::sync::Arc;
+
+/// Counts of fragments end here: more are not told apart.
+pub const MOST_FRAGMENTS: u8 = u8::MAX;
+
+/// What the tests of a step, or of one of its draws, did. All pictures have a byte a pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepTests {
+    /// Index of the step.
+    pub step: usize,
+    /// Index of the draw; `None`: all of the step.
+    pub draw: Option<usize>,
+    /// How many fragments reached the pixel, [`MOST_FRAGMENTS`] at most.
+    pub fragments: Arc<Image>,
+    /// How many of them pass the depth test, were there no stencil test.
+    pub depth_passes: Arc<Image>,
+    /// A [`StencilVerdict`] a pixel.
+    pub stencil: Arc<Image>,
+}
+
+/// What the stencil test says of a pixel's fragments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum StencilVerdict {
+    /// All pass.
+    Passes = 0,
+    /// All fail.
+    Fails = 1,
+    /// The step writes what it tests: it depends on their order.
+    Unknown = 2,
+}
+
+/// How the fragments of one pixel fared; `None`: not known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TestCounts {
+    /// How many there are.
+    pub fragments: u8,
+    /// Failed the stencil test.
+    pub stencil_failed: Option<u8>,
+    /// Passed that, and failed the depth test.
+    pub depth_failed: Option<u8>,
+    /// Passed both.
+    pub passed: Option<u8>,
+}
+
+impl TestCounts {
+    /// Some passed both tests.
+    pub const PASSED: u8 = 1;
+    /// Some failed the depth test.
+    pub const DEPTH_FAILED: u8 = 2;
+    /// All failed the stencil test.
+    pub const STENCIL_FAILED: u8 = 4;
+    /// It is not known how they fared.
+    pub const UNKNOWN: u8 = 8;
+
+    /// What happened here at least once, as bits.
+    #[must_use]
+    pub fn outcomes(self) -> u8 {
+        let bit = |count: Option<u8>, bit: u8| if count.is_some_and(|count| count > 0) { bit } else { 0 };
+        let known = bit(self.passed, Self::PASSED) | bit(self.depth_failed, Self::DEPTH_FAILED);
+        let known = known | bit(self.stencil_failed, Self::STENCIL_FAILED);
+        if self.passed.is_none() { Self::UNKNOWN } else { known }
+    }
+}
+
+impl StepTests {
+    /// How the fragments of a pixel fared; `None` outside the picture.
+    #[must_use]
+    pub fn at(&self, pixel: [u32; 2]) -> Option<TestCounts> {
+        let byte = |image: &Image| image.byte_at(pixel);
+        Some(counts(byte(&self.fragments)?, byte(&self.depth_passes)?, byte(&self.stencil)?))
+    }
+
+    /// [`TestCounts::outcomes`] of every pixel.
+    #[must_use]
+    pub fn outcomes(&self) -> Image {
+        let rows = self.fragments.rows().zip(self.depth_passes.rows()).zip(self.stencil.rows());
+        let texels = rows.flat_map(|((all, passes), verdicts)| all.iter().zip(passes).zip(verdicts));
+        let bytes: Vec<u8> =
+            texels.map(|((all, passes), verdict)| counts(*all, *passes, *verdict).outcomes()).collect();
+        Image::packed(super::PixelFormat::U8, self.fragments.size(), bytes)
+    }
+}
+
+fn counts(fragments: u8, passes: u8, verdict: u8) -> TestCounts {
+    let known = |stencil_failed, depth_failed, passed| TestCounts {
+        fragments,
+        stencil_failed: Some(stencil_failed),
+        depth_failed: Some(depth_failed),
+        passed: Some(passed),
+    };
+    const FAILS: u8 = StencilVerdict::Fails as u8;
+    const PASSES: u8 = StencilVerdict::Passes as u8;
+    // Where counts ended, how many failed is not known.
+    let failed = |passed: u8| (fragments < MOST_FRAGMENTS).then(|| fragments.saturating_sub(passed));
+    match verdict {
+        _ if fragments == 0 => known(0, 0, 0),
+        FAILS => known(fragments, 0, 0),
+        PASSES => TestCounts { depth_failed: failed(passes), ..known(0, 0, passes) },
+        _ => TestCounts { fragments, stencil_failed: None, depth_failed: None, passed: None },
+    }
+}

@@ -1,0 +1,116 @@
+//! The picture's second row of tools: before, after, what changed; bits of the stencil; what to compare
+//! with and what to draw over it.
+
+use super::compare::{self, Compare, With, step_words};
+use super::modes::{Phase, has_phases};
+use super::overlays;
+use super::state::State;
+use super::theme;
+use super::top_bar::segments;
+use super::view::{PictureKind, Shown};
+use crate::capture::Capture;
+use crate::technique::Technique;
+use egui::{Button, Rect, RichText, Ui, UiBuilder, vec2};
+
+/// Width of the note on a comparison, points.
+const NOTE_WIDTH: f32 = 232.0;
+
+/// Draws the tools that go with `shown`.
+pub fn ui(ui: &mut Ui, state: &mut State, shown: Option<&Shown>) {
+    let kind = shown.map_or(state.view.kind, |shown| shown.kind);
+    let is_single = shown.is_none_or(|shown| shown.images.len() == 1);
+    phases(ui, state, kind);
+    if kind == PictureKind::Stencil {
+        bits(ui, state);
+    }
+    if is_single {
+        toggle(ui, state);
+        overlays::menu(ui, state);
+    }
+}
+
+fn phases(ui: &mut Ui, state: &mut State, kind: PictureKind) {
+    if !has_phases(kind) {
+        return;
+    }
+    let chosen = Phase::ALL.iter().position(|phase| *phase == state.modes.phase);
+    if let Some(index) = segments(ui, &Phase::LABELS, chosen) {
+        state.modes.phase = Phase::ALL[index];
+    }
+}
+
+fn bits(ui: &mut Ui, state: &mut State) {
+    let name = |bit: Option<u8>| bit.map_or_else(|| "All bits".to_owned(), |bit| format!("Bit {bit}"));
+    let combo = egui::ComboBox::new("picture bits", "").width(76.0).selected_text(name(state.modes.bit));
+    let combo = combo.show_ui(ui, |ui| {
+        for bit in std::iter::once(None).chain((0..8).map(Some)) {
+            ui.selectable_value(&mut state.modes.bit, bit, name(bit));
+        }
+    });
+    let hover = "One bit of every value as a plane of its own; bit 0 is the lowest";
+    combo.response.on_hover_text(hover).accessible_name("Bits of the stencil");
+}
+
+fn toggle(ui: &mut Ui, state: &mut State) {
+    let is_on = state.modes.compare.is_some();
+    let ink = if is_on { theme::of(ui).text } else { theme::of(ui).dim };
+    let button = ui.add(Button::selectable(is_on, RichText::new("Compare").color(ink)));
+    if button.on_hover_text("Another step or technique beside this picture, under a divider").clicked() {
+        state.modes.compare = if is_on { None } else { Some(Compare::new(state.step)) };
+    }
+}
+
+/// What is compared with; drawn while comparing.
+pub fn compare_row(ui: &mut Ui, state: &mut State, capture: &Capture) {
+    let Some(mut compare) = state.modes.compare else { return };
+    ui.label(theme::note("with"));
+    let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
+    let combo = combo.selected_text(compare.with.words(capture)).height(420.0).show_ui(ui, |ui| {
+        for step in 0..capture.steps.len() {
+            let text = if step == state.step {
+                format!("{} (this)", step_words(capture, step))
+            } else {
+                step_words(capture, step)
+            };
+            ui.selectable_value(&mut compare.with, With::Step(step), text);
+        }
+        if state.scene.is_some() {
+            ui.separator();
+            for technique in Technique::ALL.into_iter().filter(|technique| technique.name() != capture.technique) {
+                let line = ui.selectable_value(
+                    &mut compare.with,
+                    With::Technique(technique),
+                    format!("technique {}", technique.name()),
+                );
+                line.on_hover_text(technique.summary());
+            }
+        }
+    });
+    combo.response.accessible_name("Compare with");
+    if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
+        compare.flipped = !compare.flipped;
+    }
+    state.modes.compare = Some(compare);
+}
+
+/// In the upper left corner of `rect`: how many texels differ, or why nothing is compared.
+pub fn compare_note(ui: &mut Ui, state: &mut State, capture: &Capture, shown: &Shown, rect: Rect) {
+    if state.modes.compare.is_none() {
+        return;
+    }
+    let text = match state.shown_compared(capture, shown) {
+        Ok(other) => {
+            let [width, height] = shown.images[0].size().map(u64::from);
+            let texels = state.modes.changes.differing([&other.images[0], &shown.images[0]]);
+            compare::sentence(texels, width * height)
+        }
+        Err(reason) => reason,
+    };
+    let place =
+        Rect::from_min_size(rect.min + vec2(12.0, 12.0), vec2(NOTE_WIDTH.min(rect.width() / 2.0), rect.height()));
+    ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("compare note"), |ui| {
+        theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
+            ui.add(egui::Label::new(theme::note(text)).wrap());
+        });
+    });
+}

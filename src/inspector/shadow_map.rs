@@ -1,0 +1,373 @@
+//! The shadow map tab: a face of a light's map with the values of its texels, beside a small picture. A
+//! texel and the pixels that read it are marked in both.
+
+use super::canvas;
+use super::depth::DepthMeasure;
+use super::format;
+use super::layers::{self, MapContent};
+use super::map_readers::{MapReaders, MapTexel, Surface, texel_width};
+use super::picture::{coloring_of, shown_range};
+use super::placement::Placement;
+use super::state::State;
+use super::texture::TextureSize;
+use super::theme;
+use super::top_bar::segments;
+use super::view::{FaceChoice, PictureKind, PictureView, Zoom};
+use crate::capture::{Capture, CapturedMap};
+use egui::epaint::Mesh;
+use egui::{
+    Color32, CornerRadius, Margin, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
+use std::sync::Arc;
+
+/// Width of the column beside the map, points.
+const COLUMN: f32 = 232.0;
+/// Marks are at least so large, points.
+const LEAST_MARK: f32 = 2.5;
+/// Marks that are drawn at most.
+const MOST_MARKS: usize = 12_000;
+
+/// What the tab remembers.
+#[derive(Debug, Default)]
+pub struct MapTab {
+    view: PictureView,
+    /// The picked texel of the shown face.
+    pick: Option<[u32; 2]>,
+    /// Whose map.
+    light: usize,
+    readers: Option<(usize, Option<Arc<MapReaders>>)>,
+    marked: Option<(MapTexel, Arc<Vec<[u32; 2]>>)>,
+    /// What the pointer is over in the small picture.
+    over_pixel: Option<[u32; 2]>,
+    /// It was drawn in this frame; taken by the picture.
+    is_shown: bool,
+}
+
+impl MapTab {
+    /// Another frame is shown.
+    pub fn forget_frame(&mut self) {
+        self.readers = None;
+        self.marked = None;
+        self.over_pixel = None;
+    }
+
+    /// Which texel each pixel reads, made once for a frame and light.
+    fn readers(&mut self, capture: &Capture) -> Option<Arc<MapReaders>> {
+        // Those of another frame were dropped when it came.
+        if let Some((_, readers)) = self.readers.as_ref().filter(|(light, _)| *light == self.light) {
+            return readers.clone();
+        }
+        let readers = MapReaders::new(capture, self.light).map(Arc::new);
+        self.readers = Some((self.light, readers.clone()));
+        self.marked = None;
+        readers
+    }
+
+    /// The texel that a pixel reads, where the tab was shown.
+    #[must_use]
+    pub fn texel_of(&self, pixel: [u32; 2]) -> Option<MapTexel> {
+        self.readers.as_ref().and_then(|(_, readers)| readers.as_ref()?.texel_of(pixel))
+    }
+
+    /// The pixels that read a texel, found once.
+    fn pixels(&mut self, readers: &MapReaders, texel: MapTexel) -> Arc<Vec<[u32; 2]>> {
+        if let Some((_, pixels)) = self.marked.as_ref().filter(|(of, _)| *of == texel) {
+            return pixels.clone();
+        }
+        let pixels = Arc::new(readers.of_texel(texel));
+        self.marked = Some((texel, pixels.clone()));
+        pixels
+    }
+
+    /// The pixels that the marked texel gave its value; none where none is marked.
+    #[must_use]
+    pub fn marked(&mut self) -> &[[u32; 2]] {
+        if !std::mem::take(&mut self.is_shown) && self.pick.is_none() {
+            return &[];
+        }
+        self.marked.as_ref().map_or(&[], |(_, pixels)| pixels)
+    }
+
+    fn face(&self) -> usize {
+        match self.view.face {
+            FaceChoice::One(face) => face,
+            FaceChoice::Grid => 0,
+        }
+    }
+}
+
+/// Draws the tab.
+pub fn ui(ui: &mut Ui, state: &mut State) {
+    let rect = ui.available_rect_before_wrap();
+    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
+    let lights = |capture: &Capture| -> Vec<usize> {
+        (0..capture.lights.len()).filter(|light| MapContent::of(capture, *light) == Some(MapContent::Depth)).collect()
+    };
+    let Some((capture, lights)) = state.capture.clone().map(|capture| (capture.clone(), lights(&capture))) else {
+        return empty(ui, rect, "Nothing is open yet. Press Open…, and choose the technique shadow-map.");
+    };
+    let Some(first) = lights.first() else {
+        return empty(ui, rect, "This frame has no shadow map. Choose the technique shadow-map above.");
+    };
+    if !lights.contains(&state.map_tab.light) {
+        state.map_tab.light = *first;
+    }
+    state.map_tab.is_shown = true;
+    state.map_tab.view.kind = PictureKind::Map;
+    state.map_tab.view.light = state.map_tab.light;
+    let readers = state.map_tab.readers(&capture);
+    let read = |pixel: Option<[u32; 2]>| pixel.and_then(|pixel| readers.as_ref()?.texel_of(pixel));
+    let of_pick = read(state.pick);
+    let map_faces = layers::layers(&capture, state.map_tab.light).len();
+    let is_chosen = matches!(state.map_tab.view.face, FaceChoice::One(face) if face < map_faces);
+    if !is_chosen {
+        state.map_tab.view.face = FaceChoice::One(of_pick.map_or(0, |texel| texel.face));
+    }
+    tools(ui, state, &capture, &lights);
+    let rect = ui.available_rect_before_wrap();
+    let [map, column] = split(rect);
+    let linked = read(state.map_tab.over_pixel).or(of_pick);
+    let over = face(ui, state, &capture, map, linked);
+    let face = state.map_tab.face();
+    let chosen = over.or(state.map_tab.pick).map(|at| MapTexel { face, at }).or(linked);
+    let pixels = match (&readers, chosen) {
+        (Some(readers), Some(texel)) => state.map_tab.pixels(readers, texel),
+        _ => {
+            state.map_tab.marked = None;
+            Arc::default()
+        }
+    };
+    ui.scope_builder(UiBuilder::new().max_rect(column.shrink(8.0)), |ui| {
+        small_picture(ui, state, &capture, &pixels);
+        facts(ui, state, &capture, chosen, &pixels, of_pick);
+    });
+}
+
+fn empty(ui: &mut Ui, rect: Rect, text: &str) {
+    let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 32.0).min(420.0), 48.0));
+    ui.put(place, egui::Label::new(theme::note(text)).wrap());
+}
+
+/// The map, and the column beside it where there is room.
+fn split(rect: Rect) -> [Rect; 2] {
+    let column = COLUMN.min(rect.width() * 0.4);
+    let x = rect.right() - column;
+    [rect.with_max_x(x), rect.with_min_x(x)]
+}
+
+fn tools(ui: &mut Ui, state: &mut State, capture: &Capture, lights: &[usize]) {
+    let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6));
+    frame.show(ui, |ui| {
+        ui.set_min_width(ui.available_width());
+        ui.horizontal(|ui| {
+            if lights.len() > 1 {
+                let combo = egui::ComboBox::new("map light", "").width(72.0);
+                let combo = combo.selected_text(format::light(state.map_tab.light)).show_ui(ui, |ui| {
+                    for light in lights {
+                        ui.selectable_value(&mut state.map_tab.light, *light, format::light(*light));
+                    }
+                });
+                combo.response.accessible_name("Light of the shadow map");
+            }
+            let layers = layers::layers(capture, state.map_tab.light);
+            if layers.len() > 1 {
+                let labels: Vec<(&str, &str)> =
+                    layers.iter().map(|layer| (layer.name.as_str(), "One face of the cube")).collect();
+                if let Some(face) = segments(ui, &labels, Some(state.map_tab.face())) {
+                    show_face(state, face);
+                }
+            }
+            if ui.button("Fit map").on_hover_text("The whole face").clicked() {
+                state.map_tab.view.zoom = Zoom::Fit;
+            }
+            if state.map_tab.pick.is_some()
+                && ui.button("Clear").on_hover_text("No texel is picked, and none of its pixels marked").clicked()
+            {
+                state.map_tab.pick = None;
+            }
+            let hint = "Wheel zooms, drag pans, right-click picks a texel";
+            ui.add(egui::Label::new(theme::note(hint)).truncate());
+        });
+    });
+}
+
+fn show_face(state: &mut State, face: usize) {
+    state.map_tab.view.face = FaceChoice::One(face);
+    state.map_tab.view.zoom = Zoom::Fit;
+    state.map_tab.pick = None;
+}
+
+/// Draws the shown face; the texel under the pointer.
+fn face(ui: &mut Ui, state: &mut State, capture: &Capture, rect: Rect, linked: Option<MapTexel>) -> Option<[u32; 2]> {
+    let hover = state.hover;
+    // The canvas works on the view, pick and hover of the picture: for now, those of this tab.
+    swap(state);
+    let placed = draw_face(ui, state, capture, rect);
+    let over = state.hover.map(|hover| hover.at);
+    swap(state);
+    state.hover = hover;
+    let placement = placed?;
+    let of_face = linked.filter(|texel| texel.face == state.map_tab.face());
+    if let Some(texel) = of_face {
+        mark_texel(ui, rect, placement, texel.at);
+    }
+    over
+}
+
+fn swap(state: &mut State) {
+    std::mem::swap(&mut state.view, &mut state.map_tab.view);
+    std::mem::swap(&mut state.map_pick, &mut state.map_tab.pick);
+}
+
+fn draw_face(ui: &mut Ui, state: &mut State, capture: &Capture, rect: Rect) -> Option<Placement> {
+    let shown = state.view.shown(capture, capture.steps.len().checked_sub(1)?)?;
+    let shown = Some(shown).filter(|shown| shown.kind == PictureKind::Map && shown.images.len() == 1)?;
+    let range = shown_range(state, &shown);
+    let coloring = coloring_of(&shown, range);
+    let placement = canvas::named(ui, state, rect, &shown, coloring, &[], "Shadow map canvas");
+    Some(placement)
+}
+
+/// The texel that a pixel reads: a box, light on dark.
+fn mark_texel(ui: &Ui, rect: Rect, placement: Placement, at: [u32; 2]) {
+    let texel = placement.rect_of(at);
+    let texel = Rect::from_center_size(texel.center(), texel.size().max(vec2(9.0, 9.0)));
+    let painter = ui.painter_at(rect);
+    for (width, color) in [(4.0, Color32::from_black_alpha(170)), (2.0, theme::of(ui).selected)] {
+        painter.rect_stroke(texel, CornerRadius::ZERO, Stroke::new(width, color), StrokeKind::Middle);
+    }
+}
+
+/// The frame's colours with the marked pixels; pointing at a pixel marks its texel, a click picks it.
+fn small_picture(ui: &mut Ui, state: &mut State, capture: &Capture, pixels: &[[u32; 2]]) {
+    let [width, height] = capture.size.map(|side| side as f32);
+    let scale = (ui.available_width() / width.max(1.0)).min(240.0 / height.max(1.0));
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height) * scale, Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Small picture"));
+    let Some(frame) = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last)) else { return };
+    let colors = super::coloring::Coloring::Srgb;
+    let texture = state.cache.texture(ui.ctx(), &frame.color.image, colors, TextureSize::Full);
+    let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    ui.painter().image(texture.id(), rect, uv, Color32::WHITE);
+    let placement = Placement { origin: rect.min, scale, size: capture.size };
+    ui.painter_at(rect).add(Shape::mesh(marks(placement, pixels, theme::of(ui).selected)));
+    if let Some(pick) = state.pick {
+        let pixel = Rect::from_center_size(placement.rect_of(pick).center(), vec2(7.0, 7.0));
+        ui.painter_at(rect).rect_stroke(
+            pixel,
+            CornerRadius::ZERO,
+            Stroke::new(1.0, Color32::WHITE),
+            StrokeKind::Outside,
+        );
+    }
+    let over = response.hover_pos().and_then(|at| placement.texel(at));
+    if over != state.map_tab.over_pixel {
+        state.map_tab.over_pixel = over;
+        // The map was drawn before it was known.
+        ui.ctx().request_repaint();
+    }
+    if let Some(at) = over.filter(|_| response.clicked()) {
+        state.pick = Some(at);
+        state.map_tab.pick = None;
+    }
+}
+
+/// A square a pixel, as one mesh.
+#[must_use]
+pub fn marks(placement: Placement, pixels: &[[u32; 2]], color: Color32) -> Mesh {
+    let mut mesh = Mesh::default();
+    for at in pixels.iter().step_by(pixels.len().div_ceil(MOST_MARKS).max(1)) {
+        let pixel = placement.rect_of(*at);
+        let size = pixel.size().max(vec2(LEAST_MARK, LEAST_MARK));
+        mesh.add_colored_rect(Rect::from_center_size(pixel.center(), size), color.gamma_multiply(0.8));
+    }
+    mesh
+}
+
+fn facts(
+    ui: &mut Ui,
+    state: &mut State,
+    capture: &Capture,
+    texel: Option<MapTexel>,
+    pixels: &[[u32; 2]],
+    of_pick: Option<MapTexel>,
+) {
+    ui.add_space(4.0);
+    let light = state.map_tab.light;
+    let Some(map) = capture.lights.get(light).and_then(|light| light.map.as_ref()) else { return };
+    let Some(texel) = texel else {
+        ui.add(egui::Label::new(theme::note("Point at a texel, or at a pixel of the small picture.")).wrap());
+        return;
+    };
+    let [x, y] = texel.at;
+    let name = layers::layers(capture, light).get(texel.face).map_or_else(String::new, |layer| layer.full_name.clone());
+    theme::heading(ui, &format!("Texel {x}, {y}"));
+    let readers = match pixels.len() {
+        0 => "No pixel reads it.".to_owned(),
+        1 => "1 pixel reads it.".to_owned(),
+        count => format!("{} pixels read it.", format::count(count as u64)),
+    };
+    ui.label(readers);
+    egui::Grid::new("texel facts").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
+        for (what, value) in values(capture, light, map, texel, pixels, name) {
+            ui.label(theme::note(what));
+            ui.label(theme::number(value));
+            ui.end_row();
+        }
+    });
+    if capture.settings.get("bias-normal").is_some_and(|bias| bias != "0") {
+        let note = "Looked up before the surface is moved along its normal.";
+        ui.add(egui::Label::new(theme::note(note)).wrap());
+    }
+    if let Some(texel) = of_pick {
+        let text = "Show the picked pixel's texel";
+        if ui.button(text).on_hover_text("Brings the texel that the picked pixel reads to the middle").clicked() {
+            show_face(state, texel.face);
+            state.map_tab.view.zoom = Zoom::Pixels(canvas::NUMBERS_FROM + 4.0);
+            state.map_tab.view.center = texel.at.map(|place| f64::from(place) + 0.5);
+        }
+    }
+}
+
+/// What is known of a texel, and how far each bias moves the surface there.
+fn values(
+    capture: &Capture,
+    light: usize,
+    map: &CapturedMap,
+    texel: MapTexel,
+    pixels: &[[u32; 2]],
+    name: String,
+) -> Vec<(&'static str, String)> {
+    let [width, height] = map.faces.get(texel.face).map_or([0, 0], |face| face.size());
+    let mut values = vec![("map", format!("{name}, {width}×{height}"))];
+    let stored = map.faces.get(texel.face).and_then(|face| face.depth_at(texel.at));
+    let measure = DepthMeasure::of_map(capture, light, texel.face);
+    if let Some(stored) = stored {
+        values.push(("stored depth", format::depth(stored)));
+        let distance = measure.and_then(|measure| measure.value(stored));
+        values.push(("caster at", distance.map_or_else(|| "no caster".to_owned(), format::metres)));
+    }
+    let width = receiver(capture, pixels).and_then(|world| texel_width(map, texel.face, world));
+    if let Some(width) = width {
+        values.push(("footprint", format!("{} wide", format::metres(width))));
+    }
+    let setting = |key: &str| capture.settings.get(key).and_then(|value| value.parse::<f64>().ok());
+    if let (Some(bias), Some(measure), Some(stored)) = (setting("bias-constant"), measure, stored) {
+        let step = measure.step_at(stored).unwrap_or(0.0);
+        values.push(("constant bias", format!("{} ({bias} steps)", format::metres(bias * step))));
+    }
+    if let (Some(bias), Some(width)) = (setting("bias-slope"), width) {
+        values.push(("slope bias", format!("{} at 45°", format::metres(bias * width))));
+    }
+    if let (Some(bias), Some(width)) = (setting("bias-normal").filter(|bias| *bias != 0.0), width) {
+        values.push(("normal bias", format!("{} at most", format::metres(bias * width))));
+    }
+    values
+}
+
+/// Where one of the pixels' surface is: the middle one in reading order.
+fn receiver(capture: &Capture, pixels: &[[u32; 2]]) -> Option<glam::DVec3> {
+    let pixel = *pixels.get(pixels.len() / 2)?;
+    let frame = capture.frame_at(capture.steps.len().checked_sub(1)?)?;
+    Surface::new(capture).at(pixel, frame.depth.image.depth_at(pixel)?)
+}

@@ -1,0 +1,196 @@
+//! How the fragments of a step fared in the tests: a frame is data, so a changed frame counts them.
+//!
+//! The frame is run up to the step. Then the step's draws are run twice, each time over a cleared
+//! stencil in which every fragment that passes counts up: with their own depth test, and with none.
+//! The first leaves how many pass the depth test, the second how many there are; depth is written the
+//! first time only, so both see what the step saw. Nobody tests the stencil meanwhile: what its own
+//! test would say follows from the stencil before the step, as long as the step does not change what
+//! it tests. Where it does, and more than one fragment comes, the verdict is unknown.
+
+use super::{Session, SessionError};
+use crate::capture::{Image, PixelFormat, Snapshot, StencilVerdict, StepTests};
+use crate::plan::{AttachmentRole, Draw, FramePlan, Pass, RasterState, StencilFace};
+use crate::stencil_machine::{Fragment, Stored, test};
+use std::sync::Arc;
+use wgpu::{CompareFunction, Face, StencilOperation};
+
+impl Session {
+    /// How the fragments of a step of `plan`, or of one of its draws, fare in the tests.
+    ///
+    /// # Errors
+    /// A step without draws into the picture; a lost GPU.
+    pub fn step_tests(
+        &mut self,
+        plan: &FramePlan,
+        step: usize,
+        draw: Option<usize>,
+    ) -> Result<StepTests, SessionError> {
+        let (counting, draws) = counting_plan(plan, step, draw).ok_or(SessionError::NoTests { step })?;
+        let prepared = self.executor.prepare(&counting)?;
+        let output = self.executor.capture(prepared, false)?;
+        let stencils: Vec<Arc<Image>> = output
+            .steps
+            .iter()
+            .filter_map(|step| match &step.snapshot {
+                Snapshot::Frame(frame) => frame.stencil.as_ref().map(|aspect| aspect.image.clone()),
+                Snapshot::Map { .. } => None,
+            })
+            .collect();
+        let [.., depth_passes, fragments] = &stencils[..] else { return Err(SessionError::NoTests { step }) };
+        let cleared = clears_stencil(&plan.passes[step]).filter(|_| draw.is_none_or(|draw| draw == 0));
+        let before = match (cleared, stencils.len().checked_sub(3).map(|index| &stencils[index])) {
+            (None, Some(before)) => before.clone(),
+            (cleared, _) => Arc::new(Image::uniform(PixelFormat::U8, plan.size, &[cleared.unwrap_or(0)])),
+        };
+        let stencil = Arc::new(verdicts(&draws, &before, fragments));
+        let [fragments, depth_passes] = [fragments, depth_passes].map(Arc::clone);
+        Ok(StepTests { step, draw, fragments, depth_passes, stencil })
+    }
+}
+
+fn clears_stencil(pass: &Pass) -> Option<u8> {
+    pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil)
+}
+
+/// The frame that counts, with the draws whose fragments it counts.
+fn counting_plan(plan: &FramePlan, step: usize, draw: Option<usize>) -> Option<(FramePlan, Vec<Draw>)> {
+    let pass = plan.passes.get(step)?;
+    let target = pass.depth_stencil.as_ref()?;
+    let first = draw.unwrap_or(0);
+    let end = draw.map_or(pass.draws.len(), |draw| draw + 1);
+    let counted = pass.draws.get(first..end).filter(|draws| !draws.is_empty())?.to_vec();
+    let mut passes = plan.passes[..step].to_vec();
+    if first > 0 {
+        passes.push(Pass { draws: pass.draws[..first].to_vec(), ..pass.clone() });
+    }
+    let mut counting = pass.clone();
+    if let Some(target) = &mut counting.depth_stencil {
+        target.clear_stencil = Some(0);
+        target.clear_depth = target.clear_depth.filter(|_| first == 0);
+    }
+    if let Some(color) = &mut counting.color {
+        color.clear = color.clear.filter(|_| first == 0);
+    }
+    counting.draws.clone_from(&counted);
+    counting.draws.iter_mut().for_each(|draw| count_up(&mut draw.raster));
+    let mut again = counting.clone();
+    if let Some(target) = &mut again.depth_stencil {
+        target.clear_depth = None;
+    }
+    if let Some(color) = &mut again.color {
+        color.clear = None;
+    }
+    for draw in &mut again.draws {
+        draw.raster.depth_compare = CompareFunction::Always;
+        draw.raster.depth_write = false;
+    }
+    passes.extend([counting, again]);
+    let mut counting = FramePlan { passes, ..plan.clone() };
+    let attachment = counting.attachments.get_mut(target.attachment.0)?;
+    if attachment.role != AttachmentRole::DepthStencil {
+        return None;
+    }
+    // Both keep depth as the same 32 bits.
+    attachment.format = wgpu::TextureFormat::Depth32FloatStencil8;
+    counting.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_kept = false);
+    Some((counting, counted))
+}
+
+/// Every fragment that passes the depth test counts up in the stencil, and nothing else does.
+fn count_up(raster: &mut RasterState) {
+    let face = StencilFace {
+        compare: CompareFunction::Always,
+        fail_op: StencilOperation::Keep,
+        depth_fail_op: StencilOperation::Keep,
+        pass_op: StencilOperation::IncrementClamp,
+    };
+    *raster = raster.clone().with_stencil(face, 0);
+}
+
+/// A [`StencilVerdict`] a pixel, from the stencil that the draws found.
+fn verdicts(draws: &[Draw], before: &Image, fragments: &Image) -> Image {
+    let rules = rules(draws);
+    let verdict = |(stored, fragments): (&u8, &u8)| {
+        let rule = rules[usize::from(*stored)];
+        let verdict = match rule {
+            Rule { verdict, lasts: true } => verdict,
+            // The first fragment sees what was there before.
+            Rule { verdict, lasts: false } if *fragments <= 1 => verdict,
+            Rule { .. } => StencilVerdict::Unknown,
+        };
+        verdict as u8
+    };
+    let rows = before.rows().zip(fragments.rows());
+    let bytes: Vec<u8> = rows.flat_map(|(before, fragments)| before.iter().zip(fragments).map(verdict)).collect();
+    Image::packed(PixelFormat::U8, before.size(), bytes)
+}
+
+/// What the tests say where the stencil held a value.
+#[derive(Debug, Clone, Copy)]
+struct Rule {
+    verdict: StencilVerdict,
+    /// The fragments leave what is tested as it was.
+    lasts: bool,
+}
+
+/// A rule a stored value. Faces that are culled have no say.
+fn rules(draws: &[Draw]) -> [Rule; 256] {
+    std::array::from_fn(|stored| {
+        let mut rule: Option<Rule> = None;
+        for (raster, front_facing) in draws.iter().flat_map(|draw| seen_faces(&draw.raster)) {
+            let one = rule_of(raster, front_facing, stored as u8);
+            rule = Some(match rule {
+                None => one,
+                Some(all) if all.verdict == one.verdict => Rule { lasts: all.lasts && one.lasts, ..all },
+                // Faces or draws that the test treats differently: which comes here is not told.
+                Some(_) => Rule { verdict: StencilVerdict::Unknown, lasts: true },
+            });
+        }
+        rule.unwrap_or(Rule { verdict: StencilVerdict::Passes, lasts: true })
+    })
+}
+
+fn seen_faces(raster: &RasterState) -> impl Iterator<Item = (&RasterState, bool)> {
+    let faces = [(Face::Front, true), (Face::Back, false)];
+    faces.into_iter().filter(|(face, _)| raster.cull != Some(*face)).map(move |(_, is_front)| (raster, is_front))
+}
+
+fn rule_of(raster: &RasterState, front_facing: bool, stencil: u8) -> Rule {
+    if !raster.stencil.is_enabled() {
+        return Rule { verdict: StencilVerdict::Passes, lasts: true };
+    }
+    let stored = Stored { depth: 0.0, stencil };
+    let passes = test(raster, Fragment { depth: 0.0, front_facing }, stored).stencil_passed;
+    let face = if front_facing { &raster.stencil.front } else { &raster.stencil.back };
+    let operations = if passes { vec![face.depth_fail_op, face.pass_op] } else { vec![face.fail_op] };
+    let keeps = operations.iter().all(|operation| *operation == StencilOperation::Keep);
+    let is_apart = raster.stencil.write_mask & raster.stencil.read_mask & 0xff == 0;
+    let is_always = face.compare == CompareFunction::Always;
+    let verdict = if passes { StencilVerdict::Passes } else { StencilVerdict::Fails };
+    Rule { verdict, lasts: keeps || is_apart || is_always }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn raster(compare: CompareFunction, pass_op: StencilOperation) -> RasterState {
+        let face =
+            StencilFace { compare, fail_op: StencilOperation::Keep, depth_fail_op: StencilOperation::Keep, pass_op };
+        RasterState::surface().with_stencil(face, 0)
+    }
+
+    #[test]
+    fn what_a_step_tests_and_does_not_write_is_known() {
+        let rule = |raster: &RasterState, stored| rule_of(raster, true, stored);
+        let reads = raster(CompareFunction::Equal, StencilOperation::Keep);
+        assert_eq!(rule(&reads, 0).verdict, StencilVerdict::Passes);
+        assert_eq!(rule(&reads, 3).verdict, StencilVerdict::Fails);
+        assert!(rule(&reads, 0).lasts && rule(&reads, 3).lasts);
+        let marks = raster(CompareFunction::Equal, StencilOperation::IncrementClamp);
+        assert!(!rule(&marks, 0).lasts, "a second fragment meets another value");
+        assert!(rule(&marks, 3).lasts, "who fails changes nothing");
+        let counts = raster(CompareFunction::Always, StencilOperation::IncrementWrap);
+        assert!(rule(&counts, 7).lasts && rule(&counts, 7).verdict == StencilVerdict::Passes);
+    }
+}

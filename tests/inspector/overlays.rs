@@ -1,0 +1,139 @@
+//! What is drawn over the picture: chosen in a menu, asked for once, listed with its colours.
+
+use super::by_hand::z_fail;
+use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, press};
+use crate::common;
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::sync::Arc;
+use stencilscope::capture::{Image, PixelFormat, StepTests};
+use stencilscope::inspector::{Action, PictureKind};
+use stencilscope::scene::{OpenSpec, open};
+use stencilscope::technique::Technique;
+
+fn shows(harness: &Harness<Seen>, text: &str) -> bool {
+    harness.query_all_by_label_contains(text).next().is_some()
+}
+
+fn turn_on(harness: &mut Harness<Seen>, names: &[&str]) {
+    press(harness, Key::O);
+    harness.run_steps(2);
+    for name in names {
+        harness.get_by_role_and_label(Role::CheckBox, name).click();
+        harness.run_steps(2);
+    }
+    press(harness, Key::Escape);
+}
+
+/// Ten pixels passed, twenty failed the depth test, in one row both, one is not known.
+fn tests() -> StepTests {
+    let count = |counts: &dyn Fn(u32) -> u8| {
+        let bytes: Vec<u8> = (0..SIZE[0] * SIZE[1]).map(counts).collect();
+        Arc::new(Image::packed(PixelFormat::U8, SIZE, bytes))
+    };
+    StepTests {
+        step: 1,
+        draw: None,
+        fragments: count(&|at| match at {
+            0..30 => 1,
+            30..71 => 2,
+            _ => 0,
+        }),
+        depth_passes: count(&|at| match at {
+            0..10 | 30..71 => 1,
+            _ => 0,
+        }),
+        stencil: count(&|at| if at == 70 { 2 } else { 0 }),
+    }
+}
+
+#[test]
+fn tests_of_the_step_are_asked_once_and_listed_with_their_pixels() {
+    let mut harness = harness(z_fail(SIZE));
+    harness.state_mut().inspector.select_step(1);
+    turn_on(&mut harness, &["Depth and stencil tests"]);
+    harness.get_by_label("Overlay · 1");
+    let asked = Action::Tests { step: 1, draw: None };
+    assert_eq!(harness.state().actions.iter().filter(|action| **action == asked).count(), 1);
+    harness.get_by_label("Counting fragments …");
+    harness.state_mut().inspector.set_tests(1, None, Ok(Arc::new(tests())));
+    harness.run_steps(2);
+    harness.get_by_label("Tests of step 2");
+    for (name, pixels) in [("passed", "10"), ("depth failed", "20"), ("both", "40"), ("? not known", "1")] {
+        harness.get_by_label(name);
+        assert!(harness.query_all_by_label(pixels).next().is_some(), "{name}: {pixels}");
+    }
+    harness.state_mut().inspector.select_step(3);
+    harness.run_steps(2);
+    assert!(harness.state().actions.contains(&Action::Tests { step: 3, draw: None }));
+    harness.state_mut().inspector.set_tests(3, None, Err("no room: make it smaller".to_owned()));
+    harness.run_steps(2);
+    harness.get_by_label("no room: make it smaller");
+}
+
+#[test]
+fn overdraw_is_a_picture_of_how_many_fragments_came() {
+    let mut harness = harness(z_fail(SIZE));
+    harness.state_mut().inspector.select_step(1);
+    harness.run_steps(1);
+    click_button(&mut harness, "Overdraw");
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Color));
+    harness.get_by_label("Counting fragments …");
+    harness.state_mut().inspector.set_tests(1, None, Ok(Arc::new(tests())));
+    harness.run_steps(2);
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Overdraw));
+    harness.get_by_label("Fragments a pixel");
+    harness.get_by_label("112 in all");
+    harness.get_by_label_contains("overdraw after step 2");
+    harness.state_mut().inspector.select_step(2);
+    harness.run_steps(2);
+    assert!(harness.query_by_role_and_label(Role::Button, "Overdraw").is_none(), "a step without draws");
+}
+
+#[test]
+fn a_folder_says_that_it_has_no_geometry() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.clear_scene();
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    turn_on(&mut harness, &["Silhouettes"]);
+    harness.get_by_label_contains("Open the scene instead");
+    assert!(!harness.state().actions.iter().any(|action| matches!(action, Action::Anatomy | Action::Tests { .. })));
+}
+
+#[test]
+fn the_menu_opens_by_mouse_too_and_overlays_go_off_again() {
+    let mut harness = harness(z_fail(SIZE));
+    click(&mut harness, "Overlay");
+    harness.get_by_role_and_label(Role::CheckBox, "Wireframe of volumes").click();
+    harness.run_steps(2);
+    harness.get_by_label("Overlay · 1");
+    harness.get_by_role_and_label(Role::CheckBox, "Wireframe of volumes").click();
+    harness.run_steps(2);
+    assert!(!shows(&harness, "Overlay · 1"));
+}
+
+/// Over a real frame: lines and tints change the picture, and what is on is listed.
+#[test]
+fn lines_receivers_and_names_come_from_the_frames_anatomy() {
+    let mut session = common::session();
+    let scene = open(&OpenSpec::new("tori")).expect("tori");
+    let request = common::request(Technique::ZFail, [320, 180]);
+    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    let anatomy = Arc::new(session.anatomy(&scene, &request.choice, &plan));
+    let inspector = super::pictures::inspector(&scene, &request, &Arc::new(capture), [10, 10]);
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let plain = harness.render().expect("a picture");
+    turn_on(&mut harness, &["Silhouettes", "Wireframe of volumes", "Receivers", "Casters' names"]);
+    assert!(harness.state().actions.contains(&Action::Anatomy));
+    harness.get_by_label("Looking at the geometry …");
+    harness.state_mut().inspector.set_anatomy(Ok(anatomy));
+    harness.run_steps(3);
+    for text in ["silhouette; thick: counts twice", "side", "light cap", "dark cap", "receives shadows"] {
+        assert!(shows(&harness, text), "{text}");
+    }
+    let over = harness.render().expect("a picture");
+    let differing = plain.as_raw().chunks(4).zip(over.as_raw().chunks(4)).filter(|(a, b)| a != b).count();
+    assert!(differing > 20_000, "{differing} pixels");
+}

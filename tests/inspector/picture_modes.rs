@@ -1,0 +1,232 @@
+//! Before, after and what changed; comparing two steps or techniques; bits and histograms.
+
+use super::by_hand::{cube_map, with_draws, z_fail};
+use super::{SIZE, Seen, click, click_button, harness, press};
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, PointerButton, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::sync::Arc;
+use stencilscope::inspector::{Action, PictureKind, RunRequest};
+use stencilscope::technique::Technique;
+
+fn at_volumes() -> Harness<'static, Seen> {
+    let mut harness = harness(z_fail(SIZE));
+    harness.state_mut().inspector.select_step(1);
+    harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+    harness.run_steps(3);
+    harness
+}
+
+fn shows(harness: &Harness<Seen>, text: &str) -> bool {
+    harness.query_all_by_label_contains(text).next().is_some()
+}
+
+fn first_byte(harness: &Harness<Seen>) -> Option<u8> {
+    harness.state().inspector.shown_images().first()?.byte_at([0, 0])
+}
+
+#[test]
+fn before_shows_what_the_step_found_and_b_goes_back() {
+    let mut harness = at_volumes();
+    assert_eq!(first_byte(&harness), Some(255));
+    click_button(&mut harness, "Before");
+    assert_eq!(first_byte(&harness), Some(0));
+    harness.get_by_label_contains("stencil before step 2 · 40×30");
+    press(&mut harness, Key::B);
+    assert_eq!(first_byte(&harness), Some(255));
+    harness.get_by_label_contains("stencil after step 2 · 40×30");
+    press(&mut harness, Key::B);
+    assert_eq!(first_byte(&harness), Some(0));
+}
+
+#[test]
+fn nothing_comes_before_the_first_step_and_it_is_said() {
+    let mut harness = at_volumes();
+    press(&mut harness, Key::B);
+    press(&mut harness, Key::Home);
+    assert!(harness.state().inspector.shown_images().is_empty());
+    harness.get_by_label_contains("Nothing comes before the first step");
+    press(&mut harness, Key::ArrowRight);
+    assert_eq!(first_byte(&harness), Some(0));
+}
+
+/// 599 pixels were raised by one and one lowered by one; 600 stayed.
+#[test]
+fn the_diff_of_counts_is_signed_and_counted() {
+    let mut harness = at_volumes();
+    press(&mut harness, Key::D);
+    harness.get_by_label("600 texels changed");
+    for label in ["+1", "599", "−1", "1", "unchanged", "600"] {
+        harness.get_by_label(label);
+    }
+    press(&mut harness, Key::D);
+    assert!(!shows(&harness, "texels changed"));
+}
+
+/// The light adds where the count is 0: 20 columns. It does not touch depth.
+#[test]
+fn the_diff_of_colours_and_depths_tells_how_many_changed() {
+    let mut harness = harness(z_fail(SIZE));
+    press(&mut harness, Key::D);
+    harness.get_by_label("600 texels changed");
+    harness.get_by_label("in their new colour");
+    click_button(&mut harness, "Depth");
+    harness.get_by_label("0 texels changed");
+}
+
+#[test]
+fn before_a_draw_is_after_the_one_before_it() {
+    let mut harness = harness(with_draws(z_fail(SIZE)));
+    harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+    harness.state_mut().inspector.select_draw(1, 1);
+    press(&mut harness, Key::D);
+    // The sides counted in the upper half, the cap in the lower.
+    harness.get_by_label("300 texels changed");
+    press(&mut harness, Key::B);
+    harness.get_by_label_contains("stencil before draw 2 of step 2");
+}
+
+#[test]
+fn a_draw_before_that_is_not_known_is_asked_for() {
+    let mut harness = harness(z_fail(SIZE));
+    harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+    harness.state_mut().inspector.select_draw(1, 1);
+    harness.run_steps(2);
+    assert!(!harness.state().actions.contains(&Action::CaptureDraws { step: 1 }), "the last draw is the step");
+    press(&mut harness, Key::B);
+    assert!(harness.state().actions.contains(&Action::CaptureDraws { step: 1 }));
+    harness.get_by_label_contains("not known yet");
+}
+
+#[test]
+fn pictures_without_a_before_have_no_such_buttons() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "Mask");
+    assert!(harness.query_by_role_and_label(Role::Button, "Before").is_none());
+    press(&mut harness, Key::B);
+    harness.get_by_label_contains("mask of light 1");
+}
+
+#[test]
+fn two_steps_are_compared_under_a_divider_that_keys_and_mouse_move() {
+    let mut harness = at_volumes();
+    click_button(&mut harness, "Compare");
+    harness.get_by_label_contains("600 texels differ: 50.0 %");
+    let x = |harness: &Harness<Seen>| harness.get_by_role_and_label(Role::Slider, "Compare divider").rect().center().x;
+    let canvas = harness.get_by_label("Picture canvas").rect();
+    assert!((x(&harness) - canvas.center().x).abs() < 1.0);
+    harness.get_by_role_and_label(Role::Slider, "Compare divider").focus();
+    harness.run_steps(2);
+    press(&mut harness, Key::ArrowRight);
+    assert!((x(&harness) - canvas.center().x - canvas.width() * 0.02).abs() < 1.0, "{}", x(&harness));
+    assert_eq!(harness.state().inspector.step(), 1, "the divider keeps its keys");
+    let from = harness.get_by_role_and_label(Role::Slider, "Compare divider").rect().center();
+    let to = from + vec2(-200.0, 0.0);
+    for (pos, pressed) in [(from, true), (to, false)] {
+        harness.hover_at(pos);
+        harness.run_steps(1);
+        harness.event(Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        harness.run_steps(1);
+    }
+    assert!((x(&harness) - to.x).abs() < 2.0, "{} is not {}", x(&harness), to.x);
+}
+
+#[test]
+fn flipping_swaps_the_sides_and_off_is_off() {
+    let mut harness = at_volumes();
+    click_button(&mut harness, "Compare");
+    let divided = harness.render().expect("a picture");
+    press(&mut harness, Key::X);
+    let flipped = harness.render().expect("a picture");
+    assert_ne!(divided.as_raw(), flipped.as_raw());
+    click_button(&mut harness, "Flip");
+    press(&mut harness, Key::X);
+    assert_eq!(harness.query_all_by_label("Compare divider").count(), 1);
+    click_button(&mut harness, "Compare");
+    assert!(harness.query_by_label("Compare divider").is_none());
+}
+
+fn asked(harness: &Harness<Seen>) -> Vec<RunRequest> {
+    let asked = harness.state().actions.iter().filter_map(|action| match action {
+        Action::Compare(request) => Some(RunRequest::clone(request)),
+        _ => None,
+    });
+    asked.collect()
+}
+
+#[test]
+fn another_technique_is_asked_for_once_and_shown_at_the_pass_of_the_same_name() {
+    let mut harness = at_volumes();
+    click_button(&mut harness, "Compare");
+    click(&mut harness, "Compare with");
+    click_button(&mut harness, "technique z-pass");
+    harness.run_steps(3);
+    let requests = asked(&harness);
+    assert_eq!(requests.len(), 1);
+    assert_eq!(requests[0].choice.technique(), Technique::ZPass);
+    harness.get_by_label_contains("Capturing z-pass");
+    let mut other = z_fail(SIZE);
+    other.technique = "z-pass".to_owned();
+    harness.state_mut().inspector.set_compared(&requests[0], Ok(Arc::new(other.clone())));
+    harness.run_steps(3);
+    harness.get_by_label_contains("No texel differs");
+    // The step of the frame that is shown has another name: the other's last step is shown.
+    harness.state_mut().inspector.select_step(3);
+    harness.run_steps(2);
+    harness.get_by_label_contains("No texel differs");
+    assert_eq!(asked(&harness).len(), 1);
+}
+
+#[test]
+fn a_technique_that_failed_says_why_and_one_without_such_a_picture_too() {
+    let mut harness = at_volumes();
+    click_button(&mut harness, "Compare");
+    click(&mut harness, "Compare with");
+    click_button(&mut harness, "technique shadow-map");
+    harness.run_steps(3);
+    let request = asked(&harness).pop().expect("a request");
+    harness.state_mut().inspector.set_compared(&request, Err("no room: make it smaller".to_owned()));
+    harness.run_steps(2);
+    harness.get_by_label_contains("shadow-map can't be shown: no room: make it smaller");
+    let mut again = harness;
+    click(&mut again, "Compare with");
+    click_button(&mut again, "technique projective");
+    again.run_steps(3);
+    let request = asked(&again).pop().expect("a request");
+    let mut other = cube_map();
+    for step in &mut other.steps {
+        if let stencilscope::capture::Snapshot::Frame(frame) = &mut step.snapshot {
+            frame.stencil = None;
+        }
+    }
+    again.state_mut().inspector.set_compared(&request, Ok(Arc::new(other)));
+    again.run_steps(2);
+    again.get_by_label_contains("projective has no such picture");
+}
+
+#[test]
+fn a_bit_is_a_plane_of_two_inks_with_their_counts() {
+    let mut harness = at_volumes();
+    click(&mut harness, "Bits of the stencil");
+    click_button(&mut harness, "Bit 1");
+    // Only the pixel of 255 has bit 1.
+    for label in ["Bit 1 of the stencil", "1 set", "1", "0 not set", "1\u{2009}199"] {
+        harness.get_by_label(label);
+    }
+}
+
+#[test]
+fn the_depth_legend_has_a_histogram_that_tells_its_bars() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "Depth");
+    let bars = harness.get_by_role(Role::Image);
+    let name = bars.accesskit_node().label().unwrap_or_default();
+    // 39 columns of 30 over 48 bars.
+    assert_eq!(name, "Histogram of depths, 30 texels at most");
+}

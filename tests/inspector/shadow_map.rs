@@ -1,0 +1,139 @@
+//! The shadow map tab: texels and the pixels that read them, each way.
+
+use super::by_hand::z_fail;
+use super::{SIZE, Seen, harness, harness_of, inspector, mouse};
+use crate::common;
+use egui::PointerButton;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use glam::{DMat4, DVec3};
+use std::sync::Arc;
+use stencilscope::capture::{Capture, CapturedMap, Image, PixelFormat};
+use stencilscope::math::projection::orthographic;
+use stencilscope::scene::{OpenSpec, open};
+use stencilscope::technique::Technique;
+
+fn open_tab(harness: &mut Harness<Seen>) {
+    harness.get_by_role_and_label(Role::Tab, "Shadow map").click();
+    harness.run_steps(2);
+}
+
+/// A map of 4 × 4 texels that looks the way the camera looks, over a wall at distance 1 that fills the
+/// picture: 0.83 m high and 1.1 m wide. The map is 0.8 m each way, so a texel is 0.2 m wide.
+fn capture() -> Capture {
+    let mut capture = z_fail(SIZE);
+    let wall = Arc::new(Image::uniform(PixelFormat::Depth32F, SIZE, &0.1_f32.to_le_bytes()));
+    for step in &mut capture.steps {
+        if let stencilscope::capture::Snapshot::Frame(frame) = &mut step.snapshot {
+            frame.depth.image = wall.clone();
+        }
+    }
+    capture.settings.insert("bias-slope".to_owned(), "2".to_owned());
+    capture.lights[0].map = Some(CapturedMap {
+        faces: vec![Arc::new(Image::uniform(PixelFormat::Depth32F, [4, 4], &0.5_f32.to_le_bytes()))],
+        light_from_world: DMat4::from_translation(DVec3::NEG_Z),
+        clip_from_light: vec![orthographic([0.4, 0.4], 0.0, 2.0, true)],
+    });
+    capture
+}
+
+/// Pixels whose middle, on the wall, lies in a column and row of the map.
+fn expected(texel: [i32; 2]) -> usize {
+    let up = 22.5_f64.to_radians().tan();
+    let place =
+        |at: u32, side: u32, half: f64| ((2.0 * (f64::from(at) + 0.5) / f64::from(side) - 1.0) * half + 0.4) / 0.2;
+    let of = |x: u32, y: u32| {
+        let column = place(x, SIZE[0], up * f64::from(SIZE[0]) / f64::from(SIZE[1])).floor() as i32;
+        [column, place(y, SIZE[1], up).floor() as i32]
+    };
+    (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))).filter(|(x, y)| of(*x, *y) == texel).count()
+}
+
+#[test]
+fn pointing_at_a_texel_counts_the_pixels_that_read_it() {
+    let mut harness = harness(capture());
+    open_tab(&mut harness);
+    harness.run_steps(2);
+    let canvas = harness.get_by_label("Shadow map canvas").rect();
+    let side = canvas.width().min(canvas.height()) / 4.0;
+    let at = canvas.center() + egui::vec2(-0.5, -1.5) * side;
+    harness.hover_at(at);
+    harness.run_steps(3);
+    harness.get_by_label("Texel 1, 0");
+    let pixels = expected([1, 0]);
+    assert!(pixels > 20);
+    harness.get_by_label(&format!("{pixels} pixels read it."));
+    harness.get_by_label_contains("0.2000 m wide");
+    harness.get_by_label_contains("0.4000 m at 45°");
+}
+
+#[test]
+fn a_picked_pixel_marks_its_texel_and_a_picked_texel_its_pixels() {
+    let mut inspector = inspector(capture());
+    inspector.pick([20, 15]);
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    open_tab(&mut harness);
+    harness.run_steps(2);
+    harness.get_by_label("Texel 2, 2");
+    let canvas = harness.get_by_label("Shadow map canvas").rect();
+    let side = canvas.width().min(canvas.height()) / 4.0;
+    mouse(&mut harness, canvas.center() + egui::vec2(1.5, 1.5) * side, PointerButton::Secondary);
+    harness.get_by_label("Texel 3, 3");
+    let small = harness.get_by_label("Small picture").rect();
+    mouse(&mut harness, small.center() - egui::vec2(3.0, 3.0), PointerButton::Primary);
+    assert_eq!(harness.state().inspector.picked(), Some([19, 14]));
+    harness.get_by_label("Texel 1, 1");
+}
+
+#[test]
+fn a_frame_without_a_map_says_what_to_choose() {
+    let mut harness = harness(z_fail(SIZE));
+    open_tab(&mut harness);
+    harness.get_by_label_contains("Choose the technique shadow-map");
+}
+
+/// Over a real frame: where the technique's own lookup says "shadow", the texel that was found holds
+/// something nearer, but for the bias.
+#[test]
+fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
+    let mut session = common::session();
+    let scene = open(&OpenSpec::new("tori")).expect("tori");
+    let request = common::request(Technique::ShadowMap, [160, 90]);
+    let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
+    let map = capture.lights[0].map.clone().expect("a map");
+    let mask = capture.lights[0].shadow.clone().expect("a mask");
+    let (mut agree, mut all) = (0, 0);
+    let mut harness = harness_of(super::pictures::inspector(&scene, &request, &capture, [80, 45]), [1280.0, 800.0]);
+    open_tab(&mut harness);
+    for y in (0..90).step_by(6) {
+        for x in (0..160).step_by(8) {
+            let Some(texel) = harness.state().inspector.map_texel_of([x, y]) else { continue };
+            let stored = map.faces[texel.0].depth_at(texel.1).expect("a texel");
+            let Some(label @ (0 | 1)) = mask.byte_at([x, y]) else { continue };
+            all += 1;
+            let Some(depth) = depth_in_map(&capture, texel.0, [x, y]) else { continue };
+            let is_dark = stored != 0.0 && f64::from(stored) > depth;
+            agree += u32::from(is_dark == (label == 1));
+        }
+    }
+    assert!(all > 100 && f64::from(agree) >= 0.97 * f64::from(all), "{agree} of {all}");
+    assert!(harness.query_by_role_and_label(Role::Button, "Fit map").is_some());
+}
+
+/// Device depth in a face of the first light's map of what is seen at a pixel.
+fn depth_in_map(capture: &Capture, face: usize, [x, y]: [u32; 2]) -> Option<f64> {
+    let camera = &capture.camera;
+    let stored = capture.frame_at(capture.steps.len() - 1)?.depth.image.depth_at([x, y])?;
+    let distance = capture.depth.distance(stored)?;
+    let forward = (camera.target - camera.eye).normalize();
+    let right = forward.cross(camera.up).normalize();
+    let up = right.cross(forward) * (camera.fov_y_degrees.to_radians() / 2.0).tan();
+    let [width, height] = capture.size.map(f64::from);
+    let across = right * (camera.fov_y_degrees.to_radians() / 2.0).tan() * width / height;
+    let [u, v] = [2.0 * (f64::from(x) + 0.5) / width - 1.0, 1.0 - 2.0 * (f64::from(y) + 0.5) / height];
+    let world = camera.eye + (forward + across * u + up * v) * distance;
+    let map = capture.lights[0].map.as_ref()?;
+    let clip = map.clip_from_light[face] * map.light_from_world * world.extend(1.0);
+    Some(clip.z / clip.w)
+}
