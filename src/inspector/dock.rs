@@ -7,7 +7,7 @@
 use super::action::Action;
 use super::state::State;
 
-use super::{diagnosis, passes, picture, pixel, report, settings, stress, theme};
+use super::{diagnosis, passes, picture, pixel, report, scene_view, settings, stress, theme};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
@@ -29,6 +29,7 @@ enum Panel {
     Passes,
     Settings,
     Picture,
+    Scene,
     Pixel,
     Report,
     Diagnosis,
@@ -56,10 +57,11 @@ impl Dock {
         let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
         let left = tiles.insert_tab_tile(sides.to_vec());
         let [picture, report, right] =
-            [&[Panel::Picture][..], &[Panel::Report, Panel::Diagnosis, Panel::Stress], &[Panel::Pixel]].map(|panels| {
-                let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
-                tiles.insert_tab_tile(panes)
-            });
+            [&[Panel::Picture, Panel::Scene][..], &[Panel::Report, Panel::Diagnosis, Panel::Stress], &[Panel::Pixel]]
+                .map(|panels| {
+                    let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
+                    tiles.insert_tab_tile(panes)
+                });
         let middle = tiles.insert_vertical_tile(vec![picture, report]);
         let row = tiles.insert_horizontal_tile(vec![left, middle, right]);
         let tree = Tree::new(Id::unique("inspector dock"), row, tiles);
@@ -110,7 +112,7 @@ struct Panels<'a> {
 impl Behavior<Panel> for Panels<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, panel: &mut Panel) -> UiResponse {
         let frame = match panel {
-            Panel::Picture => egui::Frame::new().fill(theme::of(ui).panel),
+            Panel::Picture | Panel::Scene => egui::Frame::new().fill(theme::of(ui).panel),
             _ => theme::panel_frame(ui),
         };
         frame.show(ui, |ui| {
@@ -119,6 +121,7 @@ impl Behavior<Panel> for Panels<'_> {
                 Panel::Passes => passes::ui(ui, self.state),
                 Panel::Settings => settings::ui(ui, self.state, self.actions),
                 Panel::Picture => picture::ui(ui, self.state, self.actions),
+                Panel::Scene => scene_view::ui(ui, self.state, self.actions),
                 Panel::Pixel => pixel::ui(ui, self.state),
                 Panel::Report => report::ui(ui, self.state, self.actions),
                 Panel::Diagnosis => {
@@ -139,6 +142,7 @@ impl Behavior<Panel> for Panels<'_> {
             Panel::Passes => "Passes",
             Panel::Settings => "Settings",
             Panel::Picture => "Picture",
+            Panel::Scene => "Scene",
             Panel::Pixel => "Pixel",
             Panel::Report => "Report",
             Panel::Diagnosis => "Diagnosis",

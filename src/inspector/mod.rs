@@ -13,6 +13,7 @@
 //! layers.rs    maps, textures and silhouettes      counts.rs     counts beyond eight bits
 //! findings.rs  the error picture's hatching        truth_note.rs while there is no truth
 //! moment.rs    after a step, or after a draw       draw_level.rs selecting and fetching draws
+//! scene_view/  a second camera that sees the first
 //! history.rs   the pick's history, asked for       history_rows.rs, ladder.rs, outline.rs show it
 //! ```
 
@@ -46,6 +47,7 @@ mod open_dialog;
 mod outline;
 mod palette;
 mod passes;
+mod pick_ray;
 mod picture;
 mod pixel;
 mod pixel_run;
@@ -53,6 +55,7 @@ mod placement;
 mod report;
 mod report_plot;
 mod report_table;
+mod scene_view;
 mod settings;
 mod settings_off;
 mod settings_scene;

@@ -8,6 +8,7 @@ use super::history::HistoryState;
 use super::meshes::ObjectMesh;
 use super::moment::Moment;
 use super::report::ReportState;
+use super::scene_view::SceneView;
 use super::stress::StressState;
 use super::texture::PictureCache;
 use super::truth_note::TruthState;
@@ -109,6 +110,8 @@ pub struct State {
     pub history: HistoryState,
     /// What the shown frame is made of in space.
     pub anatomy: AnatomyState,
+    /// The Scene tab.
+    pub scene_view: SceneView,
     /// The Report tab.
     pub report: ReportState,
     /// The Diagnosis tab.
@@ -242,6 +245,7 @@ impl State {
         self.meshes = None;
         self.diagnosis.forget();
         self.anatomy.forget();
+        self.scene_view.forget();
         if scene.is_none() {
             self.history.close();
         }

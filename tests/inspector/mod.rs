@@ -10,6 +10,7 @@ mod history_pictures;
 mod layers;
 mod pictures;
 mod report;
+mod scene_view;
 mod settings;
 mod stress;
 mod truth;
