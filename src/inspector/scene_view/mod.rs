@@ -151,7 +151,7 @@ impl SceneView {
 
     /// Every view as first shown: all of the scene.
     fn reset(&mut self, anatomy: &Anatomy) {
-        let (middle, radius) = stage::sphere(anatomy);
+        let (middle, radius) = stage::sphere(anatomy, &stage::holders(anatomy));
         for pane in Pane::ALL {
             let kept = *self.view_mut(pane);
             let mut view = PaneView { projection: kept.projection, oblique: kept.oblique, ..pane.first_view() };

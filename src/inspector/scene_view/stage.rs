@@ -10,6 +10,7 @@ use crate::inspector::theme::Theme;
 use crate::plan::Part;
 use egui::Color32;
 use glam::{DVec3, DVec4, Vec3};
+use std::collections::BTreeSet;
 
 /// Faces that are drawn at most; beyond it large meshes are thinned out.
 pub const MOST_FACES: usize = 60_000;
@@ -17,6 +18,10 @@ pub const MOST_FACES: usize = 60_000;
 const LEAST_TO_THIN: usize = 2_000;
 /// Faces that cutting up may add.
 const MOST_CUTS: usize = 16_000;
+/// An object holds others if it is so large, in parts of the whole.
+const HOLDER: f64 = 0.5;
+/// How far volumes go beyond what there is to see, in parts of its radius.
+const BEYOND: f64 = 1.2;
 /// Multiplicities beyond one that are written beside their edges, at most.
 const MOST_NUMBERS: usize = 400;
 
@@ -69,8 +74,11 @@ pub struct Choice {
 }
 
 impl Choice {
-    fn has(self, light: usize, caster: usize) -> bool {
-        self.light.is_none_or(|one| one == light) && self.caster.is_none_or(|one| one == caster)
+    /// Are the volume and silhouette of a light and caster shown? Those of what holds everything are only
+    /// where they are asked for by name.
+    fn has(self, light: usize, caster: usize, holders: &[bool]) -> bool {
+        let holds = holders.get(caster).is_some_and(|holds| *holds);
+        self.light.is_none_or(|one| one == light) && self.caster.map_or(!holds, |one| one == caster)
     }
 }
 
@@ -83,6 +91,9 @@ pub struct Face {
     pub normal: Vec3,
     /// Premultiplied.
     pub color: Color32,
+    /// On which side of it, as its normal goes, the camera is, if it is of what holds everything: seen from the
+    /// other side it is glass. 0 elsewhere.
+    pub inner: f32,
 }
 
 /// A line.
@@ -120,54 +131,68 @@ pub struct Stage {
     pub lines: Vec<Line>,
     /// Multiplicities and names.
     pub labels: Vec<Label>,
+    /// Casters that hold everything, whose volumes are not shown unless they are chosen.
+    pub left_out: BTreeSet<String>,
     /// What was thinned out, in words.
     pub thinned: Option<String>,
 }
 
-/// The middle and half of what there is to see: everything but floors, which may be as large as they like.
+/// Which objects hold the others: rooms, walls, floors. They may be as large as they like, and must not
+/// hide what they hold.
 #[must_use]
-pub fn sphere(anatomy: &Anatomy) -> (DVec3, f64) {
-    let Some((low, high)) = anatomy.bounds() else { return (anatomy.camera.target, 1.0) };
-    let whole = (high - low).length();
-    let size = |object: &PlacedObject| {
-        let ends = object.positions.iter().map(|point| (*point, *point));
-        ends.reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
+pub fn holders(anatomy: &Anatomy) -> Vec<bool> {
+    let ends = |points: &mut dyn Iterator<Item = DVec3>| {
+        points.map(|point| (point, point)).reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
     };
-    let boxes: Vec<(DVec3, DVec3)> = anatomy.objects.iter().filter_map(size).collect();
-    let small: Vec<_> = boxes.iter().filter(|(low, high)| (*high - *low).length() < 0.6 * whole).collect();
-    let kept = if small.is_empty() { boxes.iter().collect() } else { small };
-    let eye = [anatomy.camera.eye, anatomy.camera.eye];
-    let ends = kept.into_iter().map(|(low, high)| [*low, *high]).chain([eye]);
-    let Some([low, high]) = ends.reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]) else {
-        return ((low + high) / 2.0, whole.max(1e-3) / 2.0);
-    };
-    // Lamps that are not far away.
-    let room = (high - low).length().max(1e-3);
-    let middle = (low + high) / 2.0;
+    let size = |ends: Option<(DVec3, DVec3)>| ends.map_or(0.0, |(low, high)| (high - low).length());
+    let whole = size(ends(&mut anatomy.objects.iter().flat_map(|object| object.positions.iter().copied())));
+    let sizes = anatomy.objects.iter().map(|object| size(ends(&mut object.positions.iter().copied())));
+    let large: Vec<bool> = sizes.map(|size| size >= HOLDER * whole).collect();
+    // Where all are, none holds another.
+    if large.contains(&false) { large } else { vec![false; large.len()] }
+}
+
+/// The middle and half of what there is to see: the camera, lamps that are not far away, and all objects
+/// but those that hold the others.
+#[must_use]
+pub fn sphere(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
+    let held = anatomy.objects.iter().zip(holders).filter(|(_, holds)| !**holds);
+    let points = held.flat_map(|(object, _)| object.positions.iter().copied()).chain([anatomy.camera.eye]);
+    let grow = |(low, high): (DVec3, DVec3), point: DVec3| (low.min(point), high.max(point));
+    let (low, high) = points.fold((anatomy.camera.eye, anatomy.camera.eye), grow);
+    let (middle, room) = ((low + high) / 2.0, (high - low).length());
     let lamps = anatomy.lights.iter().filter(|light| light.position.w != 0.0);
     let lamps = lamps.map(|light| light.position.truncate() / light.position.w);
-    let near = lamps.filter(|lamp| (*lamp - middle).length() < 1.5 * room);
-    let (low, high) = near.fold((low, high), |(low, high), lamp| (low.min(lamp), high.max(lamp)));
-    ((low + high) / 2.0, ((high - low).length() / 2.0).max(1e-3))
+    let (low, high) = lamps.filter(|lamp| (*lamp - middle).length() < 1.5 * room).fold((low, high), grow);
+    // An eye alone sees as far as its target.
+    let least = (anatomy.camera.target - anatomy.camera.eye).length().clamp(1e-3, 1e6) / 2.0;
+    ((low + high) / 2.0, ((high - low).length() / 2.0).max(least))
 }
 
 impl Stage {
     /// Of `anatomy`, in the colours of `theme`.
     #[must_use]
     pub fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, theme: &Theme) -> Stage {
-        let (middle, radius) = sphere(anatomy);
+        let holders = holders(anatomy);
+        let (middle, radius) = sphere(anatomy, &holders);
         let mut stage = Stage { middle, radius, ..Stage::default() };
-        let thinning = Thinning::new(anatomy, shown, choice);
-        if shown.objects {
-            stage.objects(anatomy, &thinning, theme);
+        let thinning = Thinning::new(anatomy, shown, choice, &holders);
+        if shown.names {
+            stage.names(anatomy, &holders);
         }
-        for volume in anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster)) {
+        if shown.objects {
+            stage.objects(anatomy, &holders, &thinning, theme);
+        }
+        let volumes = || anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster, &holders));
+        // Through many shells as much is seen as through a few.
+        let strength = 1.0 / (volumes().count().max(1) as f32).sqrt().max(1.0);
+        for volume in volumes() {
             if let Some(light) = anatomy.lights.get(volume.light) {
-                stage.volume(volume, light, shown, &thinning, theme);
+                stage.volume(volume, light, shown, (&thinning, strength), theme);
             }
         }
         if shown.silhouettes {
-            for silhouette in anatomy.silhouettes.iter().filter(|one| choice.has(one.light, one.caster)) {
+            for silhouette in anatomy.silhouettes.iter().filter(|one| choice.has(one.light, one.caster, &holders)) {
                 if let Some(caster) = anatomy.objects.get(silhouette.caster) {
                     stage.silhouette(silhouette, caster, theme);
                 }
@@ -179,26 +204,37 @@ impl Stage {
         if shown.near_clip {
             stage.near_clips(anatomy, choice, theme);
         }
-        if shown.names {
-            stage.names(anatomy);
-        }
+        let left_out = anatomy.volumes.iter().map(|volume| volume.caster);
+        stage.left_out = match choice.caster {
+            None => {
+                left_out.filter(|caster| holders[*caster]).map(|caster| anatomy.objects[caster].name.clone()).collect()
+            }
+            Some(_) => BTreeSet::new(),
+        };
         stage.thinned = thinning.words(anatomy);
         stage
     }
 
-    fn objects(&mut self, anatomy: &Anatomy, thinning: &Thinning, theme: &Theme) {
-        let visible = || anatomy.objects.iter().filter(|object| object.visible || object.casts);
-        let longest = visible().map(longest_edge).fold(0.0, f64::max);
+    fn objects(&mut self, anatomy: &Anatomy, holders: &[bool], thinning: &Thinning, theme: &Theme) {
+        let visible = || anatomy.objects.iter().zip(holders).filter(|(object, _)| object.visible || object.casts);
+        let longest = visible().map(|(object, _)| longest_edge(object)).fold(0.0, f64::max);
         let limit = (self.radius / 10.0).max(longest / 64.0);
         let mut room = MOST_CUTS;
         let ground = mix(theme.panel, theme.dim, 0.62);
-        for object in visible() {
+        for (object, holds) in visible() {
             // What is not seen in the picture is seen here as glass.
             let color = if object.visible { ground } else { ground.gamma_multiply(0.25) };
             for corners in thinning.kept(object.mesh.triangles()) {
                 let corners = corners.map(|corner| object.positions[corner as usize]);
                 let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero().as_vec3();
-                cut_up(corners, limit, &mut room, &mut |corners| self.face(corners, normal, color));
+                let inner = match holds {
+                    true => normal.dot((anatomy.camera.eye - corners[0]).as_vec3()).signum(),
+                    false => 0.0,
+                };
+                cut_up(corners, limit, &mut room, &mut |corners| {
+                    let corners = corners.map(|corner| (corner - self.middle).as_vec3());
+                    self.faces.push(Face { corners, normal, color, inner });
+                });
             }
             let edge = mix(theme.panel, theme.dim, 0.2);
             for edge_ends in &object.edges {
@@ -213,19 +249,19 @@ impl Stage {
         volume: &ShadowVolume,
         light: &PlacedLight,
         shown: &Toggles,
-        thinning: &Thinning,
+        (thinning, strength): (&Thinning, f32),
         theme: &Theme,
     ) {
         let far = FarEnd::new(light, self.middle, self.radius);
         let limit = self.radius / 2.0;
         for part in &volume.parts {
-            let (is_shown, strength) = match part.part {
-                Part::Side => (shown.sides, 0.13),
+            let (is_shown, share) = match part.part {
+                Part::Side => (shown.sides, 0.26 * strength),
                 Part::LightCap => (shown.light_caps, 0.55),
-                _ => (shown.dark_caps, 0.22),
+                _ => (shown.dark_caps, 0.36 * strength),
             };
             let Some(color) = theme.part(part.part).filter(|_| is_shown) else { continue };
-            let color = color.gamma_multiply(strength);
+            let color = color.gamma_multiply(share);
             let mut room = MOST_CUTS;
             let triangles: Box<dyn Iterator<Item = [u32; 3]>> = match part.part {
                 Part::Side => Box::new(part.triangles.iter().copied()),
@@ -234,7 +270,7 @@ impl Stage {
             for corners in triangles {
                 let corners = corners.map(|corner| volume.vertices[corner as usize]);
                 for corners in far.finite(corners).into_iter().flatten() {
-                    cut_up(corners, limit, &mut room, &mut |corners| self.face(corners, Vec3::ZERO, color));
+                    cut_up(corners, limit, &mut room, &mut |corners| self.shell(corners, color));
                 }
             }
         }
@@ -244,7 +280,7 @@ impl Stage {
         for edge in &silhouette.edges {
             let ends = [edge.edge.low, edge.edge.high].map(|end| caster.positions[end as usize]);
             let many = edge.multiplicity.unsigned_abs();
-            self.long_line(ends, self.radius / 10.0, 1.2 + 0.8 * (many.min(4) - 1) as f32, theme.text);
+            self.long_line(ends, self.radius / 20.0, 1.2 + 0.5 * (many.min(4) - 1) as f32, theme.text);
             if many > 1 && self.labels.len() < MOST_NUMBERS {
                 let text = format!("{}{many}", if edge.multiplicity > 0 { "+" } else { "−" });
                 self.labels.push(Label { at: (ends[0] + ends[1]) / 2.0, text, of: Some(ends) });
@@ -277,7 +313,7 @@ impl Stage {
                 }
             }
             for corners in [[near[0], near[1], near[2]], [near[0], near[2], near[3]]] {
-                self.face(corners, Vec3::ZERO, color.gamma_multiply(0.25));
+                self.shell(corners, color.gamma_multiply(0.25));
             }
         }
     }
@@ -297,7 +333,7 @@ impl Stage {
                 let mut room = MOST_CUTS;
                 for corners in [[ends[0], ends[1], tips[0]], [ends[1], tips[1], tips[0]]] {
                     let fill = color.gamma_multiply(0.22);
-                    cut_up(corners, self.radius / 2.0, &mut room, &mut |corners| self.face(corners, Vec3::ZERO, fill));
+                    cut_up(corners, self.radius / 2.0, &mut room, &mut |corners| self.shell(corners, fill));
                 }
                 self.long_line([ends[0], tips[0]], self.radius / 10.0, 1.0, color);
                 self.long_line(ends, self.radius / 10.0, 1.0, color);
@@ -305,8 +341,8 @@ impl Stage {
         }
     }
 
-    fn names(&mut self, anatomy: &Anatomy) {
-        for object in &anatomy.objects {
+    fn names(&mut self, anatomy: &Anatomy, holders: &[bool]) {
+        for (object, _) in anatomy.objects.iter().zip(holders).filter(|(_, holds)| !**holds) {
             let count = object.positions.len().max(1) as f64;
             let at = object.positions.iter().sum::<DVec3>() / count;
             let text = match (object.casts, object.receives) {
@@ -318,9 +354,9 @@ impl Stage {
         }
     }
 
-    fn face(&mut self, corners: [DVec3; 3], normal: Vec3, color: Color32) {
+    fn shell(&mut self, corners: [DVec3; 3], color: Color32) {
         let corners = corners.map(|corner| (corner - self.middle).as_vec3());
-        self.faces.push(Face { corners, normal, color });
+        self.faces.push(Face { corners, normal: Vec3::ZERO, color, inner: 0.0 });
     }
 
     /// A line in pieces, so that each is sorted by where it is.
@@ -345,10 +381,10 @@ impl FarEnd {
         let towards = light.position.truncate();
         if light.position.w == 0.0 {
             let towards = towards.normalize();
-            return FarEnd::Plane(towards.extend(1.6 * radius - towards.dot(middle)));
+            return FarEnd::Plane(towards.extend(BEYOND * radius - towards.dot(middle)));
         }
         let light = towards / light.position.w;
-        FarEnd::Sphere { light, reach: (light - middle).length() + 1.6 * radius }
+        FarEnd::Sphere { light, reach: (light - middle).length() + BEYOND * radius }
     }
 
     /// The finite part of a triangle: none, or up to two.
@@ -444,9 +480,9 @@ struct Thinning {
 }
 
 impl Thinning {
-    fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice) -> Thinning {
+    fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, holders: &[bool]) -> Thinning {
         let objects = anatomy.objects.iter().filter(|_| shown.objects).map(|object| object.mesh.triangles().len());
-        let volumes = anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster));
+        let volumes = anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster, holders));
         let parts = volumes.flat_map(|volume| &volume.parts).filter(|part| match part.part {
             Part::LightCap => shown.light_caps,
             Part::DarkCap => shown.dark_caps,
