@@ -39,6 +39,7 @@ pub mod capture;
 pub mod cli;
 pub mod diagnosis;
 pub mod difference;
+mod files;
 pub mod geometry;
 pub mod gpu;
 pub mod history;

@@ -5,12 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 25] = [
+const MAY_USE: [(&str, &[&str]); 26] = [
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
+    ("files", &[]),
     ("picture", &[]),
-    ("scene", &["math"]),
+    ("scene", &["math", "files"]),
     ("truth", &["math", "scene", "progress"]),
     ("accuracy", &["truth"]),
     ("geometry", &["math", "scene"]),
@@ -85,6 +86,7 @@ const MAY_USE: [(&str, &[&str]); 25] = [
     (
         "app",
         &[
+            "files",
             "scene",
             "plan",
             "technique",
@@ -103,6 +105,7 @@ const MAY_USE: [(&str, &[&str]); 25] = [
     (
         "cli",
         &[
+            "files",
             "numbers",
             "math",
             "scene",

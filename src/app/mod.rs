@@ -9,15 +9,18 @@
 //! Nothing blocks: the worker opens files and renders, the window only draws. The worker starts
 //! before the window is made, so that the GPU's first frame and the window's come together.
 
+mod export;
 mod jobs;
+mod memory;
 mod news;
 mod orders;
 mod surface;
+mod watch;
 mod window;
 mod worker;
 
 use crate::capture::Capture;
-use crate::scene::Scene;
+use crate::scene::{OpenSpec, Scene};
 use crate::session::CaptureRequest;
 
 /// What the window shows first.
@@ -25,6 +28,8 @@ use crate::session::CaptureRequest;
 pub struct ViewRequest {
     /// What to open.
     pub source: ViewSource,
+    /// What opens it again: a built-in name or a path.
+    pub name: OpenSpec,
     /// How to render a scene; what is not known from it is taken from here.
     pub capture: CaptureRequest,
     /// The moment of an animated scene, seconds.

@@ -5,8 +5,10 @@ use crate::capture::Capture;
 use crate::diagnosis::Diagnosis;
 use crate::history::PixelHistory;
 use crate::inspector::{ObjectMesh, RunRequest};
+use crate::plan::FramePlan;
 use crate::report::Report;
 use crate::scene::Scene;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -23,6 +25,10 @@ pub enum News {
         generation: u64,
         /// As loaded.
         scene: Box<Scene>,
+        /// What opens it again; `None`: nothing does by name.
+        source: Option<String>,
+        /// The files that it is made of.
+        files: Vec<PathBuf>,
         /// Its first run.
         request: Box<RunRequest>,
     },
@@ -41,6 +47,8 @@ pub enum News {
         frame: u64,
         /// What was seen.
         capture: Arc<Capture>,
+        /// What was run.
+        plan: Arc<FramePlan>,
     },
     /// The same frame was timed.
     Timed {
@@ -123,6 +131,8 @@ pub enum News {
         /// Why they do not, where it was not that all are done.
         error: Option<String>,
     },
+    /// An export of the scene ended.
+    Exported(super::export::Exported),
     /// Something failed; the text has the mend.
     Failed(String),
 }
@@ -134,6 +144,12 @@ pub enum WindowNews {
     Worker(News),
     /// The system's dialog gave this path.
     Chosen(String),
+    /// The system's dialog gave this place for an export.
+    ChosenExport(String),
+    /// An export ended.
+    Exported(super::export::Exported),
+    /// A file of the open scene changed.
+    FileChanged(String),
     /// egui wants to draw at this time.
     Repaint(Instant),
     /// From assistive technology.

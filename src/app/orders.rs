@@ -15,6 +15,22 @@ const STRESS_SIZE: [u32; 2] = [320, 240];
 pub enum Order {
     /// A built-in scene, or the path of a scene file, model or capture folder.
     Open(String),
+    /// The open scene from its file again, run as it is now.
+    Reload {
+        /// How it is run.
+        request: Box<RunRequest>,
+    },
+    /// The scene as it is run, into a file.
+    SaveScene {
+        /// The scene that is meant.
+        generation: u64,
+        /// How it is run.
+        request: Box<RunRequest>,
+        /// Where to.
+        path: String,
+        /// What is there may be replaced.
+        replace: bool,
+    },
     /// The scene of a stress case.
     OpenCase {
         /// Which case.
@@ -114,6 +130,7 @@ impl StressRun {
 #[derive(Debug, Default)]
 pub struct Waiting {
     picture: Option<Order>,
+    save: Option<Order>,
     draws: Option<Order>,
     history: Option<Order>,
     anatomy: Option<Order>,
@@ -134,7 +151,8 @@ impl Waiting {
             Order::Diagnose { .. } => self.diagnose = Some(order),
             Order::Measure(_) => self.measure = Some(order),
             Order::Stress(_) => self.stress = Some(order),
-            Order::Open(_) | Order::OpenCase { .. } | Order::Run { .. } => {
+            Order::SaveScene { .. } => self.save = Some(order),
+            Order::Open(_) | Order::Reload { .. } | Order::OpenCase { .. } | Order::Run { .. } => {
                 self.picture = Some(match self.picture.take() {
                     Some(earlier) => newest(earlier, order),
                     None => order,
@@ -157,6 +175,10 @@ impl Waiting {
 
     /// The next to obey: what is seen first, what is known of it later.
     pub fn next(&mut self) -> Option<Order> {
+        // A scene is saved before it is changed.
+        if self.save.is_some() {
+            return self.save.take();
+        }
         let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
         let seen = seen.or_else(|| self.anatomy.take());
         let of_frame = seen.or_else(|| self.judge.take()).or_else(|| self.diagnose.take());
@@ -195,7 +217,7 @@ impl Inbox<'_> {
 /// are of the old scene and those after were made before the window knew the new one.
 fn newest(earlier: Order, later: Order) -> Order {
     match (&earlier, &later) {
-        (Order::Open(_) | Order::OpenCase { .. }, Order::Run { .. }) => earlier,
+        (Order::Open(_) | Order::Reload { .. } | Order::OpenCase { .. }, Order::Run { .. }) => earlier,
         _ => later,
     }
 }
@@ -219,6 +241,7 @@ mod tests {
             },
             lights: Vec::new(),
             time: 0.0,
+            off: std::collections::BTreeSet::new(),
         };
         Order::Run { generation: 1, request: Box::new(request) }
     }

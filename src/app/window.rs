@@ -1,12 +1,15 @@
 //! The event loop: carries actions of the panels to the worker and its news to the panels.
 
+use super::export::{self, Exported};
 use super::jobs::Jobs;
+use super::memory;
 use super::news::{News, WindowNews};
 use super::orders::Order;
 use super::surface::Surface;
+use super::watch::Watch;
 use super::worker::{Start, Worker};
 use super::{AppError, ViewRequest, no_window};
-use crate::inspector::{Action, Inspector, PictureKind, SceneEntry, TruthState};
+use crate::inspector::{Action, ExportData, ExportKind, Inspector, PictureKind, Remembered, SceneEntry, TruthState};
 use crate::scene::{TechniqueRequest, builtin};
 use crate::stress::Case;
 use crate::technique::Choice;
@@ -43,17 +46,21 @@ struct App {
     /// Of the frame that is shown.
     frame: u64,
     jobs: Jobs,
+    watch: Watch,
     /// What is selected when the first capture comes.
     first_step: Option<usize>,
     first_pick: Option<[u32; 2]>,
     first_is_error: bool,
     repaint_at: Option<Instant>,
+    /// As stored last.
+    remembered: Remembered,
 }
 
 impl App {
     fn new(request: ViewRequest, proxy: EventLoopProxy<WindowNews>) -> Result<App, AppError> {
         let start = Start {
             source: request.source,
+            name: request.name,
             capture: request.capture,
             time: request.time,
             adapter: request.adapter.clone(),
@@ -67,7 +74,10 @@ impl App {
             lesson: builtin.lesson.to_owned(),
         };
         let mut inspector = Inspector::new(builtin::ALL.iter().map(scene).collect());
+        inspector.recall(memory::load());
+        let remembered = inspector.remembered();
         inspector.set_job(Some("starting".to_owned()));
+        let watch = Watch::start(proxy.clone()).map_err(AppError::NoThread)?;
         Ok(App {
             ctx: context(&proxy),
             inspector,
@@ -79,10 +89,12 @@ impl App {
             generation: 0,
             frame: 0,
             jobs: Jobs::default(),
+            watch,
             first_step: request.step,
             first_pick: request.pick,
             first_is_error: request.truth,
             repaint_at: None,
+            remembered,
         })
     }
 
@@ -90,9 +102,11 @@ impl App {
         match news {
             News::Busy(job) => self.inspector.set_job(Some(job)),
             News::Idle => self.inspector.set_job(None),
-            News::Opened { generation, scene, request } => {
+            News::Opened { generation, scene, source, files, request } => {
+                self.watch.look_at(files);
                 self.generation = generation;
-                self.inspector.set_scene(&scene, *request);
+                self.inspector.open_scene(&scene, *request, source);
+                self.remember();
             }
             News::Meshes { generation, meshes } if generation == self.generation => self.inspector.set_meshes(meshes),
             News::OpenedFolder(capture) => {
@@ -101,11 +115,13 @@ impl App {
                 self.inspector.clear_scene();
                 self.show(capture);
             }
-            News::Captured { frame, capture } => {
+            News::Captured { frame, capture, plan } => {
                 self.frame = frame;
                 self.jobs.stop_judging();
                 self.show(capture);
+                self.inspector.set_plan(plan);
             }
+            News::Exported(exported) => self.end_export(exported),
             News::Timed { frame, capture } | News::Draws { frame, capture } if frame == self.frame => {
                 self.inspector.update_capture(capture);
             }
@@ -161,6 +177,27 @@ impl App {
                 Order::Run { generation: self.generation, request }
             }
             Action::Browse => return self.browse(),
+            Action::BrowseExport { kind, path } => return self.browse_export(kind, path),
+            Action::Reload => {
+                let Some(request) = self.inspector.draft() else { return };
+                self.jobs.make_way(&mut self.inspector);
+                Order::Reload { request }
+            }
+            Action::Export { kind, path, replace } => match self.inspector.export(kind) {
+                Some(ExportData::Scene(request)) => {
+                    Order::SaveScene { generation: self.generation, request, path, replace }
+                }
+                Some(data) => {
+                    if let Err(error) = export::start(data, path, replace, self.proxy.clone()) {
+                        self.inspector.end_export(Err(format!("nothing can be written now: {error}; try again")));
+                    }
+                    return self.redraw();
+                }
+                None => {
+                    self.inspector.end_export(Err("there is nothing to export any longer".to_owned()));
+                    return self.redraw();
+                }
+            },
             Action::CaptureDraws { step } => {
                 self.jobs.pause_judging(&mut self.inspector);
                 Order::Draws { frame: self.frame, step }
@@ -233,6 +270,44 @@ impl App {
         }
     }
 
+    /// Asks with the system's dialog where to export to, beside the window.
+    fn browse_export(&mut self, kind: ExportKind, path: String) {
+        let dialog = rfd::AsyncFileDialog::new().set_title("Export");
+        let name = std::path::Path::new(&path).file_name().map(|name| name.to_string_lossy().into_owned());
+        let dialog = dialog.set_file_name(name.unwrap_or_default());
+        let proxy = self.proxy.clone();
+        let wait = move || {
+            // A capture is a folder: its place is chosen like that of a file that is not there yet.
+            let _ = kind;
+            if let Some(file) = pollster::block_on(dialog.save_file()) {
+                drop(proxy.send_event(WindowNews::ChosenExport(file.path().display().to_string())));
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {
+            self.inspector.push_error(format!("the file dialog can't be opened: {error}; type the path instead"));
+        }
+    }
+
+    fn end_export(&mut self, exported: Exported) {
+        match exported {
+            Exported::Done(what) => self.inspector.end_export(Ok(what)),
+            Exported::Taken(path) => self.inspector.ask_to_replace(path),
+            Exported::Failed(reason) => self.inspector.end_export(Err(reason)),
+        }
+        self.redraw();
+    }
+
+    /// Remembers what was changed since; a failure is told, and the window goes on.
+    fn remember(&mut self) {
+        let now = self.inspector.remembered();
+        if now != self.remembered {
+            if let Err(reason) = memory::store(&now) {
+                self.inspector.push_error(reason);
+            }
+            self.remembered = now;
+        }
+    }
+
     fn redraw(&self) {
         if let Some(surface) = &self.surface {
             surface.request_redraw();
@@ -279,6 +354,15 @@ impl ApplicationHandler<WindowNews> for App {
         match news {
             WindowNews::Worker(news) => self.hear(news),
             WindowNews::Chosen(path) => self.act(Action::Open(path)),
+            WindowNews::ChosenExport(path) => {
+                self.inspector.set_export_path(path);
+                self.redraw();
+            }
+            WindowNews::Exported(exported) => self.end_export(exported),
+            WindowNews::FileChanged(file) => {
+                self.inspector.offer_reload(file);
+                self.redraw();
+            }
             WindowNews::Repaint(at) => {
                 let at = self.repaint_at.map_or(at, |earlier| earlier.min(at));
                 self.repaint_at = Some(at);
@@ -294,7 +378,10 @@ impl ApplicationHandler<WindowNews> for App {
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _window: WindowId, event: WindowEvent) {
         match event {
-            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::CloseRequested => {
+                self.remember();
+                event_loop.exit();
+            }
             WindowEvent::RedrawRequested => self.draw(event_loop),
             event => {
                 if let Some(surface) = &mut self.surface {

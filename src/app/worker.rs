@@ -15,11 +15,13 @@
 mod done;
 mod stress;
 
+use super::export::Exported;
 use super::news::News;
 use super::orders::{Inbox, Order, Waiting};
 use super::{AppError, ViewSource};
 use crate::capture::disk;
 use crate::inspector::{ObjectMesh, RunRequest};
+use crate::scene::file::store;
 use crate::scene::{OpenSpec, Scene};
 use crate::session::{CaptureRequest, Every, Session, SessionError};
 use crate::technique::Choice;
@@ -47,6 +49,8 @@ pub struct Worker {
 pub struct Start {
     /// What to open first.
     pub source: ViewSource,
+    /// What opens it again.
+    pub name: OpenSpec,
     /// How to render it.
     pub capture: CaptureRequest,
     /// The moment of an animated scene, seconds.
@@ -64,7 +68,7 @@ impl Worker {
         let (orders, waiting) = channel();
         let run = move || {
             let mut bench = Bench::new(start.adapter, &start.capture, Box::new(tell));
-            bench.begin(start.source, start.time);
+            bench.begin(start.source, start.name, start.time);
             bench.obey_all(&waiting);
         };
         let builder = thread::Builder::new().name("stencilscope worker".to_owned());
@@ -84,6 +88,8 @@ struct Bench {
     adapter: Option<String>,
     session: Option<Session>,
     scene: Option<Box<Scene>>,
+    /// What opened it; `None` for a stress case.
+    spec: Option<OpenSpec>,
     generation: u64,
     /// How the next scene is rendered, unless it says otherwise.
     choice: Choice,
@@ -106,6 +112,7 @@ impl Bench {
             adapter,
             session: None,
             scene: None,
+            spec: None,
             generation: 0,
             choice,
             size,
@@ -118,10 +125,11 @@ impl Bench {
     }
 
     /// The first thing to show.
-    fn begin(&mut self, source: ViewSource, time: f64) {
+    fn begin(&mut self, source: ViewSource, name: OpenSpec, time: f64) {
         match source {
             ViewSource::Capture(capture) => (self.tell)(News::OpenedFolder(Arc::new(*capture))),
             ViewSource::Scene(scene) => {
+                self.spec = Some(name);
                 let done = self.show_scene(scene, time, Brought::default());
                 self.finish(done);
             }
@@ -164,6 +172,10 @@ impl Bench {
     fn obey(&mut self, order: Order) {
         let done = match order {
             Order::Open(name) => self.open(&name),
+            Order::Reload { request } => self.reload(&request),
+            Order::SaveScene { generation, request, path, replace } => {
+                return self.save_scene(generation, &request, &path, replace);
+            }
             Order::Run { generation, request } if generation == self.generation => self.run(&request),
             Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant),
             Order::Draws { frame, step } => return self.fill_draws(frame, step),
@@ -190,11 +202,45 @@ impl Bench {
             (self.tell)(News::OpenedFolder(Arc::new(capture)));
             return Ok(());
         }
-        let scene = crate::scene::open(&OpenSpec::new(name)).map_err(|error| error.to_string())?;
+        let spec = OpenSpec::new(name);
+        let scene = crate::scene::open(&spec).map_err(|error| error.to_string())?;
         if let Some(wish) = &scene.technique {
             self.choice = Choice::parse(wish).map_err(|error| format!("{name}: {error}"))?;
         }
+        self.spec = Some(spec);
         self.show_scene(Box::new(scene), 0.0, Brought::default())
+    }
+
+    /// The open scene from its file again: its objects and lights are the file's, camera and technique stay.
+    fn reload(&mut self, request: &RunRequest) -> Result<(), String> {
+        let Some(spec) = self.spec.clone() else { return Ok(()) };
+        (self.tell)(News::Busy(format!("opening {}", spec.name)));
+        let mut scene = crate::scene::open(&spec).map_err(|error| error.to_string())?;
+        scene.camera = request.camera;
+        self.choice = request.choice.clone();
+        self.size = request.size;
+        self.show_scene(Box::new(scene), request.time, Brought::default())
+    }
+
+    /// Writes the scene, changed as it is run, with its motions.
+    fn save_scene(&mut self, generation: u64, request: &RunRequest, path: &str, replace: bool) {
+        let file = Path::new(path);
+        let of_this = self.scene.as_ref().filter(|_| generation == self.generation);
+        let news = match (of_this, super::export::check(file, replace)) {
+            (None, _) => Exported::Failed("another scene is open by now: export it again".to_owned()),
+            (_, Some(problem)) => problem,
+            (Some(loaded), None) => {
+                let mut scene = changed(loaded, request);
+                let choice = &request.choice;
+                scene.technique = Some(choice.to_request());
+                let source = self.spec.as_ref().map(|spec| Path::new(&spec.name));
+                match store(&scene, source, file) {
+                    Ok(()) => Exported::Done(format!("wrote {path}")),
+                    Err(error) => Exported::Failed(error.to_string()),
+                }
+            }
+        };
+        (self.tell)(News::Exported(news));
     }
 
     /// The session, opened on first use.
@@ -216,11 +262,20 @@ impl Bench {
             camera: scene.camera,
             lights: scene.lights.clone(),
             time,
+            off: std::collections::BTreeSet::new(),
         };
         self.generation += 1;
+        let source = self.spec.as_ref().map(|spec| spec.name.clone());
+        let files = self.spec.as_ref().map_or_else(Vec::new, crate::scene::files_of);
         self.scene = Some(scene.clone());
         self.last = None;
-        (self.tell)(News::Opened { generation: self.generation, scene, request: Box::new(request.clone()) });
+        (self.tell)(News::Opened {
+            generation: self.generation,
+            scene,
+            source,
+            files,
+            request: Box::new(request.clone()),
+        });
         let done = self.run(&request);
         self.look_at_meshes();
         done
@@ -237,10 +292,7 @@ impl Bench {
 
     fn run(&mut self, request: &RunRequest) -> Result<(), String> {
         let Some(loaded) = &self.scene else { return Ok(()) };
-        let mut scene = Scene::clone(loaded);
-        scene.camera = request.camera;
-        scene.lights.clone_from(&request.lights);
-        let scene = scene.at(request.time);
+        let scene = changed(loaded, request).at(request.time);
         self.take_over(request);
         self.capture(scene, request).map_err(|error| error.to_string())
     }
@@ -251,10 +303,10 @@ impl Bench {
         (self.tell)(News::Busy(format!("capturing {}", request.choice.technique().name())));
         let start = Instant::now();
         let (capture, plan) = self.session()?.capture_with_plan(&scene, &request)?;
-        let capture = Arc::new(capture);
+        let (capture, plan) = (Arc::new(capture), Arc::new(plan));
         let wants_timing = start.elapsed() <= LONGEST_TIMED;
         self.frames += 1;
-        (self.tell)(News::Captured { frame: self.frames, capture: Arc::clone(&capture) });
+        (self.tell)(News::Captured { frame: self.frames, capture: Arc::clone(&capture), plan: Arc::clone(&plan) });
         self.last = Some(Done { frame: self.frames, scene, request, capture, plan, wants_timing });
         Ok(())
     }
@@ -266,6 +318,19 @@ impl Bench {
         }
         (self.tell)(News::Idle);
     }
+}
+
+/// The scene with what the panels change: camera, lights, and which objects are there.
+fn changed(loaded: &Scene, request: &RunRequest) -> Scene {
+    let mut scene = loaded.clone();
+    scene.camera = request.camera;
+    scene.lights.clone_from(&request.lights);
+    let mut index = 0;
+    scene.objects.retain(|_| {
+        index += 1;
+        !request.off.contains(&(index - 1))
+    });
+    scene
 }
 
 #[cfg(test)]

@@ -91,6 +91,17 @@ pub fn write(capture: &Capture, folder: &Path, overwrite: bool) -> Result<f64, C
     put_folder(folder, |new| write_files(capture, new))
 }
 
+/// Writes a picture's values as a NumPy array, or those of all layers of a map; colours as numbers too.
+///
+/// # Errors
+/// A place that can't be written to.
+pub fn write_arrays(file: &Path, images: &[Arc<Image>]) -> Result<(), CaptureError> {
+    match images {
+        [image] => files::write_array(file, image),
+        images => files::write_layers(file, images),
+    }
+}
+
 /// Makes a folder whole or not at all: `fill` makes and fills it beside its place, where it is renamed to. One that
 /// it replaces is moved aside until then; whether it may be replaced is the caller's to know.
 ///

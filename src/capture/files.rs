@@ -34,6 +34,11 @@ pub(super) fn write_image(path: &Path, image: &Image) -> Result<(), CaptureError
     }
 }
 
+/// One picture as a NumPy array, whatever its format.
+pub(super) fn write_array(path: &Path, image: &Image) -> Result<(), CaptureError> {
+    write(path, |out| write_arrays(out, &[], [image], image))
+}
+
 /// Pictures of one size and format as one array with a dimension more.
 pub(super) fn write_layers(path: &Path, layers: &[Arc<Image>]) -> Result<(), CaptureError> {
     write(path, |out| {

@@ -78,7 +78,7 @@ pub enum CliError {
     },
     /// The mended scene can't be written.
     #[error(transparent)]
-    Save(#[from] crate::scene::file::SaveError),
+    Store(#[from] crate::scene::file::StoreError),
     /// A mend can't be made.
     #[error(transparent)]
     Mend(#[from] crate::diagnosis::MendError),

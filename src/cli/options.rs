@@ -74,6 +74,11 @@ pub struct FrameOptions {
 }
 
 impl SceneOptions {
+    /// What opens the scene again, without these options.
+    pub fn spec(&self, name: &str) -> OpenSpec {
+        OpenSpec { name: name.to_owned(), floor: !self.no_floor }
+    }
+
     /// Opens the scene and applies these options; the result stands still at `--time`.
     ///
     /// # Errors
@@ -87,7 +92,7 @@ impl SceneOptions {
     /// # Errors
     /// As [`SceneOptions::open`].
     pub fn load(&self, name: &str) -> Result<Scene, CliError> {
-        let mut scene = open(&OpenSpec { name: name.to_owned(), floor: !self.no_floor })?;
+        let mut scene = open(&self.spec(name))?;
         self.place_camera(&mut scene)?;
         self.place_lights(&mut scene)?;
         Ok(scene)

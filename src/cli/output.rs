@@ -48,20 +48,7 @@ pub fn deliver(text: &str, file: Option<&str>) -> Result<(), CliError> {
 /// The file can't be written.
 pub fn write(path: &str, bytes: &[u8]) -> Result<(), CliError> {
     let failed = |source| CliError::Output { path: path.to_owned(), source };
-    // A link to a file stays a link: what it points to is replaced.
-    let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
-    let mut beside = target.clone().into_os_string();
-    beside.push(format!(".new-{}", std::process::id()));
-    if target.exists() && !target.is_file() {
-        // A device or a pipe has no place to be renamed into.
-        return std::fs::write(path, bytes).map_err(failed);
-    }
-    let written = std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, &target));
-    written.map_err(|source| {
-        // What failed is the error already.
-        let _ = std::fs::remove_file(&beside);
-        failed(source)
-    })
+    crate::files::write_whole(std::path::Path::new(path), bytes).map_err(failed)
 }
 
 /// Says something that is no result.

@@ -97,6 +97,7 @@ mod window {
         };
         Ok(ViewRequest {
             source,
+            name: arguments.scene_options.spec(&arguments.scene),
             capture,
             time: arguments.scene_options.time,
             adapter: arguments.frame.adapter.clone(),

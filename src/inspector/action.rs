@@ -1,9 +1,10 @@
 //! What the panels ask of the app. Panels change nothing outside themselves.
 
+use super::export::ExportKind;
 use crate::scene::{Camera, Light};
 use crate::stress::Entrant;
 use crate::technique::Choice;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A wish of the user that needs files, windows or the GPU.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +15,24 @@ pub enum Action {
     Browse,
     /// Render again, with this changed.
     Run(Box<RunRequest>),
+    /// Load the open scene again from its file, which changed.
+    Reload,
+    /// Write what is shown into a file.
+    Export {
+        /// What of it.
+        kind: ExportKind,
+        /// Where to.
+        path: String,
+        /// What is there may be replaced.
+        replace: bool,
+    },
+    /// Ask with the system's dialog where to export to.
+    BrowseExport {
+        /// What is exported.
+        kind: ExportKind,
+        /// The place so far.
+        path: String,
+    },
     /// Trace the truth of the frame that is shown, and hold the technique against it.
     Judge,
     /// Capture the state after each draw of a step of the frame that is shown.
@@ -76,6 +95,8 @@ pub struct RunRequest {
     pub lights: Vec<Light>,
     /// The moment of an animated scene, seconds.
     pub time: f64,
+    /// Objects that are switched off, by index: neither drawn nor casting.
+    pub off: BTreeSet<usize>,
 }
 
 impl RunRequest {

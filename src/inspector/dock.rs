@@ -7,11 +7,13 @@
 use super::action::Action;
 use super::state::State;
 
-use super::{diagnosis, passes, picture, pixel, report, scene_view, settings, stress, theme};
+use super::{diagnosis, explain, passes, picture, pixel, raster_state, report, scene_view, settings, stress, theme};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
 };
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Widths of the side panels in points, where the window is wide enough.
 const LEFT_WIDTH: f32 = 264.0;
@@ -24,17 +26,48 @@ const REPORT_HEIGHT: f32 = 312.0;
 /// What the report may take of the window at most.
 const REPORT_SHARE: f32 = 0.42;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Panel {
+/// A tab.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Panel {
+    /// The frame, step by step.
     Passes,
+    /// What can be changed.
     Settings,
+    /// The selected buffer.
     Picture,
+    /// A second camera that sees the first.
     Scene,
+    /// Everything about the picked pixel.
     Pixel,
+    /// The raster state of the selected draw.
+    State,
+    /// What the step is for, and tours.
+    Explain,
+    /// Error against time.
     Report,
+    /// What is wrong, and what mends it.
     Diagnosis,
+    /// Extreme cases.
     Stress,
 }
+
+impl Panel {
+    /// In the order of their declaration.
+    const ALL: [Panel; 9] = [
+        Panel::Passes,
+        Panel::Settings,
+        Panel::Picture,
+        Panel::Pixel,
+        Panel::State,
+        Panel::Explain,
+        Panel::Report,
+        Panel::Diagnosis,
+        Panel::Stress,
+    ];
+}
+
+/// A layout as stored: egui's own form of it.
+pub type Layout = serde_json::Value;
 
 /// The panels and where they are.
 #[derive(Debug)]
@@ -56,16 +89,37 @@ impl Dock {
         let mut tiles = Tiles::default();
         let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
         let left = tiles.insert_tab_tile(sides.to_vec());
-        let [picture, report, right] =
-            [&[Panel::Picture, Panel::Scene][..], &[Panel::Report, Panel::Diagnosis, Panel::Stress], &[Panel::Pixel]]
-                .map(|panels| {
-                    let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
-                    tiles.insert_tab_tile(panes)
-                });
+        let [picture, report, right] = [
+            &[Panel::Picture, Panel::Scene][..],
+            &[Panel::Report, Panel::Diagnosis, Panel::Stress],
+            &[Panel::Pixel, Panel::State, Panel::Explain],
+        ]
+        .map(|panels| {
+            let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
+            tiles.insert_tab_tile(panes)
+        });
         let middle = tiles.insert_vertical_tile(vec![picture, report]);
         let row = tiles.insert_horizontal_tile(vec![left, middle, right]);
         let tree = Tree::new(Id::unique("inspector dock"), row, tiles);
         Dock { tree, row, left, middle, picture, report, right, arranged_by_user: false }
+    }
+
+    /// Where the panels are; `None` while they are where they were at first.
+    #[must_use]
+    pub fn layout(&self) -> Option<Layout> {
+        self.arranged_by_user.then(|| serde_json::to_value(&self.tree).ok()).flatten()
+    }
+
+    /// Puts the panels where they were. A layout that is not one of these panels is not taken.
+    pub fn restore(&mut self, layout: Layout) {
+        let Ok(tree) = serde_json::from_value::<Tree<Panel>>(layout) else { return };
+        let mut panels = Vec::new();
+        let is_whole = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
+        panels.sort_unstable();
+        if is_whole && panels == Panel::ALL {
+            self.tree = tree;
+            self.arranged_by_user = true;
+        }
     }
 
     /// Draws all panels into what is left of the window.
@@ -76,6 +130,9 @@ impl Dock {
             let others = [&mut state.stress.is_shown, &mut state.diagnosis.is_shown].map(std::mem::take);
             let is_empty = state.report.is_empty() && !others.contains(&true);
             self.keep_heights(ui.available_height(), is_empty);
+        }
+        if let Some(wanted) = state.wants_panel.take() {
+            self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(panel) if *panel == wanted));
         }
         let mut behavior = Panels { state, actions, edited: false, theme: theme::of(ui) };
         self.tree.ui(&mut behavior, ui);
@@ -102,6 +159,21 @@ impl Dock {
     }
 }
 
+/// Gathers the panels below a tile; false where a tile is missing or stands twice.
+fn visit(tiles: &Tiles<Panel>, tile: TileId, seen: &mut BTreeSet<u64>, panels: &mut Vec<Panel>) -> bool {
+    if !seen.insert(tile.0) {
+        return false;
+    }
+    match tiles.get(tile) {
+        None => false,
+        Some(Tile::Pane(panel)) => {
+            panels.push(*panel);
+            true
+        }
+        Some(Tile::Container(container)) => container.children().all(|child| visit(tiles, *child, seen, panels)),
+    }
+}
+
 struct Panels<'a> {
     state: &'a mut State,
     actions: &'a mut Vec<Action>,
@@ -123,6 +195,8 @@ impl Behavior<Panel> for Panels<'_> {
                 Panel::Picture => picture::ui(ui, self.state, self.actions),
                 Panel::Scene => scene_view::ui(ui, self.state, self.actions),
                 Panel::Pixel => pixel::ui(ui, self.state),
+                Panel::State => raster_state::ui(ui, self.state),
+                Panel::Explain => explain::ui(ui, self.state),
                 Panel::Report => report::ui(ui, self.state, self.actions),
                 Panel::Diagnosis => {
                     self.state.diagnosis.is_shown = true;
@@ -144,6 +218,8 @@ impl Behavior<Panel> for Panels<'_> {
             Panel::Picture => "Picture",
             Panel::Scene => "Scene",
             Panel::Pixel => "Pixel",
+            Panel::State => "State",
+            Panel::Explain => "Explain",
             Panel::Report => "Report",
             Panel::Diagnosis => "Diagnosis",
             Panel::Stress => "Stress",

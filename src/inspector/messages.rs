@@ -1,11 +1,15 @@
 //! Errors as bars under the top bar: text with its mend, until dismissed.
 
+use super::action::Action;
 use super::state::State;
 use super::theme;
 use egui::{CornerRadius, Margin, RichText, Stroke, Ui};
 
-/// Draws a bar for each error.
-pub fn ui(ui: &mut Ui, state: &mut State) {
+/// Draws the offer to load a changed file again, and a bar for each error.
+pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    if let Some(file) = state.changed_file.clone() {
+        reload(ui, state, &file, actions);
+    }
     if state.errors.is_empty() {
         return;
     }
@@ -20,6 +24,22 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
         if let Some(index) = dismissed {
             state.errors.remove(index);
         }
+    });
+}
+
+fn reload(ui: &mut Ui, state: &mut State, file: &str, actions: &mut Vec<Action>) {
+    let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 4));
+    egui::Panel::top("reload").frame(frame).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.label(format!("{file} changed on disk."));
+            if ui.button("Load it again").on_hover_text("Technique, camera and lights stay as they are").clicked() {
+                actions.push(Action::Reload);
+                state.changed_file = None;
+            }
+            if ui.button("Not now").on_hover_text("Go on with the scene as it is").clicked() {
+                state.changed_file = None;
+            }
+        });
     });
 }
 

@@ -14,11 +14,13 @@
 //! findings.rs  the error picture's hatching        truth_note.rs while there is no truth
 //! moment.rs    after a step, or after a draw       draw_level.rs selecting and fetching draws
 //! scene_view/  a second camera that sees the first
+//! keys.rs      the table of keys, for help.rs    undo.rs, memory.rs, export.rs, animation.rs: as they say
 //! history.rs   the pick's history, asked for       history_rows.rs, ladder.rs, outline.rs show it
 //! ```
 
 mod action;
 mod anatomy_state;
+mod animation;
 mod canvas;
 mod coloring;
 mod counts;
@@ -28,9 +30,13 @@ mod diagnosis_detail;
 mod dock;
 mod draw_level;
 mod draws;
+mod explain;
+mod explain_facts;
+mod export;
 mod face_grid;
 mod findings;
 mod format;
+mod help;
 mod history;
 mod history_row;
 mod history_rows;
@@ -40,6 +46,7 @@ mod ladder_layout;
 mod layers;
 mod legend;
 mod magnifier;
+mod memory;
 mod meshes;
 mod messages;
 mod moment;
@@ -52,6 +59,7 @@ mod picture;
 mod pixel;
 mod pixel_run;
 mod placement;
+mod raster_state;
 mod report;
 mod report_plot;
 mod report_table;
@@ -65,14 +73,19 @@ mod stress;
 mod texture;
 mod theme;
 mod top_bar;
+mod tour;
+mod tour_stops;
 mod transport;
 mod truth_note;
+mod undo;
 mod verdict;
 mod view;
 
 pub use action::{Action, RunRequest};
 pub use diagnosis::{DiagnosisProgress, DiagnosisView};
 pub use draw_level::DrawsState;
+pub use export::{ExportData, ExportKind};
+pub use memory::{Remembered, ThemeChoice};
 pub use meshes::ObjectMesh;
 pub use report::{ReportProgress, ReportView};
 pub use state::SceneEntry;
@@ -83,6 +96,7 @@ pub use view::{PictureKind, Zoom};
 use crate::anatomy::Anatomy;
 use crate::capture::Capture;
 use crate::history::PixelHistory;
+use crate::plan::FramePlan;
 use crate::scene::Scene;
 use crate::technique::Choice;
 use state::State;
@@ -115,19 +129,27 @@ impl Inspector {
     pub fn ui(&mut self, ui: &mut egui::Ui) -> Vec<Action> {
         if !self.styled {
             theme::apply(ui.ctx());
+        }
+        if !std::mem::replace(&mut self.styled, true) || ui.ctx().theme() != self.state.theme.in_egui() {
+            ui.ctx().set_theme(self.state.theme.in_egui());
             ui.reset_style();
-            self.styled = true;
         }
         let mut actions = Vec::new();
         self.state.cache.tick();
         take_dropped_files(ui.ctx(), &mut actions);
-        keys::handle(ui.ctx(), &mut self.state);
+        self.state.undo.hold(ui.input(|input| input.pointer.any_down()));
+        self.state.finish_restoring(&mut actions);
+        keys::handle(ui.ctx(), &mut self.state, &mut actions);
         self.play(ui.ctx());
         top_bar::ui(ui, &mut self.state, &mut actions);
-        messages::ui(ui, &mut self.state);
+        messages::ui(ui, &mut self.state, &mut actions);
         status_bar::ui(ui, &self.state);
+        tour::ui(ui, &mut self.state, &mut actions);
         self.dock.ui(ui, &mut self.state, &mut actions);
         open_dialog::ui(ui.ctx(), &mut self.state, &mut actions);
+        export::ui(ui.ctx(), &mut self.state, &mut actions);
+        help::ui(ui.ctx(), &mut self.state);
+        self.state.animate(ui.ctx(), &mut actions);
         self.state.ask_for_truth(&mut actions);
         self.state.ask_for_draws(&mut actions);
         self.state.ask_for_history(ui.ctx(), &mut actions);
@@ -144,7 +166,76 @@ impl Inspector {
 
     /// Another scene is open, to be run as `draft` says.
     pub fn set_scene(&mut self, scene: &Scene, draft: RunRequest) {
-        self.state.set_scene(Some((scene, draft)));
+        self.open_scene(scene, draft, None);
+    }
+
+    /// The same, and what opens the scene again: a built-in name or a path.
+    pub fn open_scene(&mut self, scene: &Scene, draft: RunRequest, source: Option<String>) {
+        self.state.set_scene(Some((scene, draft)), source);
+    }
+
+    /// How the open scene is to be run now.
+    #[must_use]
+    pub fn draft(&self) -> Option<Box<RunRequest>> {
+        self.state.scene.as_ref().map(|scene| Box::new(scene.draft.clone()))
+    }
+
+    /// What was run for the capture that is shown.
+    pub fn set_plan(&mut self, plan: Arc<FramePlan>) {
+        self.state.plan = Some(plan);
+    }
+
+    /// The file of the open scene, or one that it is made of, changed.
+    pub fn offer_reload(&mut self, file: String) {
+        self.state.changed_file = Some(file);
+    }
+
+    /// What is to be remembered until the window is opened again.
+    #[must_use]
+    pub fn remembered(&self) -> Remembered {
+        let layout = self.dock.layout();
+        Remembered { theme: self.state.theme, recent: self.state.recent.clone(), layout }
+    }
+
+    /// Looks as it did when this was remembered.
+    pub fn recall(&mut self, remembered: Remembered) {
+        self.state.theme = remembered.theme;
+        self.state.recent = remembered.recent;
+        if let Some(layout) = remembered.layout {
+            self.dock.restore(layout);
+        }
+    }
+
+    /// What an export of `kind` writes now; `None` where there is nothing of it.
+    #[must_use]
+    pub fn export(&mut self, kind: ExportKind) -> Option<ExportData> {
+        export::data(&mut self.state, kind)
+    }
+
+    /// The place of an export was chosen.
+    pub fn set_export_path(&mut self, path: String) {
+        if let Some(dialog) = &mut self.state.export.dialog {
+            dialog.path = path;
+        }
+    }
+
+    /// There is something at the place of an export: it is replaced only where that is wished.
+    pub fn ask_to_replace(&mut self, path: String) {
+        if let Some(dialog) = &mut self.state.export.dialog {
+            dialog.taken = Some(path);
+        }
+    }
+
+    /// An export is done, in words, or failed, with the mend.
+    pub fn end_export(&mut self, result: Result<String, String>) {
+        match (result, &mut self.state.export.dialog) {
+            (Ok(done), _) => {
+                self.state.export.done = Some(done);
+                self.state.export.dialog = None;
+            }
+            (Err(reason), Some(dialog)) => dialog.error = Some(reason),
+            (Err(reason), None) => self.push_error(reason),
+        }
     }
 
     /// Tells how the meshes of the open scene hang together.
@@ -154,7 +245,7 @@ impl Inspector {
 
     /// What is open can't be run again: a capture folder.
     pub fn clear_scene(&mut self) {
-        self.state.set_scene(None);
+        self.state.set_scene(None, None);
     }
 
     /// Shows a capture; the selected step and pixel stay where they mean the same.
@@ -217,6 +308,8 @@ impl Inspector {
 
     /// What is being done, in a few words; `None` when nothing is.
     pub fn set_job(&mut self, job: Option<String>) {
+        // Nothing is done: what failed is not waited for.
+        self.state.is_waiting &= job.is_some();
         self.state.job = job;
     }
 

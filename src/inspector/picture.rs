@@ -79,7 +79,7 @@ pub fn coloring_of(shown: &Shown, range: [f64; 2]) -> Coloring {
 }
 
 /// The grey ramp's ends: as set by hand, or those of all shown pictures.
-fn shown_range(state: &mut State, shown: &Shown) -> [f64; 2] {
+pub fn shown_range(state: &mut State, shown: &Shown) -> [f64; 2] {
     state.view.depth_range.unwrap_or_else(|| full_range(state, shown))
 }
 

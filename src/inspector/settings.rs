@@ -1,6 +1,7 @@
 //! The settings: technique with its settings, lights, camera, picture. Every change asks for a run.
 
 use super::action::Action;
+use super::animation;
 use super::meshes;
 use super::settings_off;
 use super::settings_scene;
@@ -23,10 +24,11 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         return;
     }
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        animation::ui(ui, state, actions);
         techniques(ui, state, actions);
         let mut changed = technique_settings(ui, state);
         if let Some(scene) = &mut state.scene {
-            changed |= settings_scene::ui(ui, &mut scene.draft, scene.animated);
+            changed |= settings_scene::ui(ui, &mut scene.draft, &scene.objects, scene.animated);
         }
         if changed {
             state.run_draft(actions);

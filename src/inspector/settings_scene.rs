@@ -11,7 +11,7 @@ use glam::DVec3;
 const MOST_PIXELS: u32 = 8192;
 
 /// Draws the settings into the panel; true when one changed.
-pub fn ui(ui: &mut Ui, draft: &mut RunRequest, animated: bool) -> bool {
+pub fn ui(ui: &mut Ui, draft: &mut RunRequest, objects: &[String], animated: bool) -> bool {
     let mut changed = false;
     for (index, light) in draft.lights.iter_mut().enumerate() {
         ui.add_space(12.0);
@@ -21,6 +21,27 @@ pub fn ui(ui: &mut Ui, draft: &mut RunRequest, animated: bool) -> bool {
     changed |= camera(ui, draft);
     ui.add_space(12.0);
     changed |= picture(ui, draft, animated);
+    ui.add_space(12.0);
+    changed |= objects_on(ui, draft, objects);
+    changed
+}
+
+/// Which objects are there.
+fn objects_on(ui: &mut Ui, draft: &mut RunRequest, objects: &[String]) -> bool {
+    theme::heading(ui, "Objects");
+    let mut changed = false;
+    for (index, name) in objects.iter().enumerate() {
+        let mut is_on = !draft.off.contains(&index);
+        let check = ui.checkbox(&mut is_on, name).on_hover_text("Drawn, and casts and receives as the scene says");
+        if check.changed() {
+            changed = true;
+            if is_on {
+                draft.off.remove(&index)
+            } else {
+                draft.off.insert(index)
+            };
+        }
+    }
     changed
 }
 

@@ -2,18 +2,27 @@
 
 use super::action::{Action, RunRequest};
 use super::anatomy_state::AnatomyState;
+use super::animation::Animation;
 use super::diagnosis::DiagnosisState;
+use super::dock::Panel;
 use super::draw_level::DrawsState;
+use super::explain::Explained;
+use super::export::ExportState;
 use super::history::HistoryState;
+use super::memory::ThemeChoice;
 use super::meshes::ObjectMesh;
 use super::moment::Moment;
 use super::report::ReportState;
 use super::scene_view::SceneView;
 use super::stress::StressState;
 use super::texture::PictureCache;
+use super::tour::TourState;
 use super::truth_note::TruthState;
+use super::undo::{self, Undo};
 use super::view::{PictureKind, PictureView, Zoom, available, has_truth};
 use crate::capture::Capture;
+use crate::plan::FramePlan;
+use crate::plan::words::Api;
 use crate::scene::Scene;
 use crate::technique::{Choice, Technique};
 use std::collections::BTreeMap;
@@ -40,8 +49,12 @@ pub struct SceneEntry {
 pub struct OpenScene {
     /// For people.
     pub name: String,
+    /// What opens it again: a built-in name or a path.
+    pub source: Option<String>,
     /// Does anything move?
     pub animated: bool,
+    /// Names of its objects.
+    pub objects: Vec<String>,
     /// What the next run will be.
     pub draft: RunRequest,
     /// The settings of techniques used before, to come back to.
@@ -80,6 +93,10 @@ pub struct Hover {
 pub struct State {
     /// What is looked at.
     pub capture: Option<Arc<Capture>>,
+    /// What was run; `None` for a capture folder.
+    pub plan: Option<Arc<FramePlan>>,
+    /// A run was asked for whose capture is not there yet.
+    pub is_waiting: bool,
     /// What can be changed; `None` for a capture folder.
     pub scene: Option<OpenScene>,
     /// How its meshes hang together; `None` while that is not known.
@@ -134,6 +151,32 @@ pub struct State {
     pub scroll_to_step: bool,
     /// Widgets of the pass tree: they leave the stepping keys alone.
     pub tree_widgets: Vec<egui::Id>,
+    /// Changes that can be taken back.
+    pub undo: Undo,
+    /// How the scene is to be run that was asked for by taking a change back.
+    pub restoring: Option<undo::Moment>,
+    /// The scene's animation.
+    pub animation: Animation,
+    /// Export of what is shown.
+    pub export: ExportState,
+    /// The list of keys is shown.
+    pub help_is_open: bool,
+    /// Dark or light.
+    pub theme: ThemeChoice,
+    /// What was opened, the last first.
+    pub recent: Vec<String>,
+    /// The file that is open changed: it can be loaded again.
+    pub changed_file: Option<String>,
+    /// The tour that one is on.
+    pub tour: Option<TourState>,
+    /// A tour to begin.
+    pub wants_tour: Option<usize>,
+    /// A tab to show.
+    pub wants_panel: Option<Panel>,
+    /// What the Explain tab tells, kept while it is the same.
+    pub explained: Explained,
+    /// In whose words the State tab tells.
+    pub api: Api,
     /// Textures and facts of images.
     pub cache: PictureCache,
 }
@@ -148,6 +191,7 @@ impl State {
     /// Shows another capture. The step stays where it means the same, and so does the pick
     /// where it still lies inside.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
+        self.is_waiting = false;
         let step = self.step;
         self.step = match &self.capture {
             Some(before) => corresponding_step(before, step, &capture),
@@ -172,6 +216,7 @@ impl State {
         self.scroll_to_step = true;
         self.view.follow(&capture, self.step);
         self.capture = Some(capture);
+        self.explained.forget();
         self.cache.forget_unused();
     }
 
@@ -181,6 +226,7 @@ impl State {
             self.view.forget_older_truth();
             self.truth = TruthState::NotAsked;
         }
+        self.explained.forget();
         self.note_draws_of(&capture);
         self.capture = Some(capture);
         self.cache.forget_unused();
@@ -241,8 +287,14 @@ impl State {
     }
 
     /// Another scene is open; `None` for a capture folder, which can't be run again.
-    pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>) {
+    pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>, source: Option<String>) {
         self.meshes = None;
+        self.plan = None;
+        self.changed_file = None;
+        self.animation = Animation::default();
+        if let Some(source) = &source {
+            self.note_recent(source);
+        }
         self.diagnosis.forget();
         self.anatomy.forget();
         self.scene_view.forget();
@@ -251,11 +303,63 @@ impl State {
         }
         self.scene = scene.map(|(scene, draft)| OpenScene {
             name: scene.name.clone(),
+            source,
             animated: scene.is_animated(),
+            objects: scene.objects.iter().map(|object| object.name.clone()).collect(),
             choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
             problem: draft.check().err(),
             draft,
         });
+        self.is_waiting = self.scene.is_some();
+        self.note_for_undo();
+    }
+
+    /// How the scene is run now is a step that can be taken back.
+    fn note_for_undo(&mut self) {
+        if let Some(scene) = self.scene.as_ref().filter(|_| self.restoring.is_none()) {
+            self.undo.note(undo::Moment { source: scene.source.clone(), request: scene.draft.clone() });
+        }
+    }
+
+    /// Takes the last change back.
+    pub fn undo(&mut self, actions: &mut Vec<Action>) {
+        let before = self.undo.undo();
+        self.restore(before, actions);
+    }
+
+    /// Makes it again.
+    pub fn redo(&mut self, actions: &mut Vec<Action>) {
+        let after = self.undo.redo();
+        self.restore(after, actions);
+    }
+
+    fn restore(&mut self, moment: Option<undo::Moment>, actions: &mut Vec<Action>) {
+        let Some(moment) = moment else { return };
+        self.animation.is_running = false;
+        match &mut self.scene {
+            Some(scene) if scene.source == moment.source => {
+                scene.draft = moment.request;
+                self.run_draft(actions);
+            }
+            _ => {
+                // Another scene was open then: it is opened first.
+                actions.extend(moment.source.clone().map(Action::Open));
+                self.restoring = moment.source.is_some().then_some(moment);
+            }
+        }
+    }
+
+    /// Runs the scene that was opened by taking a change back as it was run then.
+    pub fn finish_restoring(&mut self, actions: &mut Vec<Action>) {
+        let is_open =
+            |moment: &mut undo::Moment| self.scene.as_ref().is_some_and(|scene| scene.source == moment.source);
+        if let Some(moment) = self.restoring.take_if(is_open)
+            && let Some(scene) = &mut self.scene
+        {
+            scene.choices.insert(moment.request.choice.technique(), moment.request.choice.clone());
+            scene.draft = moment.request;
+            self.run_draft(actions);
+        }
     }
 
     /// Selects a step; the last one if there are fewer.
@@ -321,6 +425,8 @@ impl State {
             scene.problem = scene.draft.check().err();
             if scene.problem.is_none() {
                 actions.push(Action::Run(Box::new(scene.draft.clone())));
+                self.is_waiting = true;
+                self.note_for_undo();
             }
         }
     }

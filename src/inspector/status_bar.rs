@@ -87,6 +87,8 @@ fn costs(ui: &mut Ui, state: &State) {
     if let Some(job) = &state.job {
         ui.label(theme::note(job.clone()));
         spinner(ui);
+    } else if let Some(done) = &state.export.done {
+        ui.label(theme::note(done.as_str())).on_hover_text("The last export");
     }
 }
 

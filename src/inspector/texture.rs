@@ -10,6 +10,7 @@ use super::depth::DepthMeasure;
 use super::findings;
 use super::palette;
 use crate::capture::Image;
+use crate::picture::Picture;
 use egui::{Color32, ColorImage, Context, TextureFilter, TextureHandle, TextureOptions};
 use std::sync::Arc;
 
@@ -230,6 +231,20 @@ fn colored(image: &Image, coloring: Coloring, most: u32) -> ColorImage {
         }
     }
     ColorImage::new(size, pixels)
+}
+
+/// The picture in its colours, texel by texel, for a file.
+#[must_use]
+pub fn picture(image: &Image, coloring: Coloring) -> Picture {
+    let colored = colored(image, coloring, u32::MAX);
+    let [width, height] = image.size();
+    let mut picture = Picture::filled([width, height], [0; 3]);
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    for (at, color) in places.zip(&colored.pixels) {
+        let [red, green, blue, _] = color.to_array();
+        picture.put(at, [red, green, blue]);
+    }
+    picture
 }
 
 fn shares_of(image: &Image) -> Shares {

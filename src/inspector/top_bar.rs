@@ -1,6 +1,8 @@
 //! The bar at the top: what is open, and the technique.
 
 use super::action::Action;
+use super::export;
+use super::memory::ThemeChoice;
 use super::state::{OpenDialog, State};
 use super::theme;
 use crate::technique::Technique;
@@ -16,13 +18,56 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
             if ui.button("Open…").on_hover_text("Open a scene, a model or a capture folder (Ctrl-O)").clicked() {
                 state.dialog = Some(OpenDialog::default());
             }
-            if let Some(name) = open_name(state) {
-                ui.label(RichText::new(name).color(theme::of(ui).text)).on_hover_text("What is open");
-            }
+            recent(ui, state, actions);
             ui.add_space(8.0);
             techniques(ui, state, actions);
+            let right = egui::Layout::right_to_left(egui::Align::Center);
+            ui.with_layout(right, |ui| tools(ui, state, actions));
         });
     });
+}
+
+/// What is open, and what was: a menu.
+fn recent(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
+    let Some(name) = open_name(state) else { return };
+    let menu = ui.menu_button(RichText::new(&name).color(theme::of(ui).text), |ui| {
+        ui.label(theme::note("Opened before"));
+        if state.recent.is_empty() {
+            ui.label("nothing yet");
+        }
+        for source in &state.recent {
+            if ui.button(source).clicked() {
+                actions.push(Action::Open(source.clone()));
+                ui.close();
+            }
+        }
+    });
+    menu.response.accessible_name(format!("What is open: {name}")).on_hover_text("What is open, and what was");
+}
+
+/// Right to left: help, theme, export, redo, undo.
+fn tools(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
+        state.help_is_open = true;
+    }
+    let other = match state.theme.other() {
+        ThemeChoice::Dark => "Dark",
+        ThemeChoice::Light => "Light",
+    };
+    let theme = ui.button(other).on_hover_text(format!("Change to the {} theme (Ctrl-L)", other.to_lowercase()));
+    if theme.clicked() {
+        state.theme = state.theme.other();
+    }
+    let menu = ui.menu_button("Export", |ui| export::menu(ui, state));
+    menu.response.on_hover_text("Save the picture, its values, the capture or the scene (Ctrl-S)");
+    let redo = ui.add_enabled(state.undo.can_redo(), egui::Button::new("Redo"));
+    if redo.on_hover_text("Make the change again (Ctrl-Shift-Z)").clicked() {
+        state.redo(actions);
+    }
+    let undo = ui.add_enabled(state.undo.can_undo(), egui::Button::new("Undo"));
+    if undo.on_hover_text("Take the last change of scene or technique back (Ctrl-Z)").clicked() {
+        state.undo(actions);
+    }
 }
 
 fn open_name(state: &State) -> Option<String> {

@@ -22,6 +22,7 @@ mod raster;
 mod split;
 pub mod text;
 mod unseen;
+pub mod words;
 
 pub use buffers::{Blob, DrawMesh, SurfaceData};
 pub use coverage::{Clip, Coverage, Covering, Face, FragmentLog, LoggedFragment};

@@ -20,15 +20,29 @@ mod build;
 mod problem;
 mod save;
 mod shape;
+mod store;
 mod tables;
 
 pub use save::{SaveError, SavedScene, save};
+pub use store::{StoreError, store};
 
 use super::open::stem;
 use super::read_text::read_text;
 use super::{Scene, SceneError};
 use problem::Problem;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// The models that a scene file names; none where it can't be read, which loading it tells.
+#[must_use]
+pub fn models_of(path: &Path) -> Vec<PathBuf> {
+    let table = std::fs::read_to_string(path).ok().and_then(|text| text.parse::<toml::Table>().ok());
+    let objects = table.as_ref().and_then(|table| table.get("objects")?.as_array());
+    let mesh = |object: &toml::Value| Some(path.with_file_name(object.get("mesh")?.as_str()?));
+    let mut models: Vec<PathBuf> = objects.into_iter().flatten().filter_map(mesh).collect();
+    models.sort();
+    models.dedup();
+    models
+}
 
 /// Loads a scene file; meshes are looked for relative to it.
 ///

@@ -26,7 +26,7 @@ pub use material::{Material, Shading};
 pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
 pub use model_scene::model_scene;
 pub use object::{Motion, Object, Orbit, Pose, Swing};
-pub use open::{OpenSpec, open};
+pub use open::{OpenSpec, files_of, open};
 pub use suggestion::suggestion;
 
 use std::collections::BTreeMap;

@@ -3,7 +3,7 @@
 use super::builtin::{self, Builtin};
 use super::suggestion::nearest;
 use super::{Scene, SceneError, file, model_scene, obj};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What to open, and how a bare model is completed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,6 +20,18 @@ impl OpenSpec {
     pub fn new(name: impl Into<String>) -> OpenSpec {
         OpenSpec { name: name.into(), floor: true }
     }
+}
+
+/// The files that a scene is made of: none for a built-in one, a model, or a scene file with its models.
+#[must_use]
+pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
+    if Builtin::named(&spec.name).is_some() {
+        return Vec::new();
+    }
+    let path = PathBuf::from(&spec.name);
+    let is_scene_file = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    let models = if is_scene_file { file::models_of(&path) } else { Vec::new() };
+    std::iter::once(path).chain(models).collect()
 }
 
 /// Opens a scene. The result is at time 0.

@@ -266,6 +266,16 @@ impl Technique {
 }
 
 impl Choice {
+    /// As a scene file names it: the technique, and the settings that are not as they are by default.
+    #[must_use]
+    pub fn to_request(&self) -> TechniqueRequest {
+        let changed = self.technique().settings().iter().filter_map(|spec| {
+            let value = self.settings().get(spec.key)?;
+            (value != spec.default).then(|| (spec.key.to_owned(), value.clone()))
+        });
+        TechniqueRequest { name: self.technique().name().to_owned(), settings: changed.collect() }
+    }
+
     /// What a report compares by default: every row of every technique.
     ///
     /// # Errors

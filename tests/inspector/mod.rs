@@ -4,6 +4,7 @@ mod by_hand;
 mod counts;
 mod diagnosis;
 mod draws;
+mod explain;
 mod history;
 mod history_by_hand;
 mod history_pictures;
@@ -12,6 +13,7 @@ mod pictures;
 mod report;
 mod scene_view;
 mod settings;
+mod shell;
 mod stress;
 mod truth;
 
@@ -37,7 +39,14 @@ struct Seen {
 
 fn run_request(technique: Technique) -> RunRequest {
     let scene = scene();
-    RunRequest { choice: Choice::new(technique), size: SIZE, camera: scene.camera, lights: scene.lights, time: 0.0 }
+    RunRequest {
+        choice: Choice::new(technique),
+        size: SIZE,
+        camera: scene.camera,
+        lights: scene.lights,
+        time: 0.0,
+        off: std::collections::BTreeSet::new(),
+    }
 }
 
 fn scene() -> Scene {

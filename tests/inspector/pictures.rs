@@ -60,6 +60,7 @@ pub fn inspector(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>
         camera: scene.camera,
         lights: scene.lights.clone(),
         time: 0.0,
+        off: std::collections::BTreeSet::new(),
     };
     inspector.set_scene(scene, draft);
     inspector.set_capture(capture.clone());

@@ -1,16 +1,13 @@
 //! The Scene tab: a second camera that sees the first.
 
 use super::pictures::{draw, inspector as inspector_over, sizes};
-use super::{Seen, click, harness_of, inspector, press, z_fail};
+use super::{Seen, click, harness_of};
 use crate::common;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::PathBuf;
 use std::sync::Arc;
-use stencilscope::anatomy::Anatomy;
-use stencilscope::capture::Capture;
-use stencilscope::inspector::Action;
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 

@@ -26,7 +26,7 @@ pub(super) struct Done {
     /// What is known of it by now.
     pub capture: Arc<Capture>,
     /// What was run.
-    pub plan: FramePlan,
+    pub plan: Arc<FramePlan>,
     /// It was not timed yet, and is short enough to be.
     pub wants_timing: bool,
 }

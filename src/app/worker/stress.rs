@@ -45,6 +45,7 @@ impl Bench {
             None => driven(case, value, &self.choice),
         };
         let choice = choice.map_err(|error| format!("{}: {error}", case.name))?;
+        self.spec = None;
         self.show_scene(Box::new(scene), 0.0, Brought { choice, size: case.size })
     }
 

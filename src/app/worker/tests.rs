@@ -13,6 +13,7 @@ fn started() -> (Worker, u64, Receiver<News>) {
     let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
     let start = Start {
         source: ViewSource::Scene(Box::new(scene)),
+        name: OpenSpec::new("table"),
         capture: CaptureRequest::new(Choice::new(Technique::Planar), [64, 36]),
         time: 0.0,
         adapter: None,
@@ -228,7 +229,7 @@ fn the_last_frame_is_judged_and_keeps_its_truth_when_it_is_timed() {
     let request = CaptureRequest::new(Choice::new(Technique::Planar), [64, 36]);
     let mut bench = Bench::new(None, &request, Box::new(move |news| drop(tell.send(news))));
     let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
-    bench.begin(ViewSource::Scene(Box::new(scene)), 0.0);
+    bench.begin(ViewSource::Scene(Box::new(scene)), OpenSpec::new("table"), 0.0);
     bench.judge(1, &Progress::default());
     bench.time();
     let heard: Vec<News> = news.try_iter().collect();
@@ -336,4 +337,101 @@ fn wait_for_history(worker: &Worker, frame: u64, news: &Receiver<News>) {
         News::History { .. } => Some(()),
         _ => None,
     });
+}
+
+#[test]
+fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
+    let (worker, _, news) = started();
+    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let off = (1..scene.objects.len()).collect();
+    let request = RunRequest {
+        choice: Choice::new(Technique::ZFail),
+        size: [64, 36],
+        camera: scene.camera,
+        lights: scene.lights.clone(),
+        time: 0.0,
+        off,
+    };
+    assert!(worker.order(Order::Run { generation: 1, request: Box::new(request) }));
+    let plan = wait(&news, |news| match news {
+        News::Captured { plan, .. } if plan.technique == "z-fail" => Some(plan),
+        _ => None,
+    });
+    let names: std::collections::BTreeSet<&str> =
+        plan.passes.iter().flat_map(|pass| &pass.draws).filter_map(|draw| draw.caster.as_deref()).collect();
+    assert!(names.iter().all(|name| *name == scene.objects[0].name), "{names:?}");
+}
+
+#[test]
+fn a_scene_is_saved_as_it_is_run_and_what_is_there_is_asked_about() {
+    let (worker, _, news) = started();
+    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("mine.toml").display().to_string();
+    let mut choice = Choice::new(Technique::ShadowMap);
+    choice.set("size", "256").expect("a size");
+    let request = RunRequest {
+        choice: choice.clone(),
+        size: [64, 36],
+        camera: crate::scene::Camera { near: 0.25, ..scene.camera },
+        lights: scene.lights.clone(),
+        time: 0.0,
+        off: std::collections::BTreeSet::from([1]),
+    };
+    let save = |replace| {
+        let order = Order::SaveScene { generation: 1, request: Box::new(request.clone()), path: path.clone(), replace };
+        assert!(worker.order(order));
+        wait(&news, |news| if let News::Exported(exported) = news { Some(exported) } else { None })
+    };
+    assert!(matches!(save(false), Exported::Done(_)));
+    assert!(matches!(save(false), Exported::Taken(_)));
+    let again = crate::scene::open(&OpenSpec::new(path.clone())).expect("a scene file");
+    assert_eq!(again.camera.near, 0.25);
+    assert_eq!(again.objects.len() + 1, scene.objects.len());
+    assert_eq!(again.technique.map(|wish| Choice::parse(&wish).expect("a choice")), Some(choice));
+}
+
+#[test]
+fn a_changed_file_is_loaded_again_with_the_camera_as_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.toml");
+    let text = |height: f64| {
+        format!(
+            "[camera]\neye = [0, 2, 6]\ntarget = [0, 0, 0]\n[[lights]]\nposition = [1, 4, 2, 1]\n\
+             [[objects]]\nname = \"box\"\nmesh = {{ shape = \"box\", size = [1, {height}, 1] }}\n"
+        )
+    };
+    std::fs::write(&path, text(1.0)).expect("a file");
+    let spec = OpenSpec::new(path.display().to_string());
+    let scene = crate::scene::open(&spec).expect("a scene file");
+    let start = Start {
+        source: ViewSource::Scene(Box::new(scene.clone())),
+        name: spec,
+        capture: CaptureRequest::new(Choice::new(Technique::ZFail), [64, 36]),
+        time: 0.0,
+        adapter: None,
+    };
+    let (tell, news) = channel();
+    let worker = Worker::start(start, move |news| drop(tell.send(news))).expect("a thread");
+    let files = wait(&news, |news| if let News::Opened { files, .. } = news { Some(files) } else { None });
+    assert_eq!(files, [path.clone()]);
+    std::fs::write(&path, text(2.0)).expect("a file");
+    let camera = crate::scene::Camera { eye: glam::DVec3::new(3.0, 2.0, 6.0), ..scene.camera };
+    let request = RunRequest {
+        choice: Choice::new(Technique::ZPass),
+        size: [64, 36],
+        camera,
+        lights: scene.lights.clone(),
+        time: 0.0,
+        off: std::collections::BTreeSet::new(),
+    };
+    assert!(worker.order(Order::Reload { request: Box::new(request) }));
+    let (scene, request) = wait(&news, |news| match news {
+        News::Opened { scene, request, .. } => Some((scene, request)),
+        _ => None,
+    });
+    let tall = scene.objects[0].mesh.positions().iter().map(|at| at.y).fold(f64::NEG_INFINITY, f64::max);
+    assert_eq!(tall, 1.0, "two high about its middle");
+    assert_eq!(request.camera.eye.x, 3.0);
+    assert_eq!(request.choice.technique(), Technique::ZPass);
 }

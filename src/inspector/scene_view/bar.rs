@@ -149,6 +149,11 @@ fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
     if let Some(thinned) = &stage.thinned {
         ui.add(egui::Label::new(theme::note(thinned)).wrap());
     }
+    if !stage.left_out.is_empty() {
+        let names = stage.left_out.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
+        let words = format!("Without the volumes of what holds everything ({names}): choose it to see them.");
+        ui.add(egui::Label::new(theme::note(words)).wrap());
+    }
     if anatomy.volumes.is_empty() && anatomy.silhouettes.iter().any(|one| !one.edges.is_empty()) {
         let words = format!("{} draws no volumes; silhouettes exist all the same.", anatomy.technique);
         ui.add(egui::Label::new(theme::note(words)).wrap());

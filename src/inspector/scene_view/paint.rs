@@ -10,8 +10,10 @@ use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
 /// How far lines and shells are drawn before what they lie on, in parts of the stage's radius.
-const LINES_BEFORE: f32 = 0.01;
+const LINES_BEFORE: f32 = 0.04;
 const SHELLS_BEFORE: f32 = 0.004;
+/// What is left of the colour of a wall that one looks through.
+const GLASS: f32 = 0.07;
 /// Width of a line's soft border, points.
 const SOFT: f32 = 0.6;
 
@@ -110,6 +112,10 @@ impl View<'_> {
             None => Vec3::Z,
         };
         let normal = self.rotation * face.normal;
+        // What lies between the viewer and all that is held.
+        if face.inner * normal.dot(towards) < 0.0 {
+            return face.color.gamma_multiply(GLASS);
+        }
         // A little from above, so that a box's faces differ.
         let share = 0.5 + 0.4 * normal.dot(towards).abs() + 0.1 * normal.dot(self.rotation * Vec3::Y).abs();
         let [red, green, blue, alpha] = face.color.to_array();
@@ -187,6 +193,7 @@ mod tests {
             corners: [Vec3::new(-1.0, -1.0, z), Vec3::new(1.0, -1.0, z), Vec3::new(0.0, 1.0, z)],
             normal: Vec3::ZERO,
             color,
+            inner: 0.0,
         }
     }
 

@@ -22,7 +22,7 @@ const KEY_MOVE: f32 = 0.05;
 const WHEEL_ZOOM: f32 = 0.004;
 const KEY_ZOOM: f64 = 1.15;
 /// A multiplicity is written where its edge is so long on the screen, points.
-const LEAST_EDGE: f32 = 30.0;
+const LEAST_EDGE: f32 = 44.0;
 
 /// Draws `pane` into a rectangle.
 pub fn ui(
@@ -127,6 +127,8 @@ fn navigate(ui: &Ui, view: &mut SceneView, pane: Pane, response: &Response) {
 fn labels(ui: &Ui, stage: &Stage, lens: &Lens, rect: Rect) {
     let painter = ui.painter_at(rect);
     let colors = theme::of(ui);
+    // Words that would lie on others are left out.
+    let mut taken: Vec<Rect> = Vec::new();
     for label in &stage.labels {
         if let Some(ends) = label.of {
             let is_long = |[from, to]: [egui::Pos2; 2]| (to - from).length() >= LEAST_EDGE;
@@ -135,7 +137,11 @@ fn labels(ui: &Ui, stage: &Stage, lens: &Lens, rect: Rect) {
             }
         }
         let Some(at) = lens.place(label.at).filter(|at| rect.contains(*at)) else { continue };
-        plate(&painter, at, Align2::CENTER_CENTER, &label.text, label.of.is_some(), colors);
+        let room = Rect::from_center_size(at, vec2(7.0 * label.text.chars().count() as f32 + 10.0, 18.0));
+        if taken.iter().all(|other| !other.intersects(room)) {
+            taken.push(room);
+            plate(&painter, at, Align2::CENTER_CENTER, &label.text, label.of.is_some(), colors);
+        }
     }
 }
 

@@ -1,0 +1,92 @@
+//! Looks whether the files of the open scene changed on disk.
+//!
+//! It asks for their times every second: no system has to support watching, and a file that an
+//! editor replaces by another is seen too. Nothing is told, and nothing drawn, unless one changed.
+
+use super::news::WindowNews;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, SystemTime};
+use winit::event_loop::EventLoopProxy;
+
+/// How often it looks.
+const EVERY: Duration = Duration::from_secs(1);
+
+/// When a file was written last, and how large it is; `None` while it is not there.
+type Stamp = Option<(SystemTime, u64)>;
+
+/// The files that are looked at.
+#[derive(Debug, Default, Clone)]
+pub struct Watch {
+    files: Arc<Mutex<Vec<(PathBuf, Stamp)>>>,
+}
+
+impl Watch {
+    /// Starts to look.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn start(proxy: EventLoopProxy<WindowNews>) -> std::io::Result<Watch> {
+        let watch = Watch::default();
+        let files = Arc::clone(&watch.files);
+        let look = move || {
+            loop {
+                std::thread::sleep(EVERY);
+                let changed = files.lock().ok().and_then(|mut files| first_changed(&mut files));
+                let told = changed.map(|file| proxy.send_event(WindowNews::FileChanged(file)));
+                if told.is_some_and(|told| told.is_err()) {
+                    // The window is gone.
+                    return;
+                }
+            }
+        };
+        std::thread::Builder::new().name("file watch".to_owned()).spawn(look)?;
+        Ok(watch)
+    }
+
+    /// Looks at these from now on.
+    pub fn look_at(&self, files: Vec<PathBuf>) {
+        if let Ok(mut watched) = self.files.lock() {
+            *watched = files.into_iter().map(|file| (file.clone(), stamp(&file))).collect();
+        }
+    }
+}
+
+fn stamp(file: &Path) -> Stamp {
+    let facts = std::fs::metadata(file).ok()?;
+    Some((facts.modified().ok()?, facts.len()))
+}
+
+/// The first file that changed and is there; a change is told once.
+fn first_changed(files: &mut [(PathBuf, Stamp)]) -> Option<String> {
+    files.iter_mut().find_map(|(file, before)| {
+        let now = stamp(file);
+        // One that is away for a moment is being replaced.
+        let has_changed = now.is_some() && now != *before;
+        has_changed.then(|| {
+            *before = now;
+            file.display().to_string()
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_is_told_once_and_a_missing_file_is_no_change() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.obj");
+        std::fs::write(&file, "v 0 0 0").expect("a file");
+        let mut files = vec![(file.clone(), stamp(&file))];
+        assert_eq!(first_changed(&mut files), None);
+        std::fs::write(&file, "v 0 0 0\nv 1 0 0").expect("a file");
+        assert_eq!(first_changed(&mut files), Some(file.display().to_string()));
+        assert_eq!(first_changed(&mut files), None);
+        std::fs::remove_file(&file).expect("it is there");
+        assert_eq!(first_changed(&mut files), None);
+        std::fs::write(&file, "v 0 0 0").expect("a file");
+        assert_eq!(first_changed(&mut files), Some(file.display().to_string()));
+    }
+}

@@ -1,0 +1,48 @@
+//! The help window: every key and what it does, from the one table of keys.
+
+use super::keys::{BINDINGS, PICTURE, Scope};
+use super::state::State;
+use super::theme;
+use egui::{Context, Id, Ui};
+
+/// Draws the window while it is open.
+pub fn ui(ctx: &Context, state: &mut State) {
+    if !state.help_is_open {
+        return;
+    }
+    let modal = egui::Modal::new(Id::unique("help")).frame(theme::dialog(ctx));
+    let answer = modal.show(ctx, |ui| {
+        ui.set_width(520.0_f32.min(ctx.content_rect().width() - 64.0));
+        let scroll = egui::ScrollArea::vertical().max_height((ctx.content_rect().height() - 140.0).max(80.0));
+        scroll.show(ui, contents);
+        ui.add_space(8.0);
+        ui.button("Close help").on_hover_text("Escape").clicked()
+    });
+    state.help_is_open = !(answer.inner || answer.should_close());
+}
+
+fn contents(ui: &mut Ui) {
+    theme::heading(ui, "Keys");
+    section(ui, "Anywhere", of_scope(Scope::Anywhere));
+    section(ui, "While the passes, or nothing, have the focus", of_scope(Scope::Passes));
+    section(ui, "On the picture", PICTURE.into_iter());
+}
+
+fn of_scope(scope: Scope) -> impl Iterator<Item = (&'static str, &'static str)> {
+    BINDINGS.iter().filter(move |binding| binding.scope == scope).map(|binding| (binding.keys, binding.does))
+}
+
+fn section(ui: &mut Ui, title: &str, rows: impl Iterator<Item = (&'static str, &'static str)>) {
+    ui.add_space(8.0);
+    ui.label(theme::note(title));
+    egui::Grid::new(title).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
+        for (keys, does) in rows {
+            ui.add_sized(
+                egui::vec2(168.0, theme::ROW_HEIGHT - 4.0),
+                egui::Label::new(theme::number(keys)).halign(egui::Align::Min),
+            );
+            ui.label(does);
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,214 @@
+//! Guided tours: stops that drive the panels and say what is seen.
+//!
+//! A stop first asks for its technique or scene, and waits for the capture; then it goes to its step,
+//! picture, pixel and tab. Between stops the user may do what they like: the next stop finds its place
+//! again. The stops are in `tour_stops.rs`.
+
+use super::action::Action;
+use super::state::State;
+use super::theme;
+use super::tour_stops::{Go, TOURS, Tour};
+use crate::accuracy::Finding;
+use crate::capture::Capture;
+use egui::{Label, Margin, RichText, Ui};
+
+/// Labels of a light that tours look for.
+const LIT: u8 = 0;
+const SHADOW: u8 = 1;
+
+/// Where one is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TourState {
+    tour: usize,
+    stop: usize,
+    /// What the stop wants is not done yet.
+    is_pending: bool,
+}
+
+impl State {
+    /// Begins a tour.
+    pub fn start_tour(&mut self, tour: usize, actions: &mut Vec<Action>) {
+        self.go_to_stop(tour, 0, actions);
+    }
+
+    fn go_to_stop(&mut self, tour: usize, stop: usize, actions: &mut Vec<Action>) {
+        let Some(found) = TOURS.get(tour).filter(|found| stop < found.stops.len()) else {
+            self.tour = None;
+            return;
+        };
+        self.tour = Some(TourState { tour, stop, is_pending: true });
+        self.animation.is_running = false;
+        let is_open = |scene: &str| self.scene.as_ref().is_some_and(|open| open.name == scene);
+        if let Some(scene) = found.stops[..=stop].iter().rev().find_map(|stop| scene_of(stop.go)) {
+            if !is_open(scene) {
+                self.restoring = None;
+                self.is_waiting = true;
+                actions.push(Action::Open(scene.to_owned()));
+                return;
+            }
+        }
+        self.choose_technique(found.stops[stop].technique(found), actions);
+    }
+
+    /// Does what the stop wants, as soon as its capture is there.
+    pub fn continue_tour(&mut self, actions: &mut Vec<Action>) {
+        let Some(at) = self.tour.filter(|tour| tour.is_pending && !self.is_waiting) else { return };
+        let Some(tour) = TOURS.get(at.tour) else { return };
+        let Some(capture) = self.capture.clone() else { return };
+        let stop = &tour.stops[at.stop];
+        let technique = stop.technique(tour);
+        let Some(scene) = &self.scene else {
+            // A capture folder: there is nothing to run. The stop is told all the same.
+            self.tour = Some(TourState { is_pending: false, ..at });
+            return;
+        };
+        if scene.draft.choice.technique() != technique {
+            return self.choose_technique(technique, actions);
+        }
+        if capture.technique != technique.name() {
+            return;
+        }
+        self.tour = Some(TourState { is_pending: false, ..at });
+        for go in stop.go {
+            self.go(*go, &capture);
+        }
+    }
+
+    fn go(&mut self, go: Go, capture: &Capture) {
+        let with = |word: &str| capture.steps.iter().position(|step| step.name.contains(word));
+        match go {
+            Go::Scene(_) | Go::Technique(_) => {}
+            Go::First => self.select_step(0),
+            Go::Last => self.select_step(usize::MAX),
+            Go::Step(word) => {
+                if let Some(step) = with(word) {
+                    self.select_step(step);
+                }
+            }
+            Go::Picture(kind) => self.choose_picture(kind),
+            Go::Panel(panel) => self.wants_panel = Some(panel),
+            Go::PickShadow => self.pick = pixel_with(capture, SHADOW).or(self.pick),
+            Go::PickLit => self.pick = pixel_with(capture, LIT).or(self.pick),
+            Go::PickWrong => self.pick = wrong_pixel(capture).or_else(|| pixel_with(capture, SHADOW)).or(self.pick),
+        }
+    }
+}
+
+fn scene_of(go: &[Go]) -> Option<&'static str> {
+    go.iter().find_map(|go| if let Go::Scene(name) = go { Some(*name) } else { None })
+}
+
+/// The pixel nearest to the middle that has this label under the first light.
+fn pixel_with(capture: &Capture, label: u8) -> Option<[u32; 2]> {
+    let image = capture.lights.iter().find_map(|light| light.shadow.as_ref())?;
+    nearest_to_middle(image, |value| value == label)
+}
+
+/// The wrong pixel nearest to the middle, where the truth is known.
+fn wrong_pixel(capture: &Capture) -> Option<[u32; 2]> {
+    let truth = capture.lights.iter().find_map(|light| light.truth.as_ref())?;
+    nearest_to_middle(&truth.findings, |value| Finding::from_byte(value).is_some_and(Finding::is_wrong))
+}
+
+fn nearest_to_middle(image: &crate::capture::Image, is_it: impl Fn(u8) -> bool) -> Option<[u32; 2]> {
+    let [width, height] = image.size().map(i64::from);
+    let far = |x: i64, y: i64| (2 * x - width).pow(2) + (2 * y - height).pow(2);
+    let found = image.rows().enumerate().flat_map(|(y, row)| {
+        row.iter().enumerate().filter(|(_, value)| is_it(**value)).map(move |(x, _)| (x as i64, y as i64))
+    });
+    found.min_by_key(|(x, y)| far(*x, *y)).map(|(x, y)| [x as u32, y as u32])
+}
+
+/// The tours, the chosen technique's first.
+pub fn list(ui: &mut Ui, state: &mut State) {
+    theme::heading(ui, "Guided tours");
+    ui.add(
+        Label::new(theme::note("Each goes through a technique, stop by stop, and moves the panels for you.")).wrap(),
+    );
+    let current = state.scene.as_ref().map(|scene| scene.draft.choice.technique());
+    let mut order: Vec<usize> = (0..TOURS.len()).collect();
+    order.sort_by_key(|index| Some(TOURS[*index].technique) != current);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        for index in order {
+            let tour = &TOURS[index];
+            let button = ui.button(format!("Tour of {}", tour.technique.name()));
+            if button.on_hover_text(tour.promise).clicked() {
+                state.wants_tour = Some(index);
+            }
+        }
+    });
+}
+
+/// The stop, over the status bar, while one is on a tour.
+pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
+    if let Some(tour) = state.wants_tour.take() {
+        state.start_tour(tour, actions);
+    }
+    state.continue_tour(actions);
+    let Some(at) = state.tour else { return };
+    let Some(tour) = TOURS.get(at.tour) else { return };
+    let frame = egui::Frame::new().fill(theme::of(ui).raised).inner_margin(Margin::symmetric(12, 8));
+    let mut to = None;
+    egui::Panel::bottom("tour").frame(frame).show(ui, |ui| {
+        to = stop(ui, tour, at);
+    });
+    match to {
+        None => {}
+        Some(None) => state.tour = None,
+        Some(Some(stop)) => state.go_to_stop(at.tour, stop, actions),
+    }
+}
+
+/// Text and buttons; where to go, `Some(None)` to end.
+fn stop(ui: &mut Ui, tour: &Tour, at: TourState) -> Option<Option<usize>> {
+    let stop = &tour.stops[at.stop];
+    let count = tour.stops.len();
+    let mut to = None;
+    ui.horizontal(|ui| {
+        theme::heading(ui, stop.title);
+        ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if ui.button("End tour").on_hover_text("Leave the panels as they are").clicked() {
+                to = Some(None);
+            }
+            let is_last = at.stop + 1 == count;
+            if ui.add_enabled(!is_last, egui::Button::new("Next stop")).clicked() {
+                to = Some(Some(at.stop + 1));
+            }
+            if ui.add_enabled(at.stop > 0, egui::Button::new("Stop before")).clicked() {
+                to = Some(at.stop.checked_sub(1));
+            }
+        });
+    });
+    let text = if at.is_pending { "The frame is being made …" } else { stop.text };
+    ui.add(Label::new(RichText::new(text).color(theme::of(ui).text)).wrap());
+    to
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin::Builtin;
+    use crate::technique::Technique;
+
+    #[test]
+    fn every_technique_has_a_tour_whose_scenes_exist() {
+        for technique in Technique::ALL {
+            assert!(TOURS.iter().any(|tour| tour.technique == technique), "{}", technique.name());
+        }
+        for tour in &TOURS {
+            assert!(tour.stops.len() >= 3, "{}", tour.technique.name());
+            for scene in tour.stops.iter().filter_map(|stop| scene_of(stop.go)) {
+                assert!(Builtin::named(scene).is_some(), "{scene}");
+            }
+        }
+    }
+
+    #[test]
+    fn texts_have_only_letters_that_the_face_has() {
+        for stop in TOURS.iter().flat_map(|tour| tour.stops) {
+            assert!(!stop.text.contains('→') && !stop.text.is_empty(), "{}", stop.title);
+        }
+    }
+}

@@ -1,0 +1,369 @@
+//! A draw's whole raster state in the words of WebGPU, OpenGL and Direct3D 12, and as a sentence.
+//!
+//! The three name the same functions; where they differ, the lines say so by being what one would
+//! write there. The stencil's reference and masks hold for both faces in WebGPU; OpenGL and
+//! Direct3D get them for each face, equal.
+
+use super::{ColorWrite, Pass, RasterState, StencilFace};
+use wgpu::{CompareFunction, StencilOperation};
+
+/// Whose words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Api {
+    /// As a WebGPU pipeline is described.
+    #[default]
+    WebGpu,
+    /// OpenGL 4.5 calls.
+    OpenGl,
+    /// Direct3D 12 descriptions.
+    Direct3D,
+}
+
+impl Api {
+    /// All.
+    pub const ALL: [Api; 3] = [Api::WebGpu, Api::OpenGl, Api::Direct3D];
+
+    /// On its button.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Api::WebGpu => "WebGPU",
+            Api::OpenGl => "OpenGL",
+            Api::Direct3D => "Direct3D 12",
+        }
+    }
+}
+
+/// The state as lines that one would write in `api`, in the order depth, stencil, raster, colour.
+#[must_use]
+pub fn lines(raster: &RasterState, api: Api) -> Vec<String> {
+    match api {
+        Api::WebGpu => web_gpu(raster),
+        Api::OpenGl => open_gl(raster),
+        Api::Direct3D => direct3d(raster),
+    }
+}
+
+/// What a fragment of this draw does, in a sentence for each buffer.
+#[must_use]
+pub fn sentences(raster: &RasterState, pass: &Pass) -> Vec<String> {
+    let mut said = Vec::new();
+    if pass.depth_stencil.is_some() {
+        let passes = match raster.depth_compare {
+            CompareFunction::Always => "Every fragment passes the depth test".to_owned(),
+            CompareFunction::Never => "No fragment passes the depth test".to_owned(),
+            compare => {
+                format!("A fragment passes the depth test where its depth is {} the stored one", relation(compare))
+            }
+        };
+        let stores = if raster.depth_write { "and stores its depth" } else { "and leaves the stored depth as it is" };
+        said.push(format!("{passes}, {stores}."));
+    } else {
+        said.push("There is no depth and no stencil buffer in this pass.".to_owned());
+    }
+    if raster.stencil.is_enabled() {
+        let (front, back) = (face_sentence(&raster.stencil.front, raster), face_sentence(&raster.stencil.back, raster));
+        if front == back {
+            said.push(format!("Stencil, both faces: {front}."));
+        } else {
+            said.push(format!("Stencil, front faces: {front}."));
+            said.push(format!("Stencil, back faces: {back}."));
+        }
+    }
+    said.push(
+        match raster.color {
+            ColorWrite::None => "No colour is written.",
+            ColorWrite::Replace => "Its colour takes the place of what was there.",
+            ColorWrite::Add => "Its colour is added to what was there.",
+            ColorWrite::Multiply => "What was there is multiplied by its colour.",
+            ColorWrite::Minimum => "The smaller of both colours stays, channel by channel.",
+        }
+        .to_owned(),
+    );
+    said
+}
+
+fn relation(compare: CompareFunction) -> &'static str {
+    match compare {
+        CompareFunction::Never => "never like",
+        CompareFunction::Less => "less than",
+        CompareFunction::Equal => "equal to",
+        CompareFunction::LessEqual => "at most",
+        CompareFunction::Greater => "greater than",
+        CompareFunction::NotEqual => "other than",
+        CompareFunction::GreaterEqual => "at least",
+        CompareFunction::Always => "anything beside",
+    }
+}
+
+fn face_sentence(face: &StencilFace, raster: &RasterState) -> String {
+    let test = match face.compare {
+        CompareFunction::Always => "its test always passes".to_owned(),
+        CompareFunction::Never => "its test never passes".to_owned(),
+        compare => {
+            let mask = if raster.stencil.read_mask == 0xff {
+                String::new()
+            } else {
+                format!(" (bits {:#04x})", raster.stencil.read_mask)
+            };
+            format!("it passes where {} is {} the stored count{mask}", raster.stencil_reference, relation(compare))
+        }
+    };
+    let acts: Vec<String> = [
+        ("a fragment that fails it", face.fail_op),
+        ("one that fails the depth test", face.depth_fail_op),
+        ("one that passes both", face.pass_op),
+    ]
+    .into_iter()
+    .filter(|(_, op)| *op != StencilOperation::Keep && raster.stencil.write_mask != 0)
+    .map(|(who, op)| format!("{who} {}", operation(op, raster.stencil_reference)))
+    .collect();
+    if acts.is_empty() { format!("{test}; nothing changes it") } else { format!("{test}; {}", acts.join("; ")) }
+}
+
+fn operation(op: StencilOperation, reference: u8) -> String {
+    match op {
+        StencilOperation::Keep => "keeps the count".to_owned(),
+        StencilOperation::Zero => "sets it to 0".to_owned(),
+        StencilOperation::Replace => format!("sets it to {reference}"),
+        StencilOperation::Invert => "inverts its bits".to_owned(),
+        StencilOperation::IncrementClamp => "adds 1, up to 255".to_owned(),
+        StencilOperation::DecrementClamp => "takes 1 away, down to 0".to_owned(),
+        StencilOperation::IncrementWrap => "adds 1 (255 becomes 0)".to_owned(),
+        StencilOperation::DecrementWrap => "takes 1 away (0 becomes 255)".to_owned(),
+    }
+}
+
+/// `DecrementWrap` as `decrement-wrap`, `DECREMENT_WRAP` …: words joined by `between`.
+fn spelled(name: &str, between: char) -> String {
+    let mut words = String::new();
+    for letter in name.chars() {
+        if letter.is_uppercase() && !words.is_empty() {
+            words.push(between);
+        }
+        words.extend(letter.to_lowercase());
+    }
+    words
+}
+
+fn web_gpu(raster: &RasterState) -> Vec<String> {
+    let word = |name: String| format!("\"{}\"", spelled(&name, '-'));
+    let stencil = &raster.stencil;
+    let face = |name: &str, face: &StencilFace| {
+        format!(
+            "{name}: {{ compare: {}, failOp: {}, depthFailOp: {}, passOp: {} }},",
+            word(format!("{:?}", face.compare)),
+            word(format!("{:?}", face.fail_op)),
+            word(format!("{:?}", face.depth_fail_op)),
+            word(format!("{:?}", face.pass_op))
+        )
+    };
+    let mut lines = vec![
+        format!("depthCompare: {},", word(format!("{:?}", raster.depth_compare))),
+        format!("depthWriteEnabled: {},", raster.depth_write),
+        format!("depthBias: {},", raster.depth_bias.constant),
+        format!("depthBiasSlopeScale: {},", raster.depth_bias.slope_scale),
+        face("stencilFront", &stencil.front),
+        face("stencilBack", &stencil.back),
+        format!("stencilReadMask: {:#04x},", stencil.read_mask & 0xff),
+        format!("stencilWriteMask: {:#04x},", stencil.write_mask & 0xff),
+        format!("pass.setStencilReference({});", raster.stencil_reference),
+        format!("cullMode: \"{}\",", raster.cull.map_or("none".to_owned(), |face| format!("{face:?}").to_lowercase())),
+        "frontFace: \"ccw\",".to_owned(),
+        format!("unclippedDepth: {},", raster.unclipped_depth),
+    ];
+    let blend = |src: &str, dst: &str, op: &str| {
+        format!("blend: {{ color: {{ srcFactor: \"{src}\", dstFactor: \"{dst}\", operation: \"{op}\" }} }},")
+    };
+    lines.push(match raster.color {
+        ColorWrite::None => "writeMask: 0,".to_owned(),
+        ColorWrite::Replace => "blend: undefined,".to_owned(),
+        ColorWrite::Add => blend("one", "one", "add"),
+        ColorWrite::Multiply => blend("dst", "zero", "add"),
+        ColorWrite::Minimum => blend("one", "one", "min"),
+    });
+    lines
+}
+
+fn open_gl(raster: &RasterState) -> Vec<String> {
+    let compare = |compare: CompareFunction| {
+        let name = match compare {
+            CompareFunction::LessEqual => "LEQUAL",
+            CompareFunction::GreaterEqual => "GEQUAL",
+            CompareFunction::NotEqual => "NOTEQUAL",
+            other => return format!("GL_{}", format!("{other:?}").to_uppercase()),
+        };
+        format!("GL_{name}")
+    };
+    let operation = |op: StencilOperation| match op {
+        StencilOperation::IncrementClamp => "GL_INCR",
+        StencilOperation::DecrementClamp => "GL_DECR",
+        StencilOperation::IncrementWrap => "GL_INCR_WRAP",
+        StencilOperation::DecrementWrap => "GL_DECR_WRAP",
+        StencilOperation::Keep => "GL_KEEP",
+        StencilOperation::Zero => "GL_ZERO",
+        StencilOperation::Replace => "GL_REPLACE",
+        StencilOperation::Invert => "GL_INVERT",
+    };
+    let on = |is_on: bool, what: &str| format!("{}({what});", if is_on { "glEnable" } else { "glDisable" });
+    let stencil = &raster.stencil;
+    let mut lines = vec![
+        "glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);".to_owned(),
+        "glEnable(GL_DEPTH_TEST);".to_owned(),
+        format!("glDepthFunc({});", compare(raster.depth_compare)),
+        format!("glDepthMask({});", if raster.depth_write { "GL_TRUE" } else { "GL_FALSE" }),
+    ];
+    let has_bias = raster.depth_bias != wgpu::DepthBiasState::default();
+    lines.push(on(has_bias, "GL_POLYGON_OFFSET_FILL"));
+    if has_bias {
+        lines.push(format!("glPolygonOffset({}, {});", raster.depth_bias.slope_scale, raster.depth_bias.constant));
+    }
+    lines.push(on(raster.unclipped_depth, "GL_DEPTH_CLAMP"));
+    lines.push(on(stencil.is_enabled(), "GL_STENCIL_TEST"));
+    if stencil.is_enabled() {
+        for (name, face) in [("GL_FRONT", &stencil.front), ("GL_BACK", &stencil.back)] {
+            let (reference, mask) = (raster.stencil_reference, stencil.read_mask & 0xff);
+            lines.push(format!("glStencilFuncSeparate({name}, {}, {reference}, {mask:#04x});", compare(face.compare)));
+            let ops = [face.fail_op, face.depth_fail_op, face.pass_op].map(operation);
+            lines.push(format!("glStencilOpSeparate({name}, {}, {}, {});", ops[0], ops[1], ops[2]));
+        }
+        lines.push(format!("glStencilMask({:#04x});", stencil.write_mask & 0xff));
+    }
+    lines.push(on(raster.cull.is_some(), "GL_CULL_FACE"));
+    if let Some(face) = raster.cull {
+        lines.push(format!("glCullFace(GL_{});", format!("{face:?}").to_uppercase()));
+    }
+    lines.push("glFrontFace(GL_CCW);".to_owned());
+    match raster.color {
+        ColorWrite::None => lines.push("glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);".to_owned()),
+        ColorWrite::Replace => lines.push("glDisable(GL_BLEND);".to_owned()),
+        ColorWrite::Add => {
+            lines.extend(["glEnable(GL_BLEND);".to_owned(), "glBlendFunc(GL_ONE, GL_ONE);".to_owned()]);
+        }
+        ColorWrite::Multiply => {
+            lines.extend(["glEnable(GL_BLEND);".to_owned(), "glBlendFunc(GL_DST_COLOR, GL_ZERO);".to_owned()]);
+        }
+        ColorWrite::Minimum => {
+            lines.extend(["glEnable(GL_BLEND);".to_owned(), "glBlendEquation(GL_MIN);".to_owned()]);
+        }
+    }
+    lines
+}
+
+fn direct3d(raster: &RasterState) -> Vec<String> {
+    let compare = |compare: CompareFunction| {
+        format!("D3D12_COMPARISON_FUNC_{}", spelled(&format!("{compare:?}"), '_').to_uppercase())
+    };
+    let operation = |op: StencilOperation| {
+        let name = match op {
+            StencilOperation::IncrementClamp => "INCR_SAT",
+            StencilOperation::DecrementClamp => "DECR_SAT",
+            StencilOperation::IncrementWrap => "INCR",
+            StencilOperation::DecrementWrap => "DECR",
+            StencilOperation::Keep => "KEEP",
+            StencilOperation::Zero => "ZERO",
+            StencilOperation::Replace => "REPLACE",
+            StencilOperation::Invert => "INVERT",
+        };
+        format!("D3D12_STENCIL_OP_{name}")
+    };
+    let truth = |is: bool| if is { "TRUE" } else { "FALSE" };
+    let stencil = &raster.stencil;
+    let mask = if raster.depth_write { "ALL" } else { "ZERO" };
+    let mut lines = vec![
+        format!("DepthFunc = {};", compare(raster.depth_compare)),
+        format!("DepthWriteMask = D3D12_DEPTH_WRITE_MASK_{mask};"),
+        format!("DepthBias = {};", raster.depth_bias.constant),
+        format!("SlopeScaledDepthBias = {:?};", raster.depth_bias.slope_scale),
+        format!("DepthClipEnable = {};", truth(!raster.unclipped_depth)),
+        format!("StencilEnable = {};", truth(stencil.is_enabled())),
+    ];
+    if stencil.is_enabled() {
+        for (name, face) in [("FrontFace", &stencil.front), ("BackFace", &stencil.back)] {
+            lines.push(format!("{name}.StencilFunc = {};", compare(face.compare)));
+            lines.push(format!("{name}.StencilFailOp = {};", operation(face.fail_op)));
+            lines.push(format!("{name}.StencilDepthFailOp = {};", operation(face.depth_fail_op)));
+            lines.push(format!("{name}.StencilPassOp = {};", operation(face.pass_op)));
+        }
+        lines.push(format!("StencilReadMask = {:#04x};", stencil.read_mask & 0xff));
+        lines.push(format!("StencilWriteMask = {:#04x};", stencil.write_mask & 0xff));
+        lines.push(format!("list->OMSetStencilRef({});", raster.stencil_reference));
+    }
+    let cull = raster.cull.map_or("NONE".to_owned(), |face| format!("{face:?}").to_uppercase());
+    lines.push(format!("CullMode = D3D12_CULL_MODE_{cull};"));
+    lines.push("FrontCounterClockwise = TRUE;".to_owned());
+    let blend = |src: &str, dst: &str, op: &str| {
+        [
+            "BlendEnable = TRUE;".to_owned(),
+            format!("SrcBlend = D3D12_BLEND_{src};"),
+            format!("DestBlend = D3D12_BLEND_{dst};"),
+            format!("BlendOp = D3D12_BLEND_OP_{op};"),
+        ]
+    };
+    match raster.color {
+        ColorWrite::None => lines.push("RenderTargetWriteMask = 0;".to_owned()),
+        ColorWrite::Replace => lines.push("BlendEnable = FALSE;".to_owned()),
+        ColorWrite::Add => lines.extend(blend("ONE", "ONE", "ADD")),
+        ColorWrite::Multiply => lines.extend(blend("DEST_COLOR", "ZERO", "ADD")),
+        ColorWrite::Minimum => lines.extend(blend("ONE", "ONE", "MIN")),
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// z-fail's volumes: a hidden back face adds 1, a hidden front face takes 1 away.
+    fn z_fail() -> RasterState {
+        let face = |depth_fail_op| StencilFace {
+            compare: CompareFunction::Always,
+            fail_op: StencilOperation::Keep,
+            depth_fail_op,
+            pass_op: StencilOperation::Keep,
+        };
+        let state = RasterState { depth_write: false, color: ColorWrite::None, ..RasterState::surface() };
+        state.with_faces(face(StencilOperation::DecrementWrap), face(StencilOperation::IncrementWrap), 0)
+    }
+
+    fn has(api: Api, line: &str) {
+        let lines = lines(&z_fail(), api);
+        assert!(lines.iter().any(|one| one == line), "{line} is missing in {lines:#?}");
+    }
+
+    #[test]
+    fn each_api_is_told_the_same_in_its_own_words() {
+        has(Api::WebGpu, "depthCompare: \"greater\",");
+        has(
+            Api::WebGpu,
+            "stencilBack: { compare: \"always\", failOp: \"keep\", depthFailOp: \"increment-wrap\", passOp: \"keep\" },",
+        );
+        has(Api::OpenGl, "glDepthMask(GL_FALSE);");
+        has(Api::OpenGl, "glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_DECR_WRAP, GL_KEEP);");
+        has(Api::OpenGl, "glStencilFuncSeparate(GL_BACK, GL_ALWAYS, 0, 0xff);");
+        has(Api::Direct3D, "BackFace.StencilDepthFailOp = D3D12_STENCIL_OP_INCR;");
+        has(Api::Direct3D, "DepthFunc = D3D12_COMPARISON_FUNC_GREATER;");
+        has(Api::Direct3D, "list->OMSetStencilRef(0);");
+    }
+
+    #[test]
+    fn comparisons_of_two_words_are_spelled_as_each_api_spells_them() {
+        let state = RasterState { depth_compare: CompareFunction::LessEqual, ..RasterState::surface() };
+        let first = |api: Api| lines(&state, api).into_iter().find(|line| line.contains("epth")).unwrap_or_default();
+        assert_eq!(first(Api::WebGpu), "depthCompare: \"less-equal\",");
+        assert_eq!(lines(&state, Api::OpenGl)[2], "glDepthFunc(GL_LEQUAL);");
+        assert_eq!(first(Api::Direct3D), "DepthFunc = D3D12_COMPARISON_FUNC_LESS_EQUAL;");
+    }
+
+    #[test]
+    fn faces_that_do_the_same_are_told_once() {
+        let face = face_sentence(&z_fail().stencil.back, &z_fail());
+        assert_eq!(face, "its test always passes; one that fails the depth test adds 1 (255 becomes 0)");
+        let light = RasterState::visible_surface(ColorWrite::Add)
+            .with_stencil(StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE }, 0);
+        assert_eq!(
+            face_sentence(&light.stencil.front, &light),
+            "it passes where 0 is equal to the stored count; nothing changes it"
+        );
+    }
+}

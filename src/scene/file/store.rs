@@ -1,0 +1,107 @@
+//! Puts a scene into a file: the scene file, and the models that it needs beside it.
+
+use super::save::{SaveError, SavedScene, save};
+use crate::files::write_whole;
+use crate::scene::{Scene, obj};
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+/// Why a scene is not in its file.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// The name is none of a scene file.
+    #[error("`{0}` can't be a scene file: give it a name that ends in .toml")]
+    NoSceneFile(String),
+    /// A model of that name is there, and another.
+    #[error("`{0}` is another model, and stays as it is: choose another name for the scene")]
+    ModelInTheWay(String),
+    /// The scene can't be told as text.
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    /// A file can't be written.
+    #[error("`{file}` can't be written ({source}): choose another place")]
+    Write {
+        /// The scene file or a model.
+        file: String,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+/// Writes `scene` to `file`; a model that it was opened from (`source`) is named and not written again.
+///
+/// # Errors
+/// A name that is none of a scene file, a model in the way, a place that can't be written to.
+pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), StoreError> {
+    if file.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("toml")) {
+        return Err(StoreError::NoSceneFile(file.display().to_string().escape_debug().to_string()));
+    }
+    let mut known = BTreeMap::new();
+    let model = source.filter(|path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")));
+    // The model comes first, the floor after it. A mesh that was changed is another, and not named.
+    if let (Some(path), Some(object)) = (model, scene.objects.first())
+        && let Ok(original) = obj::load(path)
+        && original.content_hash() == object.mesh.content_hash()
+    {
+        known.insert(original.content_hash(), from_beside(file, path));
+    }
+    let stem = file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    write_files(&save(scene, &stem, &known)?, file)
+}
+
+/// The models first, so that the scene file is never there without them; what was not there before goes again
+/// where something fails.
+fn write_files(saved: &SavedScene, file: &Path) -> Result<(), StoreError> {
+    let mut models: Vec<(PathBuf, &String)> =
+        saved.files.iter().map(|(name, text)| (file.with_file_name(name), text)).collect();
+    // A model that holds the same already stays; another may be somebody's work, or what the scene is made of.
+    models.retain(|(file, text)| !std::fs::read(file).is_ok_and(|bytes| bytes == text.as_bytes()));
+    if let Some((taken, _)) = models.iter().find(|(file, _)| file.exists()) {
+        return Err(StoreError::ModelInTheWay(taken.display().to_string().escape_debug().to_string()));
+    }
+    let all = models.iter().map(|(file, text)| (file.as_path(), *text)).chain([(file, &saved.toml)]);
+    let mut written: Vec<&Path> = Vec::new();
+    for (file, text) in all {
+        let is_new = !file.exists();
+        if let Err(source) = write_whole(file, text.as_bytes()) {
+            // What failed is the error already.
+            written.iter().for_each(|file| drop(std::fs::remove_file(file)));
+            return Err(StoreError::Write { file: file.display().to_string().escape_debug().to_string(), source });
+        }
+        written.extend(is_new.then_some(file));
+    }
+    Ok(())
+}
+
+/// The path of a model as a scene file beside `file` names it.
+fn from_beside(file: &Path, model: &Path) -> String {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let both = folder.canonicalize().ok().zip(model.canonicalize().ok());
+    let way = both.and_then(|(folder, model)| relative(&folder, &model));
+    way.unwrap_or_else(|| model.to_owned()).to_string_lossy().into_owned()
+}
+
+/// The way from a folder to a file, both from the root; `None` where there is none, as between two drives.
+fn relative(folder: &Path, file: &Path) -> Option<PathBuf> {
+    let (folder, file): (Vec<Component>, Vec<Component>) = (folder.components().collect(), file.components().collect());
+    let common = folder.iter().zip(&file).take_while(|(a, b)| a == b).count();
+    if common == 0 {
+        return None;
+    }
+    let up = folder[common..].iter().map(|_| Component::ParentDir);
+    Some(up.chain(file[common..].iter().copied()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_way_goes_up_and_down() {
+        let way = |folder: &str, file: &str| relative(Path::new(folder), Path::new(file));
+        assert_eq!(way("/a/b", "/a/b/m.obj"), Some("m.obj".into()));
+        assert_eq!(way("/a/b/c", "/a/d/m.obj"), Some("../../d/m.obj".into()));
+        assert_eq!(way("a", "b/m.obj"), None);
+    }
+}

@@ -1,0 +1,137 @@
+//! The State tab, the Explain tab and the guided tours, over real frames.
+
+use super::*;
+use stencilscope::scene::OpenSpec;
+use stencilscope::session::{CaptureRequest, Session};
+
+/// The panels over a frame of a built-in scene, with its plan.
+fn over(name: &str, technique: Technique) -> Inspector {
+    let scene = stencilscope::scene::open(&OpenSpec::new(name)).expect("a built-in scene");
+    let request = CaptureRequest::new(Choice::new(technique), [160, 120]);
+    let mut session = Session::new(None).expect("an adapter");
+    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    let draft = RunRequest {
+        choice: Choice::new(technique),
+        size: [160, 120],
+        camera: scene.camera,
+        lights: scene.lights.clone(),
+        time: 0.0,
+        off: std::collections::BTreeSet::new(),
+    };
+    let mut inspector = Inspector::new(Vec::new());
+    inspector.open_scene(&scene, draft, Some(name.to_owned()));
+    inspector.set_capture(Arc::new(capture));
+    inspector.set_plan(Arc::new(plan));
+    inspector
+}
+
+#[test]
+fn the_state_of_a_volume_pass_is_told_in_a_sentence_and_in_three_apis_words() {
+    let mut inspector = over("tori", Technique::ZFail);
+    inspector.select_step(1);
+    let mut harness = harness_of(inspector, [1600.0, 1600.0]);
+    click(&mut harness, "State");
+    harness.get_by_label_contains("one that fails the depth test adds 1 (255 becomes 0)");
+    harness.get_by_label_contains("depthFailOp: \"increment-wrap\"");
+    click_button(&mut harness, "OpenGL");
+    harness.get_by_label("glStencilOpSeparate(GL_BACK, GL_KEEP, GL_INCR_WRAP, GL_KEEP);");
+    click_button(&mut harness, "Direct3D 12");
+    harness.get_by_label("BackFace.StencilDepthFailOp = D3D12_STENCIL_OP_INCR;");
+    click_button(&mut harness, "Copy state");
+    harness.get_by_label_contains("clip_from_relative (camera)");
+}
+
+#[test]
+fn a_capture_folder_tells_the_state_as_its_plan_has_it() {
+    let mut inspector = over("tori", Technique::ZFail);
+    let capture = Arc::clone(inspector.capture().expect("a capture"));
+    inspector.clear_scene();
+    inspector.set_capture(capture);
+    inspector.select_step(1);
+    let mut harness = harness_of(inspector, [1600.0, 1200.0]);
+    click(&mut harness, "State");
+    harness.get_by_label("As the capture's plan tells it");
+    harness.get_by_label_contains("depth fail IncrementWrap");
+}
+
+#[test]
+fn each_pass_is_explained_with_the_scenes_own_numbers() {
+    let mut inspector = over("rings", Technique::ZFail);
+    inspector.pick([80, 60]);
+    let mut harness = harness_of(inspector, [1600.0, 1600.0]);
+    click(&mut harness, "Explain");
+    press(&mut harness, Key::Home);
+    harness.get_by_label("stored depth = offset + scale / distance along the view");
+    harness.get_by_label_contains("pixel 80, 60: 0 + ");
+    press(&mut harness, Key::ArrowRight);
+    harness.get_by_label_contains("count = back faces behind the surface − front faces behind it");
+    harness.get_by_label_contains("pixels have a count other than 0");
+    harness.get_by_label_contains("sides, two triangles a silhouette edge: ");
+    harness.get_by_label("Left out");
+    press(&mut harness, Key::ArrowRight);
+    harness.get_by_label_contains(" in shadow, ");
+    press(&mut harness, Key::ArrowRight);
+    harness.get_by_label("light is added where count = 0");
+}
+
+#[test]
+fn what_was_left_out_stands_there_with_its_reason() {
+    let inspector = over("tori", Technique::Auto);
+    let left = inspector.capture().expect("a capture").left_out.first().cloned().expect("auto leaves something out");
+    let mut harness = harness_of(inspector, [1600.0, 3000.0]);
+    click(&mut harness, "Explain");
+    assert!(harness.query_all_by_label(&format!("{} of {}", left.what, left.of)).count() > 0);
+    assert!(harness.query_all_by_label(&left.because).count() > 0);
+}
+
+#[test]
+fn a_tour_drives_the_panels_stop_by_stop() {
+    let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
+    click(&mut harness, "Explain");
+    click_button(&mut harness, "Tour of z-fail");
+    harness.get_by_label("What every pixel shows");
+    assert_eq!(harness.state().inspector.step(), 0);
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Depth));
+    click_button(&mut harness, "Next stop");
+    assert_eq!(harness.state().inspector.step(), 1);
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Stencil));
+    click_button(&mut harness, "Next stop");
+    harness.get_by_label_contains("The State tab has the whole state");
+    harness.get_by_role_and_label(Role::Button, "OpenGL");
+    click_button(&mut harness, "Next stop");
+    let inspector = &harness.state().inspector;
+    let [x, y] = inspector.picked().expect("a pixel");
+    let shadow = inspector.capture().expect("a capture").lights[0].shadow.clone().expect("labels");
+    assert_eq!(shadow.byte_at([x, y]), Some(1), "it picks a pixel in shadow");
+    click_button(&mut harness, "Stop before");
+    harness.get_by_label("The same in the API's words");
+    click_button(&mut harness, "End tour");
+    assert!(harness.query_by_label("Next stop").is_none());
+}
+
+#[test]
+fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
+    let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
+    click(&mut harness, "Explain");
+    click_button(&mut harness, "Tour of planar");
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open("rings".to_owned())));
+    harness.get_by_label("The frame is being made …");
+    // As the app does: the scene is opened with the technique of before, and captured.
+    let mut opened = over("rings", Technique::ZFail);
+    let capture = Arc::clone(opened.capture().expect("a capture"));
+    let draft = *opened.draft().expect("a draft");
+    let rings = stencilscope::scene::open(&OpenSpec::new("rings")).expect("a built-in scene");
+    let inspector = &mut harness.state_mut().inspector;
+    inspector.open_scene(&rings, draft, Some("rings".to_owned()));
+    inspector.set_capture(capture);
+    harness.run_steps(3);
+    let Some(Action::Run(request)) = harness.state().actions.last() else { panic!("a run") };
+    assert_eq!(request.choice.technique(), Technique::Planar);
+    harness.get_by_label("The frame is being made …");
+    opened = over("rings", Technique::Planar);
+    harness.state_mut().inspector.set_capture(Arc::clone(opened.capture().expect("a capture")));
+    harness.run_steps(3);
+    harness.get_by_label_contains("Planar shadows know one kind of receiver");
+    let inspector = &harness.state().inspector;
+    assert_eq!(inspector.capture().expect("a capture").steps[inspector.step()].name, "receivers");
+}

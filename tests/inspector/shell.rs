@@ -1,0 +1,268 @@
+//! What surrounds the panels: undo, themes, help, export, recent files, reload, animation, layout.
+
+use super::*;
+use egui::Modifiers;
+use std::collections::BTreeSet;
+use stencilscope::inspector::{ExportData, ExportKind, Remembered, ThemeChoice};
+
+fn shortcut(harness: &mut Harness<Seen>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    harness.run_steps(2);
+}
+
+fn last_run(harness: &Harness<Seen>) -> RunRequest {
+    let run = harness.state().actions.iter().rev().find_map(|action| match action {
+        Action::Run(request) => Some(RunRequest::clone(request)),
+        _ => None,
+    });
+    run.expect("a run was asked for")
+}
+
+#[test]
+fn a_change_of_technique_is_taken_back_and_made_again_by_keys_and_buttons() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "shadow-map");
+    click_button(&mut harness, "z-pass");
+    shortcut(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(last_run(&harness).choice.technique(), Technique::ShadowMap);
+    click_button(&mut harness, "Undo");
+    assert_eq!(last_run(&harness).choice.technique(), Technique::ZFail);
+    click_button(&mut harness, "Redo");
+    shortcut(&mut harness, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(last_run(&harness).choice.technique(), Technique::ZPass);
+    shortcut(&mut harness, Modifiers::COMMAND, Key::Z);
+    shortcut(&mut harness, Modifiers::COMMAND, Key::Y);
+    assert_eq!(last_run(&harness).choice.technique(), Technique::ZPass);
+}
+
+#[test]
+fn a_change_of_the_scene_is_taken_back() {
+    let mut harness = harness(z_fail(SIZE));
+    click(&mut harness, "Settings");
+    harness.get_by_label("light 1 position x").set_value_accesskit(2.5);
+    harness.run_steps(2);
+    let before = scene().lights[0].position.x;
+    assert_eq!(last_run(&harness).lights[0].position.x, 2.5);
+    shortcut(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(last_run(&harness).lights[0].position.x, before);
+}
+
+#[test]
+fn undo_goes_back_to_the_scene_that_was_open_before_and_runs_it_as_it_was() {
+    let mut inspector = Inspector::new(Vec::new());
+    inspector.open_scene(&scene(), run_request(Technique::ZFail), Some("first".to_owned()));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    click_button(&mut harness, "planar");
+    let inspector = &mut harness.state_mut().inspector;
+    inspector.open_scene(&scene(), run_request(Technique::ZPass), Some("second".to_owned()));
+    harness.run_steps(2);
+    shortcut(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open("first".to_owned())));
+    // The app opens it, as a scene is opened first.
+    harness.state_mut().inspector.open_scene(&scene(), run_request(Technique::ZFail), Some("first".to_owned()));
+    harness.run_steps(2);
+    assert_eq!(last_run(&harness).choice.technique(), Technique::Planar);
+}
+
+#[test]
+fn the_theme_changes_by_key_and_button_and_is_remembered() {
+    let mut harness = harness(z_fail(SIZE));
+    assert!(harness.ctx.global_style().visuals.dark_mode);
+    click_button(&mut harness, "Light");
+    assert!(!harness.ctx.global_style().visuals.dark_mode);
+    assert_eq!(harness.state().inspector.remembered().theme, ThemeChoice::Light);
+    shortcut(&mut harness, Modifiers::COMMAND, Key::L);
+    assert_eq!(harness.state().inspector.remembered().theme, ThemeChoice::Dark);
+}
+
+#[test]
+fn help_lists_the_keys_and_closes_again() {
+    let mut harness = harness(z_fail(SIZE));
+    for key in [Key::F1, Key::H, Key::Questionmark] {
+        press(&mut harness, key);
+        harness.get_by_label("go to a step by its number");
+        harness.get_by_label("pick a pixel: its history is told beside");
+        press(&mut harness, Key::Escape);
+        assert!(harness.query_by_label("go to a step by its number").is_none());
+    }
+    click_button(&mut harness, "Help");
+    click_button(&mut harness, "Close help");
+    assert!(harness.query_by_label("go to a step by its number").is_none());
+}
+
+#[test]
+fn the_shown_picture_is_exported_where_it_is_wished_and_a_taken_place_is_asked_about() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "Stencil");
+    shortcut(&mut harness, Modifiers::COMMAND, Key::S);
+    harness.get_by_label("Export: Shown picture (PNG)");
+    click_button(&mut harness, "Save");
+    let asked = |harness: &Harness<Seen>| match harness.state().actions.last() {
+        Some(Action::Export { kind, path, replace }) => (*kind, path.clone(), *replace),
+        other => panic!("an export, not {other:?}"),
+    };
+    let (kind, path, replace) = asked(&harness);
+    assert_eq!((kind, replace), (ExportKind::Picture, false));
+    assert!(path.ends_with(".png") && path.contains("stencil"), "{path}");
+    harness.state_mut().inspector.ask_to_replace(path);
+    harness.run_steps(2);
+    harness.get_by_label("× Something of this name is there already.");
+    click_button(&mut harness, "Replace it");
+    assert!(asked(&harness).2);
+    harness.state_mut().inspector.end_export(Ok("wrote it".to_owned()));
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Replace it").is_none());
+    harness.get_by_label("wrote it");
+}
+
+#[test]
+fn an_export_that_fails_says_so_in_its_dialog() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "Export");
+    click_button(&mut harness, "Capture folder…");
+    harness.state_mut().inspector.end_export(Err("no room: choose another place".to_owned()));
+    harness.run_steps(2);
+    harness.get_by_label("× no room: choose another place");
+    click_button(&mut harness, "Browse…");
+    assert!(matches!(harness.state().actions.last(), Some(Action::BrowseExport { kind: ExportKind::Capture, .. })));
+    harness.state_mut().inspector.set_export_path("elsewhere".to_owned());
+    harness.run_steps(2);
+    click_button(&mut harness, "Save");
+    let asked = Action::Export { kind: ExportKind::Capture, path: "elsewhere".to_owned(), replace: false };
+    assert_eq!(harness.state().actions.last(), Some(&asked));
+}
+
+#[test]
+fn what_is_exported_is_what_is_shown() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.set_picture_kind(PictureKind::Stencil);
+    inspector.select_step(1);
+    let Some(ExportData::Picture(picture)) = inspector.export(ExportKind::Picture) else { panic!("a picture") };
+    assert_eq!(picture.size(), SIZE);
+    // Column 3 is in shadow, its count 1: the design's blue.
+    assert_eq!(picture.at([3, 4]), Some([0x56, 0xb4, 0xe9]));
+    let Some(ExportData::Data(images)) = inspector.export(ExportKind::Data) else { panic!("values") };
+    assert_eq!(images[0].byte_at([3, 4]), Some(1));
+    assert!(matches!(inspector.export(ExportKind::Capture), Some(ExportData::Capture(_))));
+    assert!(matches!(inspector.export(ExportKind::Scene), Some(ExportData::Scene(_))));
+    inspector.clear_scene();
+    assert!(inspector.export(ExportKind::Scene).is_none(), "a capture folder has no scene");
+}
+
+#[test]
+fn what_was_opened_before_is_offered_and_opens() {
+    let mut inspector = Inspector::new(Vec::new());
+    for source in ["models/a.obj", "tori"] {
+        inspector.open_scene(&scene(), run_request(Technique::ZFail), Some(source.to_owned()));
+    }
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    click_button(&mut harness, "What is open: by hand");
+    click_button(&mut harness, "models/a.obj");
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open("models/a.obj".to_owned())));
+}
+
+#[test]
+fn a_changed_file_is_offered_for_reload_once() {
+    let mut harness = harness(z_fail(SIZE));
+    harness.state_mut().inspector.offer_reload("a.obj".to_owned());
+    harness.run_steps(2);
+    harness.get_by_label("a.obj changed on disk.");
+    click_button(&mut harness, "Load it again");
+    assert_eq!(harness.state().actions.last(), Some(&Action::Reload));
+    assert!(harness.query_by_label("a.obj changed on disk.").is_none());
+    harness.state_mut().inspector.offer_reload("a.obj".to_owned());
+    harness.run_steps(2);
+    click_button(&mut harness, "Not now");
+    assert!(harness.query_by_label("a.obj changed on disk.").is_none());
+}
+
+fn moving() -> Scene {
+    let mut scene = scene();
+    let spin = stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("tori")).expect("a built-in scene");
+    scene.objects = spin.objects;
+    scene
+}
+
+#[test]
+fn an_animation_runs_a_capture_at_a_time_and_steps_by_hand() {
+    let mut inspector = Inspector::new(Vec::new());
+    inspector.open_scene(&moving(), run_request(Technique::ZFail), Some("tori".to_owned()));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    let runs = |harness: &Harness<Seen>| {
+        harness.state().actions.iter().filter(|action| matches!(action, Action::Run(_))).count()
+    };
+    press(&mut harness, Key::Period);
+    assert_eq!(runs(&harness), 1);
+    assert!((last_run(&harness).time - 1.0 / 30.0).abs() < 1e-9);
+    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
+    press(&mut harness, Key::T);
+    harness.run_steps(4);
+    assert_eq!(runs(&harness), 2, "the next moment waits for the capture of this one");
+    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
+    harness.run_steps(2);
+    assert_eq!(runs(&harness), 3);
+    let time = last_run(&harness).time;
+    click(&mut harness, "Settings");
+    click_button(&mut harness, "Stop animation");
+    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
+    harness.run_steps(3);
+    assert_eq!(runs(&harness), 3);
+    click_button(&mut harness, "Step");
+    assert!(last_run(&harness).time > time);
+    click_button(&mut harness, "To the start");
+    assert_eq!(last_run(&harness).time, 0.0);
+    click_button(&mut harness, "Run animation");
+    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
+    harness.run_steps(2);
+    assert!(last_run(&harness).time > 0.0);
+}
+
+#[test]
+fn objects_are_switched_off_and_on() {
+    let mut inspector = Inspector::new(Vec::new());
+    let scene = moving();
+    inspector.open_scene(&scene, run_request(Technique::ZFail), None);
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
+    click(&mut harness, "Settings");
+    let name = scene.objects[1].name.clone();
+    harness.get_by_role_and_label(Role::CheckBox, &name).click();
+    harness.run_steps(2);
+    assert_eq!(last_run(&harness).off, BTreeSet::from([1]));
+    harness.get_by_role_and_label(Role::CheckBox, &name).click();
+    harness.run_steps(2);
+    assert_eq!(last_run(&harness).off, BTreeSet::new());
+}
+
+#[test]
+fn a_moved_layout_is_remembered_and_a_broken_one_is_not_taken() {
+    let mut harness = harness(z_fail(SIZE));
+    assert_eq!(harness.state().inspector.remembered().layout, None, "nothing was moved");
+    let from = harness.get_by_role_and_label(Role::Tab, "Report").rect().center();
+    let to = harness.get_by_role_and_label(Role::Tab, "Pixel").rect().center();
+    harness.drag_at(from);
+    harness.run_steps(2);
+    harness.hover_at(from + vec2(0.0, -40.0));
+    harness.run_steps(2);
+    harness.hover_at(to);
+    harness.run_steps(4);
+    harness.drop_at(to);
+    harness.run_steps(4);
+    let moved = harness.get_by_role_and_label(Role::Tab, "Report").rect();
+    assert!(moved.center().distance(from) > 100.0, "it was dragged to the other tabs");
+    let remembered = harness.state().inspector.remembered();
+    assert!(remembered.layout.is_some());
+    let stored = serde_json::to_string(&remembered).expect("text");
+    let mut again = inspector(z_fail(SIZE));
+    again.recall(serde_json::from_str::<Remembered>(&stored).expect("a memory"));
+    let again = harness_of(again, [1280.0, 800.0]);
+    let found = again.get_by_role_and_label(Role::Tab, "Report").rect();
+    assert!(found.center().distance(moved.center()) < 60.0, "{found:?} is where it was: {moved:?}");
+    let mut broken = inspector(z_fail(SIZE));
+    let layout = Some(serde_json::json!({ "root": 1, "tiles": {} }));
+    broken.recall(Remembered { layout, ..Remembered::default() });
+    harness_of(broken, [1280.0, 800.0]).get_by_role_and_label(Role::Tab, "Report");
+}
