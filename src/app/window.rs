@@ -15,7 +15,7 @@ use crate::stress::Case;
 use crate::technique::Choice;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
-use winit::event::{StartCause, WindowEvent};
+use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::WindowId;
 
@@ -324,6 +324,11 @@ impl App {
                 ui.ctx().request_repaint_after(WATCH);
             }
         });
+        if let Some(reason) = surface.take_grab_failure() {
+            let words =
+                format!("the pointer can't be held in the window ({reason}): walking turns until it meets an edge");
+            self.inspector.push_error(words);
+        }
         for action in actions {
             self.act(action);
         }
@@ -388,6 +393,12 @@ impl ApplicationHandler<WindowNews> for App {
                     surface.on_event(&event);
                 }
             }
+        }
+    }
+
+    fn device_event(&mut self, _event_loop: &ActiveEventLoop, _device: DeviceId, event: DeviceEvent) {
+        if let (DeviceEvent::MouseMotion { delta }, Some(surface)) = (event, &mut self.surface) {
+            surface.on_mouse_motion(delta);
         }
     }
 

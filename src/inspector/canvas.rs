@@ -24,6 +24,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: C
     let image = &shown.images[0];
     let response = ui.interact(rect, ui.scope_id().with("canvas"), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Picture canvas"));
+    state.picture_widget = Some(response.id);
     let pixels_per_point = ui.pixels_per_point();
     let place = |state: &State| Placement::new(&state.view, image.size(), rect, pixels_per_point);
     move_view(ui, state, &response, place(state), pixels_per_point);

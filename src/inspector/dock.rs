@@ -53,10 +53,11 @@ pub enum Panel {
 
 impl Panel {
     /// In the order of their declaration.
-    const ALL: [Panel; 9] = [
+    const ALL: [Panel; 10] = [
         Panel::Passes,
         Panel::Settings,
         Panel::Picture,
+        Panel::Scene,
         Panel::Pixel,
         Panel::State,
         Panel::Explain,

@@ -56,6 +56,7 @@ mod palette;
 mod passes;
 mod pick_ray;
 mod picture;
+mod picture_gizmos;
 mod pixel;
 mod pixel_run;
 mod placement;
@@ -80,6 +81,7 @@ mod truth_note;
 mod undo;
 mod verdict;
 mod view;
+mod walk;
 
 pub use action::{Action, RunRequest};
 pub use diagnosis::{DiagnosisProgress, DiagnosisView};
@@ -137,9 +139,11 @@ impl Inspector {
         let mut actions = Vec::new();
         self.state.cache.tick();
         take_dropped_files(ui.ctx(), &mut actions);
-        self.state.undo.hold(ui.input(|input| input.pointer.any_down()));
+        self.state.undo.hold(ui.input(|input| input.pointer.any_down()) || self.state.walk.is_on());
         self.state.finish_restoring(&mut actions);
-        keys::handle(ui.ctx(), &mut self.state, &mut actions);
+        if !walk::handle(ui.ctx(), &mut self.state, &mut actions) {
+            keys::handle(ui.ctx(), &mut self.state, &mut actions);
+        }
         self.play(ui.ctx());
         top_bar::ui(ui, &mut self.state, &mut actions);
         messages::ui(ui, &mut self.state, &mut actions);

@@ -10,11 +10,13 @@ use super::layers::{self, MapContent};
 use super::legend;
 use super::magnifier;
 use super::outline;
+use super::picture_gizmos;
 use super::state::State;
 use super::theme;
 use super::top_bar::segments;
 use super::truth_note;
 use super::view::{DepthMode, FaceChoice, PictureKind, Shown, Zoom, available};
+use super::walk;
 use crate::capture::Capture;
 use egui::{Align2, CornerRadius, Margin, Rect, Ui, vec2};
 
@@ -40,12 +42,14 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     if shown.images.len() == 1 {
         let placement = canvas::ui(ui, state, rect, &shown, coloring);
         outline::ui(ui, state, rect, &shown, placement);
+        picture_gizmos::ui(ui, state, rect, &shown, placement, actions);
         magnifier::ui(ui, state, rect, &shown, coloring, placement);
     } else {
         face_grid::ui(ui, state, rect, &shown, coloring);
     }
     legend::ui(ui, state, rect, &shown, range);
     truth_note::ui(ui, state, rect, &shown, actions);
+    walk::banner(ui, state, rect);
 }
 
 fn empty(ui: &mut Ui, state: &State) {
@@ -231,4 +235,6 @@ fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
         }
         state.view.zoom = Zoom::Pixels(1.0);
     }
+    picture_gizmos::button(ui, state);
+    walk::button(ui, state);
 }

@@ -20,6 +20,7 @@ use super::tour::TourState;
 use super::truth_note::TruthState;
 use super::undo::{self, Undo};
 use super::view::{PictureKind, PictureView, Zoom, available, has_truth};
+use super::walk::Walk;
 use crate::capture::Capture;
 use crate::plan::FramePlan;
 use crate::plan::words::Api;
@@ -129,6 +130,12 @@ pub struct State {
     pub anatomy: AnatomyState,
     /// The Scene tab.
     pub scene_view: SceneView,
+    /// Lights in view are handles over the picture.
+    pub picture_gizmos: bool,
+    /// The picture's own widget, once it was drawn.
+    pub picture_widget: Option<egui::Id>,
+    /// Walking through the scene.
+    pub walk: Walk,
     /// The Report tab.
     pub report: ReportState,
     /// The Diagnosis tab.
@@ -298,6 +305,7 @@ impl State {
         self.diagnosis.forget();
         self.anatomy.forget();
         self.scene_view.forget();
+        self.walk.forget_walls();
         if scene.is_none() {
             self.history.close();
         }

@@ -5,6 +5,7 @@ mod counts;
 mod diagnosis;
 mod draws;
 mod explain;
+mod gizmos;
 mod history;
 mod history_by_hand;
 mod history_pictures;
@@ -16,6 +17,7 @@ mod settings;
 mod shell;
 mod stress;
 mod truth;
+mod walk;
 
 use crate::common;
 use by_hand::{cube_map, z_fail};

@@ -17,7 +17,7 @@ mod pane;
 mod rays;
 mod stage;
 
-use gizmos::Grip;
+pub use gizmos::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
 use lens::{PaneView, Projection};
 
 use super::action::Action;
