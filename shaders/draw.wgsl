@@ -22,4 +22,5 @@ struct DrawConstants {
 
 const NO_LAYER: u32 = 0xffffffffu;
 
-@group(1) @binding(0) var<uniform> draw: DrawConstants;
+// Storage, not uniform: see `uniforms.rs`.
+@group(1) @binding(0) var<storage, read> draw: DrawConstants;

@@ -38,7 +38,8 @@ struct Light {
 @group(2) @binding(1) var<storage, read> corners: array<u32>;
 @group(2) @binding(2) var<storage, read> normals: array<vec4f>;
 @group(2) @binding(3) var<storage, read> sides: array<u32>;
-@group(3) @binding(0) var<uniform> light: Light;
+// Storage, not uniform: see `uniforms.rs`.
+@group(3) @binding(0) var<storage, read> light: Light;
 
 struct Surface {
     @invariant @builtin(position) clip: vec4f,

@@ -1,11 +1,10 @@
 //! Writes what the panels export, on a thread of its own: a large capture takes a while.
 
-use super::news::WindowNews;
+use super::news::{Tell, WindowNews};
 use crate::capture::disk;
 use crate::files::write_whole;
 use crate::inspector::ExportData;
 use std::path::{Path, PathBuf};
-use winit::event_loop::EventLoopProxy;
 
 /// How an export ended.
 #[derive(Debug)]
@@ -20,11 +19,10 @@ pub enum Exported {
 
 /// Writes `data` to `path`, and tells the window how that ended. What is there is replaced only where `replace`
 /// says so. Scenes are the worker's to write.
-pub fn start(data: ExportData, path: String, replace: bool, proxy: EventLoopProxy<WindowNews>) -> std::io::Result<()> {
+pub fn start(data: ExportData, path: String, replace: bool, tell: Tell) -> std::io::Result<()> {
     let run = move || {
         let news = write(&data, &path, replace);
-        // A window that is closed needs no news.
-        drop(proxy.send_event(WindowNews::Exported(news)));
+        tell(WindowNews::Exported(news));
     };
     std::thread::Builder::new().name("export".to_owned()).spawn(run).map(drop)
 }

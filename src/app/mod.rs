@@ -1,7 +1,7 @@
 //! The window: joins the session, which runs things, and the inspector, which shows them.
 //!
 //! ```text
-//! Inspector ──Action──► Window ──Order──► Worker thread (owns the Session)
+//! Inspector ──Action──►  Desk  ──Order──► Worker thread (owns the Session)
 //!     ▲                   │  ▲                    │
 //!     └────── data ───────┘  └──────── News ──────┘
 //! ```
@@ -9,7 +9,9 @@
 //! Nothing blocks: the worker opens files and renders, the window only draws. The worker starts
 //! before the window is made, so that the GPU's first frame and the window's come together.
 
+mod desk;
 mod export;
+pub mod headless;
 mod jobs;
 mod memory;
 mod news;
@@ -59,6 +61,12 @@ pub enum AppError {
     /// No display, or nothing that can draw on it.
     #[error("there can be no window ({0}): use `stencilscope capture` instead")]
     NoWindow(String),
+    /// Nothing can draw the panels.
+    #[error("no picture can be made of the panels ({0}): install a GPU driver, such as mesa-vulkan-drivers")]
+    NoPicture(String),
+    /// The worker did not come to an end.
+    #[error("nothing was heard of the GPU for two minutes: try a smaller picture")]
+    Silent,
     /// The system gave no thread.
     #[error("the worker thread can't be started: {0}")]
     NoThread(std::io::Error),

@@ -137,6 +137,9 @@ pub enum News {
     Failed(String),
 }
 
+/// Wakes whoever draws the panels; one that is gone needs no news.
+pub type Tell = Arc<dyn Fn(WindowNews) + Send + Sync>;
+
 /// An event of the window's loop that is not the system's.
 #[derive(Debug)]
 pub enum WindowNews {

@@ -3,11 +3,10 @@
 //! It asks for their times every second: no system has to support watching, and a file that an
 //! editor replaces by another is seen too. Nothing is told, and nothing drawn, unless one changed.
 
-use super::news::WindowNews;
+use super::news::{Tell, WindowNews};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
-use winit::event_loop::EventLoopProxy;
 
 /// How often it looks.
 const EVERY: Duration = Duration::from_secs(1);
@@ -26,17 +25,19 @@ impl Watch {
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn start(proxy: EventLoopProxy<WindowNews>) -> std::io::Result<Watch> {
+    pub fn start(tell: Tell) -> std::io::Result<Watch> {
         let watch = Watch::default();
         let files = Arc::clone(&watch.files);
         let look = move || {
             loop {
                 std::thread::sleep(EVERY);
-                let changed = files.lock().ok().and_then(|mut files| first_changed(&mut files));
-                let told = changed.map(|file| proxy.send_event(WindowNews::FileChanged(file)));
-                if told.is_some_and(|told| told.is_err()) {
+                if Arc::strong_count(&files) == 1 {
                     // The window is gone.
                     return;
+                }
+                let changed = files.lock().ok().and_then(|mut files| first_changed(&mut files));
+                if let Some(file) = changed {
+                    tell(WindowNews::FileChanged(file));
                 }
             }
         };

@@ -11,14 +11,6 @@ pub enum CliError {
     /// A word of the command line is wrong: what and how to mend it.
     #[error("{0}")]
     Usage(String),
-    /// Part of the plan, but not built.
-    #[error("{what} is not there yet: {instead}")]
-    NotThereYet {
-        /// The command, option or value.
-        what: String,
-        /// What to use until then.
-        instead: String,
-    },
     /// The scene can't be loaded.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -45,6 +37,10 @@ pub enum CliError {
     /// The window failed.
     #[error("the window can't be opened: {0}; use `stencilscope capture`")]
     Window(String),
+    /// The panels can't be drawn without a window.
+    #[cfg(feature = "inspector")]
+    #[error(transparent)]
+    Panels(#[from] crate::app::AppError),
     /// Histories contradict what the GPU stored.
     #[error(
         "{pixels} of the histories do not make what the GPU stored, which is a bug of stencilscope: please report it"

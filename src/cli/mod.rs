@@ -5,6 +5,7 @@
 //! nothing else does.
 
 mod bench;
+mod bench_panels;
 mod capture;
 mod diagnose;
 mod diff;
@@ -12,6 +13,7 @@ mod error;
 mod fix;
 mod options;
 mod output;
+mod pictures;
 mod pixel;
 mod progress;
 mod report;
@@ -28,8 +30,8 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// The commands that exist.
-const COMMANDS: [&str; 10] =
-    ["view", "capture", "pixel", "diagnose", "diff", "report", "stress", "scenes", "bench", "help"];
+const COMMANDS: [&str; 11] =
+    ["view", "capture", "pixel", "diagnose", "diff", "report", "stress", "scenes", "bench", "pictures", "help"];
 
 /// An interactive visual debugger for stencil shadows and shadow maps
 #[derive(Debug, Parser)]
@@ -59,6 +61,8 @@ enum Command {
     Scenes(scenes::ScenesArguments),
     /// Measure the program's own speed, as ratios
     Bench(Box<bench::BenchArguments>),
+    /// Take the README's pictures of the window, without a display
+    Pictures(Box<pictures::PicturesArguments>),
 }
 
 /// Runs the command line `arguments`, the program's name first.
@@ -86,6 +90,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
         Command::Stress(arguments) => stress::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Pictures(arguments) => pictures::run(&arguments),
     }
 }
 

@@ -66,8 +66,8 @@ fn no_window_because() -> Option<&'static str> {
 
 /// The window, or a capture where the system gives none after all.
 #[cfg(feature = "inspector")]
-mod window {
-    use super::{CliError, ViewArguments, capture_instead};
+pub mod window {
+    use super::{CliError, FrameOptions, SceneOptions, ViewArguments, capture_instead};
     use crate::app::{self, AppError, ViewRequest, ViewSource};
     use crate::capture::disk;
     use crate::session::CaptureRequest;
@@ -84,26 +84,41 @@ mod window {
     /// Everything that can be wrong with the arguments is found before a window is made.
     fn request(arguments: &ViewArguments) -> Result<ViewRequest, CliError> {
         let folder = Path::new(&arguments.scene);
-        let (source, capture) = if folder.is_dir() {
-            let capture = disk::read(folder)?;
-            // How a scene would be rendered that is opened from the window later.
-            let choice = Choice::new(Technique::ZFail);
-            let request = CaptureRequest::new(choice, capture.size);
-            (ViewSource::Capture(Box::new(capture)), request)
-        } else {
-            let scene = arguments.scene_options.load(&arguments.scene)?;
-            let request = arguments.frame.request(&scene)?;
-            (ViewSource::Scene(Box::new(scene)), request)
-        };
+        if !folder.is_dir() {
+            let request = scene_request(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
+            return Ok(ViewRequest { step: arguments.pass, pick: arguments.at, truth: arguments.truth, ..request });
+        }
+        let capture = disk::read(folder)?;
+        // How a scene would be rendered that is opened from the window later.
+        let request = CaptureRequest::new(Choice::new(Technique::ZFail), capture.size);
         Ok(ViewRequest {
-            source,
+            source: ViewSource::Capture(Box::new(capture)),
             name: arguments.scene_options.spec(&arguments.scene),
-            capture,
-            time: arguments.scene_options.time,
+            capture: request,
+            time: 0.0,
             adapter: arguments.frame.adapter.clone(),
             step: arguments.pass,
             pick: arguments.at,
             truth: arguments.truth,
+        })
+    }
+
+    /// What opens a scene in a window, or in panels without one.
+    ///
+    /// # Errors
+    /// A scene that can't be opened; options that can't be used.
+    pub fn scene_request(name: &str, scene: &SceneOptions, frame: &FrameOptions) -> Result<ViewRequest, CliError> {
+        let loaded = scene.load(name)?;
+        let capture = frame.request(&loaded)?;
+        Ok(ViewRequest {
+            source: ViewSource::Scene(Box::new(loaded)),
+            name: scene.spec(name),
+            capture,
+            time: scene.time,
+            adapter: frame.adapter.clone(),
+            step: None,
+            pick: None,
+            truth: false,
         })
     }
 }

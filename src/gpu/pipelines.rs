@@ -170,6 +170,7 @@ impl Layouts {
     fn new(device: &Device) -> Layouts {
         let both = ShaderStages::VERTEX_FRAGMENT;
         let uniform = |binding| entry(binding, both, BufferBindingType::Uniform, true);
+        let constants = |binding| entry(binding, both, BufferBindingType::Storage { read_only: true }, true);
         let storage =
             |binding| entry(binding, ShaderStages::VERTEX, BufferBindingType::Storage { read_only: true }, false);
         let texture = |sample_type, view_dimension| BindGroupLayoutEntry {
@@ -194,13 +195,13 @@ impl Layouts {
         };
         Layouts {
             view: layout("view", &[uniform(0)]),
-            draw: layout("draw", &[uniform(0)]),
+            draw: layout("draw", &[constants(0)]),
             surface: layout("surface", &[storage(0), storage(1), storage(2), storage(3)]),
-            light: layout("light", &[uniform(0)]),
-            light_with_map: layout("light with map", &[uniform(0), map]),
-            light_with_labels: layout("light with labels", &[uniform(0), labels]),
-            light_with_count: layout("light with count", &[uniform(0), count]),
-            light_with_textures: layout("light with textures", &[uniform(0), textures, sampler]),
+            light: layout("light", &[constants(0)]),
+            light_with_map: layout("light with map", &[constants(0), map]),
+            light_with_labels: layout("light with labels", &[constants(0), labels]),
+            light_with_count: layout("light with count", &[constants(0), count]),
+            light_with_textures: layout("light with textures", &[constants(0), textures, sampler]),
         }
     }
 

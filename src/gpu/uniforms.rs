@@ -1,4 +1,8 @@
 //! The plan's small values as the shaders' structs, packed into one buffer each.
+//!
+//! Those of draws and lights, which shaders branch on, are storage buffers. Were they uniform, lavapipe (Mesa 22.3)
+//! would put their values into the shader and compile it anew for every draw whose values differ, and keep what it
+//! compiled until the process ends: 5 MB and tens of milliseconds a frame of `tori`. It does not look into storage.
 
 use crate::plan::{Draw, FramePlan, PlanLight, PlanMap, Program};
 use crate::scene::Shading;
@@ -62,15 +66,16 @@ pub(super) struct UniformArray {
 }
 
 impl UniformArray {
-    fn new<T: Pod>(device: &Device, label: &str, elements: &[T]) -> UniformArray {
+    fn new<T: Pod>(device: &Device, label: &str, elements: &[T], usage: BufferUsages) -> UniformArray {
         let size = size_of::<T>();
-        let alignment = device.limits().min_uniform_buffer_offset_alignment as usize;
+        let limits = device.limits();
+        let alignment =
+            limits.min_uniform_buffer_offset_alignment.max(limits.min_storage_buffer_offset_alignment) as usize;
         let stride = size.next_multiple_of(alignment);
         let mut contents = vec![0; stride * elements.len().max(1)];
         for (slot, element) in contents.chunks_exact_mut(stride).zip(elements) {
             slot[..size].copy_from_slice(bytemuck::bytes_of(element));
         }
-        let usage = BufferUsages::UNIFORM;
         let buffer =
             device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents: &contents, usage });
         UniformArray { buffer, stride: stride as u32, size: size as u64 }
@@ -100,13 +105,13 @@ pub(super) fn views(device: &Device, plan: &FramePlan) -> UniformArray {
         clip_from_relative: view.clip_from_relative.to_cols_array(),
         ambient: [r, g, b, 0.0],
     };
-    UniformArray::new(device, "views", &plan.views.iter().map(view).collect::<Vec<_>>())
+    UniformArray::new(device, "views", &plan.views.iter().map(view).collect::<Vec<_>>(), BufferUsages::UNIFORM)
 }
 
 /// All draws of all passes, in order.
 pub(super) fn draws(device: &Device, plan: &FramePlan) -> UniformArray {
     let draws = plan.passes.iter().flat_map(|pass| &pass.draws);
-    UniformArray::new(device, "draws", &draws.map(draw_uniform).collect::<Vec<_>>())
+    UniformArray::new(device, "draws", &draws.map(draw_uniform).collect::<Vec<_>>(), BufferUsages::STORAGE)
 }
 
 fn draw_uniform(draw: &Draw) -> DrawUniform {
@@ -133,7 +138,7 @@ fn draw_uniform(draw: &Draw) -> DrawUniform {
 pub(super) fn lights(device: &Device, plan: &FramePlan) -> UniformArray {
     let lights = plan.lights.iter().enumerate();
     let uniforms = lights.map(|(index, light)| light_uniform(index, light, plan.wraps_diffuse));
-    UniformArray::new(device, "lights", &uniforms.collect::<Vec<_>>())
+    UniformArray::new(device, "lights", &uniforms.collect::<Vec<_>>(), BufferUsages::STORAGE)
 }
 
 fn light_uniform(index: usize, light: &PlanLight, wraps: bool) -> LightUniform {

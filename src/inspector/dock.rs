@@ -52,8 +52,25 @@ pub enum Panel {
 }
 
 impl Panel {
+    /// On its tab.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Panel::Passes => "Passes",
+            Panel::Settings => "Settings",
+            Panel::Picture => "Picture",
+            Panel::Scene => "Scene",
+            Panel::Pixel => "Pixel",
+            Panel::State => "State",
+            Panel::Explain => "Explain",
+            Panel::Report => "Report",
+            Panel::Diagnosis => "Diagnosis",
+            Panel::Stress => "Stress",
+        }
+    }
+
     /// In the order of their declaration.
-    const ALL: [Panel; 10] = [
+    pub const ALL: [Panel; 10] = [
         Panel::Passes,
         Panel::Settings,
         Panel::Picture,
@@ -213,19 +230,7 @@ impl Behavior<Panel> for Panels<'_> {
     }
 
     fn tab_title_for_pane(&mut self, panel: &Panel) -> WidgetText {
-        let title = match panel {
-            Panel::Passes => "Passes",
-            Panel::Settings => "Settings",
-            Panel::Picture => "Picture",
-            Panel::Scene => "Scene",
-            Panel::Pixel => "Pixel",
-            Panel::State => "State",
-            Panel::Explain => "Explain",
-            Panel::Report => "Report",
-            Panel::Diagnosis => "Diagnosis",
-            Panel::Stress => "Stress",
-        };
-        title.into()
+        panel.title().into()
     }
 
     fn tab_ui(&mut self, tiles: &mut Tiles<Panel>, ui: &mut Ui, id: Id, tile_id: TileId, tab: &TabState) -> Response {

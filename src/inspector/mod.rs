@@ -85,6 +85,7 @@ mod walk;
 
 pub use action::{Action, RunRequest};
 pub use diagnosis::{DiagnosisProgress, DiagnosisView};
+pub use dock::Panel;
 pub use draw_level::DrawsState;
 pub use export::{ExportData, ExportKind};
 pub use memory::{Remembered, ThemeChoice};
@@ -100,7 +101,7 @@ use crate::capture::Capture;
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
 use crate::scene::Scene;
-use crate::technique::Choice;
+use crate::technique::{Choice, Technique};
 use state::State;
 use std::sync::Arc;
 use std::time::Duration;
@@ -208,6 +209,41 @@ impl Inspector {
         if let Some(layout) = remembered.layout {
             self.dock.restore(layout);
         }
+    }
+
+    /// Shows a tab.
+    pub fn show_panel(&mut self, panel: Panel) {
+        self.state.wants_panel = Some(panel);
+    }
+
+    /// Dark or light.
+    pub fn set_theme(&mut self, theme: ThemeChoice) {
+        self.state.theme = theme;
+    }
+
+    /// Runs the open scene like this; what has to be done for it.
+    #[must_use]
+    pub fn rerun(&mut self, draft: RunRequest) -> Vec<Action> {
+        let mut actions = Vec::new();
+        if let Some(scene) = &mut self.state.scene {
+            scene.draft = draft;
+        }
+        self.state.run_draft(&mut actions);
+        actions
+    }
+
+    /// How many stops the tour of a technique has.
+    #[must_use]
+    pub fn stops_of(technique: Technique) -> usize {
+        tour::stops_of(technique)
+    }
+
+    /// Goes to a stop of the tour of a technique; what has to be done for it.
+    #[must_use]
+    pub fn go_to_stop(&mut self, technique: Technique, stop: usize) -> Vec<Action> {
+        let mut actions = Vec::new();
+        self.state.go_to_stop_of(technique, stop, &mut actions);
+        actions
     }
 
     /// What an export of `kind` writes now; `None` where there is nothing of it.

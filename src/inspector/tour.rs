@@ -10,6 +10,7 @@ use super::theme;
 use super::tour_stops::{Go, TOURS, Tour};
 use crate::accuracy::Finding;
 use crate::capture::Capture;
+use crate::technique::Technique;
 use egui::{Label, Margin, RichText, Ui};
 
 /// Labels of a light that tours look for.
@@ -29,6 +30,13 @@ impl State {
     /// Begins a tour.
     pub fn start_tour(&mut self, tour: usize, actions: &mut Vec<Action>) {
         self.go_to_stop(tour, 0, actions);
+    }
+
+    /// Goes to a stop of the tour of a technique.
+    pub fn go_to_stop_of(&mut self, technique: Technique, stop: usize, actions: &mut Vec<Action>) {
+        if let Some(tour) = TOURS.iter().position(|tour| tour.technique == technique) {
+            self.go_to_stop(tour, stop, actions);
+        }
     }
 
     fn go_to_stop(&mut self, tour: usize, stop: usize, actions: &mut Vec<Action>) {
@@ -94,6 +102,12 @@ impl State {
     }
 }
 
+/// How many stops the tour of a technique has.
+#[must_use]
+pub fn stops_of(technique: Technique) -> usize {
+    TOURS.iter().find(|tour| tour.technique == technique).map_or(0, |tour| tour.stops.len())
+}
+
 fn scene_of(go: &[Go]) -> Option<&'static str> {
     go.iter().find_map(|go| if let Go::Scene(name) = go { Some(*name) } else { None })
 }
@@ -156,7 +170,10 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     match to {
         None => {}
         Some(None) => state.tour = None,
-        Some(Some(stop)) => state.go_to_stop(at.tour, stop, actions),
+        Some(Some(stop)) => {
+            state.go_to_stop(at.tour, stop, actions);
+            state.continue_tour(actions);
+        }
     }
 }
 
@@ -190,7 +207,6 @@ fn stop(ui: &mut Ui, tour: &Tour, at: TourState) -> Option<Option<usize>> {
 mod tests {
     use super::*;
     use crate::scene::builtin::Builtin;
-    use crate::technique::Technique;
 
     #[test]
     fn every_technique_has_a_tour_whose_scenes_exist() {

@@ -363,6 +363,19 @@ mod tests {
     }
 
     #[test]
+    fn the_pointer_is_held_and_hidden_and_let_go() {
+        let ctx = Context::default();
+        let sent = |is_held: bool| {
+            let mut output = ctx.run_ui(egui::RawInput::default(), |ui| hold_pointer(ui.ctx(), is_held));
+            output.textures_delta.clear();
+            output.viewport_output.values().flat_map(|output| output.commands.clone()).collect::<Vec<_>>()
+        };
+        let locked = [ViewportCommand::CursorGrab(CursorGrab::Locked), ViewportCommand::CursorVisible(false)];
+        assert_eq!(sent(true), locked);
+        assert_eq!(sent(false), [ViewportCommand::CursorGrab(CursorGrab::None), ViewportCommand::CursorVisible(true)]);
+    }
+
+    #[test]
     fn the_mouse_turns_to_the_right_and_down_and_never_over_the_head() {
         let mut right = camera();
         turn(&mut right, vec2((90.0 / TURN) as f32, 0.0));

@@ -128,12 +128,46 @@ impl Picture {
     }
 }
 
+/// Pictures of one size as one animated PNG, each shown for `milliseconds`, over and over.
+///
+/// # Errors
+/// No pictures, or of different sizes.
+pub fn film(pictures: &[Picture], milliseconds: u16) -> Result<Vec<u8>, png::EncodingError> {
+    let mut file = Vec::new();
+    let [width, height] = pictures.first().map_or([0, 0], Picture::size);
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.set_animated(pictures.len() as u32, 0)?;
+    encoder.set_frame_delay(milliseconds, 1000)?;
+    let mut writer = encoder.write_header()?;
+    for picture in pictures {
+        writer.write_image_data(picture.pixels.as_flattened())?;
+    }
+    writer.finish()?;
+    Ok(file)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const BLACK: Rgb = [0; 3];
     const RED: Rgb = [255, 0, 0];
+
+    #[test]
+    fn a_film_has_all_its_pictures_and_none_of_another_size() {
+        let pictures = [Picture::filled([2, 2], BLACK), Picture::filled([2, 2], RED)];
+        let file = film(&pictures, 500).expect("a film");
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a header");
+        assert_eq!(reader.info().animation_control().map(|film| film.num_frames), Some(2));
+        let mut last = vec![0; 12];
+        reader.next_frame(&mut last).expect("a picture");
+        reader.next_frame(&mut last).expect("a picture");
+        assert_eq!(last, [255, 0, 0].repeat(4));
+        assert!(film(&[Picture::filled([2, 2], BLACK), Picture::filled([1, 1], RED)], 500).is_err());
+        assert!(film(&[], 500).is_err());
+    }
 
     #[test]
     fn what_sticks_out_is_left_away() {

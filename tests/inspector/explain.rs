@@ -28,7 +28,7 @@ fn over(name: &str, technique: Technique) -> Inspector {
 #[test]
 fn the_state_of_a_volume_pass_is_told_in_a_sentence_and_in_three_apis_words() {
     let mut inspector = over("tori", Technique::ZFail);
-    inspector.select_step(1);
+    inspector.select_draw(1, 0);
     let mut harness = harness_of(inspector, [1600.0, 1600.0]);
     click(&mut harness, "State");
     harness.get_by_label_contains("one that fails the depth test adds 1 (255 becomes 0)");
@@ -67,7 +67,7 @@ fn each_pass_is_explained_with_the_scenes_own_numbers() {
     harness.get_by_label_contains("count = back faces behind the surface − front faces behind it");
     harness.get_by_label_contains("pixels have a count other than 0");
     harness.get_by_label_contains("sides, two triangles a silhouette edge: ");
-    harness.get_by_label("Left out");
+    assert!(harness.query_all_by_label("Left out").count() > 0);
     press(&mut harness, Key::ArrowRight);
     harness.get_by_label_contains(" in shadow, ");
     press(&mut harness, Key::ArrowRight);

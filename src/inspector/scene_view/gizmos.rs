@@ -92,7 +92,7 @@ pub fn ui(
     actions: &mut Vec<Action>,
 ) {
     let Some(draft) = state.scene.as_mut().map(|scene| &mut scene.draft) else { return };
-    let anchor = Anchor { middle: stage.middle, reach: 1.1 * stage.radius };
+    let anchor = Anchor { middle: stage.middle, reach: 0.85 * stage.radius };
     let painter = ui.painter_at(rect);
     let mut changed = false;
     let lights = (0..draft.lights.len()).map(Grip::Light);

@@ -1,0 +1,161 @@
+//! `stencilscope bench panels`: what the inspector's own frames cost, and how soon a change is seen.
+
+use super::bench::BenchArguments;
+use super::{CliError, output};
+
+/// Frames of each tab that are timed.
+#[cfg(feature = "inspector")]
+const FRAMES: usize = 60;
+/// Lights that are tried.
+#[cfg(feature = "inspector")]
+const LIGHTS: usize = 15;
+/// The window, points.
+#[cfg(feature = "inspector")]
+const WINDOW: [f32; 2] = [1280.0, 800.0];
+/// What a frame of the panels may cost on two cores of a server, milliseconds.
+#[cfg(feature = "inspector")]
+const LIMIT_PANELS_MS: f64 = 8.0;
+/// What a moved light may take until its capture is shown, milliseconds.
+#[cfg(feature = "inspector")]
+const LIMIT_LIGHT_MS: f64 = 150.0;
+
+/// Without a window there are no panels.
+///
+/// # Errors
+/// Always.
+#[cfg(not(feature = "inspector"))]
+pub fn run(_: &BenchArguments) -> Result<(), CliError> {
+    let _ = output::note;
+    Err(CliError::Window("this build has no panels to measure".to_owned()))
+}
+
+/// Draws the panels over each scene without a window, and says what that costs.
+///
+/// # Errors
+/// A scene that can't be opened; no GPU.
+#[cfg(feature = "inspector")]
+pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
+    use crate::app::headless::Headless;
+    let names = if arguments.scene.is_empty() { vec!["tori".to_owned()] } else { arguments.scene.clone() };
+    for name in &names {
+        let request = super::view::window::scene_request(name, &arguments.scene_options, &arguments.frame)?;
+        let [width, height] = request.capture.size;
+        let mut panels = Headless::new(request, WINDOW, 1.0)?;
+        panels.settle()?;
+        output::print(&format!("{name}, {width}x{height}, panels at {}x{}\n", WINDOW[0], WINDOW[1]))?;
+        output::print(&measured::tabs(&mut panels))?;
+        output::print(&measured::idle(&mut panels))?;
+        output::print(&measured::stepping(&mut panels))?;
+        output::print(&measured::light(&mut panels)?)?;
+    }
+    Ok(())
+}
+
+#[cfg(feature = "inspector")]
+mod measured {
+    use super::{FRAMES, LIGHTS, LIMIT_LIGHT_MS, LIMIT_PANELS_MS, WINDOW};
+    use crate::app::AppError;
+    use crate::app::headless::{FrameCost, Headless};
+    use crate::inspector::Panel;
+    use egui::{Key, Modifiers};
+    use std::time::{Duration, Instant};
+
+    fn ms(duration: Duration) -> f64 {
+        duration.as_secs_f64() * 1e3
+    }
+
+    fn median(mut times: Vec<f64>) -> f64 {
+        times.sort_by(f64::total_cmp);
+        times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
+    }
+
+    fn verdict(value: f64, limit: f64) -> String {
+        format!("{:.2} of the limit {limit} ms", value / limit)
+    }
+
+    /// Each tab in front, the pointer moving over all of the window.
+    pub fn tabs(panels: &mut Headless) -> String {
+        let middle = width_of(panels) / 2;
+        panels.inspector().pick([middle, 200]);
+        let mut text = String::new();
+        for panel in Panel::ALL {
+            panels.inspector().show_panel(panel);
+            for _ in 0..4 {
+                panels.point([0.5, 0.5]);
+            }
+            let costs: Vec<FrameCost> = (0..FRAMES)
+                .map(|frame| {
+                    let share = frame as f32 / FRAMES as f32;
+                    panels.point([share, 0.1 + 0.8 * ((share * 7.0) % 1.0)])
+                })
+                .collect();
+            let all = |of: fn(&FrameCost) -> Duration| median(costs.iter().map(|cost| ms(of(cost))).collect());
+            let total = all(FrameCost::total);
+            let worst = costs.iter().map(|cost| ms(cost.total())).fold(0.0, f64::max);
+            text += &format!(
+                "  {:<11} frame_ms {total:.2} (panels {:.2}, triangles {:.2}, worst {worst:.2}): {}\n",
+                panel.title().to_lowercase(),
+                all(|cost| cost.panels),
+                all(|cost| cost.triangles),
+                verdict(total, LIMIT_PANELS_MS)
+            );
+        }
+        panels.inspector().show_panel(Panel::Picture);
+        panels.inspector().show_panel(Panel::Pixel);
+        text
+    }
+
+    fn width_of(panels: &mut Headless) -> u32 {
+        panels.inspector().capture().map_or(2, |capture| capture.size[0])
+    }
+
+    /// Is another frame wished for while nothing happens?
+    pub fn idle(panels: &mut Headless) -> String {
+        panels.point([0.5, 0.02]);
+        // Hints and focus settle for a second.
+        for _ in 0..90 {
+            panels.frame(Vec::new());
+        }
+        let wishes = (0..FRAMES).filter(|_| panels.frame(Vec::new()).next.is_some()).count();
+        format!("  idle: {wishes} of {FRAMES} frames wish for another one while nothing changes\n")
+    }
+
+    /// Steps forth and back: is the step shown in the frame that took the key?
+    pub fn stepping(panels: &mut Headless) -> String {
+        let mut costs = Vec::new();
+        let mut in_next = 0;
+        panels.key(Modifiers::NONE, Key::Home);
+        for round in 0..FRAMES {
+            let before = panels.inspector().step();
+            let key = if round % 2 == 0 { Key::ArrowRight } else { Key::ArrowLeft };
+            let cost = panels.key(Modifiers::NONE, key);
+            in_next += usize::from(panels.inspector().step() != before);
+            costs.push(ms(cost.total()));
+        }
+        format!(
+            "  stepping: {in_next} of {FRAMES} steps are shown by the frame that took the key, frame_ms {:.2}\n",
+            median(costs)
+        )
+    }
+
+    /// The light is moved: how long until its capture is shown?
+    pub fn light(panels: &mut Headless) -> Result<String, AppError> {
+        let mut times = Vec::new();
+        for index in 0..=LIGHTS {
+            let Some(mut draft) = panels.inspector().draft() else { break };
+            let Some(light) = draft.lights.first_mut() else { break };
+            light.position.x += if index % 2 == 0 { 0.05 } else { -0.05 };
+            let start = Instant::now();
+            let shown = panels.run_and_show(*draft)?;
+            if index > 0 {
+                times.push(ms(shown - start));
+            }
+        }
+        let time = median(times);
+        let [width, height] = WINDOW;
+        Ok(format!(
+            "  light moved: its capture is shown after {time:.0} ms in a window of {width}x{height}: {}\n",
+            verdict(time, LIMIT_LIGHT_MS)
+        ))
+    }
+}

@@ -1,0 +1,181 @@
+//! `stencilscope pictures`: the README's pictures of the window and its animated tour, made without a display.
+
+use super::CliError;
+use clap::Args;
+
+#[derive(Debug, Args)]
+pub struct PicturesArguments {
+    /// Where they go: PNG files named after what they show
+    #[arg(short = 'o', long = "output", value_name = "DIR", default_value = "assets/pictures")]
+    output: String,
+    /// Part of the name of the GPU to use
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Only pictures whose name has this word; `tour` is the animated one
+    #[arg(long, value_name = "WORD", default_value = "")]
+    only: String,
+}
+
+/// Without a window there is nothing to take a picture of.
+///
+/// # Errors
+/// Always.
+#[cfg(not(feature = "inspector"))]
+pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
+    let PicturesArguments { output, adapter, only } = arguments;
+    let _ = (output, adapter, only);
+    Err(CliError::Window("this build has no window to take pictures of".to_owned()))
+}
+
+/// Draws all pictures.
+///
+/// # Errors
+/// A folder that can't be written to; no GPU.
+#[cfg(feature = "inspector")]
+pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
+    shots::run(&arguments.output, arguments.adapter.as_deref(), &arguments.only)
+}
+
+#[cfg(feature = "inspector")]
+mod shots {
+    use crate::app::headless::Headless;
+    use crate::app::{ViewRequest, ViewSource};
+    use crate::cli::{CliError, output};
+    use crate::inspector::{Inspector, Panel, PictureKind, ThemeChoice};
+    use crate::picture::{Picture, film};
+    use crate::scene::{OpenSpec, open};
+    use crate::session::{CaptureRequest, Every};
+    use crate::technique::{Choice, Technique};
+    use std::path::Path;
+
+    /// The window, points.
+    const WINDOW: [f32; 2] = [1440.0, 900.0];
+    /// The picture in it.
+    const SIZE: [u32; 2] = [640, 480];
+    /// How long a stop of the animated tour is shown, milliseconds.
+    const STOP_MS: u16 = 2200;
+
+    /// What a picture shows.
+    struct Shot {
+        name: &'static str,
+        scene: &'static str,
+        technique: Technique,
+        /// Part of the step's name; the last step where it is empty.
+        step: &'static str,
+        kind: PictureKind,
+        pick: Option<[u32; 2]>,
+        panels: &'static [Panel],
+        theme: ThemeChoice,
+    }
+
+    const DARK: ThemeChoice = ThemeChoice::Dark;
+
+    const fn shot(
+        name: &'static str,
+        scene: &'static str,
+        technique: Technique,
+        step: &'static str,
+        kind: PictureKind,
+        pick: Option<[u32; 2]>,
+        panels: &'static [Panel],
+    ) -> Shot {
+        Shot { name, scene, technique, step, kind, pick, panels, theme: DARK }
+    }
+
+    fn shots() -> Vec<Shot> {
+        use PictureKind::{Color, Error, Map, Stencil};
+        use Technique::{Auto, ShadowMap, ZFail, ZPass};
+        let pick = Some([330, 300]);
+        let mut shots = vec![
+            shot("inspector", "tori", ZFail, "volumes", Stencil, pick, &[Panel::Picture, Panel::Pixel]),
+            shot("state", "tori", ZFail, "volumes", Stencil, pick, &[Panel::Picture, Panel::State]),
+            shot("explain", "tori", Auto, "volumes", Stencil, pick, &[Panel::Picture, Panel::Explain]),
+            shot("settings", "tori", ShadowMap, "", Color, None, &[Panel::Picture, Panel::Settings]),
+            shot("map", "table", ShadowMap, "", Map, pick, &[Panel::Picture, Panel::Pixel]),
+            shot("error", "inside", ZPass, "", Error, pick, &[Panel::Picture, Panel::Pixel]),
+            shot("light-theme", "tori", ZFail, "volumes", Stencil, pick, &[Panel::Picture, Panel::Pixel]),
+        ];
+        if let Some(last) = shots.last_mut() {
+            last.theme = ThemeChoice::Light;
+        }
+        shots
+    }
+
+    pub fn run(folder: &str, adapter: Option<&str>, only: &str) -> Result<(), CliError> {
+        let folder = Path::new(folder);
+        std::fs::create_dir_all(folder)
+            .map_err(|source| CliError::Output { path: folder.display().to_string(), source })?;
+        for shot in shots().iter().filter(|shot| shot.name.contains(only)) {
+            let picture = take(shot, adapter)?;
+            write(folder, &format!("{}.png", shot.name), &picture.to_png().map_err(encoding)?)?;
+        }
+        if "tour".contains(only) {
+            write(folder, "tour.png", &tour(adapter)?)?;
+        }
+        Ok(())
+    }
+
+    fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), CliError> {
+        let file = folder.join(name).display().to_string();
+        output::write(&file, bytes)?;
+        output::note(&format!("wrote {file}"));
+        Ok(())
+    }
+
+    fn encoding(error: png::EncodingError) -> CliError {
+        CliError::Window(format!("a picture can't be encoded ({error})"))
+    }
+
+    fn opened(
+        scene: &str,
+        technique: Technique,
+        adapter: Option<&str>,
+        window: [f32; 2],
+    ) -> Result<Headless, CliError> {
+        let spec = OpenSpec::new(scene);
+        let request = ViewRequest {
+            source: ViewSource::Scene(Box::new(open(&spec)?)),
+            name: spec,
+            capture: CaptureRequest { every: Every::Pass, ..CaptureRequest::new(Choice::new(technique), SIZE) },
+            time: 0.0,
+            adapter: adapter.map(str::to_owned),
+            step: None,
+            pick: None,
+            truth: false,
+        };
+        let mut panels = Headless::new(request, window, 1.0)?;
+        panels.settle()?;
+        Ok(panels)
+    }
+
+    fn take(shot: &Shot, adapter: Option<&str>) -> Result<Picture, CliError> {
+        let mut panels = opened(shot.scene, shot.technique, adapter, WINDOW)?;
+        let inspector = panels.inspector();
+        inspector.set_theme(shot.theme);
+        let steps = inspector.capture().map_or_else(Vec::new, |capture| capture.steps.clone());
+        if let Some(step) = steps.iter().position(|step| !shot.step.is_empty() && step.name.contains(shot.step)) {
+            inspector.select_step(step);
+        }
+        inspector.set_picture_kind(shot.kind);
+        if let Some(pick) = shot.pick {
+            inspector.pick(pick);
+        }
+        shot.panels.iter().for_each(|panel| inspector.show_panel(*panel));
+        panels.settle()?;
+        Ok(panels.picture()?)
+    }
+
+    /// The tour of z-fail as an animated PNG, a stop a picture.
+    fn tour(adapter: Option<&str>) -> Result<Vec<u8>, CliError> {
+        let mut panels = opened("tori", Technique::ZFail, adapter, [1120.0, 700.0])?;
+        let stops = Inspector::stops_of(Technique::ZFail);
+        let mut pictures = Vec::new();
+        for stop in 0..stops {
+            let actions = panels.inspector().go_to_stop(Technique::ZFail, stop);
+            panels.act(actions);
+            panels.settle()?;
+            pictures.push(panels.picture()?);
+        }
+        film(&pictures, STOP_MS).map_err(encoding)
+    }
+}
