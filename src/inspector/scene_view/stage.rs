@@ -253,7 +253,7 @@ impl Stage {
         theme: &Theme,
     ) {
         let far = FarEnd::new(light, self.middle, self.radius);
-        let limit = self.radius / 5.0;
+        let limit = self.radius / 3.0;
         for part in &volume.parts {
             let (is_shown, share) = match part.part {
                 Part::Side => (shown.sides, 0.26 * strength),
