@@ -115,7 +115,6 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
         &["pixel 16,0", "0,0 to 15,8"],
     );
     assert_fails(&["pixel", "tori", "--at", "1,1", "--json", "models"], 2, &["models", "can't be written"]);
-    assert_fails(&["bench", "panels"], 2, &["not there yet", "capture"]);
     assert_fails(&["bench", "nothing"], 2, &["choose capture"]);
 }
 

@@ -148,9 +148,9 @@ impl Desk {
                 self.inspector.set_tests(step, draw, result);
             }
             // Of a scene or frame that is shown no more.
-            News::Anatomy { .. } | News::Tests { .. } | News::Compared { .. } => {}
+            News::Tests { .. } | News::Compared { .. } => {}
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
-            News::Draws { .. } | News::NoDraws { .. } | News::History { .. } => {}
+            News::Draws { .. } | News::NoDraws { .. } | News::History { .. } | News::Anatomy { .. } => {}
             News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
             News::Diagnosed { job, result } => self.jobs.end_diagnosing(job, result, &mut self.inspector),
             News::Stressed { job, rows } => self.jobs.add_stress(job, rows, &mut self.inspector),

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use winit::dpi::{LogicalSize, PhysicalSize};
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
-use winit::window::Window;
+use winit::window::{CursorGrabMode, Window};
 
 /// The window's first size in points.
 const FIRST_SIZE: [f64; 2] = [1440.0, 900.0];
@@ -26,6 +26,10 @@ pub struct Surface {
     textures: egui::TexturesDelta,
     title: String,
     hidden: bool,
+    /// Raw movement of the mouse counts.
+    holds_pointer: bool,
+    /// Why the pointer can't be held, once it was tried.
+    grab_failed: Option<String>,
 }
 
 impl Surface {
@@ -62,7 +66,16 @@ impl Surface {
         input.init_accesskit(event_loop, &window, proxy);
         window.set_visible(true);
         let textures = egui::TexturesDelta::default();
-        Ok(Surface { window, painter, input, textures, title: String::new(), hidden: false })
+        Ok(Surface {
+            window,
+            painter,
+            input,
+            textures,
+            title: String::new(),
+            hidden: false,
+            holds_pointer: false,
+            grab_failed: None,
+        })
     }
 
     /// Names the window.
@@ -71,6 +84,11 @@ impl Surface {
             self.window.set_title(&title);
             self.title = title;
         }
+    }
+
+    /// Why the pointer could not be held, told once.
+    pub fn take_grab_failure(&mut self) -> Option<String> {
+        self.grab_failed.take()
     }
 
     /// Asks the system for a redraw.
@@ -101,6 +119,32 @@ impl Surface {
         self.window.request_redraw();
     }
 
+    /// Hands raw movement of the mouse to egui while the pointer is held; asks for a redraw where it counts.
+    pub fn on_mouse_motion(&mut self, delta: (f64, f64)) {
+        if self.holds_pointer && self.input.on_mouse_motion(delta) {
+            self.window.request_redraw();
+        }
+    }
+
+    /// The pointer is held in the window, or let go, hidden or shown. A system that can't lock it in place
+    /// keeps it within the window; one that can do neither leaves it free, and walking works up to its edge.
+    fn obey(&mut self, command: &egui::ViewportCommand) {
+        match command {
+            egui::ViewportCommand::CursorGrab(grab) => {
+                self.holds_pointer = *grab != egui::CursorGrab::None;
+                let held = if self.holds_pointer {
+                    let locked = self.window.set_cursor_grab(CursorGrabMode::Locked);
+                    locked.or_else(|_| self.window.set_cursor_grab(CursorGrabMode::Confined))
+                } else {
+                    self.window.set_cursor_grab(CursorGrabMode::None)
+                };
+                self.grab_failed = held.err().map(|error| error.to_string());
+            }
+            egui::ViewportCommand::CursorVisible(is_visible) => self.window.set_cursor_visible(*is_visible),
+            _ => {}
+        }
+    }
+
     fn resize(&mut self, size: PhysicalSize<u32>) {
         if let (Some(width), Some(height)) = (NonZeroU32::new(size.width), NonZeroU32::new(size.height)) {
             self.painter.on_window_resized(ViewportId::ROOT, width, height);
@@ -116,6 +160,9 @@ impl Surface {
         let input = self.input.take_egui_input(&self.window);
         let output = ctx.run_ui(input, ui);
         self.input.handle_platform_output_with_event_loop(&self.window, event_loop, output.platform_output);
+        for command in output.viewport_output.values().flat_map(|output| &output.commands) {
+            self.obey(command);
+        }
         let primitives = ctx.tessellate(output.shapes, output.pixels_per_point);
         self.textures.append(output.textures_delta);
         self.painter.paint_and_update_textures(

@@ -7,7 +7,7 @@ use super::{AppError, ViewRequest, no_window};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
-use winit::event::{StartCause, WindowEvent};
+use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::WindowId;
 
@@ -61,6 +61,10 @@ impl App {
                 ui.ctx().request_repaint_after(WATCH);
             }
         });
+        if let Some(reason) = surface.take_grab_failure() {
+            let words = format!("the pointer can't be held ({reason}): walking turns until it meets an edge");
+            self.desk.inspector.push_error(words);
+        }
         if !actions.is_empty() {
             actions.into_iter().for_each(|action| self.desk.act(action));
             self.redraw();
@@ -122,6 +126,12 @@ impl ApplicationHandler<WindowNews> for App {
                     surface.on_event(&event);
                 }
             }
+        }
+    }
+
+    fn device_event(&mut self, _event_loop: &ActiveEventLoop, _device: DeviceId, event: DeviceEvent) {
+        if let (DeviceEvent::MouseMotion { delta }, Some(surface)) = (event, &mut self.surface) {
+            surface.on_mouse_motion(delta);
         }
     }
 

@@ -41,11 +41,12 @@ mod shots {
     use crate::app::headless::Headless;
     use crate::app::{ViewRequest, ViewSource};
     use crate::cli::{CliError, output};
-    use crate::inspector::{Inspector, Panel, PictureKind, ThemeChoice};
+    use crate::inspector::{Inspector, Overlay, Panel, PictureKind, ThemeChoice};
     use crate::picture::{Picture, film};
     use crate::scene::{OpenSpec, open};
     use crate::session::{CaptureRequest, Every};
     use crate::technique::{Choice, Technique};
+    use egui::{Key, Modifiers};
     use std::path::Path;
 
     /// The window, points.
@@ -53,7 +54,9 @@ mod shots {
     /// The picture in it.
     const SIZE: [u32; 2] = [640, 480];
     /// How long a stop of the animated tour is shown, milliseconds.
-    const STOP_MS: u16 = 2200;
+    const STOP_MS: u16 = 3500;
+    /// The picked pixel.
+    const PICK: [u32; 2] = [330, 300];
 
     /// What a picture shows.
     struct Shot {
@@ -66,39 +69,52 @@ mod shots {
         pick: Option<[u32; 2]>,
         panels: &'static [Panel],
         theme: ThemeChoice,
+        /// Buttons pressed once all is shown, by their keys.
+        keys: &'static [Key],
+        /// An overlay of the picture.
+        overlay: Option<Overlay>,
+        /// Compared with this technique under the divider.
+        compared: Option<Technique>,
     }
 
-    const DARK: ThemeChoice = ThemeChoice::Dark;
-
-    const fn shot(
-        name: &'static str,
-        scene: &'static str,
-        technique: Technique,
-        step: &'static str,
-        kind: PictureKind,
-        pick: Option<[u32; 2]>,
-        panels: &'static [Panel],
-    ) -> Shot {
-        Shot { name, scene, technique, step, kind, pick, panels, theme: DARK }
+    fn shot(name: &'static str, scene: &'static str, technique: Technique, panels: &'static [Panel]) -> Shot {
+        Shot {
+            name,
+            scene,
+            technique,
+            step: "",
+            kind: PictureKind::Color,
+            pick: Some(PICK),
+            panels,
+            theme: ThemeChoice::Dark,
+            keys: &[],
+            overlay: None,
+            compared: None,
+        }
     }
 
     fn shots() -> Vec<Shot> {
-        use PictureKind::{Color, Error, Map, Stencil};
+        use Panel::{Explain, Picture, Pixel, Scene, Settings, ShadowMap as MapTab, State};
+        use PictureKind::{Error, Stencil};
         use Technique::{Auto, ShadowMap, ZFail, ZPass};
-        let pick = Some([330, 300]);
-        let mut shots = vec![
-            shot("inspector", "tori", ZFail, "volumes", Stencil, pick, &[Panel::Picture, Panel::Pixel]),
-            shot("state", "tori", ZFail, "volumes", Stencil, pick, &[Panel::Picture, Panel::State]),
-            shot("explain", "tori", Auto, "volumes", Stencil, pick, &[Panel::Picture, Panel::Explain]),
-            shot("settings", "tori", ShadowMap, "", Color, None, &[Panel::Picture, Panel::Settings]),
-            shot("map", "table", ShadowMap, "", Map, pick, &[Panel::Picture, Panel::Pixel]),
-            shot("error", "inside", ZPass, "", Error, pick, &[Panel::Picture, Panel::Pixel]),
-            shot("light-theme", "tori", ZFail, "volumes", Stencil, pick, &[Panel::Picture, Panel::Pixel]),
-        ];
-        if let Some(last) = shots.last_mut() {
-            last.theme = ThemeChoice::Light;
-        }
-        shots
+        let volumes = |shot: Shot| Shot { step: "volumes", kind: Stencil, ..shot };
+        vec![
+            volumes(shot("inspector", "tori", ZFail, &[Picture, Pixel])),
+            volumes(shot("state", "tori", ZFail, &[Picture, State])),
+            volumes(shot("explain", "tori", Auto, &[Picture, Explain])),
+            shot("settings", "tori", ShadowMap, &[Picture, Settings, Pixel]),
+            shot("scene", "tori", ZFail, &[Scene, Pixel]),
+            shot("shadow-map", "table", ShadowMap, &[MapTab, Pixel]),
+            Shot { kind: Error, ..shot("error", "inside", ZPass, &[Picture, Pixel]) },
+            Shot { keys: &[Key::D], ..volumes(shot("diff", "tori", ZFail, &[Picture, Pixel])) },
+            Shot {
+                step: "volumes",
+                overlay: Some(Overlay::Tests),
+                ..shot("overlay", "tori", ZFail, &[Picture, Pixel])
+            },
+            Shot { compared: Some(ShadowMap), ..shot("compare", "table", ZFail, &[Picture, Pixel]) },
+            Shot { theme: ThemeChoice::Light, ..volumes(shot("light-theme", "tori", ZFail, &[Picture, Pixel])) },
+        ]
     }
 
     pub fn run(folder: &str, adapter: Option<&str>, only: &str) -> Result<(), CliError> {
@@ -161,6 +177,16 @@ mod shots {
             inspector.pick(pick);
         }
         shot.panels.iter().for_each(|panel| inspector.show_panel(*panel));
+        if let Some(overlay) = shot.overlay {
+            inspector.lay_over(overlay);
+        }
+        if let Some(technique) = shot.compared {
+            inspector.compare_with(technique);
+        }
+        panels.settle()?;
+        for key in shot.keys {
+            panels.key(Modifiers::NONE, *key);
+        }
         panels.settle()?;
         Ok(panels.picture()?)
     }

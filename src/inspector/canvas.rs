@@ -20,6 +20,9 @@ pub const NUMBERS_FROM: f32 = 24.0;
 /// How much one point of wheel movement zooms, as a power of e; a notch is about 50 points.
 const WHEEL_ZOOM: f32 = 0.004;
 
+/// Name of the picture's own canvas.
+const PICTURE: &str = "Picture canvas";
+
 /// A picture over the shown one, of the same size.
 #[derive(Debug, Clone)]
 pub struct Sheet {
@@ -42,7 +45,7 @@ pub fn ui(
     coloring: Coloring,
     sheets: &[Sheet],
 ) -> Placement {
-    named(ui, state, rect, shown, coloring, sheets, "Picture canvas")
+    named(ui, state, rect, shown, coloring, sheets, PICTURE)
 }
 
 /// The same under another name.
@@ -58,6 +61,9 @@ pub fn named(
     let image = &shown.images[0];
     let response = ui.interact(rect, ui.scope_id().with(name), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, name));
+    if name == PICTURE {
+        state.picture_widget = Some(response.id);
+    }
     let pixels_per_point = ui.pixels_per_point();
     let place = |state: &State| Placement::new(&state.view, image.size(), rect, pixels_per_point);
     move_view(ui, state, &response, place(state), pixels_per_point);

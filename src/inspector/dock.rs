@@ -7,7 +7,9 @@
 use super::action::Action;
 use super::state::State;
 
-use super::{diagnosis, explain, passes, picture, pixel, raster_state, report, settings, shadow_map, stress, theme};
+use super::{
+    diagnosis, explain, passes, picture, pixel, raster_state, report, scene_view, settings, shadow_map, stress, theme,
+};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
@@ -35,6 +37,8 @@ pub enum Panel {
     Settings,
     /// The selected buffer.
     Picture,
+    /// A second camera that sees the first.
+    Scene,
     /// A light's map, linked with the picture.
     ShadowMap,
     /// Everything about the picked pixel.
@@ -59,6 +63,7 @@ impl Panel {
             Panel::Passes => "Passes",
             Panel::Settings => "Settings",
             Panel::Picture => "Picture",
+            Panel::Scene => "Scene",
             Panel::ShadowMap => "Shadow map",
             Panel::Pixel => "Pixel",
             Panel::State => "State",
@@ -70,10 +75,11 @@ impl Panel {
     }
 
     /// In the order of their declaration.
-    pub const ALL: [Panel; 10] = [
+    pub const ALL: [Panel; 11] = [
         Panel::Passes,
         Panel::Settings,
         Panel::Picture,
+        Panel::Scene,
         Panel::ShadowMap,
         Panel::Pixel,
         Panel::State,
@@ -108,7 +114,7 @@ impl Dock {
         let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
         let left = tiles.insert_tab_tile(sides.to_vec());
         let [picture, report, right] = [
-            &[Panel::Picture, Panel::ShadowMap][..],
+            &[Panel::Picture, Panel::Scene, Panel::ShadowMap][..],
             &[Panel::Report, Panel::Diagnosis, Panel::Stress],
             &[Panel::Pixel, Panel::State, Panel::Explain],
         ]
@@ -149,7 +155,7 @@ impl Dock {
             let is_empty = state.report.is_empty() && !others.contains(&true);
             self.keep_heights(ui.available_height(), is_empty);
         }
-        if let Some(wanted) = state.wants_panel.take() {
+        for wanted in std::mem::take(&mut state.wants_panel) {
             self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(panel) if *panel == wanted));
         }
         let mut behavior = Panels { state, actions, edited: false, theme: theme::of(ui) };
@@ -202,7 +208,7 @@ struct Panels<'a> {
 impl Behavior<Panel> for Panels<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, panel: &mut Panel) -> UiResponse {
         let frame = match panel {
-            Panel::Picture | Panel::ShadowMap => egui::Frame::new().fill(theme::of(ui).panel),
+            Panel::Picture | Panel::Scene | Panel::ShadowMap => egui::Frame::new().fill(theme::of(ui).panel),
             _ => theme::panel_frame(ui),
         };
         frame.show(ui, |ui| {
@@ -211,6 +217,7 @@ impl Behavior<Panel> for Panels<'_> {
                 Panel::Passes => passes::ui(ui, self.state),
                 Panel::Settings => settings::ui(ui, self.state, self.actions),
                 Panel::Picture => picture::ui(ui, self.state, self.actions),
+                Panel::Scene => scene_view::ui(ui, self.state, self.actions),
                 Panel::ShadowMap => shadow_map::ui(ui, self.state),
                 Panel::Pixel => pixel::ui(ui, self.state),
                 Panel::State => raster_state::ui(ui, self.state),

@@ -8,6 +8,12 @@ pub fn counted(value: u64, noun: &str) -> String {
     format!("{} {noun}{}", count(value), if value == 1 { "" } else { "s" })
 }
 
+/// `Light 1`, as a title.
+#[must_use]
+pub fn light_title(index: usize) -> String {
+    format!("Light {}", index + 1)
+}
+
 /// Milliseconds, or a dash where they were not measured.
 #[must_use]
 pub fn milliseconds(value: Option<f64>) -> String {

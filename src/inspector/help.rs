@@ -3,6 +3,7 @@
 use super::keys::{BINDINGS, PICTURE, Scope};
 use super::state::State;
 use super::theme;
+use super::walk;
 use egui::{Context, Id, Ui};
 
 /// Draws the window while it is open.
@@ -27,6 +28,7 @@ fn contents(ui: &mut Ui) {
     section(ui, "While the passes, or nothing, have the focus", of_scope(Scope::Passes));
     section(ui, "How the picture is looked at", of_scope(Scope::Picture));
     section(ui, "On the picture", PICTURE.into_iter());
+    section(ui, "While walking (Tab over the picture, or Walk)", walk::KEYS.iter().map(|key| (key.keys, key.does)));
 }
 
 fn of_scope(scope: Scope) -> impl Iterator<Item = (&'static str, &'static str)> {

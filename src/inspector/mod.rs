@@ -15,6 +15,7 @@
 //! modes.rs     before, after, compare          overlays.rs    what is drawn over it
 //! change.rs    what a step changed             shadow_map.rs  the map, linked with the picture
 //! moment.rs    after a step, or after a draw       draw_level.rs selecting and fetching draws
+//! scene_view/  a second camera that sees the first
 //! keys.rs      the table of keys, for help.rs    undo.rs, memory.rs, export.rs, animation.rs: as they say
 //! history.rs   the pick's history, asked for       history_rows.rs, ladder.rs, outline.rs show it
 //! ```
@@ -65,7 +66,9 @@ mod overlay_lines;
 mod overlays;
 mod palette;
 mod passes;
+mod pick_ray;
 mod picture;
+mod picture_gizmos;
 mod pixel;
 mod pixel_run;
 mod placement;
@@ -74,6 +77,7 @@ mod raster_state;
 mod report;
 mod report_plot;
 mod report_table;
+mod scene_view;
 mod settings;
 mod settings_off;
 mod settings_scene;
@@ -92,6 +96,7 @@ mod truth_note;
 mod undo;
 mod verdict;
 mod view;
+mod walk;
 
 pub use action::{Action, RunRequest};
 pub use diagnosis::{DiagnosisProgress, DiagnosisView};
@@ -100,6 +105,7 @@ pub use draw_level::DrawsState;
 pub use export::{ExportData, ExportKind};
 pub use memory::{Remembered, ThemeChoice};
 pub use meshes::ObjectMesh;
+pub use overlays::Overlay;
 pub use report::{ReportProgress, ReportView};
 pub use state::SceneEntry;
 pub use stress::StressProgress;
@@ -112,6 +118,7 @@ use crate::history::PixelHistory;
 use crate::plan::FramePlan;
 use crate::scene::Scene;
 use crate::technique::{Choice, Technique};
+use compare::{Compare, With};
 use state::State;
 use std::sync::Arc;
 use std::time::Duration;
@@ -150,9 +157,11 @@ impl Inspector {
         let mut actions = Vec::new();
         self.state.cache.tick();
         take_dropped_files(ui.ctx(), &mut actions);
-        self.state.undo.hold(ui.input(|input| input.pointer.any_down()));
+        self.state.undo.hold(ui.input(|input| input.pointer.any_down()) || self.state.walk.is_on());
         self.state.finish_restoring(&mut actions);
-        keys::handle(ui.ctx(), &mut self.state, &mut actions);
+        if !walk::handle(ui.ctx(), &mut self.state, &mut actions) {
+            keys::handle(ui.ctx(), &mut self.state, &mut actions);
+        }
         self.play(ui.ctx());
         top_bar::ui(ui, &mut self.state, &mut actions);
         messages::ui(ui, &mut self.state, &mut actions);
@@ -223,7 +232,18 @@ impl Inspector {
 
     /// Shows a tab.
     pub fn show_panel(&mut self, panel: Panel) {
-        self.state.wants_panel = Some(panel);
+        self.state.wants_panel.push(panel);
+    }
+
+    /// Lays an overlay over the picture.
+    pub fn lay_over(&mut self, overlay: Overlay) {
+        self.state.modes.overlays.on.insert(overlay);
+    }
+
+    /// Shows the same frame made with another technique beside the picture, under a divider.
+    pub fn compare_with(&mut self, technique: Technique) {
+        let compare = Compare { with: With::Technique(technique), ..Compare::new(self.state.step) };
+        self.state.modes.compare = Some(compare);
     }
 
     /// Dark or light.

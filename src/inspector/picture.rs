@@ -16,12 +16,14 @@ use super::modes::{NoBefore, Phase, has_phases};
 use super::modes_bar;
 use super::outline;
 use super::overlays;
+use super::picture_gizmos;
 use super::shadow_map;
 use super::state::State;
 use super::theme;
 use super::top_bar::segments;
 use super::truth_note;
 use super::view::{DepthMode, FaceChoice, PictureKind, Shown, Zoom, available};
+use super::walk;
 use crate::capture::{Capture, Image};
 use egui::{CornerRadius, Margin, Rect, Ui, vec2};
 use std::sync::Arc;
@@ -43,7 +45,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         coloring = Coloring::Bit(bit);
     }
     if shown.images.len() == 1 {
-        single(ui, state, &capture, rect, &shown, coloring, range);
+        single(ui, state, &capture, rect, &shown, (coloring, range), actions);
     } else {
         face_grid::ui(ui, state, rect, &shown, coloring);
         legend::ui(ui, state, rect, &shown, range);
@@ -52,6 +54,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     if state.view.kind == PictureKind::Overdraw && shown.kind != PictureKind::Overdraw {
         overlays::counting_note(ui, state, rect);
     }
+    walk::banner(ui, state, rect);
 }
 
 /// One picture with what is over it: what changed, or what is compared.
@@ -61,8 +64,8 @@ fn single(
     capture: &Capture,
     rect: Rect,
     shown: &Shown,
-    coloring: Coloring,
-    range: [f64; 2],
+    (coloring, range): (Coloring, [f64; 2]),
+    actions: &mut Vec<Action>,
 ) {
     let change = change_of(state, capture, shown);
     let mut sheets = Vec::new();
@@ -97,6 +100,7 @@ fn single(
         }
     }
     outline::ui(ui, state, rect, shown, placement);
+    picture_gizmos::ui(ui, state, rect, shown, placement, actions);
     match &change {
         Some((_, change)) => legend::of_change(ui, rect, change),
         None => {
@@ -350,4 +354,6 @@ fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
         }
         state.view.zoom = Zoom::Pixels(1.0);
     }
+    picture_gizmos::button(ui, state);
+    walk::button(ui, state);
 }

@@ -14,6 +14,7 @@ use super::meshes::ObjectMesh;
 use super::modes::Modes;
 use super::moment::Moment;
 use super::report::ReportState;
+use super::scene_view::SceneView;
 use super::shadow_map::MapTab;
 use super::stress::StressState;
 use super::texture::PictureCache;
@@ -21,6 +22,7 @@ use super::tour::TourState;
 use super::truth_note::TruthState;
 use super::undo::{self, Undo};
 use super::view::{PictureKind, PictureView, Zoom, available, has_truth};
+use super::walk::Walk;
 use crate::capture::Capture;
 use crate::plan::FramePlan;
 use crate::plan::words::Api;
@@ -132,6 +134,14 @@ pub struct State {
     pub history: HistoryState,
     /// What the shown frame is made of in space.
     pub anatomy: AnatomyState,
+    /// The Scene tab.
+    pub scene_view: SceneView,
+    /// Lights in view are handles over the picture.
+    pub picture_gizmos: bool,
+    /// The picture's own widget, once it was drawn.
+    pub picture_widget: Option<egui::Id>,
+    /// Walking through the scene.
+    pub walk: Walk,
     /// The Report tab.
     pub report: ReportState,
     /// The Diagnosis tab.
@@ -174,8 +184,8 @@ pub struct State {
     pub tour: Option<TourState>,
     /// A tour to begin.
     pub wants_tour: Option<usize>,
-    /// A tab to show.
-    pub wants_panel: Option<Panel>,
+    /// Tabs to show.
+    pub wants_panel: Vec<Panel>,
     /// What the Explain tab tells, kept while it is the same.
     pub explained: Explained,
     /// In whose words the State tab tells.
@@ -304,6 +314,8 @@ impl State {
         self.diagnosis.forget();
         self.modes.forget_scene();
         self.anatomy.forget();
+        self.scene_view.forget();
+        self.walk.forget_walls();
         if scene.is_none() {
             self.history.close();
         }

@@ -47,13 +47,12 @@ impl State {
         self.tour = Some(TourState { tour, stop, is_pending: true });
         self.animation.is_running = false;
         let is_open = |scene: &str| self.scene.as_ref().is_some_and(|open| open.name == scene);
-        if let Some(scene) = found.stops[..=stop].iter().rev().find_map(|stop| scene_of(stop.go)) {
-            if !is_open(scene) {
-                self.restoring = None;
-                self.is_waiting = true;
-                actions.push(Action::Open(scene.to_owned()));
-                return;
-            }
+        let scene = found.stops[..=stop].iter().rev().find_map(|stop| scene_of(stop.go));
+        if let Some(scene) = scene.filter(|scene| !is_open(scene)) {
+            self.restoring = None;
+            self.is_waiting = true;
+            actions.push(Action::Open(scene.to_owned()));
+            return;
         }
         self.choose_technique(found.stops[stop].technique(found), actions);
     }
@@ -77,6 +76,7 @@ impl State {
             return;
         }
         self.tour = Some(TourState { is_pending: false, ..at });
+        self.modes.overlays.on.clear();
         for go in stop.go {
             self.go(*go, &capture);
         }
@@ -94,7 +94,10 @@ impl State {
                 }
             }
             Go::Picture(kind) => self.choose_picture(kind),
-            Go::Panel(panel) => self.wants_panel = Some(panel),
+            Go::Panel(panel) => self.wants_panel.push(panel),
+            Go::Over(overlay) => {
+                self.modes.overlays.on.insert(overlay);
+            }
             Go::PickShadow => self.pick = pixel_with(capture, SHADOW).or(self.pick),
             Go::PickLit => self.pick = pixel_with(capture, LIT).or(self.pick),
             Go::PickWrong => self.pick = wrong_pixel(capture).or_else(|| pixel_with(capture, SHADOW)).or(self.pick),

@@ -1,6 +1,7 @@
 //! The stops of every guided tour: what is said, and what the panels show meanwhile.
 
 use super::dock::Panel;
+use super::overlays::Overlay;
 use super::view::PictureKind;
 use crate::technique::Technique;
 
@@ -21,6 +22,8 @@ pub enum Go {
     Picture(PictureKind),
     /// Shows this tab.
     Panel(Panel),
+    /// Lays this over the picture, and nothing else.
+    Over(Overlay),
     /// Picks a pixel in shadow.
     PickShadow,
     /// Picks a pixel in light.
@@ -60,7 +63,7 @@ pub struct Tour {
     pub stops: &'static [Stop],
 }
 
-use Go::{First, Last, PickLit, PickShadow, PickWrong, Picture, Scene, Step};
+use Go::{First, Last, Over, PickLit, PickShadow, PickWrong, Picture, Scene, Step};
 use Panel::{Explain, Pixel, State as StateTab};
 
 const fn stop(title: &'static str, text: &'static str, go: &'static [Go]) -> Stop {
@@ -147,9 +150,14 @@ pub const TOURS: [Tour; 10] = [
                 &[Scene("tori"), Step("volumes"), Picture(PictureKind::Stencil), Go::Panel(Explain)],
             ),
             stop(
+                "Seen from beside",
+                "The Scene tab is a second camera that sees the first. The shells are the volumes: sides, light caps and dark caps in their own colours; the yellow handle is the light. Drag to go round.",
+                &[Step("volumes"), Go::Panel(Panel::Scene)],
+            ),
+            stop(
                 "The count of one pixel",
                 "A front face before the surface adds 1, a back face takes 1 away. The ladder shows the ray: each rung is a face, at its distance, and the number beside it is the running count.",
-                &[Step("volumes"), PickShadow, Go::Panel(Pixel)],
+                &[Step("volumes"), Go::Panel(Panel::Picture), PickShadow, Go::Panel(Pixel)],
             ),
             stop(
                 "Where it fails",
@@ -181,6 +189,11 @@ pub const TOURS: [Tour; 10] = [
                 "Faces behind it",
                 "Now all volumes are drawn, without colour. A back face that is hidden by the surface adds 1 to the stencil, a hidden front face takes 1 away. What is left counts the volumes that contain the surface.",
                 &[Step("volumes"), Picture(PictureKind::Stencil), Go::Panel(Explain)],
+            ),
+            stop(
+                "Who failed the depth test",
+                "The overlay shows where faces of the volumes lie behind the surface: their depth test fails, and just there they count. Debuggers hide these hits; here they stay visible.",
+                &[Step("volumes"), Picture(PictureKind::Color), Over(Overlay::Tests)],
             ),
             stop(
                 "The same in the API's words",
@@ -261,9 +274,14 @@ pub const TOURS: [Tour; 10] = [
                 &[Last, Picture(PictureKind::Color), PickShadow, Go::Panel(Pixel)],
             ),
             stop(
+                "Texel and pixel, linked",
+                "The Shadow map tab marks the texel that the picked pixel reads. Hover another texel, and the pixels that read it are marked in the picture: near the light one texel serves many.",
+                &[Last, PickShadow, Go::Panel(Panel::ShadowMap)],
+            ),
+            stop(
                 "Bias",
                 "A texel is one depth for a piece of surface, so a surface would shadow itself in stripes. The depth is moved by a bias: too little leaves stripes (acne), too much tears the shadow off its caster.",
-                &[Last, Picture(PictureKind::Mask), Go::Panel(Explain)],
+                &[Last, Go::Panel(Panel::Picture), Picture(PictureKind::Mask), Go::Panel(Explain)],
             ),
             stop(
                 "Its error",

@@ -6,6 +6,7 @@
 
 pub mod builtin;
 mod camera;
+mod collision;
 mod error;
 pub mod file;
 mod light;
@@ -20,6 +21,7 @@ mod read_text;
 mod suggestion;
 
 pub use camera::Camera;
+pub use collision::Walls;
 pub use error::SceneError;
 pub use light::Light;
 pub use material::{Material, Shading};

@@ -31,6 +31,8 @@ fn the_state_of_a_volume_pass_is_told_in_a_sentence_and_in_three_apis_words() {
     inspector.select_draw(1, 0);
     let mut harness = harness_of(inspector, [1600.0, 1600.0]);
     click(&mut harness, "State");
+    // A tab has its sizes a frame after it is shown.
+    harness.run_steps(3);
     harness.get_by_label_contains("one that fails the depth test adds 1 (255 becomes 0)");
     harness.get_by_label_contains("depthFailOp: \"increment-wrap\"");
     click_button(&mut harness, "OpenGL");
@@ -50,6 +52,8 @@ fn a_capture_folder_tells_the_state_as_its_plan_has_it() {
     inspector.select_step(1);
     let mut harness = harness_of(inspector, [1600.0, 1200.0]);
     click(&mut harness, "State");
+    // A tab has its sizes a frame after it is shown.
+    harness.run_steps(3);
     harness.get_by_label("As the capture's plan tells it");
     harness.get_by_label_contains("depth fail IncrementWrap");
 }
@@ -60,6 +64,8 @@ fn each_pass_is_explained_with_the_scenes_own_numbers() {
     inspector.pick([80, 60]);
     let mut harness = harness_of(inspector, [1600.0, 1600.0]);
     click(&mut harness, "Explain");
+    // A tab has its sizes a frame after it is shown.
+    harness.run_steps(3);
     press(&mut harness, Key::Home);
     harness.get_by_label("stored depth = offset + scale / distance along the view");
     harness.get_by_label_contains("pixel 80, 60: 0 + ");
@@ -69,7 +75,7 @@ fn each_pass_is_explained_with_the_scenes_own_numbers() {
     harness.get_by_label_contains("sides, two triangles a silhouette edge: ");
     assert!(harness.query_all_by_label("Left out").count() > 0);
     press(&mut harness, Key::ArrowRight);
-    harness.get_by_label_contains(" in shadow, ");
+    assert!(harness.query_all_by_label_contains(" in shadow, ").count() > 0);
     press(&mut harness, Key::ArrowRight);
     harness.get_by_label("light is added where count = 0");
 }
@@ -80,6 +86,8 @@ fn what_was_left_out_stands_there_with_its_reason() {
     let left = inspector.capture().expect("a capture").left_out.first().cloned().expect("auto leaves something out");
     let mut harness = harness_of(inspector, [1600.0, 3000.0]);
     click(&mut harness, "Explain");
+    // A tab has its sizes a frame after it is shown.
+    harness.run_steps(3);
     assert!(harness.query_all_by_label(&format!("{} of {}", left.what, left.of)).count() > 0);
     assert!(harness.query_all_by_label(&left.because).count() > 0);
 }
@@ -88,17 +96,26 @@ fn what_was_left_out_stands_there_with_its_reason() {
 fn a_tour_drives_the_panels_stop_by_stop() {
     let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
     click(&mut harness, "Explain");
+    // A tab has its sizes a frame after it is shown.
+    harness.run_steps(3);
     click_button(&mut harness, "Tour of z-fail");
+    harness.run_steps(3);
     harness.get_by_label("What every pixel shows");
     assert_eq!(harness.state().inspector.step(), 0);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Depth));
     click_button(&mut harness, "Next stop");
+    harness.run_steps(3);
     assert_eq!(harness.state().inspector.step(), 1);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Stencil));
     click_button(&mut harness, "Next stop");
+    harness.run_steps(3);
+    harness.get_by_label("Who failed the depth test");
+    click_button(&mut harness, "Next stop");
+    harness.run_steps(3);
     harness.get_by_label_contains("The State tab has the whole state");
     harness.get_by_role_and_label(Role::Button, "OpenGL");
     click_button(&mut harness, "Next stop");
+    harness.run_steps(3);
     let inspector = &harness.state().inspector;
     let [x, y] = inspector.picked().expect("a pixel");
     let shadow = inspector.capture().expect("a capture").lights[0].shadow.clone().expect("labels");
@@ -113,6 +130,8 @@ fn a_tour_drives_the_panels_stop_by_stop() {
 fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
     let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
     click(&mut harness, "Explain");
+    // A tab has its sizes a frame after it is shown.
+    harness.run_steps(3);
     click_button(&mut harness, "Tour of planar");
     assert_eq!(harness.state().actions.last(), Some(&Action::Open("rings".to_owned())));
     harness.get_by_label("The frame is being made …");

@@ -397,7 +397,7 @@ fn a_changed_file_is_loaded_again_with_the_camera_as_it_is() {
     let path = folder.path().join("scene.toml");
     let text = |height: f64| {
         format!(
-            "[camera]\neye = [0, 2, 6]\ntarget = [0, 0, 0]\n[[lights]]\nposition = [1, 4, 2, 1]\n\
+            "[camera]\neye = [0, 2, 6]\ntarget = [0, 0, 0]\n[[lights]]\nkind = \"point\"\nposition = [1, 4, 2]\n\
              [[objects]]\nname = \"box\"\nmesh = {{ shape = \"box\", size = [1, {height}, 1] }}\n"
         )
     };

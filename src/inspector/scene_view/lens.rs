@@ -1,0 +1,277 @@
+//! From world space to a view's screen: perspective, orthographic, and oblique.
+//!
+//! View space has x to the right, y up and z towards the viewer; its origin is the point in the
+//! middle of the view. The oblique projections (cavalier, cabinet) draw depth at an angle, at full or
+//! half length, so that a front keeps its true shape.
+
+use egui::{Pos2, Rect, Vec2, pos2};
+use glam::{DMat3, DVec2, DVec3};
+
+/// What of the distance to the middle lies before the near plane of a perspective view.
+const NEAR: f64 = 0.02;
+/// A view straight down keeps this much from the pole, degrees, so that up stays up.
+const MOST_PITCH: f64 = 89.9;
+
+/// How depth is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Projection {
+    /// Farther is smaller.
+    Perspective,
+    /// Depth is not seen.
+    Orthographic,
+    /// Oblique, depth at full length.
+    Cavalier,
+    /// Oblique, depth at half length.
+    Cabinet,
+}
+
+impl Projection {
+    /// All, with what each is.
+    pub const ALL: [(Projection, &'static str, &'static str); 4] = [
+        (Projection::Perspective, "perspective", "Farther is smaller, as seen by an eye"),
+        (Projection::Orthographic, "orthographic", "Lengths stay, depth is not seen"),
+        (
+            Projection::Cavalier,
+            "cavalier",
+            "Oblique: the front keeps its shape, depth goes off at an angle at full length",
+        ),
+        (
+            Projection::Cabinet,
+            "cabinet",
+            "Oblique: the front keeps its shape, depth goes off at an angle at half length",
+        ),
+    ];
+
+    /// In the chooser.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Projection::ALL.iter().find(|(one, ..)| *one == self).map_or("", |(_, name, _)| name)
+    }
+
+    /// Is depth drawn at an angle?
+    #[must_use]
+    pub fn is_oblique(self) -> bool {
+        matches!(self, Projection::Cavalier | Projection::Cabinet)
+    }
+}
+
+/// Where a view looks from, and how.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PaneView {
+    /// The point in the middle, world space.
+    pub center: DVec3,
+    /// Metres from the view's lower to its upper edge, at the middle's distance.
+    pub height: f64,
+    /// Turned about the upright axis, degrees; 0 looks along −z.
+    pub yaw: f64,
+    /// Looking down by so many degrees.
+    pub pitch: f64,
+    /// Of a perspective view, degrees.
+    pub fov_y: f64,
+    /// How depth is drawn.
+    pub projection: Projection,
+    /// At which angle, where it is oblique, degrees.
+    pub oblique: f64,
+}
+
+impl PaneView {
+    /// Turns by angles in degrees.
+    pub fn orbit(&mut self, yaw: f64, pitch: f64) {
+        self.yaw = (self.yaw + yaw).rem_euclid(360.0);
+        self.pitch = (self.pitch + pitch).clamp(-MOST_PITCH, MOST_PITCH);
+    }
+
+    /// Shows `factor` times as much.
+    pub fn zoom(&mut self, factor: f64) {
+        let height = self.height * factor;
+        if (1e-6..1e9).contains(&height) {
+            self.height = height;
+        }
+    }
+
+    /// View space from world directions.
+    #[must_use]
+    pub fn rotation(&self) -> DMat3 {
+        let pitch = self.pitch.clamp(-90.0, 90.0).to_radians();
+        DMat3::from_rotation_x(pitch) * DMat3::from_rotation_y(-self.yaw.to_radians())
+    }
+
+    /// How far a perspective view's eye is from the middle, metres.
+    #[must_use]
+    pub fn distance(&self) -> f64 {
+        self.height / 2.0 / (self.fov_y.to_radians() / 2.0).tan()
+    }
+
+    /// The view in a rectangle of the screen.
+    #[must_use]
+    pub fn lens(&self, rect: Rect) -> Lens {
+        let length = match self.projection {
+            Projection::Cavalier => 1.0,
+            Projection::Cabinet => 0.5,
+            Projection::Perspective | Projection::Orthographic => 0.0,
+        };
+        let (sine, cosine) = self.oblique.to_radians().sin_cos();
+        Lens {
+            rotation: self.rotation(),
+            center: self.center,
+            middle: rect.center(),
+            scale: f64::from(rect.height()) / self.height,
+            shear: DVec2::new(cosine, sine) * length,
+            eye: (self.projection == Projection::Perspective).then(|| self.distance()),
+        }
+    }
+}
+
+/// A view in a rectangle of the screen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lens {
+    /// View space from world directions.
+    pub rotation: DMat3,
+    /// The point in the middle, world space.
+    pub center: DVec3,
+    /// Where that is on the screen.
+    pub middle: Pos2,
+    /// Points a metre, at the middle's distance.
+    pub scale: f64,
+    /// How far right and up a metre of depth is drawn.
+    shear: DVec2,
+    /// How far before the middle the eye is; `None` in parallel views.
+    pub eye: Option<f64>,
+}
+
+impl Lens {
+    /// View space from world space.
+    #[must_use]
+    pub fn view(&self, world: DVec3) -> DVec3 {
+        self.rotation * (world - self.center)
+    }
+
+    /// The largest z of view space that is drawn.
+    #[must_use]
+    pub fn near(&self) -> f64 {
+        self.eye.map_or(f64::INFINITY, |eye| eye * (1.0 - NEAR))
+    }
+
+    /// Where a point of view space is on the screen; it is not nearer than [`Lens::near`].
+    #[must_use]
+    pub fn project(&self, view: DVec3) -> Pos2 {
+        let at = match self.eye {
+            Some(eye) => view.truncate() * (eye / (eye - view.z)),
+            None => view.truncate() - self.shear * view.z,
+        };
+        pos2(self.middle.x + (at.x * self.scale) as f32, self.middle.y - (at.y * self.scale) as f32)
+    }
+
+    /// Where a point of the world is on the screen; `None` behind the eye.
+    #[must_use]
+    pub fn place(&self, world: DVec3) -> Option<Pos2> {
+        let view = self.view(world);
+        (view.z <= self.near()).then(|| self.project(view))
+    }
+
+    /// Both ends of a line on the screen, cut where it goes behind the eye.
+    #[must_use]
+    pub fn line(&self, ends: [DVec3; 2]) -> Option<[Pos2; 2]> {
+        let [a, b] = ends.map(|end| self.view(end));
+        let near = self.near();
+        let cut = |from: DVec3, to: DVec3| from.lerp(to, (near - from.z) / (to.z - from.z));
+        let [a, b] = match [a.z <= near, b.z <= near] {
+            [true, true] => [a, b],
+            [true, false] => [a, cut(a, b)],
+            [false, true] => [cut(b, a), b],
+            [false, false] => return None,
+        };
+        Some([self.project(a), self.project(b)])
+    }
+
+    /// The move in the plane parallel to the view that carries a point `at` by so much on the screen.
+    #[must_use]
+    pub fn moved(&self, at: DVec3, by: Vec2) -> DVec3 {
+        let away = self.eye.map_or(1.0, |eye| ((eye - self.view(at).z) / eye).max(NEAR));
+        let view = DVec3::new(f64::from(by.x), -f64::from(by.y), 0.0) / self.scale * away;
+        self.rotation.transpose() * view
+    }
+
+    /// The move along `axis`, of unit length, that carries a point `at` by about so much on the screen; none
+    /// where the axis is seen from its end.
+    #[must_use]
+    pub fn moved_along(&self, at: DVec3, axis: DVec3, by: Vec2) -> DVec3 {
+        let step = 8.0 / self.scale;
+        let Some([from, to]) = self.line([at, at + axis * step]) else { return DVec3::ZERO };
+        let on_screen = to - from;
+        if on_screen.length_sq() < 0.25 {
+            return DVec3::ZERO;
+        }
+        axis * (step * f64::from(by.dot(on_screen) / on_screen.length_sq()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::vec2;
+
+    const RECT: Rect = Rect { min: pos2(100.0, 50.0), max: pos2(500.0, 250.0) };
+
+    fn pane(projection: Projection) -> PaneView {
+        let center = DVec3::new(1.0, 2.0, 3.0);
+        PaneView { center, height: 10.0, yaw: 0.0, pitch: 0.0, fov_y: 40.0, projection, oblique: 30.0 }
+    }
+
+    fn is_near(found: Pos2, expected: [f32; 2]) {
+        assert!((found - pos2(expected[0], expected[1])).length() < 1e-3, "{found:?}, not {expected:?}");
+    }
+
+    #[test]
+    fn the_middle_plane_is_drawn_to_scale_in_every_projection() {
+        for (projection, ..) in Projection::ALL {
+            let lens = pane(projection).lens(RECT);
+            is_near(lens.place(DVec3::new(1.0, 2.0, 3.0)).expect("seen"), [300.0, 150.0]);
+            is_near(lens.place(DVec3::new(2.0, 3.0, 3.0)).expect("seen"), [320.0, 130.0]);
+        }
+    }
+
+    #[test]
+    fn depth_is_smaller_unseen_or_at_an_angle() {
+        let behind = DVec3::new(2.0, 2.0, 1.0);
+        let place = |projection| pane(projection).lens(RECT).place(behind).expect("seen");
+        is_near(place(Projection::Orthographic), [320.0, 150.0]);
+        let (sine, cosine) = 30.0_f32.to_radians().sin_cos();
+        is_near(place(Projection::Cavalier), [320.0 + 40.0 * cosine, 150.0 - 40.0 * sine]);
+        is_near(place(Projection::Cabinet), [320.0 + 20.0 * cosine, 150.0 - 20.0 * sine]);
+        let eye = pane(Projection::Perspective).distance() as f32;
+        is_near(place(Projection::Perspective), [300.0 + 20.0 * eye / (eye + 2.0), 150.0]);
+    }
+
+    #[test]
+    fn from_the_top_x_is_right_and_z_is_down_and_from_the_right_z_is_left() {
+        let top = PaneView { pitch: 90.0, ..pane(Projection::Orthographic) }.lens(RECT);
+        is_near(top.place(DVec3::new(2.0, 7.0, 4.0)).expect("seen"), [320.0, 170.0]);
+        let right = PaneView { yaw: 90.0, ..pane(Projection::Orthographic) }.lens(RECT);
+        is_near(right.place(DVec3::new(9.0, 3.0, 4.0)).expect("seen"), [280.0, 130.0]);
+    }
+
+    #[test]
+    fn a_move_on_the_screen_is_a_move_in_the_world_at_any_depth() {
+        for (projection, ..) in Projection::ALL {
+            let lens = PaneView { yaw: 33.0, pitch: 21.0, ..pane(projection) }.lens(RECT);
+            let at = DVec3::new(2.0, 1.0, 0.5);
+            let by = vec2(17.0, -9.0);
+            let from = lens.place(at).expect("seen");
+            is_near(lens.place(at + lens.moved(at, by)).expect("seen"), (from + by).into());
+            let along = lens.moved_along(at, DVec3::X, by);
+            assert_eq!([along.y, along.z], [0.0; 2]);
+            assert!(along.x > 0.0, "{projection:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_is_cut_where_it_goes_behind_the_eye() {
+        let lens = pane(Projection::Perspective).lens(RECT);
+        let behind = DVec3::new(1.0, 3.0, 40.0);
+        assert_eq!(lens.place(behind), None);
+        assert_eq!(lens.line([behind, behind]), None);
+        let cut = lens.line([DVec3::new(1.0, 2.0, 3.0), behind]).expect("a part is seen");
+        assert!(cut.iter().all(|at| at.is_finite()));
+    }
+}

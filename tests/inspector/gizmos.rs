@@ -1,0 +1,122 @@
+//! Handles of lights and camera, in the Scene tab and over the picture.
+
+use super::scene_view::{box_scene, draft_of, drag, over, show, shown};
+use super::{Seen, click, harness_of, press};
+use egui::{Key, PointerButton, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use glam::{DVec3, DVec4};
+use stencilscope::inspector::{Action, RunRequest};
+use stencilscope::scene::Light;
+
+fn asked<'a>(harness: &'a Harness<'_, Seen>) -> &'a RunRequest {
+    let run = harness.state().actions.iter().rev().find_map(|action| match action {
+        Action::Run(request) => Some(request),
+        _ => None,
+    });
+    run.expect("a run")
+}
+
+fn drag_handle(harness: &mut Harness<Seen>, name: &str, by: egui::Vec2) {
+    let at = harness.get_by_label(name).rect().center();
+    drag(harness, at, by, PointerButton::Primary);
+}
+
+#[test]
+fn a_dragged_light_moves_in_the_plane_of_the_view_and_the_numbers_follow() {
+    let mut harness = shown();
+    click(&mut harness, "Front");
+    drag_handle(&mut harness, "Light 1 in the Front view", vec2(40.0, -20.0));
+    let first = box_scene();
+    let light = asked(&harness).lights[0].position;
+    let moved = light - first.lights[0].position;
+    assert!(moved.x > 0.1 && (moved.y / moved.x - 0.5).abs() < 0.1, "{moved}");
+    assert!(moved.z.abs() < 1e-9 && moved.w == 0.0, "{moved}");
+    assert_eq!(asked(&harness).camera, first.camera);
+    click(&mut harness, "Settings");
+    let shown = harness.get_by_label("light 1 position x").value().expect("a number");
+    let shown: f64 = shown.parse().expect("a number");
+    assert!((shown - light.x).abs() < 0.01, "{shown} is not {}", light.x);
+}
+
+#[test]
+fn arrow_keys_move_what_has_the_focus_along_the_nearest_axis() {
+    let mut harness = shown();
+    click(&mut harness, "Top");
+    harness.get_by_label("Camera in the Top view").focus();
+    harness.run_steps(2);
+    let first = box_scene().camera;
+    press(&mut harness, Key::ArrowRight);
+    let moved = asked(&harness).camera.eye - first.eye;
+    assert!(moved.x > 0.0 && moved.y == 0.0 && moved.z == 0.0, "{moved}");
+    press(&mut harness, Key::ArrowUp);
+    let moved = asked(&harness).camera.eye - first.eye;
+    assert!(moved.z < 0.0 && moved.y == 0.0, "{moved}");
+    assert_eq!(asked(&harness).camera.target, first.target);
+    harness.get_by_label("Camera target in the Top view").focus();
+    harness.run_steps(2);
+    press(&mut harness, Key::ArrowLeft);
+    assert!(asked(&harness).camera.target.x < first.target.x);
+}
+
+#[test]
+fn an_axis_moves_along_itself_alone() {
+    let mut harness = shown();
+    assert!(harness.query_by_label("Light 1 along y in the Free view").is_none(), "axes are of the chosen one");
+    harness.get_by_label("Light 1 in the Free view").focus();
+    harness.run_steps(3);
+    drag_handle(&mut harness, "Light 1 along y in the Free view", vec2(15.0, -30.0));
+    let moved = asked(&harness).lights[0].position - box_scene().lights[0].position;
+    assert!(moved.y > 0.05 && moved.x == 0.0 && moved.z == 0.0, "{moved}");
+    harness.get_by_label("Light 1 along x in the Free view").focus();
+    harness.run_steps(2);
+    press(&mut harness, Key::ArrowUp);
+    let after = asked(&harness).lights[0].position - box_scene().lights[0].position;
+    assert!(after.x > 0.0 && after.y == moved.y, "{after}");
+}
+
+#[test]
+fn a_direction_is_turned_and_stays_one() {
+    let mut scene = box_scene();
+    scene.lights[0] = Light::directional(DVec3::new(0.0, 2.0, 0.0));
+    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    show(&mut harness);
+    click(&mut harness, "Front");
+    drag_handle(&mut harness, "Light 1 in the Front view", vec2(60.0, 0.0));
+    let towards = asked(&harness).lights[0].position;
+    assert!(towards.w == 0.0 && towards.x > 0.1 && towards.z.abs() < 1e-9, "{towards}");
+    assert!((towards.length() - 2.0).abs() < 1e-9, "its length means nothing and stays: {towards}");
+}
+
+#[test]
+fn without_gizmos_there_are_no_handles() {
+    let mut harness = shown();
+    harness.get_by_label("Light 1 in the Free view");
+    // The other of that name is the picture's, which is not shown.
+    click(&mut harness, "Gizmos");
+    assert!(harness.query_by_label("Light 1 in the Free view").is_none());
+}
+
+#[test]
+fn a_light_in_view_is_dragged_over_the_picture() {
+    let mut scene = box_scene();
+    scene.lights = vec![Light::point(DVec3::new(0.5, 1.5, 1.0)), Light::point(DVec3::new(0.0, 1.0, 20.0))];
+    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    assert!(harness.query_by_label("Light 1 in the picture").is_none());
+    click(&mut harness, "Gizmos");
+    assert!(harness.query_by_label("Light 2 in the picture").is_none(), "it is behind the eye");
+    let before = harness.get_by_label("Light 1 in the picture").rect().center();
+    drag_handle(&mut harness, "Light 1 in the picture", vec2(50.0, 0.0));
+    let request = asked(&harness);
+    assert_eq!(request.lights[1], draft_of(&scene).lights[1]);
+    let moved = request.lights[0].position - scene.lights[0].position;
+    let ahead = (scene.camera.target - scene.camera.eye).normalize();
+    assert!(moved.x > 0.05 && moved.truncate().dot(ahead).abs() < 1e-9, "parallel to the picture: {moved}");
+    let after = harness.get_by_label("Light 1 in the picture").rect().center();
+    assert!((after - before - vec2(50.0, 0.0)).length() < 2.0, "it stays under the pointer: {before} to {after}");
+    harness.get_by_label("Light 1 in the picture").focus();
+    harness.run_steps(2);
+    let before: DVec4 = asked(&harness).lights[0].position;
+    press(&mut harness, Key::ArrowUp);
+    assert!(asked(&harness).lights[0].position.y > before.y);
+}

@@ -1,0 +1,235 @@
+//! Walking: keys, mouse, walls, and how it begins and ends.
+
+use super::pictures::draw;
+use super::scene_view::{anatomy_of, box_scene, draft_of, over};
+use super::{SIZE, Seen, click, harness_of, place_of, press, z_fail};
+use crate::common;
+use egui::{Event, Key, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use glam::DVec3;
+use std::path::PathBuf;
+use std::sync::Arc;
+use stencilscope::inspector::{Action, Inspector, PictureKind, RunRequest};
+use stencilscope::scene::{Scene, Swing};
+use stencilscope::technique::Technique;
+
+const BANNER: &str = "Walking: Esc stops and frees the pointer";
+
+fn walking() -> Harness<'static, Seen> {
+    let mut harness = harness_of(over(&box_scene()), [1280.0, 800.0]);
+    answer(&mut harness);
+    click(&mut harness, "Walk");
+    harness.get_by_label(BANNER);
+    harness
+}
+
+/// The frame that was asked for is shown.
+fn answer(harness: &mut Harness<Seen>) {
+    let camera = harness.state().inspector.draft().expect("a draft").camera;
+    let mut capture = z_fail(SIZE);
+    capture.camera = camera;
+    harness.state_mut().inspector.set_capture(Arc::new(capture));
+    harness.run_steps(1);
+}
+
+fn runs(harness: &Harness<Seen>) -> Vec<RunRequest> {
+    let run = |action: &Action| match action {
+        Action::Run(request) => Some(RunRequest::clone(request)),
+        _ => None,
+    };
+    harness.state().actions.iter().filter_map(run).collect()
+}
+
+#[test]
+fn one_walks_ahead_while_w_is_held_a_frame_at_a_time() {
+    let mut harness = walking();
+    harness.key_down(Key::W);
+    harness.run_steps(4);
+    assert_eq!(runs(&harness).len(), 1, "nothing queues up while a frame is waited for");
+    let eye = |harness: &Harness<Seen>| runs(harness).last().expect("a run").camera.eye;
+    let first = eye(&harness);
+    assert!(first.z < 8.0 && first.x == 0.0 && first.y == 2.0, "{first}");
+    answer(&mut harness);
+    harness.run_steps(2);
+    assert_eq!(runs(&harness).len(), 2);
+    assert!(eye(&harness).z < first.z);
+    harness.key_up(Key::W);
+    harness.run_steps(1);
+    answer(&mut harness);
+    harness.run_steps(3);
+    assert_eq!(runs(&harness).len(), 2, "no key is held");
+}
+
+#[test]
+fn the_mouse_looks_around() {
+    let mut harness = walking();
+    harness.event(Event::MouseMoved(vec2(100.0, 30.0)));
+    harness.run_steps(2);
+    let camera = runs(&harness).last().expect("a run").camera;
+    let ahead = (camera.target - camera.eye).normalize();
+    let before = box_scene().camera;
+    assert_eq!(camera.eye, before.eye);
+    assert!(ahead.x > 0.15, "to the right: {ahead}");
+    assert!(ahead.y < (before.target - before.eye).normalize().y, "and down: {ahead}");
+}
+
+#[test]
+fn p_goes_through_techniques_and_i_through_sizes_of_the_map() {
+    let mut harness = walking();
+    let mut names = Vec::new();
+    for _ in 0..5 {
+        press(&mut harness, Key::P);
+        names.push(runs(&harness).last().expect("a run").choice.technique());
+    }
+    use Technique::{None, Planar, Projective, ShadowMap, ZFail};
+    assert_eq!(names, [ShadowMap, None, Planar, Projective, ZFail]);
+    let before = runs(&harness).len();
+    press(&mut harness, Key::I);
+    assert_eq!(runs(&harness).len(), before, "z-fail has no map");
+    press(&mut harness, Key::P);
+    let size = |harness: &Harness<Seen>| runs(harness).last().expect("a run").choice.settings()["size"].clone();
+    let sizes: Vec<String> = (0..5)
+        .map(|_| {
+            press(&mut harness, Key::I);
+            size(&harness)
+        })
+        .collect();
+    assert_eq!(sizes.iter().collect::<std::collections::BTreeSet<_>>().len(), 5, "{sizes:?}");
+    assert!(sizes.contains(&"4096".to_owned()) && sizes.contains(&"256".to_owned()));
+}
+
+#[test]
+fn v_shows_the_count_and_the_mask_and_speed_and_walls_are_told() {
+    let mut harness = walking();
+    let mut kinds = Vec::new();
+    for _ in 0..3 {
+        press(&mut harness, Key::V);
+        kinds.push(harness.state().inspector.picture_kind().expect("a picture"));
+    }
+    assert_eq!(kinds, [PictureKind::Stencil, PictureKind::Mask, PictureKind::Color]);
+    let tells = |harness: &Harness<Seen>, words: &str| harness.query_by_label_contains(words).is_some();
+    assert!(tells(&harness, "walls stop (C) · 2.0 m/s"));
+    press(&mut harness, Key::C);
+    press(&mut harness, Key::Period);
+    assert!(tells(&harness, "through walls (C) · 3.0 m/s"));
+    press(&mut harness, Key::Comma);
+    press(&mut harness, Key::C);
+    assert!(tells(&harness, "walls stop (C) · 2.0 m/s"));
+}
+
+#[test]
+fn l_makes_the_lamp_swing_and_stops_it() {
+    let mut scene = box_scene();
+    let swing = Swing { pivot: DVec3::Y * 6.0, axis: DVec3::Z, degrees: 20.0, period_seconds: 2.0 };
+    scene.lights[0].motion.swing = Some(swing);
+    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    answer(&mut harness);
+    click(&mut harness, "Walk");
+    press(&mut harness, Key::L);
+    assert!(runs(&harness).last().expect("a run").time > 0.0);
+    harness.key_down(Key::S);
+    answer(&mut harness);
+    harness.run_steps(3);
+    answer(&mut harness);
+    harness.run_steps(3);
+    let last = runs(&harness).pop().expect("a run");
+    assert!(last.camera.eye.z > 8.0 && last.time > 0.1, "one walks while it swings: {last:?}");
+    harness.key_up(Key::S);
+    press(&mut harness, Key::L);
+    answer(&mut harness);
+    let before = runs(&harness).len();
+    harness.run_steps(4);
+    assert_eq!(runs(&harness).len(), before);
+}
+
+#[test]
+fn escape_stops_and_so_does_the_button() {
+    let mut harness = walking();
+    press(&mut harness, Key::Escape);
+    assert!(harness.query_by_label(BANNER).is_none());
+    harness.key_down(Key::W);
+    harness.run_steps(3);
+    assert!(runs(&harness).is_empty());
+    harness.key_up(Key::W);
+    click(&mut harness, "Walk");
+    harness.get_by_label(BANNER);
+    click(&mut harness, "Walk");
+    assert!(harness.query_by_label(BANNER).is_none());
+}
+
+#[test]
+fn tab_over_the_picture_begins_and_elsewhere_these_keys_do_nothing_of_it() {
+    let mut harness = harness_of(over(&box_scene()), [1280.0, 800.0]);
+    answer(&mut harness);
+    for key in [Key::P, Key::W, Key::C, Key::I, Key::V, Key::L] {
+        press(&mut harness, key);
+    }
+    assert!(runs(&harness).is_empty());
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Color));
+    press(&mut harness, Key::Tab);
+    assert!(harness.query_by_label(BANNER).is_none(), "away from the picture it goes from widget to widget");
+    press(&mut harness, Key::Escape);
+    let at = place_of(&harness, [20, 15], SIZE);
+    super::mouse(&mut harness, at, egui::PointerButton::Primary);
+    press(&mut harness, Key::Tab);
+    harness.get_by_label(BANNER);
+    let step = harness.state().inspector.step();
+    press(&mut harness, Key::Home);
+    assert_eq!(harness.state().inspector.step(), step, "only the keys of walking act");
+}
+
+#[test]
+fn walls_hold_at_any_speed() {
+    let room = [
+        common::square("ground", 0.0, 2.0),
+        common::cuboid("left", [-2.2, 0.0, -2.0], [-2.0, 3.0, 2.0]),
+        common::cuboid("right", [2.0, 0.0, -2.0], [2.2, 3.0, 2.0]),
+        common::cuboid("far", [-2.0, 0.0, -2.2], [2.0, 3.0, -2.0]),
+        common::cuboid("near", [-2.0, 0.0, 2.0], [2.0, 3.0, 2.2]),
+    ];
+    let mut scene = Scene { objects: room.to_vec(), ..box_scene() };
+    scene.camera.eye = DVec3::new(0.0, 1.5, 0.0);
+    scene.camera.target = DVec3::new(0.0, 1.5, -1.0);
+    let mut inspector = Inspector::default();
+    inspector.set_scene(&scene, draft_of(&scene));
+    inspector.set_anatomy(Ok(anatomy_of(&scene, Technique::ZFail)));
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    answer(&mut harness);
+    click(&mut harness, "Walk");
+    harness.state_mut().inspector.set_anatomy(Ok(anatomy_of(&scene, Technique::ZFail)));
+    for _ in 0..14 {
+        press(&mut harness, Key::Period);
+    }
+    for key in [Key::W, Key::D, Key::S, Key::A] {
+        harness.key_down(key);
+        for _ in 0..3 {
+            harness.run_steps(1);
+            answer(&mut harness);
+        }
+        harness.key_up(key);
+        harness.run_steps(1);
+        let eye = runs(&harness).last().expect("a run").camera.eye;
+        assert!(eye.x.abs() < 1.76 && eye.z.abs() < 1.76, "{key:?}: {eye}");
+        assert!(eye.x.abs() > 1.7 || eye.z.abs() > 1.7, "it is a wall that stops: {key:?}: {eye}");
+    }
+    press(&mut harness, Key::C);
+    harness.key_down(Key::D);
+    for _ in 0..3 {
+        harness.run_steps(1);
+        answer(&mut harness);
+    }
+    assert!(runs(&harness).last().expect("a run").camera.eye.x > 2.2, "without walls one goes through");
+}
+
+/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_walking` writes it.
+#[test]
+fn pictures_of_walking_can_be_drawn() {
+    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
+    let mut harness = harness_of(over(&box_scene()), [1296.0, 816.0]);
+    answer(&mut harness);
+    click(&mut harness, "Gizmos");
+    draw(&mut harness, folder.as_deref(), "walk-before", [1280, 800]);
+    click(&mut harness, "Walk");
+    draw(&mut harness, folder.as_deref(), "walk", [1280, 800]);
+}
