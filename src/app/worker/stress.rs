@@ -55,6 +55,8 @@ impl Bench {
             if !run.progress.is_cancelled() {
                 (self.tell)(News::StressEnded { job: run.job, error: None });
             }
+            // Hundreds of scenes were open: what was kept of them is of no use any longer.
+            self.session.iter_mut().for_each(Session::forget);
             (self.tell)(News::Idle);
             return None;
         };
