@@ -4,6 +4,7 @@ use super::Bench;
 use crate::app::news::News;
 use crate::app::orders::StressRun;
 use crate::inspector::RunRequest;
+use crate::session::Session;
 use crate::stress::{Case, Drives, Entrant};
 use crate::technique::{Choice, ChoiceError};
 
