@@ -13,6 +13,8 @@ mod history;
 #[cfg(feature = "inspector")]
 mod inspector;
 mod layering;
+#[cfg(target_os = "linux")]
+mod memory;
 mod options;
 mod plan;
 mod ray_cast;

@@ -6,9 +6,9 @@ use std::process::Command;
 /// Which part the process was started for.
 const PART: &str = "STENCILSCOPE_TEST_PART";
 
-/// Runs a test's `body` for each of `parts`, each in a process of its own: Debian's lavapipe (Mesa 22.3) keeps
-/// some megabytes of every frame that shades until the process ends, and some tests draw thousands. `test` is
-/// the test's own path, as the list of tests has it.
+/// Runs a test's `body` for each of `parts`, each in a process of its own, so that whatever a driver keeps of
+/// thousands of frames ends with it, and so that it can be measured. `test` is the test's own path, as the list of
+/// tests has it.
 pub fn apart(test: &str, parts: &[&str], body: impl Fn(&str)) {
     if let Ok(part) = env::var(PART) {
         assert!(parts.contains(&part.as_str()), "{test} has no part `{part}`");

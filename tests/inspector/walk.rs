@@ -100,14 +100,16 @@ fn p_goes_through_techniques_and_i_through_sizes_of_the_map() {
 }
 
 #[test]
-fn v_shows_the_count_and_the_mask_and_speed_and_walls_are_told() {
+fn v_lays_silhouettes_and_volumes_over_the_picture_and_speed_and_walls_are_told() {
     let mut harness = walking();
-    let mut kinds = Vec::new();
-    for _ in 0..3 {
+    let mut seen = Vec::new();
+    for _ in 0..4 {
         press(&mut harness, Key::V);
-        kinds.push(harness.state().inspector.picture_kind().expect("a picture"));
+        let kind = harness.state().inspector.picture_kind().expect("a picture");
+        seen.push((kind, harness.query_by_label("Overlay · 1").is_some()));
     }
-    assert_eq!(kinds, [PictureKind::Stencil, PictureKind::Mask, PictureKind::Color]);
+    let color = PictureKind::Color;
+    assert_eq!(seen, [(color, true), (color, true), (PictureKind::Mask, false), (color, false)]);
     let tells = |harness: &Harness<Seen>, words: &str| harness.query_by_label_contains(words).is_some();
     assert!(tells(&harness, "walls stop (C) · 2.0 m/s"));
     press(&mut harness, Key::C);
