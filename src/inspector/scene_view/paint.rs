@@ -114,9 +114,8 @@ impl View {
     /// Keys of what is seen, in the order of painting: the layer, how near it is, the index.
     fn order(&self, stage: &Stage, depths: &[f32], mesh: &Mesh) -> Vec<u64> {
         let mut keys = Vec::with_capacity(stage.faces.len() + stage.lines.len());
-        let key = |layer: u64, near: f32, index: usize| {
-            layer << 62 | u64::from(ordered(near)) << INDEX_BITS | index as u64
-        };
+        let key =
+            |layer: u64, near: f32, index: usize| layer << 62 | u64::from(ordered(near)) << INDEX_BITS | index as u64;
         let layer = |sides: Sides| if sides.meets(self.hidden) { BEHIND_WALLS } else { BEFORE_WALLS };
         for (index, face) in stage.faces.iter().enumerate() {
             let [a, b, c] = face.corners.map(|corner| depths[corner as usize]);

@@ -297,7 +297,7 @@ impl Stage {
             let places = corners.map(at);
             let normal = across(corners).normalize_or_zero().as_vec3();
             let inner = eye.map_or(0.0, |eye| normal.dot((eye - places[0]).as_vec3()).signum());
-            if !(longest_of(&places) > limit) {
+            if longest_of(&places) <= limit {
                 let indices = [0, 1, 2].map(|index| {
                     let corner = corners[index] as usize;
                     let is_smooth = eye.is_none() && normals[corner].dot(normal) >= SMOOTH;
@@ -360,9 +360,9 @@ impl Stage {
             for indices in triangles {
                 let corners = indices.map(|corner| volume.vertices[corner as usize]);
                 let finite = far.finite(corners);
-                if let Some(places) = finite[0].filter(|places| {
-                    far.is_whole(&corners) && !(longest_of(places) > limit) && !self.walls.cut(places)
-                }) {
+                if let Some(places) = finite[0]
+                    .filter(|places| far.is_whole(&corners) && longest_of(places) <= limit && !self.walls.cut(places))
+                {
                     let points = [0, 1, 2].map(|index| {
                         let slot = &mut shared[indices[index] as usize];
                         if *slot == NONE {
