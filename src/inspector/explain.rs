@@ -34,9 +34,7 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
                 ui.set_width(ui.available_width());
                 ui.add(Label::new(RichText::new(&fact.formula).color(theme::of(ui).text)).wrap());
                 for line in &fact.here {
-                    // A number must not be torn apart at its thousands.
-                    let line = line.replace('\u{2009}', "\u{a0}");
-                    ui.add(Label::new(theme::number(line).color(theme::of(ui).dim)).wrap());
+                    ui.add(Label::new(theme::number(line.as_str()).color(theme::of(ui).dim)).wrap());
                 }
             });
             ui.add_space(4.0);

@@ -14,7 +14,7 @@ use glam::{DVec3, DVec4, Vec3};
 use std::collections::BTreeSet;
 
 /// Faces that are drawn at most; beyond it large meshes are thinned out.
-pub const MOST_FACES: usize = 60_000;
+pub const MOST_FACES: usize = 30_000;
 /// Meshes of fewer triangles are never thinned out.
 const LEAST_TO_THIN: usize = 2_000;
 /// Faces that cutting up may add.
