@@ -292,6 +292,32 @@ fn bench_capture_prints_ratios() {
 }
 
 #[test]
+fn bench_panels_steps_in_the_next_frame_and_rests_when_idle() {
+    let folder = folder();
+    let output = run(folder.path(), &["bench", "panels", "--scene", "triangle.obj", "--size", "64x64"]);
+    let printed = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    for part in ["picture ", "scene ", "explain ", "idle: 0 of 60", "stepping: 60 of 60", "light moved"] {
+        assert!(printed.contains(part), "`{part}` is not in {printed}");
+    }
+}
+
+#[test]
+fn pictures_of_the_window_are_taken_without_a_display() {
+    let folder = folder();
+    let output = run(folder.path(), &["pictures", "-o", "shots", "--only", "state"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let file = fs::read(folder.path().join("shots/state.png")).expect("a picture");
+    let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a header");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+    reader.next_frame(&mut bytes).expect("a picture");
+    let colors: std::collections::BTreeSet<&[u8]> = bytes.chunks_exact(3).collect();
+    assert!(colors.len() > 100, "the panels are drawn: {} colours", colors.len());
+    let names = names(&folder.path().join("shots"));
+    assert_eq!(names.len(), 1, "no other picture is taken: {names:?}");
+}
+
+#[test]
 fn bench_truth_prints_rays_a_second() {
     let folder = folder();
     let output = run(folder.path(), &["bench", "truth", "--scene", "triangle.obj", "--size", "64x64"]);

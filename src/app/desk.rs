@@ -112,10 +112,13 @@ impl Desk {
                 self.remember();
             }
             News::Meshes { generation, meshes } if generation == self.generation => self.inspector.set_meshes(meshes),
-            News::OpenedFolder(capture) => {
+            News::OpenedFolder { capture, source } => {
+                if let Some(watch) = &self.watch {
+                    watch.look_at(Vec::new());
+                }
                 self.jobs.stop_judging();
                 self.inspector.set_job(None);
-                self.inspector.clear_scene();
+                self.inspector.open_folder(&source);
                 self.show(capture);
             }
             News::Captured { frame, capture, plan } => {

@@ -40,7 +40,12 @@ pub enum News {
         meshes: Vec<ObjectMesh>,
     },
     /// A capture folder was opened.
-    OpenedFolder(Arc<Capture>),
+    OpenedFolder {
+        /// What is in it.
+        capture: Arc<Capture>,
+        /// Its path.
+        source: String,
+    },
     /// A frame was captured.
     Captured {
         /// Tells it from those before.

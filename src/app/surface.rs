@@ -193,6 +193,7 @@ fn configuration(event_loop: &ActiveEventLoop, adapter: Option<&str>) -> WgpuCon
             max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
             ..wgpu::Limits::default()
         },
+        memory_hints: wgpu::MemoryHints::MemoryUsage,
         ..Default::default()
     });
     if let Some(wanted) = adapter {

@@ -127,7 +127,9 @@ impl Bench {
     /// The first thing to show.
     fn begin(&mut self, source: ViewSource, name: OpenSpec, time: f64) {
         match source {
-            ViewSource::Capture(capture) => (self.tell)(News::OpenedFolder(Arc::new(*capture))),
+            ViewSource::Capture(capture) => {
+                (self.tell)(News::OpenedFolder { capture: Arc::new(*capture), source: name.name })
+            }
             ViewSource::Scene(scene) => {
                 self.spec = Some(name);
                 let done = self.show_scene(scene, time, Brought::default());
@@ -201,7 +203,8 @@ impl Bench {
             self.scene = None;
             self.last = None;
             self.generation += 1;
-            (self.tell)(News::OpenedFolder(Arc::new(capture)));
+            self.spec = None;
+            (self.tell)(News::OpenedFolder { capture: Arc::new(capture), source: name.to_owned() });
             return Ok(());
         }
         let spec = OpenSpec::new(name);

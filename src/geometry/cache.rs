@@ -12,8 +12,9 @@ use glam::{DVec3, DVec4};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Triangles kept at once (about 60 bytes each); a scene of more starts over with each mesh.
-const MOST_TRIANGLES_KEPT: usize = 8_000_000;
+/// Triangles kept at once (about 60 bytes each, and as much again for each pose); a scene of more starts over with
+/// each mesh.
+const MOST_TRIANGLES_KEPT: usize = 1_000_000;
 
 /// What was found out about the meshes planned so far. Planning with a full or an empty cache
 /// gives the same plan.

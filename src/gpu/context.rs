@@ -61,6 +61,8 @@ impl Context {
                 max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
                 ..Limits::default()
             },
+            // Memory in small pieces: a frame's pictures come and go, and large pieces would stay.
+            memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..wgpu::DeviceDescriptor::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))

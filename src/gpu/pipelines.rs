@@ -46,8 +46,8 @@ pub(super) struct Pipelines {
     pipelines: HashMap<PipelineKey, RenderPipeline>,
 }
 
-/// Pipelines kept at once; more than the plan of the stencil machine's test needs.
-const MOST_KEPT: usize = 2048;
+/// Pipelines kept at once: a driver may keep a hundred kilobytes of code for each. A plan of more makes some anew.
+const MOST_KEPT: usize = 512;
 
 const POSITION_ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x4];
 

@@ -1,5 +1,5 @@
-//! The Explain tab: the step's purpose, its formula with this scene's numbers, what the frame left
-//! out and why, and the guided tours.
+//! The Explain tab: the step's purpose, its formula with this scene's numbers, the guided tours, and
+//! what the frame left out and why.
 
 use super::explain_facts::{Known, facts};
 use super::state::State;
@@ -27,22 +27,22 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
             pick: state.pick,
             history: history.as_deref(),
         };
-        // Only what is seen of the tab is drawn, but counting a picture is not free: it is done once a frame.
+        // Counting a picture is not free: it is done once for each step and pixel.
         let told = state.explained.of(&known);
         for fact in told.iter() {
             theme::card(ui).show(ui, |ui| {
                 ui.set_width(ui.available_width());
                 ui.add(Label::new(RichText::new(&fact.formula).color(theme::of(ui).text)).wrap());
                 for line in &fact.here {
-                    ui.add(Label::new(theme::number(line.as_str()).color(theme::of(ui).dim)).wrap());
+                    ui.add(Label::new(theme::note(line.as_str())).wrap());
                 }
             });
             ui.add_space(4.0);
         }
         ui.add_space(8.0);
-        left_out(ui, &capture);
-        ui.add_space(8.0);
         tour::list(ui, state);
+        ui.add_space(8.0);
+        left_out(ui, &capture);
         ui.add_space(16.0);
     });
 }

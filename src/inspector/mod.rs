@@ -314,6 +314,12 @@ impl Inspector {
     }
 
     /// What is open can't be run again: a capture folder.
+    pub fn open_folder(&mut self, source: &str) {
+        self.state.note_recent(source);
+        self.clear_scene();
+    }
+
+    /// The same, of a folder that can't be opened by name again.
     pub fn clear_scene(&mut self) {
         self.state.set_scene(None, None);
     }
@@ -440,6 +446,9 @@ impl Inspector {
 
     /// Shows an error with its mend until it is dismissed; what was shown before stays.
     pub fn push_error(&mut self, error: String) {
+        // What failed is tried no further by itself.
+        self.state.restoring = None;
+        self.state.animation.is_running = false;
         if !self.state.errors.contains(&error) {
             self.state.errors.push(error);
         }

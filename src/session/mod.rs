@@ -142,6 +142,14 @@ impl Session {
         Ok(Session { executor: Executor::new(context), geometry: GeometryCache::default(), traced: None, limit: None })
     }
 
+    /// Forgets all that is kept between runs: meshes' edges and planes, buffers, pipelines, the traced scene.
+    pub fn forget(&mut self) {
+        self.executor.forget();
+        self.geometry = GeometryCache::default();
+        self.traced = None;
+        self.limit = None;
+    }
+
     /// The GPU that it runs on.
     #[must_use]
     pub fn adapter(&self) -> &AdapterInfo {

@@ -4,6 +4,7 @@ use super::Bench;
 use crate::app::news::News;
 use crate::app::orders::StressRun;
 use crate::inspector::RunRequest;
+use crate::session::Session;
 use crate::stress::{Case, Drives, Entrant};
 use crate::technique::{Choice, ChoiceError};
 
@@ -55,6 +56,8 @@ impl Bench {
             if !run.progress.is_cancelled() {
                 (self.tell)(News::StressEnded { job: run.job, error: None });
             }
+            // Hundreds of scenes were open: what was kept of them is of no use any longer.
+            self.session.iter_mut().for_each(Session::forget);
             (self.tell)(News::Idle);
             return None;
         };
