@@ -44,6 +44,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
         panels.settle()?;
         output::print(&format!("{name}, {width}x{height}, panels at {}x{}\n", WINDOW[0], WINDOW[1]))?;
         output::print(&measured::tabs(&mut panels))?;
+        output::print(&measured::orbit(&mut panels))?;
         output::print(&measured::idle(&mut panels))?;
         output::print(&measured::stepping(&mut panels))?;
         output::print(&measured::light(&mut panels)?)?;
@@ -57,7 +58,7 @@ mod measured {
     use crate::app::AppError;
     use crate::app::headless::{FrameCost, Headless};
     use crate::inspector::Panel;
-    use egui::{Key, Modifiers};
+    use egui::{Event, Key, Modifiers, PointerButton, pos2};
     use std::time::{Duration, Instant};
 
     fn ms(duration: Duration) -> f64 {
@@ -103,6 +104,42 @@ mod measured {
         panels.inspector().show_panel(Panel::Picture);
         panels.inspector().show_panel(Panel::Pixel);
         text
+    }
+
+    /// The Scene tab's view is dragged about: all of it is drawn anew each frame.
+    pub fn orbit(panels: &mut Headless) -> String {
+        panels.inspector().show_panel(Panel::Scene);
+        let middle = [0.55, 0.4];
+        // The worker may have to look at the geometry first.
+        if let Err(error) = panels.settle() {
+            return format!("  orbit: {error}\n");
+        }
+        panels.point(middle);
+        let button = |pressed| Event::PointerButton {
+            pos: pos2(middle[0] * WINDOW[0], middle[1] * WINDOW[1]),
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        panels.frame(vec![button(true)]);
+        let drag = |frame: usize| {
+            let angle = frame as f32 / 10.0;
+            [middle[0] + 0.1 * angle.sin(), middle[1] + 0.1 * angle.cos()]
+        };
+        for frame in 0..4 {
+            panels.point(drag(frame));
+        }
+        let costs: Vec<FrameCost> = (4..4 + FRAMES).map(|frame| panels.point(drag(frame))).collect();
+        panels.frame(vec![button(false)]);
+        panels.inspector().show_panel(Panel::Picture);
+        let all = |of: fn(&FrameCost) -> Duration| median(costs.iter().map(|cost| ms(of(cost))).collect());
+        let total = all(FrameCost::total);
+        format!(
+            "  orbit       frame_ms {total:.2} (panels {:.2}, triangles {:.2}) while the Scene tab is dragged: {}\n",
+            all(|cost| cost.panels),
+            all(|cost| cost.triangles),
+            verdict(total, LIMIT_PANELS_MS)
+        )
     }
 
     fn width_of(panels: &mut Headless) -> u32 {

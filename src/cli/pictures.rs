@@ -1,6 +1,7 @@
 //! `stencilscope pictures`: the README's pictures of the window and its animated tour, made without a display.
 
 use super::CliError;
+use super::options::picture_size;
 use clap::Args;
 
 #[derive(Debug, Args)]
@@ -14,6 +15,17 @@ pub struct PicturesArguments {
     /// Only pictures whose name has this word; `tour` is the animated one
     #[arg(long, value_name = "WORD", default_value = "")]
     only: String,
+    /// The window, points
+    #[arg(long, value_name = "WxH", default_value = "1440x900", value_parser = picture_size)]
+    window: [u32; 2],
+    /// Pixels a point
+    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = parse_scale)]
+    scale: f32,
+}
+
+fn parse_scale(text: &str) -> Result<f32, String> {
+    let scale = text.parse().ok().filter(|scale| (0.5..=4.0).contains(scale));
+    scale.ok_or_else(|| format!("`{text}` is no number from 0.5 to 4"))
 }
 
 /// Without a window there is nothing to take a picture of.
@@ -22,8 +34,8 @@ pub struct PicturesArguments {
 /// Always.
 #[cfg(not(feature = "inspector"))]
 pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
-    let PicturesArguments { output, adapter, only } = arguments;
-    let _ = (output, adapter, only);
+    let PicturesArguments { output, adapter, only, window, scale } = arguments;
+    let _ = (output, adapter, only, window, scale);
     Err(CliError::Window("this build has no window to take pictures of".to_owned()))
 }
 
@@ -33,7 +45,8 @@ pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
 /// A folder that can't be written to; no GPU.
 #[cfg(feature = "inspector")]
 pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
-    shots::run(&arguments.output, arguments.adapter.as_deref(), &arguments.only)
+    let window = arguments.window.map(|side| side as f32);
+    shots::run(&arguments.output, arguments.adapter.as_deref(), &arguments.only, (window, arguments.scale))
 }
 
 #[cfg(feature = "inspector")]
@@ -49,14 +62,18 @@ mod shots {
     use egui::{Key, Modifiers};
     use std::path::Path;
 
-    /// The window, points.
-    const WINDOW: [f32; 2] = [1440.0, 900.0];
     /// The picture in it.
     const SIZE: [u32; 2] = [640, 480];
     /// How long a stop of the animated tour is shown, milliseconds.
     const STOP_MS: u16 = 3500;
-    /// The picked pixel.
-    const PICK: [u32; 2] = [330, 300];
+    /// The animated tour's window, points.
+    const TOUR_WINDOW: [f32; 2] = [1120.0, 700.0];
+    /// In `tori`: in two shadows, so that its history and ladder have something to tell.
+    const IN_TWO_SHADOWS: [u32; 2] = [322, 92];
+    /// In `table`: on the slab, in the torus's shadow.
+    const UNDER_THE_TORUS: [u32; 2] = [398, 268];
+    /// In `inside`: the eye is in a shadow, so z-pass misses another one here.
+    const MISSING: [u32; 2] = [330, 300];
 
     /// What a picture shows.
     struct Shot {
@@ -84,7 +101,11 @@ mod shots {
             technique,
             step: "",
             kind: PictureKind::Color,
-            pick: Some(PICK),
+            pick: Some(match scene {
+                "table" => UNDER_THE_TORUS,
+                "inside" => MISSING,
+                _ => IN_TWO_SHADOWS,
+            }),
             panels,
             theme: ThemeChoice::Dark,
             keys: &[],
@@ -117,12 +138,17 @@ mod shots {
         ]
     }
 
-    pub fn run(folder: &str, adapter: Option<&str>, only: &str) -> Result<(), CliError> {
+    pub fn run(
+        folder: &str,
+        adapter: Option<&str>,
+        only: &str,
+        (window, scale): ([f32; 2], f32),
+    ) -> Result<(), CliError> {
         let folder = Path::new(folder);
         std::fs::create_dir_all(folder)
             .map_err(|source| CliError::Output { path: folder.display().to_string(), source })?;
         for shot in shots().iter().filter(|shot| shot.name.contains(only)) {
-            let picture = take(shot, adapter)?;
+            let picture = take(shot, adapter, (window, scale))?;
             write(folder, &format!("{}.png", shot.name), &picture.to_png().map_err(encoding)?)?;
         }
         if "tour".contains(only) {
@@ -146,7 +172,7 @@ mod shots {
         scene: &str,
         technique: Technique,
         adapter: Option<&str>,
-        window: [f32; 2],
+        (window, scale): ([f32; 2], f32),
     ) -> Result<Headless, CliError> {
         let spec = OpenSpec::new(scene);
         let request = ViewRequest {
@@ -159,13 +185,13 @@ mod shots {
             pick: None,
             truth: false,
         };
-        let mut panels = Headless::new(request, window, 1.0)?;
+        let mut panels = Headless::new(request, window, scale)?;
         panels.settle()?;
         Ok(panels)
     }
 
-    fn take(shot: &Shot, adapter: Option<&str>) -> Result<Picture, CliError> {
-        let mut panels = opened(shot.scene, shot.technique, adapter, WINDOW)?;
+    fn take(shot: &Shot, adapter: Option<&str>, window: ([f32; 2], f32)) -> Result<Picture, CliError> {
+        let mut panels = opened(shot.scene, shot.technique, adapter, window)?;
         let inspector = panels.inspector();
         inspector.set_theme(shot.theme);
         let steps = inspector.capture().map_or_else(Vec::new, |capture| capture.steps.clone());
@@ -193,7 +219,7 @@ mod shots {
 
     /// The tour of z-fail as an animated PNG, a stop a picture.
     fn tour(adapter: Option<&str>) -> Result<Vec<u8>, CliError> {
-        let mut panels = opened("tori", Technique::ZFail, adapter, [1120.0, 700.0])?;
+        let mut panels = opened("tori", Technique::ZFail, adapter, (TOUR_WINDOW, 1.0))?;
         let stops = Inspector::stops_of(Technique::ZFail);
         let mut pictures = Vec::new();
         for stop in 0..stops {

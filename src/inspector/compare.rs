@@ -8,6 +8,7 @@ use super::format;
 use super::state::{State, same_step};
 use super::view::Shown;
 use crate::capture::Capture;
+use crate::numbers::percent;
 use crate::technique::{Choice, Technique};
 use std::sync::Arc;
 
@@ -141,9 +142,11 @@ pub fn sentence(texels: Option<u64>, all: u64) -> String {
         None => "Pictures of different kinds: nothing to count.".to_owned(),
         Some(0) => "No texel differs.".to_owned(),
         Some(texels) => {
-            let share = texels as f64 / all.max(1) as f64 * 100.0;
+            let share = texels as f64 / all.max(1) as f64;
             let verb = if texels == 1 { "differs" } else { "differ" };
-            format!("{} {verb}: {share:.1} %", format::counted(texels, "texel"))
+            // A few of many are not none.
+            let share = if share < 1e-3 { percent(share) } else { format!("{:.1} %", share * 100.0) };
+            format!("{} {verb}: {share}", format::counted(texels, "texel"))
         }
     }
 }

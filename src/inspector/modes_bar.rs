@@ -10,7 +10,7 @@ use super::top_bar::segments;
 use super::view::{PictureKind, Shown};
 use crate::capture::Capture;
 use crate::technique::Technique;
-use egui::{Button, Rect, RichText, Ui, UiBuilder, vec2};
+use egui::{Button, Rect, Ui, UiBuilder, vec2};
 
 /// Width of the note on a comparison, points.
 const NOTE_WIDTH: f32 = 232.0;
@@ -53,8 +53,8 @@ fn bits(ui: &mut Ui, state: &mut State) {
 
 fn toggle(ui: &mut Ui, state: &mut State) {
     let is_on = state.modes.compare.is_some();
-    let ink = if is_on { theme::of(ui).text } else { theme::of(ui).dim };
-    let button = ui.add(Button::selectable(is_on, RichText::new("Compare").color(ink)));
+    let word = theme::switch_word(ui, "Compare", is_on);
+    let button = ui.add(Button::selectable(is_on, word));
     if button.on_hover_text("Another step or technique beside this picture, under a divider").clicked() {
         state.modes.compare = if is_on { None } else { Some(Compare::new(state.step)) };
     }

@@ -338,17 +338,13 @@ fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
         ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
     }
     let fits = state.view.zoom == Zoom::Fit;
-    let theme = theme::of(ui);
-    let word = |text: &str, chosen: bool| egui::RichText::new(text).color(if chosen { theme.text } else { theme.dim });
-    if ui.add(egui::Button::selectable(fits, word("Fit", fits))).on_hover_text("The whole picture").clicked() {
+    let word = theme::switch_word(ui, "Fit", fits);
+    if ui.add(egui::Button::selectable(fits, word)).on_hover_text("The whole picture").clicked() {
         state.view.zoom = Zoom::Fit;
     }
     let is_exact = state.view.zoom == Zoom::Pixels(1.0);
-    if ui
-        .add(egui::Button::selectable(is_exact, word("1:1", is_exact)))
-        .on_hover_text("One screen pixel a texel")
-        .clicked()
-    {
+    let word = theme::switch_word(ui, "1:1", is_exact);
+    if ui.add(egui::Button::selectable(is_exact, word)).on_hover_text("One screen pixel a texel").clicked() {
         if fits {
             state.view.center = size.map(|side| f64::from(side) / 2.0);
         }

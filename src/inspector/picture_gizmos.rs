@@ -18,7 +18,8 @@ const SUN: f64 = 10.0;
 /// The switch in the picture's toolbar.
 pub fn button(ui: &mut Ui, state: &mut State) {
     if state.scene.is_some() {
-        let button = ui.add(egui::Button::selectable(state.picture_gizmos, "Gizmos"));
+        let word = theme::switch_word(ui, "Gizmos", state.picture_gizmos);
+        let button = ui.add(egui::Button::selectable(state.picture_gizmos, word));
         if button.on_hover_text("Handles of the lights that are in view: drag them, or use the arrow keys").clicked() {
             state.picture_gizmos ^= true;
         }

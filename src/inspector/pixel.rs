@@ -81,7 +81,7 @@ fn sentence(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
 
 fn values(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2]) {
     theme::heading(ui, &format!("After {}", state.moment().words()));
-    egui::Grid::new("pixel values").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
+    egui::Grid::new("pixel values").num_columns(2).spacing([16.0, 2.0]).min_row_height(20.0).show(ui, |ui| {
         row(ui, "pixel", &format!("{}, {}", at[0], at[1]));
         match state.moment().frame(capture) {
             Some(frame) => {

@@ -35,25 +35,29 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     let mut selected = None;
     let last = capture.steps.len().saturating_sub(1);
     let has_stencil = capture.frame_at(last).is_some_and(|frame| frame.stencil.is_some());
-    let has_count = capture.lights.iter().any(|light| light.count.is_some());
+    let runs = capture.steps.iter().enumerate().map(|(index, step)| match &step.snapshot {
+        Snapshot::Frame(frame) => Some(values(capture, index, frame, at)),
+        Snapshot::Map { .. } => None,
+    });
+    let runs: Vec<Option<Values>> = runs.collect();
+    let has_count = runs.iter().flatten().any(|values| values.count.is_some());
     let has = [has_stencil, has_count];
     // The columns beside it keep their place.
-    let longest = MOST_LETTERS - 9 * has.into_iter().filter(|has| *has).count();
+    let longest = if has_stencil { MOST_LETTERS - 9 } else { MOST_LETTERS };
     let of_map = MapContent::of_capture(capture).map_or("map", MapContent::one);
     egui::Grid::new("pixel over the steps").num_columns(5).spacing([12.0, 2.0]).min_row_height(20.0).show(ui, |ui| {
         head(ui, has);
-        let mut before: Option<Values> = None;
+        let mut before: Option<&Values> = None;
         for (index, step) in capture.steps.iter().enumerate() {
             if pass_cell(ui, index, &step.name, longest, index == state.step) {
                 selected = Some(index);
             }
-            match &step.snapshot {
-                Snapshot::Frame(frame) => {
-                    let now = values(capture, index, frame, at);
-                    row(ui, &now, before.as_ref(), has);
+            match &runs[index] {
+                Some(now) => {
+                    row(ui, now, before, has);
                     before = Some(now);
                 }
-                Snapshot::Map { .. } => {
+                None => {
                     ui.label(
                         RichText::new(format!("{of_map} only")).size(theme::SMALL_SIZE).color(theme::of(ui).faint),
                     );
@@ -68,10 +72,10 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     }
 }
 
-/// `has`: a stencil, counts in floats.
+/// Head of the columns. Where there are counts in floats too, the distance has no room: it is told above.
 fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
     let columns =
-        [("pass", true), ("stencil", has_stencil), ("count", has_count), ("colour", true), ("distance", true)];
+        [("pass", true), ("stencil", has_stencil), ("count", has_count), ("colour", true), ("distance", !has_count)];
     for (name, _) in columns.into_iter().filter(|(_, is_shown)| *is_shown) {
         ui.label(theme::note(name));
     }
@@ -116,7 +120,9 @@ fn row(ui: &mut Ui, now: &Values, before: Option<&Values>, [has_stencil, has_cou
         cell(ui, now.count.as_ref(), before.and_then(|before| before.count.as_ref()));
     }
     cell(ui, now.color.as_ref(), before.and_then(|before| before.color.as_ref()));
-    cell(ui, now.depth.as_ref(), before.and_then(|before| before.depth.as_ref()));
+    if !has_count {
+        cell(ui, now.depth.as_ref(), before.and_then(|before| before.depth.as_ref()));
+    }
 }
 
 /// A value with its colour; faint where the pass left it as it was at this pixel.

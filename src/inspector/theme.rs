@@ -212,6 +212,11 @@ pub fn number_font(size: f32) -> FontId {
     FontId::new(size, FontFamily::Monospace)
 }
 
+/// The word on a switch of a toolbar, dim while it is off.
+pub fn switch_word(ui: &Ui, word: &str, is_on: bool) -> RichText {
+    RichText::new(word).color(if is_on { of(ui).text } else { of(ui).dim })
+}
+
 /// A side note.
 #[must_use]
 pub fn note(text: impl Into<String>) -> RichText {

@@ -325,7 +325,8 @@ fn direction(camera: &Camera, goes: DVec3, flies: bool) -> DVec3 {
 /// The button over the picture.
 pub fn button(ui: &mut Ui, state: &mut State) {
     let can = state.scene.is_some() && state.capture.is_some();
-    let button = ui.add_enabled(can, egui::Button::selectable(state.walk.is_on, "Walk"));
+    let word = theme::switch_word(ui, "Walk", state.walk.is_on);
+    let button = ui.add_enabled(can, egui::Button::selectable(state.walk.is_on, word));
     let button = button.on_hover_text("Walk through the scene: the mouse looks, W S A D move (Tab over the picture)");
     if button.on_disabled_hover_text("Open a scene to walk in it").clicked() {
         if state.walk.is_on { state.stop_walking(ui.ctx()) } else { state.start_walking(ui.ctx()) }

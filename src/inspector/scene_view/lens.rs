@@ -5,7 +5,7 @@
 //! half length, so that a front keeps its true shape.
 
 use egui::{Pos2, Rect, Vec2, pos2};
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3, DVec4};
 
 /// What of the distance to the middle lies before the near plane of a perspective view.
 const NEAR: f64 = 0.02;
@@ -134,7 +134,7 @@ pub struct Lens {
     /// Points a metre, at the middle's distance.
     pub scale: f64,
     /// How far right and up a metre of depth is drawn.
-    shear: DVec2,
+    pub shear: DVec2,
     /// How far before the middle the eye is; `None` in parallel views.
     pub eye: Option<f64>,
 }
@@ -144,6 +144,16 @@ impl Lens {
     #[must_use]
     pub fn view(&self, world: DVec3) -> DVec3 {
         self.rotation * (world - self.center)
+    }
+
+    /// Where it is looked from, world space; the direction towards the viewer, with `w = 0`, in parallel views.
+    #[must_use]
+    pub fn viewer(&self) -> DVec4 {
+        let world = self.rotation.transpose();
+        match self.eye {
+            Some(eye) => (self.center + world * DVec3::Z * eye).extend(1.0),
+            None => (world * self.shear.extend(1.0)).extend(0.0),
+        }
     }
 
     /// The largest z of view space that is drawn.
@@ -262,6 +272,18 @@ mod tests {
             let along = lens.moved_along(at, DVec3::X, by);
             assert_eq!([along.y, along.z], [0.0; 2]);
             assert!(along.x > 0.0, "{projection:?}");
+        }
+    }
+
+    #[test]
+    fn points_towards_the_viewer_are_at_the_same_place_of_the_screen() {
+        for (projection, ..) in Projection::ALL {
+            let lens = PaneView { yaw: 33.0, pitch: 21.0, ..pane(projection) }.lens(RECT);
+            let at = DVec3::new(2.0, 1.0, 0.5);
+            let viewer = lens.viewer();
+            let towards = (viewer.truncate() - at * viewer.w).normalize();
+            let [here, there] = [at, at + towards].map(|at| lens.place(at).expect("seen"));
+            assert!((here - there).length() < 1e-3, "{projection:?}");
         }
     }
 

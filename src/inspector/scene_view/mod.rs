@@ -4,18 +4,21 @@
 //! Anatomy ──► stage.rs (faces, lines; once a frame) ──► paint.rs (sorted; once a view) ──► egui mesh
 //! lens.rs     projections, world to screen        pane.rs     one view: mouse, keys, what is on top
 //! bar.rs      the toolbar and the legend          rays.rs     the pick's rays, the selected triangle
-//! gizmos.rs   lights and camera as handles
+//! gizmos.rs   lights and camera as handles    walls.rs    what all else is behind or before
+//! far_end.rs  where volumes that have no end are ended
 //! ```
 //!
 //! No GPU code: everything is sorted and projected on the CPU, and only when something changed.
 
 mod bar;
+mod far_end;
 mod gizmos;
 mod lens;
 mod paint;
 mod pane;
 mod rays;
 mod stage;
+mod walls;
 
 pub use gizmos::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
 use lens::{PaneView, Projection};

@@ -1,10 +1,11 @@
 //! What the views draw: faces and lines of an anatomy, finite and small enough to be sorted.
 //!
-//! Made once an anatomy and choice of what is shown, whatever the view. Corners at infinity are put on
-//! a sphere about a point light, which every ray from it meets once, so that volumes stay closed; what
-//! runs to a directional light's point at infinity is cut by a plane across the light. Large triangles
-//! are cut up: a painter who goes by the distance of middles would paint a floor over what stands on it.
+//! Made once an anatomy and choice of what is shown, whatever the view. Corners are shared, so that each
+//! is projected once a view. Walls are split off exactly (`walls.rs`), other large triangles are cut up: a
+//! painter who goes by the distance of middles would paint a floor over what stands on it.
 
+use super::far_end::FarEnd;
+use super::walls::{Sides, Walls};
 use crate::anatomy::{Anatomy, PlacedLight, PlacedObject, ShadowVolume, Silhouette, ViewOf};
 use crate::inspector::theme::Theme;
 use crate::plan::Part;
@@ -13,15 +14,19 @@ use glam::{DVec3, DVec4, Vec3};
 use std::collections::BTreeSet;
 
 /// Faces that are drawn at most; beyond it large meshes are thinned out.
-pub const MOST_FACES: usize = 60_000;
+pub const MOST_FACES: usize = 30_000;
 /// Meshes of fewer triangles are never thinned out.
 const LEAST_TO_THIN: usize = 2_000;
 /// Faces that cutting up may add.
 const MOST_CUTS: usize = 16_000;
 /// An object holds others if it is so large, in parts of the whole.
 const HOLDER: f64 = 0.5;
-/// How far volumes go beyond what there is to see, in parts of its radius.
-const BEYOND: f64 = 1.2;
+/// The longest piece of a shell, in parts of what there is to see: its order among its like is not seen.
+const SHELL_PIECE: f64 = 0.7;
+/// Triangles share a corner, and its shade, where their normals differ by less than this cosine's angle.
+const SMOOTH: f32 = 0.8;
+/// A corner that is not there yet.
+const NONE: u32 = u32::MAX;
 /// Multiplicities beyond one that are written beside their edges, at most.
 const MOST_NUMBERS: usize = 400;
 
@@ -82,11 +87,11 @@ impl Choice {
     }
 }
 
-/// A triangle, or what is left of one that was cut by a plane.
+/// A corner of faces.
 #[derive(Debug, Clone, Copy)]
-pub struct Face {
+pub struct Point {
     /// Relative to the stage's middle.
-    pub corners: [Vec3; 3],
+    pub at: Vec3,
     /// Of unit length, for shading; zero: not shaded.
     pub normal: Vec3,
     /// Premultiplied.
@@ -94,6 +99,28 @@ pub struct Face {
     /// On which side of it, as its normal goes, the camera is, if it is of what holds everything: seen from the
     /// other side it is glass. 0 elsewhere.
     pub inner: f32,
+}
+
+/// How a face takes part in the order of painting.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layer {
+    /// Everything is either behind it or before it.
+    Wall,
+    /// By its distance.
+    Solid,
+    /// By its distance, before the solid that it lies on.
+    Shell,
+}
+
+/// A triangle.
+#[derive(Debug, Clone, Copy)]
+pub struct Face {
+    /// Indices of points.
+    pub corners: [u32; 3],
+    /// Its order.
+    pub layer: Layer,
+    /// On which sides of the walls it lies.
+    pub sides: Sides,
 }
 
 /// A line.
@@ -105,6 +132,8 @@ pub struct Line {
     pub width: f32,
     /// Its ink.
     pub color: Color32,
+    /// On which sides of the walls it lies.
+    pub sides: Sides,
 }
 
 /// Words at a place.
@@ -125,12 +154,16 @@ pub struct Stage {
     pub middle: DVec3,
     /// Half of what there is to see, metres.
     pub radius: f64,
+    /// Corners of the faces.
+    pub points: Vec<Point>,
     /// In no order.
     pub faces: Vec<Face>,
     /// In no order.
     pub lines: Vec<Line>,
     /// Multiplicities and names.
     pub labels: Vec<Label>,
+    /// What hides all that is behind it.
+    pub walls: Walls,
     /// Casters that hold everything, whose volumes are not shown unless they are chosen.
     pub left_out: BTreeSet<String>,
     /// What was thinned out, in words.
@@ -175,7 +208,8 @@ impl Stage {
     pub fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, theme: &Theme) -> Stage {
         let holders = holders(anatomy);
         let (middle, radius) = sphere(anatomy, &holders);
-        let mut stage = Stage { middle, radius, ..Stage::default() };
+        let walls = Walls::new(anatomy, &holders, middle, radius);
+        let mut stage = Stage { middle, radius, walls, ..Stage::default() };
         let thinning = Thinning::new(anatomy, shown, choice, &holders);
         if shown.names {
             stage.names(anatomy, &holders);
@@ -216,32 +250,87 @@ impl Stage {
     }
 
     fn objects(&mut self, anatomy: &Anatomy, holders: &[bool], thinning: &Thinning, theme: &Theme) {
-        let visible = || anatomy.objects.iter().zip(holders).filter(|(object, _)| object.visible || object.casts);
-        let longest = visible().map(|(object, _)| longest_edge(object)).fold(0.0, f64::max);
-        let limit = (self.radius / 10.0).max(longest / 64.0);
+        let is_seen = |object: &PlacedObject| object.visible || object.casts;
+        let (walls, limit) = (self.walls.clone(), self.radius / 10.0);
+        let longest = |index: usize, object: &PlacedObject| {
+            if is_seen(object) && !walls.is_wall(index) { longest_edge(object) } else { 0.0 }
+        };
+        let longest = anatomy.objects.iter().enumerate().map(|(index, object)| longest(index, object));
+        let limit = limit.max(longest.fold(0.0, f64::max) / 64.0);
         let mut room = MOST_CUTS;
         let ground = mix(theme.panel, theme.dim, 0.62);
-        for (object, holds) in visible() {
+        let edge = mix(theme.panel, theme.dim, 0.2);
+        for (index, object) in anatomy.objects.iter().enumerate().filter(|(_, object)| is_seen(object)) {
             // What is not seen in the picture is seen here as glass.
             let color = if object.visible { ground } else { ground.gamma_multiply(0.25) };
-            for corners in thinning.kept(object.mesh.triangles()) {
-                let corners = corners.map(|corner| object.positions[corner as usize]);
-                let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero().as_vec3();
-                let inner = match holds {
-                    true => normal.dot((anatomy.camera.eye - corners[0]).as_vec3()).signum(),
-                    false => 0.0,
-                };
-                cut_up(corners, limit, &mut room, &mut |corners| {
-                    let corners = corners.map(|corner| (corner - self.middle).as_vec3());
-                    self.faces.push(Face { corners, normal, color, inner });
-                });
+            let eye = holders[index].then_some(anatomy.camera.eye);
+            match walls.is_wall(index) {
+                true => self.solid(object, thinning, (color, eye), (f64::INFINITY, &mut room), Layer::Wall),
+                false => self.solid(object, thinning, (color, eye), (limit, &mut room), Layer::Solid),
             }
-            let edge = mix(theme.panel, theme.dim, 0.2);
             for edge_ends in &object.edges {
                 let ends = [edge_ends.low, edge_ends.high].map(|end| object.positions[end as usize]);
                 self.long_line(ends, limit, 1.0, edge);
             }
         }
+    }
+
+    /// The triangles of an object; of one that holds others, the camera's `eye` says which side is glass.
+    fn solid(
+        &mut self,
+        object: &PlacedObject,
+        thinning: &Thinning,
+        (color, eye): (Color32, Option<DVec3>),
+        (limit, room): (f64, &mut usize),
+        layer: Layer,
+    ) {
+        let at = |corner: u32| object.positions[corner as usize];
+        let across = |[a, b, c]: [u32; 3]| (at(b) - at(a)).cross(at(c) - at(a));
+        let mut normals = vec![DVec3::ZERO; object.positions.len()];
+        for &corners in object.mesh.triangles() {
+            let across = across(corners);
+            corners.iter().for_each(|corner| normals[*corner as usize] += across);
+        }
+        let normals: Vec<Vec3> = normals.into_iter().map(|normal| normal.normalize_or_zero().as_vec3()).collect();
+        let mut shared = vec![NONE; object.positions.len()];
+        for corners in thinning.kept(object.mesh.triangles()) {
+            let places = corners.map(at);
+            let normal = across(corners).normalize_or_zero().as_vec3();
+            let inner = eye.map_or(0.0, |eye| normal.dot((eye - places[0]).as_vec3()).signum());
+            if longest_of(&places) <= limit {
+                let indices = [0, 1, 2].map(|index| {
+                    let corner = corners[index] as usize;
+                    let is_smooth = eye.is_none() && normals[corner].dot(normal) >= SMOOTH;
+                    match shared[corner] {
+                        known if is_smooth && known != NONE => known,
+                        _ if is_smooth => {
+                            shared[corner] = self.point(places[index], normals[corner], color, inner);
+                            shared[corner]
+                        }
+                        _ => self.point(places[index], normal, color, inner),
+                    }
+                });
+                self.face(indices, places, layer);
+                continue;
+            }
+            cut_up(places, limit, room, &mut |places| {
+                let indices = places.map(|place| self.point(place, normal, color, inner));
+                self.face(indices, places, layer);
+            });
+        }
+    }
+
+    fn point(&mut self, place: DVec3, normal: Vec3, color: Color32, inner: f32) -> u32 {
+        self.points.push(Point { at: (place - self.middle).as_vec3(), normal, color, inner });
+        (self.points.len() - 1) as u32
+    }
+
+    fn face(&mut self, corners: [u32; 3], places: [DVec3; 3], layer: Layer) {
+        let sides = match layer {
+            Layer::Wall => Sides::default(),
+            Layer::Solid | Layer::Shell => self.walls.sides((places[0] + places[1] + places[2]) / 3.0),
+        };
+        self.faces.push(Face { corners, layer, sides });
     }
 
     fn volume(
@@ -253,7 +342,7 @@ impl Stage {
         theme: &Theme,
     ) {
         let far = FarEnd::new(light, self.middle, self.radius);
-        let limit = self.radius / 3.0;
+        let limit = self.radius * SHELL_PIECE;
         for part in &volume.parts {
             let (is_shown, share) = match part.part {
                 Part::Side => (shown.sides, 0.26 * strength),
@@ -267,10 +356,27 @@ impl Stage {
                 Part::Side => Box::new(part.triangles.iter().copied()),
                 _ => Box::new(thinning.kept(&part.triangles)),
             };
-            for corners in triangles {
-                let corners = corners.map(|corner| volume.vertices[corner as usize]);
-                for corners in far.finite(corners).into_iter().flatten() {
-                    cut_up(corners, limit, &mut room, &mut |corners| self.shell(corners, color));
+            let mut shared = vec![NONE; volume.vertices.len()];
+            for indices in triangles {
+                let corners = indices.map(|corner| volume.vertices[corner as usize]);
+                let finite = far.finite(corners);
+                if let Some(places) = finite[0]
+                    .filter(|places| far.is_whole(&corners) && longest_of(places) <= limit && !self.walls.cut(places))
+                {
+                    let points = [0, 1, 2].map(|index| {
+                        let slot = &mut shared[indices[index] as usize];
+                        if *slot == NONE {
+                            *slot = self.point(places[index], Vec3::ZERO, color, 0.0);
+                        }
+                        *slot
+                    });
+                    self.face(points, places, Layer::Shell);
+                    continue;
+                }
+                for places in finite.into_iter().flatten() {
+                    for places in self.walls.split(places, &mut room) {
+                        cut_up(places, limit, &mut room, &mut |places| self.shell(places, color));
+                    }
                 }
             }
         }
@@ -354,58 +460,20 @@ impl Stage {
         }
     }
 
-    fn shell(&mut self, corners: [DVec3; 3], color: Color32) {
-        let corners = corners.map(|corner| (corner - self.middle).as_vec3());
-        self.faces.push(Face { corners, normal: Vec3::ZERO, color, inner: 0.0 });
+    fn shell(&mut self, places: [DVec3; 3], color: Color32) {
+        let points = places.map(|place| self.point(place, Vec3::ZERO, color, 0.0));
+        self.face(points, places, Layer::Shell);
     }
 
     /// A line in pieces, so that each is sorted by where it is.
     fn long_line(&mut self, ends: [DVec3; 2], limit: f64, width: f32, color: Color32) {
-        let [from, to] = ends.map(|end| end - self.middle);
+        let [from, to] = ends;
         let pieces = ((to - from).length() / limit).ceil().clamp(1.0, 32.0) as usize;
-        let at = |piece: usize| from.lerp(to, piece as f64 / pieces as f64).as_vec3();
-        self.lines.extend((0..pieces).map(|piece| Line { ends: [at(piece), at(piece + 1)], width, color }));
-    }
-}
-
-/// Where volumes that have no end are ended.
-enum FarEnd {
-    /// On a sphere about a point light.
-    Sphere { light: DVec3, reach: f64 },
-    /// At a plane across a directional light: inside is where it is positive.
-    Plane(DVec4),
-}
-
-impl FarEnd {
-    fn new(light: &PlacedLight, middle: DVec3, radius: f64) -> FarEnd {
-        let towards = light.position.truncate();
-        if light.position.w == 0.0 {
-            let towards = towards.normalize();
-            return FarEnd::Plane(towards.extend(BEYOND * radius - towards.dot(middle)));
-        }
-        let light = towards / light.position.w;
-        FarEnd::Sphere { light, reach: (light - middle).length() + BEYOND * radius }
-    }
-
-    /// The finite part of a triangle: none, or up to two.
-    fn finite(&self, corners: [DVec4; 3]) -> [Option<[DVec3; 3]>; 2] {
-        match self {
-            FarEnd::Sphere { light, reach } => {
-                let at = |corner: DVec4| match corner.w == 0.0 {
-                    true => *light + corner.truncate().normalize_or_zero() * *reach,
-                    false => corner.truncate() / corner.w,
-                };
-                [Some(corners.map(at)), None]
-            }
-            FarEnd::Plane(_) if corners.iter().all(|corner| corner.w != 0.0) => {
-                [Some(corners.map(|corner| corner.truncate() / corner.w)), None]
-            }
-            FarEnd::Plane(plane) => {
-                let polygon = clip(corners, *plane);
-                let at = |index: usize| polygon.get(index).map(|corner| corner.truncate() / corner.w);
-                let triangle = |a, b, c| Some([at(a)?, at(b)?, at(c)?]);
-                [triangle(0, 1, 2), triangle(0, 2, 3)]
-            }
+        let at = |piece: usize| from.lerp(to, piece as f64 / pieces as f64);
+        for piece in 0..pieces {
+            let ends = [at(piece), at(piece + 1)];
+            let sides = self.walls.sides((ends[0] + ends[1]) / 2.0);
+            self.lines.push(Line { ends: ends.map(|end| (end - self.middle).as_vec3()), width, color, sides });
         }
     }
 }
@@ -420,24 +488,6 @@ pub fn finite_triangle(corners: [DVec4; 3], light: Option<&PlacedLight>, stage: 
         }
         None => Vec::new(),
     }
-}
-
-/// The part of a triangle where a plane is positive: up to four corners (Sutherland and Hodgman 1974).
-fn clip(corners: [DVec4; 3], plane: DVec4) -> Vec<DVec4> {
-    let mut kept = Vec::with_capacity(4);
-    for (index, &corner) in corners.iter().enumerate() {
-        let next = corners[(index + 1) % 3];
-        let [here, there] = [plane.dot(corner), plane.dot(next)];
-        if here >= 0.0 {
-            kept.push(corner);
-        }
-        if (here < 0.0) != (there < 0.0) {
-            kept.push(corner.lerp(next, here / (here - there)));
-        }
-    }
-    // A point that is left at infinity all the same has no place.
-    kept.retain(|corner| corner.w > 0.0);
-    kept
 }
 
 /// Halves a triangle's longest edge until none is longer than `limit`, or no more may be added.
@@ -460,12 +510,13 @@ fn cut_up(corners: [DVec3; 3], limit: f64, room: &mut usize, found: &mut impl Fn
     }
 }
 
+fn longest_of([a, b, c]: &[DVec3; 3]) -> f64 {
+    (*b - *a).length().max((*c - *b).length()).max((*a - *c).length())
+}
+
 fn longest_edge(object: &PlacedObject) -> f64 {
-    let edge = |[a, b, c]: &[u32; 3]| {
-        let [a, b, c] = [a, b, c].map(|corner| object.positions[*corner as usize]);
-        (b - a).length().max((c - b).length()).max((a - c).length())
-    };
-    object.mesh.triangles().iter().map(edge).fold(0.0, f64::max)
+    let places = |corners: &[u32; 3]| corners.map(|corner| object.positions[corner as usize]);
+    object.mesh.triangles().iter().map(|corners| longest_of(&places(corners))).fold(0.0, f64::max)
 }
 
 /// A colour between two, `share` of the way to the second.
@@ -527,30 +578,5 @@ mod tests {
         assert_eq!(count, 101);
         cut_up([DVec3::NAN; 3], 0.5, &mut 10, &mut |_| count += 1);
         assert_eq!(count, 102);
-    }
-
-    #[test]
-    fn a_side_that_runs_to_a_suns_point_at_infinity_ends_at_a_plane() {
-        let light = PlacedLight { position: DVec4::new(0.0, 2.0, 0.0, 0.0), color: [1.0; 3], range: None };
-        let far = FarEnd::new(&light, DVec3::ZERO, 5.0);
-        let corners =
-            [DVec4::new(1.0, 2.0, 0.0, 1.0), DVec4::new(-1.0, 2.0, 0.0, 1.0), DVec4::new(0.0, -2.0, 0.0, 0.0)];
-        let pieces: Vec<_> = far.finite(corners).into_iter().flatten().collect();
-        assert_eq!(pieces.len(), 2, "a triangle without its tip has four corners");
-        let lowest = pieces.iter().flatten().map(|corner| corner.y).fold(f64::INFINITY, f64::min);
-        assert!((lowest + BEYOND * 5.0).abs() < 1e-9, "{lowest}");
-        assert!(pieces.iter().flatten().all(|corner| corner.x.abs() <= 1.0 + 1e-9), "the sides are parallel");
-    }
-
-    #[test]
-    fn corners_at_infinity_lie_on_the_rays_of_a_lamp() {
-        let light = PlacedLight { position: DVec4::new(0.0, 4.0, 0.0, 1.0), color: [1.0; 3], range: None };
-        let far = FarEnd::new(&light, DVec3::ZERO, 5.0);
-        let near = DVec3::new(1.0, 1.0, 2.0);
-        let away = (near - DVec3::new(0.0, 4.0, 0.0)).extend(0.0);
-        let [Some([a, _, c]), None] = far.finite([near.extend(1.0), DVec4::W, away]) else { panic!("one triangle") };
-        assert_eq!(a, near);
-        assert!((c - a).normalize().dot(away.truncate().normalize()) > 1.0 - 1e-12);
-        assert!(((c - DVec3::new(0.0, 4.0, 0.0)).length() - 4.0 - BEYOND * 5.0).abs() < 1e-9);
     }
 }
