@@ -17,7 +17,12 @@ pub fn ui(ctx: &Context, state: &mut State) {
         let scroll = egui::ScrollArea::vertical().max_height((ctx.content_rect().height() - 140.0).max(80.0));
         scroll.show(ui, contents);
         ui.add_space(8.0);
-        ui.button("Close help").on_hover_text("Escape").clicked()
+        ui.horizontal(|ui| {
+            let first = ui.button("Reset layout");
+            state.wants_first_layout |= first.on_hover_text("Every panel where it was at first").clicked();
+            ui.button("Close help").on_hover_text("Escape").clicked()
+        })
+        .inner
     });
     state.help_is_open = !(answer.inner || answer.should_close());
 }

@@ -180,6 +180,31 @@ fn tab_over_the_picture_begins_and_elsewhere_these_keys_do_nothing_of_it() {
 }
 
 #[test]
+fn h_and_f1_list_the_keys_and_free_the_pointer() {
+    for key in [Key::H, Key::F1] {
+        let mut harness = walking();
+        press(&mut harness, key);
+        harness.get_by_label("walk ahead");
+        assert!(harness.query_by_label(BANNER).is_none());
+    }
+}
+
+#[test]
+fn shift_tab_and_tab_in_a_dialog_do_not_begin() {
+    let mut harness = harness_of(over(&box_scene()), [1280.0, 800.0]);
+    answer(&mut harness);
+    let at = place_of(&harness, [20, 15], SIZE);
+    super::mouse(&mut harness, at, egui::PointerButton::Primary);
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, Key::Tab);
+    harness.run_steps(2);
+    assert!(harness.query_by_label(BANNER).is_none());
+    press(&mut harness, Key::Escape);
+    press(&mut harness, Key::F1);
+    press(&mut harness, Key::Tab);
+    assert!(harness.query_by_label(BANNER).is_none());
+}
+
+#[test]
 fn walls_hold_at_any_speed() {
     let room = [
         common::square("ground", 0.0, 2.0),
