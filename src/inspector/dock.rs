@@ -148,9 +148,6 @@ impl Dock {
 
     /// Draws all panels into what is left of the window.
     pub fn ui(&mut self, ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
-        if std::mem::take(&mut state.wants_first_layout) {
-            *self = Dock::new();
-        }
         if !self.arranged_by_user {
             self.keep_widths(ui.available_width());
             // What was shown in the frame before is what is shown.

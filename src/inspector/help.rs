@@ -13,16 +13,11 @@ pub fn ui(ctx: &Context, state: &mut State) {
     }
     let modal = egui::Modal::new(Id::unique("help")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
-        ui.set_width(520.0_f32.min(ctx.content_rect().width() - 64.0));
+        ui.set_width(520.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
         let scroll = egui::ScrollArea::vertical().max_height((ctx.content_rect().height() - 140.0).max(80.0));
         scroll.show(ui, contents);
         ui.add_space(8.0);
-        ui.horizontal(|ui| {
-            let first = ui.button("Reset layout");
-            state.wants_first_layout |= first.on_hover_text("Every panel where it was at first").clicked();
-            ui.button("Close help").on_hover_text("Escape").clicked()
-        })
-        .inner
+        ui.button("Close help").on_hover_text("Escape").clicked()
     });
     state.help_is_open = !(answer.inner || answer.should_close());
 }

@@ -18,6 +18,9 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     }
     let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 4));
     egui::Panel::top("messages").frame(frame).show(ui, |ui| {
+        if state.errors.len() > 1 && ui.button("Dismiss all").on_hover_text("Hide all messages").clicked() {
+            state.errors.clear();
+        }
         let most = ui.ctx().content_rect().height() * MOST_HEIGHT;
         let mut dismissed = None;
         egui::ScrollArea::vertical().max_height(most).auto_shrink([false, true]).show(ui, |ui| {
@@ -30,9 +33,6 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         });
         if let Some(index) = dismissed {
             state.errors.remove(index);
-        }
-        if state.errors.len() > 1 && ui.button("Dismiss all").on_hover_text("Hide all messages").clicked() {
-            state.errors.clear();
         }
     });
 }

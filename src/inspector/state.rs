@@ -184,8 +184,6 @@ pub struct State {
     pub tour: Option<TourState>,
     /// A tour to begin.
     pub wants_tour: Option<usize>,
-    /// Every panel is to be where it was at first.
-    pub wants_first_layout: bool,
     /// Tabs to show.
     pub wants_panel: Vec<Panel>,
     /// What the Explain tab tells, kept while it is the same.

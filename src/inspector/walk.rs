@@ -344,7 +344,7 @@ pub fn banner(ui: &mut Ui, state: &State, rect: Rect) {
     let place = Rect::from_min_size(rect.center_top() + vec2(-size.x / 2.0, 12.0), size);
     ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("walk banner"), |ui| {
         theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
-            ui.set_width(size.x - 16.0);
+            ui.set_width((size.x - 16.0).max(1.0));
             theme::heading(ui, "Walking: Esc stops and frees the pointer");
             let walls = if state.walk.collides { "walls stop (C)" } else { "through walls (C)" };
             let words = format!("W S A D and the mouse · {walls} · {:.1} m/s (< >) · F1 lists all", state.walk.speed);

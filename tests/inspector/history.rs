@@ -142,7 +142,7 @@ fn the_menu_of_an_event_goes_to_its_step_and_to_its_triangle_in_the_scene() {
     click(&mut harness, "Show the triangle in the Scene tab");
     assert_eq!(harness.state().inspector.selected_event(), Some(7));
     let tab = harness.get_by_role_and_label(Role::Tab, "Scene");
-    assert_eq!(tab.accesskit_node().is_selected(), Some(true));
+    assert_eq!(tab.accesskit_node().toggled(), Some(Toggled::True));
 }
 
 #[test]

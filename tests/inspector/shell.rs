@@ -277,12 +277,6 @@ fn a_moved_layout_is_remembered_and_a_broken_one_is_not_taken() {
     let remembered = harness.state().inspector.remembered();
     assert!(remembered.layout.is_some());
     let stored = serde_json::to_string(&remembered).expect("text");
-    click_button(&mut harness, "Help");
-    click_button(&mut harness, "Reset layout");
-    click_button(&mut harness, "Close help");
-    assert_eq!(harness.state().inspector.remembered().layout, None, "it is as at first");
-    let first = harness.get_by_role_and_label(Role::Tab, "Report").rect();
-    assert!(first.center().distance(from) < 4.0, "{first:?}");
     let mut again = inspector(z_fail(SIZE));
     again.recall(serde_json::from_str::<Remembered>(&stored).expect("a memory"));
     let again = harness_of(again, [1280.0, 800.0]);
