@@ -72,12 +72,12 @@ fn is_of_library(node: &Node) -> bool {
 
 /// Can it be pressed, dragged, typed into or chosen?
 fn is_operable(node: &Node) -> bool {
-    let is_library = is_of_library(node);
+    let whole = node;
     let node = node.accesskit_node();
     let acts = [accesskit::Action::Click, accesskit::Action::Focus, accesskit::Action::SetValue]
         .into_iter()
         .any(|action| node.data().supports_action(action));
-    acts && node.role() != Role::Label && !node.is_disabled() && !node.is_hidden() && !is_library
+    acts && node.role() != Role::Label && !node.is_disabled() && !node.is_hidden() && !is_of_library(whole)
 }
 
 fn in_words(node: &Node) -> String {
