@@ -3,6 +3,8 @@
 //! The panel asks for a place; the app writes. A place that is taken is asked about once more.
 
 use super::action::{Action, RunRequest};
+use super::coloring::Coloring;
+use super::modes::{Phase, has_phases};
 use super::picture;
 use super::state::State;
 use super::texture;
@@ -15,7 +17,8 @@ use std::sync::Arc;
 /// What is exported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExportKind {
-    /// The shown picture in its colours, a pixel a texel: PNG.
+    /// The shown picture in its colours, or what the step changed, a pixel a texel: PNG. What lies over it
+    /// and what it is compared with is left out.
     Picture,
     /// The shown picture's values: NumPy.
     Data,
@@ -76,11 +79,15 @@ impl ExportDialog {
     #[must_use]
     pub fn new(kind: ExportKind, state: &State) -> Option<ExportDialog> {
         let capture = state.capture.as_ref()?;
-        let title = || Some(state.shown(capture)?.title);
+        let title = || {
+            let shown = state.shown(capture)?;
+            let is_change = state.modes.phase == Phase::Diff && has_phases(shown.kind);
+            Some(if is_change { format!("{}-change", shown.title) } else { shown.title })
+        };
         let stem = format!("{}-{}", capture.scene, capture.technique);
         let name = match kind {
             ExportKind::Picture => format!("{stem}-{}.png", title()?),
-            ExportKind::Data => format!("{stem}-{}.npy", title()?),
+            ExportKind::Data => format!("{stem}-{}.npy", state.shown(capture)?.title),
             ExportKind::Capture => format!("{stem}-capture"),
             ExportKind::Scene => format!("{}.toml", state.scene.as_ref()?.name),
         };
@@ -125,8 +132,16 @@ pub fn data(state: &mut State, kind: ExportKind) -> Option<ExportData> {
     if kind == ExportKind::Data {
         return Some(ExportData::Data(shown.images));
     }
+    if let Some((ground, change)) = picture::change_of(state, &capture, &shown) {
+        let mut picture = texture::picture(&ground, Coloring::Srgb);
+        texture::lay_over(&mut picture, &change.image, change.coloring());
+        return Some(ExportData::Picture(picture));
+    }
     let range = picture::shown_range(state, &shown);
-    let coloring = picture::coloring_of(&shown, range);
+    let mut coloring = picture::coloring_of(&shown, range);
+    if let (Coloring::Stencil, Some(bit)) = (coloring, state.modes.bit) {
+        coloring = Coloring::Bit(bit);
+    }
     let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, coloring)).collect();
     Some(ExportData::Picture(side_by_side(&images)))
 }
@@ -162,7 +177,7 @@ pub fn ui(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
     let Some(mut dialog) = state.export.dialog.take() else { return };
     let modal = egui::Modal::new(Id::unique("export dialog")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
-        ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0));
+        ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
         contents(ui, &mut dialog)
     });
     match answer.inner {

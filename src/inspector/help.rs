@@ -13,7 +13,7 @@ pub fn ui(ctx: &Context, state: &mut State) {
     }
     let modal = egui::Modal::new(Id::unique("help")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
-        ui.set_width(520.0_f32.min(ctx.content_rect().width() - 64.0));
+        ui.set_width(520.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
         let scroll = egui::ScrollArea::vertical().max_height((ctx.content_rect().height() - 140.0).max(80.0));
         scroll.show(ui, contents);
         ui.add_space(8.0);

@@ -1,5 +1,6 @@
 //! "History" in the Pixel panel: one row an event, in the order in which they happened.
 
+use super::dock::Panel;
 use super::format;
 use super::history_row::{Cells, Outcome, line, short, sign};
 use super::moment::Moment;
@@ -213,8 +214,34 @@ fn row(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory
         let ink = if event.does_something() { theme::of(ui).text } else { theme::of(ui).dim };
         paint(ui, rect, &cells, history.has_stencil, ink);
     }
+    response.context_menu(|ui| {
+        if ui.button("Go to this step").clicked() {
+            go_to(state, event);
+            ui.close();
+        }
+        let can = can_show_in_scene(state, event);
+        let button = ui.add_enabled(can, egui::Button::new(IN_SCENE));
+        if button.on_disabled_hover_text("Only triangles that the camera draws, of an open scene, are there").clicked()
+        {
+            show_in_scene(state, event);
+            ui.close();
+        }
+    });
     let line = line(history, event, &capture.depth);
     response.on_hover_text(format!("pass {}, {}: {line}. Double-click to go there.", event.pass + 1, event.pass_name));
+}
+
+/// Of the menu of a row, and of the selected event.
+const IN_SCENE: &str = "Show the triangle in the Scene tab";
+
+fn can_show_in_scene(state: &State, event: &Event) -> bool {
+    state.scene.is_some() && event.is_from_camera && event.triangle().is_some()
+}
+
+fn show_in_scene(state: &mut State, event: &Event) {
+    state.history.select(event);
+    state.scene_view.go_to_triangle();
+    state.wants_panel.push(Panel::Scene);
 }
 
 /// After the draw of an event; a clear comes before all draws of its step.
@@ -292,6 +319,9 @@ fn selected(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHi
         let text = theme::note(format!("Go to {}, {}", moment_of(event).words(), event.pass_name));
         if moment_of(event) != state.selected() && ui.button(text).clicked() {
             go_to(state, event);
+        }
+        if can_show_in_scene(state, event) && ui.button(theme::note(IN_SCENE)).clicked() {
+            show_in_scene(state, event);
         }
     });
 }

@@ -68,7 +68,7 @@ pub fn of_change(ui: &mut Ui, rect: Rect, change: &Change) {
 fn card(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
     let corner = Rect::from_min_size(pos2(rect.right() - width - 12.0, rect.top() + 12.0), vec2(width, rect.height()));
     // Senses clicks, so that they do not reach the picture underneath.
-    let builder = UiBuilder::new().max_rect(corner).sense(Sense::click_and_drag()).id_salt("legend");
+    let builder = UiBuilder::new().max_rect(corner).sense(Sense::CLICK | Sense::DRAG).id_salt("legend");
     ui.scope_builder(builder, |ui| {
         let frame = theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94));
         frame.show(ui, |ui| {

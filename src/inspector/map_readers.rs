@@ -12,6 +12,9 @@ use glam::{DMat4, DVec3};
 /// Points on the border between two faces belong to both, as in `arriving_by_map.wgsl`.
 const BORDER: f64 = 1.0001;
 
+/// No filter is wider, texels: a folder may tell anything.
+const WIDEST: u32 = 64;
+
 /// A texel of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MapTexel {
@@ -70,7 +73,7 @@ impl MapReaders {
         let reads = |first: [i16; 3]| {
             let is_in = |first: i16, at: u32, side: u32| {
                 let last = i32::from(first) + self.filter as i32 - 1;
-                let [from, to] = [i32::from(first), last].map(|place| place.clamp(0, side as i32 - 1));
+                let [from, to] = [i32::from(first), last].map(|place| place.clamp(0, (side as i32 - 1).max(0)));
                 (from..=to).contains(&(at as i32))
             };
             first[0] as usize == texel.face
@@ -101,7 +104,7 @@ fn lookup(map: &CapturedMap, world: DVec3, size: [u32; 2], filter: u32) -> Optio
 /// Texels that are averaged along each side: `pcf:3` is 3.
 fn filter_width(capture: &Capture) -> u32 {
     let filter = capture.settings.get("filter").and_then(|filter| filter.strip_prefix("pcf:"));
-    filter.and_then(|width| width.parse().ok()).unwrap_or(1).max(1)
+    filter.and_then(|width| width.parse().ok()).unwrap_or(1).clamp(1, WIDEST)
 }
 
 /// From a pixel and its depth to the world.

@@ -5,6 +5,9 @@ use super::state::State;
 use super::theme;
 use egui::{CornerRadius, Margin, RichText, Stroke, Ui};
 
+/// Errors take so much of the window's height at most; more are scrolled to.
+const MOST_HEIGHT: f32 = 0.25;
+
 /// Draws the offer to load a changed file again, and a bar for each error.
 pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     if let Some(file) = state.changed_file.clone() {
@@ -15,12 +18,19 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     }
     let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 4));
     egui::Panel::top("messages").frame(frame).show(ui, |ui| {
-        let mut dismissed = None;
-        for (index, error) in state.errors.iter().enumerate() {
-            if bar(ui, error) {
-                dismissed = Some(index);
-            }
+        if state.errors.len() > 1 && ui.button("Dismiss all").on_hover_text("Hide all messages").clicked() {
+            state.errors.clear();
         }
+        let most = ui.ctx().content_rect().height() * MOST_HEIGHT;
+        let mut dismissed = None;
+        egui::ScrollArea::vertical().max_height(most).auto_shrink([false, true]).show(ui, |ui| {
+            // The last one first: it is of what was done just now.
+            for (index, error) in state.errors.iter().enumerate().rev() {
+                if bar(ui, error) {
+                    dismissed = Some(index);
+                }
+            }
+        });
         if let Some(index) = dismissed {
             state.errors.remove(index);
         }

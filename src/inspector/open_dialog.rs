@@ -10,7 +10,7 @@ pub fn ui(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
     let Some(mut dialog) = state.dialog.take() else { return };
     let modal = egui::Modal::new(Id::unique("open dialog")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
-        ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0));
+        ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
         contents(ui, &mut dialog, state)
     });
     match answer.inner {

@@ -233,7 +233,7 @@ fn card(ui: &mut Ui, state: &mut State, rect: Rect) {
     let height: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(96.0);
     let corner = pos2(rect.right() - WIDTH - 12.0, rect.bottom() - height - 12.0);
     let place = Rect::from_min_size(corner, vec2(WIDTH, rect.height()));
-    let builder = UiBuilder::new().max_rect(place).id_salt("overlay card").sense(Sense::click_and_drag());
+    let builder = UiBuilder::new().max_rect(place).id_salt("overlay card").sense(Sense::CLICK | Sense::DRAG);
     let card = ui.scope_builder(builder, |ui| {
         let frame = theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94));
         frame.show(ui, |ui| {

@@ -56,7 +56,8 @@ fn tree(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>) {
         }
         found += 1;
         if group.replace(step.light) != Some(step.light) {
-            group_heading(ui, capture, step.light);
+            let last = capture.steps[index..].iter().take_while(|other| other.light == step.light).count();
+            group_heading(ui, state, capture, step.light, index + last - 1);
         }
         pass_row(ui, state, capture, index);
         if index == state.step {
@@ -69,7 +70,8 @@ fn tree(ui: &mut Ui, state: &mut State, capture: &Arc<Capture>) {
     }
 }
 
-fn group_heading(ui: &mut Ui, capture: &Capture, light: Option<usize>) {
+/// What the passes below belong to; pressed it selects `last`, the last of them: the state after all.
+fn group_heading(ui: &mut Ui, state: &mut State, capture: &Capture, light: Option<usize>, last: usize) {
     ui.add_space(8.0);
     let text = match light {
         None => "Scene".to_owned(),
@@ -81,7 +83,18 @@ fn group_heading(ui: &mut Ui, capture: &Capture, light: Option<usize>) {
             format!("Light {}{kind}", index + 1)
         }
     };
-    ui.label(theme::note(text));
+    let heading = ui.add(egui::Label::new(theme::note(&text)).selectable(false).sense(Sense::click()));
+    heading.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, false, &text));
+    state.tree_widgets.push(heading.id);
+    keys::keep_arrows(ui, &heading);
+    if heading.has_focus() {
+        let outline = Stroke::new(1.0, theme::of(ui).focus);
+        ui.painter().rect_stroke(heading.rect.expand(2.0), CornerRadius::same(2), outline, StrokeKind::Outside);
+    }
+    if heading.on_hover_text(format!("The state after step {}, the last of these", last + 1)).clicked() {
+        state.playing = None;
+        state.select_step(last);
+    }
     ui.add_space(2.0);
 }
 

@@ -121,7 +121,7 @@ fn single(
 }
 
 /// What the selected step or draw changed, over the frame's colours in grey; `None` where that is not shown.
-fn change_of(state: &mut State, capture: &Capture, shown: &Shown) -> Option<(Arc<Image>, Change)> {
+pub fn change_of(state: &mut State, capture: &Capture, shown: &Shown) -> Option<(Arc<Image>, Change)> {
     if state.modes.phase != Phase::Diff || !has_phases(shown.kind) {
         return None;
     }

@@ -43,7 +43,7 @@ pub fn ui(ui: &Ui, state: &mut State, rect: Rect, shown: &Shown, placement: Plac
         let Some(texel) = pick_ray::texel_of(capture, point.extend(1.0)) else { continue };
         let at = pos2(texel[0] as f32, texel[1] as f32).to_vec2() * placement.scale + placement.origin.to_vec2();
         let at = at.to_pos2();
-        if !whole.contains(at) {
+        if !whole.is_positive() || !whole.contains(at) {
             continue;
         }
         let id = ui.scope_id().with(("light in the picture", index));

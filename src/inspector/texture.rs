@@ -299,6 +299,21 @@ pub fn picture(image: &Image, coloring: Coloring) -> Picture {
     picture
 }
 
+/// Lays a picture over another of its size: where it is see-through the other stays.
+pub fn lay_over(picture: &mut Picture, image: &Image, coloring: Coloring) {
+    let colored = colored(image, coloring, u32::MAX);
+    let [width, height] = image.size();
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    for (at, color) in places.zip(&colored.pixels) {
+        let Some(under) = picture.at(at) else { continue };
+        let [red, green, blue, alpha] = color.to_array();
+        // Colours are multiplied by their alpha already.
+        let stays = |under: u8| (u16::from(under) * u16::from(255 - alpha) / 255) as u8;
+        let over = [red, green, blue];
+        picture.put(at, std::array::from_fn(|channel| over[channel].saturating_add(stays(under[channel]))));
+    }
+}
+
 fn shares_of(image: &Image) -> Shares {
     let mut shares = Shares::default();
     for row in image.rows() {

@@ -39,7 +39,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, actions: &m
     let width = WIDTH.min(rect.width() - 24.0 - legend::room(rect, shown)).max(96.0);
     let place = Rect::from_min_size(pos2(rect.left() + 12.0, rect.top() + 12.0), vec2(width, rect.height()));
     // Senses clicks, so that they do not reach the picture underneath.
-    let builder = UiBuilder::new().max_rect(place).sense(Sense::click_and_drag()).id_salt("truth note");
+    let builder = UiBuilder::new().max_rect(place).sense(Sense::CLICK | Sense::DRAG).id_salt("truth note");
     ui.scope_builder(builder, |ui| {
         theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
             ui.set_width(width - 16.0);

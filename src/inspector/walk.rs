@@ -158,7 +158,7 @@ pub fn handle(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) -> bo
     if !state.walk.is_on {
         return begins(ctx, state);
     }
-    let asks_for_help = ctx.input(|input| input.key_pressed(Key::F1));
+    let asks_for_help = ctx.input(|input| input.key_pressed(Key::F1) || input.key_pressed(Key::H));
     let is_elsewhere =
         asks_for_help || state.scene.is_none() || state.dialog.is_some() || !ctx.input(|input| input.focused);
     if is_elsewhere {
@@ -187,12 +187,15 @@ pub fn handle(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) -> bo
     true
 }
 
-/// Tab over the picture, or while it has the focus; elsewhere it goes from widget to widget.
+/// Tab while the pointer is over the picture; else it goes from widget to widget, on from the picture too,
+/// so that who has no pointer does not get stuck there.
 fn begins(ctx: &Context, state: &mut State) -> bool {
-    let is_free = state.dialog.is_none() && !ctx.text_edit_focused() && !egui::Popup::is_any_open(ctx);
+    let is_dialog = state.dialog.is_some() || state.export.dialog.is_some() || state.help_is_open;
+    let is_free = !is_dialog && !ctx.text_edit_focused() && !egui::Popup::is_any_open(ctx);
     let focus = ctx.memory(egui::Memory::focused);
-    let is_picture = focus.is_some() && focus == state.picture_widget || focus.is_none() && state.hover.is_some();
-    if !(is_free && is_picture && state.scene.is_some()) {
+    let is_picture = state.hover.is_some() && (focus.is_none() || focus == state.picture_widget);
+    let is_shifted = ctx.input(|input| input.modifiers.any());
+    if !(is_free && is_picture && !is_shifted && state.scene.is_some()) {
         return false;
     }
     let is_pressed = ctx.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Tab));
@@ -342,7 +345,7 @@ pub fn banner(ui: &mut Ui, state: &State, rect: Rect) {
     let place = Rect::from_min_size(rect.center_top() + vec2(-size.x / 2.0, 12.0), size);
     ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("walk banner"), |ui| {
         theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
-            ui.set_width(size.x - 16.0);
+            ui.set_width((size.x - 16.0).max(1.0));
             theme::heading(ui, "Walking: Esc stops and frees the pointer");
             let walls = if state.walk.collides { "walls stop (C)" } else { "through walls (C)" };
             let words = format!("W S A D and the mouse · {walls} · {:.1} m/s (< >) · F1 lists all", state.walk.speed);

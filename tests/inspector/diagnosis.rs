@@ -25,7 +25,7 @@ fn cause(cause: Cause, mend: Mend, proof: Proof, left: u64) -> CauseFound {
 }
 
 /// A diagnosis by hand: two regions of z-pass, holes in a mesh.
-fn found() -> Diagnosis {
+pub fn found() -> Diagnosis {
     let region = |pixels, kind, at, causes| RegionFound {
         pixels,
         kind: RegionKind::Wrong(kind),

@@ -130,6 +130,22 @@ fn a_click_selects_and_a_double_click_goes_to_the_step() {
 }
 
 #[test]
+fn the_menu_of_an_event_goes_to_its_step_and_to_its_triangle_in_the_scene() {
+    let mut harness = answered(&FACES);
+    let row = "pass 2: dark cap of box, back; depth ✗, stencil always; +1; 0 → 1";
+    harness.get_by_label(row).click_secondary();
+    harness.run_steps(3);
+    click(&mut harness, "Go to this step");
+    assert_eq!(harness.state().inspector.step(), 1);
+    harness.get_by_label(row).click_secondary();
+    harness.run_steps(3);
+    click(&mut harness, "Show the triangle in the Scene tab");
+    assert_eq!(harness.state().inspector.selected_event(), Some(7));
+    let tab = harness.get_by_role_and_label(Role::Tab, "Scene");
+    assert_eq!(tab.accesskit_node().toggled(), Some(Toggled::True));
+}
+
+#[test]
 fn the_selected_event_is_gone_to_by_keys_alone() {
     let mut harness = answered(&FACES);
     harness.get_by_label("pass 2: side of box, front; depth ✗, stencil always; −1; 0 → −1").focus();

@@ -1,5 +1,6 @@
 //! The panels, driven by the names of their widgets, over a frame made by hand.
 
+mod accessibility;
 mod by_hand;
 mod counts;
 mod diagnosis;
@@ -14,6 +15,7 @@ mod mode_pictures;
 mod overlays;
 mod picture_modes;
 mod pictures;
+mod random_input;
 mod report;
 mod scene_view;
 mod settings;
@@ -146,6 +148,27 @@ fn buttons_scrubber_and_tree_select_steps() {
     harness.get_by_label("Step scrubber").set_value_accesskit(1.0);
     harness.run_steps(2);
     assert_eq!(harness.state().inspector.step(), 0);
+}
+
+#[test]
+fn a_light_in_the_tree_selects_its_last_pass() {
+    let mut harness = harness(z_fail(SIZE));
+    press(&mut harness, Key::Home);
+    harness.get_by_role_and_label(Role::TreeItem, "Light 1 · point").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().inspector.step(), 3);
+}
+
+#[test]
+fn many_errors_leave_room_for_the_picture_and_go_at_once() {
+    let mut harness = harness(z_fail(SIZE));
+    for index in 0..60 {
+        harness.state_mut().inspector.push_error(format!("{index}.obj: no faces: choose another file"));
+    }
+    harness.run_steps(4);
+    assert!(harness.get_by_label("Picture canvas").rect().height() > 200.0);
+    click_button(&mut harness, "Dismiss all");
+    assert!(harness.state().inspector.errors().is_empty());
 }
 
 #[test]
@@ -359,7 +382,8 @@ fn the_dialog_opens_built_in_scenes_and_paths() {
     click(&mut harness, "table");
     assert_eq!(harness.state().actions.last(), Some(&Action::Open("table".to_owned())));
     assert!(harness.query_by_label("what table teaches").is_none(), "it closes");
-    click(&mut harness, "Open…");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::O);
+    harness.run_steps(2);
     harness.get_by_role(Role::TextInput).type_text("models/bunny.obj");
     harness.run_steps(2);
     click(&mut harness, "Open this");

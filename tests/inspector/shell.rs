@@ -151,6 +151,27 @@ fn what_is_exported_is_what_is_shown() {
 }
 
 #[test]
+fn the_diff_is_exported_as_it_is_shown() {
+    let mut harness = harness(z_fail(SIZE));
+    press(&mut harness, Key::Home);
+    press(&mut harness, Key::ArrowRight);
+    click_button(&mut harness, "Stencil");
+    press(&mut harness, Key::D);
+    let picture = |harness: &mut Harness<Seen>| match harness.state_mut().inspector.export(ExportKind::Picture) {
+        Some(ExportData::Picture(picture)) => picture,
+        other => panic!("a picture, not {other:?}"),
+    };
+    let diff = picture(&mut harness);
+    // Column 3 went up by 1: the design's vermilion. Column 30 did not change: a dim grey.
+    assert_eq!(diff.at([3, 4]), Some([0xe0, 0x70, 0x3a]));
+    let ground = diff.at([30, 4]).expect("a pixel");
+    assert!(ground[0] == ground[1] && ground[1] == ground[2], "{ground:?}");
+    press(&mut harness, Key::D);
+    let counts = picture(&mut harness);
+    assert_ne!(counts.at([3, 4]), diff.at([3, 4]));
+}
+
+#[test]
 fn what_was_opened_before_is_offered_and_opens() {
     let mut inspector = Inspector::new(Vec::new());
     for source in ["models/a.obj", "tori"] {

@@ -19,7 +19,7 @@ fn showing(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
 }
 
 /// Rows of a case, as if every technique had so many wrong pixels at each value.
-fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<Row> {
+pub fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<Row> {
     let case = Case::named(name).expect("a case");
     let row = |value: &f64| {
         let value = *value;

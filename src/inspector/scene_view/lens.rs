@@ -115,7 +115,8 @@ impl PaneView {
             rotation: self.rotation(),
             center: self.center,
             middle: rect.center(),
-            scale: f64::from(rect.height()) / self.height,
+            // A view that a small window leaves no room for still has a scale, so that dragging stays finite.
+            scale: f64::from(rect.height().max(1.0)) / self.height,
             shear: DVec2::new(cosine, sine) * length,
             eye: (self.projection == Projection::Perspective).then(|| self.distance()),
         }

@@ -99,6 +99,8 @@ pub struct SceneView {
     gizmos: bool,
     /// The handle whose axes are shown.
     grip: Option<Grip>,
+    /// The history's selected triangle is to be in the middle.
+    wants_triangle: bool,
     built: Option<Built>,
     painted: [Option<Painted>; 4],
 }
@@ -113,6 +115,7 @@ impl Default for SceneView {
             choice: Choice::default(),
             gizmos: true,
             grip: None,
+            wants_triangle: false,
             built: None,
             painted: [const { None }; 4],
         }
@@ -146,6 +149,12 @@ impl SceneView {
         self.grip = None;
         self.built = None;
         self.painted = [const { None }; 4];
+    }
+
+    /// Brings the history's selected triangle to the middle when the tab is drawn next.
+    pub fn go_to_triangle(&mut self) {
+        self.wants_triangle = true;
+        self.shown.rays = true;
     }
 
     fn view_mut(&mut self, pane: Pane) -> &mut PaneView {
@@ -247,6 +256,11 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let rect = ui.available_rect_before_wrap();
     ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
     let stage = view.stage(&anatomy, theme::of(ui));
+    if std::mem::take(&mut view.wants_triangle)
+        && let Some(middle) = rays::middle_of_selected(state, &stage, &anatomy)
+    {
+        view.views.iter_mut().for_each(|one| one.center = middle);
+    }
     let views = if rect.width() < LEAST_WIDTH {
         rect
     } else {

@@ -51,6 +51,30 @@ pub fn ui(ui: &Ui, state: &State, choice: Choice, stage: &Stage, anatomy: &Anato
     }
 }
 
+/// Where the selected triangle is: the middle of what of it is drawn. `None` where none is selected.
+pub fn middle_of_selected(state: &State, stage: &Stage, anatomy: &Anatomy) -> Option<DVec3> {
+    let triangles = selected(state, state.capture.as_ref()?, state.pick?, stage, anatomy);
+    let corners: Vec<DVec3> = triangles.into_iter().flatten().collect();
+    let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    middle.is_finite().then_some(middle)
+}
+
+/// What is drawn of the selected triangle: it may reach to infinity.
+fn selected(state: &State, capture: &Capture, at: [u32; 2], stage: &Stage, anatomy: &Anatomy) -> Vec<[DVec3; 3]> {
+    let event = state.history.of_frame(at).and_then(|history| {
+        let event = history.events.get(state.history.selected_in(history)?)?;
+        Some(event).filter(|event| event.is_from_camera)
+    });
+    let Some((event, triangle)) = event.and_then(|event| Some((event, event.triangle()?))) else { return Vec::new() };
+    // Corners are relative to the eye.
+    let world = triangle.corners.map(|corner| {
+        let relative = DVec4::from_array(corner.map(f64::from));
+        relative + (capture.camera.eye * relative.w).extend(0.0)
+    });
+    let light = event.light.and_then(|light| anatomy.lights.get(light));
+    finite_triangle(world, light, stage)
+}
+
 fn selected_triangle(
     ui: &Ui,
     state: &State,
@@ -58,19 +82,9 @@ fn selected_triangle(
     at: [u32; 2],
     (stage, anatomy, lens, rect): (&Stage, &Anatomy, &Lens, Rect),
 ) {
-    let Some(history) = state.history.of_frame(at) else { return };
-    let event = state.history.selected_in(history).map(|index| &history.events[index]);
-    let Some(event) = event.filter(|event| event.is_from_camera) else { return };
-    let Some(triangle) = event.triangle() else { return };
-    // Corners are relative to the eye.
-    let world = triangle.corners.map(|corner| {
-        let relative = DVec4::from_array(corner.map(f64::from));
-        relative + (capture.camera.eye * relative.w).extend(0.0)
-    });
-    let light = event.light.and_then(|light| anatomy.lights.get(light));
     let painter = ui.painter_at(rect);
     let color = theme::of(ui).selected;
-    for corners in finite_triangle(world, light, stage) {
+    for corners in selected(state, capture, at, stage, anatomy) {
         let edges = [[corners[0], corners[1]], [corners[1], corners[2]], [corners[2], corners[0]]];
         let points: Vec<_> = corners.iter().filter_map(|corner: &DVec3| lens.place(*corner)).collect();
         if points.len() == 3 {

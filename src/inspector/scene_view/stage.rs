@@ -386,7 +386,7 @@ impl Stage {
         for edge in &silhouette.edges {
             let ends = [edge.edge.low, edge.edge.high].map(|end| caster.positions[end as usize]);
             let many = edge.multiplicity.unsigned_abs();
-            self.long_line(ends, self.radius / 20.0, 1.2 + 0.5 * (many.min(4) - 1) as f32, theme.text);
+            self.long_line(ends, self.radius / 20.0, 1.2 + 0.5 * many.clamp(1, 4).saturating_sub(1) as f32, theme.text);
             if many > 1 && self.labels.len() < MOST_NUMBERS {
                 let text = format!("{}{many}", if edge.multiplicity > 0 { "+" } else { "−" });
                 self.labels.push(Label { at: (ends[0] + ends[1]) / 2.0, text, of: Some(ends) });

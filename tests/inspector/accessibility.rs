@@ -1,0 +1,206 @@
+//! Every panel, menu and dialog for someone who sees or points at nothing: each widget that can be
+//! operated has a name of its own, and Tab comes to it.
+
+use super::diagnosis::found;
+use super::stress::rows;
+use super::*;
+use crate::common::report::one_scene;
+use egui::accesskit::{self, NodeId};
+use egui_kittest::Node;
+use egui_kittest::kittest::NodeT;
+use std::collections::{BTreeMap, BTreeSet};
+use stencilscope::inspector::{DiagnosisView, ReportView};
+use stencilscope::progress::Progress;
+use stencilscope::scene::OpenSpec;
+
+const TORI: [u32; 2] = [64, 48];
+const WINDOW: [f32; 2] = [1280.0, 800.0];
+/// More widgets than are shown at a time.
+const MOST_TABS: usize = 600;
+
+/// Tabs that are shown together: every one is shown once.
+const ARRANGEMENTS: [&[&str]; 3] = [
+    &["Passes", "Picture", "Pixel", "Report"],
+    &["Settings", "Scene", "State", "Diagnosis"],
+    &["Shadow map", "Explain", "Stress"],
+];
+
+/// The panels over a real frame, with everything that can be known of it.
+pub fn known(technique: Technique) -> Inspector {
+    let scene = stencilscope::scene::open(&OpenSpec::new("tori")).expect("a built-in scene");
+    let mut session = common::session();
+    let request = common::request(technique, TORI);
+    let (mut capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    session.judge(&scene, &mut capture, &Progress::default()).expect("a truth");
+    let pick = [TORI[0] / 2, TORI[1] * 2 / 3];
+    let history = session.history(&plan, &capture, pick).expect("a history");
+    let anatomy = session.anatomy(&scene, &request.choice, &plan);
+    let mut inspector = pictures::inspector(&scene, &request, &Arc::new(capture), pick);
+    inspector.set_plan(Arc::new(plan));
+    inspector.set_history(pick, Ok(Arc::new(history)));
+    inspector.set_anatomy(Ok(Arc::new(anatomy)));
+    inspector.set_report(ReportView { report: Some(one_scene()), ..ReportView::default() });
+    inspector.set_diagnosis(DiagnosisView { diagnosis: Some(Arc::new(found())), ..DiagnosisView::default() });
+    inspector.add_stress(rows("nested", |_, _| 0));
+    inspector
+}
+
+fn nodes<'a>(harness: &'a Harness<Seen>) -> impl Iterator<Item = Node<'a>> {
+    harness.root().children_recursive()
+}
+
+fn id_of(node: &Node) -> NodeId {
+    node.accesskit_node().locate().0
+}
+
+fn name_of(node: &Node) -> String {
+    node.accesskit_node().label().unwrap_or_default()
+}
+
+/// The docking library's own: bars that tabs stand on, and the lines between tiles; and egui's scroll bars. They
+/// have no names; what they do by mouse is done by the keys of tabs, and by what has the focus.
+fn is_of_library(node: &Node) -> bool {
+    const TAB_BAR: f32 = 28.0;
+    const HANDLE: f32 = 6.5;
+    let size = node.rect().size();
+    match node.accesskit_node().role() {
+        Role::ScrollBar => true,
+        Role::Unknown => size.min_elem() <= HANDLE || (size.y == TAB_BAR && size.x > 200.0),
+        _ => false,
+    }
+}
+
+/// Can it be pressed, dragged, typed into or chosen?
+fn is_operable(node: &Node) -> bool {
+    let whole = node;
+    let node = node.accesskit_node();
+    let acts = [accesskit::Action::Click, accesskit::Action::Focus, accesskit::Action::SetValue]
+        .into_iter()
+        .any(|action| node.data().supports_action(action));
+    acts && node.role() != Role::Label && !node.is_disabled() && !node.is_hidden() && !is_of_library(whole)
+}
+
+fn in_words(node: &Node) -> String {
+    format!("{:?} “{}” at {:?}", node.accesskit_node().role(), name_of(node), node.rect())
+}
+
+/// Widgets without a name.
+fn unnamed(harness: &Harness<Seen>) -> Vec<String> {
+    nodes(harness)
+        .filter(|node| is_operable(node) && name_of(node).trim().is_empty())
+        .map(|node| in_words(&node))
+        .collect()
+}
+
+/// Buttons, fields and the like that can't be told apart by role and name.
+fn ambiguous(harness: &Harness<Seen>) -> Vec<String> {
+    let mut seen = BTreeMap::<String, usize>::new();
+    for node in nodes(harness).filter(is_operable) {
+        let role = node.accesskit_node().role();
+        if matches!(role, Role::Button | Role::CheckBox | Role::Slider | Role::SpinButton | Role::TextInput | Role::Tab)
+        {
+            *seen.entry(format!("{role:?} “{}”", name_of(&node))).or_default() += 1;
+        }
+    }
+    seen.into_iter().filter(|(_, count)| *count > 1).map(|(name, count)| format!("{count} × {name}")).collect()
+}
+
+fn focused(harness: &Harness<Seen>) -> Option<NodeId> {
+    nodes(harness).find(|node| node.accesskit_node().is_focused()).map(|node| id_of(&node))
+}
+
+/// What can be clicked, but Tab does not come to it.
+fn unreachable(harness: &mut Harness<Seen>) -> Vec<String> {
+    let mut reached = BTreeSet::new();
+    for _ in 0..MOST_TABS {
+        harness.key_press(Key::Tab);
+        harness.run_steps(1);
+        match focused(harness) {
+            Some(id) if !reached.insert(id.0) => break,
+            _ => {}
+        }
+    }
+    let is_missed = |node: &Node| {
+        let clicks = node.accesskit_node().data().supports_action(accesskit::Action::Click);
+        clicks && is_operable(node) && !reached.contains(&id_of(node).0)
+    };
+    nodes(harness).filter(is_missed).map(|node| in_words(&node)).collect()
+}
+
+fn show(harness: &mut Harness<Seen>, tabs: &[&str]) {
+    for tab in tabs {
+        harness.get_by_role_and_label(Role::Tab, tab).click();
+        harness.run_steps(3);
+    }
+    harness.remove_cursor();
+    harness.run_steps(3);
+}
+
+#[test]
+fn every_widget_of_every_panel_has_a_name_of_its_own_and_tab_comes_to_it() {
+    let mut wrong = Vec::new();
+    for technique in [Technique::ZFail, Technique::ShadowMap] {
+        for tabs in ARRANGEMENTS {
+            let mut harness = harness_of(known(technique), WINDOW);
+            show(&mut harness, tabs);
+            let mut found = |what: &str, list: Vec<String>| {
+                wrong.extend(list.into_iter().map(|one| format!("{technique:?} {tabs:?} {what}: {one}")));
+            };
+            found("no name", unnamed(&harness));
+            found("same name", ambiguous(&harness));
+            found("not reached by Tab", unreachable(&mut harness));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn what_menus_and_dialogs_hold_has_names() {
+    let dialogs: [(&str, &dyn Fn(&mut Harness<Seen>)); 9] = [
+        ("open", &|harness| click_button(harness, "Open…")),
+        ("export", &|harness| {
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+            harness.run_steps(3);
+        }),
+        ("help", &|harness| click_button(harness, "Help")),
+        ("export menu", &|harness| click_button(harness, "Export")),
+        ("recent", &|harness| click_button(harness, "What is open: tori")),
+        ("overlays", &|harness| press(harness, Key::O)),
+        ("go to", &|harness| {
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::G);
+            harness.run_steps(3);
+        }),
+        ("find", &|harness| {
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::F);
+            harness.run_steps(3);
+        }),
+        ("compare", &|harness| {
+            harness.state_mut().inspector.compare_with(Technique::ShadowMap);
+            harness.run_steps(3);
+        }),
+    ];
+    let mut wrong = Vec::new();
+    for (name, open) in dialogs {
+        let mut harness = harness_of(known(Technique::ZFail), WINDOW);
+        let before = nodes(&harness).count();
+        open(&mut harness);
+        harness.run_steps(3);
+        assert_ne!(nodes(&harness).count(), before, "{name} is open");
+        wrong.extend(unnamed(&harness).into_iter().map(|one| format!("{name}: no name: {one}")));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn tab_goes_on_from_the_picture_and_shift_tab_goes_back() {
+    let mut harness = harness(z_fail(SIZE));
+    harness.get_by_label("Picture canvas").focus();
+    harness.run_steps(2);
+    let picture = focused(&harness);
+    for modifiers in [Modifiers::NONE, Modifiers::SHIFT] {
+        harness.key_press_modifiers(modifiers, Key::Tab);
+        harness.run_steps(2);
+        assert!(harness.query_by_label_contains("Walking:").is_none(), "the pointer is elsewhere");
+        assert_eq!(focused(&harness) == picture, modifiers == Modifiers::SHIFT);
+    }
+}
