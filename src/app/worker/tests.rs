@@ -414,7 +414,7 @@ fn a_changed_file_is_loaded_again_with_the_camera_as_it_is() {
     let (tell, news) = channel();
     let worker = Worker::start(start, move |news| drop(tell.send(news))).expect("a thread");
     let files = wait(&news, |news| if let News::Opened { files, .. } = news { Some(files) } else { None });
-    assert_eq!(files, [path.clone()]);
+    assert_eq!(files, std::slice::from_ref(&path));
     std::fs::write(&path, text(2.0)).expect("a file");
     let camera = crate::scene::Camera { eye: glam::DVec3::new(3.0, 2.0, 6.0), ..scene.camera };
     let request = RunRequest {
