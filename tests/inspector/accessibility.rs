@@ -18,6 +18,9 @@ const WINDOW: [f32; 2] = [1280.0, 800.0];
 /// More widgets than are shown at a time.
 const MOST_TABS: usize = 600;
 
+/// What opens a menu or a dialog.
+type Opens<'a> = &'a dyn Fn(&mut Harness<Seen>);
+
 /// Tabs that are shown together: every one is shown once.
 const ARRANGEMENTS: [&[&str]; 3] = [
     &["Passes", "Picture", "Pixel", "Report"],
@@ -156,7 +159,7 @@ fn every_widget_of_every_panel_has_a_name_of_its_own_and_tab_comes_to_it() {
 
 #[test]
 fn what_menus_and_dialogs_hold_has_names() {
-    let dialogs: [(&str, &dyn Fn(&mut Harness<Seen>)); 9] = [
+    let dialogs: [(&str, Opens); 9] = [
         ("open", &|harness| click_button(harness, "Open…")),
         ("export", &|harness| {
             harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
