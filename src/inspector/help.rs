@@ -17,7 +17,13 @@ pub fn ui(ctx: &Context, state: &mut State) {
         let scroll = egui::ScrollArea::vertical().max_height((ctx.content_rect().height() - 140.0).max(80.0));
         scroll.show(ui, contents);
         ui.add_space(8.0);
-        ui.button("Close help").on_hover_text("Escape").clicked()
+        ui.horizontal(|ui| {
+            let closes = ui.button("Close help").on_hover_text("Escape").clicked();
+            let resets = ui.button("Reset layout").on_hover_text("Every panel to its first place and size").clicked();
+            state.resets_layout |= resets;
+            closes || resets
+        })
+        .inner
     });
     state.help_is_open = !(answer.inner || answer.should_close());
 }

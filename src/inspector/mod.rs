@@ -171,6 +171,9 @@ impl Inspector {
         open_dialog::ui(ui.ctx(), &mut self.state, &mut actions);
         export::ui(ui.ctx(), &mut self.state, &mut actions);
         help::ui(ui.ctx(), &mut self.state);
+        if std::mem::take(&mut self.state.resets_layout) {
+            self.dock = dock::Dock::new();
+        }
         self.state.animate(ui.ctx(), &mut actions);
         self.state.ask_for_truth(&mut actions);
         self.state.ask_for_draws(&mut actions);

@@ -172,6 +172,8 @@ pub struct State {
     pub animation: Animation,
     /// Export of what is shown.
     pub export: ExportState,
+    /// The panels go to their first places.
+    pub resets_layout: bool,
     /// The list of keys is shown.
     pub help_is_open: bool,
     /// Dark or light.

@@ -276,6 +276,12 @@ fn a_moved_layout_is_remembered_and_a_broken_one_is_not_taken() {
     assert!(moved.center().distance(from) > 100.0, "it was dragged to the other tabs");
     let remembered = harness.state().inspector.remembered();
     assert!(remembered.layout.is_some());
+    press(&mut harness, Key::F1);
+    click_button(&mut harness, "Reset layout");
+    harness.run_steps(4);
+    let reset = harness.get_by_role_and_label(Role::Tab, "Report").rect();
+    assert!(reset.center().distance(from) < 2.0, "{reset:?} is where it was at first");
+    assert_eq!(harness.state().inspector.remembered().layout, None);
     let stored = serde_json::to_string(&remembered).expect("text");
     let mut again = inspector(z_fail(SIZE));
     again.recall(serde_json::from_str::<Remembered>(&stored).expect("a memory"));
