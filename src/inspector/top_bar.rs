@@ -8,6 +8,9 @@ use super::theme;
 use crate::technique::Technique;
 use egui::{CornerRadius, Margin, RichText, Stroke, Ui, vec2};
 
+/// Room for a button a technique, and the tools to their right, points.
+const WIDE: f32 = 960.0;
+
 /// Draws the bar.
 pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 4));
@@ -87,7 +90,21 @@ fn techniques(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let current = scene.draft.choice.technique();
     let labels = Technique::ALL.map(|technique| (technique.name(), technique.summary()));
     let chosen = Technique::ALL.iter().position(|technique| *technique == current);
-    if let Some(index) = segments(ui, &labels, chosen) {
+    let picked = if ui.available_width() < WIDE {
+        let mut picked = None;
+        let combo = egui::ComboBox::from_id_salt("technique").selected_text(current.name()).show_ui(ui, |ui| {
+            for (index, (name, summary)) in labels.iter().enumerate() {
+                if ui.selectable_label(chosen == Some(index), *name).on_hover_text(*summary).clicked() {
+                    picked = Some(index);
+                }
+            }
+        });
+        combo.response.accessible_name("Technique");
+        picked.filter(|index| chosen != Some(*index))
+    } else {
+        segments(ui, &labels, chosen)
+    };
+    if let Some(index) = picked {
         state.choose_technique(Technique::ALL[index], actions);
     }
 }

@@ -294,3 +294,17 @@ fn a_moved_layout_is_remembered_and_a_broken_one_is_not_taken() {
     broken.recall(Remembered { layout, ..Remembered::default() });
     harness_of(broken, [1280.0, 800.0]).get_by_role_and_label(Role::Tab, "Report");
 }
+
+#[test]
+fn in_a_narrow_window_the_techniques_are_a_menu() {
+    let mut harness = harness_of(inspector(z_fail(SIZE)), [800.0, 600.0]);
+    assert!(harness.query_by_role_and_label(Role::Button, "shadow-map").is_none());
+    let menu = harness.get_by_role_and_label(Role::ComboBox, "Technique").rect();
+    let undo = harness.get_by_role_and_label(Role::Button, "Undo").rect();
+    assert!(menu.right() < undo.left(), "{menu:?} leaves room for {undo:?}");
+    harness.get_by_role_and_label(Role::ComboBox, "Technique").click();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Button, "shadow-map").click_accesskit();
+    harness.run_steps(3);
+    assert_eq!(last_run(&harness).choice.technique(), Technique::ShadowMap);
+}
