@@ -61,7 +61,7 @@ fn tests_of_the_step_are_asked_once_and_listed_with_their_pixels() {
     harness.state_mut().inspector.set_tests(1, None, Ok(Arc::new(tests())));
     harness.run_steps(2);
     harness.get_by_label("Tests of step 2");
-    for (name, pixels) in [("passed", "10"), ("depth failed", "20"), ("both", "40"), ("? not known", "1")] {
+    for (name, pixels) in [("passed", "10"), ("depth failed", "20"), ("mixed", "40"), ("? not known", "1")] {
         harness.get_by_label(name);
         assert!(harness.query_all_by_label(pixels).next().is_some(), "{name}: {pixels}");
     }
