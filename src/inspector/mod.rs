@@ -35,6 +35,7 @@ mod divider;
 mod dock;
 mod draw_level;
 mod draws;
+mod error_legend;
 mod explain;
 mod explain_facts;
 mod export;

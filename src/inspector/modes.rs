@@ -74,6 +74,8 @@ pub struct Modes {
     pub tests: TestsState,
     /// What changed, made once.
     pub changes: ChangeCache,
+    /// The legend of the error picture counts, and does not only say what colours mean.
+    pub counts_findings: bool,
 }
 
 impl Modes {

@@ -21,6 +21,8 @@ use std::sync::Arc;
 
 /// Width of the card, points.
 const WIDTH: f32 = 176.0;
+/// Least width of the menu's button, points.
+const BUTTON_WIDTH: f32 = 84.0;
 
 /// Something drawn over the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -133,9 +135,12 @@ impl Overlays {
 pub fn menu(ui: &mut Ui, state: &mut State) {
     let count = state.modes.overlays.on.len();
     let text = if count == 0 { "Overlay".to_owned() } else { format!("Overlay · {count}") };
-    let button = ui.button(text).on_hover_text("What is drawn over the picture (O)");
+    // Of the same width with and without a number, so that nothing beside it moves.
+    let button = ui.add(egui::Button::new(text).min_size(vec2(BUTTON_WIDTH, 0.0)));
+    let button = button.on_hover_text("What is drawn over the picture (O)");
+    let button = button.on_disabled_hover_text("Several pictures at once: choose one of them to draw over it");
     let id = egui::Popup::default_response_id(&button);
-    if std::mem::take(&mut state.modes.overlays.open_menu) {
+    if std::mem::take(&mut state.modes.overlays.open_menu) && button.enabled() {
         egui::Popup::open_id(ui.ctx(), id);
     }
     let popup = egui::Popup::menu(&button).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);

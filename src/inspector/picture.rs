@@ -28,8 +28,8 @@ use crate::capture::{Capture, Image};
 use egui::{CornerRadius, Margin, Rect, Ui, vec2};
 use std::sync::Arc;
 
-/// From this width on all tools are in one row, points.
-const WIDE: f32 = 940.0;
+/// What is compared with has its place at the right end of the second row where so much is left there, points.
+const COMPARE_WIDTH: f32 = 260.0;
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
@@ -44,15 +44,16 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     if let (Coloring::Stencil, Some(bit)) = (coloring, state.modes.bit) {
         coloring = Coloring::Bit(bit);
     }
+    let corners = walk::under_banner(state, rect);
     if shown.images.len() == 1 {
         single(ui, state, &capture, rect, &shown, (coloring, range), actions);
     } else {
         face_grid::ui(ui, state, rect, &shown, coloring);
-        legend::ui(ui, state, rect, &shown, range);
+        legend::ui(ui, state, corners, &shown, range);
     }
-    truth_note::ui(ui, state, rect, &shown, actions);
+    truth_note::ui(ui, state, corners, &shown, actions);
     if state.view.kind == PictureKind::Overdraw && shown.kind != PictureKind::Overdraw {
-        overlays::counting_note(ui, state, rect);
+        overlays::counting_note(ui, state, corners);
     }
     walk::banner(ui, state, rect);
 }
@@ -89,7 +90,7 @@ fn single(
         let part = divider::part(rect, compare);
         sheets.push(Sheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
     }
-    let placement = canvas::ui(ui, state, rect, shown, coloring, &sheets);
+    let placement = canvas::ui(ui, state, rect, shown, coloring, &sheets, canvas::PICTURE);
     overlays::ui(ui, state, rect, shown, placement);
     if shown.kind != PictureKind::Map {
         let mesh = shadow_map::marks(placement, state.map_tab.marked(), theme::of(ui).selected);
@@ -101,14 +102,15 @@ fn single(
     }
     outline::ui(ui, state, rect, shown, placement);
     picture_gizmos::ui(ui, state, rect, shown, placement, actions);
+    let corners = walk::under_banner(state, rect);
     match &change {
-        Some((_, change)) => legend::of_change(ui, rect, change),
+        Some((_, change)) => legend::of_change(ui, corners, change),
         None => {
             magnifier::ui(ui, state, rect, shown, coloring, placement);
-            legend::ui(ui, state, rect, shown, range);
+            legend::ui(ui, state, corners, shown, range);
         }
     }
-    modes_bar::compare_note(ui, state, capture, shown, rect);
+    modes_bar::compare_note(ui, state, capture, shown, corners);
     if let Some((mut compare, _)) = compared {
         let now = match compare.with {
             With::Step(_) => state.moment().words(),
@@ -189,35 +191,28 @@ pub fn full_range(state: &mut State, shown: &Shown) -> [f64; 2] {
     ranges.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]).unwrap_or([0.0, 1.0])
 }
 
-/// One row where there is room for all tools, else two; a row of its own while comparing.
+/// Two rows in every window, and what is always there first: nothing moves when tools of one kind of picture
+/// come and go, and the picture keeps its place.
 fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
-        let is_wide = ui.available_width() >= WIDE;
         let shown = state.shown(capture);
         ui.horizontal(|ui| {
             kinds(ui, state, capture);
-            if is_wide {
-                modes_bar::ui(ui, state, shown.as_ref());
-            }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| zoom(ui, state, capture));
         });
-        let is_comparing = state.modes.compare.is_some();
-        if is_wide && !is_comparing && !has_options(shown.as_ref()) {
-            return;
-        }
+        let mut has_place = true;
         ui.horizontal(|ui| {
+            modes_bar::ui(ui, state, shown.as_ref());
             options(ui, state, capture, shown.as_ref());
-            if !is_wide {
-                modes_bar::ui(ui, state, shown.as_ref());
+            has_place = ui.available_width() >= COMPARE_WIDTH;
+            if has_place {
+                modes_bar::compare_row(ui, state, capture);
             }
-            modes_bar::compare_row(ui, state, capture);
         });
+        if !has_place && state.modes.compare.is_some() {
+            ui.horizontal(|ui| modes_bar::compare_row(ui, state, capture));
+        }
     });
-}
-
-fn has_options(shown: Option<&Shown>) -> bool {
-    let kind = shown.map(|shown| shown.kind);
-    !matches!(kind, None | Some(PictureKind::Color | PictureKind::Stencil | PictureKind::Overdraw))
 }
 
 /// What goes with one kind of picture only.
@@ -330,13 +325,10 @@ fn depth_mode(ui: &mut Ui, state: &mut State) {
     }
 }
 
-/// Right to left: the zoom in per cent, Fit, 1:1.
+/// Right to left: Fit, 1:1, the other buttons, and the zoom in per cent where it moves none of them.
 fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
     let size = state.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };
-    if let Zoom::Pixels(pixels) = state.view.zoom {
-        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
-    }
     let fits = state.view.zoom == Zoom::Fit;
     let word = theme::switch_word(ui, "Fit", fits);
     if ui.add(egui::Button::selectable(fits, word)).on_hover_text("The whole picture").clicked() {
@@ -352,4 +344,7 @@ fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
     }
     picture_gizmos::button(ui, state);
     walk::button(ui, state);
+    if let Zoom::Pixels(pixels) = state.view.zoom {
+        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
+    }
 }

@@ -3,12 +3,12 @@
 use super::coloring;
 use super::counts;
 use super::depth::{DepthMeasure, FIXED_BITS};
+use super::error_legend;
 use super::findings;
 use super::format;
 use super::history_rows;
 use super::ladder;
 use super::layers::MapContent;
-use super::legend;
 use super::palette;
 use super::pixel_run;
 use super::state::State;
@@ -235,7 +235,7 @@ fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, a
     if let Some(finding) = finding {
         let style = findings::style(finding);
         ui.horizontal(|ui| {
-            legend::hatched(ui, style);
+            error_legend::hatched(ui, style);
             ui.add(egui::Label::new(RichText::new(style.meaning).color(theme::of(ui).text)).wrap());
         });
     }

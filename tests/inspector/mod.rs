@@ -2,6 +2,7 @@
 
 mod accessibility;
 mod by_hand;
+mod cards;
 mod counts;
 mod diagnosis;
 mod draws;
