@@ -66,6 +66,8 @@ pub struct Modes {
     pub bit: Option<u8>,
     /// What is shown beside it.
     pub compare: Option<Compare>,
+    /// Where the divider was last: 0 at the picture's left border, 1 at its right one.
+    pub seam: Option<f32>,
     /// Captures of other techniques to compare with.
     pub compared: Compared,
     /// What is drawn over it.

@@ -132,6 +132,24 @@ fn the_magnifier_has_a_grid_over_counts_of_zero_in_both_themes() {
     }
 }
 
+#[test]
+fn the_ladder_is_whole_in_sight_in_windows_that_are_not_high() {
+    let history = super::history_by_hand::history([3, 4], &super::history_by_hand::FACES);
+    for height in [768.0, 800.0, 900.0, 1000.0, 1080.0] {
+        let mut inspector = inspector(with_truth(z_fail(SIZE)));
+        inspector.pick([3, 4]);
+        let mut harness = harness_of(inspector, [1280.0, height]);
+        harness.state_mut().inspector.set_history([3, 4], Ok(Arc::new(history.clone())));
+        harness.run_steps(4);
+        let ladder = harness.get_by_label_contains("Ladder of the view ray").rect();
+        // Down to the status bar.
+        assert!(ladder.height() >= 120.0 && ladder.bottom() <= height - 24.0, "{ladder:?} in {height}");
+        let rows = harness.query_all_by_role(Role::Row).count();
+        assert!(rows >= 4, "{rows} events are seen in {height}");
+        assert!(rect(&harness, "0000 0001").right() < 1280.0 - 8.0, "values are not cut off");
+    }
+}
+
 /// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_cards` writes them.
 #[test]
 fn pictures_of_cards_can_be_drawn() {
