@@ -3,7 +3,7 @@
 //! The panel asks for a place; the app writes. A place that is taken is asked about once more.
 
 use super::action::{Action, RunRequest};
-use super::as_shown;
+use super::as_shown::{self, Drawing};
 use super::coloring::Coloring;
 use super::modes::{Phase, has_phases};
 use super::picture;
@@ -120,6 +120,8 @@ pub struct ExportState {
 pub enum ExportData {
     /// Pixels.
     Picture(Picture),
+    /// Pixels, once it is finished.
+    AsShown(Box<Drawing>),
     /// One picture, or all layers of a map.
     Data(Vec<Arc<Image>>),
     /// All of it.
@@ -143,7 +145,7 @@ pub fn data(state: &mut State, kind: ExportKind) -> Option<ExportData> {
     }
     let coloring = picture::shown_coloring(state, &shown);
     if let ([_], ExportKind::AsShown) = (&shown.images[..], kind) {
-        return Some(ExportData::Picture(as_shown::picture(state, &capture, &shown, coloring)));
+        return Some(ExportData::AsShown(Box::new(as_shown::drawing(state, &capture, &shown, coloring))));
     }
     if let Some((ground, change)) = picture::change_of(state, &capture, &shown) {
         let mut picture = texture::picture(&ground, Coloring::Srgb);

@@ -49,6 +49,7 @@ fn section(ui: &mut Ui, title: &str, rows: impl Iterator<Item = (&'static str, &
     ui.label(theme::note(title));
     let grid = egui::Grid::new(title).num_columns(2).spacing([16.0, 2.0]).min_row_height(theme::ROW_HEIGHT - 4.0);
     grid.show(ui, |ui| {
+        ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT - 4.0;
         for (keys, does) in rows {
             ui.horizontal(|ui| {
                 // The columns of all sections are in line.

@@ -104,6 +104,7 @@ mod view;
 mod walk;
 
 pub use action::{Action, RunRequest};
+pub use as_shown::Drawing;
 pub use diagnosis::{DiagnosisProgress, DiagnosisView};
 pub use dock::Panel;
 pub use draw_level::DrawsState;

@@ -29,7 +29,7 @@ use egui::{CornerRadius, Margin, Rect, Ui, pos2, vec2};
 use std::sync::Arc;
 
 /// What is compared with has its place at the right end of the second row where so much is left there, points.
-const COMPARE_WIDTH: f32 = 260.0;
+const COMPARE_WIDTH: f32 = 232.0;
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {

@@ -34,22 +34,20 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
     let is_tight = pixel_room::is_tight(size);
     let gap = if is_tight { 4.0 } else { 8.0 };
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        if is_tight {
+            ui.spacing_mut().interact_size.y = TIGHT_ROW;
+            ui.spacing_mut().item_spacing.y = 2.0;
+        }
         let bottom = ui.cursor().top() + size.y;
         sentence(ui, state, &capture, at);
         ui.add_space(gap);
-        ui.scope(|ui| {
-            if is_tight {
-                ui.spacing_mut().interact_size.y = TIGHT_ROW;
-                ui.spacing_mut().item_spacing.y = 2.0;
-            }
-            values(ui, state, &capture, at, is_tight);
-            if !capture.lights.is_empty() {
-                ui.add_space(gap);
-                lights(ui, &capture, at);
-            }
+        values(ui, state, &capture, at, is_tight);
+        if !capture.lights.is_empty() {
             ui.add_space(gap);
-            pixel_run::ui(ui, state, &capture, at);
-        });
+            lights(ui, &capture, at);
+        }
+        ui.add_space(gap);
+        pixel_run::ui(ui, state, &capture, at);
         ui.add_space(gap);
         let events = state.history.last().map_or(0, |history| history.events.len());
         let rows = pixel_room::rows(bottom - ui.cursor().top(), events, ladder::is_shown(state, &capture));
@@ -112,15 +110,19 @@ fn values(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2], is_tight:
             None => pairs.text(ui, "picture", "not begun yet"),
         }
     });
-    // Some of these are long.
-    grid("pixel further values").num_columns(2).spacing(spacing).show(ui, |ui| {
-        if state.moment().frame(capture).is_some() {
-            count_row(ui, state, capture, at);
-        }
-        if let (Some(texel), true) = (state.map_pick, state.view.kind == PictureKind::Map) {
-            map_values(ui, state, capture, texel);
-        }
-    });
+    let has_count = state.moment().frame(capture).is_some() && counts::to_show(capture, state).is_some();
+    let texel = state.map_pick.filter(|_| state.view.kind == PictureKind::Map);
+    if has_count || texel.is_some() {
+        // Some of these are long.
+        grid("pixel further values").num_columns(2).spacing(spacing).show(ui, |ui| {
+            if has_count {
+                count_row(ui, state, capture, at);
+            }
+            if let Some(texel) = texel {
+                map_values(ui, state, capture, texel);
+            }
+        });
+    }
 }
 
 /// Cells of a grid: names and values, so many pairs in a row.
