@@ -297,7 +297,8 @@ mod tests {
             assert_eq!(ends, Some(ladder.count), "the sum is the same");
         }
         // What was opened stays open, and what is selected stays in sight.
-        let (open, line) = place(&ladder, 0.1, None, &[2..10], 140.0);
+        let opened = [2..6, 6..10];
+        let (open, line) = place(&ladder, 0.1, None, &opened, 140.0);
         assert_eq!((rungs_of(&open), line), (12, LEAST_LINE));
         let (selected, _) = place(&ladder, 0.1, Some(3), &[], 140.0);
         assert!(selected.iter().any(|(mark, _)| *mark == Mark::Rung(3)));

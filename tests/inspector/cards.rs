@@ -13,6 +13,9 @@ use stencilscope::inspector::{PictureKind, ThemeChoice, Zoom};
 const FINDINGS: [&str; 6] =
     ["false shadow", "missing shadow", "wrong surface", "edge, excused", "agrees", "not compared"];
 
+/// Brings the panels into a state to be looked at.
+type View = fn(&mut Harness<Seen>);
+
 fn rect(harness: &Harness<Seen>, label: &str) -> Rect {
     harness.get_by_label(label).rect()
 }
@@ -163,7 +166,7 @@ fn pictures_of_cards_can_be_drawn() {
     let capture = Arc::new(capture);
     let pick = [330, 225];
     let history = Arc::new(session.history(&plan, &capture, pick).expect("a history"));
-    let views: [(&str, fn(&mut Harness<Seen>)); 5] = [
+    let views: [(&str, View); 5] = [
         ("error", |_| ()),
         ("error-counts", |harness| click_button(harness, "Counts")),
         ("error-walking", |harness| click(harness, "Walk")),
