@@ -102,8 +102,10 @@ impl State {
         let stop = &tour.stops[at.stop];
         let technique = stop.technique(tour);
         let Some(scene) = &self.scene else {
-            // A capture folder: there is nothing to run. The stop is told all the same.
-            self.tour = Some(TourState { is_pending: false, ..at });
+            // A capture folder: there is nothing to run. The stop is told all the same, unless its scene failed.
+            if at.error.is_none() {
+                self.tour = Some(TourState { is_pending: false, ..at });
+            }
             return;
         };
         // Where the scene or its frame could not be made, the stop says why.

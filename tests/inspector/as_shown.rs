@@ -116,6 +116,39 @@ fn it_is_chosen_in_the_menu_of_exports() {
     assert!(path.ends_with("-as-shown.png"), "{path}");
 }
 
+/// Of a slab on a floor, whose edges are long in the picture.
+#[test]
+fn edges_that_count_twice_have_their_number() {
+    let mut session = common::session();
+    let scene = open(&OpenSpec::new("table")).expect("table");
+    let letters = |casters: &str, session: &mut stencilscope::session::Session| {
+        let mut request = common::request(Technique::ZFail, [640, 360]);
+        request.choice.set("casters", casters).expect("a setting");
+        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+        let anatomy = Arc::new(session.anatomy(&scene, &request.choice, &plan));
+        let many = anatomy.silhouettes.iter().flat_map(|silhouette| &silhouette.edges);
+        let many = many.filter(|edge| edge.multiplicity.unsigned_abs() > 1).count();
+        let inspector = super::pictures::inspector(&scene, &request, &Arc::new(capture), [10, 10]);
+        let mut harness = harness_of(inspector, [1280.0, 800.0]);
+        harness.state_mut().inspector.lay_over(Overlay::Silhouettes);
+        harness.run_steps(2);
+        harness.state_mut().inspector.set_anatomy(Ok(anatomy));
+        harness.run_steps(2);
+        let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
+        if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
+            let window = harness.render().expect("a picture");
+            window.save(std::path::Path::new(&folder).join(format!("numbers-{casters}.png"))).expect("written");
+        }
+        let is_letter = |pixel: Rgb| is_near(pixel, [0xd9, 0xdc, 0xe3], 24);
+        let new = plain.pixels().zip(shown.pixels()).filter(|(before, now)| !is_letter(*before) && is_letter(*now));
+        (many, new.count())
+    };
+    let (many, written) = letters("all", &mut session);
+    assert!(many > 0 && written > 10, "{many} edges, {written} pixels of letters");
+    let (many, written) = letters("by-topology", &mut session);
+    assert!(many == 0 && written == 0, "{many} edges, {written} pixels of letters");
+}
+
 /// Over a real frame. `INSPECTOR_PICTURES=FOLDER cargo test lines_numbers_and_names` keeps the file.
 #[test]
 fn lines_numbers_and_names_are_in_it_as_in_the_window() {
