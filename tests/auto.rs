@@ -122,6 +122,31 @@ fn what_stands_in_anothers_umbra_casts_nothing_more() {
 }
 
 #[test]
+fn a_part_in_the_umbra_of_another_part_casts_nothing_more() {
+    // Under a sun straight above, so that the umbra ends where the outer box does.
+    let nested = |offset: f64| {
+        let [outer, inner] = [0.8, 0.4].map(|size| shapes::cuboid([size; 3]).expect("a box"));
+        let both = shapes::joined([(&outer, DVec3::ZERO), (&inner, DVec3::new(offset, 0.0, 0.0))]).expect("two boxes");
+        let mut boxes = Object::new("boxes", Arc::new(both), Material::default());
+        boxes.pose.translate = DVec3::new(0.0, 1.5, 0.0);
+        let mut scene = from_above(vec![boxes]);
+        scene.lights = vec![Light::directional(DVec3::Y)];
+        scene
+    };
+    // Of the inner one's twelve triangles; where its side is in the outer one's, it casts.
+    let what = "12 casting triangles of boxes";
+    assert_decides(Decision::Umbra, what, &nested(0.1), &nested(0.9));
+    for off in [-1e-9, 0.0, 1e-9] {
+        assert_decides(Decision::Umbra, what, &nested(0.1), &nested(0.2 + off));
+        let far = |scene| carried(scene, DVec3::new(1e5, 0.0, -1e5));
+        assert_decides(Decision::Umbra, what, &far(nested(0.1)), &far(nested(0.2 + off)));
+    }
+    let mut session = session();
+    let judged = judged(&mut session, &nested(0.1), Technique::Auto, SIZE);
+    assert_eq!(judged.lights[0].truth.as_ref().map(|truth| truth.error.wrong()), Some(0));
+}
+
+#[test]
 fn two_boards_at_one_place_do_not_drop_each_other() {
     let scene = from_above(vec![square("one", 2.0, 1.0), square("other", 2.0, 1.0)]);
     let found = left_out(&mut session(), &scene);

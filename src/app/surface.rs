@@ -12,10 +12,25 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{CursorGrabMode, Window};
 
-/// The window's first size in points.
+/// The window's first size in points, on a screen that has room for it.
 const FIRST_SIZE: [f64; 2] = [1440.0, 900.0];
+/// What a window may take of a smaller screen: the system's own bars need the rest.
+const OF_SCREEN: f64 = 0.95;
 /// Below this the panels have no room.
 const LEAST_SIZE: [f64; 2] = [640.0, 400.0];
+
+/// Size of the screen that a new window is likely to come up on, points; `None` where the system does not
+/// say.
+fn screen(event_loop: &ActiveEventLoop) -> Option<[f64; 2]> {
+    let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next())?;
+    Some(monitor.size().to_logical::<f64>(monitor.scale_factor()).into())
+}
+
+fn first_size(screen: Option<[f64; 2]>) -> [f64; 2] {
+    // Some systems say 0 for a screen that they don't know.
+    let Some(screen) = screen.filter(|screen| screen.iter().all(|side| *side >= 1.0)) else { return FIRST_SIZE };
+    [0, 1].map(|axis| FIRST_SIZE[axis].min((screen[axis] * OF_SCREEN).floor()))
+}
 
 /// A window that egui draws on.
 pub struct Surface {
@@ -46,7 +61,7 @@ impl Surface {
     ) -> Result<Surface, AppError> {
         let attributes = Window::default_attributes()
             .with_title("stencilscope")
-            .with_inner_size(LogicalSize::<f64>::from(FIRST_SIZE))
+            .with_inner_size(LogicalSize::<f64>::from(first_size(screen(event_loop))))
             .with_min_inner_size(LogicalSize::<f64>::from(LEAST_SIZE))
             // Assistive technology has to be told before the window is seen.
             .with_visible(false);
@@ -206,4 +221,17 @@ fn configuration(event_loop: &ActiveEventLoop, adapter: Option<&str>) -> WgpuCon
         }));
     }
     WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_fits_the_screen() {
+        assert_eq!(first_size(Some([1920.0, 1080.0])), FIRST_SIZE);
+        assert_eq!(first_size(Some([1280.0, 800.0])), [1216.0, 760.0]);
+        assert_eq!(first_size(None), FIRST_SIZE);
+        assert_eq!(first_size(Some([0.0, 0.0])), FIRST_SIZE, "of a screen that nothing is known of");
+    }
 }

@@ -67,6 +67,8 @@ pub struct VolumeOf<'a> {
     pub light: DVec4,
     /// Which of its triangles cast.
     pub casters: Casters,
+    /// Of each triangle: it need not cast, since what it darkens is dark without it. Empty: none.
+    pub held: &'a [bool],
     /// How the silhouette is found.
     pub by: SilhouetteBy,
     /// Carries it away from the light.
@@ -118,6 +120,7 @@ impl GeometryCache {
         let edges = (of.by == SilhouetteBy::Adjacency).then(|| self.edges(caster.mesh));
         planes.facings(caster.world, triangles, light, &mut self.facings);
         self.facings.keep_casting(of.casters);
+        self.facings.leave_out(of.held);
         let found = &mut self.silhouette;
         match &edges {
             Some(edges) => silhouette(edges, &self.facings, found),

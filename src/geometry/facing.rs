@@ -122,10 +122,23 @@ impl Facings {
         };
         if casters != Casters::All {
             self.signs.iter_mut().for_each(|sign| *sign = keep(*sign));
-            let none = self.signs.pop();
-            self.note_runs();
-            self.signs.extend(none);
+            self.note_runs_again();
         }
+    }
+
+    /// So do those that `left_out` says, one a triangle; none, if it is empty.
+    pub fn leave_out(&mut self, left_out: &[bool]) {
+        if left_out.is_empty() {
+            return;
+        }
+        self.signs.iter_mut().zip(left_out).filter(|(_, is_out)| **is_out).for_each(|(sign, _)| *sign = 0);
+        self.note_runs_again();
+    }
+
+    fn note_runs_again(&mut self) {
+        let none = self.signs.pop();
+        self.note_runs();
+        self.signs.extend(none);
     }
 }
 

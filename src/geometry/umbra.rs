@@ -2,11 +2,11 @@
 //!
 //! What a convex body darkens, `{L + s(o − L), s ≥ 1}` over its points `o`, is convex too, and whatever
 //! lies in it darkens nothing that is not in it. So a caster whose bounding box's corners are all
-//! in the umbra of a convex one needs no volume of its own. The way to the light must meet the body
-//! strictly between, so two casters can't lie in each other's umbra, and each chain of them ends at
-//! one that is drawn.
+//! in the umbra of a convex one needs no volume of its own. They must lie deep in it, so that what the one
+//! darkens is less than what the other does: two casters can't hold each other, and each chain of them ends
+//! at one that is drawn. The same holds of the parts of one mesh, such as a box in a box.
 
-use super::EdgeList;
+use super::{EdgeList, Topology};
 use crate::math::Plane;
 use glam::{DVec3, DVec4};
 
@@ -102,7 +102,9 @@ impl Occluder {
                         _ => (),
                     }
                 }
-                enters > margin && enters < leaves && leaves < end
+                // Deep in the body itself it is as dark.
+                let is_inside = planes.iter().all(|plane| at(plane) < -MARGIN * self.size);
+                (is_inside || enters > margin) && enters < leaves && leaves < end
             }
             ConvexBody::Sheet(plane, border) => {
                 let meets = -at(plane) / slope(plane);
@@ -112,6 +114,65 @@ impl Occluder {
             }
         }
     }
+}
+
+/// Meshes of more triangles are not asked for parts in the umbra of others: each plan would look at all of them.
+const MOST_TRIANGLES_OF_PARTS: usize = 65_536;
+/// How many parts may hold others: the largest.
+const MOST_HOLDERS: usize = 8;
+
+/// Of each triangle of a mesh: its part lies wholly in the umbra of another part. Empty where none does.
+#[must_use]
+pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], topology: &Topology, light: DVec4) -> Vec<bool> {
+    if topology.components < 2 || triangles.len() > MOST_TRIANGLES_OF_PARTS {
+        return Vec::new();
+    }
+    let mut parts: Vec<Vec<[u32; 3]>> = vec![Vec::new(); topology.components];
+    for (index, corners) in triangles.iter().enumerate() {
+        parts[topology.component_of(index)].push(*corners);
+    }
+    let bounds: Vec<[DVec3; 2]> = parts.iter().map(|part| bounds(world, part)).collect();
+    let size = |part: &usize| (bounds[*part][1] - bounds[*part][0]).length();
+    let mut largest: Vec<usize> = (0..parts.len()).collect();
+    largest.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    let holder = |part: usize| {
+        let (vertices, triangles) = alone(world, &parts[part]);
+        let edges = EdgeList::new(&triangles, vertices.len());
+        Some((part, Occluder::new(&vertices, &triangles, &edges)?))
+    };
+    let holders: Vec<(usize, Occluder)> = largest.into_iter().take(MOST_HOLDERS).filter_map(holder).collect();
+    let is_held = |(part, bounds): (usize, &[DVec3; 2])| {
+        let corners = corners_of(*bounds);
+        holders.iter().any(|(other, holder)| *other != part && holder.darkens_all(&corners, light))
+    };
+    let held: Vec<bool> = bounds.iter().enumerate().map(is_held).collect();
+    if !held.contains(&true) {
+        return Vec::new();
+    }
+    (0..triangles.len()).map(|index| held[topology.component_of(index)]).collect()
+}
+
+/// Lowest and highest corner of the box around some triangles.
+fn bounds(world: &[DVec3], triangles: &[[u32; 3]]) -> [DVec3; 2] {
+    let used = || triangles.iter().flatten().map(|vertex| world[*vertex as usize]);
+    [used().fold(DVec3::INFINITY, DVec3::min), used().fold(DVec3::NEG_INFINITY, DVec3::max)]
+}
+
+fn corners_of([low, high]: [DVec3; 2]) -> [DVec3; 8] {
+    [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| {
+        let of = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        DVec3::new(of(0), of(1), of(2))
+    })
+}
+
+/// A part with its own vertices alone.
+fn alone(world: &[DVec3], part: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let mut used: Vec<u32> = part.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    let own = |vertex: u32| used.binary_search(&vertex).unwrap_or_default() as u32;
+    let triangles = part.iter().map(|corners| corners.map(own)).collect();
+    (used.iter().map(|vertex| world[*vertex as usize]).collect(), triangles)
 }
 
 fn plane_of(world: &[DVec3], corners: [u32; 3], size: f64) -> Option<Plane> {
@@ -132,6 +193,27 @@ mod tests {
 
     const LAMP: DVec4 = DVec4::new(0.0, 4.0, 0.0, 1.0);
     const SUN: DVec4 = DVec4::new(0.0, 3.0, 0.0, 0.0);
+
+    #[test]
+    fn a_part_holds_those_that_lie_in_it_or_behind_it() {
+        let held = |inner: f64, offset: [f64; 3], light: DVec4| {
+            let [outer, inner] = [2.0, inner].map(|size| shapes::cuboid([size; 3]).expect("a box"));
+            let both = shapes::joined([(&outer, DVec3::ZERO), (&inner, DVec3::from_array(offset))]).expect("two boxes");
+            let topology = Topology::new(&both, &EdgeList::new(both.triangles(), both.positions().len()));
+            held_by_parts(both.positions(), both.triangles(), &topology, light)
+        };
+        let inner_alone: Vec<bool> = (0..24).map(|triangle| triangle >= 12).collect();
+        for light in [LAMP, SUN, DVec4::new(5.0, 2.0, 1.0, 1.0), DVec4::new(1e9, 4e8, 1e8, 1.0)] {
+            assert_eq!(held(1.0, [0.1, 0.2, 0.0], light), inner_alone, "{light}");
+            assert_eq!(held(1.0, [4.0, 0.0, 3.0], light), Vec::<bool>::new(), "{light}");
+            assert!(held(2.0, [0.0; 3], light).is_empty(), "in its faces");
+            assert!(held(2.0 - 1e-9, [0.0; 3], light).is_empty(), "too near to its faces");
+        }
+        assert_eq!(held(1.0, [0.0, -3.0, 0.0], SUN), inner_alone);
+        assert!(held(1.0, [0.6, -3.0, 0.0], SUN).is_empty(), "its side shows");
+        // Of two that hold the light between them, and of one part alone.
+        assert!(held(1.0, [0.0, 9.0, 0.0], LAMP).is_empty());
+    }
 
     #[test]
     fn a_box_and_a_board_hold_what_is_behind_them() {

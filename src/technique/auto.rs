@@ -20,7 +20,7 @@ use super::frame::{Frame, Job};
 use super::left_out::Decision;
 use super::volume::{Counting, Form};
 use super::{PlanError, ReportRows, volume};
-use crate::geometry::umbra::Occluder;
+use crate::geometry::umbra::{self, Occluder};
 use crate::geometry::{NearClipVolume, Outside, ViewVolume, layers};
 use crate::numbers;
 use crate::plan::{FramePlan, LeftOut, LightId};
@@ -131,6 +131,27 @@ impl Questions {
             occluder.as_ref().is_some_and(|occluder| occluder.darkens_all(&corners, self.position))
         };
         (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
+    }
+
+    /// Of each triangle of a caster: another part of the caster holds its part in the umbra. Empty: none.
+    pub fn held_by_parts(&self, frame: &mut Frame, index: usize) -> Vec<bool> {
+        if !Decision::Umbra.is_allowed(frame.job.choice) {
+            return Vec::new();
+        }
+        let placed = &frame.placed[index];
+        let mesh = &placed.object.mesh;
+        let topology = frame.job.cache.topology(mesh);
+        let held = umbra::held_by_parts(&placed.world, mesh.triangles(), &topology, self.position);
+        if !held.is_empty() {
+            let count = held.iter().filter(|is_held| **is_held).count();
+            let because = "they are parts that another part of it holds in its umbra";
+            frame.leave_out(
+                &format!("{} casting triangles", numbers::count(count as u64)),
+                &placed.object.name,
+                because,
+            );
+        }
+        held
     }
 
     /// Could a count of these casting triangles, world space, reach 256?

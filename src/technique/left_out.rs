@@ -12,7 +12,7 @@ pub enum Decision {
     Caster,
     /// A volume that misses the view.
     View,
-    /// A caster wholly in the umbra of another: its volume.
+    /// A caster wholly in the umbra of another, or a part of one in that of another part: its volume.
     Umbra,
     /// Of a closed caster, the triangles that face away from the light.
     AwayTriangles,

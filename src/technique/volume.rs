@@ -244,7 +244,8 @@ fn volumes(frame: &mut Frame, light: LightId, options: &Options) -> (Vec<Volume>
             }
         };
         let casters = who_casts(frame, light, index, options);
-        let (mesh, parts) = make(frame, light, index, casters, options);
+        let held = questions.as_ref().map(|questions| questions.held_by_parts(frame, index)).unwrap_or_default();
+        let (mesh, parts) = make(frame, light, index, (casters, &held), options);
         if parts.light_cap_turned.end == 0 {
             let because = match casters {
                 Casters::All => "every triangle is edge-on to the light",
@@ -329,7 +330,7 @@ fn make(
     frame: &mut Frame,
     light: LightId,
     index: usize,
-    casters: Casters,
+    (casters, held): (Casters, &[bool]),
     options: &Options,
 ) -> (DrawMesh, VolumeParts) {
     let (position, eye) = (frame.light_position(light), frame.eye());
@@ -338,7 +339,7 @@ fn make(
     let extruder = Extruder::new(&placed.world, position, options.extrusion);
     let mut indices = Vec::new();
     let (is_drawn, by) = (placed.object.visible, options.silhouette);
-    let volume = VolumeOf { caster, is_drawn, light: position, casters, by, extruder: &extruder };
+    let volume = VolumeOf { caster, is_drawn, light: position, casters, held, by, extruder: &extruder };
     let parts = frame.job.cache.volume_indices(&volume, &mut indices);
     let fan = if let DarkCap::Fan(_, fan) = parts.dark_cap { Some(fan) } else { None };
     let vertices = extruder.vertices(&placed.world).chain(fan.iter().flat_map(Fan::vertices));
