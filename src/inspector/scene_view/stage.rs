@@ -85,6 +85,12 @@ impl Choice {
         let holds = holders.get(caster).is_some_and(|holds| *holds);
         self.light.is_none_or(|one| one == light) && self.caster.map_or(!holds, |one| one == caster)
     }
+
+    /// Is the frustum of a light's map shown, or of the silhouette of one caster in it?
+    fn has_frustum(self, light: usize, caster: Option<usize>) -> bool {
+        let is_other = caster.is_some_and(|caster| self.caster.is_some_and(|one| one != caster));
+        self.light.is_none_or(|one| one == light) && !is_other
+    }
 }
 
 /// A corner of faces.
@@ -398,7 +404,7 @@ impl Stage {
         for frustum in &anatomy.frusta {
             let color = match frustum.of {
                 ViewOf::Camera => theme.text,
-                ViewOf::Map { light, .. } if choice.light.is_none_or(|one| one == light) => theme.lit,
+                ViewOf::Map { light, caster, .. } if choice.has_frustum(light, caster) => theme.lit,
                 ViewOf::Map { .. } => continue,
             };
             let color = color.gamma_multiply(0.75);
@@ -414,7 +420,7 @@ impl Stage {
                 let next = (corner + 1) % 4;
                 self.long_line([near[corner], far[corner]], limit, 1.0, color);
                 self.long_line([near[corner], near[next]], limit, 2.0, color);
-                if frustum.far[corner].w != 0.0 {
+                if frustum.far[corner].w != 0.0 && far[corner] != far[next] {
                     self.long_line([far[corner], far[next]], limit, 1.0, color);
                 }
             }
