@@ -150,7 +150,9 @@ impl Desk {
             News::Tests { frame, step, draw, result } if frame == self.frame => {
                 self.inspector.set_tests(step, draw, result);
             }
+            News::Walls { generation, walls } if generation == self.generation => self.inspector.set_walls(walls),
             // Of a scene or frame that is shown no more.
+            News::Walls { .. } => {}
             News::Tests { .. } | News::Compared { .. } => {}
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
             News::Draws { .. } | News::NoDraws { .. } | News::History { .. } | News::Anatomy { .. } => {}
@@ -192,6 +194,11 @@ impl Desk {
             }
             Action::Tests { step, draw } => Order::Tests { frame: self.frame, step, draw },
             Action::Anatomy => Order::Anatomy { frame: self.frame },
+            Action::Walls(request) => {
+                // No step is made before they are known.
+                self.jobs.make_way(&mut self.inspector);
+                Order::Walls { generation: self.generation, request }
+            }
             Action::Browse => return self.browse(),
             Action::BrowseExport { kind, path } => return self.browse_export(kind, path),
             Action::Reload => {

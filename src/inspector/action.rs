@@ -58,6 +58,8 @@ pub enum Action {
     },
     /// Tell what the frame that is shown is made of in space.
     Anatomy,
+    /// Tell what can't be walked through in the scene that would be run so.
+    Walls(Box<RunRequest>),
     /// Measure every technique on the open scene.
     RunReport,
     /// Stop measuring; the rows so far stay.

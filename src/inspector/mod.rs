@@ -118,7 +118,7 @@ use crate::anatomy::Anatomy;
 use crate::capture::{Capture, StepTests};
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
-use crate::scene::Scene;
+use crate::scene::{Scene, Walls};
 use crate::technique::{Choice, Technique};
 use compare::{Compare, With};
 use state::State;
@@ -376,6 +376,11 @@ impl Inspector {
         if self.state.scene.is_some() {
             self.state.anatomy.answer(anatomy);
         }
+    }
+
+    /// Tells what can't be walked through in the open scene.
+    pub fn set_walls(&mut self, walls: Arc<Walls>) {
+        self.state.walk.set_walls(walls);
     }
 
     /// Index of the selected event in the history of the picked pixel.
