@@ -13,6 +13,8 @@ pub enum Action {
     Open(String),
     /// Ask for a file with the system's dialog.
     Browse,
+    /// Ask for a capture folder with the system's dialog, which shows files or folders, not both.
+    BrowseFolder,
     /// Render again, with this changed.
     Run(Box<RunRequest>),
     /// Render as this says, to compare with the frame that is shown, which stays.

@@ -391,6 +391,9 @@ fn the_dialog_opens_built_in_scenes_and_paths() {
     click(&mut harness, "Open…");
     click(&mut harness, "Browse…");
     assert_eq!(harness.state().actions.last(), Some(&Action::Browse));
+    click(&mut harness, "Open…");
+    click(&mut harness, "Browse captures…");
+    assert_eq!(harness.state().actions.last(), Some(&Action::BrowseFolder));
 }
 
 #[derive(Debug)]
