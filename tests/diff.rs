@@ -344,6 +344,7 @@ fn what_can_not_be_compared_is_refused_in_one_line_with_the_mend() {
         (&["tori", "-t", "none", "-t", "z-fail", "-t", "z-pass"], &["3 techniques", "name two"]),
         (&["tori", "rings"], &["`tori` is no capture folder", "name two folders"]),
         (&["models", "models"], &["`models` is no capture folder", "manifest.json"]),
+        (&["models/a.obj", "models"], &["`models/a.obj` is no capture folder (it is a file)", "name two folders"]),
         (&["models", "models", "-t", "z-fail"], &["cannot be used with"]),
         (&["models", "models", "--size", "64x64"], &["cannot be used with"]),
         (&["tori", "-t", "none", "--set-b", "fases=two-sided"], &["fases"]),

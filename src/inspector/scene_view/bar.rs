@@ -147,8 +147,8 @@ fn chooser(ui: &mut Ui, name: &str, all: &str, names: &[String], chosen: &mut Op
 }
 
 fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
-    if let Some(thinned) = &stage.thinned {
-        ui.add(egui::Label::new(theme::note(thinned)).wrap());
+    if let Some(coarser) = &stage.coarser {
+        ui.add(egui::Label::new(theme::note(coarser)).wrap());
     }
     if !stage.left_out.is_empty() {
         let names = stage.left_out.iter().take(3).cloned().collect::<Vec<_>>().join(", ");

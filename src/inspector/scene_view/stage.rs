@@ -4,6 +4,7 @@
 //! is projected once a view. Walls are split off exactly (`walls.rs`), other large triangles are cut up: a
 //! painter who goes by the distance of middles would paint a floor over what stands on it.
 
+use super::coarse::{Coarsened, Detail, words_of_fewer};
 use super::far_end::FarEnd;
 use super::walls::{Sides, Walls};
 use crate::anatomy::{Anatomy, PlacedLight, PlacedObject, ShadowVolume, Silhouette, ViewOf};
@@ -11,12 +12,9 @@ use crate::inspector::theme::Theme;
 use crate::plan::Part;
 use egui::Color32;
 use glam::{DVec3, DVec4, Vec3};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-/// Faces that are drawn at most; beyond it large meshes are thinned out.
-pub const MOST_FACES: usize = 30_000;
-/// Meshes of fewer triangles are never thinned out.
-const LEAST_TO_THIN: usize = 2_000;
 /// Faces that cutting up may add.
 const MOST_CUTS: usize = 16_000;
 /// An object holds others if it is so large, in parts of the whole.
@@ -81,7 +79,8 @@ pub struct Choice {
 impl Choice {
     /// Are the volume and silhouette of a light and caster shown? Those of what holds everything are only
     /// where they are asked for by name.
-    fn has(self, light: usize, caster: usize, holders: &[bool]) -> bool {
+    #[must_use]
+    pub fn has(self, light: usize, caster: usize, holders: &[bool]) -> bool {
         let holds = holders.get(caster).is_some_and(|holds| *holds);
         self.light.is_none_or(|one| one == light) && self.caster.map_or(!holds, |one| one == caster)
     }
@@ -172,8 +171,8 @@ pub struct Stage {
     pub walls: Walls,
     /// Casters that hold everything, whose volumes are not shown unless they are chosen.
     pub left_out: BTreeSet<String>,
-    /// What was thinned out, in words.
-    pub thinned: Option<String>,
+    /// What is drawn with fewer triangles than it has, in words.
+    pub coarser: Option<String>,
 }
 
 /// Which objects hold the others: rooms, walls, floors. They may be as large as they like, and must not
@@ -211,24 +210,24 @@ pub fn sphere(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
 impl Stage {
     /// Of `anatomy`, in the colours of `theme`.
     #[must_use]
-    pub fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, theme: &Theme) -> Stage {
+    pub fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, theme: &Theme, coarsened: &mut Coarsened) -> Stage {
         let holders = holders(anatomy);
         let (middle, radius) = sphere(anatomy, &holders);
         let walls = Walls::new(anatomy, &holders, middle, radius);
         let mut stage = Stage { middle, radius, walls, ..Stage::default() };
-        let thinning = Thinning::new(anatomy, shown, choice, &holders);
+        let detail = Detail::new(anatomy, shown, choice, &holders);
         if shown.names {
             stage.names(anatomy, &holders);
         }
         if shown.objects {
-            stage.objects(anatomy, &holders, &thinning, theme);
+            stage.objects(anatomy, &holders, (&detail, coarsened), theme);
         }
         let volumes = || anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster, &holders));
         // Through many shells as much is seen as through a few.
         let strength = 1.0 / (volumes().count().max(1) as f32).sqrt().max(1.0);
         for volume in volumes() {
             if let Some(light) = anatomy.lights.get(volume.light) {
-                stage.volume(volume, light, shown, (&thinning, strength), theme);
+                stage.volume(volume, light, shown, (&detail, strength), theme);
             }
         }
         if shown.silhouettes {
@@ -251,11 +250,17 @@ impl Stage {
             }
             Some(_) => BTreeSet::new(),
         };
-        stage.thinned = thinning.words(anatomy);
+        coarsened.forget_unused();
         stage
     }
 
-    fn objects(&mut self, anatomy: &Anatomy, holders: &[bool], thinning: &Thinning, theme: &Theme) {
+    fn objects(
+        &mut self,
+        anatomy: &Anatomy,
+        holders: &[bool],
+        (detail, coarsened): (&Detail, &mut Coarsened),
+        theme: &Theme,
+    ) {
         let is_seen = |object: &PlacedObject| object.visible || object.casts;
         let (walls, limit) = (self.walls.clone(), self.radius / 10.0);
         let longest = |index: usize, object: &PlacedObject| {
@@ -266,26 +271,33 @@ impl Stage {
         let mut room = MOST_CUTS;
         let ground = mix(theme.panel, theme.dim, 0.62);
         let edge = mix(theme.panel, theme.dim, 0.2);
+        let mut fewer = Vec::new();
         for (index, object) in anatomy.objects.iter().enumerate().filter(|(_, object)| is_seen(object)) {
             // What is not seen in the picture is seen here as glass.
             let color = if object.visible { ground } else { ground.gamma_multiply(0.25) };
             let eye = holders[index].then_some(anatomy.camera.eye);
+            let triangles = detail.of_object(object, coarsened);
+            if let Some(triangles) = &triangles {
+                fewer.push((&*object.name, triangles.len(), object.mesh.triangles().len()));
+            }
+            let triangles = triangles.as_ref().map_or(object.mesh.triangles(), |triangles| triangles.as_slice());
             match walls.is_wall(index) {
-                true => self.solid(object, thinning, (color, eye), (f64::INFINITY, &mut room), Layer::Wall),
-                false => self.solid(object, thinning, (color, eye), (limit, &mut room), Layer::Solid),
+                true => self.solid(object, triangles, (color, eye), (f64::INFINITY, &mut room), Layer::Wall),
+                false => self.solid(object, triangles, (color, eye), (limit, &mut room), Layer::Solid),
             }
             for edge_ends in &object.edges {
                 let ends = [edge_ends.low, edge_ends.high].map(|end| object.positions[end as usize]);
                 self.long_line(ends, limit, 1.0, edge);
             }
         }
+        self.coarser = words_of_fewer(&fewer);
     }
 
-    /// The triangles of an object; of one that holds others, the camera's `eye` says which side is glass.
+    /// Triangles in place of an object's own, or these; of one that holds others, the camera's `eye` says which side is glass.
     fn solid(
         &mut self,
         object: &PlacedObject,
-        thinning: &Thinning,
+        triangles: &[[u32; 3]],
         (color, eye): (Color32, Option<DVec3>),
         (limit, room): (f64, &mut usize),
         layer: Layer,
@@ -299,7 +311,7 @@ impl Stage {
         }
         let normals: Vec<Vec3> = normals.into_iter().map(|normal| normal.normalize_or_zero().as_vec3()).collect();
         let mut shared = vec![NONE; object.positions.len()];
-        for corners in thinning.kept(object.mesh.triangles()) {
+        for &corners in triangles {
             let places = corners.map(at);
             let normal = across(corners).normalize_or_zero().as_vec3();
             let inner = eye.map_or(0.0, |eye| normal.dot((eye - places[0]).as_vec3()).signum());
@@ -344,7 +356,7 @@ impl Stage {
         volume: &ShadowVolume,
         light: &PlacedLight,
         shown: &Toggles,
-        (thinning, strength): (&Thinning, f32),
+        (detail, strength): (&Detail, f32),
         theme: &Theme,
     ) {
         let far = FarEnd::new(light, self.middle, self.radius);
@@ -358,12 +370,12 @@ impl Stage {
             let Some(color) = theme.part(part.part).filter(|_| is_shown) else { continue };
             let color = color.gamma_multiply(share);
             let mut room = MOST_CUTS;
-            let triangles: Box<dyn Iterator<Item = [u32; 3]>> = match part.part {
-                Part::Side => Box::new(part.triangles.iter().copied()),
-                _ => Box::new(thinning.kept(&part.triangles)),
+            let triangles = match part.part {
+                Part::Side => Cow::Borrowed(&part.triangles),
+                _ => detail.of_cap(&volume.vertices, &part.triangles, &far),
             };
             let mut shared = vec![NONE; volume.vertices.len()];
-            for indices in triangles {
+            for &indices in triangles.iter() {
                 let corners = indices.map(|corner| volume.vertices[corner as usize]);
                 let finite = far.finite(corners);
                 if let Some(places) = finite[0]
@@ -529,40 +541,6 @@ fn longest_edge(object: &PlacedObject) -> f64 {
 #[must_use]
 pub fn mix(from: Color32, to: Color32, share: f32) -> Color32 {
     from.lerp_to_gamma(to, share)
-}
-
-/// How large meshes are thinned out: of their triangles only each so manieth is drawn.
-struct Thinning {
-    every: usize,
-}
-
-impl Thinning {
-    fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, holders: &[bool]) -> Thinning {
-        let objects = anatomy.objects.iter().filter(|_| shown.objects).map(|object| object.mesh.triangles().len());
-        let volumes = anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster, holders));
-        let parts = volumes.flat_map(|volume| &volume.parts).filter(|part| match part.part {
-            Part::LightCap => shown.light_caps,
-            Part::DarkCap => shown.dark_caps,
-            _ => false,
-        });
-        let counts = objects.chain(parts.map(|part| part.triangles.len()));
-        let large: usize = counts.filter(|count| *count >= LEAST_TO_THIN).sum();
-        Thinning { every: large.div_ceil(MOST_FACES).max(1) }
-    }
-
-    fn kept<'a>(&self, triangles: &'a [[u32; 3]]) -> impl Iterator<Item = [u32; 3]> + use<'a> {
-        let every = if triangles.len() >= LEAST_TO_THIN { self.every } else { 1 };
-        triangles.iter().step_by(every).copied()
-    }
-
-    fn words(&self, anatomy: &Anatomy) -> Option<String> {
-        let is_large = |object: &&PlacedObject| object.mesh.triangles().len() >= LEAST_TO_THIN;
-        let names: Vec<&str> = anatomy.objects.iter().filter(is_large).map(|object| &*object.name).collect();
-        let (shown, more) = names.split_at(names.len().min(3));
-        let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
-        let words = format!("Thinned out: one of {} triangles of {}{more} is drawn.", self.every, shown.join(", "));
-        (self.every > 1).then_some(words)
-    }
 }
 
 #[cfg(test)]
