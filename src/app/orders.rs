@@ -359,6 +359,18 @@ mod tests {
     }
 
     #[test]
+    fn walls_are_known_before_the_next_step_among_them() {
+        let walls = |generation| match run(1) {
+            Order::Run { request, .. } => Order::Walls { generation, request },
+            other => other,
+        };
+        let mut waiting = waiting([walls(1), run(1), walls(2)]);
+        assert!(matches!(waiting.next(), Some(Order::Walls { generation: 2, .. })));
+        assert!(matches!(waiting.next(), Some(Order::Run { .. })));
+        assert!(waiting.next().is_none());
+    }
+
+    #[test]
     fn a_truth_is_not_lost_to_a_run_but_waits_for_it() {
         let mut waiting = waiting([judge(1), run(1), judge(2)]);
         assert!(matches!(waiting.next(), Some(Order::Run { .. })));

@@ -422,7 +422,7 @@ fn values(
     }
     let width = links.on_surface().and_then(|pixel| readers?.texel_width(texel.face, pixel));
     if let Some(width) = width {
-        values.push(("footprint", format!("{} wide", format::metres(width))));
+        values.push(("texel covers", format::metres(width)));
     }
     if let (Some(_), Some([a, b, c, d])) = (links.pixel, links.footprint) {
         let across = (a.distance(b) + d.distance(c)) / 2.0;

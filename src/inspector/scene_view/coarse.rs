@@ -1,25 +1,27 @@
 //! Large meshes as fewer triangles, so that a view that is turned stays quick.
 //!
 //! A grid is laid over the vertices, and of each cell one stays, the nearest to their mean; triangles go
-//! between those (Rossignac and Borrel 1993). What is closed stays closed: it looks whole, only coarser.
+//! between those (Rossignac and Borrel 1993). What is closed stays closed: it looks whole, only coarser. Caps of
+//! volumes are the object's own triangles, and go with them, so that they lie on it still.
 
-use super::far_end::FarEnd;
 use super::stage::{Choice, Toggles};
-use crate::anatomy::{Anatomy, PlacedObject};
+use crate::anatomy::{Anatomy, PlacedObject, ShadowVolume};
 use crate::inspector::format;
 use crate::plan::Part;
 use crate::scene::Mesh;
-use glam::{DVec3, DVec4};
+use glam::DVec3;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Faces of large meshes that are drawn at most; beyond it these are drawn coarser.
-const MOST_FACES: usize = 16_000;
+const MOST_FACES: usize = 30_000;
 /// Meshes of fewer triangles are large nowhere.
 const LARGE: usize = 2_000;
 /// No mesh is drawn with fewer triangles than this, however many there are.
 const COARSEST: usize = 600;
+/// Single precision moves a vertex by no more than this, in parts of the largest coordinate.
+const ROUNDING: f64 = 1e-5;
 /// Grids that are tried until there are few enough triangles.
 const TRIES: usize = 4;
 /// Cells of one vertex's width of triangles there are about so many triangles to a cell.
@@ -28,20 +30,29 @@ const A_CELL: f64 = 3.0;
 /// Vertex indices of triangles.
 pub type Triangles = Vec<[u32; 3]>;
 
-/// Coarser triangles of meshes, kept while these are shown.
+/// A mesh with fewer triangles, between some of its own vertices.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Coarse {
+    /// Of each vertex the one that stays in its place.
+    stays: Vec<u32>,
+    /// The triangles that are left.
+    pub triangles: Triangles,
+}
+
+/// Coarser meshes, kept while these are shown.
 #[derive(Debug, Default)]
 pub struct Coarsened {
-    kept: HashMap<(u64, usize), Arc<Triangles>>,
+    kept: HashMap<(u64, usize), Arc<Coarse>>,
     /// Those that were asked for since the last [`Coarsened::forget_unused`].
-    used: HashMap<(u64, usize), Arc<Triangles>>,
+    used: HashMap<(u64, usize), Arc<Coarse>>,
 }
 
 impl Coarsened {
-    /// About `most` triangles in place of those of a mesh, between its own vertices; made once.
-    pub fn of(&mut self, mesh: &Mesh, most: usize) -> Arc<Triangles> {
+    /// A mesh with about `most` triangles; made once.
+    pub fn of(&mut self, mesh: &Mesh, most: usize) -> Arc<Coarse> {
         let key = (mesh.content_hash(), most);
         let known = self.used.get(&key).or_else(|| self.kept.get(&key));
-        let found = known.cloned().unwrap_or_else(|| Arc::new(coarser(mesh.positions(), mesh.triangles(), most)));
+        let found = known.cloned().unwrap_or_else(|| Arc::new(Coarse::new(mesh.positions(), mesh.triangles(), most)));
         self.used.insert(key, found.clone());
         found
     }
@@ -80,22 +91,33 @@ impl Detail {
         if count < LARGE { count } else { ((count as f64 * self.share) as usize).max(COARSEST) }
     }
 
-    /// An object's triangles, coarser; `None` where all of them are drawn.
-    pub fn of_object(&self, object: &PlacedObject, coarsened: &mut Coarsened) -> Option<Arc<Triangles>> {
+    /// An object, coarser; `None` where all its triangles are drawn.
+    pub fn of_object(&self, object: &PlacedObject, coarsened: &mut Coarsened) -> Option<Arc<Coarse>> {
         let count = object.mesh.triangles().len();
         (self.most(count) < count).then(|| coarsened.of(&object.mesh, self.most(count)))
     }
 
-    /// The triangles of a volume's cap, coarser where it is large.
-    #[must_use]
-    pub fn of_cap<'a>(&self, vertices: &[DVec4], triangles: &'a Triangles, far: &FarEnd) -> Cow<'a, Triangles> {
-        let most = self.most(triangles.len());
-        if most >= triangles.len() {
-            return Cow::Borrowed(triangles);
-        }
-        let places: Option<Vec<DVec3>> = vertices.iter().map(|vertex| far.place(*vertex)).collect();
-        places.map_or(Cow::Borrowed(triangles), |places| Cow::Owned(coarser(&places, triangles, most)))
+    /// The triangles of a cap of an object's volume, coarser where the object is.
+    pub fn of_cap<'a>(
+        &self,
+        object: &PlacedObject,
+        volume: &ShadowVolume,
+        triangles: &'a Triangles,
+        coarsened: &mut Coarsened,
+    ) -> Cow<'a, Triangles> {
+        let coarse = self.of_object(object, coarsened).filter(|_| is_over(volume, object));
+        let moved = coarse.and_then(|coarse| coarse.moved(triangles));
+        moved.map_or(Cow::Borrowed(triangles), Cow::Owned)
     }
+}
+
+/// Do the volume's vertices begin with those of the object, but for rounding?
+fn is_over(volume: &ShadowVolume, object: &PlacedObject) -> bool {
+    let far = object.positions.iter().fold(0.0_f64, |most, place| most.max(place.abs().max_element()));
+    let is_same = |(vertex, place): (&glam::DVec4, &DVec3)| {
+        vertex.w == 1.0 && (vertex.truncate() - *place).abs().max_element() <= ROUNDING * far.max(f64::MIN_POSITIVE)
+    };
+    volume.vertices.len() >= object.positions.len() && volume.vertices.iter().zip(&object.positions).all(is_same)
 }
 
 /// What is drawn coarser, in words: names, with how many of how many triangles are drawn.
@@ -109,32 +131,58 @@ pub fn words_of_fewer(fewer: &[(&str, usize, usize)]) -> Option<String> {
     (!fewer.is_empty()).then_some(words)
 }
 
-/// About `most` triangles, or fewer, in place of more, between some of the same vertices.
-#[must_use]
-pub fn coarser(positions: &[DVec3], triangles: &[[u32; 3]], most: usize) -> Triangles {
-    if triangles.len() <= most {
-        return triangles.to_vec();
-    }
-    let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length() / 2.0;
-    let area: f64 = triangles.iter().map(|corners| area(corners.map(|corner| positions[corner as usize]))).sum();
-    let mut cell = (A_CELL * area / most.max(1) as f64).sqrt();
-    let mut found = triangles.to_vec();
-    for _ in 0..TRIES {
-        // Without an area there is nothing to be seen.
-        if !(cell > 0.0 && cell.is_finite()) {
-            return Vec::new();
+impl Coarse {
+    /// `most` triangles or fewer.
+    #[must_use]
+    pub fn new(positions: &[DVec3], triangles: &[[u32; 3]], most: usize) -> Coarse {
+        let all = |triangles| Coarse { stays: (0..positions.len() as u32).collect(), triangles };
+        if triangles.len() <= most {
+            return all(triangles.to_vec());
         }
-        found = clustered(positions, triangles, cell);
-        if found.len() <= most {
-            break;
+        let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length() / 2.0;
+        let area: f64 = triangles.iter().map(|corners| area(corners.map(|corner| positions[corner as usize]))).sum();
+        let mut cell = (A_CELL * area / most.max(1) as f64).sqrt();
+        let mut found = all(Vec::new());
+        for _ in 0..TRIES {
+            // Without an area there is nothing to be seen.
+            if !(cell > 0.0 && cell.is_finite()) {
+                break;
+            }
+            found.stays = staying(positions, triangles, cell);
+            found.triangles = found.between(triangles);
+            if found.triangles.len() <= most {
+                break;
+            }
+            cell *= 1.05 * (found.triangles.len() as f64 / most as f64).sqrt();
         }
-        cell *= 1.05 * (found.len() as f64 / most as f64).sqrt();
+        found
     }
-    found
+
+    /// Triangles of the mesh between what stays of its vertices, without those that are left no area.
+    fn between(&self, triangles: &[[u32; 3]]) -> Triangles {
+        let moved = triangles.iter().map(|corners| corners.map(|corner| self.stays[corner as usize]));
+        moved.filter(|[a, b, c]| a != b && b != c && c != a).collect()
+    }
+
+    /// The same for triangles between the mesh's vertices and, after them, the same vertices carried away from the
+    /// light; `None` where they have others.
+    fn moved(&self, triangles: &[[u32; 3]]) -> Option<Triangles> {
+        let count = self.stays.len() as u32;
+        let near = |corners: &[u32; 3]| corners.iter().all(|corner| *corner < count);
+        let far = |corners: &[u32; 3]| corners.iter().all(|corner| (count..2 * count).contains(corner));
+        if triangles.iter().all(near) {
+            Some(self.between(triangles))
+        } else if triangles.iter().all(far) {
+            let back: Triangles = triangles.iter().map(|corners| corners.map(|corner| corner - count)).collect();
+            Some(self.between(&back).into_iter().map(|corners| corners.map(|corner| corner + count)).collect())
+        } else {
+            None
+        }
+    }
 }
 
-/// The triangles between the vertices that stay, of cells of this width.
-fn clustered(positions: &[DVec3], triangles: &[[u32; 3]], cell: f64) -> Triangles {
+/// Of each vertex the one that stays of its cell; cells are so wide.
+fn staying(positions: &[DVec3], triangles: &[[u32; 3]], cell: f64) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     struct Cell {
         sum: DVec3,
@@ -164,9 +212,11 @@ fn clustered(positions: &[DVec3], triangles: &[[u32; 3]], cell: f64) -> Triangle
             of.nearest = (distance, vertex as u32);
         }
     }
-    let stays = |corner: u32| cells[of_vertex[corner as usize] as usize].nearest.1;
-    let moved = triangles.iter().map(|corners| corners.map(stays));
-    moved.filter(|[a, b, c]| a != b && b != c && c != a).collect()
+    let of_slot = |(vertex, slot): (usize, &u32)| match cells.get(*slot as usize) {
+        Some(cell) => cell.nearest.1,
+        None => vertex as u32,
+    };
+    of_vertex.iter().enumerate().map(of_slot).collect()
 }
 
 #[cfg(test)]
@@ -202,7 +252,7 @@ mod tests {
         let (positions, triangles) = ball(264, 133);
         assert_eq!(triangles.len(), 69_696);
         for most in [10_000, 4_000] {
-            let found = coarser(&positions, &triangles, most);
+            let found = Coarse::new(&positions, &triangles, most).triangles;
             assert!(found.len() <= most && 3 * found.len() >= most, "{} for {most}", found.len());
             let mut edges = BTreeMap::new();
             for [a, b, c] in &found {
@@ -217,12 +267,30 @@ mod tests {
         }
     }
 
+    /// Near the light as far away from it: the triangles of a cap lie on those of the object.
+    #[test]
+    fn a_cap_is_some_of_the_objects_coarser_triangles_near_and_far() {
+        let (positions, triangles) = ball(80, 40);
+        let coarse = Coarse::new(&positions, &triangles, 800);
+        let lit: Triangles =
+            triangles.iter().filter(|corners| positions[corners[0] as usize].y > 0.0).copied().collect();
+        let near = coarse.moved(&lit).expect("the mesh's own vertices");
+        assert!(near.len() > 300 && near.iter().all(|corners| coarse.triangles.contains(corners)));
+        let count = positions.len() as u32;
+        let away = |triangles: &Triangles| -> Triangles {
+            triangles.iter().map(|one| one.map(|corner| corner + count)).collect()
+        };
+        assert_eq!(coarse.moved(&away(&lit)), Some(away(&near)));
+        assert_eq!(coarse.moved(&[[0, 1, count]]), None);
+    }
+
     #[test]
     fn what_is_small_or_has_no_area_is_no_trouble_and_a_mesh_is_made_coarser_once() {
         let (positions, triangles) = ball(12, 6);
-        assert_eq!(coarser(&positions, &triangles, 1_000), triangles);
-        assert!(coarser(&[DVec3::ONE; 3], &[[0, 1, 2]; 9], 4).is_empty());
-        assert!(coarser(&[DVec3::NAN; 3], &[[0, 1, 2]; 9], 4).is_empty());
+        assert_eq!(Coarse::new(&positions, &triangles, 1_000).triangles, triangles);
+        for place in [DVec3::ONE, DVec3::NAN] {
+            assert!(Coarse::new(&[place; 3], &[[0, 1, 2]; 9], 4).triangles.is_empty());
+        }
         let builder = crate::scene::MeshBuilder { positions, triangles, ..crate::scene::MeshBuilder::default() };
         let mesh = builder.build().expect("a mesh");
         let mut coarsened = Coarsened::default();

@@ -42,23 +42,16 @@ impl FarEnd {
         matches!(self, FarEnd::Sphere { .. }) || corners.iter().all(|corner| corner.w != 0.0)
     }
 
-    /// A finite place for a corner; `None` where it has none of its own.
-    #[must_use]
-    pub fn place(&self, corner: DVec4) -> Option<DVec3> {
-        match self {
-            _ if corner.w != 0.0 => Some(corner.truncate() / corner.w),
-            FarEnd::Sphere { light, reach } => Some(*light + corner.truncate().normalize_or_zero() * *reach),
-            FarEnd::Plane(_) => None,
-        }
-    }
-
     /// The finite part of a triangle: none, or up to two.
     #[must_use]
     pub fn finite(&self, corners: [DVec4; 3]) -> [Option<[DVec3; 3]>; 2] {
         match self {
-            FarEnd::Sphere { .. } => {
-                let [a, b, c] = corners.map(|corner| self.place(corner));
-                [a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]), None]
+            FarEnd::Sphere { light, reach } => {
+                let at = |corner: DVec4| match corner.w == 0.0 {
+                    true => *light + corner.truncate().normalize_or_zero() * *reach,
+                    false => corner.truncate() / corner.w,
+                };
+                [Some(corners.map(at)), None]
             }
             FarEnd::Plane(_) if corners.iter().all(|corner| corner.w != 0.0) => {
                 [Some(corners.map(|corner| corner.truncate() / corner.w)), None]

@@ -226,8 +226,9 @@ impl Stage {
         // Through many shells as much is seen as through a few.
         let strength = 1.0 / (volumes().count().max(1) as f32).sqrt().max(1.0);
         for volume in volumes() {
-            if let Some(light) = anatomy.lights.get(volume.light) {
-                stage.volume(volume, light, shown, (&detail, strength), theme);
+            if let (Some(light), Some(caster)) = (anatomy.lights.get(volume.light), anatomy.objects.get(volume.caster))
+            {
+                stage.volume((volume, caster, light), shown, (&detail, coarsened), strength, theme);
             }
         }
         if shown.silhouettes {
@@ -276,11 +277,11 @@ impl Stage {
             // What is not seen in the picture is seen here as glass.
             let color = if object.visible { ground } else { ground.gamma_multiply(0.25) };
             let eye = holders[index].then_some(anatomy.camera.eye);
-            let triangles = detail.of_object(object, coarsened);
-            if let Some(triangles) = &triangles {
-                fewer.push((&*object.name, triangles.len(), object.mesh.triangles().len()));
+            let coarse = detail.of_object(object, coarsened);
+            if let Some(coarse) = &coarse {
+                fewer.push((&*object.name, coarse.triangles.len(), object.mesh.triangles().len()));
             }
-            let triangles = triangles.as_ref().map_or(object.mesh.triangles(), |triangles| triangles.as_slice());
+            let triangles = coarse.as_ref().map_or(object.mesh.triangles(), |coarse| coarse.triangles.as_slice());
             match walls.is_wall(index) {
                 true => self.solid(object, triangles, (color, eye), (f64::INFINITY, &mut room), Layer::Wall),
                 false => self.solid(object, triangles, (color, eye), (limit, &mut room), Layer::Solid),
@@ -353,10 +354,10 @@ impl Stage {
 
     fn volume(
         &mut self,
-        volume: &ShadowVolume,
-        light: &PlacedLight,
+        (volume, caster, light): (&ShadowVolume, &PlacedObject, &PlacedLight),
         shown: &Toggles,
-        (detail, strength): (&Detail, f32),
+        (detail, coarsened): (&Detail, &mut Coarsened),
+        strength: f32,
         theme: &Theme,
     ) {
         let far = FarEnd::new(light, self.middle, self.radius);
@@ -372,7 +373,7 @@ impl Stage {
             let mut room = MOST_CUTS;
             let triangles = match part.part {
                 Part::Side => Cow::Borrowed(&part.triangles),
-                _ => detail.of_cap(&volume.vertices, &part.triangles, &far),
+                _ => detail.of_cap(caster, volume, &part.triangles, coarsened),
             };
             let mut shared = vec![NONE; volume.vertices.len()];
             for &indices in triangles.iter() {
