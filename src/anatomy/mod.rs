@@ -147,6 +147,14 @@ pub struct NearClip {
     pub apex: DVec4,
 }
 
+impl Frustum {
+    /// Is its far end one place, the light?
+    #[must_use]
+    pub fn ends_at_light(&self) -> bool {
+        self.far.iter().all(|corner| *corner == self.far[0])
+    }
+}
+
 impl Anatomy {
     /// Smallest and largest corner of all objects that are drawn or cast, and of the camera and point lights;
     /// `None` where there is nothing.

@@ -272,7 +272,7 @@ fn a_large_mesh_is_drawn_coarser_but_whole_and_the_legend_says_so() {
     };
     let (all, alone, ball) = (unlike(0, 3), unlike(1, 4), unlike(4, 5));
     println!("{all} texels differ, without volumes {alone}; objects take {ball}");
-    assert!(ball > 5_000 && alone * 100 < ball && all * 50 < ball, "{all}, {alone} of {ball}");
+    assert!(ball > 5_000 && alone < 400 && all < 2_000, "{all}, {alone} of {ball}");
 }
 
 /// The times of a machine that others use too are no ground to fail: they are printed, and a drag must not

@@ -7,7 +7,7 @@
 use super::coarse::{Coarsened, Detail, words_of_fewer};
 use super::far_end::FarEnd;
 use super::walls::{Sides, Walls};
-use crate::anatomy::{Anatomy, PlacedLight, PlacedObject, ShadowVolume, Silhouette, ViewOf};
+use crate::anatomy::{Anatomy, Frustum, PlacedLight, PlacedObject, ShadowVolume, Silhouette, ViewOf};
 use crate::inspector::theme::Theme;
 use crate::plan::Part;
 use egui::Color32;
@@ -25,6 +25,8 @@ const SHELL_PIECE: f64 = 0.7;
 const SMOOTH: f32 = 0.8;
 /// A corner that is not there yet.
 const NONE: u32 = u32::MAX;
+/// Frusta beyond so many are drawn fainter.
+const QUIET: f32 = 4.0;
 /// Multiplicities beyond one that are written beside their edges, at most.
 const MOST_NUMBERS: usize = 400;
 
@@ -414,13 +416,22 @@ impl Stage {
     }
 
     fn frusta(&mut self, anatomy: &Anatomy, choice: Choice, theme: &Theme) {
-        for frustum in &anatomy.frusta {
-            let color = match frustum.of {
-                ViewOf::Camera => theme.text,
-                ViewOf::Map { light, caster, .. } if choice.has_frustum(light, caster) => theme.lit,
-                ViewOf::Map { .. } => continue,
+        let is_shown = |frustum: &&Frustum| match frustum.of {
+            ViewOf::Camera => true,
+            ViewOf::Map { light, caster, .. } => choice.has_frustum(light, caster),
+        };
+        let shown = || anatomy.frusta.iter().filter(is_shown);
+        // Many are as loud as a few.
+        let strength = (QUIET / shown().count().max(1) as f32).sqrt().clamp(0.25, 1.0);
+        for frustum in shown() {
+            let (color, fill) = match frustum.of {
+                ViewOf::Camera => (theme.text.gamma_multiply(0.75), 0.25),
+                // What a texture or a silhouette is seen through lies on a surface, or there are many.
+                ViewOf::Map { caster, .. } if caster.is_some() || frustum.ends_at_light() => {
+                    (theme.lit.gamma_multiply(0.75 * strength), 0.0)
+                }
+                ViewOf::Map { .. } => (theme.lit.gamma_multiply(0.75 * strength), 0.25),
             };
-            let color = color.gamma_multiply(0.75);
             let apart = |at: DVec4| at.truncate() / at.w;
             let near = frustum.near.map(apart);
             let reach = (self.middle - near[0]).length() + self.radius;
@@ -438,7 +449,9 @@ impl Stage {
                 }
             }
             for corners in [[near[0], near[1], near[2]], [near[0], near[2], near[3]]] {
-                self.shell(corners, color.gamma_multiply(0.25));
+                if fill > 0.0 {
+                    self.shell(corners, color.gamma_multiply(fill));
+                }
             }
         }
     }
