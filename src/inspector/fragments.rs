@@ -70,6 +70,14 @@ impl Fragments {
         }))
     }
 
+    /// Where the surface of a pixel is, without its normal, and whether it looks the light's map up; `None` where no
+    /// surface is.
+    #[must_use]
+    pub fn place(&self, at: [u32; 2]) -> Option<(DVec3, bool)> {
+        let world = self.surface.at(at, self.depth.depth_at(at)?)?;
+        Some((world, self.drawn.as_ref().and_then(|drawn| drawn.place(at)).is_none_or(|place| place.reads)))
+    }
+
     /// Where the corners of a pixel lie on a plane, in order round it; `None` where one sees nothing of it.
     #[must_use]
     pub fn corners(&self, [x, y]: [u32; 2], fragment: &Fragment) -> Option<[DVec3; 4]> {
@@ -141,9 +149,13 @@ impl Drawn {
         Drawn { plan: plan.clone(), ids, places }
     }
 
-    fn at(&self, [x, y]: [u32; 2], surface: &Surface) -> Option<Fragment> {
+    fn place(&self, [x, y]: [u32; 2]) -> Option<Place> {
         let index = (y as usize).checked_mul(self.plan.size[0] as usize)? + x as usize;
-        let place = self.places[(*self.ids.get(index)? as usize).checked_sub(1)?];
+        self.places.get((*self.ids.get(index)? as usize).checked_sub(1)?).copied()
+    }
+
+    fn at(&self, [x, y]: [u32; 2], surface: &Surface) -> Option<Fragment> {
+        let place = self.place([x, y])?;
         let (mesh, [a, b, c]) = triangle(&self.plan, place)?;
         let ray = surface.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]);
         let across = (b - a).cross(c - a);

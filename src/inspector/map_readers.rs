@@ -5,6 +5,7 @@ use super::fragments::{Fragment, Fragments};
 use crate::capture::{Capture, CapturedMap};
 use crate::plan::FramePlan;
 use glam::{DMat4, DVec2, DVec3, DVec4};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Points on the border between two faces belong to both, as in `arriving_by_map.wgsl`.
@@ -38,14 +39,14 @@ impl MapReaders {
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapReaders> {
         let lookup = Lookup::new(capture, light)?;
         let fragments = Fragments::new(capture, plan, light)?;
-        let [width, height] = capture.size;
-        let mut first = Vec::with_capacity(width as usize * height as usize);
-        for y in 0..height {
-            for x in 0..width {
-                let fragment = fragments.at([x, y]).filter(|fragment| fragment.reads);
-                first.push(fragment.and_then(|fragment| lookup.first(&fragment)));
-            }
-        }
+        let of_pixel = |at: [u32; 2]| match lookup.bias_normal == 0.0 {
+            // Normals take time, and change nothing.
+            true => fragments.place(at).filter(|(_, reads)| *reads).and_then(|(world, _)| lookup.first_of(world)),
+            false => fragments.at(at).filter(|fragment| fragment.reads).and_then(|fragment| lookup.first(&fragment)),
+        };
+        let [width, height] = capture.size.map(|side| side as usize);
+        let place = |index: usize| [(index % width) as u32, (index / width) as u32];
+        let first = (0..width * height).into_par_iter().map(|index| of_pixel(place(index))).collect();
         Some(MapReaders { size: capture.size, lookup, fragments, first })
     }
 
@@ -171,14 +172,17 @@ impl Lookup {
         })
     }
 
+    /// The face that sees a point, and where it is in its clip space.
+    fn seen(&self, world: DVec3) -> Option<(usize, DVec4)> {
+        let is_in = |clip: &DVec4| clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w * BORDER;
+        let clips = self.matrices.iter().map(|matrix| *matrix * world.extend(1.0)).enumerate();
+        clips.into_iter().find(|(_, clip)| is_in(clip))
+    }
+
     /// The face that a fragment reads, and where it is looked up in its clip space. The face is chosen before the
     /// point is moved.
     fn place(&self, fragment: &Fragment) -> Option<(usize, DVec4)> {
-        let is_in = |matrix: &DMat4| {
-            let clip = *matrix * fragment.world.extend(1.0);
-            clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w * BORDER
-        };
-        let face = self.matrices.iter().position(is_in)?;
+        let (face, _) = self.seen(fragment.world)?;
         Some((face, self.matrices[face] * (fragment.world + self.push(face, fragment)?).extend(1.0)))
     }
 
@@ -211,8 +215,17 @@ impl Lookup {
     /// Face and first texel that a fragment reads.
     fn first(&self, fragment: &Fragment) -> Option<[i16; 3]> {
         let (face, clip) = self.place(fragment)?;
+        Some(self.first_at(face, clip))
+    }
+
+    /// The same of a point that is not moved.
+    fn first_of(&self, world: DVec3) -> Option<[i16; 3]> {
+        self.seen(world).map(|(face, clip)| self.first_at(face, clip))
+    }
+
+    fn first_at(&self, face: usize, clip: DVec4) -> [i16; 3] {
         let first = (self.texel(clip) - 0.5 * f64::from(self.filter - 1)).floor();
-        Some([face as i16, first.x as i16, first.y as i16])
+        [face as i16, first.x as i16, first.y as i16]
     }
 }
 

@@ -147,6 +147,27 @@ fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
     assert!(unlike > 500, "the bias moves what is read: {unlike}");
 }
 
+/// The times of a machine that others use too are no ground to fail: they are printed, and linking must not take
+/// seconds.
+#[test]
+fn a_large_picture_is_linked_with_its_map_soon() {
+    let mut session = common::session();
+    let scene = open(&OpenSpec::new("tori")).expect("tori");
+    for bias in ["0", "1.5"] {
+        let mut request = common::request(Technique::ShadowMap, [1280, 720]);
+        request.choice.set("bias-normal", bias).expect("a setting");
+        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+        let mut inspector = super::pictures::inspector(&scene, &request, &Arc::new(capture), [640, 360]);
+        inspector.set_plan(Arc::new(plan));
+        let mut harness = harness_of(inspector, [1280.0, 800.0]);
+        let start = std::time::Instant::now();
+        open_tab(&mut harness);
+        let took = start.elapsed();
+        println!("bias-normal {bias}: the tab over 1280x720 pixels opens in {took:?}");
+        assert!(harness.state().inspector.map_texel_of([640, 360]).is_some() && took.as_secs_f64() < 3.0, "{took:?}");
+    }
+}
+
 /// Of the pixels that are lit or in shadow of the first light: how many their texels explain, how many there are,
 /// and how many read another texel than the one where their surface itself lies.
 fn agreement(harness: &Harness<Seen>, capture: &Capture) -> (u32, u32, u32) {
