@@ -266,12 +266,29 @@ fn a_count_beyond_eight_bits_is_kept_in_a_float() {
         let capture = session.capture(&scene, &auto("caster")).expect("a capture");
         let full = judged(&mut session, &scene, Technique::Auto, SIZE);
         assert_eq!(full.lights[0].truth.as_ref().map(|truth| truth.error.wrong()), Some(0), "{count}");
-        let is_of_count =
-            |step: &Step| matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Count);
-        capture.steps.iter().any(is_of_count)
+        counts_in_float(&capture)
     };
     assert!(!stack(100));
     assert!(stack(256));
+}
+
+fn counts_in_float(capture: &Capture) -> bool {
+    let is_of_count =
+        |step: &Step| matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Count);
+    capture.steps.iter().any(is_of_count)
+}
+
+/// What faces away casts nothing where that is proven: 150 closed shells count 150, and fit.
+#[test]
+fn shells_whose_far_sides_cast_nothing_count_once_each() {
+    let mut session = session();
+    let gate = builtin::ALL.iter().find(|of| of.name == "gate").expect("a scene");
+    let scene = gate.scene().expect("a scene");
+    let of = |capture: &Capture| capture.left_out.iter().any(|left| left.what == "eight-bit count");
+    for (leave_out, in_float) in [("all", false), ("away-triangles", false), ("caster", true), ("none", true)] {
+        let capture = session.capture(&scene, &auto(leave_out)).expect("a capture");
+        assert_eq!((counts_in_float(&capture), of(&capture)), (in_float, in_float), "{leave_out}");
+    }
 }
 
 /// Every built-in scene from random places: `auto` is right, says what z-fail says, and leaves out nothing

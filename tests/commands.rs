@@ -303,6 +303,19 @@ fn bench_panels_steps_in_the_next_frame_and_rests_when_idle() {
 }
 
 #[test]
+fn a_word_that_no_picture_s_name_has_is_wrong_usage_and_the_names_are_told() {
+    let folder = folder();
+    let output = run(folder.path(), &["pictures", "-o", "shots", "--only", "sunset"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = text(&output.stderr);
+    for name in ["`sunset`", "inspector", "light-theme", "tour"] {
+        assert!(told.contains(name), "`{name}` is not in {told}");
+    }
+    assert_eq!(told.lines().count(), 1, "{told}");
+    assert!(!folder.path().join("shots").exists(), "no empty folder is left behind");
+}
+
+#[test]
 fn pictures_of_the_window_are_taken_without_a_display() {
     let folder = folder();
     let output = run(folder.path(), &["pictures", "-o", "shots", "--only", "state"]);

@@ -4,6 +4,7 @@ use super::news::{Tell, WindowNews};
 use crate::capture::disk;
 use crate::files::write_whole;
 use crate::inspector::ExportData;
+use crate::picture::Picture;
 use std::path::{Path, PathBuf};
 
 /// How an export ended.
@@ -50,11 +51,13 @@ fn write(data: &ExportData, path: &str, replace: bool) -> Exported {
         return problem;
     }
     let failed = |error: &dyn std::fmt::Display| format!("{path} can't be written ({error}): choose another place");
+    let png = |picture: &Picture| match picture.to_png() {
+        Ok(png) => write_whole(&file, &png).map_err(|error| failed(&error)),
+        Err(error) => Err(failed(&error)),
+    };
     let written = match data {
-        ExportData::Picture(picture) => match picture.to_png() {
-            Ok(png) => write_whole(&file, &png).map_err(|error| failed(&error)),
-            Err(error) => Err(failed(&error)),
-        },
+        ExportData::Picture(picture) => png(picture),
+        ExportData::AsShown(drawing) => png(&drawing.finish()),
         ExportData::Data(images) => disk::write_arrays(&file, images).map_err(|error| error.to_string()),
         ExportData::Capture(_) | ExportData::Scene(_) => Err("it is written elsewhere".to_owned()),
     };
@@ -68,7 +71,6 @@ fn write(data: &ExportData, path: &str, replace: bool) -> Exported {
 mod tests {
     use super::*;
     use crate::capture::{Image, PixelFormat};
-    use crate::picture::Picture;
     use std::sync::Arc;
 
     #[test]

@@ -9,6 +9,7 @@
 //! Nothing blocks: the worker opens files and renders, the window only draws. The worker starts
 //! before the window is made, so that the GPU's first frame and the window's come together.
 
+mod allocator;
 mod desk;
 mod export;
 pub mod headless;
@@ -77,6 +78,7 @@ pub enum AppError {
 /// # Errors
 /// No window can be made; nothing was rendered then, and the caller may capture instead.
 pub fn run(request: ViewRequest) -> Result<(), AppError> {
+    allocator::give_back_at_once();
     window::run(request)
 }
 

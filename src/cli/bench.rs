@@ -11,6 +11,7 @@ use crate::session::{
 use crate::technique::{Choice, Technique};
 use clap::Args;
 use glam::DVec3;
+use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -153,6 +154,7 @@ fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
     let everyone = Measurement { choices, size, runs: 1 };
     for scene in scenes(arguments, built_in)? {
         let (mut to_fastest, mut to_z_fail, mut wrong) = (Vec::new(), Vec::new(), 0);
+        let mut rivals: BTreeMap<&str, usize> = BTreeMap::new();
         // From some places, such as behind the walls, nothing lit or dark is seen.
         let places =
             (0..10 * arguments.cameras).map(|seed| Scene { camera: scene.camera.anywhere(seed), ..scene.clone() });
@@ -172,17 +174,21 @@ fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
             let right = measured.iter().filter(|one| one.error.wrong() == 0);
             let others = right.filter(|one| one.choice.technique() != Technique::Auto);
             let fastest = others.min_by(|a, b| frame_ms(a).total_cmp(&frame_ms(b)));
-            to_fastest.extend(fastest.map(|fastest| frame_ms(auto) / frame_ms(fastest)));
+            if let Some(fastest) = fastest {
+                to_fastest.push(frame_ms(auto) / frame_ms(fastest));
+                *rivals.entry(fastest.choice.technique().name()).or_default() += 1;
+            }
             to_z_fail.push(frame_ms(auto) / frame_ms(z_fail));
             wrong += auto.error.wrong();
         }
         output::print(&format!(
-            "{}, {} cameras, {}x{}: {wrong} wrong pixels\n  auto/fastest that is right: {}\n  auto/z-fail: {}\n",
+            "{}, {} cameras, {}x{}: {wrong} wrong pixels\n  auto/fastest that is right: {}{}\n  auto/z-fail: {}\n",
             scene.name,
             to_z_fail.len(),
             size[0],
             size[1],
             spread(to_fastest),
+            named(&rivals),
             spread(to_z_fail),
         ))?;
     }
@@ -200,6 +206,12 @@ fn contenders(tried: &[Measured]) -> Vec<Choice> {
     let always = |one: &&Measured| matches!(one.choice.technique(), Technique::Auto | Technique::ZFail);
     let may_win = |one: &&Measured| one.error.wrong() == 0 && frame_ms(one) <= MAY_WIN * fastest;
     tried.iter().filter(|one| always(one) || may_win(one)).map(|one| one.choice.clone()).collect()
+}
+
+/// `; that was planar 3, z-fail 12`: who was the fastest, in how many places.
+fn named(rivals: &BTreeMap<&str, usize>) -> String {
+    let each: Vec<String> = rivals.iter().map(|(name, times)| format!("{name} {times}")).collect();
+    if each.is_empty() { String::new() } else { format!("; that was {}", each.join(", ")) }
 }
 
 /// Median and ends of some ratios.

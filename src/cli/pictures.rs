@@ -64,6 +64,8 @@ mod shots {
 
     /// The picture in it.
     const SIZE: [u32; 2] = [640, 480];
+    /// Name of the animated tour.
+    const TOUR: &str = "tour";
     /// How long a stop of the animated tour is shown, milliseconds.
     const STOP_MS: u16 = 3500;
     /// The animated tour's window, points.
@@ -144,17 +146,28 @@ mod shots {
         only: &str,
         (window, scale): ([f32; 2], f32),
     ) -> Result<(), CliError> {
+        let wanted: Vec<Shot> = shots().into_iter().filter(|shot| shot.name.contains(only)).collect();
+        let wants_tour = TOUR.contains(only);
+        if wanted.is_empty() && !wants_tour {
+            return Err(CliError::Usage(nothing_named(only)));
+        }
         let folder = Path::new(folder);
         std::fs::create_dir_all(folder)
             .map_err(|source| CliError::Output { path: folder.display().to_string(), source })?;
-        for shot in shots().iter().filter(|shot| shot.name.contains(only)) {
+        for shot in &wanted {
             let picture = take(shot, adapter, (window, scale))?;
             write(folder, &format!("{}.png", shot.name), &picture.to_png().map_err(encoding)?)?;
         }
-        if "tour".contains(only) {
-            write(folder, "tour.png", &tour(adapter)?)?;
+        if wants_tour {
+            write(folder, &format!("{TOUR}.png"), &tour(adapter)?)?;
         }
         Ok(())
+    }
+
+    /// No picture's name has the word: which names there are.
+    fn nothing_named(only: &str) -> String {
+        let names: Vec<&str> = shots().iter().map(|shot| shot.name).chain([TOUR]).collect();
+        format!("no picture's name has `{only}`: give `--only` a part of one of {}", names.join(", "))
     }
 
     fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), CliError> {

@@ -1,8 +1,9 @@
 //! How many casting triangles a light's ray can meet at most: eight bits hold 255.
 //!
 //! All directions from a light are divided into cells until none is met by more than the limit, or one
-//! that is small still is. A cell is the cone between four planes through the light; a triangle that
-//! no plane has outside is taken to be in it. So the answer errs to the safe side.
+//! that is small still is. A cell is the cone between four planes through the light. A triangle that one
+//! of them has outside is not in it, nor is one that has the whole cell beyond the plane through the light
+//! and one of its edges; all others are taken to be in it. So the answer errs to the safe side.
 
 use glam::{DVec3, DVec4};
 
@@ -38,6 +39,9 @@ pub fn may_exceed(triangles: &[[DVec3; 3]], light: DVec4, limit: usize) -> bool 
     Cell { low: [low.x, low.y], high: [high.x, high.y] }.exceeds(&triangles, limit, MOST_HALVINGS)
 }
 
+/// What rounding may make of a sine of 0: some hundred times more than it does.
+const FLAT: f64 = 1e-13;
+
 /// Directions (x, y, 1) with x and y in a range.
 #[derive(Clone, Copy)]
 struct Cell {
@@ -61,7 +65,7 @@ impl Cell {
         quarters.iter().any(|quarter| quarter.exceeds(&quarter.of(triangles), limit, halvings - 1))
     }
 
-    /// Those that none of the cell's planes has outside.
+    /// Those that may reach into the cell.
     fn of(&self, triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 3]> {
         let is_in = |corners: &&[DVec3; 3]| {
             let some = |inside: &dyn Fn(&DVec3) -> bool| corners.iter().any(inside);
@@ -70,8 +74,26 @@ impl Cell {
                 && some(&|p| p.x <= self.high[0] * p.z)
                 && some(&|p| p.y >= self.low[1] * p.z)
                 && some(&|p| p.y <= self.high[1] * p.z)
+                && !self.is_beyond_an_edge(corners)
         };
         triangles.iter().filter(is_in).copied().collect()
+    }
+
+    /// Does a plane through the light and an edge of the triangle have the triangle on its one side, and
+    /// all of the cell on the other?
+    fn is_beyond_an_edge(&self, corners: &[DVec3; 3]) -> bool {
+        let ([left, lower], [right, upper]) = (self.low, self.high);
+        let cell = [[left, lower], [right, lower], [left, upper], [right, upper]].map(|[x, y]| DVec3::new(x, y, 1.0));
+        (0..3).any(|first| {
+            let [a, b, c] = [0, 1, 2].map(|step| corners[(first + step) % 3]);
+            let normal = a.cross(b);
+            // Of products of these lengths, rounding leaves less.
+            let doubt = FLAT * a.length() * b.length();
+            let side = normal.dot(c);
+            let inwards = if side > doubt * c.length() { 1.0 } else { -1.0 };
+            let is_sure = side.abs() > doubt * c.length();
+            is_sure && cell.iter().all(|corner| inwards * normal.dot(*corner) < -doubt * corner.length())
+        })
     }
 }
 
@@ -93,6 +115,22 @@ mod tests {
         }
         // From beside it, a ray meets a few.
         assert!(!may_exceed(&stack(256), DVec4::new(40.0, 1.1, 0.1, 1.0), 255));
+    }
+
+    /// Boards of two triangles each, of which a ray meets one: both only where it meets the diagonal.
+    #[test]
+    fn halves_of_a_board_count_as_one_layer_off_their_diagonal() {
+        let board = |height: f64| {
+            let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+            let [a, b, c, d] = corners.map(|[x, z]| DVec3::new(x, height, z));
+            [[a, b, c], [a, c, d]]
+        };
+        let stack: Vec<_> = (0..200).flat_map(|index| board(f64::from(index) * 0.01)).collect();
+        let beside = DVec4::new(0.3, 9.0, -0.1, 1.0);
+        assert!(!may_exceed(&stack, beside, 255));
+        assert!(may_exceed(&stack, beside, 199));
+        // From the plane of all diagonals, a ray does meet both halves of each.
+        assert!(may_exceed(&stack, DVec4::new(0.3, 9.0, 0.3, 1.0), 255));
     }
 
     /// A torus of many triangles has four layers, wherever the light is.

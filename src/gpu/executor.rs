@@ -9,7 +9,7 @@ use super::queries::{Notes, Samples, Timestamps};
 use super::readback::{self, Change, StagedPass, color_change, depth_change, stencil_change};
 use super::{Context, GpuError, features};
 use crate::capture::{Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
-use crate::plan::{AttachmentRole, Draw, FramePlan, Pass, lint};
+use crate::plan::{AttachmentRole, Draw, FramePlan, LightId, Pass, lint};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wgpu::{CommandEncoder, LoadOp, Operations, RenderPass, StoreOp};
@@ -48,6 +48,8 @@ enum Mode {
     Frame,
     /// Timed passes, a snapshot after each.
     Snapshots,
+    /// All passes, but only the labels of lights are kept.
+    Labels,
     /// All passes, a snapshot after each.
     Everything,
 }
@@ -120,7 +122,7 @@ impl Executor {
         run(prepared, mode, &Notes::default())?;
         let took = start.elapsed();
         if snapshots {
-            staged(prepared, mode).flat_map(StagedPass::iter).for_each(readback::Staging::unmap);
+            staged(prepared, mode)?.flat_map(StagedPass::iter).for_each(readback::Staging::unmap);
         }
         Ok(took)
     }
@@ -181,6 +183,25 @@ impl Executor {
         };
         collect(&prepared, &times, kept)
     }
+
+    /// Runs all passes and keeps the labels of each light: what is lit, and what is in shadow. Nothing
+    /// else is copied, so that the largest maps cost no memory twice.
+    ///
+    /// # Errors
+    /// A driver that fails.
+    pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
+        run(&prepared, Mode::Labels, &Notes::default())?;
+        let plan = prepared.plan;
+        let mut labels = vec![None; plan.lights.len()];
+        for (index, pass) in plan.passes.iter().enumerate() {
+            if let Some(light) = labelled(plan, pass) {
+                let staged = prepared.staged(index)?;
+                let left = after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
+                keep(&mut labels[light.0], left);
+            }
+        }
+        Ok(labels)
+    }
 }
 
 impl Notes {
@@ -193,13 +214,31 @@ impl Notes {
 
 impl Mode {
     fn runs(self, pass: &Pass) -> bool {
-        pass.timed || self == Mode::Everything
+        pass.timed || matches!(self, Mode::Labels | Mode::Everything)
+    }
+
+    fn copies(self, plan: &FramePlan, pass: &Pass) -> bool {
+        match self {
+            Mode::Frame => false,
+            Mode::Labels => labelled(plan, pass).is_some(),
+            Mode::Snapshots | Mode::Everything => self.runs(pass),
+        }
     }
 }
 
-fn staged<'a>(prepared: &'a Prepared, mode: Mode) -> impl Iterator<Item = &'a StagedPass> {
-    let passes = prepared.plan.passes.iter().zip(&prepared.staged);
-    passes.filter(move |(pass, _)| mode.runs(pass)).map(|(_, staged)| staged)
+/// The light whose labels the pass writes.
+fn labelled(plan: &FramePlan, pass: &Pass) -> Option<LightId> {
+    match plan.attachment(pass.color.as_ref()?.attachment).role {
+        AttachmentRole::Labels(light) => Some(light),
+        _ => None,
+    }
+}
+
+/// The copies that a mode makes.
+fn staged<'a>(prepared: &'a Prepared, mode: Mode) -> Result<impl Iterator<Item = &'a StagedPass>, GpuError> {
+    let plan = prepared.plan;
+    let copied = plan.passes.iter().enumerate().filter(|(_, pass)| mode.copies(plan, pass));
+    Ok(copied.map(|(index, _)| prepared.staged(index)).collect::<Result<Vec<_>, _>>()?.into_iter())
 }
 
 /// Makes the pictures that come from the CPU and hands them to the GPU, before the frame.
@@ -232,15 +271,13 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError
         if !prepared.is_kept(pass) {
             record_pass(&mut encoder, prepared, index, notes);
         }
-        if mode != Mode::Frame {
-            prepared.staged[index].iter().for_each(|staging| staging.record(&mut encoder));
+        if mode.copies(prepared.plan, pass) {
+            prepared.staged(index)?.iter().for_each(|staging| staging.record(&mut encoder));
         }
     }
     notes.resolve(&mut encoder);
     prepared.context.queue.submit([encoder.finish()]);
-    if mode != Mode::Frame {
-        staged(prepared, mode).flat_map(StagedPass::iter).for_each(readback::Staging::request_map);
-    }
+    staged(prepared, mode)?.flat_map(StagedPass::iter).for_each(readback::Staging::request_map);
     notes.request_map();
     prepared.context.wait()
 }
@@ -313,7 +350,7 @@ fn collect(prepared: &Prepared, times: &[Option<f64>], kept: Vec<bool>) -> Resul
     let maps = empty_maps(plan);
     let mut output = Output { steps: Vec::new(), targets: Vec::new(), labels: none.clone(), counts: none, maps, kept };
     for (index, pass) in plan.passes.iter().enumerate() {
-        let staged = &prepared.staged[index];
+        let staged = prepared.staged(index)?;
         let role = |target| plan.attachment(target).role;
         let color_role = pass.color.as_ref().map(|target| (role(target.attachment), target.layer));
         let depth_role = pass.depth_stencil.as_ref().map(|target| (role(target.attachment), target.layer));

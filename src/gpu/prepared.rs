@@ -1,5 +1,5 @@
-//! A plan with everything the GPU needs to run it: textures, pipelines, buffers, bind groups and
-//! the buffers that snapshots are copied to. Made once, run as often as wanted.
+//! A plan with everything the GPU needs to run it: textures, pipelines, buffers, bind groups, and,
+//! once a run wants them, the buffers that snapshots are copied to. Made once, run as often as wanted.
 
 use super::buffers::Buffers;
 use super::maps::{KeptMap, Maps};
@@ -8,6 +8,7 @@ use super::readback::{Change, StagedPass, Staging, color_change, depth_change, s
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError};
 use crate::plan::{Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility};
+use std::cell::OnceCell;
 use std::sync::Arc;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindingResource, Buffer, Device, RenderPipeline, Texture,
@@ -21,7 +22,9 @@ pub struct Prepared<'a> {
     /// Its device stays open as long as it is used, though a later plan may have asked for another.
     pub(super) context: Arc<Context>,
     pub(super) passes: Vec<PreparedPass>,
-    pub(super) staged: Vec<StagedPass>,
+    textures: Vec<Texture>,
+    /// By pass: where its copies go.
+    staged: Vec<OnceCell<StagedPass>>,
     pub(super) views: UniformArray,
     pub(super) view_group: BindGroup,
     pub(super) draws: UniformArray,
@@ -99,11 +102,11 @@ impl<'a> Prepared<'a> {
             }
             passes.push(prepared);
         }
-        let staged = plan.passes.iter().map(|pass| stage(device, plan, pass, &textures)).collect::<Result<_, _>>()?;
+        let staged = plan.passes.iter().map(|_| OnceCell::new()).collect();
         let view_group = views.bind_group(device, &pipelines.layouts.view);
         let draw_group = draws.bind_group(device, &pipelines.layouts.draw);
         let context = context.clone();
-        Ok(Prepared { plan, context, passes, staged, views, view_group, draws, draw_group, lights, kept })
+        Ok(Prepared { plan, context, passes, textures, staged, views, view_group, draws, draw_group, lights, kept })
     }
 
     /// What this pass draws stays for the next frame.
@@ -122,11 +125,24 @@ impl<'a> Prepared<'a> {
         self.kept.iter().flatten().for_each(|map| map.set_drawn());
     }
 
+    /// Where the copies of a pass go: made when they are first wanted.
+    pub(super) fn staged(&self, index: usize) -> Result<&StagedPass, GpuError> {
+        let cell = &self.staged[index];
+        if let Some(staged) = cell.get() {
+            return Ok(staged);
+        }
+        let staged = stage(&self.context.device, self.plan, &self.plan.passes[index], &self.textures)?;
+        Ok(cell.get_or_init(|| staged))
+    }
+
     /// Bytes that snapshots of the timed passes copy.
-    #[must_use]
-    pub fn snapshot_bytes(&self) -> u64 {
-        let timed = self.plan.passes.iter().zip(&self.staged).filter(|(pass, _)| pass.timed);
-        timed.flat_map(|(_, staged)| staged.iter()).map(Staging::byte_len).sum()
+    ///
+    /// # Errors
+    /// A picture whose copy is too large.
+    pub fn snapshot_bytes(&self) -> Result<u64, GpuError> {
+        let timed = self.plan.passes.iter().enumerate().filter(|(_, pass)| pass.timed);
+        let bytes = |index| Ok(self.staged(index)?.iter().map(Staging::byte_len).sum::<u64>());
+        timed.map(|(index, _)| bytes(index)).sum()
     }
 }
 

@@ -21,7 +21,7 @@ pub const NUMBERS_FROM: f32 = 24.0;
 const WHEEL_ZOOM: f32 = 0.004;
 
 /// Name of the picture's own canvas.
-const PICTURE: &str = "Picture canvas";
+pub const PICTURE: &str = "Picture canvas";
 
 /// A picture over the shown one, of the same size.
 #[derive(Debug, Clone)]
@@ -36,20 +36,9 @@ pub struct Sheet {
     pub has_numbers: bool,
 }
 
-/// Draws `shown` with `sheets` over it into `rect` and acts on mouse and keys. Returns where the picture lies.
+/// Draws `shown` with `sheets` over it into `rect` and acts on mouse and keys, as a widget of this name. Returns
+/// where the picture lies.
 pub fn ui(
-    ui: &mut Ui,
-    state: &mut State,
-    rect: Rect,
-    shown: &Shown,
-    coloring: Coloring,
-    sheets: &[Sheet],
-) -> Placement {
-    named(ui, state, rect, shown, coloring, sheets, PICTURE)
-}
-
-/// The same under another name.
-pub fn named(
     ui: &mut Ui,
     state: &mut State,
     rect: Rect,

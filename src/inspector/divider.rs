@@ -39,21 +39,27 @@ pub fn ui(ui: &mut Ui, rect: Rect, compare: &mut Compare, names: [&str; 2]) {
     compare.at += NUDGE * steps(ui, response.id, response.has_focus()) as f32;
     compare.at = compare.at.clamp(0.0, 1.0);
 
+    paint(ui, rect, compare, x, names);
     let theme = theme::of(ui);
     let painter = ui.painter_at(rect);
-    for (width, color) in [(4.0, Color32::from_black_alpha(150)), (1.5, Color32::WHITE)] {
-        painter.vline(x, rect.y_range(), Stroke::new(width, color));
-    }
     let outline =
         if response.has_focus() || response.hovered() || response.dragged() { theme.selected } else { theme.line };
     painter.rect(handle, CornerRadius::same(4), theme.raised, Stroke::new(1.0, outline), StrokeKind::Inside);
     for aside in [-2.5, 2.5] {
         painter.vline(x + aside, handle.center().y - 7.0..=handle.center().y + 7.0, Stroke::new(1.5, theme.dim));
     }
+}
+
+/// The line at `x` and the names of both sides, if any: of the compared one, and of the other.
+pub fn paint(ui: &Ui, rect: Rect, compare: &Compare, x: f32, names: [&str; 2]) {
+    let painter = ui.painter_at(rect);
+    for (width, color) in [(4.0, Color32::from_black_alpha(150)), (1.5, Color32::WHITE)] {
+        painter.vline(x, rect.y_range(), Stroke::new(width, color));
+    }
     let [compared, current] = names;
     let [left, right] = if compare.flipped { [current, compared] } else { [compared, current] };
     let places = [(left, Align2::RIGHT_BOTTOM, -12.0), (right, Align2::LEFT_BOTTOM, 12.0)];
-    for (name, align, aside) in places {
+    for (name, align, aside) in places.into_iter().filter(|(name, ..)| !name.is_empty()) {
         label(ui, rect, pos2(x + aside, rect.bottom() - 12.0), align, name);
     }
 }

@@ -3,6 +3,7 @@
 //! The panel asks for a place; the app writes. A place that is taken is asked about once more.
 
 use super::action::{Action, RunRequest};
+use super::as_shown::{self, Drawing};
 use super::coloring::Coloring;
 use super::modes::{Phase, has_phases};
 use super::picture;
@@ -20,6 +21,8 @@ pub enum ExportKind {
     /// The shown picture in its colours, or what the step changed, a pixel a texel: PNG. What lies over it
     /// and what it is compared with is left out.
     Picture,
+    /// The same with overlays and the compared half, at the same resolution: PNG.
+    AsShown,
     /// The shown picture's values: NumPy.
     Data,
     /// The whole capture: a folder.
@@ -30,13 +33,15 @@ pub enum ExportKind {
 
 impl ExportKind {
     /// All, in the order of the menu.
-    pub const ALL: [ExportKind; 4] = [ExportKind::Picture, ExportKind::Data, ExportKind::Capture, ExportKind::Scene];
+    pub const ALL: [ExportKind; 5] =
+        [ExportKind::Picture, ExportKind::AsShown, ExportKind::Data, ExportKind::Capture, ExportKind::Scene];
 
     /// In the menu.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             ExportKind::Picture => "Shown picture (PNG)…",
+            ExportKind::AsShown => "Picture with overlays (PNG)…",
             ExportKind::Data => "Shown values (.npy)…",
             ExportKind::Capture => "Capture folder…",
             ExportKind::Scene => "Scene file (TOML)…",
@@ -46,6 +51,9 @@ impl ExportKind {
     fn explanation(self) -> &'static str {
         match self {
             ExportKind::Picture => "The shown picture in its colours, a pixel a texel",
+            ExportKind::AsShown => {
+                "The shown picture with overlays and the compared half, whole and a pixel a texel, not as zoomed here"
+            }
             ExportKind::Data => "The shown picture's values as an array that NumPy reads",
             ExportKind::Capture => {
                 "Every buffer after every pass, with a manifest, to be opened again or scripted against"
@@ -87,6 +95,7 @@ impl ExportDialog {
         let stem = format!("{}-{}", capture.scene, capture.technique);
         let name = match kind {
             ExportKind::Picture => format!("{stem}-{}.png", title()?),
+            ExportKind::AsShown => format!("{stem}-{}-as-shown.png", title()?),
             ExportKind::Data => format!("{stem}-{}.npy", state.shown(capture)?.title),
             ExportKind::Capture => format!("{stem}-capture"),
             ExportKind::Scene => format!("{}.toml", state.scene.as_ref()?.name),
@@ -111,6 +120,8 @@ pub struct ExportState {
 pub enum ExportData {
     /// Pixels.
     Picture(Picture),
+    /// Pixels, once it is finished.
+    AsShown(Box<Drawing>),
     /// One picture, or all layers of a map.
     Data(Vec<Arc<Image>>),
     /// All of it.
@@ -126,23 +137,22 @@ pub fn data(state: &mut State, kind: ExportKind) -> Option<ExportData> {
     match kind {
         ExportKind::Capture => return Some(ExportData::Capture(capture)),
         ExportKind::Scene => return Some(ExportData::Scene(Box::new(state.scene.as_ref()?.draft.clone()))),
-        ExportKind::Picture | ExportKind::Data => {}
+        ExportKind::Picture | ExportKind::AsShown | ExportKind::Data => {}
     }
     let shown = state.shown(&capture)?;
     if kind == ExportKind::Data {
         return Some(ExportData::Data(shown.images));
     }
+    let coloring = picture::shown_coloring(state, &shown);
+    if let ([_], ExportKind::AsShown) = (&shown.images[..], kind) {
+        return Some(ExportData::AsShown(Box::new(as_shown::drawing(state, &capture, &shown, coloring))));
+    }
     if let Some((ground, change)) = picture::change_of(state, &capture, &shown) {
         let mut picture = texture::picture(&ground, Coloring::Srgb);
-        texture::lay_over(&mut picture, &change.image, change.coloring());
+        texture::lay_over(&mut picture, &change.image, change.coloring(), 0..ground.size()[0]);
         return Some(ExportData::Picture(picture));
     }
-    let range = picture::shown_range(state, &shown);
-    let mut coloring = picture::coloring_of(&shown, range);
-    if let (Coloring::Stencil, Some(bit)) = (coloring, state.modes.bit) {
-        coloring = Coloring::Bit(bit);
-    }
-    let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, coloring)).collect();
+    let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, coloring.0)).collect();
     Some(ExportData::Picture(side_by_side(&images)))
 }
 

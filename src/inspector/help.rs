@@ -6,6 +6,9 @@ use super::theme;
 use super::walk;
 use egui::{Context, Id, Ui};
 
+/// Width of the column of keys, points.
+const KEYS_WIDTH: f32 = 168.0;
+
 /// Draws the window while it is open.
 pub fn ui(ctx: &Context, state: &mut State) {
     if !state.help_is_open {
@@ -44,12 +47,15 @@ fn of_scope(scope: Scope) -> impl Iterator<Item = (&'static str, &'static str)> 
 fn section(ui: &mut Ui, title: &str, rows: impl Iterator<Item = (&'static str, &'static str)>) {
     ui.add_space(8.0);
     ui.label(theme::note(title));
-    egui::Grid::new(title).num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
+    let grid = egui::Grid::new(title).num_columns(2).spacing([16.0, 2.0]).min_row_height(theme::ROW_HEIGHT - 4.0);
+    grid.show(ui, |ui| {
+        ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT - 4.0;
         for (keys, does) in rows {
-            ui.add_sized(
-                egui::vec2(168.0, theme::ROW_HEIGHT - 4.0),
-                egui::Label::new(theme::number(keys)).halign(egui::Align::Min),
-            );
+            ui.horizontal(|ui| {
+                // The columns of all sections are in line.
+                ui.set_min_width(KEYS_WIDTH);
+                ui.label(theme::number(keys).color(theme::of(ui).text));
+            });
             ui.label(does);
             ui.end_row();
         }

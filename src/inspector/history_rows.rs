@@ -4,6 +4,7 @@ use super::dock::Panel;
 use super::format;
 use super::history_row::{Cells, Outcome, line, short, sign};
 use super::moment::Moment;
+use super::pixel_room::Rows;
 use super::state::State;
 use super::theme;
 use crate::capture::Capture;
@@ -13,40 +14,39 @@ use egui::{Align2, Color32, CornerRadius, FontId, Margin, Pos2, Rect, RichText, 
 use egui::{pos2, vec2};
 use std::sync::Arc;
 
-/// Height of a row, points.
-const ROW: f32 = 22.0;
-/// Rows that are shown before they scroll.
-const MOST_ROWS: usize = 12;
 /// Contradictions that are listed.
 const MOST_WRONG: usize = 3;
 /// Where a history is not of what is picked.
 const GREYED: f32 = 0.4;
 
-/// Draws heading, rows and the selected event of the picked pixel.
-pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
+/// Draws heading, rows and the selected event of the picked pixel. Returns where the rows end.
+pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2], rows: Rows) -> f32 {
     let history = state.history.last().cloned().filter(|_| state.scene.is_some());
     heading(ui, state, history.as_deref(), at);
     if state.scene.is_none() {
         let text = "A capture folder holds pictures and no geometry, so what happened between them is not known. Open \
                     the scene itself, or run `stencilscope pixel SCENE --at X,Y`.";
         ui.add(egui::Label::new(theme::note(text)).wrap());
-        return;
+        return ui.cursor().top();
     }
     if let Some(reason) = state.history.failed() {
         let text = RichText::new(format!("× There is no history: {reason}")).color(theme::of(ui).error);
         ui.add(egui::Label::new(text).wrap());
-        return;
+        return ui.cursor().top();
     }
-    let Some(history) = history else { return };
-    ui.scope(|ui| {
+    let Some(history) = history else { return ui.cursor().top() };
+    let drawn = ui.scope(|ui| {
         if state.history.is_late() {
             ui.set_opacity(GREYED);
         }
         wrong(ui, state.history.wrong());
         let shown = shown(state, &history);
-        table(ui, state, capture, &history, &shown);
+        table(ui, state, capture, &history, &shown, rows);
+        let end = ui.cursor().top();
         selected(ui, state, capture, &history);
+        end
     });
+    drawn.inner
 }
 
 /// Title, how many events, and the switch; while another pixel's are waited for, that.
@@ -107,7 +107,14 @@ fn shown(state: &State, history: &PixelHistory) -> Vec<usize> {
     history.events.iter().enumerate().filter(|(_, event)| is_shown(event)).map(|(index, _)| index).collect()
 }
 
-fn table(ui: &mut Ui, state: &mut State, capture: &Capture, history: &Arc<PixelHistory>, shown: &[usize]) {
+fn table(
+    ui: &mut Ui,
+    state: &mut State,
+    capture: &Capture,
+    history: &Arc<PixelHistory>,
+    shown: &[usize],
+    Rows { height: row_height, most }: Rows,
+) {
     if shown.is_empty() {
         let none = history.events.is_empty();
         let text = if none { "Nothing was drawn or cleared here." } else { "No event changed anything here." };
@@ -116,19 +123,19 @@ fn table(ui: &mut Ui, state: &mut State, capture: &Capture, history: &Arc<PixelH
     }
     ui.spacing_mut().item_spacing.y = 0.0;
     head(ui, history.has_stencil);
-    let height = ROW * shown.len().min(MOST_ROWS) as f32;
+    let height = row_height * shown.len().min(most) as f32;
     let area = egui::ScrollArea::vertical().id_salt("history rows").auto_shrink([false, true]);
     // In the panel's own scroll area too it is not to shrink.
     let mut area = area.max_height(height).min_scrolled_height(height);
     let selected = || state.history.selected_in(history).and_then(|event| shown.iter().position(|one| *one == event));
     if let Some(place) = state.history.scroll_to_selected.then(selected).flatten() {
-        let first = place.saturating_sub(MOST_ROWS / 2).min(shown.len().saturating_sub(MOST_ROWS));
-        area = area.vertical_scroll_offset(ROW * first as f32);
+        let first = place.saturating_sub(most / 2).min(shown.len().saturating_sub(most));
+        area = area.vertical_scroll_offset(row_height * first as f32);
     }
     state.history.scroll_to_selected = false;
-    area.show_rows(ui, ROW, shown.len(), |ui, rows| {
+    area.show_rows(ui, row_height, shown.len(), |ui, rows| {
         for event in &shown[rows] {
-            row(ui, state, capture, history, &history.events[*event]);
+            row(ui, state, capture, history, &history.events[*event], row_height);
         }
     });
     ui.add_space(4.0);
@@ -195,8 +202,8 @@ fn head(ui: &mut Ui, has_stencil: bool) {
     ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, line);
 }
 
-fn row(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory, event: &Event) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+fn row(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory, event: &Event, height: f32) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     let cells = Cells::of(history, event, &capture.depth);
     let is_selected = state.history.is_selected(event);
     response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, cells.name()));

@@ -3,8 +3,8 @@
 
 use super::counts;
 use super::format;
-use super::history_row::{line, named, side};
-use super::ladder_layout::{LINE, Mark, Placed, Stretch, place, stretches};
+use super::history_row::{self, named, side};
+use super::ladder_layout::{Mark, Placed, Stretch, place, stretches};
 use super::state::State;
 use super::theme;
 use crate::capture::Capture;
@@ -18,6 +18,8 @@ use std::ops::Range;
 
 /// Room above the eye and below infinity, points.
 const MARGIN: f32 = 12.0;
+/// The least between eye and infinity, points: less can't be read, and the panel scrolls.
+const LEAST_ROOM: f32 = 120.0;
 /// Points that the running count moves for one, at most, and in all.
 const COUNT_STEP: f32 = 10.0;
 const COUNT_ROOM: f32 = 40.0;
@@ -25,10 +27,17 @@ const COUNT_ROOM: f32 = 40.0;
 /// Folded rungs that a click opens: of more, the nearest.
 const OPENED_AT_ONCE: usize = 100;
 
-/// Draws the ladder of `light` under the history; nothing where no volumes are counted.
-pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, light: usize) {
+/// Does this frame count volumes, so that there is a ladder?
+#[must_use]
+pub fn is_shown(state: &State, capture: &Capture) -> bool {
+    state.scene.is_some() && state.history.failed().is_none() && counts::are_made_by(&capture.technique)
+}
+
+/// Draws the ladder of `light` under the history, if it can be in `room` points; nothing where no volumes are counted.
+pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, light: usize, room: f32) {
+    let top = ui.cursor().top();
     let Some(history) = state.history.last().cloned() else { return };
-    if state.scene.is_none() || state.history.failed().is_some() || !counts::are_made_by(&capture.technique) {
+    if !is_shown(state, capture) {
         return;
     }
     ui.horizontal(|ui| {
@@ -44,7 +53,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, light: usize) {
             ui.set_opacity(0.4);
         }
         match history.ladder(light, &capture.depth) {
-            Some(ladder) => drawn(ui, state, capture, &history, (light, &ladder)),
+            Some(ladder) => drawn(ui, state, capture, &history, (light, &ladder), top + room),
             None => {
                 let none = format!("No volume face of {} is on this pixel's view ray.", format::light(light));
                 ui.add(egui::Label::new(theme::note(none)).wrap());
@@ -116,12 +125,21 @@ impl Columns {
     }
 }
 
-fn drawn(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistory, (light, ladder): (usize, &Ladder)) {
+/// The ladder itself, down to `bottom` if it can be.
+fn drawn(
+    ui: &mut Ui,
+    state: &mut State,
+    capture: &Capture,
+    history: &PixelHistory,
+    (light, ladder): (usize, &Ladder),
+    bottom: f32,
+) {
     ui.add(egui::Label::new(theme::note(direction(ladder))).wrap());
     let chosen = state.history.selected_in(history);
     let selected = chosen.and_then(|event| ladder.rungs.iter().position(|rung| rung.event == event));
     let open = state.history.unfolded.get(&light).map_or(&[][..], Vec::as_slice);
-    let placed = place(ladder, capture.camera.near, selected, open);
+    let room = (bottom - ui.cursor().top() - 2.0 * MARGIN).max(LEAST_ROOM);
+    let (placed, line) = place(ladder, capture.camera.near, selected, open, room);
     let height = placed.last().map_or(0.0, |(_, y)| *y) + 2.0 * MARGIN;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     response.widget_info(|| {
@@ -129,7 +147,7 @@ fn drawn(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHisto
     });
     let columns = Columns::of(rect);
     let top = rect.top() + MARGIN;
-    let row = |y: f32| Rect::from_center_size(pos2(rect.center().x, top + y), vec2(rect.width(), LINE));
+    let row = |y: f32| Rect::from_center_size(pos2(rect.center().x, top + y), vec2(rect.width(), line));
     // Rungs first, as what is selected has a background.
     for (mark, y) in &placed {
         match mark {
@@ -171,7 +189,7 @@ fn rung(ui: &mut Ui, state: &mut State, capture: &Capture, history: &PixelHistor
         response.scroll_to_me(None);
     }
     theme::row_background(ui, rect, is_selected, &response);
-    response.on_hover_text(line(history, event, &capture.depth));
+    response.on_hover_text(history_row::line(history, event, &capture.depth));
 }
 
 /// Folded rungs as a widget; those that a click opens.

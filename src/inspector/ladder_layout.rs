@@ -3,20 +3,24 @@
 //!
 //! A distance d is placed at d / (d + s), s the surface's: the eye is at 0, the surface in the
 //! middle, infinity at 1. What would overlap is moved apart, in order. Of more rungs than can be
-//! read some are folded into a line that says how many and what they added.
+//! read some are folded into a line that says how many and what they added. In little room lines are
+//! closer, and then more rungs are folded.
 
 use crate::history::Ladder;
 use std::ops::Range;
 
-/// The least between two marks, points.
+/// Between two marks where there is room for all, and the least where there is not, points.
 pub const LINE: f32 = 20.0;
-/// The least height of a ladder, points.
+const LEAST_LINE: f32 = 14.0;
+/// The least height of a ladder where there is room for it, points.
 const LEAST_HEIGHT: f32 = 220.0;
 /// Rungs that are shown one by one.
 const MOST_RUNGS: usize = 16;
 /// Of more than those: so many at either end, and on either side of the surface and of what is
 /// selected.
 const ENDS: usize = 2;
+/// Marks that are no rungs.
+const OTHERS: usize = 4;
 
 /// Something on the view ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,11 +53,31 @@ pub struct Stretch {
     pub count: i32,
 }
 
-/// Places everything on the ray; `near` is the near plane's distance in metres, `selected` a rung,
-/// `open` rungs that are not to be folded.
+/// Places everything on the ray within `room` points, if need be by folding more rungs; `near` is the near plane's
+/// distance in metres, `selected` a rung, `open` rungs that are not to be folded. Also the height of a line.
 #[must_use]
-pub fn place(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<usize>]) -> Vec<Placed> {
-    let marks = marks(ladder, near, selected, open);
+pub fn place(
+    ladder: &Ladder,
+    near: f64,
+    selected: Option<usize>,
+    open: &[Range<usize>],
+    room: f32,
+) -> (Vec<Placed>, f32) {
+    let fitting = ((room / LEAST_LINE) as usize + 1).saturating_sub(OTHERS).min(MOST_RUNGS);
+    let is_whole = |marks: &Vec<Mark>| LEAST_LINE * (marks.len() - 1) as f32 <= room;
+    let mut marks_of = [(MOST_RUNGS, ENDS), (fitting, ENDS), (fitting, 1)]
+        .into_iter()
+        .map(|(most, ends)| marks(ladder, near, selected, open, [most, ends]));
+    let all = marks_of.next().unwrap_or_default();
+    // What the user has opened stays open, whatever the room.
+    let marks = if is_whole(&all) || !open.is_empty() {
+        all
+    } else {
+        let fewer: Vec<Vec<Mark>> = marks_of.collect();
+        let first = fewer.iter().position(is_whole).unwrap_or(fewer.len() - 1);
+        fewer.into_iter().nth(first).unwrap_or(all)
+    };
+    let line = (room / (marks.len() - 1) as f32).clamp(LEAST_LINE, LINE);
     let scale = ladder.surface.unwrap_or_else(|| middle_distance(ladder).unwrap_or(near * 10.0));
     let share = |distance: f64| if distance.is_finite() { distance / (distance + scale) } else { 1.0 };
     let distance = |rung: usize| ladder.rungs[rung].distance;
@@ -65,17 +89,17 @@ pub fn place(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<
         Mark::Surface => share(scale),
         Mark::Infinity => 1.0,
     };
-    let height = (LINE * (marks.len() - 1) as f32).max(LEAST_HEIGHT);
+    let height = (line * (marks.len() - 1) as f32).max(room.min(LEAST_HEIGHT));
     let mut placed: Vec<Placed> = marks.into_iter().map(|mark| (mark, share_of(mark) as f32 * height)).collect();
     for index in 1..placed.len() {
-        placed[index].1 = placed[index].1.max(placed[index - 1].1 + LINE);
+        placed[index].1 = placed[index].1.max(placed[index - 1].1 + line);
     }
-    let mut below = height + LINE;
+    let mut below = height + line;
     for (_, y) in placed.iter_mut().rev() {
-        *y = y.min(below - LINE);
+        *y = y.min(below - line);
         below = *y;
     }
-    placed
+    (placed, line)
 }
 
 /// The count along the ray: from where counting begins as far as the surface.
@@ -104,8 +128,14 @@ pub fn stretches(ladder: &Ladder, placed: &[Placed]) -> Vec<Stretch> {
     stretches
 }
 
-/// Everything on the ray in order of distance.
-fn marks(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<usize>]) -> Vec<Mark> {
+/// Everything on the ray in order of distance: of more than `most` rungs, `ends` at either side of what matters.
+fn marks(
+    ladder: &Ladder,
+    near: f64,
+    selected: Option<usize>,
+    open: &[Range<usize>],
+    [most, ends]: [usize; 2],
+) -> Vec<Mark> {
     let before_near = ladder.rungs.partition_point(|rung| rung.distance < near);
     let before_surface = ladder.surface.map(|surface| {
         // A face as far as the surface is on the side that its test says.
@@ -116,8 +146,8 @@ fn marks(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<usiz
     });
     let edges = [Some(0), Some(before_near), before_surface, selected, Some(ladder.rungs.len())];
     let is_kept = |rung: usize| {
-        let near_edge = |edge: usize| rung + ENDS >= edge && rung < edge + ENDS;
-        ladder.rungs.len() <= MOST_RUNGS
+        let near_edge = |edge: usize| rung + ends >= edge && rung < edge + ends;
+        ladder.rungs.len() <= most
             || edges.iter().flatten().any(|edge| near_edge(*edge))
             || open.iter().any(|open| open.contains(&rung))
     };
@@ -161,6 +191,11 @@ mod tests {
     use super::*;
     use crate::history::{Count, Rung};
 
+    /// With room for all.
+    fn placed(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<usize>]) -> Vec<Placed> {
+        place(ladder, near, selected, open, 2000.0).0
+    }
+
     /// Rungs at distances, each with what it added, counted from infinity.
     fn ladder(surface: Option<f64>, rungs: &[(f64, i32)]) -> Ladder {
         let mut ladder = Ladder {
@@ -188,7 +223,7 @@ mod tests {
     #[test]
     fn the_surface_is_between_what_is_before_and_behind_it() {
         let ladder = ladder(Some(5.0), &[(0.05, 0), (2.0, 0), (7.0, -1), (9.0, 1), (f64::INFINITY, 1)]);
-        let placed = place(&ladder, 0.1, None, &[]);
+        let placed = placed(&ladder, 0.1, None, &[]);
         let marks: Vec<Mark> = placed.iter().map(|(mark, _)| *mark).collect();
         use Mark::{Eye, Infinity, Near, Rung, Surface};
         assert_eq!(marks, [Eye, Rung(0), Near, Rung(1), Surface, Rung(2), Rung(3), Rung(4), Infinity]);
@@ -199,7 +234,7 @@ mod tests {
     #[test]
     fn a_face_as_far_as_the_surface_is_on_the_side_that_its_test_says() {
         for (added, expected) in [(1, 2), (0, 3)] {
-            let placed = place(&ladder(Some(5.0), &[(5.0, added)]), 0.1, None, &[]);
+            let placed = placed(&ladder(Some(5.0), &[(5.0, added)]), 0.1, None, &[]);
             assert_eq!(placed.iter().position(|(mark, _)| *mark == Mark::Surface), Some(expected));
         }
     }
@@ -207,7 +242,7 @@ mod tests {
     #[test]
     fn the_count_runs_from_infinity_to_the_surface_and_no_further() {
         let ladder = ladder(Some(5.0), &[(2.0, 0), (7.0, -1), (9.0, 1), (12.0, 1)]);
-        let stretches = stretches(&ladder, &place(&ladder, 0.1, None, &[]));
+        let stretches = stretches(&ladder, &placed(&ladder, 0.1, None, &[]));
         assert_eq!(stretches.iter().map(|one| one.count).collect::<Vec<_>>(), [0, 1, 2, 1]);
         assert!(stretches.windows(2).all(|pair| pair[1].bottom == pair[0].top));
     }
@@ -217,7 +252,7 @@ mod tests {
         let mut ladder = ladder(Some(5.0), &[(2.0, -1), (7.0, 0)]);
         (ladder.is_from_infinity, ladder.start) = (false, 1);
         ladder.rungs[0].running = 0;
-        let stretches = stretches(&ladder, &place(&ladder, 0.1, None, &[]));
+        let stretches = stretches(&ladder, &placed(&ladder, 0.1, None, &[]));
         assert_eq!(stretches.iter().map(|one| one.count).collect::<Vec<_>>(), [1, 0]);
     }
 
@@ -225,7 +260,7 @@ mod tests {
     fn of_many_rungs_every_one_is_shown_or_counted_once() {
         let rungs: Vec<(f64, i32)> = (0..600).map(|index| (1.0 + f64::from(index) * 0.01, 1 - index % 2 * 2)).collect();
         for selected in [None, Some(0), Some(100), Some(300), Some(599)] {
-            let placed = place(&ladder(Some(4.0), &rungs), 0.1, selected, &[]);
+            let placed = placed(&ladder(Some(4.0), &rungs), 0.1, selected, &[]);
             let mut next = 0;
             for (mark, _) in &placed {
                 match mark {
@@ -247,16 +282,39 @@ mod tests {
     }
 
     #[test]
+    fn in_little_room_lines_are_closer_and_then_more_rungs_are_folded() {
+        let rungs: Vec<(f64, i32)> = (0..12).map(|index| (1.0 + f64::from(index), 1 - index % 2 * 2)).collect();
+        let ladder = ladder(Some(6.5), &rungs);
+        let rungs_of = |placed: &[Placed]| placed.iter().filter(|(mark, _)| matches!(mark, Mark::Rung(_))).count();
+        for (room, all) in [(400.0, true), (300.0, true), (215.0, true), (180.0, false), (140.0, false)] {
+            let (placed, line) = place(&ladder, 0.1, None, &[], room);
+            assert!((LEAST_LINE..=LINE).contains(&line), "{line} in {room}");
+            assert_eq!(rungs_of(&placed) == 12, all, "in {room}: {placed:?}");
+            let [first, last] = [placed.first(), placed.last()].map(|one| one.expect("a mark").1);
+            assert!(first >= -1e-3 && last <= room + 1e-3, "{placed:?} lies in {room}");
+            assert!(placed.windows(2).all(|pair| pair[1].1 - pair[0].1 >= line - 1e-3), "{placed:?}");
+            let ends = stretches(&ladder, &placed).last().map(|one| one.count);
+            assert_eq!(ends, Some(ladder.count), "the sum is the same");
+        }
+        // What was opened stays open, and what is selected stays in sight.
+        let opened = [2..6, 6..10];
+        let (open, line) = place(&ladder, 0.1, None, &opened, 140.0);
+        assert_eq!((rungs_of(&open), line), (12, LEAST_LINE));
+        let (selected, _) = place(&ladder, 0.1, Some(3), &[], 140.0);
+        assert!(selected.iter().any(|(mark, _)| *mark == Mark::Rung(3)));
+    }
+
+    #[test]
     fn what_is_open_is_not_folded_and_counts_as_before() {
         let rungs: Vec<(f64, i32)> = (0..40).map(|index| (1.0 + f64::from(index), 1 - index % 2 * 2)).collect();
         let ladder = ladder(Some(100.0), &rungs);
         let opened = [2..20, 20..38];
-        let folded = place(&ladder, 0.1, None, &[]);
+        let folded = placed(&ladder, 0.1, None, &[]);
         assert!(folded.iter().any(|(mark, _)| *mark == Mark::More(2, 38)));
-        let open = place(&ladder, 0.1, None, &opened[..1]);
+        let open = placed(&ladder, 0.1, None, &opened[..1]);
         assert!((2..20).all(|rung| open.iter().any(|(mark, _)| *mark == Mark::Rung(rung))));
         assert!(open.iter().any(|(mark, _)| *mark == Mark::More(20, 38)));
-        let all = place(&ladder, 0.1, None, &opened);
+        let all = placed(&ladder, 0.1, None, &opened);
         assert!(all.iter().all(|(mark, _)| !matches!(mark, Mark::More(..))));
         assert!(all.windows(2).all(|pair| pair[1].1 >= pair[0].1 + LINE - 0.01));
         let last = |placed: &[Placed]| stretches(&ladder, placed).last().map(|one| one.count);
@@ -266,7 +324,7 @@ mod tests {
     #[test]
     fn without_a_surface_the_count_runs_to_the_eye() {
         let ladder = ladder(None, &[(3.0, 1)]);
-        let placed = place(&ladder, 0.1, None, &[]);
+        let placed = placed(&ladder, 0.1, None, &[]);
         assert!(!placed.iter().any(|(mark, _)| *mark == Mark::Surface));
         assert_eq!(stretches(&ladder, &placed).last().map(|one| (one.top, one.count)), Some((0.0, 1)));
     }

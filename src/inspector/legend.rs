@@ -4,7 +4,7 @@
 use super::change::Change;
 use super::counts;
 use super::depth::DepthMeasure;
-use super::findings;
+use super::error_legend;
 use super::format;
 use super::layers::MapContent;
 use super::modes_legend;
@@ -14,13 +14,10 @@ use super::state::State;
 use super::texture::Shares;
 use super::theme;
 use super::view::{PictureKind, Shown};
-use crate::accuracy::Finding;
 use egui::{Color32, CornerRadius, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 
 /// Width of the legend, points.
 const WIDTH: f32 = 168.0;
-/// Width of the legend that begins with a sentence, points.
-const WIDE: f32 = 224.0;
 /// Stencil values that are listed one by one.
 const MOST_VALUES: usize = 12;
 /// Counts that eight bits would take for zero, listed one by one.
@@ -29,15 +26,15 @@ const MOST_MISREAD: usize = 4;
 /// What the legend takes of a picture of this size, points.
 #[must_use]
 pub fn room(rect: Rect, shown: &Shown) -> f32 {
-    if fits(rect, shown.kind) { width(shown.kind) + 12.0 } else { 0.0 }
+    if fits(rect, shown.kind) { width(rect, shown.kind) + 12.0 } else { 0.0 }
 }
 
 fn fits(rect: Rect, kind: PictureKind) -> bool {
-    kind != PictureKind::Color && rect.width() >= width(kind) * 2.0
+    kind != PictureKind::Color && rect.width() >= WIDTH * 2.0
 }
 
-fn width(kind: PictureKind) -> f32 {
-    if kind == PictureKind::Error { WIDE } else { WIDTH }
+fn width(rect: Rect, kind: PictureKind) -> f32 {
+    if kind == PictureKind::Error { error_legend::WIDTH.min(rect.width() / 2.0 - 12.0).max(WIDTH) } else { WIDTH }
 }
 
 /// Draws the legend of `shown`; `range` is that of the grey ramp.
@@ -45,14 +42,14 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, range: [f64
     if !fits(rect, shown.kind) {
         return;
     }
-    card(ui, rect, width(shown.kind), |ui| match (shown.kind, state.modes.bit) {
+    card(ui, rect, width(rect, shown.kind), |ui| match (shown.kind, state.modes.bit) {
         (PictureKind::Stencil, Some(bit)) => modes_legend::bit(ui, state, shown, bit),
         (PictureKind::Stencil, None) => stencil(ui, state, shown),
         (PictureKind::Overdraw, _) => modes_legend::overdraw(ui, state, shown),
         (PictureKind::Count, _) => signed_counts(ui, state, shown),
         (PictureKind::Map, _) if shown.is_let_through() => let_through(ui, state, shown),
         (PictureKind::Mask | PictureKind::Truth, _) => labels(ui, state, shown),
-        (PictureKind::Error, _) => findings(ui, state, shown),
+        (PictureKind::Error, _) => error_legend::ui(ui, state, shown),
         _ => depth(ui, state, shown, range),
     });
 }
@@ -189,7 +186,8 @@ fn labels(ui: &mut Ui, state: &mut State, shown: &Shown) {
 }
 
 /// `Mask, light 1`.
-fn title(shown: &Shown) -> String {
+#[must_use]
+pub fn title(shown: &Shown) -> String {
     let of = shown.title.split_once(" of ").map_or(shown.title.as_str(), |(_, of)| of);
     let kind = match shown.kind {
         PictureKind::Count => "Count",
@@ -198,71 +196,6 @@ fn title(shown: &Shown) -> String {
         _ => "Error",
     };
     format!("{kind}, {of}")
-}
-
-/// One sentence, the way to the largest wrong patch, then the counts.
-fn findings(ui: &mut Ui, state: &mut State, shown: &Shown) {
-    theme::heading(ui, &title(shown));
-    let truth = state.capture.as_ref().and_then(|capture| state.view.truth_to_show(capture));
-    if let Some((error, worst)) = truth.map(|(_, truth)| (truth.error, truth.worst)) {
-        ui.add(egui::Label::new(findings::sentence(&error, worst.as_ref())).wrap());
-        if let Some(region) = worst {
-            ui.add_space(4.0);
-            let button = ui.button("Go to the largest");
-            if button.on_hover_text("Pick a pixel of the largest wrong patch, and show it large").clicked() {
-                let [left, top, right, bottom] = region.bounds;
-                state.go_to(region.at, (right - left).max(bottom - top) + 1);
-            }
-        }
-        ui.add_space(4.0);
-    }
-    let histogram = state.cache.histogram(&shown.images[0]);
-    for finding in Finding::ALL {
-        let style = findings::style(finding);
-        let line = ui.horizontal(|ui| {
-            hatched(ui, style);
-            ui.label(theme::number(format!("{} {}", finding as u8, style.name)).color(theme::of(ui).text));
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.label(theme::number(format::count(histogram[finding as usize])).color(theme::of(ui).dim));
-            });
-        });
-        line.response.on_hover_text(style.meaning);
-    }
-}
-
-/// A swatch with the hatching of a finding.
-pub fn hatched(ui: &mut Ui, style: findings::Style) {
-    let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
-    let painter = ui.painter_at(rect);
-    painter.rect_filled(rect, CornerRadius::same(2), style.color);
-    let stroke = egui::Stroke::new(1.5, style.color.lerp_to_gamma(Color32::BLACK, 0.6));
-    let (rising, falling) = match style.pattern {
-        findings::Pattern::Rising => (true, false),
-        findings::Pattern::Falling => (false, true),
-        findings::Pattern::Crossed => (true, true),
-        findings::Pattern::Plain => (false, false),
-        findings::Pattern::Dotted => {
-            for (x, y) in [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)] {
-                painter.circle_filled(rect.lerp_inside(vec2(x, y)), 1.4, stroke.color);
-            }
-            (false, false)
-        }
-    };
-    for shift in [-6.0, 0.0, 6.0] {
-        let aside = vec2(shift, 0.0);
-        if rising {
-            painter.line_segment([rect.left_bottom() + aside, rect.right_top() + aside], stroke);
-        }
-        if falling {
-            painter.line_segment([rect.left_top() + aside, rect.right_bottom() + aside], stroke);
-        }
-    }
-    painter.rect_stroke(
-        rect,
-        CornerRadius::same(2),
-        egui::Stroke::new(1.0, theme::of(ui).faint),
-        egui::StrokeKind::Inside,
-    );
 }
 
 /// A line of the legend: colour, value, how many.

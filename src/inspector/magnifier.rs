@@ -14,6 +14,9 @@ const CELLS: [i64; 2] = [7, 5];
 /// Size of a texel in the inset, points.
 const CELL: f32 = 26.0;
 
+/// Room between the inset and the picture's borders, points.
+const MARGIN: f32 = 12.0;
+
 /// Draws the inset into the lower left corner of `rect`.
 pub fn ui(ui: &Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Coloring, placement: Placement) {
     let Some(pick) = *state.shown_pick(shown.kind) else { return };
@@ -22,7 +25,7 @@ pub fn ui(ui: &Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Color
     if is_large || rect.width() < size.x * 2.0 || rect.height() < size.y * 2.0 {
         return;
     }
-    let inset = Rect::from_min_size(pos2(rect.left() + 12.0, rect.bottom() - 12.0 - size.y), size);
+    let inset = Rect::from_min_size(pos2(rect.left() + MARGIN, rect.bottom() - MARGIN - size.y), size);
     let painter = ui.painter_at(rect);
     painter.rect_filled(inset, CornerRadius::same(4), theme::of(ui).background);
     let image = &shown.images[0];
@@ -33,9 +36,17 @@ pub fn ui(ui: &Ui, state: &mut State, rect: Rect, shown: &Shown, coloring: Color
             let texel = [0, 1].map(|axis| u32::try_from(i64::from(pick[axis]) + offset[axis]));
             let [Ok(x), Ok(y)] = texel else { continue };
             let Some(color) = coloring.color_at(image, [x, y]) else { continue };
-            painter.rect_filled(cell.shrink(0.5), CornerRadius::ZERO, color);
+            painter.rect_filled(cell, CornerRadius::ZERO, color);
             canvas::texel_number(&painter, image, coloring, [x, y], cell);
         }
+    }
+    // Over the cells, so that it is seen on a count of zero too, which is as dark as the ground.
+    let grid = Stroke::new(1.0, theme::of(ui).faint);
+    for column in 1..CELLS[0] {
+        painter.vline(inset.left() + column as f32 * CELL, inset.y_range(), grid);
+    }
+    for row in 1..CELLS[1] {
+        painter.hline(inset.x_range(), inset.top() + row as f32 * CELL, grid);
     }
     let middle = Rect::from_center_size(inset.center(), vec2(CELL, CELL));
     // Light on dark, so that it shows on any texel.

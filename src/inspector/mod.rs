@@ -18,12 +18,14 @@
 //! moment.rs    after a step, or after a draw       draw_level.rs selecting and fetching draws
 //! scene_view/  a second camera that sees the first
 //! keys.rs      the table of keys, for help.rs    undo.rs, memory.rs, export.rs, animation.rs: as they say
+//! as_shown.rs  overlays in a file, filled by raster.rs
 //! history.rs   the pick's history, asked for       history_rows.rs, ladder.rs, outline.rs show it
 //! ```
 
 mod action;
 mod anatomy_state;
 mod animation;
+mod as_shown;
 mod canvas;
 mod change;
 mod coloring;
@@ -36,6 +38,7 @@ mod divider;
 mod dock;
 mod draw_level;
 mod draws;
+mod error_legend;
 mod explain;
 mod explain_facts;
 mod export;
@@ -72,9 +75,11 @@ mod pick_ray;
 mod picture;
 mod picture_gizmos;
 mod pixel;
+mod pixel_room;
 mod pixel_run;
 mod placement;
 mod projected;
+mod raster;
 mod raster_state;
 mod report;
 mod report_plot;
@@ -101,6 +106,7 @@ mod view;
 mod walk;
 
 pub use action::{Action, RunRequest};
+pub use as_shown::Drawing;
 pub use diagnosis::{DiagnosisProgress, DiagnosisView};
 pub use dock::Panel;
 pub use draw_level::DrawsState;
@@ -459,6 +465,7 @@ impl Inspector {
         // What failed is tried no further by itself.
         self.state.restoring = None;
         self.state.animation.is_running = false;
+        self.state.note_tour_error(&error);
         if !self.state.errors.contains(&error) {
             self.state.errors.push(error);
         }

@@ -66,6 +66,8 @@ pub struct Modes {
     pub bit: Option<u8>,
     /// What is shown beside it.
     pub compare: Option<Compare>,
+    /// Where the divider was last: 0 at the picture's left border, 1 at its right one.
+    pub seam: Option<f32>,
     /// Captures of other techniques to compare with.
     pub compared: Compared,
     /// What is drawn over it.
@@ -74,6 +76,8 @@ pub struct Modes {
     pub tests: TestsState,
     /// What changed, made once.
     pub changes: ChangeCache,
+    /// The legend of the error picture counts, and does not only say what colours mean.
+    pub counts_findings: bool,
 }
 
 impl Modes {

@@ -1,5 +1,5 @@
-//! The picture's second row of tools: before, after, what changed; bits of the stencil; what to compare
-//! with and what to draw over it.
+//! The picture's second row of tools: what to draw over it and what to compare with; before, after, what
+//! changed; bits of the stencil.
 
 use super::compare::{self, Compare, With, step_words};
 use super::modes::{Phase, has_phases};
@@ -10,22 +10,22 @@ use super::top_bar::segments;
 use super::view::{PictureKind, Shown};
 use crate::capture::Capture;
 use crate::technique::Technique;
-use egui::{Button, Rect, Ui, UiBuilder, vec2};
+use egui::{Align, Button, Layout, Rect, Ui, UiBuilder, vec2};
 
 /// Width of the note on a comparison, points.
 const NOTE_WIDTH: f32 = 232.0;
 
-/// Draws the tools that go with `shown`.
+/// Draws the tools that go with `shown`: those that are always there first, so that they keep their place.
 pub fn ui(ui: &mut Ui, state: &mut State, shown: Option<&Shown>) {
     let kind = shown.map_or(state.view.kind, |shown| shown.kind);
     let is_single = shown.is_none_or(|shown| shown.images.len() == 1);
+    ui.add_enabled_ui(is_single, |ui| {
+        toggle(ui, state);
+        overlays::menu(ui, state);
+    });
     phases(ui, state, kind);
     if kind == PictureKind::Stencil {
         bits(ui, state);
-    }
-    if is_single {
-        toggle(ui, state);
-        overlays::menu(ui, state);
     }
 }
 
@@ -55,15 +55,24 @@ fn toggle(ui: &mut Ui, state: &mut State) {
     let is_on = state.modes.compare.is_some();
     let word = theme::switch_word(ui, "Compare", is_on);
     let button = ui.add(Button::selectable(is_on, word));
+    let button = button.on_disabled_hover_text("Several pictures at once: choose one of them to compare it");
     if button.on_hover_text("Another step or technique beside this picture, under a divider").clicked() {
         state.modes.compare = if is_on { None } else { Some(Compare::new(state.step)) };
     }
 }
 
-/// What is compared with; drawn while comparing.
+/// What is compared with, flush right; drawn while comparing.
 pub fn compare_row(ui: &mut Ui, state: &mut State, capture: &Capture) {
     let Some(mut compare) = state.modes.compare else { return };
-    ui.label(theme::note("with"));
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| compared_with(ui, state, capture, &mut compare));
+    state.modes.compare = Some(compare);
+}
+
+/// Right to left: swaps the sides, and what is compared with.
+fn compared_with(ui: &mut Ui, state: &State, capture: &Capture, compare: &mut Compare) {
+    if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
+        compare.flipped = !compare.flipped;
+    }
     let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
     let combo = combo.selected_text(compare.with.words(capture)).height(420.0).show_ui(ui, |ui| {
         for step in 0..capture.steps.len() {
@@ -87,10 +96,7 @@ pub fn compare_row(ui: &mut Ui, state: &mut State, capture: &Capture) {
         }
     });
     combo.response.accessible_name("Compare with");
-    if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
-        compare.flipped = !compare.flipped;
-    }
-    state.modes.compare = Some(compare);
+    ui.label(theme::note("with"));
 }
 
 /// In the upper left corner of `rect`: how many texels differ, or why nothing is compared.

@@ -5,9 +5,10 @@ use super::canvas::Sheet;
 use super::coloring::Coloring;
 use super::format;
 use super::object_ids::ObjectIds;
-use super::overlay_lines::{Lines, PlacedLines, middle};
+use super::overlay_lines::{Lines, PlacedLines, middle, multiplicity};
 use super::palette;
 use super::placement::Placement;
+use super::scene_view::plate;
 use super::state::State;
 use super::tests_state::OUTCOMES;
 use super::theme;
@@ -15,12 +16,16 @@ use super::view::{PictureKind, Shown};
 use crate::anatomy::Anatomy;
 use crate::capture::{Capture, Image};
 use crate::plan::Part;
-use egui::{Align2, CornerRadius, FontId, Rect, Sense, Shape, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, CornerRadius, FontId, Pos2, Rect, Sense, Shape, Ui, UiBuilder, pos2, vec2};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Width of the card, points.
 const WIDTH: f32 = 176.0;
+/// How near to an edge the pointer has to be, points.
+const REACH: f32 = 5.0;
+/// Least width of the menu's button, points.
+const BUTTON_WIDTH: f32 = 84.0;
 
 /// Something drawn over the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -133,9 +138,12 @@ impl Overlays {
 pub fn menu(ui: &mut Ui, state: &mut State) {
     let count = state.modes.overlays.on.len();
     let text = if count == 0 { "Overlay".to_owned() } else { format!("Overlay · {count}") };
-    let button = ui.button(text).on_hover_text("What is drawn over the picture (O)");
+    // Of the same width with and without a number, so that nothing beside it moves.
+    let button = ui.add(egui::Button::new(text).min_size(vec2(BUTTON_WIDTH, 0.0)));
+    let button = button.on_hover_text("What is drawn over the picture (O)");
+    let button = button.on_disabled_hover_text("Several pictures at once: choose one of them to draw over it");
     let id = egui::Popup::default_response_id(&button);
-    if std::mem::take(&mut state.modes.overlays.open_menu) {
+    if std::mem::take(&mut state.modes.overlays.open_menu) && button.enabled() {
         egui::Popup::open_id(ui.ctx(), id);
     }
     let popup = egui::Popup::menu(&button).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
@@ -200,27 +208,48 @@ pub fn ui(ui: &mut Ui, state: &mut State, rect: Rect, shown: &Shown, placement: 
     if state.modes.overlays.on.is_empty() || shown.kind == PictureKind::Map {
         return;
     }
-    let painter = ui.painter_at(placement.rect().intersect(rect));
-    let (theme, is_dark, pixels) = (theme::of(ui), ui.visuals().dark_mode, ui.pixels_per_point());
-    let Overlays { on, made, .. } = &mut state.modes.overlays;
-    if let Some(made) = made {
-        let kinds = [(Overlay::Volumes, &mut made.volumes), (Overlay::Silhouettes, &mut made.silhouettes)];
-        for (_, lines) in kinds.into_iter().filter(|(overlay, _)| on.contains(overlay)) {
-            if let Some((lines, placed)) = lines {
-                painter.add(Shape::mesh(placed.of(lines, placement, theme, is_dark, pixels)));
-            }
-        }
-        if let Some(SeenObjects { middles, .. }) = made.objects.as_ref().filter(|_| on.contains(&Overlay::Names)) {
-            let casters = made.anatomy.objects.iter().zip(middles).filter(|(object, _)| object.casts);
-            for (object, at) in casters.filter_map(|(object, at)| Some((object, (*at)?))) {
-                name(ui, &painter, middle(placement, at), &object.name);
-            }
-        }
+    let seen = placement.rect().intersect(rect);
+    paint(ui, &mut state.modes.overlays, seen, placement);
+    if let Some(pointer) = ui.input(|input| input.pointer.hover_pos()).filter(|_| state.hover.is_some()) {
+        number_under(ui, &state.modes.overlays, seen, placement, pointer);
     }
     card(ui, state, rect);
 }
 
-fn name(ui: &Ui, painter: &egui::Painter, at: egui::Pos2, text: &str) {
+/// Lines, their numbers and names, clipped to `seen`.
+pub fn paint(ui: &Ui, overlays: &mut Overlays, seen: Rect, placement: Placement) {
+    let painter = ui.painter_at(seen);
+    let (theme, is_dark, pixels) = (theme::of(ui), ui.visuals().dark_mode, ui.pixels_per_point());
+    let Overlays { on, made, .. } = overlays;
+    let Some(made) = made else { return };
+    let kinds = [(Overlay::Volumes, &mut made.volumes), (Overlay::Silhouettes, &mut made.silhouettes)];
+    for (_, lines) in kinds.into_iter().filter(|(overlay, _)| on.contains(overlay)) {
+        if let Some((lines, placed)) = lines {
+            painter.add(Shape::mesh(placed.of(lines, placement, theme, is_dark, pixels)));
+            for (at, times) in placed.numbers(lines, placement, seen).iter() {
+                plate(&painter, *at, Align2::CENTER_CENTER, &multiplicity(*times), true, theme);
+            }
+        }
+    }
+    if let Some(SeenObjects { middles, .. }) = made.objects.as_ref().filter(|_| on.contains(&Overlay::Names)) {
+        let casters = made.anatomy.objects.iter().zip(middles).filter(|(object, _)| object.casts);
+        for (object, at) in casters.filter_map(|(object, at)| Some((object, (*at)?))) {
+            name(ui, &painter, middle(placement, at), &object.name);
+        }
+    }
+}
+
+/// Beside the pointer: how often the edge under it counts, where that is not once. Short edges have no number.
+fn number_under(ui: &Ui, overlays: &Overlays, seen: Rect, placement: Placement, pointer: Pos2) {
+    let made = overlays.made.as_ref().filter(|_| overlays.on.contains(&Overlay::Silhouettes));
+    let Some((lines, _)) = made.and_then(|made| made.silhouettes.as_ref()) else { return };
+    if let Some(times) = lines.number_near(placement, pointer, REACH) {
+        let words = format!("{}: counts {} times", multiplicity(times), times.unsigned_abs());
+        plate(&ui.painter_at(seen), pointer + vec2(14.0, -4.0), Align2::LEFT_BOTTOM, &words, false, theme::of(ui));
+    }
+}
+
+fn name(ui: &Ui, painter: &egui::Painter, at: Pos2, text: &str) {
     let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(theme::SMALL_SIZE), theme::of(ui).text);
     let place = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), Rect::from_center_size(at, vec2(0.0, 0.0)));
     painter.rect_filled(place.expand2(vec2(6.0, 3.0)), CornerRadius::same(4), theme::of(ui).panel.gamma_multiply(0.9));
@@ -275,7 +304,7 @@ fn contents(ui: &mut Ui, state: &mut State) {
     let made = state.modes.overlays.made.as_ref();
     let left_out = |lines: Option<&(Lines, PlacedLines)>| lines.map_or(0, |(lines, _)| lines.left_out);
     if on.contains(&Overlay::Silhouettes) {
-        line(ui, theme.lit, "silhouette; thick: counts twice");
+        line(ui, theme.lit, "silhouette; thick, ±2: twice");
     }
     if on.contains(&Overlay::Volumes) {
         let has_any = made.and_then(|made| made.volumes.as_ref()).is_none_or(|(lines, _)| !lines.lines.is_empty());

@@ -81,7 +81,8 @@ pub fn outcome(outcomes: u8) -> Color32 {
         Counts::DEPTH_FAILED => Color32::from_rgb(0xe0, 0x70, 0x3a),
         Counts::STENCIL_FAILED => Color32::from_rgb(0x96, 0x78, 0xdc),
         Counts::UNKNOWN => Color32::from_rgb(0x7b, 0x82, 0x90),
-        _ => Color32::from_rgb(0xf0, 0xe4, 0x42),
+        // Apart from the caps' and the light's yellow for every eye: see the test below.
+        _ => Color32::from_rgb(0x8f, 0xf2, 0xff),
     }
 }
 
@@ -123,8 +124,68 @@ pub fn ink_on(background: Color32) -> Color32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::theme;
     use super::*;
+    use crate::capture::TestCounts;
     use std::collections::BTreeSet;
+
+    /// Linear sRGB as the common kinds of colour blindness see it (Machado, Oliveira and Fernandes 2009, severity
+    /// 1): none, protanopia, deuteranopia, tritanopia.
+    const EYES: [[[f64; 3]; 3]; 4] = [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+        [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+        [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+    ];
+
+    fn times(matrix: [[f64; 3]; 3], vector: [f64; 3]) -> [f64; 3] {
+        matrix.map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum())
+    }
+
+    /// How far apart two colours are for these eyes, in Oklab (Ottosson 2020); black and white are 1 apart.
+    fn apart(eyes: [[f64; 3]; 3], a: Color32, b: Color32) -> f64 {
+        let seen = |color: Color32| {
+            let [red, green, blue, _] = color.to_array().map(|byte| {
+                let share = f64::from(byte) / 255.0;
+                if share <= 0.04045 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
+            });
+            let cones = times(
+                [
+                    [0.412_221_47, 0.536_332_54, 0.051_445_99],
+                    [0.211_903_5, 0.680_699_55, 0.107_396_96],
+                    [0.088_302_46, 0.281_718_84, 0.629_978_7],
+                ],
+                times(eyes, [red, green, blue]).map(|share| share.clamp(0.0, 1.0)),
+            );
+            times(
+                [
+                    [0.210_454_26, 0.793_617_79, -0.004_072_05],
+                    [1.977_998_5, -2.428_592_21, 0.450_593_71],
+                    [0.025_904_04, 0.782_771_77, -0.808_675_77],
+                ],
+                cones.map(f64::cbrt),
+            )
+        };
+        seen(a).iter().zip(seen(b)).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn pixels_with_both_outcomes_are_told_from_all_others_and_from_what_volumes_are_made_of_by_every_eye() {
+        let both = outcome(TestCounts::PASSED | TestCounts::DEPTH_FAILED);
+        let outcomes = [TestCounts::PASSED, TestCounts::DEPTH_FAILED, TestCounts::STENCIL_FAILED, TestCounts::UNKNOWN]
+            .map(outcome);
+        let of_theme = |theme: &theme::Theme| [theme.side, theme.light_cap, theme.dark_cap, theme.lit];
+        let volumes = [&theme::DARK, &theme::LIGHT].map(of_theme);
+        for other in outcomes.into_iter().chain(volumes.into_iter().flatten()).chain([receiver(2)]) {
+            for (kind, eyes) in EYES.into_iter().enumerate() {
+                // A step that one sees at a glance, five times what one can just tell.
+                let found = apart(eyes, both, other);
+                assert!(found >= 0.1, "{other:?}, eyes {kind}: {found:.3}");
+            }
+        }
+        let black_and_white = apart(EYES[0], Color32::BLACK, Color32::WHITE);
+        assert!((black_and_white - 1.0).abs() < 1e-3, "{black_and_white}");
+    }
 
     #[test]
     fn small_counts_and_minus_one_have_the_colours_of_the_design() {

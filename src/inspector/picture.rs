@@ -4,7 +4,7 @@ use super::action::Action;
 use super::canvas::{self, Sheet};
 use super::change::Change;
 use super::coloring::Coloring;
-use super::compare::With;
+use super::compare::{Compare, With};
 use super::depth::DepthScale;
 use super::divider;
 use super::face_grid;
@@ -25,11 +25,11 @@ use super::truth_note;
 use super::view::{DepthMode, FaceChoice, PictureKind, Shown, Zoom, available};
 use super::walk;
 use crate::capture::{Capture, Image};
-use egui::{CornerRadius, Margin, Rect, Ui, vec2};
+use egui::{CornerRadius, Margin, Rect, Ui, pos2, vec2};
 use std::sync::Arc;
 
-/// From this width on all tools are in one row, points.
-const WIDE: f32 = 940.0;
+/// What is compared with has its place at the right end of the second row where so much is left there, points.
+const COMPARE_WIDTH: f32 = 232.0;
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
@@ -39,20 +39,17 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let rect = ui.available_rect_before_wrap();
     ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
     let Some(shown) = state.shown(&capture) else { return nothing(ui, state, &capture, rect) };
-    let range = shown_range(state, &shown);
-    let mut coloring = coloring_of(&shown, range);
-    if let (Coloring::Stencil, Some(bit)) = (coloring, state.modes.bit) {
-        coloring = Coloring::Bit(bit);
-    }
+    let (coloring, range) = shown_coloring(state, &shown);
+    let corners = walk::under_banner(state, rect);
     if shown.images.len() == 1 {
         single(ui, state, &capture, rect, &shown, (coloring, range), actions);
     } else {
         face_grid::ui(ui, state, rect, &shown, coloring);
-        legend::ui(ui, state, rect, &shown, range);
+        legend::ui(ui, state, corners, &shown, range);
     }
-    truth_note::ui(ui, state, rect, &shown, actions);
+    truth_note::ui(ui, state, corners, &shown, actions);
     if state.view.kind == PictureKind::Overdraw && shown.kind != PictureKind::Overdraw {
-        overlays::counting_note(ui, state, rect);
+        overlays::counting_note(ui, state, corners);
     }
     walk::banner(ui, state, rect);
 }
@@ -67,29 +64,9 @@ fn single(
     (coloring, range): (Coloring, [f64; 2]),
     actions: &mut Vec<Action>,
 ) {
-    let change = change_of(state, capture, shown);
-    let mut sheets = Vec::new();
-    if let Some((ground, change)) = &change {
-        let sheet = |image: &Arc<Image>, coloring, has_numbers| Sheet {
-            image: image.clone(),
-            coloring,
-            part: rect,
-            has_numbers,
-        };
-        sheets.push(sheet(ground, Coloring::Srgb, false));
-        sheets.push(sheet(&change.image, change.coloring(), true));
-    }
-    sheets.extend(overlays::sheets(state, capture, shown, rect));
-    let compared = state.modes.compare.and_then(|compare| Some((compare, state.shown_compared(capture, shown).ok()?)));
-    if let Some((compare, other)) = &compared {
-        let mut beside = coloring_of(other, range);
-        if let Coloring::Bit(_) = coloring {
-            beside = coloring;
-        }
-        let part = divider::part(rect, compare);
-        sheets.push(Sheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
-    }
-    let placement = canvas::ui(ui, state, rect, shown, coloring, &sheets);
+    let Layers { change, sheets, compared } =
+        layers(state, capture, rect, shown, (coloring, range), state.modes.compare);
+    let placement = canvas::ui(ui, state, rect, shown, coloring, &sheets, canvas::PICTURE);
     overlays::ui(ui, state, rect, shown, placement);
     if shown.kind != PictureKind::Map {
         let mesh = shadow_map::marks(placement, state.map_tab.marked(), theme::of(ui).selected);
@@ -101,23 +78,77 @@ fn single(
     }
     outline::ui(ui, state, rect, shown, placement);
     picture_gizmos::ui(ui, state, rect, shown, placement, actions);
+    let corners = walk::under_banner(state, rect);
     match &change {
-        Some((_, change)) => legend::of_change(ui, rect, change),
+        Some(change) => legend::of_change(ui, corners, change),
         None => {
             magnifier::ui(ui, state, rect, shown, coloring, placement);
-            legend::ui(ui, state, rect, shown, range);
+            legend::ui(ui, state, corners, shown, range);
         }
     }
-    modes_bar::compare_note(ui, state, capture, shown, rect);
-    if let Some((mut compare, _)) = compared {
-        let now = match compare.with {
-            With::Step(_) => state.moment().words(),
-            With::Technique(_) => capture.technique.clone(),
-        };
-        let beside = compare.with.words(capture);
+    modes_bar::compare_note(ui, state, capture, shown, corners);
+    state.modes.seam = compared.map(|compare| {
+        let x = rect.left() + rect.width() * compare.at;
+        placement.texel_position(pos2(x, rect.top())).x / shown.images[0].size()[0].max(1) as f32
+    });
+    if let Some(mut compare) = compared {
+        let [beside, now] = compared_names(state, capture, &compare);
         divider::ui(ui, rect, &mut compare, [&beside, &now]);
         state.modes.compare = Some(compare);
     }
+}
+
+/// What lies over a picture.
+pub struct Layers {
+    /// What the step changed.
+    pub change: Option<Change>,
+    /// The pictures, in the order in which they lie.
+    pub sheets: Vec<Sheet>,
+    /// The comparison, where there is something to compare with.
+    pub compared: Option<Compare>,
+}
+
+/// What lies over `shown` in `rect`: what changed, tints, and on one side of `compare`'s divider what is compared.
+pub fn layers(
+    state: &mut State,
+    capture: &Capture,
+    rect: Rect,
+    shown: &Shown,
+    (coloring, range): (Coloring, [f64; 2]),
+    compare: Option<Compare>,
+) -> Layers {
+    let mut sheets = Vec::new();
+    let change = change_of(state, capture, shown);
+    if let Some((ground, change)) = &change {
+        let sheet = |image: &Arc<Image>, coloring, has_numbers| Sheet {
+            image: image.clone(),
+            coloring,
+            part: rect,
+            has_numbers,
+        };
+        sheets.push(sheet(ground, Coloring::Srgb, false));
+        sheets.push(sheet(&change.image, change.coloring(), true));
+    }
+    sheets.extend(overlays::sheets(state, capture, shown, rect));
+    let compared = compare.and_then(|compare| Some((compare, state.shown_compared(capture, shown).ok()?)));
+    if let Some((compare, other)) = &compared {
+        let mut beside = coloring_of(other, range);
+        if let Coloring::Bit(_) = coloring {
+            beside = coloring;
+        }
+        let part = divider::part(rect, compare);
+        sheets.push(Sheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
+    }
+    Layers { change: change.map(|(_, change)| change), sheets, compared: compared.map(|(compare, _)| compare) }
+}
+
+/// What the sides of a comparison are called: the compared one, and the one that is shown.
+pub fn compared_names(state: &State, capture: &Capture, compare: &Compare) -> [String; 2] {
+    let now = match compare.with {
+        With::Step(_) => state.moment().words(),
+        With::Technique(_) => capture.technique.clone(),
+    };
+    [compare.with.words(capture), now]
 }
 
 /// What the selected step or draw changed, over the frame's colours in grey; `None` where that is not shown.
@@ -160,6 +191,15 @@ fn empty(ui: &mut Ui, state: &State) {
     });
 }
 
+/// What the texels of `shown` mean as it is looked at, and the ends of the grey ramp.
+pub fn shown_coloring(state: &mut State, shown: &Shown) -> (Coloring, [f64; 2]) {
+    let range = shown_range(state, shown);
+    match (coloring_of(shown, range), state.modes.bit) {
+        (Coloring::Stencil, Some(bit)) => (Coloring::Bit(bit), range),
+        (coloring, _) => (coloring, range),
+    }
+}
+
 /// What the texels of `shown` mean, depths over `range`.
 #[must_use]
 pub fn coloring_of(shown: &Shown, range: [f64; 2]) -> Coloring {
@@ -189,35 +229,30 @@ pub fn full_range(state: &mut State, shown: &Shown) -> [f64; 2] {
     ranges.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]).unwrap_or([0.0, 1.0])
 }
 
-/// One row where there is room for all tools, else two; a row of its own while comparing.
+/// Two rows in every window, and what is always there first: nothing moves when tools of one kind of picture
+/// come and go, and the picture keeps its place.
 fn toolbar(ui: &mut Ui, state: &mut State, capture: &Capture) {
     egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
-        let is_wide = ui.available_width() >= WIDE;
         let shown = state.shown(capture);
         ui.horizontal(|ui| {
             kinds(ui, state, capture);
-            if is_wide {
-                modes_bar::ui(ui, state, shown.as_ref());
-            }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| zoom(ui, state, capture));
         });
-        let is_comparing = state.modes.compare.is_some();
-        if is_wide && !is_comparing && !has_options(shown.as_ref()) {
-            return;
-        }
-        ui.horizontal(|ui| {
+        let mut has_place = true;
+        // As high as segments are, whether there are any or not.
+        let row = vec2(ui.available_width(), theme::ROW_HEIGHT + 2.0);
+        ui.allocate_ui_with_layout(row, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            modes_bar::ui(ui, state, shown.as_ref());
             options(ui, state, capture, shown.as_ref());
-            if !is_wide {
-                modes_bar::ui(ui, state, shown.as_ref());
+            has_place = ui.available_width() >= COMPARE_WIDTH;
+            if has_place {
+                modes_bar::compare_row(ui, state, capture);
             }
-            modes_bar::compare_row(ui, state, capture);
         });
+        if !has_place && state.modes.compare.is_some() {
+            ui.horizontal(|ui| modes_bar::compare_row(ui, state, capture));
+        }
     });
-}
-
-fn has_options(shown: Option<&Shown>) -> bool {
-    let kind = shown.map(|shown| shown.kind);
-    !matches!(kind, None | Some(PictureKind::Color | PictureKind::Stencil | PictureKind::Overdraw))
 }
 
 /// What goes with one kind of picture only.
@@ -330,13 +365,10 @@ fn depth_mode(ui: &mut Ui, state: &mut State) {
     }
 }
 
-/// Right to left: the zoom in per cent, Fit, 1:1.
+/// Right to left: Fit, 1:1, the other buttons, and the zoom in per cent where it moves none of them.
 fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
     let size = state.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };
-    if let Zoom::Pixels(pixels) = state.view.zoom {
-        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
-    }
     let fits = state.view.zoom == Zoom::Fit;
     let word = theme::switch_word(ui, "Fit", fits);
     if ui.add(egui::Button::selectable(fits, word)).on_hover_text("The whole picture").clicked() {
@@ -352,4 +384,7 @@ fn zoom(ui: &mut Ui, state: &mut State, capture: &Capture) {
     }
     picture_gizmos::button(ui, state);
     walk::button(ui, state);
+    if let Zoom::Pixels(pixels) = state.view.zoom {
+        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
+    }
 }

@@ -3,13 +3,14 @@
 use super::coloring;
 use super::counts;
 use super::depth::{DepthMeasure, FIXED_BITS};
+use super::error_legend;
 use super::findings;
 use super::format;
 use super::history_rows;
 use super::ladder;
 use super::layers::MapContent;
-use super::legend;
 use super::palette;
+use super::pixel_room;
 use super::pixel_run;
 use super::state::State;
 use super::theme;
@@ -19,6 +20,9 @@ use crate::accuracy::Finding;
 use crate::capture::{Capture, CapturedLight, FrameSnapshot};
 use egui::{Color32, RichText, Ui};
 
+/// Height of a row of values where room is short, points.
+const TIGHT_ROW: f32 = 18.0;
+
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, state: &mut State) {
     let Some(capture) = state.capture.clone() else {
@@ -26,20 +30,32 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
         return;
     };
     let Some(at) = state.pick else { return how_to_pick(ui) };
+    let size = ui.available_size();
+    let is_tight = pixel_room::is_tight(size);
+    let gap = if is_tight { 4.0 } else { 8.0 };
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        if is_tight {
+            ui.spacing_mut().interact_size.y = TIGHT_ROW;
+            ui.spacing_mut().item_spacing.y = 2.0;
+        }
+        let bottom = ui.cursor().top() + size.y;
         sentence(ui, state, &capture, at);
-        ui.add_space(8.0);
-        values(ui, state, &capture, at);
+        ui.add_space(gap);
+        values(ui, state, &capture, at, is_tight);
         if !capture.lights.is_empty() {
-            ui.add_space(8.0);
+            ui.add_space(gap);
             lights(ui, &capture, at);
         }
-        ui.add_space(8.0);
+        ui.add_space(gap);
         pixel_run::ui(ui, state, &capture, at);
-        ui.add_space(8.0);
-        history_rows::ui(ui, state, &capture, at);
-        ui.add_space(8.0);
-        ladder::ui(ui, state, &capture, light_in_question(state, &capture, at));
+        ui.add_space(gap);
+        let events = state.history.last().map_or(0, |history| history.events.len());
+        let rows = pixel_room::rows(bottom - ui.cursor().top(), events, ladder::is_shown(state, &capture));
+        // The card of a selected event moves the ladder, and takes none of its room: else its rungs would fold under
+        // the pointer.
+        let end = history_rows::ui(ui, state, &capture, at, rows);
+        ui.add_space(gap);
+        ladder::ui(ui, state, &capture, light_in_question(state, &capture, at), bottom - end - gap);
     });
 }
 
@@ -79,58 +95,107 @@ fn sentence(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     });
 }
 
-fn values(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2]) {
+/// A name and a value, or two of them in a row where `is_tight`.
+fn values(ui: &mut Ui, state: &State, capture: &Capture, at: [u32; 2], is_tight: bool) {
     theme::heading(ui, &format!("After {}", state.moment().words()));
-    egui::Grid::new("pixel values").num_columns(2).spacing([16.0, 2.0]).min_row_height(20.0).show(ui, |ui| {
-        row(ui, "pixel", &format!("{}, {}", at[0], at[1]));
+    let row_height = ui.spacing().interact_size.y.min(20.0);
+    let grid = |name| egui::Grid::new(name).min_row_height(row_height);
+    let in_row = if is_tight { 2 } else { 1 };
+    let spacing = if is_tight { [10.0, 0.0] } else { [16.0, 2.0] };
+    grid("pixel values").num_columns(2 * in_row).spacing(spacing).show(ui, |ui| {
+        let mut pairs = Pairs { in_row, done: 0 };
+        pairs.text(ui, "pixel", &format!("{}, {}", at[0], at[1]));
         match state.moment().frame(capture) {
-            Some(frame) => {
-                frame_values(ui, capture, frame, at);
+            Some(frame) => frame_values(ui, &mut pairs, capture, frame, at),
+            None => pairs.text(ui, "picture", "not begun yet"),
+        }
+    });
+    let has_count = state.moment().frame(capture).is_some() && counts::to_show(capture, state).is_some();
+    let texel = state.map_pick.filter(|_| state.view.kind == PictureKind::Map);
+    if has_count || texel.is_some() {
+        // Some of these are long.
+        grid("pixel further values").num_columns(2).spacing(spacing).show(ui, |ui| {
+            if has_count {
                 count_row(ui, state, capture, at);
             }
-            None => row(ui, "picture", "not begun yet"),
-        }
-        if let (Some(texel), true) = (state.map_pick, state.view.kind == PictureKind::Map) {
-            map_values(ui, state, capture, texel);
-        }
-    });
+            if let Some(texel) = texel {
+                map_values(ui, state, capture, texel);
+            }
+        });
+    }
 }
 
-fn frame_values(ui: &mut Ui, capture: &Capture, frame: &FrameSnapshot, at: [u32; 2]) {
-    if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
-        ui.label(theme::note("colour"));
-        ui.horizontal(|ui| {
-            theme::swatch(ui, Color32::from_rgb(red, green, blue));
-            ui.label(theme::number(format!("{red} {green} {blue}")));
-            ui.label(theme::note("sRGB"));
+/// Cells of a grid: names and values, so many pairs in a row.
+struct Pairs {
+    in_row: usize,
+    done: usize,
+}
+
+impl Pairs {
+    fn add(&mut self, ui: &mut Ui, name: &str, value: impl FnOnce(&mut Ui)) {
+        ui.label(theme::note(name));
+        value(ui);
+        self.done += 1;
+        if self.done.is_multiple_of(self.in_row) {
+            ui.end_row();
+        }
+    }
+
+    fn text(&mut self, ui: &mut Ui, name: &str, value: &str) {
+        self.add(ui, name, |ui| {
+            ui.label(theme::number(value).color(theme::of(ui).text));
         });
-        ui.end_row();
+    }
+}
+
+fn frame_values(ui: &mut Ui, pairs: &mut Pairs, capture: &Capture, frame: &FrameSnapshot, at: [u32; 2]) {
+    if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
+        let is_alone = pairs.in_row == 1;
+        pairs.add(ui, "colour", |ui| {
+            ui.horizontal(|ui| {
+                theme::swatch(ui, Color32::from_rgb(red, green, blue));
+                ui.label(theme::number(format!("{red} {green} {blue}"))).on_hover_text("sRGB");
+                if is_alone {
+                    ui.label(theme::note("sRGB"));
+                }
+            });
+        });
     }
     if let Some(depth) = frame.depth.image.depth_at(at) {
-        row(ui, "depth", &format::depth(depth));
+        pairs.text(ui, "depth", &format::depth(depth));
         let measure = DepthMeasure::of_camera(capture);
         let distance = measure.value(depth);
-        row(ui, "distance", &distance.map_or_else(|| "no surface".to_owned(), format::metres));
+        pairs.text(ui, "distance", &distance.map_or_else(|| "no surface".to_owned(), format::metres));
         let metres = |step: Option<f64>| step.map_or_else(|| "–".to_owned(), format::metres);
-        row(ui, "one step", &metres(measure.step_at(depth)));
-        row(ui, &format!("in {FIXED_BITS} bits"), &metres(measure.fixed_step_at(depth)));
+        pairs.text(ui, "one step", &metres(measure.step_at(depth)));
+        pairs.text(ui, &format!("in {FIXED_BITS} bits"), &metres(measure.fixed_step_at(depth)));
     }
     match frame.stencil.as_ref().map(|stencil| stencil.image.byte_at(at)) {
-        Some(Some(stencil)) => stencil_row(ui, stencil),
+        Some(Some(stencil)) => stencil_cells(ui, pairs, stencil),
         Some(None) => {}
         None if capture.lights.iter().any(|light| light.count.is_some()) => {}
-        None => row(ui, "stencil", "no buffer"),
+        None => pairs.text(ui, "stencil", "no buffer"),
     }
 }
 
-fn stencil_row(ui: &mut Ui, stencil: u8) {
-    ui.label(theme::note("stencil"));
-    ui.horizontal(|ui| {
-        theme::swatch(ui, palette::stencil(stencil));
-        ui.label(theme::number(palette::signed(stencil)).color(theme::of(ui).text));
-        ui.label(theme::number(format!("{:04b} {:04b}", stencil >> 4, stencil & 15)).color(theme::of(ui).dim));
+fn stencil_cells(ui: &mut Ui, pairs: &mut Pairs, stencil: u8) {
+    let bits = theme::number(format!("{:04b} {:04b}", stencil >> 4, stencil & 15)).color(theme::of(ui).dim);
+    let is_alone = pairs.in_row == 1;
+    let beside = is_alone.then(|| bits.clone());
+    pairs.add(ui, "stencil", |ui| {
+        ui.horizontal(|ui| {
+            theme::swatch(ui, palette::stencil(stencil));
+            ui.label(theme::number(palette::signed(stencil)).color(theme::of(ui).text));
+            if let Some(bits) = beside {
+                ui.label(bits);
+            }
+        });
     });
-    ui.end_row();
+    if !is_alone {
+        pairs.add(ui, "its bits", |ui| {
+            ui.label(bits);
+        });
+    }
 }
 
 /// The signed count of the light in question, where it is known after the step.
@@ -235,7 +300,7 @@ fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, a
     if let Some(finding) = finding {
         let style = findings::style(finding);
         ui.horizontal(|ui| {
-            legend::hatched(ui, style);
+            error_legend::hatched(ui, style);
             ui.add(egui::Label::new(RichText::new(style.meaning).color(theme::of(ui).text)).wrap());
         });
     }

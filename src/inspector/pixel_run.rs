@@ -45,7 +45,9 @@ pub fn ui(ui: &mut Ui, state: &mut State, capture: &Capture, at: [u32; 2]) {
     // The columns beside it keep their place.
     let longest = if has_stencil { MOST_LETTERS - 9 } else { MOST_LETTERS };
     let of_map = MapContent::of_capture(capture).map_or("map", MapContent::one);
-    egui::Grid::new("pixel over the steps").num_columns(5).spacing([12.0, 2.0]).min_row_height(20.0).show(ui, |ui| {
+    let grid = egui::Grid::new("pixel over the steps").num_columns(5).spacing([12.0, 2.0]);
+    let row_height = ui.spacing().interact_size.y.min(20.0);
+    grid.min_row_height(row_height).show(ui, |ui| {
         head(ui, has);
         let mut before: Option<&Values> = None;
         for (index, step) in capture.steps.iter().enumerate() {

@@ -288,7 +288,7 @@ fn draw_face(ui: &mut Ui, state: &mut State, capture: &Capture, rect: Rect) -> O
     let shown = Some(shown).filter(|shown| shown.kind == PictureKind::Map && shown.images.len() == 1)?;
     let range = shown_range(state, &shown);
     let coloring = coloring_of(&shown, range);
-    let placement = canvas::named(ui, state, rect, &shown, coloring, &[], "Shadow map canvas");
+    let placement = canvas::ui(ui, state, rect, &shown, coloring, &[], "Shadow map canvas");
     Some(placement)
 }
 

@@ -85,7 +85,7 @@ fn moment_of(tests: &StepTests) -> Moment {
 pub const OUTCOMES: [(u8, &str, &str); 6] = [
     (TestCounts::PASSED, "passed", "Every fragment here passed both tests"),
     (TestCounts::DEPTH_FAILED, "depth failed", "Every fragment here failed the depth test: hits of z-fail"),
-    (TestCounts::PASSED | TestCounts::DEPTH_FAILED, "both", "Some passed, some failed the depth test"),
+    (TestCounts::PASSED | TestCounts::DEPTH_FAILED, "mixed", "Some passed both tests, some failed the depth test"),
     (TestCounts::STENCIL_FAILED, "stencil failed", "The stencil test let no fragment through"),
     (TestCounts::UNKNOWN, "? not known", "The step writes what it tests, and several fragments came here"),
     (0, "no fragment", "The step drew nothing here"),

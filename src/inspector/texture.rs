@@ -11,8 +11,9 @@ use super::depth::DepthMeasure;
 use super::findings;
 use super::palette;
 use crate::capture::Image;
-use crate::picture::Picture;
+use crate::picture::{Picture, colors::Rgb};
 use egui::{Color32, ColorImage, Context, TextureFilter, TextureHandle, TextureOptions};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Bytes of textures that are kept, beyond those of the current frame.
@@ -299,19 +300,25 @@ pub fn picture(image: &Image, coloring: Coloring) -> Picture {
     picture
 }
 
-/// Lays a picture over another of its size: where it is see-through the other stays.
-pub fn lay_over(picture: &mut Picture, image: &Image, coloring: Coloring) {
+/// Lays these columns of a picture over another of its size: where it is see-through the other stays.
+pub fn lay_over(picture: &mut Picture, image: &Image, coloring: Coloring, columns: Range<u32>) {
     let colored = colored(image, coloring, u32::MAX);
     let [width, height] = image.size();
     let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-    for (at, color) in places.zip(&colored.pixels) {
-        let Some(under) = picture.at(at) else { continue };
-        let [red, green, blue, alpha] = color.to_array();
-        // Colours are multiplied by their alpha already.
-        let stays = |under: u8| (u16::from(under) * u16::from(255 - alpha) / 255) as u8;
-        let over = [red, green, blue];
-        picture.put(at, std::array::from_fn(|channel| over[channel].saturating_add(stays(under[channel]))));
+    for (at, color) in places.zip(&colored.pixels).filter(|([x, _], _)| columns.contains(x)) {
+        if let Some(under) = picture.at(at) {
+            picture.put(at, over(*color, under));
+        }
     }
+}
+
+/// A colour over another: a colour is multiplied by its alpha already.
+#[must_use]
+pub fn over(color: Color32, under: Rgb) -> Rgb {
+    let [red, green, blue, alpha] = color.to_array();
+    let stays = |under: u8| (u16::from(under) * u16::from(255 - alpha) / 255) as u8;
+    let over = [red, green, blue];
+    std::array::from_fn(|channel| over[channel].saturating_add(stays(under[channel])))
 }
 
 fn shares_of(image: &Image) -> Shares {

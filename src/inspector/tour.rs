@@ -2,7 +2,8 @@
 //!
 //! A stop first asks for its technique or scene, and waits for the capture; then it goes to its step,
 //! picture, pixel and tab. Between stops the user may do what they like: the next stop finds its place
-//! again. The stops are in `tour_stops.rs`.
+//! again. A stop whose frame can't be made says why, and offers to try again or to go on without it. The
+//! stops are in `tour_stops.rs`.
 
 use super::action::Action;
 use super::state::State;
@@ -18,12 +19,14 @@ const LIT: u8 = 0;
 const SHADOW: u8 = 1;
 
 /// Where one is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TourState {
     tour: usize,
     stop: usize,
     /// What the stop wants is not done yet.
     is_pending: bool,
+    /// What failed while the stop's frame was waited for, with the mend.
+    error: Option<String>,
 }
 
 impl State {
@@ -44,35 +47,76 @@ impl State {
             self.tour = None;
             return;
         };
-        self.tour = Some(TourState { tour, stop, is_pending: true });
+        self.tour = Some(TourState { tour, stop, is_pending: true, error: None });
         self.animation.is_running = false;
-        let is_open = |scene: &str| self.scene.as_ref().is_some_and(|open| open.name == scene);
-        let scene = found.stops[..=stop].iter().rev().find_map(|stop| scene_of(stop.go));
-        if let Some(scene) = scene.filter(|scene| !is_open(scene)) {
+        if let Some(scene) = self.scene_to_open(found, stop) {
             self.restoring = None;
             self.is_waiting = true;
             actions.push(Action::Open(scene.to_owned()));
             return;
         }
-        self.choose_technique(found.stops[stop].technique(found), actions);
+        self.run_technique(found.stops[stop].technique(found), actions);
+    }
+
+    /// The scene that a stop is about, where another one is open.
+    fn scene_to_open(&self, tour: &Tour, stop: usize) -> Option<&'static str> {
+        let scene = tour.stops[..=stop].iter().rev().find_map(|stop| scene_of(stop.go))?;
+        let is_open = self.scene.as_ref().is_some_and(|open| open.name == scene);
+        (!is_open).then_some(scene)
+    }
+
+    /// Chooses a technique; one that is chosen already, and has no frame, is tried again.
+    fn run_technique(&mut self, technique: Technique, actions: &mut Vec<Action>) {
+        let is_chosen = self.scene.as_ref().is_some_and(|scene| scene.draft.choice.technique() == technique);
+        let is_of = |capture: &Capture| {
+            capture.technique == technique.name()
+                && self.scene.as_ref().is_some_and(|scene| scene.name == capture.scene)
+        };
+        let is_shown = self.capture.as_ref().is_some_and(|capture| is_of(capture));
+        if is_chosen && !is_shown && !self.is_waiting {
+            self.run_draft(actions);
+        } else {
+            self.choose_technique(technique, actions);
+        }
+    }
+
+    /// Something failed: the stop that waits tells it.
+    pub fn note_tour_error(&mut self, error: &str) {
+        if let Some(tour) = self.tour.as_mut().filter(|tour| tour.is_pending) {
+            tour.error = Some(error.to_owned());
+        }
+    }
+
+    /// Why the stop has no frame, and will get none by itself; `None` while one may come.
+    fn tour_trouble(&self) -> Option<String> {
+        let at = self.tour.as_ref().filter(|tour| tour.is_pending && !self.is_waiting && self.job.is_none())?;
+        let problem = self.scene.as_ref().and_then(|scene| scene.problem.clone());
+        Some(at.error.clone().or(problem).unwrap_or_else(|| "the run ended without a picture".to_owned()))
     }
 
     /// Does what the stop wants, as soon as its capture is there.
     pub fn continue_tour(&mut self, actions: &mut Vec<Action>) {
-        let Some(at) = self.tour.filter(|tour| tour.is_pending && !self.is_waiting) else { return };
+        let Some(at) = self.tour.clone().filter(|tour| tour.is_pending && !self.is_waiting) else { return };
         let Some(tour) = TOURS.get(at.tour) else { return };
         let Some(capture) = self.capture.clone() else { return };
         let stop = &tour.stops[at.stop];
         let technique = stop.technique(tour);
         let Some(scene) = &self.scene else {
-            // A capture folder: there is nothing to run. The stop is told all the same.
-            self.tour = Some(TourState { is_pending: false, ..at });
+            // A capture folder: there is nothing to run. The stop is told all the same, unless its scene failed.
+            if at.error.is_none() {
+                self.tour = Some(TourState { is_pending: false, ..at });
+            }
             return;
         };
-        if scene.draft.choice.technique() != technique {
+        // Where the scene or its frame could not be made, the stop says why.
+        let is_other = scene.draft.choice.technique() != technique;
+        if self.scene_to_open(tour, at.stop).is_some() || (is_other && at.error.is_some()) {
+            return;
+        }
+        if is_other {
             return self.choose_technique(technique, actions);
         }
-        if capture.technique != technique.name() {
+        if capture.technique != technique.name() || capture.scene != scene.name {
             return;
         }
         self.tour = Some(TourState { is_pending: false, ..at });
@@ -163,12 +207,13 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
         state.start_tour(tour, actions);
     }
     state.continue_tour(actions);
-    let Some(at) = state.tour else { return };
+    let Some(at) = state.tour.clone() else { return };
     let Some(tour) = TOURS.get(at.tour) else { return };
+    let trouble = state.tour_trouble();
     let frame = egui::Frame::new().fill(theme::of(ui).raised).inner_margin(Margin::symmetric(12, 8));
     let mut to = None;
     egui::Panel::bottom("tour").frame(frame).show(ui, |ui| {
-        to = stop(ui, tour, at);
+        to = stop(ui, tour, &at, trouble.as_deref());
     });
     match to {
         None => {}
@@ -181,7 +226,7 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
 }
 
 /// Text and buttons; where to go, `Some(None)` to end.
-fn stop(ui: &mut Ui, tour: &Tour, at: TourState) -> Option<Option<usize>> {
+fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Option<Option<usize>> {
     let stop = &tour.stops[at.stop];
     let count = tour.stops.len();
     let mut to = None;
@@ -201,8 +246,25 @@ fn stop(ui: &mut Ui, tour: &Tour, at: TourState) -> Option<Option<usize>> {
             }
         });
     });
-    let text = if at.is_pending { "The frame is being made …" } else { stop.text };
-    ui.add(Label::new(RichText::new(text).color(theme::of(ui).text)).wrap());
+    if let Some(reason) = trouble {
+        let text = RichText::new(format!("× This stop's frame can't be made: {reason}"));
+        ui.add(Label::new(text.color(theme::of(ui).error)).wrap());
+        ui.horizontal(|ui| {
+            if ui.button("Try this stop again").clicked() {
+                to = Some(Some(at.stop));
+            }
+            let is_last = at.stop + 1 == count;
+            let skip = if is_last { "Skip it and end the tour" } else { "Skip this stop" };
+            if ui.button(skip).clicked() {
+                to = Some((!is_last).then_some(at.stop + 1));
+            }
+            ui.label(theme::note("What it would show:"));
+        });
+    }
+    let is_awaited = at.is_pending && trouble.is_none();
+    let text = if is_awaited { "The frame is being made …" } else { stop.text };
+    let ink = if trouble.is_some() { theme::of(ui).dim } else { theme::of(ui).text };
+    ui.add(Label::new(RichText::new(text).color(ink)).wrap());
     to
 }
 

@@ -33,6 +33,8 @@ const RADIUS: f64 = 0.25;
 const RADIUS_OF_NEAR: f64 = 1.5;
 /// Sizes of shadow maps.
 const SIZES: [u32; 5] = [256, 512, 1024, 2048, 4096];
+/// Height of the banner over the picture, points.
+const BANNER_HEIGHT: f32 = 56.0;
 /// What P goes through.
 const TECHNIQUES: [Technique; 5] =
     [Technique::None, Technique::Planar, Technique::Projective, Technique::ZFail, Technique::ShadowMap];
@@ -356,12 +358,18 @@ pub fn button(ui: &mut Ui, state: &mut State) {
     }
 }
 
+/// What of the picture is free for cards in its corners: while one walks, what is under the banner.
+#[must_use]
+pub fn under_banner(state: &State, rect: Rect) -> Rect {
+    if state.walk.is_on { rect.with_min_y((rect.top() + BANNER_HEIGHT + 8.0).min(rect.bottom())) } else { rect }
+}
+
 /// Says over the picture that one walks, how, and how it ends.
 pub fn banner(ui: &mut Ui, state: &State, rect: Rect) {
     if !state.walk.is_on {
         return;
     }
-    let size = vec2(380.0_f32.min(rect.width() - 16.0), 56.0);
+    let size = vec2(380.0_f32.min(rect.width() - 16.0), BANNER_HEIGHT);
     let place = Rect::from_min_size(rect.center_top() + vec2(-size.x / 2.0, 12.0), size);
     ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("walk banner"), |ui| {
         theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {

@@ -103,8 +103,8 @@ impl Session {
             what.choices.iter().zip(&plans).zip(prepared).zip(timed)
         {
             go_on(self)?;
-            let output = self.executor.capture(ready, false)?;
-            let labels = output.labels.iter().enumerate();
+            let labels = self.executor.labels(ready)?;
+            let labels = labels.iter().enumerate();
             let error = labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
             let (triangles, bytes) = (plan.triangles(), plan.bytes());
             measured.push(Measured { choice: choice.clone(), error, frames, gpu_ms, setup_ms, triangles, bytes });
@@ -127,9 +127,9 @@ impl Session {
     }
 }
 
-/// All rows stay on the GPU while they are timed in turn, each with as much again for its copies.
+/// All rows stay on the GPU while they are timed in turn.
 fn check_memory(plans: &[(FramePlan, Duration)]) -> Result<(), SessionError> {
-    let needed: u64 = plans.iter().map(|(plan, _)| plan.bytes() * 2).sum();
+    let needed: u64 = plans.iter().map(|(plan, _)| plan.bytes()).sum();
     if needed <= GpuError::MOST_BYTES {
         return Ok(());
     }

@@ -254,7 +254,7 @@ impl Session {
     }
 
     fn cost_of(&self, prepared: &Prepared, runs: usize) -> Result<CaptureCost, SessionError> {
-        let snapshot_bytes = prepared.snapshot_bytes();
+        let snapshot_bytes = prepared.snapshot_bytes()?;
         let mut cost = CaptureCost { frames: Vec::new(), captured: Vec::new(), snapshot_bytes };
         self.executor.time(prepared, false)?;
         self.executor.time(prepared, true)?;

@@ -150,12 +150,10 @@ impl Session {
         self.executor.time(&ready, false)?;
         let frames = (0..case.timed_frames()).map(|_| self.executor.time(&ready, false));
         let frame_ms = median_ms(&frames.collect::<Result<Vec<_>, _>>()?).unwrap_or(f64::NAN);
-        let output = self.executor.capture(ready, false)?;
+        let labels = self.executor.labels(ready)?;
         let mut error = ErrorCounts::default();
         let (mut flips, mut off_limit, mut seen) = (None, None, Seen::default());
-        for (light, labels) in
-            output.labels.iter().enumerate().filter_map(|(light, labels)| Some((light, labels.as_ref()?)))
-        {
+        for (light, labels) in labels.iter().enumerate().filter_map(|(light, labels)| Some((light, labels.as_ref()?))) {
             let accuracy = traced.compare(light, labels);
             error = [error, accuracy.counts].into_iter().sum();
             let count = |label: u8| traced.truth.labels[light].iter().filter(|other| **other == label).count() as u64;

@@ -133,14 +133,9 @@ impl Questions {
         (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
     }
 
-    /// Could a count of these casters reach 256?
-    pub fn may_overflow(&self, frame: &Frame, casters: &[usize]) -> bool {
-        let count = |index: &usize| frame.placed[*index].object.mesh.triangles().len();
-        if casters.iter().map(count).sum::<usize>() <= MOST_IN_STENCIL {
-            return false;
-        }
-        let triangles: Vec<_> = casters.iter().flat_map(|index| casters::world_triangles(frame, *index)).collect();
-        layers::may_exceed(&triangles, self.position, MOST_IN_STENCIL)
+    /// Could a count of these casting triangles, world space, reach 256?
+    pub fn may_overflow(&self, casting: &[[DVec3; 3]]) -> bool {
+        layers::may_exceed(casting, self.position, MOST_IN_STENCIL)
     }
 }
 

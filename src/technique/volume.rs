@@ -31,7 +31,7 @@ use crate::plan::{
 use crate::scene::Object;
 pub use counting::Counting;
 use counting::Step;
-use glam::DVec4;
+use glam::{DVec3, DVec4};
 use options::{Options, WhoCasts};
 use std::ops::Range;
 
@@ -175,6 +175,14 @@ impl Volume {
         parts.into_iter().filter(|part| !part.triangles.is_empty())
     }
 
+    /// The same in world space: `object` is the caster's index.
+    fn casting_triangles(&self, frame: &Frame, object: usize) -> impl Iterator<Item = [DVec3; 3]> {
+        let world = &frame.placed[object].world;
+        let corners = frame.plan.meshes[self.mesh.0].indices.data();
+        let casting = self.parts.light_cap.start * 3..self.parts.light_cap_turned.end * 3;
+        corners[casting].chunks_exact(3).map(|corners| [0, 1, 2].map(|corner| world[corners[corner] as usize]))
+    }
+
     fn draws(&self, options: &Options, step: Step) -> Vec<Draw> {
         self.needed.iter().map(|part| self.draw(part, self.counting.raster(part, options, step))).collect()
     }
@@ -258,7 +266,12 @@ fn volumes(frame: &mut Frame, light: LightId, options: &Options) -> (Vec<Volume>
         volumes.push(Volume { caster: object.name.clone(), counting: form.counting, mesh, parts, needed });
         counted.push(index);
     }
-    let may_overflow = questions.is_some_and(|questions| questions.may_overflow(frame, &counted));
+    let casting = || volumes.iter().zip(&counted).flat_map(|(volume, index)| volume.casting_triangles(frame, *index));
+    let may_overflow = questions.is_some_and(|questions| questions.may_overflow(&casting().collect::<Vec<_>>()));
+    if may_overflow {
+        let because = "a ray of it may meet more than 255 casting triangles: a float counts them";
+        frame.leave_out("eight-bit count", &Frame::light_name(light), because);
+    }
     (volumes, may_overflow)
 }
 

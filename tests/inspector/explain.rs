@@ -126,6 +126,51 @@ fn a_tour_drives_the_panels_stop_by_stop() {
     assert!(harness.query_by_label("Next stop").is_none());
 }
 
+/// The worker says why, and that it is done.
+fn fail(harness: &mut Harness<Seen>, reason: &str) {
+    harness.state_mut().inspector.push_error(reason.to_owned());
+    harness.state_mut().inspector.set_job(None);
+    harness.run_steps(3);
+}
+
+#[test]
+fn a_stop_whose_frame_can_not_be_made_says_why_and_is_tried_again_or_skipped() {
+    let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
+    click(&mut harness, "Explain");
+    // A tab has its sizes a frame after it is shown.
+    harness.run_steps(3);
+    click_button(&mut harness, "Tour of planar");
+    harness.get_by_label("The frame is being made …");
+    // Its scene can't be opened.
+    fail(&mut harness, "no memory: close another program");
+    harness.get_by_label("× This stop's frame can't be made: no memory: close another program");
+    assert!(harness.query_by_label("The frame is being made …").is_none());
+    let before = harness.state().actions.len();
+    harness.run_steps(5);
+    assert_eq!(harness.state().actions.len(), before, "nothing is tried by itself, and not in another scene");
+    let opened = harness.state().actions[before - 1].clone();
+    click_button(&mut harness, "Try this stop again");
+    assert_eq!(harness.state().actions[before..], [opened]);
+    harness.get_by_label("The frame is being made …");
+    let scene = stencilscope::scene::open(&OpenSpec::new("rings")).expect("a built-in scene");
+    let shown = over("rings", Technique::Planar);
+    let draft = *shown.draft().expect("a draft");
+    harness.state_mut().inspector.open_scene(&scene, draft, Some("rings".to_owned()));
+    // Its frame can't be made either.
+    fail(&mut harness, "the picture is too large: make it smaller");
+    harness.get_by_label("× This stop's frame can't be made: the picture is too large: make it smaller");
+    harness.get_by_label_contains("stop 1 of");
+    let before = harness.state().actions.len();
+    click_button(&mut harness, "Skip this stop");
+    harness.get_by_label_contains("stop 2 of");
+    let asked = &harness.state().actions[before..];
+    assert!(matches!(asked, [Action::Run(_)]), "the next stop tries again: {asked:?}");
+    harness.state_mut().inspector.set_capture(Arc::clone(shown.capture().expect("a capture")));
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("can't be made").is_none());
+    assert!(harness.query_by_label("The frame is being made …").is_none(), "the tour went on");
+}
+
 #[test]
 fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
     let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);

@@ -1,7 +1,9 @@
 //! The panels, driven by the names of their widgets, over a frame made by hand.
 
 mod accessibility;
+mod as_shown;
 mod by_hand;
+mod cards;
 mod counts;
 mod diagnosis;
 mod draws;

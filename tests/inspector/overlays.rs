@@ -61,7 +61,7 @@ fn tests_of_the_step_are_asked_once_and_listed_with_their_pixels() {
     harness.state_mut().inspector.set_tests(1, None, Ok(Arc::new(tests())));
     harness.run_steps(2);
     harness.get_by_label("Tests of step 2");
-    for (name, pixels) in [("passed", "10"), ("depth failed", "20"), ("both", "40"), ("? not known", "1")] {
+    for (name, pixels) in [("passed", "10"), ("depth failed", "20"), ("mixed", "40"), ("? not known", "1")] {
         harness.get_by_label(name);
         assert!(harness.query_all_by_label(pixels).next().is_some(), "{name}: {pixels}");
     }
@@ -130,7 +130,7 @@ fn lines_receivers_and_names_come_from_the_frames_anatomy() {
     harness.get_by_label("Looking at the geometry …");
     harness.state_mut().inspector.set_anatomy(Ok(anatomy));
     harness.run_steps(3);
-    for text in ["silhouette; thick: counts twice", "side", "light cap", "dark cap", "receives shadows"] {
+    for text in ["silhouette; thick, ±2: twice", "side", "light cap", "dark cap", "receives shadows"] {
         assert!(shows(&harness, text), "{text}");
     }
     let over = harness.render().expect("a picture");

@@ -92,6 +92,22 @@ fn help_lists_the_keys_and_closes_again() {
 }
 
 #[test]
+fn the_keys_of_the_help_stand_in_one_column_flush_left() {
+    let mut harness = harness(z_fail(SIZE));
+    press(&mut harness, Key::F1);
+    harness.run_steps(2);
+    // Of three sections, short and long.
+    let [short, long, drag] = ["Ctrl-G", "Ctrl-Shift-Z", "Left drag"].map(|key| harness.get_by_label(key).rect());
+    for other in [long, drag] {
+        assert!((short.left() - other.left()).abs() < 0.5, "{short:?}, {other:?}");
+    }
+    assert!(short.width() < long.width() && long.width() < 120.0, "as wide as their words: {short:?}, {long:?}");
+    let does =
+        ["go to a step by its number", "move the picture"].map(|words| harness.get_by_label(words).rect().left());
+    assert!((does[0] - does[1]).abs() < 0.5 && does[0] > long.right(), "{does:?}");
+}
+
+#[test]
 fn the_shown_picture_is_exported_where_it_is_wished_and_a_taken_place_is_asked_about() {
     let mut harness = harness(z_fail(SIZE));
     click_button(&mut harness, "Stencil");

@@ -110,6 +110,8 @@ fn the_legend_begins_with_a_sentence_and_counts_findings() {
     let mut harness = harness(with_truth(z_fail(SIZE)));
     click_button(&mut harness, "Error");
     harness.get_by_label("Error, light 1");
+    harness.get_by_label("3.5\u{a0}% wrong");
+    click_button(&mut harness, "Counts");
     harness.get_by_label(
         "41 of 1\u{a0}170 pixels are wrong: 40 false shadow, 1 missing; the largest patch has 40 at 18, 0.",
     );
@@ -134,6 +136,8 @@ fn where_nothing_is_wrong_there_is_nowhere_to_go() {
     truth.worst = None;
     let mut harness = harness(capture);
     click_button(&mut harness, "Error");
+    harness.get_by_label("none wrong");
+    click_button(&mut harness, "Counts");
     harness.get_by_label("No pixel of 1\u{a0}170 is wrong; 12 at edges are excused.");
     assert!(harness.query_by_label("Go to the largest").is_none());
 }
@@ -184,10 +188,12 @@ fn several_lights_are_judged_one_by_one() {
     let mut harness = harness(capture);
     click_button(&mut harness, "Error");
     harness.get_by_label("Error, light 1");
+    click_button(&mut harness, "Counts");
     harness.get_by_label("Light of the picture").click();
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::Button, "light 2").click();
     harness.run_steps(2);
     harness.get_by_label("Error, light 2");
+    // The counts stay.
     harness.get_by_label("No pixel of 7 is wrong.");
 }

@@ -1,6 +1,7 @@
 //! Stress cases: run row by row, and opened as scenes.
 
 use super::Bench;
+use crate::app::allocator;
 use crate::app::news::News;
 use crate::app::orders::StressRun;
 use crate::inspector::RunRequest;
@@ -56,9 +57,7 @@ impl Bench {
             if !run.progress.is_cancelled() {
                 (self.tell)(News::StressEnded { job: run.job, error: None });
             }
-            // Hundreds of scenes were open: what was kept of them is of no use any longer.
-            self.session.iter_mut().for_each(Session::forget);
-            (self.tell)(News::Idle);
+            self.end_stress();
             return None;
         };
         (self.tell)(News::Busy(format!("stress: {name}")));
@@ -66,7 +65,7 @@ impl Bench {
             Ok(row) => run.rows.extend(row),
             Err(error) => {
                 (self.tell)(News::StressEnded { job: run.job, error: Some(error.to_string()) });
-                (self.tell)(News::Idle);
+                self.end_stress();
                 return None;
             }
         }
@@ -75,6 +74,13 @@ impl Bench {
             (self.tell)(News::Stressed { job: run.job, rows: std::mem::take(&mut run.rows) });
         }
         Some(run)
+    }
+
+    /// Hundreds of scenes were open: what was kept of them is of no use any longer.
+    fn end_stress(&mut self) {
+        self.session.iter_mut().for_each(Session::forget);
+        allocator::give_back();
+        (self.tell)(News::Idle);
     }
 }
 

@@ -24,6 +24,7 @@ mod walls;
 use coarse::Coarsened;
 pub use gizmos::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
 use lens::{PaneView, Projection};
+pub use pane::plate;
 
 use super::action::Action;
 use super::state::State;

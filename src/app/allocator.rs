@@ -1,0 +1,44 @@
+//! Memory that is freed goes back to the system.
+//!
+//! A window that is open for hours captures thousands of frames, and each frees the pictures of the one
+//! before. GNU's allocator keeps such memory: once it has seen a large block freed it no longer maps
+//! blocks of that size (up to 32 MiB) on their own, and each thread that the driver starts has a heap of
+//! its own whose holes nothing fills. Half an hour of use left hundreds of MiB so. With a fixed
+//! threshold and few heaps, pictures are mapped, and unmapped when they are dropped; the kernel's
+//! zeroed pages cost far less than what fills them.
+
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+mod gnu {
+    /// Blocks of this many bytes and more are mapped on their own: a snapshot of 200×160 pixels.
+    const MAPPED_FROM: i32 = 128 << 10;
+    /// How many heaps all threads share.
+    const HEAPS: i32 = 2;
+
+    #[expect(unsafe_code, reason = "glibc's own switches: any thread may set them at any time")]
+    pub fn give_back_at_once() {
+        // What a libc does not know it refuses, and stays as it is.
+        unsafe {
+            libc::mallopt(libc::M_MMAP_THRESHOLD, MAPPED_FROM);
+            libc::mallopt(libc::M_ARENA_MAX, HEAPS);
+        }
+    }
+
+    #[expect(unsafe_code, reason = "glibc locks its heaps while it looks for pages that nothing uses")]
+    pub fn give_back() {
+        unsafe {
+            libc::malloc_trim(0);
+        }
+    }
+}
+
+/// Before anything large is made: what is freed from now on goes back.
+pub fn give_back_at_once() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    gnu::give_back_at_once();
+}
+
+/// Gives back what lies between small things that are in use: milliseconds, after much was dropped.
+pub fn give_back() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    gnu::give_back();
+}

@@ -1,0 +1,69 @@
+//! How the Pixel panel's height is shared, so that the ladder is seen without scrolling: in a low window values stand
+//! two in a row, rows are lower, and of a long history fewer are shown at once.
+
+/// Below this height of the panel everything stands closer, points.
+const TIGHT_BELOW: f32 = 1100.0;
+/// The least width in which two values stand in a row, points.
+const LEAST_WIDTH: f32 = 290.0;
+/// What the history takes beside its rows: title, head and gaps, points.
+const HISTORY_AROUND: f32 = 56.0;
+/// What a ladder wishes with its title, note and gaps, and the least, points.
+const LADDER: f32 = 316.0;
+const LEAST_LADDER: f32 = 250.0;
+/// Rows that are shown before they scroll, and the fewest where room is short.
+const MOST_ROWS: usize = 12;
+const LEAST_ROWS: usize = 4;
+
+/// Rows of the history.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rows {
+    /// Height of one, points.
+    pub height: f32,
+    /// So many are shown before they scroll.
+    pub most: usize,
+}
+
+impl Rows {
+    /// With room for all.
+    const ROOMY: Rows = Rows { height: 22.0, most: MOST_ROWS };
+    /// Height where room is short, points.
+    const LOW: f32 = 18.0;
+}
+
+/// Does everything stand closer in a panel of this size?
+#[must_use]
+pub fn is_tight(size: egui::Vec2) -> bool {
+    size.y < TIGHT_BELOW && size.x >= LEAST_WIDTH
+}
+
+/// The rows of a history of `events`, where so many points are left for it and for the ladder below it.
+#[must_use]
+pub fn rows(left: f32, events: usize, has_ladder: bool) -> Rows {
+    let all = events.min(MOST_ROWS);
+    let [wished, least] = if has_ladder { [LADDER, LEAST_LADDER] } else { [0.0; 2] };
+    if HISTORY_AROUND + Rows::ROOMY.height * all as f32 + wished <= left {
+        return Rows::ROOMY;
+    }
+    let fitting = ((left - HISTORY_AROUND - least) / Rows::LOW).max(0.0) as usize;
+    Rows { height: Rows::LOW, most: fitting.clamp(LEAST_ROWS, MOST_ROWS) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn with_room_for_all_rows_are_high_and_else_low_and_fewer() {
+        assert_eq!(rows(900.0, 40, true), Rows::ROOMY);
+        assert_eq!(rows(400.0, 3, false), Rows::ROOMY);
+        let heights = [560.0, 480.0, 420.0, 380.0, 200.0];
+        let most: Vec<usize> = heights.iter().map(|left| rows(*left, 40, true).most).collect();
+        assert!(most.windows(2).all(|pair| pair[0] >= pair[1]), "{most:?}");
+        assert_eq!((most[0], most[4]), (12, LEAST_ROWS));
+        for left in heights.into_iter().filter(|left| *left >= HISTORY_AROUND + LEAST_LADDER + 4.0 * Rows::LOW) {
+            let Rows { height, most } = rows(left, 40, true);
+            assert!(HISTORY_AROUND + height * most as f32 + LEAST_LADDER <= left, "the ladder has its room in {left}");
+        }
+        assert!(rows(380.0, 40, false).most > rows(380.0, 40, true).most);
+    }
+}

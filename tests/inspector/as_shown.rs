@@ -1,0 +1,204 @@
+//! The shown picture with overlays and the compared half as a file, read back.
+
+use super::by_hand::z_fail;
+use super::{SIZE, Seen, click_button, harness, harness_of, inspector, press};
+use crate::common;
+use egui::Key;
+use egui_kittest::Harness;
+use std::sync::Arc;
+use stencilscope::capture::{Image, PixelFormat, StepTests};
+use stencilscope::inspector::{Action, ExportData, ExportKind, Overlay, PictureKind, ThemeChoice};
+use stencilscope::scene::{OpenSpec, open};
+use stencilscope::technique::Technique;
+
+type Rgb = [u8; 3];
+const PASSED: Rgb = [0x2f, 0xb5, 0x8a];
+const LIT: Rgb = [0xf2, 0xd1, 0x6b];
+/// Counts of 0 and 1.
+const COUNTS: [Rgb; 2] = [[0x14, 0x17, 0x1d], [0x56, 0xb4, 0xe9]];
+
+/// A PNG that was read.
+struct Read {
+    size: [u32; 2],
+    bytes: Vec<u8>,
+}
+
+impl Read {
+    fn at(&self, [x, y]: [u32; 2]) -> Rgb {
+        let first = (y * self.size[0] + x) as usize * 3;
+        [0, 1, 2].map(|channel| self.bytes[first + channel])
+    }
+
+    fn pixels(&self) -> impl Iterator<Item = Rgb> {
+        self.bytes.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]])
+    }
+}
+
+/// What an export writes.
+fn exported(harness: &mut Harness<Seen>, kind: ExportKind) -> Read {
+    let picture = match harness.state_mut().inspector.export(kind) {
+        Some(ExportData::Picture(picture)) => picture,
+        Some(ExportData::AsShown(drawing)) => drawing.finish(),
+        other => panic!("a picture, not {other:?}"),
+    };
+    let file = picture.to_png().expect("a PNG");
+    let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a header");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut bytes).expect("a picture");
+    Read { size: [info.width, info.height], bytes }
+}
+
+fn is_near(a: Rgb, b: Rgb, by: u8) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= by)
+}
+
+fn at_volumes() -> Harness<'static, Seen> {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.select_step(1);
+    inspector.set_picture_kind(PictureKind::Stencil);
+    harness_of(inspector, [1280.0, 800.0])
+}
+
+#[test]
+fn without_anything_over_it_it_is_the_plain_picture() {
+    let mut harness = at_volumes();
+    let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
+    assert_eq!((plain.size, &plain.bytes), (SIZE, &shown.bytes));
+    assert_eq!([shown.at([30, 4]), shown.at([3, 4])], COUNTS);
+}
+
+#[test]
+fn the_compared_half_is_in_it_up_to_the_texel_under_the_divider() {
+    let mut harness = at_volumes();
+    click_button(&mut harness, "Compare");
+    // The step before has counted nothing yet; it is on the left.
+    let shown = exported(&mut harness, ExportKind::AsShown);
+    assert_eq!((shown.size, shown.at([3, 4])), (SIZE, COUNTS[0]));
+    press(&mut harness, Key::X);
+    let flipped = exported(&mut harness, ExportKind::AsShown);
+    assert_eq!([flipped.at([3, 4]), flipped.at([36, 4])], [COUNTS[1], COUNTS[0]]);
+    assert!(is_near(flipped.at([19, 10]), [255; 3], 120), "a light line between: {:?}", flipped.at([19, 10]));
+    // Zoomed to the left quarter, the divider stands over column 10.
+    harness.state_mut().inspector.set_zoom(stencilscope::inspector::Zoom::Pixels(40.0), [10.0, 15.0]);
+    harness.run_steps(2);
+    let zoomed = exported(&mut harness, ExportKind::AsShown);
+    assert_eq!(zoomed.size, SIZE, "the whole picture all the same");
+    assert_eq!([zoomed.at([3, 4]), zoomed.at([15, 4])], [COUNTS[1], COUNTS[0]]);
+    let plain = exported(&mut harness, ExportKind::Picture);
+    assert_eq!([plain.at([3, 4]), plain.at([15, 4])], [COUNTS[1]; 2], "the plain one has neither");
+}
+
+#[test]
+fn tints_of_overlays_are_in_it() {
+    let mut harness = at_volumes();
+    harness.state_mut().inspector.lay_over(Overlay::Tests);
+    harness.run_steps(2);
+    let image = |value| Arc::new(Image::uniform(PixelFormat::U8, SIZE, &[value]));
+    let tests = StepTests { step: 1, draw: None, fragments: image(1), depth_passes: image(1), stencil: image(0) };
+    harness.state_mut().inspector.set_tests(1, None, Ok(Arc::new(tests)));
+    harness.run_steps(2);
+    let shown = exported(&mut harness, ExportKind::AsShown);
+    for (x, count) in [(3, COUNTS[1]), (30, COUNTS[0])] {
+        let mixed: Rgb = [0, 1, 2]
+            .map(|channel| (0.62 * f32::from(PASSED[channel]) + 0.38 * f32::from(count[channel])).round() as u8);
+        assert!(is_near(shown.at([x, 4]), mixed, 2), "{:?} is not {mixed:?}", shown.at([x, 4]));
+    }
+}
+
+#[test]
+fn it_is_chosen_in_the_menu_of_exports() {
+    let mut harness = harness(z_fail(SIZE));
+    click_button(&mut harness, "Export");
+    click_button(&mut harness, "Picture with overlays (PNG)…");
+    click_button(&mut harness, "Save");
+    let Some(Action::Export { kind, path, replace }) = harness.state().actions.last() else { panic!("an export") };
+    assert_eq!((*kind, *replace), (ExportKind::AsShown, false));
+    assert!(path.ends_with("-as-shown.png"), "{path}");
+}
+
+/// Of a slab on a floor, whose edges are long in the picture.
+#[test]
+fn edges_that_count_twice_have_their_number() {
+    let mut session = common::session();
+    let scene = open(&OpenSpec::new("table")).expect("table");
+    let letters = |casters: &str, session: &mut stencilscope::session::Session| {
+        let mut request = common::request(Technique::ZFail, [640, 360]);
+        request.choice.set("casters", casters).expect("a setting");
+        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+        let anatomy = Arc::new(session.anatomy(&scene, &request.choice, &plan));
+        let many = anatomy.silhouettes.iter().flat_map(|silhouette| &silhouette.edges);
+        let many = many.filter(|edge| edge.multiplicity.unsigned_abs() > 1).count();
+        let inspector = super::pictures::inspector(&scene, &request, &Arc::new(capture), [10, 10]);
+        let mut harness = harness_of(inspector, [1280.0, 800.0]);
+        harness.state_mut().inspector.lay_over(Overlay::Silhouettes);
+        harness.run_steps(2);
+        harness.state_mut().inspector.set_anatomy(Ok(anatomy));
+        harness.run_steps(2);
+        let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
+        if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
+            let window = harness.render().expect("a picture");
+            window.save(std::path::Path::new(&folder).join(format!("numbers-{casters}.png"))).expect("written");
+        }
+        let is_letter = |pixel: Rgb| is_near(pixel, [0xd9, 0xdc, 0xe3], 24);
+        let new = plain.pixels().zip(shown.pixels()).filter(|(before, now)| !is_letter(*before) && is_letter(*now));
+        (many, new.count())
+    };
+    let (many, written) = letters("all", &mut session);
+    assert!(many > 0 && written > 10, "{many} edges, {written} pixels of letters");
+    let (many, written) = letters("by-topology", &mut session);
+    assert!(many == 0 && written == 0, "{many} edges, {written} pixels of letters");
+}
+
+/// Over a real frame. `INSPECTOR_PICTURES=FOLDER cargo test lines_numbers_and_names` keeps the file.
+#[test]
+fn lines_numbers_and_names_are_in_it_as_in_the_window() {
+    let mut session = common::session();
+    let scene = open(&OpenSpec::new("tori")).expect("tori");
+    let size = [640, 360];
+    let mut request = common::request(Technique::ZFail, size);
+    // Every triangle casts, so edges of silhouettes count twice.
+    request.choice.set("casters", "all").expect("a setting");
+    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    let anatomy = Arc::new(session.anatomy(&scene, &request.choice, &plan));
+    let mut harness =
+        harness_of(super::pictures::inspector(&scene, &request, &Arc::new(capture), [10, 10]), [1280.0, 800.0]);
+    for overlay in [Overlay::Silhouettes, Overlay::Names, Overlay::Receivers, Overlay::Volumes] {
+        harness.state_mut().inspector.lay_over(overlay);
+    }
+    harness.run_steps(2);
+    harness.state_mut().inspector.set_anatomy(Ok(anatomy));
+    harness.run_steps(2);
+    let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
+    assert_eq!((plain.size, shown.size), (size, size));
+    let differing = plain.pixels().zip(shown.pixels()).filter(|(a, b)| a != b).count();
+    assert!(differing > 20_000, "receivers are tinted: {differing} pixels");
+    let lit = shown.pixels().filter(|pixel| is_near(*pixel, LIT, 40)).count();
+    assert!(lit > 300, "silhouettes are drawn: {lit} pixels");
+    // A name's plate is the panel's colour, its letters the text's.
+    let plates = shown.pixels().filter(|pixel| is_near(*pixel, [0x1b, 0x1e, 0x25], 24)).count();
+    let letters = shown.pixels().filter(|pixel| is_near(*pixel, [0xd9, 0xdc, 0xe3], 16)).count();
+    assert!(plates > 400 && letters > 30, "names are written: {plates}, {letters}");
+    let window = harness.render().expect("a picture");
+    harness.state_mut().inspector.set_theme(ThemeChoice::Light);
+    harness.run_steps(2);
+    let light = exported(&mut harness, ExportKind::AsShown);
+    assert_ne!(light.bytes, shown.bytes, "in the window's theme");
+    if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
+        let folder = std::path::Path::new(&folder);
+        window.save(folder.join("as-shown-window.png")).expect("written");
+        harness.state_mut().inspector.set_theme(ThemeChoice::Dark);
+        harness.run_steps(2);
+        let start = std::time::Instant::now();
+        let Some(ExportData::AsShown(drawing)) = harness.state_mut().inspector.export(ExportKind::AsShown) else {
+            panic!("a drawing")
+        };
+        let in_window = start.elapsed();
+        let picture = drawing.finish();
+        println!(
+            "{:.0} ms in the window, then {:.0} ms",
+            in_window.as_secs_f64() * 1e3,
+            (start.elapsed() - in_window).as_secs_f64() * 1e3
+        );
+        std::fs::write(folder.join("as-shown-tori.png"), picture.to_png().expect("a PNG")).expect("written");
+    }
+}

@@ -1,0 +1,197 @@
+//! What lies over the picture's corners, and the tools above it: nothing hides or moves another.
+
+use super::by_hand::{with_truth, z_fail};
+use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, press};
+use crate::common;
+use egui::accesskit::Role;
+use egui::{Key, Rect, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::sync::Arc;
+use stencilscope::inspector::{PictureKind, ThemeChoice, Zoom};
+
+const FINDINGS: [&str; 6] =
+    ["false shadow", "missing shadow", "wrong surface", "edge, excused", "agrees", "not compared"];
+
+/// Brings the panels into a state to be looked at.
+type View = fn(&mut Harness<Seen>);
+
+fn rect(harness: &Harness<Seen>, label: &str) -> Rect {
+    harness.get_by_label(label).rect()
+}
+
+#[test]
+fn the_error_legend_says_all_meanings_in_two_rows_and_leaves_the_picture_free() {
+    let mut harness = harness(with_truth(z_fail(SIZE)));
+    click_button(&mut harness, "Error");
+    let canvas = rect(&harness, "Picture canvas");
+    let rows: std::collections::BTreeSet<i32> =
+        FINDINGS.iter().map(|name| rect(&harness, name).center().y.round() as i32).collect();
+    assert_eq!(rows.len(), 2, "{rows:?}");
+    let all = FINDINGS.iter().fold(rect(&harness, "Error, light 1"), |all, name| all.union(rect(&harness, name)));
+    assert!(canvas.contains_rect(all), "{all:?} in {canvas:?}");
+    assert!(all.height() < 64.0 && all.bottom() < canvas.top() + 84.0, "{all:?}");
+    assert!(all.area() < canvas.area() / 16.0, "{all:?} of {canvas:?}");
+    // With counts it is larger, and says more; it stays so for other frames, and goes back.
+    click_button(&mut harness, "Counts");
+    assert!(rect(&harness, "5 not compared").bottom() > all.bottom());
+    harness.state_mut().inspector.set_capture(Arc::new(with_truth(z_fail(SIZE))));
+    harness.run_steps(2);
+    harness.get_by_label("5 not compared");
+    click_button(&mut harness, "Counts");
+    assert!(harness.query_by_label("5 not compared").is_none());
+}
+
+#[test]
+fn the_banner_of_walking_and_the_legend_are_beside_each_other() {
+    let mut harness = harness(with_truth(z_fail(SIZE)));
+    click_button(&mut harness, "Error");
+    click_button(&mut harness, "Counts");
+    let before = rect(&harness, "Error, light 1");
+    click(&mut harness, "Walk");
+    let banner = rect(&harness, "Walking: Esc stops and frees the pointer");
+    let words = harness.get_by_label_contains("W S A D and the mouse").rect();
+    let whole = banner.union(words).expand(8.0);
+    let canvas = rect(&harness, "Picture canvas");
+    assert!(canvas.contains_rect(whole), "{whole:?}");
+    for label in ["Error, light 1", "Counts", "0 agrees", "5 not compared"] {
+        let one = rect(&harness, label);
+        assert!(!whole.intersects(one) && canvas.contains_rect(one), "{label}: {one:?}, {whole:?}");
+    }
+    press(&mut harness, Key::Escape);
+    assert_eq!(rect(&harness, "Error, light 1"), before);
+}
+
+#[test]
+fn tools_of_one_kind_of_picture_move_no_others_and_not_the_picture() {
+    let mut harness = harness(with_truth(z_fail(SIZE)));
+    harness.state_mut().inspector.select_step(1);
+    harness.run_steps(2);
+    let fixed = ["Compare", "Overlay", "Fit", "1:1", "Walk", "Picture canvas"];
+    let places = |harness: &Harness<Seen>| fixed.map(|label| rect(harness, label));
+    let before = places(&harness);
+    let phases = rect(&harness, "Before");
+    for kind in ["Stencil", "Depth", "Mask", "Error", "Colour"] {
+        click_button(&mut harness, kind);
+        assert_eq!(places(&harness), before, "{kind}");
+        assert!(harness.query_by_label("Before").is_none_or(|found| found.rect() == phases), "{kind}");
+    }
+    harness.state_mut().inspector.set_zoom(Zoom::Pixels(3.0), [20.0, 15.0]);
+    harness.run_steps(2);
+    harness.get_by_label("300 %");
+    assert_eq!(places(&harness), before, "zoomed");
+    click_button(&mut harness, "Compare");
+    let with = rect(&harness, "Compare with");
+    assert_eq!(places(&harness), before, "comparing");
+    click_button(&mut harness, "Stencil");
+    assert_eq!((places(&harness), rect(&harness, "Compare with")), (before, with), "comparing counts");
+    press(&mut harness, Key::O);
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::CheckBox, "Receivers").click();
+    harness.run_steps(2);
+    press(&mut harness, Key::Escape);
+    assert_eq!(rect(&harness, "Overlay · 1"), before[1], "the menu's button keeps its width");
+}
+
+#[test]
+fn of_several_faces_none_is_compared_and_the_buttons_keep_their_place() {
+    let mut harness = harness_of(inspector(super::by_hand::cube_map()), [1280.0, 800.0]);
+    press(&mut harness, Key::Home);
+    let buttons = |harness: &Harness<Seen>| ["Compare", "Overlay", "All"].map(|label| rect(harness, label));
+    let one = buttons(&harness);
+    click_button(&mut harness, "All");
+    assert_eq!(buttons(&harness), one);
+    let is_disabled = |harness: &Harness<Seen>, label| harness.get_by_label(label).accesskit_node().is_disabled();
+    assert!(is_disabled(&harness, "Compare") && is_disabled(&harness, "Overlay"));
+    press(&mut harness, Key::O);
+    harness.run_steps(2);
+    assert!(harness.query_by_role_and_label(Role::CheckBox, "Receivers").is_none());
+}
+
+#[test]
+fn the_magnifier_has_a_grid_over_counts_of_zero_in_both_themes() {
+    for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
+        let mut inspector = inspector(z_fail(SIZE));
+        inspector.select_step(1);
+        inspector.set_picture_kind(PictureKind::Stencil);
+        inspector.set_theme(theme);
+        inspector.pick([30, 15]);
+        let mut harness = harness_of(inspector, [1280.0, 800.0]);
+        let canvas = rect(&harness, "Picture canvas");
+        let picture = harness.render().expect("a picture");
+        let corner = canvas.left_bottom() + vec2(12.0, -12.0 - 5.0 * 26.0);
+        let contrast = |x: f32, y: f32| {
+            let [red, green, blue, _] = picture.get_pixel(x as u32, y as u32).0;
+            let light = |byte: u8| (f64::from(byte) / 255.0).powf(2.2);
+            let light = 0.2126 * light(red) + 0.7152 * light(green) + 0.0722 * light(blue);
+            // To a count of zero, 0x14171d.
+            (light + 0.05) / (0.0085 + 0.05)
+        };
+        // Above the numbers of the second row of cells.
+        let along: Vec<bool> = (4..178).map(|x| contrast(corner.x + x as f32, corner.y + 26.0 + 4.0) > 1.5).collect();
+        let lines = along.windows(2).filter(|pair| !pair[0] && pair[1]).count();
+        assert_eq!(lines, 6, "{theme:?}: between seven cells");
+        assert!(along.iter().filter(|is_line| **is_line).count() <= 12, "they are thin");
+    }
+}
+
+#[test]
+fn the_ladder_is_whole_in_sight_in_windows_that_are_not_high() {
+    let history = super::history_by_hand::history([3, 4], &super::history_by_hand::FACES);
+    for height in [800.0, 900.0, 1000.0, 1080.0] {
+        let mut inspector = inspector(with_truth(z_fail(SIZE)));
+        inspector.pick([3, 4]);
+        let mut harness = harness_of(inspector, [1280.0, height]);
+        harness.state_mut().inspector.set_history([3, 4], Ok(Arc::new(history.clone())));
+        harness.run_steps(4);
+        let ladder = harness.get_by_label_contains("Ladder of the view ray").rect();
+        // Down to the status bar.
+        assert!(ladder.height() >= 120.0 && ladder.bottom() <= height - 24.0, "{ladder:?} in {height}");
+        let rows = harness.query_all_by_role(Role::Row).count();
+        assert!(rows >= 4, "{rows} events are seen in {height}");
+        assert!(rect(&harness, "0000 0001").right() < 1280.0 - 8.0, "values are not cut off");
+    }
+}
+
+/// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_cards` writes them.
+#[test]
+fn pictures_of_cards_can_be_drawn() {
+    let folder = std::env::var_os("INSPECTOR_PICTURES").map(std::path::PathBuf::from);
+    let mut session = common::session();
+    let scene = stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("inside")).expect("a built-in scene");
+    let request = common::request(stencilscope::technique::Technique::ZPass, [640, 360]);
+    let (mut capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    session.judge(&scene, &mut capture, &Default::default()).expect("a truth");
+    let anatomy = Arc::new(session.anatomy(&scene, &request.choice, &plan));
+    let capture = Arc::new(capture);
+    let pick = [330, 225];
+    let history = Arc::new(session.history(&plan, &capture, pick).expect("a history"));
+    let views: [(&str, View); 5] = [
+        ("error", |_| ()),
+        ("error-counts", |harness| click_button(harness, "Counts")),
+        ("error-walking", |harness| click(harness, "Walk")),
+        ("stencil", |harness| {
+            harness.state_mut().inspector.select_step(1);
+            harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
+        }),
+        ("help", |harness| press(harness, Key::F1)),
+    ];
+    let sizes: &[[u32; 2]] = if folder.is_some() { &[[1280, 800], [1920, 1080]] } else { &[[640, 400]] };
+    for (name, view) in views {
+        for size in sizes {
+            for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
+                let mut inspector = super::pictures::inspector(&scene, &request, &capture, pick);
+                inspector.set_anatomy(Ok(anatomy.clone()));
+                inspector.set_picture_kind(PictureKind::Error);
+                inspector.set_theme(theme);
+                let outer = size.map(|side| (side + 2 * super::pictures::MARGIN) as f32);
+                let mut harness = harness_of(inspector, outer);
+                harness.state_mut().inspector.set_history(pick, Ok(history.clone()));
+                view(&mut harness);
+                harness.run_steps(3);
+                let name = format!("cards-{name}-{theme:?}").to_lowercase();
+                super::pictures::draw(&mut harness, folder.as_deref(), &name, *size);
+            }
+        }
+    }
+}
