@@ -78,6 +78,40 @@ fn a_triangle_across_the_lights_height_is_an_anti_shadow() {
     assert!(told.contains("set clip = on: then no pixel is wrong"), "{told}");
 }
 
+/// A technique without shadows is no riddle, and a far plane before the floor is named, though its depth is clamped.
+#[test]
+fn what_was_not_asked_for_or_not_drawn_is_told_as_such() {
+    let folder = crate::commands::folder();
+    let (code, told, _) = diagnose(folder.path(), &["tori", "-t", "none", "--no-techniques"]);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("   no shadows were asked for: the technique is none\n"), "{told}");
+    assert!(!told.contains("no known cause fits"), "{told}");
+    assert!(told.contains("what to do: To mend it, use "), "{told}");
+    let clamped = ["tori", "-t", "z-fail", "--set", "depth=standard-finite-clamp", "--far", "3", "--no-techniques"];
+    let (code, told, error) = diagnose(folder.path(), &clamped);
+    assert_eq!(code, Some(1), "{told}");
+    assert!(error.contains("most of them by far-clip"), "{error}");
+    assert!(told.contains("   far-clip (proven): the surface lies "), "{told}");
+    assert!(told.contains("set depth = reversed-infinite") && !told.contains("no known cause fits"), "{told}");
+}
+
+/// The edges of a floor are edges of one triangle, but nothing lies behind it; those of a sheet over it matter.
+#[test]
+fn a_floor_is_no_open_mesh_and_a_sheet_over_it_is() {
+    let folder = crate::commands::folder();
+    let sheet = "[[objects]]\nname = \"sheet\"\nmesh = { shape = \"quad\", size = [0.5, 0.5] }\n";
+    shaded(folder.path());
+    let scene = fs::read_to_string(folder.path().join("shaded.toml")).expect("read");
+    fs::write(folder.path().join("raised.toml"), format!("{scene}{sheet}translate = [0.0, 1.5, 0.0]\n"))
+        .expect("written");
+    fs::write(folder.path().join("lying.toml"), format!("{scene}{sheet}")).expect("written");
+    for (file, has_sheet) in [("raised.toml", true), ("lying.toml", false)] {
+        let (_, told, _) = diagnose(folder.path(), &[file, "-t", "z-fail", "--no-techniques"]);
+        assert!(!told.contains("floor: "), "{file}: {told}");
+        assert_eq!(told.contains("sheet: 4 open-mesh"), has_sheet, "{file}: {told}");
+    }
+}
+
 /// What a map is blamed for holds in its own numbers, and who wants to keep it hears what to set.
 #[test]
 fn maps_are_told_how_to_stay_maps() {

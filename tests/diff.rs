@@ -370,6 +370,8 @@ fn what_can_not_be_compared_is_refused_in_one_line_with_the_mend() {
     };
     refused(&["a", "b"], "48x32 and 32x32 pixels: capture both with one --size");
     refused(&["a"], "`a` is a capture folder: name the other one too");
+    refused(&["a", "triangle.obj"], "`triangle.obj` is no capture folder (it is a file): name two folders");
+    refused(&["a", "nowhere"], "`nowhere` is no capture folder (there is no such folder)");
     fs::write(folder.path().join("b/manifest.json"), "{").expect("broken on purpose");
     refused(&["a", "b"], "b/manifest.json");
     fs::remove_file(folder.path().join("a/light0.shadow.npy")).expect("broken on purpose");

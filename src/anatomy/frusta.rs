@@ -1,29 +1,92 @@
 //! What the camera and the lights' maps see, and what lies between the near rectangle and a light.
 
-use super::{Frustum, NearClip, ViewOf};
+use super::{Frustum, NearClip, PlacedObject, ViewOf};
 use crate::geometry::{NearClipVolume, ViewVolume};
 use crate::math::projection;
-use crate::plan::FramePlan;
+use crate::plan::{FramePlan, LightId, PlanMap, Program, ViewId, Visibility};
 use crate::scene::{Camera, Light, Scene};
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// The corners of a view: right top, left top, left bottom, right bottom.
 const CORNERS: [DVec2; 4] = [DVec2::ONE, DVec2::new(-1.0, 1.0), DVec2::NEG_ONE, DVec2::new(1.0, -1.0)];
 
-/// The camera's frustum, then those of the faces of maps that are drawn and hold depths.
-pub fn all(scene: &Scene, plan: &FramePlan, aspect: f64) -> Vec<Frustum> {
+/// The camera's frustum, then those of the faces of maps that are drawn: of depths, of receivers' textures, of
+/// projected silhouettes.
+pub fn all(scene: &Scene, plan: &FramePlan, objects: &[PlacedObject], aspect: f64) -> Vec<Frustum> {
     let mut frusta = vec![of_camera(&scene.camera, aspect, plan.depth.far)];
-    for (light, of) in plan.lights.iter().enumerate() {
-        let Some((map, lookup)) = of.map.as_ref().and_then(|map| Some((map, map.lookup?))) else { continue };
-        let is_reversed = lookup.clear_depth == 0.0;
-        for (face, clip_from_light) in map.clip_from_light.iter().enumerate() {
-            if map.faces.get(face).is_some_and(Option::is_some) {
-                let clip_from_world = *clip_from_light * map.light_from_world;
-                frusta.extend(of_matrix(clip_from_world, is_reversed, ViewOf::Map { light, face }));
+    for (light, position) in scene.lights.iter().map(Light::homogeneous).enumerate() {
+        let Some(map) = plan.lights.get(light).and_then(|light| light.map.as_ref()) else { continue };
+        let how = reading(plan, light);
+        for (face, view) in map.faces.iter().enumerate() {
+            let (Some(view), Some(clip_from_light)) = (view, map.clip_from_light.get(face)) else { continue };
+            let clip_from_world = *clip_from_light * map.light_from_world;
+            let of = |caster| ViewOf::Map { light, face, caster };
+            match how {
+                Some(Visibility::ReceiverTexture) => {
+                    frusta.extend(of_receiver(clip_from_world, position, of(None)));
+                }
+                Some(Visibility::Projected) => {
+                    let caster = caster_of(plan, *view, objects);
+                    let Some(places) = caster.map(|caster| &objects[caster].positions) else { continue };
+                    frusta.extend(of_projector(clip_from_world, position, places, of(caster)).into_iter().flatten());
+                }
+                _ => frusta.extend(of_matrix(clip_from_world, is_reversed(map), of(None))),
             }
         }
     }
     frusta
+}
+
+/// Of a map of depths: is it cleared to 0?
+fn is_reversed(map: &PlanMap) -> bool {
+    map.lookup.is_some_and(|lookup| lookup.clear_depth == 0.0)
+}
+
+/// What surfaces ask a light's map for.
+fn reading(plan: &FramePlan, light: usize) -> Option<Visibility> {
+    let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
+    passes.flat_map(|pass| &pass.draws).find_map(|draw| match draw.program {
+        Program::Light(how) | Program::Label(how) if how.reads_map() => Some(how),
+        _ => None,
+    })
+}
+
+/// The object that a face of a map is drawn from.
+fn caster_of(plan: &FramePlan, view: ViewId, objects: &[PlacedObject]) -> Option<usize> {
+    let pass = plan.passes.iter().find(|pass| pass.view == view)?;
+    let name = pass.draws.first()?.caster.as_deref()?;
+    objects.iter().position(|object| object.name == name)
+}
+
+/// From the rectangle on a receiver to its light; depth 0 is the receiver's plane.
+fn of_receiver(clip_from_world: DMat4, light: DVec4, of: ViewOf) -> Option<Frustum> {
+    let world_from_clip = clip_from_world.inverse();
+    let near = CORNERS.map(|at| {
+        let point = world_from_clip * DVec4::new(at.x, at.y, 0.0, 1.0);
+        point / point.w
+    });
+    near.iter().all(|corner| corner.is_finite()).then_some(Frustum { of, near, far: [light; 4] })
+}
+
+/// Of a projected silhouette: the rectangle that it fills where the caster is nearest to the light, from there back
+/// to the light, and on without an end. `None` where the matrix sees no such rectangle.
+fn of_projector(clip_from_world: DMat4, light: DVec4, caster: &[DVec3], of: ViewOf) -> Option<[Frustum; 2]> {
+    let [right, up, distance] = [0, 1, 3].map(|row| clip_from_world.row(row));
+    // All is at one depth there, so that the matrix has no inverse: how far away is chosen here.
+    let nearest = |row: DVec4| caster.iter().map(|point| row.dot(point.extend(1.0))).fold(f64::INFINITY, f64::min);
+    let is_parallel = light.w == 0.0;
+    let ahead = if is_parallel { (-light.truncate().normalize_or_zero()).extend(0.0) } else { distance };
+    let away = nearest(ahead);
+    let scale = if is_parallel { 1.0 } else { away };
+    let world_from_rows = DMat3::from_cols(right.truncate(), up.truncate(), ahead.truncate()).transpose().inverse();
+    let near = CORNERS.map(|at| {
+        let rows = DVec3::new(at.x * scale - right.w, at.y * scale - up.w, away - ahead.w);
+        (world_from_rows * rows).extend(1.0)
+    });
+    let onwards = |corner: DVec4| (corner * light.w - light).truncate().extend(0.0);
+    let is_usable = near.iter().all(|corner| corner.is_finite() && onwards(*corner).length() > 0.0);
+    let to = |far: [DVec4; 4]| Frustum { of, near, far };
+    is_usable.then(|| [to([light; 4]), to(near.map(onwards))])
 }
 
 fn of_camera(camera: &Camera, aspect: f64, far: Option<f64>) -> Frustum {

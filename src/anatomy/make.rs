@@ -26,7 +26,7 @@ pub fn anatomy(scene: &Scene, choice: &Choice, plan: &FramePlan, cache: &mut Geo
             .collect(),
         volumes: volumes::of_plan(plan, &objects),
         silhouettes: silhouettes(scene, choice, &objects, cache),
-        frusta: frusta::all(scene, plan, aspect),
+        frusta: frusta::all(scene, plan, &objects, aspect),
         near_clips: scene.lights.iter().map(|light| frusta::near_clip(&scene.camera, aspect, light)).collect(),
         objects,
     }
@@ -145,6 +145,63 @@ mod tests {
             let corners = frustum.near.iter().chain(&frustum.far);
             assert!(corners.clone().all(|corner| corner.is_finite() && corner.w >= 0.0), "{frustum:?}");
         }
+    }
+
+    /// Corner, sides and unit normal of a frustum's near rectangle.
+    fn rectangle(frustum: &crate::anatomy::Frustum) -> [DVec3; 4] {
+        let [_, left_top, left_bottom, right_bottom] = frustum.near.map(|corner| corner.truncate() / corner.w);
+        let (u, v) = (right_bottom - left_bottom, left_top - left_bottom);
+        [left_bottom, u, v, u.cross(v).normalize()]
+    }
+
+    #[test]
+    fn a_receivers_texture_is_seen_from_the_receiver_to_the_light() {
+        let anatomy = of("tori", Technique::PlanarTexture, &[]);
+        let maps: Vec<_> = anatomy.frusta.iter().filter(|frustum| frustum.of != ViewOf::Camera).collect();
+        assert!(!maps.is_empty());
+        for frustum in maps {
+            let ViewOf::Map { light, caster: None, .. } = frustum.of else { panic!("{frustum:?}") };
+            assert_eq!(frustum.far, [anatomy.lights[light].position; 4]);
+            let [corner, u, v, normal] = rectangle(frustum);
+            let is_on = |place: &&DVec3| {
+                let offset = **place - corner;
+                let shares = [offset.dot(u) / u.length_squared(), offset.dot(v) / v.length_squared()];
+                offset.dot(normal).abs() < 1e-6 && shares.iter().all(|share| (-1e-6..1.0 + 1e-6).contains(share))
+            };
+            let has = |object: &PlacedObject| object.receives && object.positions.iter().filter(is_on).count() >= 3;
+            assert!(anatomy.objects.iter().any(has), "no receiver lies in the rectangle of {frustum:?}");
+        }
+    }
+
+    #[test]
+    fn a_projected_silhouette_fits_the_rectangle_that_it_is_projected_from() {
+        let mut suns = [0, 0];
+        for name in ["tori", "two-lights"] {
+            let anatomy = of(name, Technique::Projective, &[]);
+            let maps: Vec<_> = anatomy.frusta.iter().filter(|frustum| frustum.of != ViewOf::Camera).collect();
+            assert!(!maps.is_empty() && maps.len() % 2 == 0, "{name}: to the light, and onwards");
+            for pair in maps.chunks(2) {
+                let ViewOf::Map { light, caster: Some(caster), .. } = pair[0].of else { panic!("{:?}", pair[0]) };
+                let position = anatomy.lights[light].position;
+                let is_sun = position.w == 0.0;
+                suns[usize::from(is_sun)] += 1;
+                assert_eq!(pair[0].far, [position; 4]);
+                assert!(pair[1].near == pair[0].near && pair[1].far.iter().all(|far| far.w == 0.0));
+                let [corner, u, v, normal] = rectangle(pair[0]);
+                for place in &anatomy.objects[caster].positions {
+                    let ray = *place * position.w - position.truncate();
+                    let from = if is_sun { *place } else { position.truncate() };
+                    let met = from + ray * (normal.dot(corner - from) / normal.dot(ray)) - corner;
+                    let shares = [met.dot(u) / u.length_squared(), met.dot(v) / v.length_squared()];
+                    assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)), "{name}: {place} at {shares:?}");
+                }
+                for (near, far) in pair[1].near.into_iter().zip(pair[1].far) {
+                    let from_light = (near * position.w - position).truncate();
+                    assert!(from_light.normalize().dot(far.truncate().normalize()) > 1.0 - 1e-12);
+                }
+            }
+        }
+        assert!(suns.iter().all(|count| *count > 0), "of a lamp and of a sun: {suns:?}");
     }
 
     /// The camera's frustum begins at the near rectangle and has no end.

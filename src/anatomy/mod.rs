@@ -39,7 +39,8 @@ pub struct Anatomy {
     pub volumes: Vec<ShadowVolume>,
     /// One a light and caster.
     pub silhouettes: Vec<Silhouette>,
-    /// The camera's first, then those of the lights' maps.
+    /// The camera's first, then those of the lights' maps. A receiver's texture is seen from its rectangle to the
+    /// light; a projected silhouette has two: from its rectangle to the light, and from there on.
     pub frusta: Vec<Frustum>,
     /// The near-clip volume of each light; `None` where the light lies in the near plane.
     pub near_clips: Vec<Option<NearClip>>,
@@ -121,6 +122,8 @@ pub enum ViewOf {
         light: usize,
         /// Index of the face.
         face: usize,
+        /// Index of the object whose silhouette is projected; `None` where a map is not of one object.
+        caster: Option<usize>,
     },
 }
 
@@ -131,7 +134,7 @@ pub struct Frustum {
     pub of: ViewOf,
     /// Right top, left top, left bottom, right bottom.
     pub near: [DVec4; 4],
-    /// The same; directions where there is no far plane.
+    /// The same; directions where there is no far plane, or all the light where it ends there.
     pub far: [DVec4; 4],
 }
 
@@ -142,6 +145,14 @@ pub struct NearClip {
     pub rectangle: [DVec3; 4],
     /// The light: a point, or a direction.
     pub apex: DVec4,
+}
+
+impl Frustum {
+    /// Is its far end one place, the light?
+    #[must_use]
+    pub fn ends_at_light(&self) -> bool {
+        self.far.iter().all(|corner| *corner == self.far[0])
+    }
 }
 
 impl Anatomy {

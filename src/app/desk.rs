@@ -16,7 +16,17 @@ use crate::inspector::{Action, ExportData, ExportKind, Inspector, PictureKind, R
 use crate::scene::{TechniqueRequest, builtin};
 use crate::stress::Case;
 use crate::technique::Choice;
+use std::pin::Pin;
 use std::sync::Arc;
+
+/// What the system's dialog shows: it has files or folders, not both.
+#[derive(Debug, Clone, Copy)]
+enum Wanted {
+    /// Scenes and models.
+    File,
+    /// Captures.
+    Folder,
+}
 
 /// The panels and the worker.
 pub struct Desk {
@@ -150,7 +160,9 @@ impl Desk {
             News::Tests { frame, step, draw, result } if frame == self.frame => {
                 self.inspector.set_tests(step, draw, result);
             }
+            News::Walls { generation, walls } if generation == self.generation => self.inspector.set_walls(walls),
             // Of a scene or frame that is shown no more.
+            News::Walls { .. } => {}
             News::Tests { .. } | News::Compared { .. } => {}
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
             News::Draws { .. } | News::NoDraws { .. } | News::History { .. } | News::Anatomy { .. } => {}
@@ -192,7 +204,13 @@ impl Desk {
             }
             Action::Tests { step, draw } => Order::Tests { frame: self.frame, step, draw },
             Action::Anatomy => Order::Anatomy { frame: self.frame },
-            Action::Browse => return self.browse(),
+            Action::Walls(request) => {
+                // No step is made before they are known.
+                self.jobs.make_way(&mut self.inspector);
+                Order::Walls { generation: self.generation, request }
+            }
+            Action::Browse => return self.browse(Wanted::File),
+            Action::BrowseFolder => return self.browse(Wanted::Folder),
             Action::BrowseExport { kind, path } => return self.browse_export(kind, path),
             Action::Reload => {
                 let Some(request) = self.inspector.draft() else { return };
@@ -269,14 +287,21 @@ impl Desk {
         }
     }
 
-    /// Asks for a file in the system's dialog, beside the window.
-    fn browse(&mut self) {
-        let dialog = rfd::AsyncFileDialog::new().set_title("Open a scene or a model");
-        let dialog = dialog.add_filter("scenes and models", &["toml", "obj"]).pick_file();
+    /// Asks for a file or folder in the system's dialog, beside the window.
+    fn browse(&mut self, wanted: Wanted) {
+        let dialog = rfd::AsyncFileDialog::new();
+        // Made here, as some systems give dialogs to the first thread only.
+        let dialog: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match wanted {
+            Wanted::File => {
+                let dialog = dialog.set_title("Open a scene or a model");
+                Box::pin(dialog.add_filter("scenes and models", &["toml", "obj"]).pick_file())
+            }
+            Wanted::Folder => Box::pin(dialog.set_title("Open a capture folder").pick_folder()),
+        };
         let tell = Arc::clone(&self.tell);
         let wait = move || {
-            if let Some(file) = pollster::block_on(dialog) {
-                tell(WindowNews::Chosen(file.path().display().to_string()));
+            if let Some(chosen) = pollster::block_on(dialog) {
+                tell(WindowNews::Chosen(chosen.path().display().to_string()));
             }
         };
         if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {

@@ -7,7 +7,7 @@ use crate::history::PixelHistory;
 use crate::inspector::{ObjectMesh, RunRequest};
 use crate::plan::FramePlan;
 use crate::report::Report;
-use crate::scene::Scene;
+use crate::scene::{Scene, Walls};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -127,6 +127,13 @@ pub enum News {
         frame: u64,
         /// Its anatomy, or why there is none, with the mend.
         anatomy: Result<Arc<Anatomy>, String>,
+    },
+    /// What can't be walked through.
+    Walls {
+        /// The scene that is meant.
+        generation: u64,
+        /// At the moment that was asked for.
+        walls: Arc<Walls>,
     },
     /// Techniques were measured, or could not be; not told of what was cancelled.
     Measured {

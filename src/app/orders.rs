@@ -91,6 +91,13 @@ pub enum Order {
         /// The frame that is meant.
         frame: u64,
     },
+    /// What can't be walked through in the open scene.
+    Walls {
+        /// The scene that is meant.
+        generation: u64,
+        /// Which objects are there, and when.
+        request: Box<RunRequest>,
+    },
     /// Techniques measured on the open scene, as it was captured last.
     Measure(Measure),
     /// Why the frame that was captured last is wrong.
@@ -147,6 +154,7 @@ impl StressRun {
 pub struct Waiting {
     picture: Option<Order>,
     save: Option<Order>,
+    walls: Option<Order>,
     draws: Option<Order>,
     history: Option<Order>,
     anatomy: Option<Order>,
@@ -170,6 +178,7 @@ impl Waiting {
             Order::Judge { .. } => self.judge = Some(order),
             Order::Diagnose { .. } => self.diagnose = Some(order),
             Order::Measure(_) => self.measure = Some(order),
+            Order::Walls { .. } => self.walls = Some(order),
             Order::Stress(_) => self.stress = Some(order),
             Order::SaveScene { .. } => self.save = Some(order),
             Order::Open(_) | Order::Reload { .. } | Order::OpenCase { .. } | Order::Run { .. } => {
@@ -204,6 +213,10 @@ impl Waiting {
         // A scene is saved before it is changed.
         if self.save.is_some() {
             return self.save.take();
+        }
+        // The next picture is a step among them.
+        if self.walls.is_some() {
+            return self.walls.take();
         }
         let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
         let seen = seen.or_else(|| self.anatomy.take()).or_else(|| self.tests.take());
@@ -343,6 +356,18 @@ mod tests {
         assert!(matches!(waiting.next(), Some(Order::Judge { .. })));
         assert!(matches!(waiting.next(), Some(Order::Diagnose { job: 2, .. })));
         assert!(matches!(waiting.next(), Some(Order::Measure(_))));
+    }
+
+    #[test]
+    fn walls_are_known_before_the_next_step_among_them() {
+        let walls = |generation| match run(1) {
+            Order::Run { request, .. } => Order::Walls { generation, request },
+            other => other,
+        };
+        let mut waiting = waiting([walls(1), run(1), walls(2)]);
+        assert!(matches!(waiting.next(), Some(Order::Walls { generation: 2, .. })));
+        assert!(matches!(waiting.next(), Some(Order::Run { .. })));
+        assert!(waiting.next().is_none());
     }
 
     #[test]

@@ -22,7 +22,7 @@ use super::{AppError, ViewSource};
 use crate::capture::disk;
 use crate::inspector::{ObjectMesh, RunRequest};
 use crate::scene::file::store;
-use crate::scene::{OpenSpec, Scene};
+use crate::scene::{OpenSpec, Scene, WallCache};
 use crate::session::{CaptureRequest, Every, Session, SessionError};
 use crate::technique::Choice;
 use done::Done;
@@ -99,6 +99,8 @@ struct Bench {
     every: Every,
     /// How many frames were captured.
     frames: u64,
+    /// Of the scene that is walked through.
+    walls: WallCache,
     /// The frame that the window shows; `None` for a folder's.
     last: Option<Done>,
     tell: Box<dyn Fn(News) + Send>,
@@ -119,6 +121,7 @@ impl Bench {
             brought,
             every,
             frames: 0,
+            walls: WallCache::default(),
             last: None,
             tell,
         }
@@ -187,6 +190,7 @@ impl Bench {
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
             Order::History { frame, at } => return self.history(frame, at),
             Order::Anatomy { frame } => return self.anatomy(frame),
+            Order::Walls { generation, request } => return self.walls(generation, &request),
             // Of a scene that is open no more.
             Order::Run { .. } => return,
             // Obeyed by the loop, as others come in between.
@@ -309,6 +313,13 @@ impl Bench {
         let result = result.map(Arc::new).map_err(|error| error.to_string());
         (self.tell)(News::Compared { generation, request, result });
         (self.tell)(News::Idle);
+    }
+
+    /// Tells what can't be walked through.
+    fn walls(&mut self, generation: u64, request: &RunRequest) {
+        let Some(scene) = self.scene_of(request).filter(|_| generation == self.generation) else { return };
+        let walls = Arc::new(self.walls.walls(&scene));
+        (self.tell)(News::Walls { generation, walls });
     }
 
     fn run(&mut self, request: &RunRequest) -> Result<(), String> {

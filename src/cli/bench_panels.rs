@@ -94,7 +94,7 @@ mod measured {
             let total = all(FrameCost::total);
             let worst = costs.iter().map(|cost| ms(cost.total())).fold(0.0, f64::max);
             text += &format!(
-                "  {:<11} frame_ms {total:.2} (panels {:.2}, triangles {:.2}, worst {worst:.2}): {}\n",
+                "  {:<14} frame_ms {total:.2} (panels {:.2}, triangles {:.2}, worst {worst:.2}): {}\n",
                 panel.title().to_lowercase(),
                 all(|cost| cost.panels),
                 all(|cost| cost.triangles),
@@ -135,7 +135,7 @@ mod measured {
         let all = |of: fn(&FrameCost) -> Duration| median(costs.iter().map(|cost| ms(of(cost))).collect());
         let total = all(FrameCost::total);
         format!(
-            "  orbit       frame_ms {total:.2} (panels {:.2}, triangles {:.2}) while the Scene tab is dragged: {}\n",
+            "  orbit          frame_ms {total:.2} (panels {:.2}, triangles {:.2}) while the Scene tab is dragged: {}\n",
             all(|cost| cost.panels),
             all(|cost| cost.triangles),
             verdict(total, LIMIT_PANELS_MS)

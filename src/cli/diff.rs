@@ -94,7 +94,11 @@ pub fn run(arguments: &DiffArguments) -> Result<(), CliError> {
 fn folder(name: &str) -> Result<Capture, CliError> {
     let path = Path::new(name);
     if !disk::is_capture(path) {
-        let what = if path.is_dir() { "it holds no manifest.json" } else { "there is no such folder" };
+        let what = match (path.is_dir(), path.exists()) {
+            (true, _) => "it holds no manifest.json",
+            (_, true) => "it is a file",
+            (_, false) => "there is no such folder",
+        };
         return Err(CliError::Usage(format!(
             "`{}` is no capture folder ({what}): name two folders, or one scene and two techniques (-t)",
             name.escape_debug()

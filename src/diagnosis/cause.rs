@@ -16,7 +16,7 @@ pub enum Cause {
     MissingDarkCap,
     /// A volume is open at its caster.
     MissingLightCap,
-    /// Volumes are cut at a far plane.
+    /// Volumes or surfaces are cut at a far plane.
     FarClip,
     /// Volumes end before the receiver.
     FiniteExtrusion,
@@ -186,8 +186,8 @@ impl Cause {
                  test its depth."
             }
             Cause::FarClip => {
-                "A far plane cuts the shadow volumes, and what is cut away is not counted. Use an infinite depth \
-                 mapping, or clamp depth."
+                "A far plane cuts surfaces or shadow volumes away, and what is cut away is not seen or not counted. Use \
+                 an infinite depth mapping; clamped depth saves the volumes."
             }
             Cause::FiniteExtrusion => "The shadow volumes end before they reach the surface. Extrude them to infinity.",
             Cause::OpenMesh => {

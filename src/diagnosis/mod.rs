@@ -61,6 +61,16 @@ impl Diagnosis {
     /// As many regions are told of.
     pub const MOST_REGIONS: usize = 12;
 
+    /// What is to be said of a region that no cause fits, in a few words.
+    #[must_use]
+    pub fn without_cause(&self, region: &RegionFound) -> &'static str {
+        let is_missing = region.kind == RegionKind::Wrong(Finding::MissingShadow);
+        match self.technique {
+            Technique::None if is_missing => "no shadows were asked for: the technique is none",
+            _ => "no known cause fits",
+        }
+    }
+
     /// Is any pixel wrong, or darkened twice?
     #[must_use]
     pub fn is_bad(&self) -> bool {

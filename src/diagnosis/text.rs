@@ -5,6 +5,7 @@
 use super::{Cause, CauseFound, Diagnosis, FlagFound, Mend, MeshFinding, Proof, RegionFound, RegionKind, Suited};
 use crate::accuracy::Finding;
 use crate::numbers;
+use crate::technique::Technique;
 use std::collections::BTreeSet;
 
 /// Places of a mesh finding that are told.
@@ -20,7 +21,7 @@ impl Diagnosis {
         for (index, region) in self.regions.iter().enumerate() {
             out += &format!("\n{}. {}\n", index + 1, region.place());
             let like = self.regions[..index].iter().position(|earlier| is_like(earlier, region));
-            out += &like.map_or_else(|| causes(region, &mut explained), |like| as_before(region, like));
+            out += &like.map_or_else(|| self.causes(region, &mut explained), |like| as_before(region, like));
         }
         if self.rest.regions > 0 {
             let regions = counted(self.rest.regions as u64, "smaller region", "smaller regions");
@@ -62,6 +63,34 @@ impl Diagnosis {
             numbers::count(error.wrong()),
             kinds.join(", "),
         )
+    }
+
+    fn causes(&self, region: &RegionFound, explained: &mut BTreeSet<Cause>) -> String {
+        let mut out = String::new();
+        let is_told = |cause: &&CauseFound| cause.proof != Proof::NotIt;
+        for found in region.causes.iter().filter(is_told) {
+            out += &format!("   {} ({}): {}\n", found.cause, found.proof.name(), found.evidence);
+            if explained.insert(found.cause) {
+                out += &format!("     {}\n", found.cause.meaning());
+            }
+            out += &format!("     {}\n", proof(found));
+        }
+        let ruled_out: Vec<&str> =
+            region.causes.iter().filter(|cause| !is_told(cause)).map(|found| found.cause.name()).collect();
+        if !ruled_out.is_empty() {
+            out += &format!("   ruled out by running their mends: {}\n", ruled_out.join(", "));
+        }
+        if region.causes.is_empty() {
+            let [x, y] = region.at;
+            out += &match self.technique {
+                Technique::None => format!("   {}\n", self.without_cause(region)),
+                _ => format!(
+                    "   {}; `pixel SCENE --at {x},{y}` tells how a pixel came about\n",
+                    self.without_cause(region)
+                ),
+            };
+        }
+        out
     }
 
     /// The last line.
@@ -140,28 +169,6 @@ fn as_before(region: &RegionFound, like: usize) -> String {
     let first = region.causes.first();
     let evidence = first.map_or_else(String::new, |found| format!(": {}: {}", found.cause, found.evidence));
     format!("   as {}{evidence}\n", like + 1)
-}
-
-fn causes(region: &RegionFound, explained: &mut BTreeSet<Cause>) -> String {
-    let mut out = String::new();
-    let is_told = |cause: &&CauseFound| cause.proof != Proof::NotIt;
-    for found in region.causes.iter().filter(is_told) {
-        out += &format!("   {} ({}): {}\n", found.cause, found.proof.name(), found.evidence);
-        if explained.insert(found.cause) {
-            out += &format!("     {}\n", found.cause.meaning());
-        }
-        out += &format!("     {}\n", proof(found));
-    }
-    let ruled_out: Vec<&str> =
-        region.causes.iter().filter(|cause| !is_told(cause)).map(|found| found.cause.name()).collect();
-    if !ruled_out.is_empty() {
-        out += &format!("   ruled out by running their mends: {}\n", ruled_out.join(", "));
-    }
-    if region.causes.is_empty() {
-        let [x, y] = region.at;
-        out += &format!("   no known cause fits; `pixel SCENE --at {x},{y}` tells how a pixel came about\n");
-    }
-    out
 }
 
 /// What the mend is, and what running it has shown.

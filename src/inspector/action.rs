@@ -13,6 +13,8 @@ pub enum Action {
     Open(String),
     /// Ask for a file with the system's dialog.
     Browse,
+    /// Ask for a capture folder with the system's dialog, which shows files or folders, not both.
+    BrowseFolder,
     /// Render again, with this changed.
     Run(Box<RunRequest>),
     /// Render as this says, to compare with the frame that is shown, which stays.
@@ -58,6 +60,8 @@ pub enum Action {
     },
     /// Tell what the frame that is shown is made of in space.
     Anatomy,
+    /// Tell what can't be walked through in the scene that would be run so.
+    Walls(Box<RunRequest>),
     /// Measure every technique on the open scene.
     RunReport,
     /// Stop measuring; the rows so far stay.

@@ -164,7 +164,7 @@ fn regions(ui: &mut Ui, state: &mut State, diagnosis: &Diagnosis) {
         ui.label(theme::note("No pixel is wrong."));
     }
     for (index, region) in diagnosis.regions.iter().enumerate() {
-        region_row(ui, state, region, index);
+        region_row(ui, state, (diagnosis, region), index);
     }
     if diagnosis.rest.regions > 0 {
         let pixels = format::counted(diagnosis.rest.pixels, "pixel");
@@ -172,10 +172,10 @@ fn regions(ui: &mut Ui, state: &mut State, diagnosis: &Diagnosis) {
     }
 }
 
-fn region_row(ui: &mut Ui, state: &mut State, region: &RegionFound, index: usize) {
+fn region_row(ui: &mut Ui, state: &mut State, (diagnosis, region): (&Diagnosis, &RegionFound), index: usize) {
     let is_selected = state.diagnosis.selected == index;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
-    let (title, because) = (region.title(), because(region));
+    let (title, because) = (region.title(), because(diagnosis, region));
     let pixels = format::counted(region.pixels, "pixel");
     let name = format!("{} · {title}: {pixels}, {because}", index + 1);
     response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, &name));
@@ -205,11 +205,9 @@ fn region_row(ui: &mut Ui, state: &mut State, region: &RegionFound, index: usize
 }
 
 /// The most likely cause, and how sure it is.
-fn because(region: &RegionFound) -> String {
-    region
-        .causes
-        .first()
-        .map_or_else(|| "no known cause fits".to_owned(), |found| format!("{} ({})", found.cause, found.proof.name()))
+fn because(diagnosis: &Diagnosis, region: &RegionFound) -> String {
+    let none = || diagnosis.without_cause(region).to_owned();
+    region.causes.first().map_or_else(none, |found| format!("{} ({})", found.cause, found.proof.name()))
 }
 
 /// As in the error picture.

@@ -61,7 +61,7 @@ impl Panel {
     pub fn title(self) -> &'static str {
         match self {
             Panel::Passes => "Passes",
-            Panel::Settings => "Settings",
+            Panel::Settings => "Scene settings",
             Panel::Picture => "Picture",
             Panel::Scene => "Scene",
             Panel::ShadowMap => "Shadow map",

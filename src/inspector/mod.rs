@@ -14,6 +14,7 @@
 //! findings.rs  the error picture's hatching        truth_note.rs while there is no truth
 //! modes.rs     before, after, compare          overlays.rs    what is drawn over it
 //! change.rs    what a step changed             shadow_map.rs  the map, linked with the picture
+//! map_readers.rs  texels and their readers     fragments.rs   points and normals as the shader has them
 //! moment.rs    after a step, or after a draw       draw_level.rs selecting and fetching draws
 //! scene_view/  a second camera that sees the first
 //! keys.rs      the table of keys, for help.rs    undo.rs, memory.rs, export.rs, animation.rs: as they say
@@ -44,6 +45,7 @@ mod export;
 mod face_grid;
 mod findings;
 mod format;
+mod fragments;
 mod help;
 mod history;
 mod history_row;
@@ -122,7 +124,7 @@ use crate::anatomy::Anatomy;
 use crate::capture::{Capture, StepTests};
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
-use crate::scene::Scene;
+use crate::scene::{Scene, Walls};
 use crate::technique::{Choice, Technique};
 use compare::{Compare, With};
 use state::State;
@@ -382,6 +384,11 @@ impl Inspector {
         }
     }
 
+    /// Tells what can't be walked through in the open scene.
+    pub fn set_walls(&mut self, walls: Arc<Walls>) {
+        self.state.walk.set_walls(walls);
+    }
+
     /// Index of the selected event in the history of the picked pixel.
     #[must_use]
     pub fn selected_event(&self) -> Option<usize> {
@@ -510,6 +517,12 @@ impl Inspector {
     #[must_use]
     pub fn map_texel_of(&self, pixel: [u32; 2]) -> Option<(usize, [u32; 2])> {
         self.state.map_tab.texel_of(pixel).map(|texel| (texel.face, texel.at))
+    }
+
+    /// The depth that the shadow map in its tab is compared with at a pixel; `None` as for its texel.
+    #[must_use]
+    pub fn map_depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
+        self.state.map_tab.depth_of(pixel)
     }
 
     /// Picks a pixel.

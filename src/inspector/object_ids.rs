@@ -66,7 +66,7 @@ fn draw(anatomy: &Anatomy, capture: &Capture) -> Vec<u32> {
 }
 
 /// Calls `put` with each pixel whose middle lies in a triangle, and how near it is there.
-fn fill(corners: [(DVec2, f64); 3], [width, height]: [usize; 2], mut put: impl FnMut(usize, f64)) {
+pub fn fill(corners: [(DVec2, f64); 3], [width, height]: [usize; 2], mut put: impl FnMut(usize, f64)) {
     let [a, b, c] = corners.map(|(place, _)| place);
     let area = (b - a).perp_dot(c - a);
     if area == 0.0 {

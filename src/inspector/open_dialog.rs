@@ -18,6 +18,7 @@ pub fn ui(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) {
         Answer::Waiting | Answer::Cancel => {}
         Answer::Open(what) => actions.push(Action::Open(what)),
         Answer::Browse => actions.push(Action::Browse),
+        Answer::BrowseFolder => actions.push(Action::BrowseFolder),
     }
 }
 
@@ -25,6 +26,7 @@ enum Answer {
     Waiting,
     Cancel,
     Browse,
+    BrowseFolder,
     Open(String),
 }
 
@@ -58,8 +60,11 @@ fn contents(ui: &mut Ui, dialog: &mut OpenDialog, state: &State) -> Answer {
         if !path.is_empty() && (open.clicked() || entered) {
             answer = Answer::Open(path.to_owned());
         }
-        if ui.button("Browse…").on_hover_text("Choose a file with the system's dialog").clicked() {
+        if ui.button("Browse…").on_hover_text("Choose a scene or model with the system's dialog").clicked() {
             answer = Answer::Browse;
+        }
+        if ui.button("Browse captures…").on_hover_text("Choose a capture folder with the system's dialog").clicked() {
+            answer = Answer::BrowseFolder;
         }
         if ui.button("Cancel").clicked() {
             answer = Answer::Cancel;

@@ -58,8 +58,14 @@ impl Projector {
     /// at each corner. Empty where nothing is.
     #[must_use]
     pub fn polygon(&self, corners: [DVec4; 3]) -> Vec<(DVec2, f64)> {
-        let corners = corners.map(|corner| self.clip_from_world * corner).to_vec();
-        let clipped = self.planes.into_iter().fold(corners, |polygon, plane| outline::clip(&polygon, plane));
+        let corners = corners.map(|corner| self.clip_from_world * corner);
+        let is_beyond = |plane: &DVec4, corner: &DVec4| plane.dot(*corner) < 0.0;
+        // Most triangles are seen whole or not at all.
+        if self.planes.iter().any(|plane| corners.iter().all(|corner| is_beyond(plane, corner))) {
+            return Vec::new();
+        }
+        let crossed = self.planes.into_iter().filter(|plane| corners.iter().any(|corner| is_beyond(plane, corner)));
+        let clipped = crossed.fold(corners.to_vec(), |polygon, plane| outline::clip(&polygon, plane));
         clipped.into_iter().filter(|corner| corner.w > 0.0).map(|corner| (self.place(corner), 1.0 / corner.w)).collect()
     }
 

@@ -1,11 +1,13 @@
 //! The shadow map tab: a face of a light's map with the values of its texels, beside a small picture. A
-//! texel and the pixels that read it are marked in both.
+//! texel and the pixels that read it are marked in both, and so is what each covers of the other: a pixel of
+//! the map, a texel of the surface.
 
 use super::canvas;
 use super::depth::DepthMeasure;
 use super::format;
 use super::layers::{self, MapContent};
-use super::map_readers::{MapReaders, MapTexel, Surface, texel_width};
+use super::map_readers::{MapReaders, MapTexel};
+use super::pick_ray;
 use super::picture::{coloring_of, shown_range};
 use super::placement::Placement;
 use super::state::State;
@@ -14,10 +16,13 @@ use super::theme;
 use super::top_bar::segments;
 use super::view::{FaceChoice, PictureKind, PictureView, Zoom};
 use crate::capture::{Capture, CapturedMap};
+use crate::plan::FramePlan;
 use egui::epaint::Mesh;
 use egui::{
-    Color32, CornerRadius, Margin, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Color32, CornerRadius, Margin, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
 };
+use glam::DVec2;
 use std::sync::Arc;
 
 /// Width of the column beside the map, points.
@@ -52,12 +57,12 @@ impl MapTab {
     }
 
     /// Which texel each pixel reads, made once for a frame and light.
-    fn readers(&mut self, capture: &Capture) -> Option<Arc<MapReaders>> {
+    fn readers(&mut self, capture: &Capture, plan: Option<&Arc<FramePlan>>) -> Option<Arc<MapReaders>> {
         // Those of another frame were dropped when it came.
         if let Some((_, readers)) = self.readers.as_ref().filter(|(light, _)| *light == self.light) {
             return readers.clone();
         }
-        let readers = MapReaders::new(capture, self.light).map(Arc::new);
+        let readers = MapReaders::new(capture, plan, self.light).map(Arc::new);
         self.readers = Some((self.light, readers.clone()));
         self.marked = None;
         readers
@@ -67,6 +72,12 @@ impl MapTab {
     #[must_use]
     pub fn texel_of(&self, pixel: [u32; 2]) -> Option<MapTexel> {
         self.readers.as_ref().and_then(|(_, readers)| readers.as_ref()?.texel_of(pixel))
+    }
+
+    /// The depth that the map is compared with at a pixel, where the tab was shown.
+    #[must_use]
+    pub fn depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
+        self.readers.as_ref().and_then(|(_, readers)| readers.as_ref()?.depth_of(pixel))
     }
 
     /// The pixels that read a texel, found once.
@@ -115,7 +126,8 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
     state.map_tab.is_shown = true;
     state.map_tab.view.kind = PictureKind::Map;
     state.map_tab.view.light = state.map_tab.light;
-    let readers = state.map_tab.readers(&capture);
+    let plan = state.plan.clone();
+    let readers = state.map_tab.readers(&capture, plan.as_ref());
     let read = |pixel: Option<[u32; 2]>| pixel.and_then(|pixel| readers.as_ref()?.texel_of(pixel));
     let of_pick = read(state.pick);
     let map_faces = layers::layers(&capture, state.map_tab.light).len();
@@ -126,8 +138,10 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
     tools(ui, state, &capture, &lights);
     let rect = ui.available_rect_before_wrap();
     let [map, column] = split(rect);
-    let linked = read(state.map_tab.over_pixel).or(of_pick);
-    let over = face(ui, state, &capture, map, linked);
+    let pixel = state.map_tab.over_pixel.filter(|over| read(Some(*over)).is_some()).or(state.pick);
+    let linked = read(pixel);
+    let footprint = pixel.and_then(|pixel| readers.as_ref()?.footprint(pixel));
+    let over = face(ui, state, &capture, map, linked, footprint);
     let face = state.map_tab.face();
     let chosen = over.or(state.map_tab.pick).map(|at| MapTexel { face, at }).or(linked);
     let pixels = match (&readers, chosen) {
@@ -137,10 +151,40 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
             Arc::default()
         }
     };
+    let links = Links {
+        readers: readers.as_deref(),
+        of_pick,
+        texel: chosen,
+        pixel: pixel.filter(|_| chosen.is_some() && chosen == linked),
+        footprint: footprint.map(|(_, corners)| corners),
+        pixels: &pixels,
+    };
     ui.scope_builder(UiBuilder::new().max_rect(column.shrink(8.0)), |ui| {
-        small_picture(ui, state, &capture, &pixels);
-        facts(ui, state, &capture, chosen, &pixels, of_pick);
+        small_picture(ui, state, &capture, &links);
+        facts(ui, state, &capture, &links);
     });
+}
+
+/// What is linked with what in this frame.
+struct Links<'a> {
+    readers: Option<&'a MapReaders>,
+    /// The texel that the picked pixel reads.
+    of_pick: Option<MapTexel>,
+    /// The texel that is told about.
+    texel: Option<MapTexel>,
+    /// The pixel under the pointer, or else the picked one, where it is what led to that texel.
+    pixel: Option<[u32; 2]>,
+    /// What it covers of the map, texels.
+    footprint: Option<[DVec2; 4]>,
+    /// The pixels that read the texel.
+    pixels: &'a [[u32; 2]],
+}
+
+impl Links<'_> {
+    /// A pixel on whose surface the texel is measured: of many the middle one in reading order.
+    fn on_surface(&self) -> Option<[u32; 2]> {
+        self.pixel.or_else(|| self.pixels.get(self.pixels.len() / 2).copied())
+    }
 }
 
 fn empty(ui: &mut Ui, rect: Rect, text: &str) {
@@ -198,7 +242,14 @@ fn show_face(state: &mut State, face: usize) {
 }
 
 /// Draws the shown face; the texel under the pointer.
-fn face(ui: &mut Ui, state: &mut State, capture: &Capture, rect: Rect, linked: Option<MapTexel>) -> Option<[u32; 2]> {
+fn face(
+    ui: &mut Ui,
+    state: &mut State,
+    capture: &Capture,
+    rect: Rect,
+    linked: Option<MapTexel>,
+    footprint: Option<(usize, [DVec2; 4])>,
+) -> Option<[u32; 2]> {
     let hover = state.hover;
     // The canvas works on the view, pick and hover of the picture: for now, those of this tab.
     swap(state);
@@ -211,7 +262,20 @@ fn face(ui: &mut Ui, state: &mut State, capture: &Capture, rect: Rect, linked: O
     if let Some(texel) = of_face {
         mark_texel(ui, rect, placement, texel.at);
     }
+    if let Some((_, corners)) = footprint.filter(|(face, _)| *face == state.map_tab.face()) {
+        quadrilateral(&ui.painter_at(rect), placement, corners, theme::of(ui).text);
+    }
     over
+}
+
+/// A quadrilateral over a picture, light on dark; `corners` are in its texels.
+fn quadrilateral(painter: &Painter, placement: Placement, corners: [DVec2; 4], color: Color32) {
+    let place = |at: DVec2| placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale;
+    let points: Vec<Pos2> = corners.into_iter().map(place).filter(|at| at.is_finite()).collect();
+    if points.len() == corners.len() {
+        painter.add(Shape::closed_line(points.clone(), Stroke::new(3.5, Color32::from_black_alpha(170))));
+        painter.add(Shape::closed_line(points, Stroke::new(1.5, color)));
+    }
 }
 
 fn swap(state: &mut State) {
@@ -239,7 +303,7 @@ fn mark_texel(ui: &Ui, rect: Rect, placement: Placement, at: [u32; 2]) {
 }
 
 /// The frame's colours with the marked pixels; pointing at a pixel marks its texel, a click picks it.
-fn small_picture(ui: &mut Ui, state: &mut State, capture: &Capture, pixels: &[[u32; 2]]) {
+fn small_picture(ui: &mut Ui, state: &mut State, capture: &Capture, links: &Links) {
     let [width, height] = capture.size.map(|side| side as f32);
     let scale = (ui.available_width() / width.max(1.0)).min(240.0 / height.max(1.0));
     let (rect, response) = ui.allocate_exact_size(vec2(width, height) * scale, Sense::click());
@@ -250,7 +314,10 @@ fn small_picture(ui: &mut Ui, state: &mut State, capture: &Capture, pixels: &[[u
     let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
     ui.painter().image(texture.id(), rect, uv, Color32::WHITE);
     let placement = Placement { origin: rect.min, scale, size: capture.size };
-    ui.painter_at(rect).add(Shape::mesh(marks(placement, pixels, theme::of(ui).selected)));
+    ui.painter_at(rect).add(Shape::mesh(marks(placement, links.pixels, theme::of(ui).selected)));
+    if let Some(corners) = texel_in_picture(capture, links) {
+        quadrilateral(&ui.painter_at(rect), placement, corners, theme::of(ui).selected);
+    }
     if let Some(pick) = state.pick {
         let pixel = Rect::from_center_size(placement.rect_of(pick).center(), vec2(7.0, 7.0));
         ui.painter_at(rect).rect_stroke(
@@ -272,6 +339,13 @@ fn small_picture(ui: &mut Ui, state: &mut State, capture: &Capture, pixels: &[[u
     }
 }
 
+/// What the texel covers of the surface, in texels of the picture.
+fn texel_in_picture(capture: &Capture, links: &Links) -> Option<[DVec2; 4]> {
+    let corners = links.readers?.texel_on_surface(links.texel?, links.on_surface()?)?;
+    let [a, b, c, d] = corners.map(|corner| pick_ray::texel_of(capture, corner.extend(1.0)).map(DVec2::from_array));
+    Some([a?, b?, c?, d?])
+}
+
 /// A square a pixel, as one mesh.
 #[must_use]
 pub fn marks(placement: Placement, pixels: &[[u32; 2]], color: Color32) -> Mesh {
@@ -284,42 +358,37 @@ pub fn marks(placement: Placement, pixels: &[[u32; 2]], color: Color32) -> Mesh 
     mesh
 }
 
-fn facts(
-    ui: &mut Ui,
-    state: &mut State,
-    capture: &Capture,
-    texel: Option<MapTexel>,
-    pixels: &[[u32; 2]],
-    of_pick: Option<MapTexel>,
-) {
+fn facts(ui: &mut Ui, state: &mut State, capture: &Capture, links: &Links) {
     ui.add_space(4.0);
     let light = state.map_tab.light;
     let Some(map) = capture.lights.get(light).and_then(|light| light.map.as_ref()) else { return };
-    let Some(texel) = texel else {
+    let Some(texel) = links.texel else {
         ui.add(egui::Label::new(theme::note("Point at a texel, or at a pixel of the small picture.")).wrap());
         return;
     };
     let [x, y] = texel.at;
     let name = layers::layers(capture, light).get(texel.face).map_or_else(String::new, |layer| layer.full_name.clone());
     theme::heading(ui, &format!("Texel {x}, {y}"));
-    let readers = match pixels.len() {
+    let readers = match links.pixels.len() {
         0 => "No pixel reads it.".to_owned(),
         1 => "1 pixel reads it.".to_owned(),
         count => format!("{} pixels read it.", format::count(count as u64)),
     };
     ui.label(readers);
     egui::Grid::new("texel facts").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
-        for (what, value) in values(capture, light, map, texel, pixels, name) {
+        for (what, value) in values(capture, light, map, texel, links, name) {
             ui.label(theme::note(what));
             ui.label(theme::number(value));
             ui.end_row();
         }
     });
-    if capture.settings.get("bias-normal").is_some_and(|bias| bias != "0") {
-        let note = "Looked up before the surface is moved along its normal.";
+    let is_moved = capture.settings.get("bias-normal").is_some_and(|bias| bias != "0");
+    if is_moved && links.readers.is_some_and(|readers| !readers.knows_normals()) {
+        let note = "A folder holds no normals: surfaces are moved along those of the planes through neighbouring \
+                    pixels.";
         ui.add(egui::Label::new(theme::note(note)).wrap());
     }
-    if let Some(texel) = of_pick {
+    if let Some(texel) = links.of_pick {
         let text = "Show the picked pixel's texel";
         if ui.button(text).on_hover_text("Brings the texel that the picked pixel reads to the middle").clicked() {
             show_face(state, texel.face);
@@ -335,7 +404,7 @@ fn values(
     light: usize,
     map: &CapturedMap,
     texel: MapTexel,
-    pixels: &[[u32; 2]],
+    links: &Links,
     name: String,
 ) -> Vec<(&'static str, String)> {
     let [width, height] = map.faces.get(texel.face).map_or([0, 0], |face| face.size());
@@ -347,9 +416,18 @@ fn values(
         let distance = measure.and_then(|measure| measure.value(stored));
         values.push(("caster at", distance.map_or_else(|| "no caster".to_owned(), format::metres)));
     }
-    let width = receiver(capture, pixels).and_then(|world| texel_width(map, texel.face, world));
+    let readers = links.readers;
+    if let Some(depth) = links.pixel.and_then(|pixel| readers?.depth_of(pixel)) {
+        values.push(("pixel's depth", format::depth(depth as f32)));
+    }
+    let width = links.on_surface().and_then(|pixel| readers?.texel_width(texel.face, pixel));
     if let Some(width) = width {
-        values.push(("footprint", format!("{} wide", format::metres(width))));
+        values.push(("texel covers", format::metres(width)));
+    }
+    if let (Some(_), Some([a, b, c, d])) = (links.pixel, links.footprint) {
+        let across = (a.distance(b) + d.distance(c)) / 2.0;
+        let down = (a.distance(d) + b.distance(c)) / 2.0;
+        values.push(("pixel covers", format!("{across:.2} × {down:.2} texels")));
     }
     let setting = |key: &str| capture.settings.get(key).and_then(|value| value.parse::<f64>().ok());
     if let (Some(bias), Some(measure), Some(stored)) = (setting("bias-constant"), measure, stored) {
@@ -363,11 +441,4 @@ fn values(
         values.push(("normal bias", format!("{} at most", format::metres(bias * width))));
     }
     values
-}
-
-/// Where one of the pixels' surface is: the middle one in reading order.
-fn receiver(capture: &Capture, pixels: &[[u32; 2]]) -> Option<glam::DVec3> {
-    let pixel = *pixels.get(pixels.len() / 2)?;
-    let frame = capture.frame_at(capture.steps.len().checked_sub(1)?)?;
-    Surface::new(capture).at(pixel, frame.depth.image.depth_at(pixel)?)
 }

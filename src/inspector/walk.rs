@@ -2,19 +2,21 @@
 //!
 //! Only while one walks these keys act, and no others do. The pointer is hidden and held in the window.
 //! A new frame is asked for when the last one is shown, so nothing queues up: a slow technique moves in
-//! larger steps, not later. Walls are those of the frame at which walking began.
+//! larger steps, not later. Walls are asked for whenever objects are switched off, move or are loaded anew;
+//! until they come the walls before count.
 
-use super::action::Action;
+use super::action::{Action, RunRequest};
 use super::dock::Panel;
 use super::overlays::Overlay;
 use super::state::State;
 use super::theme;
 use super::view::PictureKind;
-use crate::anatomy::Anatomy;
 use crate::scene::{Camera, Walls};
 use crate::technique::Technique;
 use egui::{Context, CursorGrab, Event, FocusDirection, Key, Rect, Ui, UiBuilder, Vec2, ViewportCommand, vec2};
 use glam::{DQuat, DVec3};
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Degrees that a point of mouse movement turns.
 const TURN: f64 = 0.12;
@@ -104,12 +106,23 @@ pub struct Walk {
     last: Option<f64>,
     /// Mouse movement that no frame shows yet, points.
     turned: Vec2,
-    walls: Option<Walls>,
+    walls: Option<Arc<Walls>>,
+    /// Which walls were asked for last.
+    asked: Option<WallsOf>,
+}
+
+/// What decides where walls are in an open scene.
+#[derive(Debug, Clone, PartialEq)]
+struct WallsOf {
+    /// Objects that are switched off.
+    off: BTreeSet<usize>,
+    /// The moment, seconds; 0 where nothing moves.
+    time: f64,
 }
 
 impl Default for Walk {
     fn default() -> Walk {
-        Walk { is_on: false, collides: true, speed: SPEED, last: None, turned: Vec2::ZERO, walls: None }
+        Walk { is_on: false, collides: true, speed: SPEED, last: None, turned: Vec2::ZERO, walls: None, asked: None }
     }
 }
 
@@ -123,6 +136,21 @@ impl Walk {
     /// Another scene has other walls.
     pub fn forget_walls(&mut self) {
         self.walls = None;
+        self.asked = None;
+    }
+
+    /// The answer to what was asked for last.
+    pub fn set_walls(&mut self, walls: Arc<Walls>) {
+        self.walls = Some(walls);
+    }
+
+    /// Asks for the walls of what is to be run, where these are not the ones that were asked for last.
+    fn ask_for_walls(&mut self, draft: &RunRequest, is_animated: bool, actions: &mut Vec<Action>) {
+        let wanted = WallsOf { off: draft.off.clone(), time: if is_animated { draft.time } else { 0.0 } };
+        if self.asked.as_ref() != Some(&wanted) {
+            self.asked = Some(wanted);
+            actions.push(Action::Walls(Box::new(draft.clone())));
+        }
     }
 }
 
@@ -143,7 +171,7 @@ impl State {
     /// Stops to walk.
     pub fn stop_walking(&mut self, ctx: &Context) {
         if std::mem::take(&mut self.walk.is_on) {
-            self.walk.walls = None;
+            self.walk.forget_walls();
             hold_pointer(ctx, false);
         }
     }
@@ -182,8 +210,8 @@ pub fn handle(ctx: &Context, state: &mut State, actions: &mut Vec<Action>) -> bo
     if !state.walk.is_on {
         return true;
     }
-    if state.walk.collides && state.walk.walls.is_none() {
-        state.walk.walls = state.anatomy.want().map(|anatomy| walls_of(&anatomy));
+    if let Some(scene) = state.scene.as_ref().filter(|_| state.walk.collides) {
+        state.walk.ask_for_walls(&scene.draft, scene.animated, actions);
     }
     step(ctx, state, actions);
     true
@@ -254,14 +282,6 @@ fn next_size(state: &mut State, actions: &mut Vec<Action>) {
         Ok(()) => state.run_draft(actions),
         Err(error) => scene.problem = Some(error.to_string()),
     }
-}
-
-fn walls_of(anatomy: &Anatomy) -> Walls {
-    let visible = anatomy.objects.iter().filter(|object| object.visible);
-    Walls::new(visible.flat_map(|object| {
-        let corner = |index: u32| object.positions[index as usize];
-        object.mesh.triangles().iter().map(move |triangle| triangle.map(corner))
-    }))
 }
 
 /// Turns and moves the camera by what was asked since the last step, once that one is shown.

@@ -6,7 +6,11 @@
 //! Detection", 5.1.5), until it is in none. What is left of the step along the wall is the slide. A
 //! step that can't be mended, as in a corner too narrow, is not made.
 
+use super::wall_tree::{Wall, WallTree};
+use super::{Object, Pose, Scene};
 use glam::DVec3;
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Pushes that mend one step, at most.
 const PUSHES: usize = 12;
@@ -16,35 +20,51 @@ const MOST_STEPS: usize = 2_000;
 const SLACK: f64 = 1e-6;
 
 /// Triangles that can't be walked through, world space.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Walls {
-    triangles: Vec<Wall>,
+    /// One an object.
+    trees: Vec<Arc<WallTree>>,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Wall {
-    low: DVec3,
-    high: DVec3,
-    corners: [DVec3; 3],
+/// The walls of objects, kept as long as these stay where they are.
+#[derive(Debug, Default)]
+pub struct WallCache {
+    /// By the mesh's content and the pose.
+    kept: HashMap<(u64, [u64; 9]), Arc<WallTree>>,
+}
+
+impl WallCache {
+    /// The walls of a scene at its moment: of all objects that are drawn. Those of objects that have not moved
+    /// since this was last asked are not made again.
+    pub fn walls(&mut self, scene: &Scene) -> Walls {
+        let before = std::mem::take(&mut self.kept);
+        let tree = |object: &Object| {
+            let key = (object.mesh.content_hash(), bits(&object.pose));
+            let known = self.kept.get(&key).or_else(|| before.get(&key));
+            let tree = known.cloned().unwrap_or_else(|| Arc::new(tree_of(object)));
+            self.kept.insert(key, tree.clone());
+            tree
+        };
+        Walls { trees: scene.objects.iter().filter(|object| object.visible).map(tree).collect() }
+    }
+}
+
+fn bits(pose: &Pose) -> [u64; 9] {
+    let [t, r, s] = [pose.translate, pose.rotate_degrees, pose.scale].map(|part| part.to_array().map(f64::to_bits));
+    [t[0], t[1], t[2], r[0], r[1], r[2], s[0], s[1], s[2]]
+}
+
+fn tree_of(object: &Object) -> WallTree {
+    let positions = object.world_positions();
+    let corner = |index: u32| positions[index as usize];
+    WallTree::new(object.mesh.triangles().iter().map(|triangle| triangle.map(corner)))
 }
 
 impl Walls {
     /// Of these triangles; one with a corner that is no number is none.
     #[must_use]
     pub fn new(triangles: impl IntoIterator<Item = [DVec3; 3]>) -> Walls {
-        let finite = |corners: &[DVec3; 3]| corners.iter().all(|corner| corner.is_finite());
-        let wall = |corners: [DVec3; 3]| {
-            let [a, b, c] = corners;
-            Wall { low: a.min(b).min(c), high: a.max(b).max(c), corners }
-        };
-        Walls { triangles: triangles.into_iter().filter(finite).map(wall).collect() }
-    }
-
-    /// How far a point is from the nearest wall; infinite where there is none.
-    #[must_use]
-    pub fn clearance(&self, at: DVec3) -> f64 {
-        let distance = |wall: &Wall| (closest(wall.corners, at) - at).length();
-        self.triangles.iter().map(distance).fold(f64::INFINITY, f64::min)
+        Walls { trees: vec![Arc::new(WallTree::new(triangles))] }
     }
 
     /// Where a sphere gets that starts at `from` and would go by `by`. One that starts in a wall and can't be
@@ -54,19 +74,44 @@ impl Walls {
         if !(by.is_finite() && from.is_finite() && radius > 0.0) {
             return from;
         }
-        if self.triangles.is_empty() {
+        if self.trees.iter().all(|tree| tree.is_empty()) {
             return from + by;
         }
         let Some(mut at) = self.pushed_out(from, radius) else { return from + by };
         let steps = (by.length() / (radius / 2.0)).ceil().max(1.0);
         let step = by / steps;
-        for _ in 0..(steps as usize).min(MOST_STEPS) {
-            match self.pushed_out(at + step, radius).filter(|next| !self.is_between(at, *next)) {
-                Some(next) => at = next,
-                None => break,
+        let mut left = (steps as usize).min(MOST_STEPS);
+        // So many steps are tried at once: more where nothing is near, fewer where something is.
+        let mut stride = left;
+        while left > 0 {
+            stride = stride.min(left);
+            let far = at + step * stride as f64;
+            if stride > 1 {
+                if self.is_free(at, far, radius) {
+                    (at, left) = (far, left - stride);
+                    stride *= 2;
+                } else {
+                    stride /= 2;
+                }
+                continue;
             }
+            let next = self.pushed_out(far, radius).filter(|next| !self.is_between(at, *next));
+            // What stands still now stands still for the rest of the way.
+            let Some(next) = next.filter(|next| next.distance(at) > SLACK * radius) else { break };
+            (at, left) = (next, left - 1);
+            stride = 2;
         }
         at
+    }
+
+    /// Is nothing near the way between two points?
+    fn is_free(&self, from: DVec3, to: DVec3, radius: f64) -> bool {
+        let reach = DVec3::splat(radius);
+        !self.any_near(from.min(to) - reach, from.max(to) + reach, |_| true)
+    }
+
+    fn any_near(&self, low: DVec3, high: DVec3, mut visit: impl FnMut(&Wall) -> bool) -> bool {
+        self.trees.iter().any(|tree| tree.any_near(low, high, &mut visit))
     }
 
     /// The nearest place found at which the sphere is in no wall.
@@ -75,7 +120,7 @@ impl Walls {
         for _ in 0..PUSHES {
             let Some((nearest, wall)) = self.deepest(at, radius * (1.0 - SLACK)) else { return Some(at) };
             let away = at - nearest;
-            let [a, b, c] = wall.corners;
+            let [a, b, c] = wall;
             // Exactly on a triangle neither side is nearer: its front is as good as any.
             let out = away.try_normalize().unwrap_or_else(|| (b - a).cross(c - a).normalize_or(DVec3::Y));
             at = nearest + out * radius;
@@ -84,27 +129,25 @@ impl Walls {
     }
 
     /// The nearest point of the walls that is nearer than `radius`, with its wall.
-    fn deepest(&self, at: DVec3, radius: f64) -> Option<(DVec3, &Wall)> {
+    fn deepest(&self, at: DVec3, radius: f64) -> Option<(DVec3, Wall)> {
         let mut found = None;
         let mut least = radius * radius;
         let reach = DVec3::splat(radius);
-        let (low, high) = (at - reach, at + reach);
-        for wall in self.triangles.iter().filter(|wall| wall.low.cmple(high).all() && wall.high.cmpge(low).all()) {
-            let nearest = closest(wall.corners, at);
+        self.any_near(at - reach, at + reach, |wall| {
+            let nearest = closest(*wall, at);
             let distance = nearest.distance_squared(at);
             if distance < least {
                 least = distance;
-                found = Some((nearest, wall));
+                found = Some((nearest, *wall));
             }
-        }
+            false
+        });
         found
     }
 
     /// Does a wall stand between two points?
     fn is_between(&self, from: DVec3, to: DVec3) -> bool {
-        let (low, high) = (from.min(to), from.max(to));
-        let near = self.triangles.iter().filter(|wall| wall.low.cmple(high).all() && wall.high.cmpge(low).all());
-        near.into_iter().any(|wall| is_crossed(wall.corners, from, to))
+        self.any_near(from.min(to), from.max(to), |wall| is_crossed(*wall, from, to))
     }
 }
 
@@ -232,12 +275,78 @@ mod tests {
         assert!(back.x >= 0.2 + RADIUS * (1.0 - 2.0 * SLACK), "and does not get in again: {back}");
     }
 
+    /// A sphere of 69 600 triangles about the origin, of radius 2.
+    fn ball() -> crate::scene::Mesh {
+        let (around, down) = (240_u32, 146_u32);
+        let place = |row: u32, column: u32| {
+            let (a, b) = (f64::from(column) / f64::from(around), f64::from(row) / f64::from(down));
+            let (a, b) = (a * std::f64::consts::TAU, b * std::f64::consts::PI);
+            DVec3::new(b.sin() * a.cos(), b.cos(), b.sin() * a.sin()) * 2.0
+        };
+        let grid = |rows: std::ops::Range<u32>| rows.flat_map(|row| (0..around).map(move |column| (row, column)));
+        let at = |row: u32, column: u32| row * around + column % around;
+        let positions = grid(0..down + 1).map(|(row, column)| place(row, column)).collect();
+        let upper = grid(1..down).map(|(row, column)| [at(row, column), at(row, column + 1), at(row + 1, column + 1)]);
+        let lower =
+            grid(0..down - 1).map(|(row, column)| [at(row, column), at(row + 1, column + 1), at(row + 1, column)]);
+        let builder = crate::scene::MeshBuilder {
+            positions,
+            triangles: upper.chain(lower).collect(),
+            ..crate::scene::MeshBuilder::default()
+        };
+        builder.build().expect("a mesh")
+    }
+
+    #[test]
+    fn among_many_triangles_one_gets_as_far_as_if_each_were_looked_at_and_soon() {
+        let mesh = ball();
+        let triangles =
+            || mesh.triangles().iter().map(|corners| corners.map(|corner| mesh.positions()[corner as usize]));
+        let walls = Walls::new(triangles());
+        // A tree a triangle is no tree at all.
+        let slow = Walls { trees: triangles().map(|wall| Arc::new(WallTree::new([wall]))).collect() };
+        let (from, by) = (DVec3::new(-2.9, 0.3, 0.2), DVec3::new(1.2, 0.1, 0.0));
+        assert!((walls.walk(from, by, RADIUS) - slow.walk(from, by, RADIUS)).length() < 1e-9);
+        // As fast as one can be, for a quarter of a second, into the ball and past it.
+        let start = std::time::Instant::now();
+        let at = walls.walk(DVec3::new(-60.0, 0.3, 0.2), DVec3::X * 125.0, RADIUS);
+        let past = walls.walk(DVec3::new(-60.0, 2.2, 0.2), DVec3::X * 125.0, RADIUS);
+        let took = start.elapsed();
+        println!("two walks among {} triangles take {took:?}", mesh.triangles().len());
+        assert!(at.length() > 2.0 + RADIUS * 0.99, "{at}");
+        assert!(past.x > 60.0, "{past}");
+        assert!(took.as_secs_f64() < 0.25, "{took:?}");
+    }
+
+    #[test]
+    fn the_walls_of_what_stays_are_kept_and_those_of_what_moves_are_made_anew() {
+        let mesh = Arc::new(ball());
+        let object = |name: &str, x: f64| {
+            let mut object = Object::new(name, mesh.clone(), crate::scene::Material::default());
+            object.pose.translate.x = x;
+            object
+        };
+        let mut scene = crate::scene::open(&crate::scene::OpenSpec::new("tori")).expect("a scene");
+        scene.objects = vec![object("stays", 0.0), object("moves", 9.0)];
+        let mut cache = WallCache::default();
+        let first = cache.walls(&scene);
+        scene.objects[1].pose.translate.x = 12.0;
+        let second = cache.walls(&scene);
+        assert!(Arc::ptr_eq(&first.trees[0], &second.trees[0]));
+        let ends_at = |walls: &Walls| walls.walk(DVec3::new(5.0, 0.0, 0.0), DVec3::X * 30.0, RADIUS).x;
+        let [before, after] = [&first, &second].map(ends_at);
+        assert!((before - 6.75).abs() < 0.01 && (after - 9.75).abs() < 0.01, "{before} {after}");
+        scene.objects.pop();
+        assert!((ends_at(&cache.walls(&scene)) - 35.0).abs() < 1e-9);
+        assert_eq!(cache.kept.len(), 1, "what is gone is forgotten");
+    }
+
     #[test]
     fn numbers_that_are_none_move_nobody() {
         let walls = room();
         let at = DVec3::new(2.0, 1.5, 2.5);
         assert_eq!(walls.walk(at, DVec3::new(f64::NAN, 0.0, 0.0), RADIUS), at);
         assert_eq!(walls.walk(at, DVec3::INFINITY, RADIUS), at);
-        assert!(Walls::new([[DVec3::NAN; 3]]).triangles.is_empty());
+        assert!(Walls::new([[DVec3::NAN; 3]]).trees.iter().all(|tree| tree.is_empty()));
     }
 }

@@ -19,9 +19,10 @@ mod open;
 mod placement;
 mod read_text;
 mod suggestion;
+mod wall_tree;
 
 pub use camera::Camera;
-pub use collision::Walls;
+pub use collision::{WallCache, Walls};
 pub use error::SceneError;
 pub use light::Light;
 pub use material::{Material, Shading};

@@ -12,11 +12,13 @@ use crate::diagnosis::rules::{self, map, planar, projective};
 use crate::diagnosis::{
     Advice, Cause, CauseFound, Diagnosis, FlagFound, Mend, ObjectChange, Proof, RegionFound, RegionKind, Rest,
 };
+use crate::geometry::light_frame;
 use crate::plan::{FramePlan, Part};
 use crate::progress::Progress;
-use crate::scene::{Light, Scene};
+use crate::scene::{Light, Object, Scene};
 use crate::technique::{self, Choice, Job, Technique};
 use crate::truth::Tracer;
+use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -24,6 +26,8 @@ use std::collections::BTreeSet;
 const SAMPLES: usize = 3;
 /// Objects whose flags are asked about; each costs a truth.
 const MOST_FLAGS: usize = 8;
+/// Objects of more triangles are taken to darken something without looking, as floors are small.
+const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
 /// Mends that are tried at once, for regions that none of them clears alone.
 const MOST_TOGETHER: usize = 3;
 
@@ -103,13 +107,11 @@ impl Session {
             settings: request.choice.settings().clone(),
             size,
             error: run.error,
-            // How the mesh of what casts nothing hangs together is no matter.
-            mesh_findings: run
-                .scene
-                .objects
-                .iter()
+            // How the mesh of what darkens nothing hangs together is no matter.
+            mesh_findings: darkening(&run.scene, &lights)
+                .into_iter()
                 .zip(&meshes)
-                .filter(|(object, _)| object.casts)
+                .filter(|(darkens, _)| *darkens)
                 .flat_map(|(_, mesh)| mesh.findings(&lights))
                 .collect(),
             flags: flags(scene, &traced, progress)?,
@@ -190,7 +192,7 @@ impl Session {
     }
 
     fn mesh_facts(&mut self, scene: &Scene) -> Vec<MeshFacts> {
-        let one = |object: &crate::scene::Object| {
+        let one = |object: &Object| {
             let edges = self.geometry.edges(&object.mesh);
             MeshFacts::new(object, &edges, &self.geometry.topology(&object.mesh))
         };
@@ -364,6 +366,25 @@ impl Session {
             |(left, _, mend): &(u64, usize, &Mend)| Advice::new(mend, *left, before).or_staying(technique, staying);
         Ok(least(false).map(advice))
     }
+}
+
+/// Which objects can darken anything: those that cast, but for floors and the like, of which all that receives lies
+/// on the light's side or in their own plane.
+fn darkening(scene: &Scene, lights: &[DVec4]) -> Vec<bool> {
+    let places: Vec<Vec<DVec3>> = scene.objects.iter().map(Object::world_positions).collect();
+    let receiving = || {
+        let receives = scene.objects.iter().zip(&places).filter(|(object, _)| object.receives && object.visible);
+        receives.flat_map(|(_, places)| places.iter().copied())
+    };
+    let darkens = |(object, places): (&Object, &Vec<DVec3>)| {
+        let triangles = object.mesh.triangles();
+        let on_any = |corners: &[u32; 3]| {
+            let corners = corners.map(|corner| places[corner as usize]);
+            lights.iter().any(|light| light_frame::can_darken(corners, *light, receiving()))
+        };
+        object.casts && (triangles.len() > MOST_TRIANGLES_TO_LOOK_AT || triangles.iter().any(on_any))
+    };
+    scene.objects.iter().zip(&places).map(darkens).collect()
 }
 
 /// All wrong regions, the largest first; what is merely too dark comes after what is wrong.

@@ -24,7 +24,7 @@ type Opens<'a> = &'a dyn Fn(&mut Harness<Seen>);
 /// Tabs that are shown together: every one is shown once.
 const ARRANGEMENTS: [&[&str]; 3] = [
     &["Passes", "Picture", "Pixel", "Report"],
-    &["Settings", "Scene", "State", "Diagnosis"],
+    &["Scene settings", "Scene", "State", "Diagnosis"],
     &["Shadow map", "Explain", "Stress"],
 ];
 

@@ -33,7 +33,7 @@ fn a_dragged_light_moves_in_the_plane_of_the_view_and_the_numbers_follow() {
     assert!(moved.x > 0.1 && (moved.y / moved.x - 0.5).abs() < 0.1, "{moved}");
     assert!(moved.z.abs() < 1e-9 && moved.w == 0.0, "{moved}");
     assert_eq!(asked(&harness).camera, first.camera);
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     let shown = harness.get_by_label("light 1 position x").value().expect("a number");
     let shown: f64 = shown.parse().expect("a number");
     assert!((shown - light.x).abs() < 0.01, "{shown} is not {}", light.x);

@@ -337,7 +337,7 @@ fn choosing_a_technique_asks_for_a_run_and_remembers_settings() {
     click_button(&mut harness, "shadow-map");
     let Some(Action::Run(request)) = harness.state().actions.last() else { panic!("a run") };
     assert_eq!(request.choice, Choice::new(Technique::ShadowMap));
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     let size = harness.get_by_role_and_label(Role::SpinButton, "size");
     size.set_value_accesskit(256.0);
     harness.run_steps(2);
@@ -354,7 +354,7 @@ fn choosing_a_technique_asks_for_a_run_and_remembers_settings() {
 #[test]
 fn lights_camera_and_size_by_number_ask_for_a_run() {
     let mut harness = harness(z_fail(SIZE));
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     for (name, value) in [("light 1 position x", 2.5), ("camera eye y", 12.0), ("Picture width", 64.0)] {
         harness.get_by_label(name).set_value_accesskit(value);
         harness.run_steps(2);
@@ -368,7 +368,7 @@ fn lights_camera_and_size_by_number_ask_for_a_run() {
 #[test]
 fn what_cannot_be_run_is_said_and_not_run() {
     let mut harness = harness(z_fail(SIZE));
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     // Where the target is: the eye of the scene looks straight down from 10 above.
     harness.get_by_label("camera eye y").set_value_accesskit(0.0);
     harness.run_steps(2);
@@ -393,6 +393,9 @@ fn the_dialog_opens_built_in_scenes_and_paths() {
     click(&mut harness, "Open…");
     click(&mut harness, "Browse…");
     assert_eq!(harness.state().actions.last(), Some(&Action::Browse));
+    click(&mut harness, "Open…");
+    click(&mut harness, "Browse captures…");
+    assert_eq!(harness.state().actions.last(), Some(&Action::BrowseFolder));
 }
 
 #[derive(Debug)]
@@ -442,7 +445,7 @@ fn a_capture_folder_is_looked_at_but_not_run() {
     inspector.clear_scene();
     let mut harness = harness_of(inspector, [1280.0, 800.0]);
     harness.get_by_label("technique z-fail");
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     harness.get_by_label_contains("This is a capture folder");
     press(&mut harness, Key::Home);
     harness.get_by_role_and_label(Role::Tab, "Passes").click();

@@ -156,7 +156,7 @@ const EXAMPLES: &[Example] = &[
             ("all", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
             ("one", first_layer),
             ("meshes", |harness| {
-                click(harness, "Settings");
+                click(harness, "Scene settings");
                 harness.get_by_label("Meshes").scroll_to_me();
                 harness.run_steps(4);
             }),
@@ -178,7 +178,7 @@ const EXAMPLES: &[Example] = &[
             ("colour", |_| ()),
             ("all", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Map)),
             ("one", first_layer),
-            ("settings", |harness| click(harness, "Settings")),
+            ("settings", |harness| click(harness, "Scene settings")),
         ],
     },
     Example {
@@ -189,7 +189,7 @@ const EXAMPLES: &[Example] = &[
         views: &[
             ("count", |harness| click_button(harness, "Count")),
             ("count-step", |harness| harness.state_mut().inspector.select_step(1)),
-            ("settings", |harness| click(harness, "Settings")),
+            ("settings", |harness| click(harness, "Scene settings")),
         ],
     },
 ];
@@ -235,7 +235,7 @@ const VIEWS: [(&str, View); 13] = [
         harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
         harness.state_mut().inspector.set_zoom(Zoom::Pixels(28.0), PICK.map(f64::from));
     }),
-    ("settings", |harness| click(harness, "Settings")),
+    ("settings", |harness| click(harness, "Scene settings")),
     ("report", |harness| {
         let report = Some(one_scene());
         harness.state_mut().inspector.set_report(ReportView { report, ..ReportView::default() });

@@ -13,7 +13,8 @@ use std::sync::Arc;
 use stencilscope::anatomy::{Anatomy, anatomy};
 use stencilscope::geometry::GeometryCache;
 use stencilscope::inspector::{Action, Inspector, RunRequest};
-use stencilscope::scene::{Camera, OpenSpec, Scene, open};
+use stencilscope::scene::builtin::shapes;
+use stencilscope::scene::{Camera, Material, Object, OpenSpec, Scene, open};
 use stencilscope::technique::{Choice, Job, Technique, plan};
 
 /// A box on a floor, seen from the front.
@@ -234,6 +235,46 @@ fn one_caster_can_be_looked_at_alone() {
     assert!(all != look(&mut harness, FREE));
 }
 
+/// A ball over a floor.
+fn ball_scene(around: u32, rings: u32) -> Scene {
+    let ball = shapes::sphere(1.0, around, rings).expect("a ball");
+    let mut ball = Object::new("ball", Arc::new(ball), Material::default());
+    ball.pose.translate.y = 1.2;
+    let mut scene = box_scene();
+    scene.objects.retain(|object| object.name != "box");
+    scene.objects.push(ball);
+    scene
+}
+
+/// A ball of 69 696 triangles looks as one of 3 968, of which each is drawn, and the legend tells.
+#[test]
+fn a_large_mesh_is_drawn_coarser_but_whole_and_the_legend_says_so() {
+    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
+    let words = "Drawn coarser here, caps too: ball, ";
+    let mut looks = Vec::new();
+    for (around, rings, is_coarser) in [(64, 32, false), (264, 133, true)] {
+        let mut harness = harness_of(over(&ball_scene(around, rings)), [1296.0, 816.0]);
+        show(&mut harness);
+        draw(&mut harness, folder.as_deref(), &format!("scene-ball-{around}"), [1280, 800]);
+        assert_eq!(harness.query_by_label_contains(words).is_some(), is_coarser);
+        assert_eq!(harness.query_by_label_contains("of 69\u{2009}696 triangles.").is_some(), is_coarser);
+        looks.push(look(&mut harness, FREE));
+        for name in ["Sides", "Light caps", "Dark caps", "Silhouettes", "Frusta"] {
+            click(&mut harness, name);
+        }
+        looks.push(look(&mut harness, FREE));
+        click(&mut harness, "Objects");
+        looks.push(look(&mut harness, FREE));
+    }
+    let unlike = |one: usize, other: usize| {
+        let far = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24);
+        looks[one].iter().zip(&looks[other]).filter(far).count()
+    };
+    let (all, alone, ball) = (unlike(0, 3), unlike(1, 4), unlike(4, 5));
+    println!("{all} texels differ, without volumes {alone}; objects take {ball}");
+    assert!(ball > 5_000 && alone < 400 && all < 2_000, "{all}, {alone} of {ball}");
+}
+
 /// The times of a machine that others use too are no ground to fail: they are printed, and a drag must not
 /// take a second.
 #[test]
@@ -299,6 +340,8 @@ fn pictures_of_the_scene_tab_can_be_drawn() {
         ("rings", Technique::ZFail, [320, 200]),
         ("inside", Technique::ZPassPlus, [320, 250]),
         ("tiger-cage", Technique::ShadowMap, [320, 250]),
+        ("tori", Technique::PlanarTexture, [344, 71]),
+        ("two-lights", Technique::Projective, [320, 200]),
     ];
     for (name, technique, pick) in scenes {
         for (view, act) in &views {
@@ -310,7 +353,7 @@ fn pictures_of_the_scene_tab_can_be_drawn() {
             show(&mut harness);
             act(&mut harness);
             harness.run_steps(2);
-            draw(&mut harness, folder.as_deref(), &format!("scene-{name}-{view}"), size);
+            draw(&mut harness, folder.as_deref(), &format!("scene-{name}-{}-{view}", technique.name()), size);
         }
     }
 }

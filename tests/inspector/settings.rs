@@ -15,7 +15,7 @@ fn settings_of(technique: &str) -> Harness<'static, Seen> {
     if technique != "z-fail" {
         click_button(&mut harness, technique);
     }
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     harness
 }
 
@@ -111,7 +111,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
         object("turned", &turned),
     ]);
     let mut harness = harness_of(inspector, [1280.0, 1200.0]);
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     harness.get_by_label("closed");
     harness.get_by_label("closed, 3 inconsistently wound edges");
     harness.get_by_label("4 open edges").hover();
@@ -125,6 +125,6 @@ fn meshes_of_another_scene_are_not_known_yet() {
     inspector.set_meshes(vec![object("floor", &common::square("floor", 0.0, 1.0).mesh)]);
     inspector.set_scene(&super::scene(), super::run_request(stencilscope::technique::Technique::ZFail));
     let mut harness = harness_of(inspector, [1280.0, 1200.0]);
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     harness.get_by_label("They are looked at once the first frame is captured.");
 }

@@ -64,7 +64,7 @@ fn pointing_at_a_texel_counts_the_pixels_that_read_it() {
     let pixels = expected([1, 0]);
     assert!(pixels > 20);
     harness.get_by_label(&format!("{pixels} pixels read it."));
-    harness.get_by_label_contains("0.2000 m wide");
+    harness.get_by_label("0.2000 m");
     harness.get_by_label_contains("0.4000 m at 45°");
 }
 
@@ -93,36 +93,104 @@ fn a_frame_without_a_map_says_what_to_choose() {
     harness.get_by_label_contains("Choose the technique shadow-map");
 }
 
-/// Over a real frame: where the technique's own lookup says "shadow", the texel that was found holds
-/// something nearer, but for the bias.
+#[test]
+fn what_a_pixel_covers_of_the_map_is_told() {
+    let mut inspector = inspector(capture());
+    inspector.pick([20, 15]);
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    open_tab(&mut harness);
+    harness.run_steps(2);
+    // A pixel is a square of the wall.
+    let side = 2.0 * 22.5_f64.to_radians().tan() / f64::from(SIZE[1]) / 0.2;
+    harness.get_by_label(&format!("{side:.2} × {side:.2} texels"));
+    harness.get_by_label("pixel's depth");
+}
+
+/// Over real frames: where the technique's own lookup says "shadow", the texel that was found holds something
+/// nearer than the depth that was found for it. Large biases along the normal carry points over several texels.
 #[test]
 fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
     let mut session = common::session();
-    let scene = open(&OpenSpec::new("tori")).expect("tori");
-    let request = common::request(Technique::ShadowMap, [160, 90]);
-    let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
-    let map = capture.lights[0].map.clone().expect("a map");
-    let mask = capture.lights[0].shadow.clone().expect("a mask");
-    let (mut agree, mut all) = (0, 0);
-    let mut harness = harness_of(super::pictures::inspector(&scene, &request, &capture, [80, 45]), [1280.0, 800.0]);
-    open_tab(&mut harness);
-    for y in (0..90).step_by(6) {
-        for x in (0..160).step_by(8) {
-            let Some(texel) = harness.state().inspector.map_texel_of([x, y]) else { continue };
-            let stored = map.faces[texel.0].depth_at(texel.1).expect("a texel");
-            let Some(label @ (0 | 1)) = mask.byte_at([x, y]) else { continue };
-            all += 1;
-            let Some(depth) = depth_in_map(&capture, texel.0, [x, y]) else { continue };
-            let is_dark = stored != 0.0 && f64::from(stored) > depth;
-            agree += u32::from(is_dark == (label == 1));
+    let folder = std::env::var_os("INSPECTOR_PICTURES").map(std::path::PathBuf::from);
+    let mut unlike = 0;
+    for (name, settings, least) in [
+        ("tori", &[][..], 0.998),
+        ("tori", &[("bias-normal", "12"), ("size", "128"), ("bias-slope", "0")][..], 0.998),
+        ("two-lights", &[("bias-normal", "6"), ("size", "256")][..], 0.998),
+    ] {
+        let scene = open(&OpenSpec::new(name)).expect("a built-in scene");
+        let mut request = common::request(Technique::ShadowMap, [160, 90]);
+        settings.iter().for_each(|(key, value)| request.choice.set(key, value).expect("a setting"));
+        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+        let (capture, plan) = (Arc::new(capture), Arc::new(plan));
+        // As run, and as read from a folder, which has no normals.
+        for (plan, least) in [(Some(plan), least), (None, 0.98)] {
+            let is_run = plan.is_some();
+            let mut inspector = super::pictures::inspector(&scene, &request, &capture, [80, 45]);
+            plan.into_iter().for_each(|plan| inspector.set_plan(plan));
+            let mut harness = harness_of(inspector, [1280.0, 800.0]);
+            open_tab(&mut harness);
+            let (agree, all, moved) = agreement(&harness, &capture);
+            println!("{name}, {settings:?}, run: {is_run}: {agree} of {all} agree, {moved} read another texel");
+            assert!(all > 1_000 && f64::from(agree) >= least * f64::from(all), "{name}: {agree} of {all}");
+            unlike += if is_run { moved } else { 0 };
+            harness.get_by_label("Show the picked pixel's texel").click();
+            harness.run_steps(2);
+            super::pictures::draw(
+                &mut harness,
+                folder.as_deref(),
+                &format!("shadow-map-{name}-{}-{is_run}", settings.len()),
+                [1264, 784],
+            );
         }
     }
-    assert!(all > 100 && f64::from(agree) >= 0.97 * f64::from(all), "{agree} of {all}");
-    assert!(harness.query_by_role_and_label(Role::Button, "Fit map").is_some());
+    assert!(unlike > 500, "the bias moves what is read: {unlike}");
 }
 
-/// Device depth in a face of the first light's map of what is seen at a pixel.
-fn depth_in_map(capture: &Capture, face: usize, [x, y]: [u32; 2]) -> Option<f64> {
+/// The times of a machine that others use too are no ground to fail: they are printed, and linking must not take
+/// seconds.
+#[test]
+fn a_large_picture_is_linked_with_its_map_soon() {
+    let mut session = common::session();
+    let scene = open(&OpenSpec::new("tori")).expect("tori");
+    for bias in ["0", "1.5"] {
+        let mut request = common::request(Technique::ShadowMap, [1280, 720]);
+        request.choice.set("bias-normal", bias).expect("a setting");
+        let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+        let mut inspector = super::pictures::inspector(&scene, &request, &Arc::new(capture), [640, 360]);
+        inspector.set_plan(Arc::new(plan));
+        let mut harness = harness_of(inspector, [1280.0, 800.0]);
+        let start = std::time::Instant::now();
+        open_tab(&mut harness);
+        let took = start.elapsed();
+        println!("bias-normal {bias}: the tab over 1280x720 pixels opens in {took:?}");
+        assert!(harness.state().inspector.map_texel_of([640, 360]).is_some() && took.as_secs_f64() < 3.0, "{took:?}");
+    }
+}
+
+/// Of the pixels that are lit or in shadow of the first light: how many their texels explain, how many there are,
+/// and how many read another texel than the one where their surface itself lies.
+fn agreement(harness: &Harness<Seen>, capture: &Capture) -> (u32, u32, u32) {
+    let map = capture.lights[0].map.clone().expect("a map");
+    let mask = capture.lights[0].shadow.clone().expect("a mask");
+    let (mut agree, mut all, mut moved) = (0, 0, 0);
+    for (x, y) in (0..90).flat_map(|y| (0..160).map(move |x| (x, y))) {
+        let inspector = &harness.state().inspector;
+        let Some(texel) = inspector.map_texel_of([x, y]) else { continue };
+        let stored = map.faces[texel.0].depth_at(texel.1).expect("a texel");
+        let Some(label @ (0 | 1)) = mask.byte_at([x, y]) else { continue };
+        let depth = inspector.map_depth_of([x, y]).expect("a depth");
+        let is_dark = stored != 0.0 && f64::from(stored) > depth;
+        all += 1;
+        agree += u32::from(is_dark == (label == 1));
+        let itself = texel_in_map(capture, texel.0, [x, y]);
+        moved += u32::from(itself.is_some_and(|itself| itself != texel.1));
+    }
+    (agree, all, moved)
+}
+
+/// The texel of a face of the first light's map where what is seen at a pixel lies.
+fn texel_in_map(capture: &Capture, face: usize, [x, y]: [u32; 2]) -> Option<[u32; 2]> {
     let camera = &capture.camera;
     let stored = capture.frame_at(capture.steps.len() - 1)?.depth.image.depth_at([x, y])?;
     let distance = capture.depth.distance(stored)?;
@@ -135,5 +203,6 @@ fn depth_in_map(capture: &Capture, face: usize, [x, y]: [u32; 2]) -> Option<f64>
     let world = camera.eye + (forward + across * u + up * v) * distance;
     let map = capture.lights[0].map.as_ref()?;
     let clip = map.clip_from_light[face] * map.light_from_world * world.extend(1.0);
-    Some(clip.z / clip.w)
+    let [columns, rows] = map.faces[face].size().map(f64::from);
+    Some([((clip.x / clip.w * 0.5 + 0.5) * columns) as u32, ((0.5 - clip.y / clip.w * 0.5) * rows) as u32])
 }

@@ -38,7 +38,7 @@ fn a_change_of_technique_is_taken_back_and_made_again_by_keys_and_buttons() {
 #[test]
 fn a_change_of_the_scene_is_taken_back() {
     let mut harness = harness(z_fail(SIZE));
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     harness.get_by_label("light 1 position x").set_value_accesskit(2.5);
     harness.run_steps(2);
     let before = scene().lights[0].position.x;
@@ -242,7 +242,7 @@ fn an_animation_runs_a_capture_at_a_time_and_steps_by_hand() {
     harness.run_steps(2);
     assert_eq!(runs(&harness), 3);
     let time = last_run(&harness).time;
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     click_button(&mut harness, "Stop animation");
     harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
     harness.run_steps(3);
@@ -264,7 +264,7 @@ fn objects_are_switched_off_and_on() {
     inspector.open_scene(&scene, run_request(Technique::ZFail), None);
     inspector.set_capture(Arc::new(z_fail(SIZE)));
     let mut harness = harness_of(inspector, [1280.0, 3000.0]);
-    click(&mut harness, "Settings");
+    click(&mut harness, "Scene settings");
     let name = scene.objects[1].name.clone();
     harness.get_by_role_and_label(Role::CheckBox, &name).click();
     harness.run_steps(2);

@@ -1,7 +1,7 @@
 //! Walking: keys, mouse, walls, and how it begins and ends.
 
 use super::pictures::draw;
-use super::scene_view::{anatomy_of, box_scene, draft_of, over};
+use super::scene_view::{box_scene, draft_of, over};
 use super::{SIZE, Seen, click, harness_of, place_of, press, z_fail};
 use crate::common;
 use egui::{Event, Key, vec2};
@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 use stencilscope::inspector::{Action, Inspector, PictureKind, RunRequest};
-use stencilscope::scene::{Scene, Swing};
+use stencilscope::scene::{Scene, Swing, WallCache};
 use stencilscope::technique::Technique;
 
 const BANNER: &str = "Walking: Esc stops and frees the pointer";
@@ -21,7 +21,25 @@ fn walking() -> Harness<'static, Seen> {
     answer(&mut harness);
     click(&mut harness, "Walk");
     harness.get_by_label(BANNER);
+    answer_walls(&mut harness, &box_scene());
     harness
+}
+
+/// The walls that were asked for last, as the app makes them.
+fn answer_walls(harness: &mut Harness<Seen>, scene: &Scene) {
+    let request = walls_asked(harness).pop().expect("walls are asked for");
+    let mut scene = scene.at(request.time);
+    let names: Vec<String> = request.off.iter().map(|index| scene.objects[*index].name.clone()).collect();
+    scene.objects.retain(|object| !names.contains(&object.name));
+    harness.state_mut().inspector.set_walls(Arc::new(WallCache::default().walls(&scene)));
+}
+
+fn walls_asked(harness: &Harness<Seen>) -> Vec<RunRequest> {
+    let asked = |action: &Action| match action {
+        Action::Walls(request) => Some(RunRequest::clone(request)),
+        _ => None,
+    };
+    harness.state().actions.iter().filter_map(asked).collect()
 }
 
 /// The frame that was asked for is shown.
@@ -128,6 +146,7 @@ fn l_makes_the_lamp_swing_and_stops_it() {
     let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
     answer(&mut harness);
     click(&mut harness, "Walk");
+    answer_walls(&mut harness, &scene);
     press(&mut harness, Key::L);
     assert!(runs(&harness).last().expect("a run").time > 0.0);
     harness.key_down(Key::S);
@@ -181,8 +200,9 @@ fn tab_over_the_picture_begins_and_elsewhere_these_keys_do_nothing_of_it() {
     assert_eq!(harness.state().inspector.step(), step, "only the keys of walking act");
 }
 
-#[test]
-fn walls_hold_at_any_speed() {
+/// A room without a roof, 4 metres each way, and who stands in its middle; the wall to the right is the third
+/// object.
+fn room() -> Scene {
     let room = [
         common::square("ground", 0.0, 2.0),
         common::cuboid("left", [-2.2, 0.0, -2.0], [-2.0, 3.0, 2.0]),
@@ -193,35 +213,90 @@ fn walls_hold_at_any_speed() {
     let mut scene = Scene { objects: room.to_vec(), ..box_scene() };
     scene.camera.eye = DVec3::new(0.0, 1.5, 0.0);
     scene.camera.target = DVec3::new(0.0, 1.5, -1.0);
+    scene
+}
+
+fn walking_in(scene: &Scene) -> Harness<'static, Seen> {
     let mut inspector = Inspector::default();
-    inspector.set_scene(&scene, draft_of(&scene));
-    inspector.set_anatomy(Ok(anatomy_of(&scene, Technique::ZFail)));
+    inspector.set_scene(scene, draft_of(scene));
     let mut harness = harness_of(inspector, [1280.0, 800.0]);
     answer(&mut harness);
     click(&mut harness, "Walk");
-    harness.state_mut().inspector.set_anatomy(Ok(anatomy_of(&scene, Technique::ZFail)));
     for _ in 0..14 {
         press(&mut harness, Key::Period);
     }
-    for key in [Key::W, Key::D, Key::S, Key::A] {
-        harness.key_down(key);
-        for _ in 0..3 {
-            harness.run_steps(1);
-            answer(&mut harness);
-        }
-        harness.key_up(key);
+    harness
+}
+
+/// Where one is once a key was held for some frames.
+fn go(harness: &mut Harness<Seen>, key: Key) -> DVec3 {
+    harness.key_down(key);
+    for _ in 0..3 {
         harness.run_steps(1);
-        let eye = runs(&harness).last().expect("a run").camera.eye;
+        answer(harness);
+    }
+    harness.key_up(key);
+    harness.run_steps(1);
+    harness.state().inspector.draft().expect("a draft").camera.eye
+}
+
+#[test]
+fn walls_hold_at_any_speed() {
+    let mut harness = walking_in(&room());
+    assert_eq!(go(&mut harness, Key::W), room().camera.eye, "nobody walks before the walls are known");
+    answer_walls(&mut harness, &room());
+    for key in [Key::W, Key::D, Key::S, Key::A] {
+        let eye = go(&mut harness, key);
         assert!(eye.x.abs() < 1.76 && eye.z.abs() < 1.76, "{key:?}: {eye}");
         assert!(eye.x.abs() > 1.7 || eye.z.abs() > 1.7, "it is a wall that stops: {key:?}: {eye}");
     }
+    assert_eq!(walls_asked(&harness).len(), 1, "the camera moves no walls");
     press(&mut harness, Key::C);
-    harness.key_down(Key::D);
-    for _ in 0..3 {
+    assert!(go(&mut harness, Key::D).x > 2.2, "without walls one goes through");
+}
+
+#[test]
+fn a_wall_that_is_switched_off_stops_nobody_and_one_that_is_back_does() {
+    let scene = room();
+    let mut harness = walking_in(&scene);
+    answer_walls(&mut harness, &scene);
+    assert!(go(&mut harness, Key::D).x < 1.76);
+    let switch = |harness: &mut Harness<Seen>, off: &[usize]| {
+        let mut draft = *harness.state().inspector.draft().expect("a draft");
+        draft.off = off.iter().copied().collect();
+        draft.camera = scene.camera;
+        let actions = harness.state_mut().inspector.rerun(draft);
+        harness.state_mut().actions.extend(actions);
         harness.run_steps(1);
-        answer(&mut harness);
-    }
-    assert!(runs(&harness).last().expect("a run").camera.eye.x > 2.2, "without walls one goes through");
+        answer_walls(harness, &scene);
+        answer(harness);
+    };
+    switch(&mut harness, &[2]);
+    assert_eq!(walls_asked(&harness).len(), 2);
+    assert!(go(&mut harness, Key::D).x > 2.5, "the wall to the right is gone");
+    switch(&mut harness, &[]);
+    assert!(go(&mut harness, Key::D).x < 1.76, "and is there again");
+}
+
+#[test]
+fn walls_are_asked_for_anew_when_they_move_or_the_file_is_loaded_again() {
+    let mut scene = room();
+    scene.objects[2].motion.swing =
+        Some(Swing { pivot: DVec3::X * 9.0, axis: DVec3::Y, degrees: 80.0, period_seconds: 4.0 });
+    let mut harness = walking_in(&scene);
+    answer_walls(&mut harness, &scene);
+    let before = walls_asked(&harness).len();
+    press(&mut harness, Key::L);
+    answer(&mut harness);
+    let asked = walls_asked(&harness);
+    assert!(asked.len() > before && asked[asked.len() - 1].time > 0.0, "the animation has begun");
+    press(&mut harness, Key::L);
+    answer(&mut harness);
+    let before = walls_asked(&harness).len();
+    let draft = *harness.state().inspector.draft().expect("a draft");
+    harness.state_mut().inspector.set_scene(&scene, draft);
+    harness.run_steps(2);
+    assert_eq!(walls_asked(&harness).len(), before + 1, "another file has other walls");
 }
 
 /// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_walking` writes it.

@@ -363,6 +363,32 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
 }
 
 #[test]
+fn walls_are_those_of_the_scene_as_it_would_be_run() {
+    let (worker, _, news) = started();
+    let mut scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let walls = |generation: u64, off: std::ops::Range<usize>| {
+        let request = RunRequest {
+            choice: Choice::new(Technique::ZFail),
+            size: [64, 36],
+            camera: scene.camera,
+            lights: scene.lights.clone(),
+            time: 0.0,
+            off: off.collect(),
+        };
+        assert!(worker.order(Order::Walls { generation, request: Box::new(request) }));
+    };
+    let told = || wait(&news, |news| if let News::Walls { walls, .. } = news { Some(walls) } else { None });
+    // Of a scene that is open no more nothing is told.
+    walls(0, 0..0);
+    walls(1, 0..0);
+    assert_eq!(*told(), WallCache::default().walls(&scene));
+    walls(1, 1..scene.objects.len());
+    let one = told();
+    scene.objects.truncate(1);
+    assert_eq!(*one, WallCache::default().walls(&scene));
+}
+
+#[test]
 fn a_scene_is_saved_as_it_is_run_and_what_is_there_is_asked_about() {
     let (worker, _, news) = started();
     let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");

@@ -201,10 +201,13 @@ fn lie(count: i32) -> String {
 fn far_clip(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
     let mapping = facts.plan.depth.mapping;
-    if mapping.clamps() || mapping.is_reversed() {
+    if mapping.is_reversed() {
         return None;
     }
     let far = facts.plan.depth.far;
+    if mapping.clamps() {
+        return beyond_clamped(facts, case, far?);
+    }
     let ((what, count), shown_by) = case.shown(|sample| {
         let is_clipped = |fate: Fate| fate == Fate::Clipped(Clip::Far);
         let faces = sample.volume_events(light).filter(|(_, one)| is_clipped(one.fate)).count();
@@ -227,6 +230,21 @@ fn far_clip(facts: &Facts, case: &Case) -> Option<Suspicion> {
         format!("{what} beyond the far plane, {place}, and {} cut away", if count == 1 { "is" } else { "are" });
     let mends = vec![Mend::setting("depth", "reversed-infinite"), Mend::setting("depth", "standard-finite-clamp")];
     Suspicion::new(Cause::FarClip, evidence, mends, shown_by)
+}
+
+/// Clamped depth cuts no volume, but a surface beyond the far plane is at the depth of what was not drawn.
+fn beyond_clamped(facts: &Facts, case: &Case, far: f64) -> Option<Suspicion> {
+    let (distance, shown_by) = case.shown(|sample| {
+        let distance = facts.tracer.depth_of(sample.seen?.point);
+        (distance >= far).then_some(distance)
+    })?;
+    let evidence = format!(
+        "the surface lies {} away, beyond the far plane at {}, where clamped depth is that of nothing and nothing is \
+         drawn",
+        numbers::metres(distance),
+        numbers::metres(far)
+    );
+    Suspicion::new(Cause::FarClip, evidence, vec![Mend::setting("depth", "reversed-infinite")], shown_by)
 }
 
 fn finite_extrusion(facts: &Facts, case: &Case) -> Option<Suspicion> {

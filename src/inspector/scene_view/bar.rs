@@ -78,7 +78,8 @@ fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     switch(ui, &mut shown.dark_caps, Mark::Square(colors.dark_cap), "Dark caps", &triangles(count(Part::DarkCap)));
     let hint = format!("{} edges; thicker and numbered where the multiplicity is not ±1", format::count(edges));
     switch(ui, &mut shown.silhouettes, Mark::Line(colors.text, 2.0), "Silhouettes", &hint);
-    let hint = "What the camera sees, with the near rectangle, and what each light's map sees";
+    let hint = "What the camera sees, with the near rectangle, and what each light's map sees; of a receiver's texture \
+                from its rectangle to the light, of a silhouette as the light projects it";
     switch(ui, &mut shown.frusta, Mark::Line(colors.lit, 1.0), "Frusta", hint);
     let hint = "The space between the near rectangle and the light: what casts within it holds the eye in its shadow, or \
                 is cut by the near plane";
@@ -146,8 +147,8 @@ fn chooser(ui: &mut Ui, name: &str, all: &str, names: &[String], chosen: &mut Op
 }
 
 fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
-    if let Some(thinned) = &stage.thinned {
-        ui.add(egui::Label::new(theme::note(thinned)).wrap());
+    if let Some(coarser) = &stage.coarser {
+        ui.add(egui::Label::new(theme::note(coarser)).wrap());
     }
     if !stage.left_out.is_empty() {
         let names = stage.left_out.iter().take(3).cloned().collect::<Vec<_>>().join(", ");

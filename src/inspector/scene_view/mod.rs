@@ -5,12 +5,13 @@
 //! lens.rs     projections, world to screen        pane.rs     one view: mouse, keys, what is on top
 //! bar.rs      the toolbar and the legend          rays.rs     the pick's rays, the selected triangle
 //! gizmos.rs   lights and camera as handles    walls.rs    what all else is behind or before
-//! far_end.rs  where volumes that have no end are ended
+//! far_end.rs  where volumes that have no end are ended   coarse.rs  large meshes as fewer triangles
 //! ```
 //!
 //! No GPU code: everything is sorted and projected on the CPU, and only when something changed.
 
 mod bar;
+mod coarse;
 mod far_end;
 mod gizmos;
 mod lens;
@@ -20,6 +21,7 @@ mod rays;
 mod stage;
 mod walls;
 
+use coarse::Coarsened;
 pub use gizmos::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
 use lens::{PaneView, Projection};
 pub use pane::plate;
@@ -103,6 +105,7 @@ pub struct SceneView {
     /// The history's selected triangle is to be in the middle.
     wants_triangle: bool,
     built: Option<Built>,
+    coarsened: Coarsened,
     painted: [Option<Painted>; 4],
 }
 
@@ -118,6 +121,7 @@ impl Default for SceneView {
             grip: None,
             wants_triangle: false,
             built: None,
+            coarsened: Coarsened::default(),
             painted: [const { None }; 4],
         }
     }
@@ -202,7 +206,7 @@ impl SceneView {
         {
             return built.stage.clone();
         }
-        let stage = Arc::new(Stage::new(anatomy, &self.shown, self.choice, theme));
+        let stage = Arc::new(Stage::new(anatomy, &self.shown, self.choice, theme, &mut self.coarsened));
         let (anatomy, stage_too) = (anatomy.clone(), stage.clone());
         self.built = Some(Built { anatomy, shown: self.shown, choice: self.choice, is_dark, stage: stage_too });
         stage

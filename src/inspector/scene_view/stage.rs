@@ -4,19 +4,17 @@
 //! is projected once a view. Walls are split off exactly (`walls.rs`), other large triangles are cut up: a
 //! painter who goes by the distance of middles would paint a floor over what stands on it.
 
+use super::coarse::{Coarsened, Detail, words_of_fewer};
 use super::far_end::FarEnd;
 use super::walls::{Sides, Walls};
-use crate::anatomy::{Anatomy, PlacedLight, PlacedObject, ShadowVolume, Silhouette, ViewOf};
+use crate::anatomy::{Anatomy, Frustum, PlacedLight, PlacedObject, ShadowVolume, Silhouette, ViewOf};
 use crate::inspector::theme::Theme;
 use crate::plan::Part;
 use egui::Color32;
 use glam::{DVec3, DVec4, Vec3};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-/// Faces that are drawn at most; beyond it large meshes are thinned out.
-pub const MOST_FACES: usize = 30_000;
-/// Meshes of fewer triangles are never thinned out.
-const LEAST_TO_THIN: usize = 2_000;
 /// Faces that cutting up may add.
 const MOST_CUTS: usize = 16_000;
 /// An object holds others if it is so large, in parts of the whole.
@@ -27,6 +25,8 @@ const SHELL_PIECE: f64 = 0.7;
 const SMOOTH: f32 = 0.8;
 /// A corner that is not there yet.
 const NONE: u32 = u32::MAX;
+/// Frusta beyond so many are drawn fainter.
+const QUIET: f32 = 4.0;
 /// Multiplicities beyond one that are written beside their edges, at most.
 const MOST_NUMBERS: usize = 400;
 
@@ -81,9 +81,16 @@ pub struct Choice {
 impl Choice {
     /// Are the volume and silhouette of a light and caster shown? Those of what holds everything are only
     /// where they are asked for by name.
-    fn has(self, light: usize, caster: usize, holders: &[bool]) -> bool {
+    #[must_use]
+    pub fn has(self, light: usize, caster: usize, holders: &[bool]) -> bool {
         let holds = holders.get(caster).is_some_and(|holds| *holds);
         self.light.is_none_or(|one| one == light) && self.caster.map_or(!holds, |one| one == caster)
+    }
+
+    /// Is the frustum of a light's map shown, or of the silhouette of one caster in it?
+    fn has_frustum(self, light: usize, caster: Option<usize>) -> bool {
+        let is_other = caster.is_some_and(|caster| self.caster.is_some_and(|one| one != caster));
+        self.light.is_none_or(|one| one == light) && !is_other
     }
 }
 
@@ -166,8 +173,8 @@ pub struct Stage {
     pub walls: Walls,
     /// Casters that hold everything, whose volumes are not shown unless they are chosen.
     pub left_out: BTreeSet<String>,
-    /// What was thinned out, in words.
-    pub thinned: Option<String>,
+    /// What is drawn with fewer triangles than it has, in words.
+    pub coarser: Option<String>,
 }
 
 /// Which objects hold the others: rooms, walls, floors. They may be as large as they like, and must not
@@ -205,24 +212,25 @@ pub fn sphere(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
 impl Stage {
     /// Of `anatomy`, in the colours of `theme`.
     #[must_use]
-    pub fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, theme: &Theme) -> Stage {
+    pub fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, theme: &Theme, coarsened: &mut Coarsened) -> Stage {
         let holders = holders(anatomy);
         let (middle, radius) = sphere(anatomy, &holders);
         let walls = Walls::new(anatomy, &holders, middle, radius);
         let mut stage = Stage { middle, radius, walls, ..Stage::default() };
-        let thinning = Thinning::new(anatomy, shown, choice, &holders);
+        let detail = Detail::new(anatomy, shown, choice, &holders);
         if shown.names {
             stage.names(anatomy, &holders);
         }
         if shown.objects {
-            stage.objects(anatomy, &holders, &thinning, theme);
+            stage.objects(anatomy, &holders, (&detail, coarsened), theme);
         }
         let volumes = || anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster, &holders));
         // Through many shells as much is seen as through a few.
         let strength = 1.0 / (volumes().count().max(1) as f32).sqrt().max(1.0);
         for volume in volumes() {
-            if let Some(light) = anatomy.lights.get(volume.light) {
-                stage.volume(volume, light, shown, (&thinning, strength), theme);
+            if let (Some(light), Some(caster)) = (anatomy.lights.get(volume.light), anatomy.objects.get(volume.caster))
+            {
+                stage.volume((volume, caster, light), shown, (&detail, coarsened), strength, theme);
             }
         }
         if shown.silhouettes {
@@ -245,11 +253,17 @@ impl Stage {
             }
             Some(_) => BTreeSet::new(),
         };
-        stage.thinned = thinning.words(anatomy);
+        coarsened.forget_unused();
         stage
     }
 
-    fn objects(&mut self, anatomy: &Anatomy, holders: &[bool], thinning: &Thinning, theme: &Theme) {
+    fn objects(
+        &mut self,
+        anatomy: &Anatomy,
+        holders: &[bool],
+        (detail, coarsened): (&Detail, &mut Coarsened),
+        theme: &Theme,
+    ) {
         let is_seen = |object: &PlacedObject| object.visible || object.casts;
         let (walls, limit) = (self.walls.clone(), self.radius / 10.0);
         let longest = |index: usize, object: &PlacedObject| {
@@ -260,26 +274,33 @@ impl Stage {
         let mut room = MOST_CUTS;
         let ground = mix(theme.panel, theme.dim, 0.62);
         let edge = mix(theme.panel, theme.dim, 0.2);
+        let mut fewer = Vec::new();
         for (index, object) in anatomy.objects.iter().enumerate().filter(|(_, object)| is_seen(object)) {
             // What is not seen in the picture is seen here as glass.
             let color = if object.visible { ground } else { ground.gamma_multiply(0.25) };
             let eye = holders[index].then_some(anatomy.camera.eye);
+            let coarse = detail.of_object(object, coarsened);
+            if let Some(coarse) = &coarse {
+                fewer.push((&*object.name, coarse.triangles.len(), object.mesh.triangles().len()));
+            }
+            let triangles = coarse.as_ref().map_or(object.mesh.triangles(), |coarse| coarse.triangles.as_slice());
             match walls.is_wall(index) {
-                true => self.solid(object, thinning, (color, eye), (f64::INFINITY, &mut room), Layer::Wall),
-                false => self.solid(object, thinning, (color, eye), (limit, &mut room), Layer::Solid),
+                true => self.solid(object, triangles, (color, eye), (f64::INFINITY, &mut room), Layer::Wall),
+                false => self.solid(object, triangles, (color, eye), (limit, &mut room), Layer::Solid),
             }
             for edge_ends in &object.edges {
                 let ends = [edge_ends.low, edge_ends.high].map(|end| object.positions[end as usize]);
                 self.long_line(ends, limit, 1.0, edge);
             }
         }
+        self.coarser = words_of_fewer(&fewer);
     }
 
-    /// The triangles of an object; of one that holds others, the camera's `eye` says which side is glass.
+    /// Triangles in place of an object's own, or these; of one that holds others, the camera's `eye` says which side is glass.
     fn solid(
         &mut self,
         object: &PlacedObject,
-        thinning: &Thinning,
+        triangles: &[[u32; 3]],
         (color, eye): (Color32, Option<DVec3>),
         (limit, room): (f64, &mut usize),
         layer: Layer,
@@ -293,7 +314,7 @@ impl Stage {
         }
         let normals: Vec<Vec3> = normals.into_iter().map(|normal| normal.normalize_or_zero().as_vec3()).collect();
         let mut shared = vec![NONE; object.positions.len()];
-        for corners in thinning.kept(object.mesh.triangles()) {
+        for &corners in triangles {
             let places = corners.map(at);
             let normal = across(corners).normalize_or_zero().as_vec3();
             let inner = eye.map_or(0.0, |eye| normal.dot((eye - places[0]).as_vec3()).signum());
@@ -335,10 +356,10 @@ impl Stage {
 
     fn volume(
         &mut self,
-        volume: &ShadowVolume,
-        light: &PlacedLight,
+        (volume, caster, light): (&ShadowVolume, &PlacedObject, &PlacedLight),
         shown: &Toggles,
-        (thinning, strength): (&Thinning, f32),
+        (detail, coarsened): (&Detail, &mut Coarsened),
+        strength: f32,
         theme: &Theme,
     ) {
         let far = FarEnd::new(light, self.middle, self.radius);
@@ -352,12 +373,12 @@ impl Stage {
             let Some(color) = theme.part(part.part).filter(|_| is_shown) else { continue };
             let color = color.gamma_multiply(share);
             let mut room = MOST_CUTS;
-            let triangles: Box<dyn Iterator<Item = [u32; 3]>> = match part.part {
-                Part::Side => Box::new(part.triangles.iter().copied()),
-                _ => Box::new(thinning.kept(&part.triangles)),
+            let triangles = match part.part {
+                Part::Side => Cow::Borrowed(&part.triangles),
+                _ => detail.of_cap(caster, volume, &part.triangles, coarsened),
             };
             let mut shared = vec![NONE; volume.vertices.len()];
-            for indices in triangles {
+            for &indices in triangles.iter() {
                 let corners = indices.map(|corner| volume.vertices[corner as usize]);
                 let finite = far.finite(corners);
                 if let Some(places) = finite[0]
@@ -395,13 +416,22 @@ impl Stage {
     }
 
     fn frusta(&mut self, anatomy: &Anatomy, choice: Choice, theme: &Theme) {
-        for frustum in &anatomy.frusta {
-            let color = match frustum.of {
-                ViewOf::Camera => theme.text,
-                ViewOf::Map { light, .. } if choice.light.is_none_or(|one| one == light) => theme.lit,
-                ViewOf::Map { .. } => continue,
+        let is_shown = |frustum: &&Frustum| match frustum.of {
+            ViewOf::Camera => true,
+            ViewOf::Map { light, caster, .. } => choice.has_frustum(light, caster),
+        };
+        let shown = || anatomy.frusta.iter().filter(is_shown);
+        // Many are as loud as a few.
+        let strength = (QUIET / shown().count().max(1) as f32).sqrt().clamp(0.25, 1.0);
+        for frustum in shown() {
+            let (color, fill) = match frustum.of {
+                ViewOf::Camera => (theme.text.gamma_multiply(0.75), 0.25),
+                // What a texture or a silhouette is seen through lies on a surface, or there are many.
+                ViewOf::Map { caster, .. } if caster.is_some() || frustum.ends_at_light() => {
+                    (theme.lit.gamma_multiply(0.75 * strength), 0.0)
+                }
+                ViewOf::Map { .. } => (theme.lit.gamma_multiply(0.75 * strength), 0.25),
             };
-            let color = color.gamma_multiply(0.75);
             let apart = |at: DVec4| at.truncate() / at.w;
             let near = frustum.near.map(apart);
             let reach = (self.middle - near[0]).length() + self.radius;
@@ -414,12 +444,14 @@ impl Stage {
                 let next = (corner + 1) % 4;
                 self.long_line([near[corner], far[corner]], limit, 1.0, color);
                 self.long_line([near[corner], near[next]], limit, 2.0, color);
-                if frustum.far[corner].w != 0.0 {
+                if frustum.far[corner].w != 0.0 && far[corner] != far[next] {
                     self.long_line([far[corner], far[next]], limit, 1.0, color);
                 }
             }
             for corners in [[near[0], near[1], near[2]], [near[0], near[2], near[3]]] {
-                self.shell(corners, color.gamma_multiply(0.25));
+                if fill > 0.0 {
+                    self.shell(corners, color.gamma_multiply(fill));
+                }
             }
         }
     }
@@ -523,40 +555,6 @@ fn longest_edge(object: &PlacedObject) -> f64 {
 #[must_use]
 pub fn mix(from: Color32, to: Color32, share: f32) -> Color32 {
     from.lerp_to_gamma(to, share)
-}
-
-/// How large meshes are thinned out: of their triangles only each so manieth is drawn.
-struct Thinning {
-    every: usize,
-}
-
-impl Thinning {
-    fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, holders: &[bool]) -> Thinning {
-        let objects = anatomy.objects.iter().filter(|_| shown.objects).map(|object| object.mesh.triangles().len());
-        let volumes = anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster, holders));
-        let parts = volumes.flat_map(|volume| &volume.parts).filter(|part| match part.part {
-            Part::LightCap => shown.light_caps,
-            Part::DarkCap => shown.dark_caps,
-            _ => false,
-        });
-        let counts = objects.chain(parts.map(|part| part.triangles.len()));
-        let large: usize = counts.filter(|count| *count >= LEAST_TO_THIN).sum();
-        Thinning { every: large.div_ceil(MOST_FACES).max(1) }
-    }
-
-    fn kept<'a>(&self, triangles: &'a [[u32; 3]]) -> impl Iterator<Item = [u32; 3]> + use<'a> {
-        let every = if triangles.len() >= LEAST_TO_THIN { self.every } else { 1 };
-        triangles.iter().step_by(every).copied()
-    }
-
-    fn words(&self, anatomy: &Anatomy) -> Option<String> {
-        let is_large = |object: &&PlacedObject| object.mesh.triangles().len() >= LEAST_TO_THIN;
-        let names: Vec<&str> = anatomy.objects.iter().filter(is_large).map(|object| &*object.name).collect();
-        let (shown, more) = names.split_at(names.len().min(3));
-        let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
-        let words = format!("Thinned out: one of {} triangles of {}{more} is drawn.", self.every, shown.join(", "));
-        (self.every > 1).then_some(words)
-    }
 }
 
 #[cfg(test)]
