@@ -185,6 +185,13 @@ fn detail(ui: &mut Ui, state: &State, case: &'static Case, actions: &mut Vec<Act
             }
         }
     });
+    if let Some(most) = case.heavy_above {
+        let (most, name) = (value_text(most), case.name);
+        let text = format!(
+            "Runs up to {most} here: with more, a row takes seconds and gigabytes. `stencilscope stress --case {name}` runs all."
+        );
+        ui.add(egui::Label::new(theme::note(text)).wrap());
+    }
     ui.add_space(4.0);
     if state.stress.of(case).next().is_none() {
         for entrant in case.entrants() {

@@ -37,6 +37,13 @@ impl StressSteps {
         StressSteps { left, place: None, scene: None, before: Vec::new() }
     }
 
+    /// Without those rows that take many seconds and gigabytes: for where other work waits between two.
+    #[must_use]
+    pub fn without_heavy(mut self) -> StressSteps {
+        self.left.retain(|(_, step)| step.case.heavy_above.is_none_or(|most| step.value <= most));
+        self
+    }
+
     /// How many rows are still to be made.
     #[must_use]
     pub fn left(&self) -> usize {
@@ -80,6 +87,22 @@ mod tests {
     use crate::technique::Choice;
 
     const SIZE: [u32; 2] = [40, 30];
+
+    #[test]
+    fn heavy_rows_can_be_left_out() {
+        let case = Case::named("triangle-count").expect("a case");
+        let most = case.heavy_above.expect("a limit");
+        let values = |steps: StressSteps| -> Vec<f64> { steps.left.iter().map(|(_, step)| step.value).collect() };
+        let all = values(StressSteps::new(&[case], &[], SIZE));
+        let light = values(StressSteps::new(&[case], &[], SIZE).without_heavy());
+        assert!(all.iter().any(|value| *value > most));
+        assert_eq!(light, all.into_iter().filter(|value| *value <= most).collect::<Vec<_>>());
+        let other = Case::named("map-size").expect("a case");
+        assert_eq!(
+            StressSteps::new(&[other], &[], SIZE).without_heavy().left(),
+            StressSteps::new(&[other], &[], SIZE).left()
+        );
+    }
 
     #[test]
     fn what_comes_between_two_rows_changes_none_of_them() {

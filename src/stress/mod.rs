@@ -57,6 +57,9 @@ pub struct Case {
     pub without: &'static [(Technique, &'static str)],
     /// Forms that run up to a value only, with the reason.
     pub up_to: &'static [(Entrant, f64, &'static str)],
+    /// Above this value a row takes many seconds and gigabytes: where other work waits for it and shares the
+    /// memory, as in the window, it is left out.
+    pub heavy_above: Option<f64>,
     /// Who fails, where, how, and why; of several at one value the first counts. Everyone else is
     /// expected to be right.
     pub failures: &'static [Failure],

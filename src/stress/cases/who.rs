@@ -73,6 +73,7 @@ pub const PLAIN: Case = Case {
     also: &[],
     without: &[],
     up_to: &[],
+    heavy_above: None,
     failures: &[],
     least: |_| Least::USUAL,
     trend: None,
