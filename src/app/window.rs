@@ -11,6 +11,9 @@ use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::WindowId;
 
+/// A button that is held longer is no click, seconds. Times are those of frames, and where the CPU draws the
+/// window and traces a truth meanwhile, a frame may take longer than egui's 0.8 s.
+const LONGEST_CLICK: f64 = 2.0;
 /// How often progress is looked at.
 const WATCH: Duration = Duration::from_millis(100);
 
@@ -152,6 +155,7 @@ impl ApplicationHandler<WindowNews> for App {
 /// An egui context that wakes the loop when it wants to be drawn.
 fn context(proxy: &EventLoopProxy<WindowNews>) -> egui::Context {
     let ctx = egui::Context::default();
+    ctx.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);
     let proxy = proxy.clone();
     ctx.set_request_repaint_callback(move |info| {
         // "Never" is a delay too long to add.
