@@ -133,8 +133,8 @@ fn a_part_in_the_umbra_of_another_part_casts_nothing_more() {
         scene.lights = vec![Light::directional(DVec3::Y)];
         scene
     };
-    // Of the inner one's twelve triangles; where its side is in the outer one's, it casts.
-    let what = "12 casting triangles of boxes";
+    // The inner one's; where its side is in the outer one's, it casts.
+    let what = "volume of parts (12 triangles) of boxes";
     assert_decides(Decision::Umbra, what, &nested(0.1), &nested(0.9));
     for off in [-1e-9, 0.0, 1e-9] {
         assert_decides(Decision::Umbra, what, &nested(0.1), &nested(0.2 + off));

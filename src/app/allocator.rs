@@ -9,7 +9,7 @@
 
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 mod gnu {
-    /// Blocks of this many bytes and more are mapped on their own: a snapshot of 200×160 pixels.
+    /// Blocks of this many bytes and more are mapped on their own: a snapshot of 256×128 pixels.
     const MAPPED_FROM: i32 = 128 << 10;
     /// How many heaps all threads share.
     const HEAPS: i32 = 2;

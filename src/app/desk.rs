@@ -170,7 +170,7 @@ impl Desk {
             News::Diagnosed { job, result } => self.jobs.end_diagnosing(job, result, &mut self.inspector),
             News::Stressed { job, rows } => self.jobs.add_stress(job, rows, &mut self.inspector),
             News::StressEnded { job, error } => self.jobs.end_stress(job, error, &mut self.inspector),
-            News::Failed(reason) => self.inspector.push_error(reason),
+            News::Failed(reason) => self.inspector.push_failure(reason),
         }
     }
 

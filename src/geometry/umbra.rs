@@ -92,6 +92,11 @@ impl Occluder {
         let at = |plane: &Plane| plane.at(point.extend(1.0));
         match &self.body {
             ConvexBody::Solid(planes) => {
+                // What follows asks about a slightly smaller body, which a light on a face is outside of.
+                let lamp = (light.truncate() / light.w).extend(1.0);
+                if light.w != 0.0 && planes.iter().all(|plane| plane.at(lamp) <= MARGIN * self.size) {
+                    return false;
+                }
                 let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
                 for plane in planes {
                     let (slope, height) = (slope(plane), at(plane) + MARGIN * self.size);
@@ -133,7 +138,11 @@ pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], topology: &Topolog
     }
     let bounds: Vec<[DVec3; 2]> = parts.iter().map(|part| bounds(world, part)).collect();
     let size = |part: &usize| (bounds[*part][1] - bounds[*part][0]).length();
-    let mut largest: Vec<usize> = (0..parts.len()).collect();
+    let may_hold = |part: &usize| parts[*part].len() <= Occluder::MOST_TRIANGLES;
+    let mut largest: Vec<usize> = (0..parts.len()).filter(may_hold).collect();
+    if largest.is_empty() {
+        return Vec::new();
+    }
     largest.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let holder = |part: usize| {
         let (vertices, triangles) = alone(world, &parts[part]);
@@ -211,8 +220,16 @@ mod tests {
         }
         assert_eq!(held(1.0, [0.0, -3.0, 0.0], SUN), inner_alone);
         assert!(held(1.0, [0.6, -3.0, 0.0], SUN).is_empty(), "its side shows");
-        // Of two that hold the light between them, and of one part alone.
-        assert!(held(1.0, [0.0, 9.0, 0.0], LAMP).is_empty());
+        assert!(held(1.0, [0.0, 9.0, 0.0], LAMP).is_empty(), "beyond the light");
+        // A lamp in the outer box, on its face, or a hair off it: nothing is proven.
+        for height in [0.9, 1.0 - 1e-6, 1.0 - 1e-9, 1.0, 1.0 + 1e-9] {
+            let lamp = DVec4::new(0.3, height, 0.2, 1.0);
+            assert!(held(1.0, [0.0, -0.2, 0.0], lamp).is_empty(), "{height}");
+            let cube = occluder(&shapes::cuboid([2.0; 3]).expect("a box"), DVec3::ZERO).expect("convex");
+            assert!(!cube.darkens_all(&[DVec3::ZERO], lamp), "{height}");
+            assert!(!cube.darkens_all(&[DVec3::new(0.3, -3.0, 0.2)], lamp) || height > 1.0, "{height}");
+        }
+        assert_eq!(held(1.0, [0.0, -0.2, 0.0], DVec4::new(0.3, 1.001, 0.2, 1.0)), inner_alone);
     }
 
     #[test]

@@ -460,12 +460,17 @@ impl Inspector {
         self.state.stress.rows()
     }
 
+    /// A scene could not be opened, or its frame not be made: a tour that waits for it says so.
+    pub fn push_failure(&mut self, error: String) {
+        self.state.note_tour_error(&error);
+        self.push_error(error);
+    }
+
     /// Shows an error with its mend until it is dismissed; what was shown before stays.
     pub fn push_error(&mut self, error: String) {
         // What failed is tried no further by itself.
         self.state.restoring = None;
         self.state.animation.is_running = false;
-        self.state.note_tour_error(&error);
         if !self.state.errors.contains(&error) {
             self.state.errors.push(error);
         }

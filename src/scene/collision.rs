@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn among_many_triangles_one_gets_as_far_as_if_each_were_looked_at_and_soon() {
+    fn among_many_triangles_one_gets_as_far_as_if_each_were_looked_at() {
         let mesh = ball();
         let triangles =
             || mesh.triangles().iter().map(|corners| corners.map(|corner| mesh.positions()[corner as usize]));
@@ -308,14 +308,10 @@ mod tests {
         let (from, by) = (DVec3::new(-2.9, 0.3, 0.2), DVec3::new(1.2, 0.1, 0.0));
         assert!((walls.walk(from, by, RADIUS) - slow.walk(from, by, RADIUS)).length() < 1e-9);
         // As fast as one can be, for a quarter of a second, into the ball and past it.
-        let start = std::time::Instant::now();
         let at = walls.walk(DVec3::new(-60.0, 0.3, 0.2), DVec3::X * 125.0, RADIUS);
         let past = walls.walk(DVec3::new(-60.0, 2.2, 0.2), DVec3::X * 125.0, RADIUS);
-        let took = start.elapsed();
-        println!("two walks among {} triangles take {took:?}", mesh.triangles().len());
         assert!(at.length() > 2.0 + RADIUS * 0.99, "{at}");
         assert!(past.x > 60.0, "{past}");
-        assert!(took.as_secs_f64() < 0.25, "{took:?}");
     }
 
     #[test]

@@ -254,10 +254,11 @@ impl Session {
     }
 
     fn cost_of(&self, prepared: &Prepared, runs: usize) -> Result<CaptureCost, SessionError> {
-        let snapshot_bytes = prepared.snapshot_bytes()?;
-        let mut cost = CaptureCost { frames: Vec::new(), captured: Vec::new(), snapshot_bytes };
         self.executor.time(prepared, false)?;
         self.executor.time(prepared, true)?;
+        // The copies are there now.
+        let snapshot_bytes = prepared.snapshot_bytes()?;
+        let mut cost = CaptureCost { frames: Vec::new(), captured: Vec::new(), snapshot_bytes };
         for _ in 0..runs {
             cost.frames.push(self.executor.time(prepared, false)?);
             cost.captured.push(self.executor.time(prepared, true)?);

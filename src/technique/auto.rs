@@ -6,6 +6,7 @@
 //! nothing behind it that receives ─┐
 //! its volume misses the view       ├─► no volume
 //! another caster's umbra holds it ─┘
+//! another part's umbra holds a part of it ───────────────► nothing of that part
 //! it holds no point of the near rectangle in its shadow ─► z-pass, without caps
 //! else ─► z-fail: a light cap if it is in view itself, a dark cap if its far end is
 //! ```
@@ -144,9 +145,9 @@ impl Questions {
         let held = umbra::held_by_parts(&placed.world, mesh.triangles(), &topology, self.position);
         if !held.is_empty() {
             let count = held.iter().filter(|is_held| **is_held).count();
-            let because = "they are parts that another part of it holds in its umbra";
+            let because = "another part of it holds them in its umbra";
             frame.leave_out(
-                &format!("{} casting triangles", numbers::count(count as u64)),
+                &format!("volume of parts ({} triangles)", numbers::count(count as u64)),
                 &placed.object.name,
                 because,
             );

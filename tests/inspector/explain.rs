@@ -128,7 +128,7 @@ fn a_tour_drives_the_panels_stop_by_stop() {
 
 /// The worker says why, and that it is done.
 fn fail(harness: &mut Harness<Seen>, reason: &str) {
-    harness.state_mut().inspector.push_error(reason.to_owned());
+    harness.state_mut().inspector.push_failure(reason.to_owned());
     harness.state_mut().inspector.set_job(None);
     harness.run_steps(3);
 }

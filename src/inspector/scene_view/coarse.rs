@@ -39,6 +39,9 @@ pub struct Coarse {
     pub triangles: Triangles,
 }
 
+/// How many steps of detail there are from one to half of it.
+const STEPS_OF_DETAIL: f64 = 2.0;
+
 /// Coarser meshes, kept while these are shown.
 #[derive(Debug, Default)]
 pub struct Coarsened {
@@ -83,7 +86,9 @@ impl Detail {
         });
         let counts = objects.chain(parts.map(|part| part.triangles.len()));
         let large: usize = counts.filter(|count| *count >= LARGE).sum();
-        Detail { share: MOST_FACES as f64 / large.max(MOST_FACES) as f64 }
+        let share = MOST_FACES as f64 / large.max(MOST_FACES) as f64;
+        // Caps come and go with every step of a light: in coarse steps, the meshes mostly stay as they are.
+        Detail { share: ((share.log2() * STEPS_OF_DETAIL).floor() / STEPS_OF_DETAIL).exp2() }
     }
 
     /// So many triangles are drawn of a mesh of `count`.
