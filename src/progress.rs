@@ -10,6 +10,8 @@ pub struct Progress(Arc<Inner>);
 #[derive(Debug, Default)]
 struct Inner {
     done: AtomicUsize,
+    /// The index of what is worked on, and one more; 0: nothing of what was asked for.
+    item: AtomicUsize,
     of: AtomicUsize,
     cancelled: AtomicBool,
 }
@@ -18,12 +20,24 @@ impl Progress {
     /// Starts over with `of` steps to do.
     pub fn start(&self, of: usize) {
         self.0.done.store(0, Ordering::Relaxed);
+        self.0.item.store(0, Ordering::Relaxed);
         self.0.of.store(of, Ordering::Relaxed);
     }
 
     /// One more step is done.
     pub fn advance(&self) {
         self.0.done.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Turns to one of the things that were asked for, by its index.
+    pub fn turn_to(&self, item: usize) {
+        self.0.item.store(item + 1, Ordering::Relaxed);
+    }
+
+    /// What was turned to last; `None` while what all of them need is made.
+    #[must_use]
+    pub fn item(&self) -> Option<usize> {
+        self.0.item.load(Ordering::Relaxed).checked_sub(1)
     }
 
     /// Steps done, and how many there are.

@@ -37,7 +37,7 @@ pub fn give_back_at_once() {
     gnu::give_back_at_once();
 }
 
-/// Gives back what lies between small things that are in use: milliseconds, after much was dropped.
+/// Gives back what lies between small things that are in use: 1 to 20 ms, in which other threads may wait for memory.
 pub fn give_back() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     gnu::give_back();

@@ -166,7 +166,9 @@ impl Desk {
             News::Tests { .. } | News::Compared { .. } => {}
             News::Meshes { .. } | News::Timed { .. } | News::Judged { .. } | News::NotJudged { .. } => {}
             News::Draws { .. } | News::NoDraws { .. } | News::History { .. } | News::Anatomy { .. } => {}
-            News::Measured { job, result } => self.jobs.end_measuring(job, result, &mut self.inspector),
+            News::Measured { job, result, left_out } => {
+                self.jobs.end_measuring(job, result, &left_out, &mut self.inspector);
+            }
             News::Diagnosed { job, result } => self.jobs.end_diagnosing(job, result, &mut self.inspector),
             News::Stressed { job, rows } => self.jobs.add_stress(job, rows, &mut self.inspector),
             News::StressEnded { job, error } => self.jobs.end_stress(job, error, &mut self.inspector),

@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 /// Timed frames of each row of a report.
 const RUNS: usize = 5;
-/// Steps that a row of a report takes beside its timed frames: setting up, and comparing.
-const OTHER_STEPS: usize = 2;
+/// Steps that a row of a report takes beside its timed frames: setting up and comparing.
+const OTHER_STEPS: usize = 1;
 
 /// What is under way.
 #[derive(Debug, Default)]
@@ -59,8 +59,8 @@ impl Jobs {
             inspector.set_diagnosis(DiagnosisView { diagnosis, running, error: None });
         }
         if let Some(measuring) = &self.measuring {
-            let report = inspector.report().report.clone();
-            inspector.set_report(ReportView { report, running: Some(measuring.steps()), error: None });
+            let running = Some(measuring.steps());
+            inspector.set_report(ReportView { running, error: None, ..inspector.report().clone() });
         }
         if let Some(stressing) = &self.stressing {
             inspector.set_stress(Some(stressing.steps()), None);
@@ -139,13 +139,23 @@ impl Jobs {
         }
     }
 
-    /// What was measured, or why nothing was.
-    pub fn end_measuring(&mut self, job: u64, result: Result<Report, String>, inspector: &mut Inspector) {
+    /// What was measured and what was left out, or why nothing was.
+    pub fn end_measuring(
+        &mut self,
+        job: u64,
+        result: Result<Report, String>,
+        left_out: &[Choice],
+        inspector: &mut Inspector,
+    ) {
         if self.measuring.take_if(|measuring| measuring.job == job).is_none() {
             return;
         }
         match result {
-            Ok(report) => inspector.set_report(ReportView { report: Some(report), running: None, error: None }),
+            Ok(report) => {
+                let mut left_out: Vec<String> = left_out.iter().map(name).collect();
+                left_out.dedup();
+                inspector.set_report(ReportView { report: Some(report), left_out, ..ReportView::default() });
+            }
             Err(reason) => self.show(inspector, Some(reason)),
         }
     }
@@ -205,8 +215,7 @@ impl Jobs {
 
     /// The rows that were there, and an error.
     fn show(&self, inspector: &mut Inspector, error: Option<String>) {
-        let report = inspector.report().report.clone();
-        inspector.set_report(ReportView { report, running: None, error });
+        inspector.set_report(ReportView { running: None, error, ..inspector.report().clone() });
     }
 }
 
@@ -219,11 +228,10 @@ impl Stressing {
 
 impl Measuring {
     fn steps(&self) -> ReportProgress {
-        let rows = self.names.len();
-        let all = rows * (RUNS + OTHER_STEPS);
+        let all = self.names.len() * (RUNS + OTHER_STEPS);
         let (done, of) = self.progress.steps();
-        // The truth comes first, with steps of its own. Later every phase goes through the rows.
-        let name = (of == all).then(|| self.names.get(done % rows.max(1))).flatten();
+        // The truth comes first, with steps of its own.
+        let name = self.progress.item().and_then(|item| self.names.get(item));
         let what = name.map_or("the truth", String::as_str).to_owned();
         ReportProgress { done, of: if of == 0 { all } else { of }, what }
     }
@@ -272,12 +280,17 @@ mod tests {
         let what = |inspector: &Inspector| inspector.report().running.clone().map(|running| running.what);
         assert_eq!(what(&inspector).as_deref(), Some("the truth"));
         measure.progress.start(measure.choices.len() * (RUNS + OTHER_STEPS));
+        measure.progress.turn_to(3);
         jobs.watch(&mut inspector);
-        assert_eq!(what(&inspector), Some(name(&measure.choices[0])));
-        jobs.end_measuring(stopped.job, Ok(report()), &mut inspector);
+        assert_eq!(what(&inspector), Some(name(&measure.choices[3])));
+        jobs.end_measuring(stopped.job, Ok(report()), &[], &mut inspector);
         assert!(inspector.report().report.is_none() && inspector.report().running.is_some());
-        jobs.end_measuring(measure.job, Ok(report()), &mut inspector);
+        let mut left_out = Choice::report_grid().expect("a grid");
+        left_out.retain(|choice| name(choice) == "shadow-map 4096");
+        assert_eq!(left_out.len(), 2);
+        jobs.end_measuring(measure.job, Ok(report()), &left_out, &mut inspector);
         assert!(inspector.report().report.is_some() && inspector.report().running.is_none());
+        assert_eq!(inspector.report().left_out, ["shadow-map 4096"]);
     }
 
     #[test]

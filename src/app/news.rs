@@ -8,6 +8,7 @@ use crate::inspector::{ObjectMesh, RunRequest};
 use crate::plan::FramePlan;
 use crate::report::Report;
 use crate::scene::{Scene, Walls};
+use crate::technique::Choice;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -141,6 +142,8 @@ pub enum News {
         job: u64,
         /// The report, or why there is none.
         result: Result<Report, String>,
+        /// What would have taken too much memory.
+        left_out: Vec<Choice>,
     },
     /// A frame was diagnosed, or could not be; not told of what was cancelled.
     Diagnosed {

@@ -2,6 +2,7 @@
 
 use super::news::WindowNews;
 use super::{AppError, no_window};
+use crate::session::MEMORY_HINTS;
 use egui::{Context, ViewportId};
 use egui_wgpu::winit::Painter;
 use egui_wgpu::{RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -208,7 +209,7 @@ fn configuration(event_loop: &ActiveEventLoop, adapter: Option<&str>) -> WgpuCon
             max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
             ..wgpu::Limits::default()
         },
-        memory_hints: wgpu::MemoryHints::MemoryUsage,
+        memory_hints: MEMORY_HINTS,
         ..Default::default()
     });
     if let Some(wanted) = adapter {

@@ -18,7 +18,7 @@ mod stress;
 use super::export::Exported;
 use super::news::News;
 use super::orders::{Inbox, Order, Waiting};
-use super::{AppError, ViewSource};
+use super::{AppError, ViewSource, allocator};
 use crate::capture::disk;
 use crate::inspector::{ObjectMesh, RunRequest};
 use crate::scene::file::store;
@@ -144,8 +144,11 @@ impl Bench {
     /// Obeys orders until the window is gone, and times what was captured in between.
     fn obey_all(&mut self, orders: &Receiver<Order>) {
         let mut inbox = Inbox { orders, waiting: Waiting::default() };
+        let mut is_tidy = false;
         loop {
-            match inbox.next() {
+            let order = inbox.next();
+            is_tidy &= order.is_none();
+            match order {
                 Some(Order::Stress(run)) => {
                     // Row by row: what is asked for in between does not wait for all of them.
                     self.stress(run).into_iter().for_each(|rest| inbox.waiting.put_back(rest));
@@ -161,14 +164,19 @@ impl Bench {
                 }
                 None => {}
             }
-            let next = if self.last.as_ref().is_some_and(|done| done.wants_timing) {
+            let wants_timing = self.last.as_ref().is_some_and(|done| done.wants_timing);
+            let next = if wants_timing || !is_tidy {
                 orders.recv_timeout(IDLE)
             } else {
                 orders.recv().map_err(|_| RecvTimeoutError::Disconnected)
             };
             match next {
                 Ok(order) => inbox.waiting.add(order),
-                Err(RecvTimeoutError::Timeout) => self.time(),
+                Err(RecvTimeoutError::Timeout) if wants_timing => self.time(),
+                Err(RecvTimeoutError::Timeout) => {
+                    allocator::give_back();
+                    is_tidy = true;
+                }
                 Err(RecvTimeoutError::Disconnected) => return,
             }
         }

@@ -11,6 +11,11 @@ const REQUIRED: Features = Features::DEPTH32FLOAT_STENCIL8;
 /// What captures and reports measure, where the adapter can.
 const MEASURED: Features = Features::TIMESTAMP_QUERY;
 
+/// Memory in pieces of 4 to 8 MiB: pictures come and go, and one small thing would hold a large piece for as long
+/// as it lives. What is larger gets a piece of its own, and gives it back.
+pub const MEMORY_HINTS: wgpu::MemoryHints =
+    wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: 4 << 20..8 << 20 };
+
 /// An adapter with a device on it.
 #[derive(Debug)]
 pub struct Context {
@@ -61,8 +66,7 @@ impl Context {
                 max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
                 ..Limits::default()
             },
-            // Memory in small pieces: a frame's pictures come and go, and large pieces would stay.
-            memory_hints: wgpu::MemoryHints::MemoryUsage,
+            memory_hints: MEMORY_HINTS,
             ..wgpu::DeviceDescriptor::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))

@@ -26,7 +26,7 @@ mod readback;
 mod shaders;
 mod uniforms;
 
-pub use context::Context;
+pub use context::{Context, MEMORY_HINTS};
 pub use error::GpuError;
 pub use executor::{Executor, Output};
 pub use prepared::Prepared;

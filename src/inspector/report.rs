@@ -22,6 +22,8 @@ const STACKED_PLOT_HEIGHT: f32 = 240.0;
 pub struct ReportView {
     /// The rows so far, or all.
     pub report: Option<Report>,
+    /// What has no row, since it would take too much of this machine's memory: `shadow-map 4096`.
+    pub left_out: Vec<String>,
     /// How far measuring is; `None` while nothing is measured.
     pub running: Option<ReportProgress>,
     /// Why measuring failed, with its mend.
@@ -154,7 +156,15 @@ fn explanation(state: &State, can_run: bool, is_new: bool) -> String {
     match &state.report.view.report {
         Some(report) if !is_new => {
             let rows = format::counted(report.rows.len() as u64, "row");
-            format!("{rows} on {} · filled: no other row is both faster and more right", report.adapter.name)
+            let adapter = &report.adapter.name;
+            let without = match &state.report.view.left_out[..] {
+                [] => String::new(),
+                left_out => {
+                    let names = left_out.join(", ");
+                    format!(" · without {names}: too much memory for a window, `stencilscope report` measures all")
+                }
+            };
+            format!("{rows} on {adapter} · filled: no other row is both faster and more right{without}")
         }
         _ if can_run => {
             "Measures every technique on this scene: how many pixels are wrong against a ray-traced truth, \

@@ -1,13 +1,19 @@
 //! Error against run time: several techniques on one scene, timed in turn.
 
-use super::{Session, SessionError, median, milliseconds};
+use super::truth::Traced;
+use super::{CaptureRequest, Session, SessionError, median, milliseconds};
 use crate::accuracy::ErrorCounts;
-use crate::gpu::GpuError;
+use crate::geometry::GeometryCache;
+use crate::gpu::Prepared;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::technique::{self, Choice, Job};
 use std::time::{Duration, Instant};
+
+/// Bytes of GPU memory that choices may hold together while others are timed. A software GPU's are this
+/// program's own.
+const KEPT_BYTES: u64 = 64 << 20;
 
 /// What to measure.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +24,8 @@ pub struct Measurement {
     pub size: [u32; 2],
     /// Frames of each that are timed, after a warm-up.
     pub runs: usize,
+    /// Choices whose frame needs more bytes of GPU memory are left out; `None`: none is.
+    pub most_bytes: Option<u64>,
 }
 
 /// How one technique did.
@@ -42,7 +50,8 @@ pub struct Measured {
 
 impl Session {
     /// Measures every choice on one scene. Frames are timed in turn, so that whatever slows the
-    /// machine down for a while slows all alike.
+    /// machine down for a while slows all alike. Not all are held at once: the larger ones are set up
+    /// anew for each of their frames, outside its time.
     ///
     /// # Errors
     /// A scene that can't be drawn or traced, a lost GPU; [`SessionError::Cancelled`].
@@ -72,67 +81,97 @@ impl Session {
             between(session);
             if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(()) }
         };
-        progress.start(what.choices.len() * (what.runs + 2));
-        let plans = self.plans(scene, what)?;
-        check_memory(&plans)?;
-        let mut prepared = Vec::with_capacity(plans.len());
-        let mut setups = Vec::with_capacity(plans.len());
-        for (plan, planned) in &plans {
+        progress.start(what.choices.len() * (what.runs + 1));
+        let mut measured = Vec::with_capacity(what.choices.len());
+        for (item, choice) in what.choices.iter().enumerate() {
+            progress.turn_to(item);
             go_on(self)?;
-            self.executor.forget();
-            let start = Instant::now();
-            let ready = self.executor.prepare(plan)?;
-            setups.push(milliseconds(start.elapsed() + *planned));
-            self.executor.time(&ready, false)?;
-            prepared.push(ready);
+            measured.extend(self.first_frame(scene, what, choice, &traced)?);
             progress.advance();
         }
-        let mut frames = vec![Vec::with_capacity(what.runs); plans.len()];
+        let plans = self.kept(scene, what.size, &measured)?;
+        let mut kept = Vec::with_capacity(plans.len());
+        for plan in &plans {
+            kept.push(plan.as_ref().map(|plan| self.warmed_up(plan)).transpose()?);
+        }
         let mut gpu: Vec<Vec<f64>> = vec![Vec::with_capacity(what.runs); plans.len()];
         for _ in 0..what.runs {
-            for ((ready, frames), gpu) in prepared.iter().zip(&mut frames).zip(&mut gpu) {
+            for ((row, kept), gpu) in measured.iter_mut().zip(&kept).zip(&mut gpu) {
+                progress.turn_to(what.choices.iter().position(|choice| *choice == row.choice).unwrap_or_default());
                 go_on(self)?;
-                frames.push(self.executor.time(ready, false)?);
+                let (plan, made);
+                let ready = match kept {
+                    Some(ready) => ready,
+                    None => {
+                        plan = self.plan(scene, &CaptureRequest::new(row.choice.clone(), what.size))?;
+                        made = self.warmed_up(&plan)?;
+                        &made
+                    }
+                };
+                // Before the frame that counts, of those that were kept and those that were not.
                 gpu.extend(self.executor.gpu_ms(ready)?);
+                row.frames.push(self.executor.time(ready, false)?);
                 progress.advance();
             }
         }
-        let mut measured = Vec::with_capacity(plans.len());
-        let timed = frames.into_iter().zip(gpu.into_iter().map(median)).zip(setups);
-        for (((choice, (plan, _)), ready), ((frames, gpu_ms), setup_ms)) in
-            what.choices.iter().zip(&plans).zip(prepared).zip(timed)
-        {
-            go_on(self)?;
-            let labels = self.executor.labels(ready)?;
-            let labels = labels.iter().enumerate();
-            let error = labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
-            let (triangles, bytes) = (plan.triangles(), plan.bytes());
-            measured.push(Measured { choice: choice.clone(), error, frames, gpu_ms, setup_ms, triangles, bytes });
-            progress.advance();
+        for (row, gpu) in measured.iter_mut().zip(gpu) {
+            row.gpu_ms = median(gpu);
         }
         Ok(measured)
     }
 
-    /// The plan of every choice, and how long it took to make. Nothing is kept from one to the
-    /// next, so that none is set up at another's cost.
-    fn plans(&mut self, scene: &Scene, what: &Measurement) -> Result<Vec<(FramePlan, Duration)>, SessionError> {
-        let plan = |choice: &Choice| {
-            let start = Instant::now();
-            let cache = &mut crate::geometry::GeometryCache::default();
-            let plan = technique::plan(Job { scene, size: what.size, choice, cache })?;
-            let plan = self.without_unseen(plan)?;
-            Ok((plan, start.elapsed()))
-        };
-        what.choices.iter().map(plan).collect()
+    /// Sets a choice up from nothing and judges its first frame; `None` where it is left out. Nothing is kept from
+    /// one to the next, so that none is set up at another's cost.
+    fn first_frame(
+        &mut self,
+        scene: &Scene,
+        what: &Measurement,
+        choice: &Choice,
+        traced: &Traced,
+    ) -> Result<Option<Measured>, SessionError> {
+        self.executor.forget();
+        let cache = &mut GeometryCache::default();
+        let start = Instant::now();
+        let plan = technique::plan(Job { scene, size: what.size, choice, cache })?;
+        let plan = self.without_unseen(plan)?;
+        let (triangles, bytes) = (plan.triangles(), plan.bytes());
+        if what.most_bytes.is_some_and(|most| bytes > most) {
+            return Ok(None);
+        }
+        let ready = self.executor.prepare(&plan)?;
+        let setup_ms = milliseconds(start.elapsed());
+        let labels = self.executor.labels(ready)?;
+        let labels = labels.iter().enumerate();
+        let error = labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
+        let (choice, frames) = (choice.clone(), Vec::with_capacity(what.runs));
+        Ok(Some(Measured { choice, error, frames, gpu_ms: None, setup_ms, triangles, bytes }))
     }
-}
 
-/// All rows stay on the GPU while they are timed in turn.
-fn check_memory(plans: &[(FramePlan, Duration)]) -> Result<(), SessionError> {
-    let needed: u64 = plans.iter().map(|(plan, _)| plan.bytes()).sum();
-    if needed <= GpuError::MOST_BYTES {
-        return Ok(());
+    /// The plans of those that stay set up for all of their frames: the smallest first, until [`KEPT_BYTES`] are
+    /// used.
+    fn kept(
+        &mut self,
+        scene: &Scene,
+        size: [u32; 2],
+        measured: &[Measured],
+    ) -> Result<Vec<Option<FramePlan>>, SessionError> {
+        let mut kept: Vec<Option<FramePlan>> = measured.iter().map(|_| None).collect();
+        let mut smallest_first: Vec<usize> = (0..measured.len()).collect();
+        smallest_first.sort_by_key(|index| measured[*index].bytes);
+        let mut left = KEPT_BYTES;
+        for index in smallest_first {
+            let row = &measured[index];
+            let Some(rest) = left.checked_sub(row.bytes) else { break };
+            left = rest;
+            kept[index] = Some(self.plan(scene, &CaptureRequest::new(row.choice.clone(), size))?);
+        }
+        Ok(kept)
     }
-    let [needed, most] = [needed, GpuError::MOST_BYTES].map(|bytes| format!("{} MiB", bytes >> 20));
-    Err(GpuError::TooLarge { what: "the report, whose frames are timed in turn,".to_owned(), needed, most }.into())
+
+    /// Ready to be timed: what only the first frame does is done.
+    fn warmed_up<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, SessionError> {
+        let ready = self.executor.prepare(plan)?;
+        self.executor.time(&ready, false)?;
+        Ok(ready)
+    }
 }

@@ -17,6 +17,7 @@ mod suited;
 mod truth;
 mod volumes;
 
+pub use crate::gpu::MEMORY_HINTS;
 pub use draws::Every;
 pub use history::HistoryCost;
 pub use measure::{Measured, Measurement};

@@ -245,7 +245,7 @@ const VIEWS: [(&str, View); 13] = [
         report.rows.truncate(8);
         report.mark_pareto();
         let running = Some(ReportProgress { done: 8, of: 15, what: "shadow-map 4096".to_owned() });
-        harness.state_mut().inspector.set_report(ReportView { report: Some(report), running, error: None });
+        harness.state_mut().inspector.set_report(ReportView { report: Some(report), running, ..ReportView::default() });
     }),
     ("report-scenes", |harness| {
         let report = Some(three_scenes());

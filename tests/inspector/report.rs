@@ -72,6 +72,13 @@ fn a_point_and_a_row_open_what_they_stand_for() {
 }
 
 #[test]
+fn what_was_left_out_is_named_and_where_it_is_measured() {
+    let left_out = vec!["planar-texture 1024".to_owned(), "shadow-map 4096".to_owned()];
+    let harness = showing(ReportView { left_out, ..with_rows(one_scene()) });
+    harness.get_by_label_contains("without planar-texture 1024, shadow-map 4096: too much memory for a window");
+}
+
+#[test]
 fn the_keyboard_reaches_points_and_rows() {
     let report = one_scene();
     let mut harness = showing(with_rows(report.clone()));

@@ -2,6 +2,7 @@
 //! to a pixel, why it is wrong, and how other techniques do in its place.
 
 use super::Bench;
+use crate::app::allocator;
 use crate::app::news::News;
 use crate::app::orders::{Inbox, Measure, Order};
 use crate::capture::Capture;
@@ -11,9 +12,17 @@ use crate::report::Report;
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, Fault, Measurement, Session, SessionError, median_ms, report_rows};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// Frames that are timed, each with and without snapshots.
 const TIMED_FRAMES: usize = 5;
+
+/// Bytes that a row of a report may take beyond the frame that is shown, where the GPU's memory is this
+/// program's own: a window that is open for hours shares the machine.
+const MOST_MORE_BYTES: u64 = 128 << 20;
+
+/// While rows of a report come and go.
+const GIVE_BACK_EVERY: Duration = Duration::from_millis(500);
 
 /// A frame that was captured.
 pub(super) struct Done {
@@ -188,28 +197,39 @@ impl Bench {
             return;
         }
         (self.tell)(News::Busy("measuring every technique".to_owned()));
+        let mut left_out = Vec::new();
         let result = match (&mut self.session, &mut self.last) {
             _ if what.generation != self.generation => {
                 Err("another scene was opened meanwhile: measure again when it is the one you want".to_owned())
             }
             (Some(session), Some(done)) => {
                 let (scene, size) = (done.scene.clone(), done.request.size);
-                let measurement = Measurement { choices: what.choices, size, runs: what.runs };
+                let shares_memory = session.adapter().kind == "cpu";
+                let most_bytes = shares_memory.then(|| done.plan.bytes() + MOST_MORE_BYTES);
+                let measurement = Measurement { choices: what.choices, size, runs: what.runs, most_bytes };
+                let mut given_back = Instant::now();
                 let mut between = |session: &mut Session| {
+                    // What one row leaves behind, the next does not fill.
+                    if given_back.elapsed() > GIVE_BACK_EVERY {
+                        allocator::give_back();
+                        given_back = Instant::now();
+                    }
                     while let Some(order) = inbox.next_short() {
                         done.obey_short(session, &order).into_iter().for_each(&self.tell);
                     }
                 };
                 let measured = session.measure_between(&scene, &measurement, &what.progress, &mut between);
-                measured
-                    .map_err(|error| error.to_string())
-                    .map(|measured| Report::new(session.adapter().clone(), report_rows(&scene.name, size, &measured)))
+                measured.map_err(|error| error.to_string()).map(|measured| {
+                    left_out = measurement.choices;
+                    left_out.retain(|choice| measured.iter().all(|row| row.choice != *choice));
+                    Report::new(session.adapter().clone(), report_rows(&scene.name, size, &measured))
+                })
             }
             _ => Err("the open scene was not rendered: mend what the error says, then measure again".to_owned()),
         };
         // Where it was cancelled, the window has asked for it.
         if !what.progress.is_cancelled() {
-            (self.tell)(News::Measured { job: what.job, result });
+            (self.tell)(News::Measured { job: what.job, result, left_out });
         }
         (self.tell)(News::Idle);
     }
