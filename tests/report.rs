@@ -1,9 +1,13 @@
 //! `report` from outside: all its forms, and what it refuses.
 
 use crate::commands::{assert_fails, folder, run, text};
+use crate::common::session;
 use std::collections::BTreeSet;
 use std::fs;
+use stencilscope::progress::Progress;
 use stencilscope::report::Report;
+use stencilscope::scene::builtin::Builtin;
+use stencilscope::session::{Measured, Measurement};
 use stencilscope::technique::{Choice, Technique};
 
 const SMALL: [&str; 6] = ["report", "triangle.obj", "--size", "80x60", "--runs", "2"];
@@ -52,6 +56,26 @@ fn a_report_is_written_in_every_form() {
     assert!(fs::read(folder.path().join("r.png")).expect("a picture").starts_with(b"\x89PNG"));
     let table = run(folder.path(), &one);
     assert!(text(&table.stdout).contains("z-pass") && !text(&table.stdout).contains("planar"));
+}
+
+#[test]
+fn rows_for_which_there_is_no_room_are_left_out_and_the_others_are_as_they_were() {
+    let mut session = session();
+    let scene = Builtin::named("table").expect("a name").scene().expect("a scene");
+    let mut large = Choice::new(Technique::ShadowMap);
+    large.set("size", "4096").expect("a size");
+    let choices = vec![Choice::new(Technique::ZFail), large, Choice::new(Technique::Planar)];
+    let what = Measurement { choices, size: [80, 60], runs: 2 };
+    let mut measured = |room| {
+        session.set_room(room);
+        session.measure(&scene, &what, &Progress::default()).expect("rows")
+    };
+    // The map alone is 64 MiB: where there is room, it is set up anew for each of its frames.
+    let (all, few) = (measured(None), measured(Some(32 << 20)));
+    let row = |row: &Measured| (row.choice.technique(), row.error, row.frames.len(), row.bytes);
+    assert_eq!(all.iter().map(|one| one.choice.clone()).collect::<Vec<_>>(), what.choices);
+    assert_eq!(few.iter().map(row).collect::<Vec<_>>(), [&all[0], &all[2]].map(row));
+    assert!(all.iter().all(|row| row.frames.len() == 2 && row.gpu_ms.is_none_or(|ms| ms > 0.0)));
 }
 
 /// Two models of one name are two scenes: neither hides the other's front.

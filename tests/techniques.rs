@@ -247,6 +247,18 @@ fn casters_all_round_make_a_cube_map_without_its_empty_faces() {
     let volumes = capture(&mut session, &scene, Technique::ZFail);
     let labels = |capture: &Capture| capture.lights[0].shadow.clone().expect("labels");
     let (by_map, by_volumes) = (labels(&map), labels(&volumes));
+    // The face takes no memory, and says as much as one that was drawn.
+    let mut whole = request.clone();
+    whole.choice.set("leave-out", "none").expect("a setting");
+    let six = session.plan(&scene, &whole).expect("a plan");
+    let attachment = plan.lights[0].map.as_ref().expect("a map").attachment;
+    assert_eq!([&plan, &six].map(|plan| plan.held_layers(attachment)), [5, 6]);
+    let face = u64::from(plan.attachment(attachment).size[0]).pow(2) * 4;
+    assert!(six.bytes() >= plan.bytes() + face, "{} and {}", six.bytes(), plan.bytes());
+    let six = session.capture(&scene, &whole).expect("a capture");
+    assert_eq!(by_map, labels(&six));
+    let faces = |capture: &Capture| capture.lights[0].map.as_ref().expect("a map").faces.clone();
+    assert_eq!(faces(&map), faces(&six));
     let differing = by_map.rows().flatten().zip(by_volumes.rows().flatten()).filter(|(a, b)| a != b).count();
     assert!(differing < 50, "only texels at shadow edges differ: {differing}");
     assert!(label_counts(&volumes)[1] > 2000);

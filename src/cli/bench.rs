@@ -151,7 +151,7 @@ fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
     let is_rival = |technique: &Technique| !matches!(technique, Technique::None | Technique::RayTraced);
     let choices: Vec<Choice> = Technique::ALL.into_iter().filter(is_rival).map(Choice::new).collect();
     let size = arguments.frame.size;
-    let everyone = Measurement { choices, size, runs: 1, most_bytes: None };
+    let everyone = Measurement { choices, size, runs: 1 };
     for scene in scenes(arguments, built_in)? {
         let (mut to_fastest, mut to_z_fail, mut wrong) = (Vec::new(), Vec::new(), 0);
         let mut rivals: BTreeMap<&str, usize> = BTreeMap::new();
@@ -168,11 +168,7 @@ fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
             }
             // All are tried once; those that can be the fastest are timed in turn.
             let choices = contenders(&tried);
-            let measured = session.measure(
-                &seen,
-                &Measurement { choices, size, runs: RUNS, most_bytes: None },
-                &Progress::default(),
-            )?;
+            let measured = session.measure(&seen, &Measurement { choices, size, runs: RUNS }, &Progress::default())?;
             let of = |technique: Technique| measured.iter().find(|one| one.choice.technique() == technique);
             let (Some(auto), Some(z_fail)) = (of(Technique::Auto), of(Technique::ZFail)) else { continue };
             let right = measured.iter().filter(|one| one.error.wrong() == 0);

@@ -61,8 +61,7 @@ pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
     files.iter().try_for_each(|file| output::check_target(file))?;
     check_distinct(&files, &arguments.scenes)?;
     let mut session = Session::new(arguments.adapter.as_deref())?;
-    let runs = usize::from(arguments.runs);
-    let what = Measurement { choices, size: arguments.size, runs, most_bytes: None };
+    let what = Measurement { choices, size: arguments.size, runs: usize::from(arguments.runs) };
     let mut rows: Vec<Row> = Vec::new();
     for (scene, name) in scenes.iter().zip(distinct_names(&scenes)) {
         let measured = with_bar(&name, &Progress::default(), |progress| session.measure(scene, &what, progress))?;

@@ -7,7 +7,7 @@ use super::pipelines::{PipelineKey, Pipelines};
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError};
-use crate::plan::{Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility};
+use crate::plan::{AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility};
 use std::cell::OnceCell;
 use std::sync::Arc;
 use wgpu::{
@@ -67,7 +67,7 @@ impl<'a> Prepared<'a> {
         check_size(device, plan)?;
         buffers.next_plan();
         maps.next_plan();
-        let create = |index: usize| create(device, &plan.attachments[index]);
+        let create = |index: usize| create(device, plan, AttachmentId(index));
         let attachments = 0..plan.attachments.len();
         let kept: Vec<Option<Arc<KeptMap>>> =
             attachments.map(|index| maps.get(plan, AttachmentId(index), || create(index))).collect();
@@ -75,7 +75,6 @@ impl<'a> Prepared<'a> {
             kept.as_ref().map_or_else(|| create(index), |map| map.texture.clone())
         };
         let textures: Vec<Texture> = kept.iter().enumerate().map(texture).collect();
-        clear_left_out_faces(context, plan, &textures);
         let views = uniforms::views(device, plan);
         let draws = uniforms::draws(device, plan);
         let lights = uniforms::lights(device, plan);
@@ -149,7 +148,7 @@ impl<'a> Prepared<'a> {
 fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
     let limit = device.limits().max_texture_dimension_2d;
     let mut bytes = 0;
-    for attachment in &plan.attachments {
+    for (index, attachment) in plan.attachments.iter().enumerate() {
         let [width, height] = attachment.size;
         if width > limit || height > limit {
             return Err(GpuError::TooLarge {
@@ -158,13 +157,12 @@ fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
                 most: format!("{limit}x{limit}"),
             });
         }
-        bytes += texel_count(attachment) * 8;
+        bytes += plan.held_texels(AttachmentId(index)) * 8;
     }
     for pass in &plan.passes {
         let targets = pass.color.iter().map(|target| target.attachment);
         let targets = targets.chain(pass.depth_stencil.iter().map(|target| target.attachment));
-        bytes +=
-            targets.map(|id| texel_count(plan.attachment(id)) / u64::from(plan.attachment(id).layers) * 4).sum::<u64>();
+        bytes += targets.map(|id| plan.held_texels(id) / u64::from(plan.held_layers(id)) * 4).sum::<u64>();
     }
     if bytes > GpuError::MOST_BYTES {
         let [needed, most] = [bytes, GpuError::MOST_BYTES].map(|bytes| format!("{} MiB", bytes >> 20));
@@ -173,11 +171,8 @@ fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
     Ok(())
 }
 
-fn texel_count(attachment: &Attachment) -> u64 {
-    u64::from(attachment.size[0]) * u64::from(attachment.size[1]) * u64::from(attachment.layers)
-}
-
-fn create(device: &Device, attachment: &Attachment) -> Texture {
+fn create(device: &Device, plan: &FramePlan, id: AttachmentId) -> Texture {
+    let attachment = plan.attachment(id);
     let other = match attachment.role {
         AttachmentRole::Map(_) | AttachmentRole::Count(_) => TextureUsages::TEXTURE_BINDING,
         AttachmentRole::Labels(_) => TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
@@ -188,7 +183,7 @@ fn create(device: &Device, attachment: &Attachment) -> Texture {
         size: wgpu::Extent3d {
             width: attachment.size[0],
             height: attachment.size[1],
-            depth_or_array_layers: attachment.layers,
+            depth_or_array_layers: plan.held_layers(id),
         },
         mip_level_count: 1,
         sample_count: 1,
@@ -199,35 +194,9 @@ fn create(device: &Device, attachment: &Attachment) -> Texture {
     })
 }
 
-/// Faces of maps that no pass draws are cleared once: new textures are zero, which says "dark" in all
-/// but reversed shadow maps.
-fn clear_left_out_faces(context: &Context, plan: &FramePlan, textures: &[Texture]) {
-    let mut encoder = context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    for map in plan.lights.iter().filter_map(|light| light.map.as_ref()) {
-        let left_out = (0..).zip(&map.faces).filter(|(_, view)| view.is_none());
-        for (layer, _) in left_out {
-            let view = layer_view(&textures[map.attachment.0], layer);
-            let store = wgpu::StoreOp::Store;
-            let color = map.lookup.is_none().then_some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::WHITE), store },
-            });
-            let depth_stencil_attachment = map.lookup.map(|lookup| wgpu::RenderPassDepthStencilAttachment {
-                view: &view,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(lookup.clear_depth), store }),
-                stencil_ops: None,
-            });
-            drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("left-out face"),
-                color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
-                depth_stencil_attachment,
-                ..wgpu::RenderPassDescriptor::default()
-            }));
-        }
-    }
-    context.queue.submit([encoder.finish()]);
+/// Where a layer that is drawn lies in its texture. A plan that draws another has not passed the lint.
+fn held_layer(plan: &FramePlan, id: AttachmentId, layer: u32) -> u32 {
+    plan.held_layer(id, layer).unwrap_or_default()
 }
 
 pub(super) fn layer_view(texture: &Texture, layer: u32) -> TextureView {
@@ -241,9 +210,10 @@ pub(super) fn layer_view(texture: &Texture, layer: u32) -> TextureView {
 
 fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> PreparedPass {
     let target = pass.depth_stencil.as_ref();
+    let view = |id: AttachmentId, layer| layer_view(&textures[id.0], held_layer(plan, id, layer));
     PreparedPass {
-        color: pass.color.as_ref().map(|target| layer_view(&textures[target.attachment.0], target.layer)),
-        depth_stencil: target.map(|target| layer_view(&textures[target.attachment.0], target.layer)),
+        color: pass.color.as_ref().map(|target| view(target.attachment, target.layer)),
+        depth_stencil: target.map(|target| view(target.attachment, target.layer)),
         has_stencil: target.is_some_and(|target| plan.attachment(target.attachment).format.has_stencil_aspect()),
         draws: Vec::with_capacity(pass.draws.len()),
         image_target: pass.image.as_ref().and(pass.color.as_ref()).map(|target| textures[target.attachment.0].clone()),
@@ -305,15 +275,17 @@ fn light_group(
 fn stage(device: &Device, plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Result<StagedPass, GpuError> {
     let mut staged = StagedPass::default();
     if let (Some(target), Change::Drawn) = (&pass.color, color_change(plan, pass)) {
-        staged.color = Some(Staging::new(device, &textures[target.attachment.0], target.layer, TextureAspect::All)?);
+        let layer = held_layer(plan, target.attachment, target.layer);
+        staged.color = Some(Staging::new(device, &textures[target.attachment.0], layer, TextureAspect::All)?);
     }
     if let Some(target) = &pass.depth_stencil {
         let texture = &textures[target.attachment.0];
+        let layer = held_layer(plan, target.attachment, target.layer);
         if depth_change(pass) == Change::Drawn {
-            staged.depth = Some(Staging::new(device, texture, target.layer, TextureAspect::DepthOnly)?);
+            staged.depth = Some(Staging::new(device, texture, layer, TextureAspect::DepthOnly)?);
         }
         if stencil_change(pass) == Change::Drawn {
-            staged.stencil = Some(Staging::new(device, texture, target.layer, TextureAspect::StencilOnly)?);
+            staged.stencil = Some(Staging::new(device, texture, layer, TextureAspect::StencilOnly)?);
         }
     }
     Ok(staged)

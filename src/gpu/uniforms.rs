@@ -4,7 +4,7 @@
 //! would put their values into the shader and compile it anew for every draw whose values differ, and keep what it
 //! compiled until the process ends: 5 MB and tens of milliseconds a frame of `tori`. It does not look into storage.
 
-use crate::plan::{Draw, FramePlan, PlanLight, PlanMap, Program};
+use crate::plan::{Draw, FramePlan, Pass, PlanLight, PlanMap, Program};
 use crate::scene::Shading;
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -110,11 +110,14 @@ pub(super) fn views(device: &Device, plan: &FramePlan) -> UniformArray {
 
 /// All draws of all passes, in order.
 pub(super) fn draws(device: &Device, plan: &FramePlan) -> UniformArray {
-    let draws = plan.passes.iter().flat_map(|pass| &pass.draws);
-    UniformArray::new(device, "draws", &draws.map(draw_uniform).collect::<Vec<_>>(), BufferUsages::STORAGE)
+    let of_pass = |pass: &Pass| {
+        let map = pass.light.and_then(|light| plan.lights[light.0].map.as_ref());
+        pass.draws.iter().map(|draw| draw_uniform(draw, map)).collect::<Vec<_>>()
+    };
+    UniformArray::new(device, "draws", &plan.passes.iter().flat_map(of_pass).collect::<Vec<_>>(), BufferUsages::STORAGE)
 }
 
-fn draw_uniform(draw: &Draw) -> DrawUniform {
+fn draw_uniform(draw: &Draw, map: Option<&PlanMap>) -> DrawUniform {
     let material = &draw.constants.material;
     let is_label = matches!(draw.program, Program::Label(_));
     DrawUniform {
@@ -129,7 +132,8 @@ fn draw_uniform(draw: &Draw) -> DrawUniform {
         label: draw.constants.label,
         flat: draw.constants.flat,
         count: draw.constants.count,
-        layer: draw.constants.layer.unwrap_or(NO_LAYER),
+        // Of a layer that is left out, all of the light arrives.
+        layer: draw.constants.layer.and_then(|layer| map?.held_layer(layer)).unwrap_or(NO_LAYER),
         padding: [0; 2],
         reversed_sum: if is_label { draw.triangles.start + draw.triangles.end - 1 } else { NOT_REVERSED },
     }
@@ -144,9 +148,11 @@ pub(super) fn lights(device: &Device, plan: &FramePlan) -> UniformArray {
 fn light_uniform(index: usize, light: &PlanLight, wraps: bool) -> LightUniform {
     let lookup = light.map.as_ref().and_then(|map| map.lookup);
     let mut clip_from_relative = [[0.0; 16]; PlanMap::MOST_FACES];
-    let faces = light.map.iter().flat_map(|map| &map.clip_from_relative);
+    // In the order of the texture's layers. What lies in a face that is left out lies in none.
+    let faces = light.map.iter().flat_map(|map| map.clip_from_relative.iter().zip(&map.faces));
+    let drawn = faces.filter_map(|(face, view)| view.map(|_| face));
     let mut face_count = 0;
-    for (slot, face) in clip_from_relative.iter_mut().zip(faces) {
+    for (slot, face) in clip_from_relative.iter_mut().zip(drawn) {
         *slot = face.to_cols_array();
         face_count += 1;
     }

@@ -10,7 +10,7 @@ impl FramePlan {
     /// and where the plan does not say that it is kept.
     #[must_use]
     pub fn kept_by(&self, id: AttachmentId) -> Option<u64> {
-        let map = self.lights.iter().filter_map(|light| light.map.as_ref()).find(|map| map.attachment == id)?;
+        let map = self.map_in(id)?;
         if !map.is_kept {
             return None;
         }

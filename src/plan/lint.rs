@@ -42,6 +42,11 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<St
             Some(_) => {}
         }
     }
+    let color = pass.color.as_ref().map(|target| (target.attachment, target.layer));
+    let depth = pass.depth_stencil.as_ref().map(|target| (target.attachment, target.layer));
+    if color.into_iter().chain(depth).any(|(id, layer)| plan.held_layer(id, layer).is_none()) {
+        problems.push("it draws a face that its light's map leaves out".to_owned());
+    }
     let has_stencil = pass.depth_stencil.as_ref().is_some_and(|target| {
         plan.attachments.get(target.attachment.0).is_some_and(|attachment| attachment.format.has_stencil_aspect())
     });

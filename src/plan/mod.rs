@@ -14,6 +14,7 @@
 
 mod buffers;
 mod coverage;
+mod held;
 mod image;
 mod kept;
 mod left_out;
@@ -91,17 +92,8 @@ pub struct Attachment {
     pub format: wgpu::TextureFormat,
     /// Width and height in texels.
     pub size: [u32; 2],
-    /// 1, or the faces of a shadow map.
+    /// 1, or the faces of a shadow map; the memory is [`FramePlan::held_layers`].
     pub layers: u32,
-}
-
-impl Attachment {
-    /// Of all its texels.
-    fn bytes(&self) -> u64 {
-        let texels = u64::from(self.size[0]) * u64::from(self.size[1]) * u64::from(self.layers);
-        // Depth32FloatStencil8 has no fixed size; drivers keep four bytes and one.
-        texels * u64::from(self.format.block_copy_size(None).unwrap_or(5))
-    }
 }
 
 /// What an attachment is for.
@@ -460,8 +452,7 @@ impl FramePlan {
                 blobs.extend(mesh.blobs());
             }
         }
-        let attachments = attachments.into_iter().filter_map(|id| self.attachments.get(id.0));
-        attachments.map(Attachment::bytes).sum::<u64>() + blobs.values().sum::<u64>()
+        attachments.into_iter().map(|id| self.attachment_bytes(id)).sum::<u64>() + blobs.values().sum::<u64>()
     }
 
     fn timed_passes(&self) -> impl Iterator<Item = &Pass> {

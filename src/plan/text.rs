@@ -19,7 +19,9 @@ impl Display for FramePlan {
         for (index, attachment) in self.attachments.iter().enumerate() {
             let [width, height] = attachment.size;
             let (name, format, layers) = (&attachment.name, attachment.format, attachment.layers);
-            writeln!(f, "attachment {index}: {name}, {format:?} {width}x{height}, {layers} layer(s)")?;
+            let held = self.held_layers(AttachmentId(index));
+            let left_out = if held < layers { format!(", {held} in memory") } else { String::new() };
+            writeln!(f, "attachment {index}: {name}, {format:?} {width}x{height}, {layers} layer(s){left_out}")?;
         }
         for (index, mesh) in self.meshes.iter().enumerate() {
             let (vertices, triangles) = (mesh.vertices.data().len(), mesh.indices.data().len() / 3);

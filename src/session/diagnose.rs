@@ -1,22 +1,20 @@
 //! Why a frame is wrong: runs it, asks the rules, and runs it again with each mend.
 
+use super::trials::{Judged, Runs, judged, labels_of};
 use super::truth::Traced;
 use super::{CaptureRequest, Fault, Session, SessionError};
-use crate::accuracy::{ErrorCounts, Finding};
+use crate::accuracy::Finding;
 use crate::capture::Capture;
-use crate::diagnosis::facts::{Case, Facts, Sample, Suspicion};
+use crate::diagnosis::facts::{Case, Facts, Sample};
 use crate::diagnosis::mesh_facts::MeshFacts;
-use crate::diagnosis::proof::{Tried, Wrong, judge, ranked};
 use crate::diagnosis::regions::{self, Key, Region};
 use crate::diagnosis::rules::{self, map, planar, projective};
-use crate::diagnosis::{
-    Advice, Cause, CauseFound, Diagnosis, FlagFound, Mend, ObjectChange, Proof, RegionFound, RegionKind, Rest,
-};
+use crate::diagnosis::{Cause, CauseFound, Diagnosis, FlagFound, Mend, ObjectChange, RegionFound, RegionKind, Rest};
 use crate::geometry::light_frame;
 use crate::plan::{FramePlan, Part};
 use crate::progress::Progress;
 use crate::scene::{Light, Object, Scene};
-use crate::technique::{self, Choice, Job, Technique};
+use crate::technique::{self, Choice, Job};
 use crate::truth::Tracer;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
@@ -28,31 +26,13 @@ const SAMPLES: usize = 3;
 const MOST_FLAGS: usize = 8;
 /// Objects of more triangles are taken to darken something without looking, as floors are small.
 const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
-/// Mends that are tried at once, for regions that none of them clears alone.
-const MOST_TOGETHER: usize = 3;
-
 /// A frame that was run.
 struct Run {
     scene: Scene,
     choice: Choice,
     plan: FramePlan,
     capture: Capture,
-    /// By light: a [`Finding`] a pixel.
-    findings: Vec<Vec<u8>>,
-    /// By light: pixels that were darkened twice.
-    too_dark: Vec<Vec<usize>>,
-    error: ErrorCounts,
-    wrong: Wrong,
-}
-
-/// The runs of mends so far; what can't run is kept with the reason.
-struct Runs<'a> {
-    scene: &'a Scene,
-    request: &'a CaptureRequest,
-    fault: Fault<'a>,
-    traced: &'a Traced,
-    progress: &'a Progress,
-    done: Vec<(Mend, Result<Wrong, String>)>,
+    judged: Judged,
 }
 
 impl Session {
@@ -70,7 +50,10 @@ impl Session {
         progress: &Progress,
     ) -> Result<Diagnosis, SessionError> {
         let traced = self.traced(scene, request.size, progress)?;
-        let run = self.run_mended(scene, request, fault, &Mend::default(), &traced)?;
+        let (given, choice, plan) = self.plan_mended(scene, request, fault, &Mend::default())?;
+        let capture = self.capture_plan(&given, &plan)?;
+        let judged = judged(&plan, &traced, &labels_of(&capture), Some(&capture));
+        let run = Run { scene: given, choice, plan, capture, judged };
         let meshes = self.mesh_facts(&run.scene);
         let size = request.size;
         let facts = Facts {
@@ -95,18 +78,18 @@ impl Session {
             }
             let case = self.case(&facts, region)?;
             let suspicions = rules::suspicions(&facts, &case);
-            let causes = self.proven(&mut runs, region, &run.wrong, suspicions)?;
+            let causes = self.proven(&mut runs, region, &run.judged.wrong, suspicions)?;
             told.push(described(&facts, &case, causes, size));
             progress.advance();
         }
-        let advice = self.advice(&mut runs, &told, &run)?;
+        let advice = self.advice(&mut runs, &told, &run.judged.wrong, run.choice.technique())?;
         let lights: Vec<_> = run.scene.lights.iter().map(Light::homogeneous).collect();
         Ok(Diagnosis {
             scene: scene.name.clone(),
             technique: request.choice.technique(),
             settings: request.choice.settings().clone(),
             size,
-            error: run.error,
+            error: run.judged.error,
             // How the mesh of what darkens nothing hangs together is no matter.
             mesh_findings: darkening(&run.scene, &lights)
                 .into_iter()
@@ -137,7 +120,7 @@ impl Session {
     }
 
     /// The fault first, then the mend: what is wrong stays wrong but where the mend changes it.
-    fn plan_mended(
+    pub(super) fn plan_mended(
         &mut self,
         scene: &Scene,
         request: &CaptureRequest,
@@ -155,40 +138,6 @@ impl Session {
         }
         mend.edit(&mut plan, &fresh);
         Ok((given, choice, plan))
-    }
-
-    fn run_mended(
-        &mut self,
-        scene: &Scene,
-        request: &CaptureRequest,
-        fault: Fault,
-        mend: &Mend,
-        traced: &Traced,
-    ) -> Result<Run, SessionError> {
-        let (scene, choice, plan) = self.plan_mended(scene, request, fault, mend)?;
-        let capture = self.capture_plan(&scene, &plan)?;
-        let pixels = request.size[0] as usize * request.size[1] as usize;
-        let (mut findings, mut too_dark, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
-        let mut error = ErrorCounts::default();
-        for (light, captured) in capture.lights.iter().enumerate() {
-            let of_light = match &captured.shadow {
-                Some(labels) => {
-                    let accuracy = traced.compare(light, labels);
-                    error = [error, accuracy.counts].into_iter().sum();
-                    accuracy.findings
-                }
-                None => vec![Finding::NotCompared as u8; pixels],
-            };
-            let is_wrong = |byte: &u8| Finding::from_byte(*byte).is_some_and(Finding::is_wrong);
-            let mut is_wrong: Vec<bool> = of_light.iter().map(is_wrong).collect();
-            let dark: Vec<usize> = planar::too_dark(&plan, &capture, light);
-            let dark: Vec<usize> = dark.into_iter().filter(|index| of_light[*index] == Finding::Agrees as u8).collect();
-            dark.iter().for_each(|index| is_wrong[*index] = true);
-            findings.push(of_light);
-            too_dark.push(dark);
-            wrong.push(is_wrong);
-        }
-        Ok(Run { scene, choice, plan, capture, findings, too_dark, error, wrong: Wrong { lights: wrong } })
     }
 
     fn mesh_facts(&mut self, scene: &Scene) -> Vec<MeshFacts> {
@@ -215,157 +164,6 @@ impl Session {
         }
         Ok(Case { region, samples })
     }
-
-    /// Each suspicion with what its mends have shown, the most likely first.
-    fn proven(
-        &mut self,
-        runs: &mut Runs,
-        region: &Region,
-        before: &Wrong,
-        suspicions: Vec<Suspicion>,
-    ) -> Result<Vec<CauseFound>, SessionError> {
-        let size = runs.request.size;
-        let mut tried = Vec::new();
-        for mut suspicion in suspicions {
-            let mut best: Option<(Mend, Proof, u64)> = None;
-            let mut small: Option<(Mend, u64)> = None;
-            for mend in std::mem::take(&mut suspicion.mends) {
-                let (proof, left) = match self.run_once(runs, &mend)? {
-                    Ok(after) => judge(region, before, &after, size),
-                    Err(because) => {
-                        suspicion.evidence.push_str(&format!(" ({mend} can't be run: {because})"));
-                        continue;
-                    }
-                };
-                if best.as_ref().is_none_or(|(_, of_best, least)| (proof, left) < (*of_best, *least)) {
-                    best = Some((mend.clone(), proof, left));
-                }
-                if proof == Proof::Proven {
-                    break;
-                }
-                let is_smaller = mend.technique.is_none() && proof == Proof::Part;
-                if is_smaller && small.as_ref().is_none_or(|(_, least)| left < *least) {
-                    small = Some((mend, left));
-                }
-            }
-            // What another technique mends wholly, this one may mend nearly.
-            if let (Some((mend, left)), Some((best, ..))) = (small, &best)
-                && best.technique.is_some()
-            {
-                suspicion.evidence.push_str(&format!("; to {mend} leaves {left} of {}", region.pixels.len()));
-            }
-            let (mend, proof, left) = match best {
-                Some((mend, proof, left)) => (Some(mend), proof, Some(left)),
-                None => (None, Proof::NotRun, None),
-            };
-            tried.push(Tried { suspicion, mend, proof, left, together_with: Vec::new() });
-        }
-        if !tried.iter().any(|one| one.proof == Proof::Proven) {
-            self.try_together(runs, region, before, &mut tried)?;
-        }
-        Ok(ranked(tried))
-    }
-
-    /// Several causes may be at work at once: then their mends prove something only together.
-    fn try_together(
-        &mut self,
-        runs: &mut Runs,
-        region: &Region,
-        before: &Wrong,
-        tried: &mut [Tried],
-    ) -> Result<(), SessionError> {
-        let helps = |one: &&Tried| one.proof == Proof::Part;
-        let least = if tried.iter().filter(helps).count() > 1 { Proof::Part } else { Proof::NotIt };
-        let mut members: Vec<usize> =
-            (0..tried.len()).filter(|index| tried[*index].mend.is_some() && tried[*index].proof <= least).collect();
-        members.sort_by_key(|index| (tried[*index].proof, tried[*index].left));
-        members.truncate(MOST_TOGETHER);
-        let mend_of = |index: &usize| tried[*index].mend.clone().unwrap_or_default();
-        let mut pairs = Vec::new();
-        for (at, first) in members.iter().enumerate() {
-            for second in &members[at + 1..] {
-                pairs.push(vec![*first, *second]);
-            }
-        }
-        if members.len() > 2 {
-            pairs.push(members.clone());
-        }
-        for group in pairs {
-            let mends: BTreeSet<Mend> = group.iter().map(mend_of).collect();
-            if mends.len() < group.len() {
-                continue;
-            }
-            let all = mends.iter().fold(Mend::default(), |all, mend| all.and(mend));
-            // What can't be run proves nothing; why, each has said of its own mend.
-            let Ok(after) = self.run_once(runs, &all)? else { continue };
-            let (Proof::Proven, left) = judge(region, before, &after, runs.request.size) else { continue };
-            let causes: Vec<Cause> = group.iter().map(|index| tried[*index].suspicion.cause).collect();
-            for index in group {
-                let one = &mut tried[index];
-                one.together_with = causes.iter().copied().filter(|cause| *cause != one.suspicion.cause).collect();
-                let others: Vec<&str> = one.together_with.iter().map(|cause| cause.name()).collect();
-                let alone = one.left.unwrap_or(0);
-                one.suspicion.evidence.push_str(&format!(
-                    "; mended alone it leaves {alone} wrong pixels, together with {} none",
-                    others.join(" and ")
-                ));
-                (one.proof, one.left) = (Proof::Proven, Some(left));
-            }
-            return Ok(());
-        }
-        Ok(())
-    }
-
-    /// What a mend leaves wrong, or why it can't be run. Each is run once for all regions.
-    fn run_once(&mut self, runs: &mut Runs, mend: &Mend) -> Result<Result<Wrong, String>, SessionError> {
-        if runs.progress.is_cancelled() {
-            return Err(SessionError::Cancelled);
-        }
-        if let Some((_, done)) = runs.done.iter().find(|(of, _)| of == mend) {
-            return Ok(done.clone());
-        }
-        let done = match self.run_mended(runs.scene, runs.request, runs.fault, mend, runs.traced) {
-            Ok(run) => Ok(run.wrong),
-            Err(SessionError::Cancelled) => return Err(SessionError::Cancelled),
-            Err(because) => Err(because.to_string()),
-        };
-        runs.done.push((mend.clone(), done.clone()));
-        Ok(done)
-    }
-
-    /// What leaves the least wrong in the whole frame.
-    fn advice(&mut self, runs: &mut Runs, regions: &[RegionFound], run: &Run) -> Result<Option<Advice>, SessionError> {
-        // Whatever can't be run is no candidate: only what was run is asked below.
-        let before = run.wrong.count();
-        let proven = |region: &RegionFound| {
-            let first = region.causes.iter().filter(|cause| cause.proof == Proof::Proven);
-            let count = 1 + region.causes.first().map_or(0, |cause| cause.together_with.len());
-            let mends = first.take(count).filter_map(|cause| cause.mend.clone());
-            mends.fold(Mend::default(), |all, mend| all.and(&mend))
-        };
-        let all = regions.iter().map(proven).fold(Mend::default(), |all, mend| all.and(&mend));
-        if !all.is_empty() {
-            self.run_once(runs, &all)?.ok();
-        }
-        let is_proven = |region: &RegionFound| region.causes.first().is_some_and(|first| first.proof == Proof::Proven);
-        if !regions.iter().all(is_proven) {
-            // Of what no rule explains, much is right there.
-            self.run_once(runs, &Mend::technique(Technique::Auto))?.ok();
-        }
-        // For who wants to keep the technique: all that its settings can do.
-        self.run_once(runs, &Mend { technique: None, ..all })?.ok();
-        let left = runs.done.iter().filter_map(|(mend, done)| Some((done.as_ref().ok()?.count(), mend.weight(), mend)));
-        let helps: Vec<_> = left.filter(|(left, ..)| *left < before).collect();
-        let least = |keeps: bool| {
-            let asked = helps.iter().filter(|(.., mend)| !keeps || mend.technique.is_none());
-            asked.min_by_key(|(left, weight, _)| (*left, *weight))
-        };
-        let staying = least(true).map(|(left, _, mend)| (*mend, *left));
-        let technique = run.choice.technique();
-        let advice =
-            |(left, _, mend): &(u64, usize, &Mend)| Advice::new(mend, *left, before).or_staying(technique, staying);
-        Ok(least(false).map(advice))
-    }
 }
 
 /// Which objects can darken anything: those that cast, but for floors and the like, of which all that receives lies
@@ -391,7 +189,7 @@ fn darkening(scene: &Scene, lights: &[DVec4]) -> Vec<bool> {
 fn wrong_regions(facts: &Facts, run: &Run) -> Vec<Region> {
     let size = facts.plan.size;
     let mut found = Vec::new();
-    for (light, findings) in run.findings.iter().enumerate() {
+    for (light, findings) in run.judged.findings.iter().enumerate() {
         let key = |(index, byte): (usize, &u8)| {
             let finding = Finding::from_byte(*byte).filter(|finding| finding.is_wrong())?;
             Some(key_of(facts, light, RegionKind::Wrong(finding), crate::accuracy::place(index, size)))
@@ -399,7 +197,7 @@ fn wrong_regions(facts: &Facts, run: &Run) -> Vec<Region> {
         let keys: Vec<Option<Key>> = findings.par_iter().enumerate().map(key).collect();
         found.extend(regions::find(light, keys, size));
         let mut keys = vec![None; findings.len()];
-        for index in &run.too_dark[light] {
+        for index in &run.judged.too_dark[light] {
             keys[*index] = Some(Key { kind: RegionKind::TooDark, caster: None, receiver: None, hint: None });
         }
         found.extend(regions::find(light, keys, size));

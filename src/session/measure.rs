@@ -24,8 +24,6 @@ pub struct Measurement {
     pub size: [u32; 2],
     /// Frames of each that are timed, after a warm-up.
     pub runs: usize,
-    /// Choices whose frame needs more bytes of GPU memory are left out; `None`: none is.
-    pub most_bytes: Option<u64>,
 }
 
 /// How one technique did.
@@ -51,7 +49,8 @@ pub struct Measured {
 impl Session {
     /// Measures every choice on one scene. Frames are timed in turn, so that whatever slows the
     /// machine down for a while slows all alike. Not all are held at once: the larger ones are set up
-    /// anew for each of their frames, outside its time.
+    /// anew for each of their frames, outside its time. Those for which there is no [room](Session::set_room) are left
+    /// out.
     ///
     /// # Errors
     /// A scene that can't be drawn or traced, a lost GPU; [`SessionError::Cancelled`].
@@ -135,7 +134,7 @@ impl Session {
         let plan = technique::plan(Job { scene, size: what.size, choice, cache })?;
         let plan = self.without_unseen(plan)?;
         let (triangles, bytes) = (plan.triangles(), plan.bytes());
-        if what.most_bytes.is_some_and(|most| bytes > most) {
+        if self.room.is_some_and(|most| bytes > most) {
             return Ok(None);
         }
         let ready = self.executor.prepare(&plan)?;

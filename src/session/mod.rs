@@ -14,6 +14,7 @@ mod step_tests;
 mod stress;
 mod stress_steps;
 mod suited;
+mod trials;
 mod truth;
 mod volumes;
 
@@ -120,6 +121,7 @@ pub struct Session {
     traced: Option<Arc<truth::Traced>>,
     /// Of the scene to which a stress case converges.
     limit: Option<Arc<truth::Traced>>,
+    room: Option<u64>,
 }
 
 /// A frame's cost, with and without snapshots.
@@ -140,7 +142,19 @@ impl Session {
     /// No usable adapter, with what to install.
     pub fn new(adapter: Option<&str>) -> Result<Session, SessionError> {
         let context = Context::new(adapter)?;
-        Ok(Session { executor: Executor::new(context), geometry: GeometryCache::default(), traced: None, limit: None })
+        Ok(Session {
+            executor: Executor::new(context),
+            geometry: GeometryCache::default(),
+            traced: None,
+            limit: None,
+            room: None,
+        })
+    }
+
+    /// Bytes of GPU memory that a frame may take which nobody asked to see: a row of a report, a mend that is tried.
+    /// `None`, as at first: what the GPU has. For a GPU whose memory is this program's own.
+    pub fn set_room(&mut self, bytes: Option<u64>) {
+        self.room = bytes;
     }
 
     /// Forgets all that is kept between runs: meshes' edges and planes, buffers, pipelines, the traced scene.

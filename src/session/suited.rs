@@ -23,7 +23,7 @@ impl Session {
             if progress.is_cancelled() {
                 return Err(SessionError::Cancelled);
             }
-            let what = Measurement { choices: vec![choice], size, runs: RUNS, most_bytes: None };
+            let what = Measurement { choices: vec![choice], size, runs: RUNS };
             // With a progress of its own: its steps are not these.
             let measured = match self.measure(scene, &what, &Progress::default()) {
                 Ok(measured) => measured,

@@ -1,11 +1,12 @@
 //! Each cause in scenes of its own.
 
 use super::provoke::{CAUSES, PlanFault, Provocation, provoke, set};
-use super::{diagnose, faults, first, session, told};
+use super::{SMALL, diagnose, faults, first, session, told};
 use std::collections::BTreeSet;
 use stencilscope::diagnosis::{Cause, Diagnosis, MeshTrouble, Proof};
 use stencilscope::plan::Part;
 use stencilscope::scene::builtin;
+use stencilscope::session::CaptureRequest;
 use stencilscope::technique::Technique;
 
 /// Scenes that are looked at until one has wrong pixels.
@@ -133,6 +134,30 @@ fn advice_mends_the_whole_frame() {
         (advice.mend.settings.get("depth").map(String::as_str), advice.wrong_left),
         (Some("reversed-infinite"), 0)
     );
+}
+
+/// A larger map would mend it, but is not tried: what else mends it is.
+#[test]
+fn what_there_is_no_room_for_is_told_and_not_tried() {
+    let mut session = session();
+    let coarse =
+        |seed| Provocation { choice: set(Technique::ShadowMap, &[("size", "32")]), ..provoke(Cause::Aliasing, seed) };
+    let aliases = |one: &Provocation| first(&diagnose(&mut session, one)) == Some(Cause::Aliasing);
+    let provoked = (0..SEEDS).map(coarse).find(aliases).expect("too coarse a map");
+    let larger = CaptureRequest::new(set(Technique::ShadowMap, &[("size", "128")]), SMALL);
+    let too_little = session.plan(&provoked.scene, &larger).expect("a plan").bytes() - 1;
+    let mut told_first = |room| {
+        session.set_room(room);
+        let diagnosis = diagnose(&mut session, &provoked);
+        let first = diagnosis.regions[0].causes[0].clone();
+        assert_eq!((first.cause, first.proof), (Cause::Aliasing, Proof::Proven), "{}", told(&diagnosis));
+        (first.mend.expect("a mend"), first.evidence)
+    };
+    let (mend, evidence) = told_first(None);
+    assert!(mend.settings.contains_key("size") && !evidence.contains("can't be run"), "{mend}: {evidence}");
+    let (mend, evidence) = told_first(Some(too_little));
+    assert_eq!(mend.technique, Some(Technique::ZFail));
+    assert!(evidence.contains("can't be run"), "{evidence}");
 }
 
 /// What meshes are like is told where all casts right, too.

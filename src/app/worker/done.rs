@@ -19,7 +19,9 @@ const TIMED_FRAMES: usize = 5;
 
 /// Bytes that a row of a report may take beyond the frame that is shown, where the GPU's memory is this
 /// program's own: a window that is open for hours shares the machine.
-const MOST_MORE_BYTES: u64 = 128 << 20;
+const MOST_OF_A_ROW: u64 = 128 << 20;
+/// Of a mend that is tried: one at a time, and a shadow map of four times the width shows the most.
+const MOST_OF_A_MEND: u64 = 320 << 20;
 
 /// While rows of a report come and go.
 const GIVE_BACK_EVERY: Duration = Duration::from_millis(500);
@@ -41,6 +43,12 @@ pub(super) struct Done {
 }
 
 impl Done {
+    /// Lets so many bytes more than this frame takes be tried.
+    fn make_room(&self, session: &mut Session, more: u64) {
+        let shares_memory = session.adapter().kind == "cpu";
+        session.set_room(shares_memory.then(|| self.plan.bytes() + more));
+    }
+
     /// The history of a pixel: so quick that nothing has to say it is being done.
     fn history(&self, session: &mut Session, at: [u32; 2]) -> News {
         let history = session.history(&self.plan, &self.capture, at);
@@ -141,6 +149,7 @@ impl Bench {
         let meant = self.last.as_ref().filter(|done| done.frame == frame);
         let result = match (&mut self.session, meant) {
             (Some(session), Some(done)) => {
+                done.make_room(session, MOST_OF_A_MEND);
                 let found = session.diagnose(&done.scene, &done.request, Fault::None, progress);
                 found.map(Arc::new).map_err(|error| error.to_string())
             }
@@ -204,9 +213,8 @@ impl Bench {
             }
             (Some(session), Some(done)) => {
                 let (scene, size) = (done.scene.clone(), done.request.size);
-                let shares_memory = session.adapter().kind == "cpu";
-                let most_bytes = shares_memory.then(|| done.plan.bytes() + MOST_MORE_BYTES);
-                let measurement = Measurement { choices: what.choices, size, runs: what.runs, most_bytes };
+                done.make_room(session, MOST_OF_A_ROW);
+                let measurement = Measurement { choices: what.choices, size, runs: what.runs };
                 let mut given_back = Instant::now();
                 let mut between = |session: &mut Session| {
                     // What one row leaves behind, the next does not fill.

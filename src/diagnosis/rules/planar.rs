@@ -7,7 +7,7 @@ use crate::diagnosis::mend::Mend;
 use crate::history::{Event, Fate, Test, TriangleEvent};
 use crate::math::{Plane, Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{ColorWrite, Draw, FramePlan, Part};
+use crate::plan::{ColorWrite, Draw, FramePlan, Part, Pass};
 use crate::technique::Technique;
 use crate::truth::SeenSurface;
 use glam::{DVec3, DVec4};
@@ -23,12 +23,20 @@ const OFF_PLANE: f64 = 1e-3;
 /// Planes whose normals have a larger cosine are one, as far as single precision tells.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
+/// Does a pass darken what the picture holds?
+pub(crate) fn darkens_in_the_picture(plan: &FramePlan) -> bool {
+    plan.passes.iter().any(is_blend)
+}
+
+fn is_blend(pass: &Pass) -> bool {
+    pass.draws.iter().any(|draw| draw.part == Part::PlanarShadow && draw.raster.color == ColorWrite::Multiply)
+}
+
 /// Pixels that a pass of a light has darkened more than one flattened triangle would, by number.
 pub(crate) fn too_dark(plan: &FramePlan, capture: &Capture, light: usize) -> Vec<usize> {
     let mut found = BTreeSet::new();
     for (index, pass) in plan.passes.iter().enumerate() {
-        let is_blend =
-            pass.draws.iter().any(|draw| draw.part == Part::PlanarShadow && draw.raster.color == ColorWrite::Multiply);
+        let is_blend = is_blend(pass);
         let is_of_light = pass.timed && pass.light.is_some_and(|of| of.0 == light);
         let once = pass.draws.first().map_or(1.0, |draw| f64::from(draw.constants.flat[0]));
         if !is_blend || !is_of_light || index == 0 {

@@ -1,0 +1,258 @@
+//! Mends that are tried: what each leaves wrong, which prove something alone or together, and what that advises.
+
+use super::truth::Traced;
+use super::{CaptureRequest, Fault, Session, SessionError};
+use crate::accuracy::{ErrorCounts, Finding};
+use crate::capture::{Capture, Image};
+use crate::diagnosis::facts::Suspicion;
+use crate::diagnosis::proof::{Tried, Wrong, judge, ranked};
+use crate::diagnosis::regions::Region;
+use crate::diagnosis::rules::planar;
+use crate::diagnosis::{Advice, Cause, CauseFound, Mend, Proof, RegionFound};
+use crate::gpu::GpuError;
+use crate::plan::FramePlan;
+use crate::progress::Progress;
+use crate::scene::Scene;
+use crate::technique::Technique;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// Mends that are tried at once, for regions that none of them clears alone.
+const MOST_TOGETHER: usize = 3;
+
+/// What is wrong in a frame.
+pub(super) struct Judged {
+    /// By light: a [`Finding`] a pixel.
+    pub findings: Vec<Vec<u8>>,
+    /// By light: pixels that were darkened twice.
+    pub too_dark: Vec<Vec<usize>>,
+    pub error: ErrorCounts,
+    pub wrong: Wrong,
+}
+
+/// The runs of mends so far; what can't run is kept with the reason.
+pub(super) struct Runs<'a> {
+    pub scene: &'a Scene,
+    pub request: &'a CaptureRequest,
+    pub fault: Fault<'a>,
+    pub traced: &'a Traced,
+    pub progress: &'a Progress,
+    pub done: Vec<(Mend, Result<Wrong, String>)>,
+}
+
+impl Session {
+    /// What a mend leaves wrong. Only its labels are kept, but of techniques that darken in the picture.
+    fn run_mended(&mut self, runs: &Runs, mend: &Mend) -> Result<Wrong, SessionError> {
+        let (scene, _, plan) = self.plan_mended(runs.scene, runs.request, runs.fault, mend)?;
+        self.check_room(&plan)?;
+        if planar::darkens_in_the_picture(&plan) {
+            let capture = self.capture_plan(&scene, &plan)?;
+            return Ok(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture)).wrong);
+        }
+        let ready = self.executor.prepare(&plan)?;
+        let labels = self.executor.labels(ready)?;
+        Ok(judged(&plan, runs.traced, &labels, None).wrong)
+    }
+
+    fn check_room(&self, plan: &FramePlan) -> Result<(), GpuError> {
+        let needed = plan.bytes();
+        match self.room {
+            Some(most) if needed > most => {
+                let [needed, most] = [needed, most].map(|bytes| format!("{} MiB", bytes >> 20));
+                Err(GpuError::TooLarge { what: "the frame".to_owned(), needed, most })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Each suspicion with what its mends have shown, the most likely first.
+    pub(super) fn proven(
+        &mut self,
+        runs: &mut Runs,
+        region: &Region,
+        before: &Wrong,
+        suspicions: Vec<Suspicion>,
+    ) -> Result<Vec<CauseFound>, SessionError> {
+        let size = runs.request.size;
+        let mut tried = Vec::new();
+        for mut suspicion in suspicions {
+            let mut best: Option<(Mend, Proof, u64)> = None;
+            let mut small: Option<(Mend, u64)> = None;
+            for mend in std::mem::take(&mut suspicion.mends) {
+                let (proof, left) = match self.run_once(runs, &mend)? {
+                    Ok(after) => judge(region, before, &after, size),
+                    Err(because) => {
+                        suspicion.evidence.push_str(&format!(" ({mend} can't be run: {because})"));
+                        continue;
+                    }
+                };
+                if best.as_ref().is_none_or(|(_, of_best, least)| (proof, left) < (*of_best, *least)) {
+                    best = Some((mend.clone(), proof, left));
+                }
+                if proof == Proof::Proven {
+                    break;
+                }
+                let is_smaller = mend.technique.is_none() && proof == Proof::Part;
+                if is_smaller && small.as_ref().is_none_or(|(_, least)| left < *least) {
+                    small = Some((mend, left));
+                }
+            }
+            // What another technique mends wholly, this one may mend nearly.
+            if let (Some((mend, left)), Some((best, ..))) = (small, &best)
+                && best.technique.is_some()
+            {
+                suspicion.evidence.push_str(&format!("; to {mend} leaves {left} of {}", region.pixels.len()));
+            }
+            let (mend, proof, left) = match best {
+                Some((mend, proof, left)) => (Some(mend), proof, Some(left)),
+                None => (None, Proof::NotRun, None),
+            };
+            tried.push(Tried { suspicion, mend, proof, left, together_with: Vec::new() });
+        }
+        if !tried.iter().any(|one| one.proof == Proof::Proven) {
+            self.try_together(runs, region, before, &mut tried)?;
+        }
+        Ok(ranked(tried))
+    }
+
+    /// Several causes may be at work at once: then their mends prove something only together.
+    fn try_together(
+        &mut self,
+        runs: &mut Runs,
+        region: &Region,
+        before: &Wrong,
+        tried: &mut [Tried],
+    ) -> Result<(), SessionError> {
+        let helps = |one: &&Tried| one.proof == Proof::Part;
+        let least = if tried.iter().filter(helps).count() > 1 { Proof::Part } else { Proof::NotIt };
+        let mut members: Vec<usize> =
+            (0..tried.len()).filter(|index| tried[*index].mend.is_some() && tried[*index].proof <= least).collect();
+        members.sort_by_key(|index| (tried[*index].proof, tried[*index].left));
+        members.truncate(MOST_TOGETHER);
+        let mend_of = |index: &usize| tried[*index].mend.clone().unwrap_or_default();
+        let mut pairs = Vec::new();
+        for (at, first) in members.iter().enumerate() {
+            for second in &members[at + 1..] {
+                pairs.push(vec![*first, *second]);
+            }
+        }
+        if members.len() > 2 {
+            pairs.push(members.clone());
+        }
+        for group in pairs {
+            let mends: BTreeSet<Mend> = group.iter().map(mend_of).collect();
+            if mends.len() < group.len() {
+                continue;
+            }
+            let all = mends.iter().fold(Mend::default(), |all, mend| all.and(mend));
+            // What can't be run proves nothing; why, each has said of its own mend.
+            let Ok(after) = self.run_once(runs, &all)? else { continue };
+            let (Proof::Proven, left) = judge(region, before, &after, runs.request.size) else { continue };
+            let causes: Vec<Cause> = group.iter().map(|index| tried[*index].suspicion.cause).collect();
+            for index in group {
+                let one = &mut tried[index];
+                one.together_with = causes.iter().copied().filter(|cause| *cause != one.suspicion.cause).collect();
+                let others: Vec<&str> = one.together_with.iter().map(|cause| cause.name()).collect();
+                let alone = one.left.unwrap_or(0);
+                one.suspicion.evidence.push_str(&format!(
+                    "; mended alone it leaves {alone} wrong pixels, together with {} none",
+                    others.join(" and ")
+                ));
+                (one.proof, one.left) = (Proof::Proven, Some(left));
+            }
+            return Ok(());
+        }
+        Ok(())
+    }
+
+    /// What a mend leaves wrong, or why it can't be run. Each is run once for all regions.
+    fn run_once(&mut self, runs: &mut Runs, mend: &Mend) -> Result<Result<Wrong, String>, SessionError> {
+        if runs.progress.is_cancelled() {
+            return Err(SessionError::Cancelled);
+        }
+        if let Some((_, done)) = runs.done.iter().find(|(of, _)| of == mend) {
+            return Ok(done.clone());
+        }
+        let done = match self.run_mended(runs, mend) {
+            Ok(wrong) => Ok(wrong),
+            Err(SessionError::Cancelled) => return Err(SessionError::Cancelled),
+            Err(because) => Err(because.to_string()),
+        };
+        runs.done.push((mend.clone(), done.clone()));
+        Ok(done)
+    }
+
+    /// What leaves the least wrong in the whole frame.
+    pub(super) fn advice(
+        &mut self,
+        runs: &mut Runs,
+        regions: &[RegionFound],
+        before: &Wrong,
+        technique: Technique,
+    ) -> Result<Option<Advice>, SessionError> {
+        // Whatever can't be run is no candidate: only what was run is asked below.
+        let before = before.count();
+        let proven = |region: &RegionFound| {
+            let first = region.causes.iter().filter(|cause| cause.proof == Proof::Proven);
+            let count = 1 + region.causes.first().map_or(0, |cause| cause.together_with.len());
+            let mends = first.take(count).filter_map(|cause| cause.mend.clone());
+            mends.fold(Mend::default(), |all, mend| all.and(&mend))
+        };
+        let all = regions.iter().map(proven).fold(Mend::default(), |all, mend| all.and(&mend));
+        if !all.is_empty() {
+            self.run_once(runs, &all)?.ok();
+        }
+        let is_proven = |region: &RegionFound| region.causes.first().is_some_and(|first| first.proof == Proof::Proven);
+        if !regions.iter().all(is_proven) {
+            // Of what no rule explains, much is right there.
+            self.run_once(runs, &Mend::technique(Technique::Auto))?.ok();
+        }
+        // For who wants to keep the technique: all that its settings can do.
+        self.run_once(runs, &Mend { technique: None, ..all })?.ok();
+        let left = runs.done.iter().filter_map(|(mend, done)| Some((done.as_ref().ok()?.count(), mend.weight(), mend)));
+        let helps: Vec<_> = left.filter(|(left, ..)| *left < before).collect();
+        let least = |keeps: bool| {
+            let asked = helps.iter().filter(|(.., mend)| !keeps || mend.technique.is_none());
+            asked.min_by_key(|(left, weight, _)| (*left, *weight))
+        };
+        let staying = least(true).map(|(left, _, mend)| (*mend, *left));
+        let advice =
+            |(left, _, mend): &(u64, usize, &Mend)| Advice::new(mend, *left, before).or_staying(technique, staying);
+        Ok(least(false).map(advice))
+    }
+}
+
+pub(super) fn labels_of(capture: &Capture) -> Vec<Option<Arc<Image>>> {
+    capture.lights.iter().map(|light| light.shadow.clone()).collect()
+}
+
+/// Compares labels with the truth; with the capture, also what was darkened in the picture.
+pub(super) fn judged(
+    plan: &FramePlan,
+    traced: &Traced,
+    labels: &[Option<Arc<Image>>],
+    capture: Option<&Capture>,
+) -> Judged {
+    let pixels = plan.size[0] as usize * plan.size[1] as usize;
+    let (mut findings, mut too_dark, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
+    let mut error = ErrorCounts::default();
+    for (light, labels) in labels.iter().enumerate() {
+        let of_light = match labels {
+            Some(labels) => {
+                let accuracy = traced.compare(light, labels);
+                error = [error, accuracy.counts].into_iter().sum();
+                accuracy.findings
+            }
+            None => vec![Finding::NotCompared as u8; pixels],
+        };
+        let is_wrong = |byte: &u8| Finding::from_byte(*byte).is_some_and(Finding::is_wrong);
+        let mut is_wrong: Vec<bool> = of_light.iter().map(is_wrong).collect();
+        let dark = capture.map_or_else(Vec::new, |capture| planar::too_dark(plan, capture, light));
+        let dark: Vec<usize> = dark.into_iter().filter(|index| of_light[*index] == Finding::Agrees as u8).collect();
+        dark.iter().for_each(|index| is_wrong[*index] = true);
+        findings.push(of_light);
+        too_dark.push(dark);
+        wrong.push(is_wrong);
+    }
+    Judged { findings, too_dark, error, wrong: Wrong { lights: wrong } }
+}
