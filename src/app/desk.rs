@@ -160,6 +160,7 @@ impl Desk {
             News::Tests { frame, step, draw, result } if frame == self.frame => {
                 self.inspector.set_tests(step, draw, result);
             }
+            News::MapReaders(found) => self.inspector.set_map_readers(found),
             News::Walls { generation, walls } if generation == self.generation => self.inspector.set_walls(walls),
             // Of a scene or frame that is shown no more.
             News::Walls { .. } => {}
@@ -206,6 +207,10 @@ impl Desk {
             }
             Action::Tests { step, draw } => Order::Tests { frame: self.frame, step, draw },
             Action::Anatomy => Order::Anatomy { frame: self.frame },
+            Action::MapReaders => match self.inspector.map_readers_job() {
+                Some(job) => Order::MapReaders(job),
+                None => return,
+            },
             Action::Walls(request) => {
                 // No step is made before they are known.
                 self.jobs.make_way(&mut self.inspector);

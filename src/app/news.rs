@@ -4,7 +4,7 @@ use crate::anatomy::Anatomy;
 use crate::capture::{Capture, StepTests};
 use crate::diagnosis::Diagnosis;
 use crate::history::PixelHistory;
-use crate::inspector::{ObjectMesh, RunRequest};
+use crate::inspector::{MapReadersFound, ObjectMesh, RunRequest};
 use crate::plan::FramePlan;
 use crate::report::Report;
 use crate::scene::{Scene, Walls};
@@ -129,6 +129,8 @@ pub enum News {
         /// Its anatomy, or why there is none, with the mend.
         anatomy: Result<Arc<Anatomy>, String>,
     },
+    /// Which texel of a light's map each pixel reads.
+    MapReaders(MapReadersFound),
     /// What can't be walked through.
     Walls {
         /// The scene that is meant.

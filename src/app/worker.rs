@@ -198,6 +198,7 @@ impl Bench {
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
             Order::History { frame, at } => return self.history(frame, at),
             Order::Anatomy { frame } => return self.anatomy(frame),
+            Order::MapReaders(job) => return (self.tell)(News::MapReaders(job.find())),
             Order::Walls { generation, request } => return self.walls(generation, &request),
             // Of a scene that is open no more.
             Order::Run { .. } => return,

@@ -16,6 +16,9 @@ use std::sync::Arc;
 /// each mesh.
 const MOST_TRIANGLES_KEPT: usize = 1_000_000;
 
+/// Flattened triangles kept at once, of 96 bytes each; beyond, they are made anew for each plan.
+const MOST_FLATTENED_KEPT: usize = 500_000;
+
 /// What was found out about the meshes planned so far. Planning with a full or an empty cache
 /// gives the same plan.
 #[derive(Debug, Default)]
@@ -83,9 +86,17 @@ impl GeometryCache {
 
     /// A flattened caster: made again only if plane, caster or light changed.
     pub fn flattened(&mut self, what: &Flattened, make: impl FnOnce() -> Vec<[DVec4; 3]>) -> FlattenedTriangles {
-        let (triangles, used) = self.flattened.entry(what.key()).or_insert_with(|| (Arc::new(make()), true));
-        *used = true;
-        triangles.clone()
+        let key = what.key();
+        if let Some((triangles, used)) = self.flattened.get_mut(&key) {
+            *used = true;
+            return triangles.clone();
+        }
+        let triangles = Arc::new(make());
+        let kept: usize = self.flattened.values().map(|(triangles, _)| triangles.len()).sum();
+        if kept + triangles.len() <= MOST_FLATTENED_KEPT {
+            self.flattened.insert(key, (triangles.clone(), true));
+        }
+        triangles
     }
 
     /// The edges of `mesh`, built on first use.

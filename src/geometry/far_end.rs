@@ -10,7 +10,7 @@
 //! are counted along one direction, by exact signs.
 
 use super::{Facings, SilhouetteEdge};
-use crate::math::{Sign, side_of_triangle};
+use crate::math::{AxisBox, Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
 /// A fan's direction goes in through a side of the bounding box at this sine at least.
@@ -48,8 +48,7 @@ impl Fan {
         silhouette: &[SilhouetteEdge],
         light: DVec3,
     ) -> Option<Fan> {
-        let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let AxisBox { low, high } = AxisBox::around(world.iter().copied());
         if let Some(apex) = into_box(low, high, light) {
             return Some(Fan { apex, spheres: 0 });
         }

@@ -5,6 +5,7 @@
 //! of them has outside is not in it, nor is one that has the whole cell beyond the plane through the light
 //! and one of its edges; all others are taken to be in it. So the answer errs to the safe side.
 
+use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
 
 /// How often a cell is halved each way.
@@ -34,8 +35,7 @@ pub fn may_exceed(triangles: &[[DVec3; 3]], light: DVec4, limit: usize) -> bool 
     // At distance 1 from a light that is nowhere: the cone's planes are parallel.
     let flat = |corner: DVec3| DVec3::new(right.dot(corner), up.dot(corner), 1.0);
     let triangles: Vec<[DVec3; 3]> = triangles.iter().map(|corners| corners.map(flat)).collect();
-    let low = triangles.iter().flatten().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = triangles.iter().flatten().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let AxisBox { low, high } = AxisBox::around(triangles.iter().flatten().copied());
     Cell { low: [low.x, low.y], high: [high.x, high.y] }.exceeds(&triangles, limit, MOST_HALVINGS)
 }
 

@@ -7,7 +7,7 @@
 //! far end lie behind every caster: they are compared, not clipped.
 
 use crate::math::depth::{DepthCurve, DepthMapping};
-use crate::math::{Sign, projection, side_of_triangle};
+use crate::math::{AxisBox, Sign, projection, side_of_triangle};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
 /// Half the widest cone that one map covers, in degrees.
@@ -117,10 +117,7 @@ fn orthographic(casters: &[[DVec3; 3]], towards: DVec3, border: f64, is_reversed
     let points = || casters.iter().flatten().copied();
     let forward = -towards;
     let rotation = projection::view_from_world_rotation(forward, projection::some_up_for(forward));
-    let bounds = |points: &mut dyn Iterator<Item = DVec3>| {
-        points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
-    };
-    let (low, high) = bounds(&mut points().map(|point| rotation * point));
+    let AxisBox { low, high } = AxisBox::around(points().map(|point| rotation * point));
     let origin = rotation.transpose() * ((low + high) / 2.0);
     let half = (high - low) / 2.0;
     let least = half.max_element().max(f64::MIN_POSITIVE) * 1e-6;

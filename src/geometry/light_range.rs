@@ -3,7 +3,7 @@
 //! What is outside of the rectangle round a light's sphere is beyond the range. Like all of `reach`, that errs
 //! to the safe side.
 
-use crate::math::projection;
+use crate::math::{AxisBox, projection};
 use crate::scene::Camera;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -65,8 +65,7 @@ pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) 
 /// The GPU rounds places relative to `eye`.
 #[must_use]
 pub fn beyond_range(points: &[DVec3], light: DVec3, range: f64, eye: DVec3) -> Option<f64> {
-    let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let AxisBox { low, high } = AxisBox::around(points.iter().copied());
     let nearest = light.clamp(low.min(high), high.max(low));
     let farthest = points.iter().fold(light.distance(eye), |most, point| most.max(point.distance(eye)));
     let distance = nearest.distance(light) - range - MARGIN * range - ROUNDING * farthest;

@@ -7,7 +7,7 @@
 //! at one that is drawn. The same holds of the parts of one mesh, such as a box in a box.
 
 use super::{EdgeList, Topology};
-use crate::math::Plane;
+use crate::math::{AxisBox, Plane};
 use glam::{DVec3, DVec4};
 
 /// How far inside the umbra a point must be, in parts of the occluder's size, and of the way to the light.
@@ -40,8 +40,7 @@ impl Occluder {
             return None;
         }
         let used = || triangles.iter().flatten().map(|vertex| world[*vertex as usize]);
-        let low = used().fold(DVec3::INFINITY, DVec3::min);
-        let size = (used().fold(DVec3::NEG_INFINITY, DVec3::max) - low).length();
+        let size = AxisBox::around(used()).diagonal();
         let flatness = size * 1e-9;
         let planes: Option<Vec<Plane>> = triangles.iter().map(|corners| plane_of(world, *corners, size)).collect();
         let planes = planes?;
@@ -136,8 +135,9 @@ pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], topology: &Topolog
     for (index, corners) in triangles.iter().enumerate() {
         parts[topology.component_of(index)].push(*corners);
     }
-    let bounds: Vec<[DVec3; 2]> = parts.iter().map(|part| bounds(world, part)).collect();
-    let size = |part: &usize| (bounds[*part][1] - bounds[*part][0]).length();
+    let used = |part: &Vec<[u32; 3]>| AxisBox::around(part.iter().flatten().map(|vertex| world[*vertex as usize]));
+    let bounds: Vec<AxisBox> = parts.iter().map(used).collect();
+    let size = |part: &usize| bounds[*part].diagonal();
     let may_hold = |part: &usize| parts[*part].len() <= Occluder::MOST_TRIANGLES;
     let mut largest: Vec<usize> = (0..parts.len()).filter(may_hold).collect();
     if largest.is_empty() {
@@ -150,8 +150,8 @@ pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], topology: &Topolog
         Some((part, Occluder::new(&vertices, &triangles, &edges)?))
     };
     let holders: Vec<(usize, Occluder)> = largest.into_iter().take(MOST_HOLDERS).filter_map(holder).collect();
-    let is_held = |(part, bounds): (usize, &[DVec3; 2])| {
-        let corners = corners_of(*bounds);
+    let is_held = |(part, bounds): (usize, &AxisBox)| {
+        let corners = bounds.corners();
         holders.iter().any(|(other, holder)| *other != part && holder.darkens_all(&corners, light))
     };
     let held: Vec<bool> = bounds.iter().enumerate().map(is_held).collect();
@@ -159,19 +159,6 @@ pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], topology: &Topolog
         return Vec::new();
     }
     (0..triangles.len()).map(|index| held[topology.component_of(index)]).collect()
-}
-
-/// Lowest and highest corner of the box around some triangles.
-fn bounds(world: &[DVec3], triangles: &[[u32; 3]]) -> [DVec3; 2] {
-    let used = || triangles.iter().flatten().map(|vertex| world[*vertex as usize]);
-    [used().fold(DVec3::INFINITY, DVec3::min), used().fold(DVec3::NEG_INFINITY, DVec3::max)]
-}
-
-fn corners_of([low, high]: [DVec3; 2]) -> [DVec3; 8] {
-    [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| {
-        let of = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
-        DVec3::new(of(0), of(1), of(2))
-    })
 }
 
 /// A part with its own vertices alone.

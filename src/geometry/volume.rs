@@ -19,6 +19,7 @@
 use super::facing::{MIXED, RUN};
 use super::far_end::Fan;
 use super::{Facings, SilhouetteEdge};
+use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -62,11 +63,7 @@ impl Extruder {
     #[must_use]
     pub fn new(world: &[DVec3], light: DVec4, extrusion: Extrusion) -> Extruder {
         let size = match (extrusion, light.w == 0.0) {
-            (Extrusion::Finite(_), true) => {
-                let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-                let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-                (high - low).length()
-            }
+            (Extrusion::Finite(_), true) => AxisBox::around(world.iter().copied()).diagonal(),
             _ => 0.0,
         };
         Extruder { light, extrusion, size }

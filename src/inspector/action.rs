@@ -60,6 +60,8 @@ pub enum Action {
     },
     /// Tell what the frame that is shown is made of in space.
     Anatomy,
+    /// Find which texel of the shown map each pixel reads: [`Inspector::map_readers_job`](super::Inspector::map_readers_job).
+    MapReaders,
     /// Tell what can't be walked through in the scene that would be run so.
     Walls(Box<RunRequest>),
     /// Measure every technique on the open scene.

@@ -95,6 +95,8 @@ impl ExportDialog {
         let stem = format!("{}-{}", capture.scene, capture.technique);
         let name = match kind {
             ExportKind::Picture => format!("{stem}-{}.png", title()?),
+            // Nothing lies over layers side by side.
+            ExportKind::AsShown if state.shown(capture)?.images.len() > 1 => return None,
             ExportKind::AsShown => format!("{stem}-{}-as-shown.png", title()?),
             ExportKind::Data => format!("{stem}-{}.npy", state.shown(capture)?.title),
             ExportKind::Capture => format!("{stem}-capture"),
@@ -144,8 +146,9 @@ pub fn data(state: &mut State, kind: ExportKind) -> Option<ExportData> {
         return Some(ExportData::Data(shown.images));
     }
     let coloring = picture::shown_coloring(state, &shown);
-    if let ([_], ExportKind::AsShown) = (&shown.images[..], kind) {
-        return Some(ExportData::AsShown(Box::new(as_shown::drawing(state, &capture, &shown, coloring))));
+    if kind == ExportKind::AsShown {
+        let is_one = shown.images.len() == 1;
+        return is_one.then(|| ExportData::AsShown(Box::new(as_shown::drawing(state, &capture, &shown, coloring))));
     }
     if let Some((ground, change)) = picture::change_of(state, &capture, &shown) {
         let mut picture = texture::picture(&ground, Coloring::Srgb);
@@ -175,7 +178,11 @@ pub fn menu(ui: &mut Ui, state: &mut State) {
         let dialog = ExportDialog::new(kind, state);
         let button = ui.add_enabled(dialog.is_some(), egui::Button::new(kind.name()));
         let button = button.on_hover_text(kind.explanation());
-        if button.on_disabled_hover_text("There is nothing of this kind to export now").clicked() {
+        let nothing = match kind {
+            ExportKind::AsShown => "Overlays lie over one picture: show one, and not all layers of a light's map",
+            _ => "There is nothing of this kind to export now",
+        };
+        if button.on_disabled_hover_text(nothing).clicked() {
             state.export.dialog = dialog;
             ui.close();
         }

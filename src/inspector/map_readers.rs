@@ -33,6 +33,33 @@ pub struct MapReaders {
     first: Vec<Option<[i16; 3]>>,
 }
 
+/// What readers are found from. That takes tenths of a second, and needs nothing of the window.
+#[derive(Debug, Clone)]
+pub struct MapReadersJob {
+    /// Tells what was asked for from what was asked for before.
+    pub(super) ticket: u64,
+    pub(super) capture: Arc<Capture>,
+    pub(super) plan: Option<Arc<FramePlan>>,
+    pub(super) light: usize,
+}
+
+/// Readers for who asked.
+#[derive(Debug, Clone)]
+pub struct MapReadersFound {
+    pub(super) ticket: u64,
+    /// `None` where the light has no shadow map, or nothing is drawn.
+    pub(super) readers: Option<Arc<MapReaders>>,
+}
+
+impl MapReadersJob {
+    /// Finds them.
+    #[must_use]
+    pub fn find(&self) -> MapReadersFound {
+        let readers = MapReaders::new(&self.capture, self.plan.as_ref(), self.light).map(Arc::new);
+        MapReadersFound { ticket: self.ticket, readers }
+    }
+}
+
 impl MapReaders {
     /// Of the picture after the frame of `plan`; `None` where the light has no shadow map, or nothing is drawn.
     #[must_use]

@@ -111,6 +111,7 @@ pub use diagnosis::{DiagnosisProgress, DiagnosisView};
 pub use dock::Panel;
 pub use draw_level::DrawsState;
 pub use export::{ExportData, ExportKind};
+pub use map_readers::{MapReaders, MapReadersFound, MapReadersJob};
 pub use memory::{Remembered, ThemeChoice};
 pub use meshes::ObjectMesh;
 pub use overlays::Overlay;
@@ -189,6 +190,7 @@ impl Inspector {
         self.state.ask_for_tests(&mut actions);
         self.state.ask_for_history(ui.ctx(), &mut actions);
         self.state.ask_for_anatomy(&mut actions);
+        self.state.ask_for_map_readers(&mut actions);
         actions
     }
 
@@ -382,6 +384,17 @@ impl Inspector {
         if self.state.scene.is_some() {
             self.state.anatomy.answer(anatomy);
         }
+    }
+
+    /// What [`Action::MapReaders`] asks for; `None` while nothing is shown.
+    #[must_use]
+    pub fn map_readers_job(&self) -> Option<MapReadersJob> {
+        Some(self.state.map_tab.readers_job(self.state.capture.clone()?, self.state.plan.clone()))
+    }
+
+    /// Tells which texel each pixel reads. An answer to what was asked for before is dropped.
+    pub fn set_map_readers(&mut self, found: MapReadersFound) {
+        self.state.map_tab.set_readers(found);
     }
 
     /// Tells what can't be walked through in the open scene.

@@ -6,7 +6,7 @@ use super::canvas;
 use super::depth::DepthMeasure;
 use super::format;
 use super::layers::{self, MapContent};
-use super::map_readers::{MapReaders, MapTexel};
+use super::map_readers::{MapReaders, MapReadersFound, MapReadersJob, MapTexel};
 use super::pick_ray;
 use super::picture::{coloring_of, shown_range};
 use super::placement::Placement;
@@ -40,7 +40,7 @@ pub struct MapTab {
     pick: Option<[u32; 2]>,
     /// Whose map.
     light: usize,
-    readers: Option<(usize, Option<Arc<MapReaders>>)>,
+    readers: Readers,
     marked: Option<(MapTexel, Arc<Vec<[u32; 2]>>)>,
     /// What the pointer is over in the small picture.
     over_pixel: Option<[u32; 2]>,
@@ -48,36 +48,93 @@ pub struct MapTab {
     is_shown: bool,
 }
 
+/// Which texel each pixel reads: asked for once for a frame and light, while the tab is shown.
+#[derive(Debug, Default)]
+struct Readers {
+    /// Of the frame and light that are shown now.
+    ticket: u64,
+    /// Whose map it is of.
+    light: usize,
+    stage: Stage,
+}
+
+#[derive(Debug, Default)]
+enum Stage {
+    #[default]
+    NotWanted,
+    Wanted,
+    Asked,
+    Found(Option<Arc<MapReaders>>),
+}
+
+impl Readers {
+    /// What was asked for is of no use any longer.
+    fn forget(&mut self) {
+        self.ticket += 1;
+        self.stage = Stage::NotWanted;
+    }
+
+    fn found(&self) -> Option<&Arc<MapReaders>> {
+        match &self.stage {
+            Stage::Found(readers) => readers.as_ref(),
+            Stage::NotWanted | Stage::Wanted | Stage::Asked => None,
+        }
+    }
+}
+
 impl MapTab {
     /// Another frame is shown.
     pub fn forget_frame(&mut self) {
-        self.readers = None;
+        self.readers.forget();
         self.marked = None;
         self.over_pixel = None;
     }
 
-    /// Which texel each pixel reads, made once for a frame and light.
-    fn readers(&mut self, capture: &Capture, plan: Option<&Arc<FramePlan>>) -> Option<Arc<MapReaders>> {
-        // Those of another frame were dropped when it came.
-        if let Some((_, readers)) = self.readers.as_ref().filter(|(light, _)| *light == self.light) {
-            return readers.clone();
+    /// Which texel each pixel reads; `None` while that is not known.
+    fn readers(&mut self) -> Option<Arc<MapReaders>> {
+        if self.readers.light != self.light {
+            self.readers.forget();
+            self.readers.light = self.light;
+            self.marked = None;
         }
-        let readers = MapReaders::new(capture, plan, self.light).map(Arc::new);
-        self.readers = Some((self.light, readers.clone()));
-        self.marked = None;
-        readers
+        if matches!(self.readers.stage, Stage::NotWanted) {
+            self.readers.stage = Stage::Wanted;
+        }
+        self.readers.found().cloned()
+    }
+
+    /// True once for a frame and light, if the tab was shown.
+    pub fn ask_for_readers(&mut self) -> bool {
+        let asks = matches!(self.readers.stage, Stage::Wanted);
+        if asks {
+            self.readers.stage = Stage::Asked;
+        }
+        asks
+    }
+
+    /// What is asked for.
+    #[must_use]
+    pub fn readers_job(&self, capture: Arc<Capture>, plan: Option<Arc<FramePlan>>) -> MapReadersJob {
+        MapReadersJob { ticket: self.readers.ticket, capture, plan, light: self.readers.light }
+    }
+
+    /// The answer; one to what was asked for before is dropped.
+    pub fn set_readers(&mut self, found: MapReadersFound) {
+        if found.ticket == self.readers.ticket {
+            self.readers.stage = Stage::Found(found.readers);
+        }
     }
 
     /// The texel that a pixel reads, where the tab was shown.
     #[must_use]
     pub fn texel_of(&self, pixel: [u32; 2]) -> Option<MapTexel> {
-        self.readers.as_ref().and_then(|(_, readers)| readers.as_ref()?.texel_of(pixel))
+        self.readers.found()?.texel_of(pixel)
     }
 
     /// The depth that the map is compared with at a pixel, where the tab was shown.
     #[must_use]
     pub fn depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
-        self.readers.as_ref().and_then(|(_, readers)| readers.as_ref()?.depth_of(pixel))
+        self.readers.found()?.depth_of(pixel)
     }
 
     /// The pixels that read a texel, found once.
@@ -126,8 +183,7 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
     state.map_tab.is_shown = true;
     state.map_tab.view.kind = PictureKind::Map;
     state.map_tab.view.light = state.map_tab.light;
-    let plan = state.plan.clone();
-    let readers = state.map_tab.readers(&capture, plan.as_ref());
+    let readers = state.map_tab.readers();
     let read = |pixel: Option<[u32; 2]>| pixel.and_then(|pixel| readers.as_ref()?.texel_of(pixel));
     let of_pick = read(state.pick);
     let map_faces = layers::layers(&capture, state.map_tab.light).len();
@@ -362,6 +418,9 @@ fn facts(ui: &mut Ui, state: &mut State, capture: &Capture, links: &Links) {
     ui.add_space(4.0);
     let light = state.map_tab.light;
     let Some(map) = capture.lights.get(light).and_then(|light| light.map.as_ref()) else { return };
+    if matches!(state.map_tab.readers.stage, Stage::Wanted | Stage::Asked) {
+        ui.label(theme::note("Finding which texel each pixel reads…"));
+    }
     let Some(texel) = links.texel else {
         ui.add(egui::Label::new(theme::note("Point at a texel, or at a pixel of the small picture.")).wrap());
         return;
@@ -369,12 +428,13 @@ fn facts(ui: &mut Ui, state: &mut State, capture: &Capture, links: &Links) {
     let [x, y] = texel.at;
     let name = layers::layers(capture, light).get(texel.face).map_or_else(String::new, |layer| layer.full_name.clone());
     theme::heading(ui, &format!("Texel {x}, {y}"));
-    let readers = match links.pixels.len() {
-        0 => "No pixel reads it.".to_owned(),
-        1 => "1 pixel reads it.".to_owned(),
-        count => format!("{} pixels read it.", format::count(count as u64)),
-    };
-    ui.label(readers);
+    if links.readers.is_some() {
+        ui.label(match links.pixels.len() {
+            0 => "No pixel reads it.".to_owned(),
+            1 => "1 pixel reads it.".to_owned(),
+            count => format!("{} pixels read it.", format::count(count as u64)),
+        });
+    }
     egui::Grid::new("texel facts").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
         for (what, value) in values(capture, light, map, texel, links, name) {
             ui.label(theme::note(what));

@@ -284,6 +284,13 @@ impl State {
         }
     }
 
+    /// Asks which texel each pixel reads, where the tab that shows it is open.
+    pub fn ask_for_map_readers(&mut self, actions: &mut Vec<Action>) {
+        if self.capture.is_some() && self.map_tab.ask_for_readers() {
+            actions.push(Action::MapReaders);
+        }
+    }
+
     /// Tells how far the truth of the shown frame is.
     pub fn set_truth(&mut self, truth: TruthState) {
         if matches!(truth, TruthState::Cancelled | TruthState::Failed(_)) {

@@ -178,7 +178,7 @@ fn detail(ui: &mut Ui, state: &State, case: &'static Case, actions: &mut Vec<Act
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::note(format!("Open at {}:", if case.parameter.is_empty() { "value" } else { case.parameter })));
-        for value in offered(case.values) {
+        for value in offered(&case.light_values()) {
             let button = ui.button(theme::number(value_text(value)));
             if button.on_hover_text("Open this scene in the window").clicked() {
                 actions.push(Action::OpenStress { case: case.name, value, entrant: None });
@@ -188,7 +188,7 @@ fn detail(ui: &mut Ui, state: &State, case: &'static Case, actions: &mut Vec<Act
     if let Some(most) = case.heavy_above {
         let (most, name) = (value_text(most), case.name);
         let text = format!(
-            "Runs up to {most} here: with more, a row takes seconds and gigabytes. `stencilscope stress --case {name}` runs all."
+            "Runs and opens up to {most} here: with more, a row takes seconds and gigabytes. `stencilscope stress --case {name}` runs all."
         );
         ui.add(egui::Label::new(theme::note(text)).wrap());
     }
@@ -237,7 +237,7 @@ fn table_row(ui: &mut Ui, case: &'static Case, summary: &Summary, actions: &mut 
     if response.on_hover_text(hover).clicked() {
         let surprise = summary.surprise.map(|(at, _)| at);
         let breaks = surprise.or(summary.breaks_at).or(summary.blurred_at);
-        let value = breaks.or(case.values.last().copied()).unwrap_or_default();
+        let value = breaks.or(case.light_values().last().copied()).unwrap_or_default();
         actions.push(Action::OpenStress { case: case.name, value, entrant: Some(summary.entrant) });
     }
     if let Some(course) = &summary.course {

@@ -5,10 +5,12 @@
 //! it joins, target first, so that `a_from_b * b_from_c = a_from_c` reads right. A light is a
 //! homogeneous point: `w = 1` a point light, `w = 0` the direction towards a directional one.
 
+mod axis_box;
 pub mod depth;
 mod exact;
 mod plane;
 pub mod projection;
 
+pub use axis_box::AxisBox;
 pub use exact::{Sign, side_of_line, side_of_triangle, sign_of_sum};
 pub use plane::Plane;

@@ -3,6 +3,7 @@
 //! Each box is halved at the median of its triangles along its longest axis, so a tree of `n` triangles is
 //! about `log2 n` deep whatever their sizes.
 
+use crate::math::AxisBox;
 use glam::DVec3;
 
 /// Triangles of a box that is halved no further.
@@ -56,14 +57,14 @@ impl WallTree {
 
     /// Adds the node of a run of the triangles that begins at `first`, with those below it.
     fn grow(&mut self, triangles: &mut [Wall], first: usize) {
-        let (low, high) = bounds(triangles.iter().flatten().copied());
+        let AxisBox { low, high } = AxisBox::around(triangles.iter().flatten().copied());
         let index = self.nodes.len();
         let count = triangles.len();
         self.nodes.push(Node { low, high, holds: Holds::Triangles(first as u32, (first + count) as u32) });
         if count <= FEW {
             return;
         }
-        let (low, high) = bounds(triangles.iter().map(middle));
+        let AxisBox { low, high } = AxisBox::around(triangles.iter().map(middle));
         let size = high - low;
         let axis = if size.x >= size.y && size.x >= size.z { 0 } else { 1 + usize::from(size.z > size.y) };
         let half = count / 2;
@@ -104,10 +105,6 @@ impl WallTree {
         }
         false
     }
-}
-
-fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
-    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| (low.min(point), high.max(point)))
 }
 
 /// Three times the middle of a triangle.

@@ -40,7 +40,7 @@ impl StressSteps {
     /// Without those rows that take many seconds and gigabytes: for where other work waits between two.
     #[must_use]
     pub fn without_heavy(mut self) -> StressSteps {
-        self.left.retain(|(_, step)| step.case.heavy_above.is_none_or(|most| step.value <= most));
+        self.left.retain(|(_, step)| step.case.is_light(step.value));
         self
     }
 

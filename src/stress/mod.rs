@@ -160,6 +160,18 @@ impl Case {
         cases::all().find(|case| case.name == name)
     }
 
+    /// Is a row at this value quick and small enough to share a machine with other work?
+    #[must_use]
+    pub fn is_light(&self, value: f64) -> bool {
+        self.heavy_above.is_none_or(|most| value <= most)
+    }
+
+    /// The values at which it is.
+    #[must_use]
+    pub fn light_values(&self) -> Vec<f64> {
+        self.values.iter().copied().filter(|value| self.is_light(*value)).collect()
+    }
+
     /// Who runs, in the order of the table.
     #[must_use]
     pub fn entrants(&self) -> Vec<Entrant> {

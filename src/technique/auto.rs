@@ -23,6 +23,7 @@ use super::volume::{Counting, Form};
 use super::{PlanError, ReportRows, volume};
 use crate::geometry::umbra::{self, Occluder};
 use crate::geometry::{NearClipVolume, Outside, ViewVolume, layers};
+use crate::math::AxisBox;
 use crate::numbers;
 use crate::plan::{FramePlan, LeftOut, LightId};
 use glam::{DVec3, DVec4};
@@ -127,7 +128,7 @@ impl Questions {
     /// A caster whose umbra holds all of another.
     fn holder(&self, frame: &Frame, index: usize) -> Option<usize> {
         let world = &frame.placed[index].world;
-        let corners: Vec<DVec3> = box_corners(world).collect();
+        let corners = AxisBox::around(world.iter().copied()).corners();
         let holds = |occluder: &Option<Occluder>| {
             occluder.as_ref().is_some_and(|occluder| occluder.darkens_all(&corners, self.position))
         };
@@ -184,15 +185,8 @@ fn relative(position: DVec4, eye: DVec3) -> DVec4 {
 
 /// Points whose hull holds a caster.
 pub fn outline(world: &[DVec3]) -> Box<dyn Iterator<Item = DVec3> + '_> {
-    if world.len() <= MOST_VERTICES_TO_LOOK_AT { Box::new(world.iter().copied()) } else { Box::new(box_corners(world)) }
-}
-
-fn box_corners(world: &[DVec3]) -> impl Iterator<Item = DVec3> + use<> {
-    let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let count = if world.is_empty() { 0 } else { 8 };
-    (0..count).map(move |corner| {
-        let of = |bit: u32, low: f64, high: f64| if corner & bit == 0 { low } else { high };
-        DVec3::new(of(1, low.x, high.x), of(2, low.y, high.y), of(4, low.z, high.z))
-    })
+    if world.len() <= MOST_VERTICES_TO_LOOK_AT {
+        return Box::new(world.iter().copied());
+    }
+    Box::new(AxisBox::around(world.iter().copied()).corners().into_iter())
 }

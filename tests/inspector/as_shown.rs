@@ -1,10 +1,12 @@
 //! The shown picture with overlays and the compared half as a file, read back.
 
-use super::by_hand::z_fail;
+use super::by_hand::{layered, z_fail};
 use super::{SIZE, Seen, click_button, harness, harness_of, inspector, press};
 use crate::common;
 use egui::Key;
+use egui::accesskit::Role;
 use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
 use std::sync::Arc;
 use stencilscope::capture::{Image, PixelFormat, StepTests};
 use stencilscope::inspector::{Action, ExportData, ExportKind, Overlay, PictureKind, ThemeChoice};
@@ -103,6 +105,22 @@ fn tints_of_overlays_are_in_it() {
             .map(|channel| (0.62 * f32::from(PASSED[channel]) + 0.38 * f32::from(count[channel])).round() as u8);
         assert!(is_near(shown.at([x, 4]), mixed, 2), "{:?} is not {mixed:?}", shown.at([x, 4]));
     }
+}
+
+/// Overlays lie over one picture; of all layers of a map side by side there is nothing to export so.
+#[test]
+fn all_layers_of_a_map_have_none() {
+    let mut harness = harness(layered("projective", "silhouette"));
+    click_button(&mut harness, "Silhouettes");
+    let exported = |harness: &mut Harness<Seen>, kind| harness.state_mut().inspector.export(kind);
+    assert!(exported(&mut harness, ExportKind::AsShown).is_none());
+    assert!(exported(&mut harness, ExportKind::Picture).is_some());
+    click_button(&mut harness, "Export");
+    let entry = harness.get_by_role_and_label(Role::Button, "Picture with overlays (PNG)…");
+    assert!(entry.accesskit_node().is_disabled());
+    press(&mut harness, Key::Escape);
+    click_button(&mut harness, "Layer 3");
+    assert!(exported(&mut harness, ExportKind::AsShown).is_some());
 }
 
 #[test]

@@ -74,8 +74,16 @@ fn inspector(capture: Capture) -> Inspector {
 fn harness_of(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
     let seen = Seen { inspector, actions: Vec::new() };
     let ui = |ui: &mut egui::Ui, seen: &mut Seen| {
-        let actions = seen.inspector.ui(ui);
-        seen.actions.extend(actions);
+        for action in seen.inspector.ui(ui) {
+            match action {
+                // As the worker answers it.
+                Action::MapReaders => {
+                    let found = seen.inspector.map_readers_job().expect("a frame").find();
+                    seen.inspector.set_map_readers(found);
+                }
+                action => seen.actions.push(action),
+            }
+        }
     };
     let mut harness = Harness::builder().with_size(size).with_max_steps(32).build_ui_state(ui, seen);
     harness.run_steps(3);

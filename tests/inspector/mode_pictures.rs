@@ -53,7 +53,7 @@ const SHADOW_MAP: [(&str, View); 2] = [
     ("depth", |harness| harness.state_mut().inspector.set_picture_kind(PictureKind::Depth)),
     ("map", |harness| {
         harness.get_by_role_and_label(Role::Tab, "Shadow map").click();
-        harness.run_steps(2);
+        harness.run_steps(3);
         click_button(harness, "Show the picked pixel's texel");
     }),
 ];

@@ -1,7 +1,7 @@
 //! The shadow map tab: texels and the pixels that read them, each way.
 
 use super::by_hand::z_fail;
-use super::{SIZE, Seen, harness, harness_of, inspector, mouse};
+use super::{SIZE, Seen, click_button, harness, harness_of, inspector, mouse};
 use crate::common;
 use egui::PointerButton;
 use egui::accesskit::Role;
@@ -16,7 +16,8 @@ use stencilscope::technique::Technique;
 
 fn open_tab(harness: &mut Harness<Seen>) {
     harness.get_by_role_and_label(Role::Tab, "Shadow map").click();
-    harness.run_steps(2);
+    // It asks for what it shows.
+    harness.run_steps(3);
 }
 
 /// A map of 4 × 4 texels that looks the way the camera looks, over a wall at distance 1 that fills the
@@ -134,8 +135,7 @@ fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
             println!("{name}, {settings:?}, run: {is_run}: {agree} of {all} agree, {moved} read another texel");
             assert!(all > 1_000 && f64::from(agree) >= least * f64::from(all), "{name}: {agree} of {all}");
             unlike += if is_run { moved } else { 0 };
-            harness.get_by_label("Show the picked pixel's texel").click();
-            harness.run_steps(2);
+            click_button(&mut harness, "Show the picked pixel's texel");
             super::pictures::draw(
                 &mut harness,
                 folder.as_deref(),

@@ -108,6 +108,21 @@ fn any_value_opens_as_a_scene_and_an_error_is_said() {
     assert_eq!(harness.state().actions, [expected]);
 }
 
+/// A million triangles take more than a gigabyte where the GPU's memory is the window's own.
+#[test]
+fn what_takes_gigabytes_is_not_opened_by_a_click() {
+    let case = Case::named("triangle-count").expect("a case");
+    let [light, heavy] = [case.light_values().last(), case.values.last()].map(|value| *value.expect("values"));
+    assert!(light < heavy);
+    let mut harness = showing(|_| ());
+    select(&mut harness, case.name);
+    harness.get_by_label_contains("Runs and opens up to");
+    assert!(harness.query_by_role_and_label(Role::Button, &stress::value_text(heavy)).is_none());
+    click_button(&mut harness, &stress::value_text(light));
+    let expected = Action::OpenStress { case: case.name, value: light, entrant: None };
+    assert_eq!(harness.state().actions, [expected]);
+}
+
 #[test]
 fn what_is_unexpected_opens_and_a_course_is_told() {
     // Wrong at 256 is known, at 600 it is not.

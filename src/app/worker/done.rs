@@ -83,6 +83,7 @@ impl Done {
     /// about a frame that is shown no more.
     fn obey_short(&mut self, session: &mut Session, order: &Order) -> Option<News> {
         match *order {
+            Order::MapReaders(ref job) => Some(News::MapReaders(job.find())),
             Order::History { frame, at } if frame == self.frame => Some(self.history(session, at)),
             Order::Draws { frame, step } if frame == self.frame => Some(self.fill_draws(session, step)),
             Order::Anatomy { frame } if frame == self.frame => Some(self.anatomy(session)),

@@ -374,7 +374,7 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
 
 #[test]
 fn walls_are_those_of_the_scene_as_it_would_be_run() {
-    let (worker, _, news) = started();
+    let (worker, frame, news) = started();
     let mut scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
     let walls = |generation: u64, off: std::ops::Range<usize>| {
         let request = RunRequest {
@@ -390,6 +390,11 @@ fn walls_are_those_of_the_scene_as_it_would_be_run() {
     let told = || wait(&news, |news| if let News::Walls { walls, .. } = news { Some(walls) } else { None });
     // Of a scene that is open no more nothing is told.
     walls(0, 0..0);
+    assert!(worker.order(Order::History { frame, at: [0, 0] }));
+    wait(&news, |news| {
+        assert!(!matches!(news, News::Walls { .. }), "they come before what was asked after them");
+        matches!(news, News::History { .. }).then_some(())
+    });
     walls(1, 0..0);
     assert_eq!(*told(), WallCache::default().walls(&scene));
     walls(1, 1..scene.objects.len());

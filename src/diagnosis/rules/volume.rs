@@ -5,6 +5,7 @@ use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount, list
 use crate::diagnosis::mend::{Mend, PlanEdit};
 use crate::geometry::ViewVolume;
 use crate::history::Fate;
+use crate::math::AxisBox;
 use crate::numbers;
 use crate::plan::{Clip, Draw, Part};
 use crate::technique::Technique;
@@ -282,10 +283,7 @@ fn finite_extrusion(facts: &Facts, case: &Case) -> Option<Suspicion> {
 /// The diagonal of an object's bounding box, world space.
 fn size_of(facts: &Facts, name: &str) -> f64 {
     let Some((_, object)) = facts.object(name) else { return 0.0 };
-    let world = object.world_positions();
-    let low = world.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = world.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    (high - low).length()
+    AxisBox::around(object.world_positions()).diagonal()
 }
 
 fn cap_fighting(_: &Facts, case: &Case) -> Option<Suspicion> {

@@ -334,7 +334,8 @@ const TRIANGLE_COUNT: Case = Case {
         (EDGE_LIST, 1e4, "every edge is searched for: with more it is refused"),
         (PLANAR, 1e5, "each triangle is a receiver: a million take half a minute"),
     ],
-    heavy_above: Some(1e5),
+    // A hundred thousand, flattened onto as many planes as have shadows, are a gigabyte.
+    heavy_above: Some(1e4),
     // For ten times as many, n log n is a factor of twelve to fourteen, and n squared one of a hundred.
     trend: Some(Trend::Grows(32.0)),
     ..PLAIN

@@ -1,0 +1,51 @@
+//! The box along the axes around some points.
+
+use glam::DVec3;
+
+/// A box whose sides lie along the axes. Around no point it is empty: lower than it is high nowhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisBox {
+    /// The lowest corner.
+    pub low: DVec3,
+    /// The highest corner.
+    pub high: DVec3,
+}
+
+impl AxisBox {
+    /// The smallest box that holds all points.
+    #[must_use]
+    pub fn around(points: impl IntoIterator<Item = DVec3>) -> AxisBox {
+        let none = AxisBox { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+        points.into_iter().fold(none, |all, point| AxisBox { low: all.low.min(point), high: all.high.max(point) })
+    }
+
+    /// Its length from corner to corner; infinite around no point.
+    #[must_use]
+    pub fn diagonal(&self) -> f64 {
+        (self.high - self.low).length()
+    }
+
+    /// Its eight corners.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 8] {
+        [0, 1, 2, 3, 4, 5, 6, 7].map(|corner| {
+            let of = |axis: usize| if corner >> axis & 1 == 0 { self.low[axis] } else { self.high[axis] };
+            DVec3::new(of(0), of(1), of(2))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn its_corners_are_the_box_around_its_points() {
+        let points = [DVec3::new(1.0, -2.0, 3.0), DVec3::new(-1.0, 5.0, 3.0)];
+        let found = AxisBox::around(points);
+        assert_eq!((found.low, found.high), (DVec3::new(-1.0, -2.0, 3.0), DVec3::new(1.0, 5.0, 3.0)));
+        assert_eq!(AxisBox::around(found.corners()), found);
+        assert_eq!(found.diagonal(), 53.0_f64.sqrt());
+        assert_eq!(AxisBox::around([]).diagonal(), f64::INFINITY);
+    }
+}
