@@ -92,9 +92,10 @@ pub fn ui(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(LIST_WIDTH, size.y), Layout::top_down(Align::Min), |ui| {
             let scroll = ScrollArea::vertical().id_salt("stress cases").auto_shrink([false, false]);
-            scroll.show_rows(ui, ROW, all.len(), |ui, rows| {
-                for index in rows {
-                    list_row(ui, state, all[index], index);
+            // All of them, that the keyboard reaches those out of sight.
+            scroll.show(ui, |ui| {
+                for (index, case) in all.iter().enumerate() {
+                    list_row(ui, state, case, index);
                 }
             });
         });
@@ -160,6 +161,9 @@ fn list_row(ui: &mut Ui, state: &mut State, case: &Case, index: usize) {
     response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, &name));
     if response.clicked() {
         state.stress.selected = index;
+    }
+    if response.gained_focus() {
+        response.scroll_to_me(None);
     }
     theme::row_background(ui, rect, is_selected, &response);
     let font = TextStyle::Small.resolve(ui.style());
