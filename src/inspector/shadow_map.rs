@@ -74,6 +74,10 @@ impl Readers {
         self.stage = Stage::NotWanted;
     }
 
+    fn is_waited_for(&self) -> bool {
+        matches!(self.stage, Stage::Wanted | Stage::Asked)
+    }
+
     fn found(&self) -> Option<&Arc<MapReaders>> {
         match &self.stage {
             Stage::Found(readers) => readers.as_ref(),
@@ -189,7 +193,11 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
     let map_faces = layers::layers(&capture, state.map_tab.light).len();
     let is_chosen = matches!(state.map_tab.view.face, FaceChoice::One(face) if face < map_faces);
     if !is_chosen {
-        state.map_tab.view.face = FaceChoice::One(of_pick.map_or(0, |texel| texel.face));
+        // The first is shown until it is known which one the picked pixel reads.
+        state.map_tab.view.face = match state.map_tab.readers.is_waited_for() {
+            true => FaceChoice::Grid,
+            false => FaceChoice::One(of_pick.map_or(0, |texel| texel.face)),
+        };
     }
     tools(ui, state, &capture, &lights);
     let rect = ui.available_rect_before_wrap();
@@ -418,7 +426,7 @@ fn facts(ui: &mut Ui, state: &mut State, capture: &Capture, links: &Links) {
     ui.add_space(4.0);
     let light = state.map_tab.light;
     let Some(map) = capture.lights.get(light).and_then(|light| light.map.as_ref()) else { return };
-    if matches!(state.map_tab.readers.stage, Stage::Wanted | Stage::Asked) {
+    if state.map_tab.readers.is_waited_for() {
         ui.label(theme::note("Finding which texel each pixel reads…"));
     }
     let Some(texel) = links.texel else {

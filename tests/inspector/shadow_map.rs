@@ -4,9 +4,9 @@ use super::by_hand::z_fail;
 use super::{SIZE, Seen, click_button, harness, harness_of, inspector, mouse};
 use crate::common;
 use egui::PointerButton;
-use egui::accesskit::Role;
+use egui::accesskit::{Role, Toggled};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use glam::{DMat4, DVec3};
 use std::sync::Arc;
 use stencilscope::capture::{Capture, CapturedMap, Image, PixelFormat};
@@ -131,6 +131,14 @@ fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
             plan.into_iter().for_each(|plan| inspector.set_plan(plan));
             let mut harness = harness_of(inspector, [1280.0, 800.0]);
             open_tab(&mut harness);
+            // The face that the picked pixel reads is shown, though that is found out later.
+            let (face, _) = harness.state().inspector.map_texel_of([80, 45]).expect("a texel");
+            let is_shown = |face: usize| {
+                let names = ["+x", "−x", "+y", "−y", "+z", "−z"];
+                let button = harness.query_by_role_and_label(Role::Button, names[face]);
+                button.is_none_or(|button| button.accesskit_node().toggled() == Some(Toggled::True))
+            };
+            assert!(is_shown(face), "{name}: face {face}");
             let (agree, all, moved) = agreement(&harness, &capture);
             println!("{name}, {settings:?}, run: {is_run}: {agree} of {all} agree, {moved} read another texel");
             assert!(all > 1_000 && f64::from(agree) >= least * f64::from(all), "{name}: {agree} of {all}");
