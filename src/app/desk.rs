@@ -8,6 +8,7 @@ use super::jobs::Jobs;
 use super::memory;
 use super::news::{News, Tell, WindowNews};
 use super::orders::Order;
+use super::readers::Readers;
 use super::watch::Watch;
 use super::worker::{Start, Worker};
 use super::{AppError, ViewRequest};
@@ -39,6 +40,7 @@ pub struct Desk {
     /// Of the frame that is shown.
     frame: u64,
     jobs: Jobs,
+    readers: Readers,
     /// Files of the open scene; `None` where nothing is remembered or watched.
     watch: Option<Watch>,
     /// What is selected when the first capture comes.
@@ -83,6 +85,7 @@ impl Desk {
             generation: 0,
             frame: 0,
             jobs: Jobs::default(),
+            readers: Readers::default(),
             watch,
             first_step: request.step,
             first_pick: request.pick,
@@ -103,6 +106,11 @@ impl Desk {
             WindowNews::Chosen(path) => self.act(Action::Open(path)),
             WindowNews::ChosenExport(path) => self.inspector.set_export_path(path),
             WindowNews::Exported(exported) => self.end_export(exported),
+            WindowNews::MapReaders(found) => {
+                self.inspector.set_map_readers(found);
+                let next = self.readers.go_on(&self.tell);
+                self.say_if_failed(next);
+            }
             WindowNews::FileChanged(file) => self.inspector.offer_reload(file),
             WindowNews::Repaint(_) | WindowNews::Access(_) => {}
         }
@@ -160,7 +168,6 @@ impl Desk {
             News::Tests { frame, step, draw, result } if frame == self.frame => {
                 self.inspector.set_tests(step, draw, result);
             }
-            News::MapReaders(found) => self.inspector.set_map_readers(found),
             News::Walls { generation, walls } if generation == self.generation => self.inspector.set_walls(walls),
             // Of a scene or frame that is shown no more.
             News::Walls { .. } => {}
@@ -175,6 +182,18 @@ impl Desk {
             News::StressEnded { job, error } => self.jobs.end_stress(job, error, &mut self.inspector),
             News::Failed(reason) => self.inspector.push_failure(reason),
         }
+    }
+
+    fn say_if_failed(&mut self, begun: std::io::Result<()>) {
+        if let Err(error) = begun {
+            self.inspector
+                .push_error(format!("no pixel can be linked with its texel now: {error}; open the tab again"));
+        }
+    }
+
+    /// Is anything found out of which nobody says that it is?
+    pub fn is_finding(&self) -> bool {
+        self.readers.is_running()
     }
 
     fn show(&mut self, capture: Arc<Capture>) {
@@ -207,10 +226,11 @@ impl Desk {
             }
             Action::Tests { step, draw } => Order::Tests { frame: self.frame, step, draw },
             Action::Anatomy => Order::Anatomy { frame: self.frame },
-            Action::MapReaders => match self.inspector.map_readers_job() {
-                Some(job) => Order::MapReaders(job),
-                None => return,
-            },
+            Action::MapReaders => {
+                let Some(job) = self.inspector.map_readers_job() else { return };
+                let begun = self.readers.find(job, &self.tell);
+                return self.say_if_failed(begun);
+            }
             Action::Walls(request) => {
                 // No step is made before they are known.
                 self.jobs.make_way(&mut self.inspector);

@@ -17,6 +17,7 @@ mod jobs;
 mod memory;
 mod news;
 mod orders;
+mod readers;
 mod surface;
 mod watch;
 mod window;

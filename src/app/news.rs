@@ -129,8 +129,6 @@ pub enum News {
         /// Its anatomy, or why there is none, with the mend.
         anatomy: Result<Arc<Anatomy>, String>,
     },
-    /// Which texel of a light's map each pixel reads.
-    MapReaders(MapReadersFound),
     /// What can't be walked through.
     Walls {
         /// The scene that is meant.
@@ -188,6 +186,8 @@ pub enum WindowNews {
     ChosenExport(String),
     /// An export ended.
     Exported(super::export::Exported),
+    /// Which texel of a light's map each pixel reads.
+    MapReaders(MapReadersFound),
     /// A file of the open scene changed.
     FileChanged(String),
     /// egui wants to draw at this time.

@@ -1,6 +1,6 @@
 //! What the window asks of the worker, and what of it still counts when the worker gets to it.
 
-use crate::inspector::{MapReadersJob, RunRequest};
+use crate::inspector::RunRequest;
 use crate::progress::Progress;
 use crate::session::StressSteps;
 use crate::stress::{Case, Entrant, Row};
@@ -91,8 +91,6 @@ pub enum Order {
         /// The frame that is meant.
         frame: u64,
     },
-    /// Which texel of a light's map each pixel of the shown picture reads.
-    MapReaders(MapReadersJob),
     /// What can't be walked through in the open scene.
     Walls {
         /// The scene that is meant.
@@ -161,7 +159,6 @@ pub struct Waiting {
     history: Option<Order>,
     anatomy: Option<Order>,
     tests: Option<Order>,
-    readers: Option<Order>,
     compare: Option<Order>,
     judge: Option<Order>,
     diagnose: Option<Order>,
@@ -177,7 +174,6 @@ impl Waiting {
             Order::History { .. } => self.history = Some(order),
             Order::Anatomy { .. } => self.anatomy = Some(order),
             Order::Tests { .. } => self.tests = Some(order),
-            Order::MapReaders(_) => self.readers = Some(order),
             Order::Compare { .. } => self.compare = Some(order),
             Order::Judge { .. } => self.judge = Some(order),
             Order::Diagnose { .. } => self.diagnose = Some(order),
@@ -208,7 +204,6 @@ impl Waiting {
                 .or_else(|| self.history.take())
                 .or_else(|| self.anatomy.take())
                 .or_else(|| self.tests.take())
-                .or_else(|| self.readers.take())
         };
         if self.picture.is_some() { None } else { of_frame() }
     }
@@ -225,7 +220,6 @@ impl Waiting {
         }
         let seen = self.picture.take().or_else(|| self.draws.take()).or_else(|| self.history.take());
         let seen = seen.or_else(|| self.anatomy.take()).or_else(|| self.tests.take());
-        let seen = seen.or_else(|| self.readers.take());
         let seen = seen.or_else(|| self.compare.take());
         let of_frame = seen.or_else(|| self.judge.take()).or_else(|| self.diagnose.take());
         of_frame.or_else(|| self.measure.take()).or_else(|| self.stress.take())

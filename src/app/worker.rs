@@ -5,7 +5,7 @@
 //! window, through its [`Progress`](crate::progress::Progress). A report gives way to what is asked
 //! of the shown frame, stress cases give way to everything, row by row. Once a frame was captured and
 //! no order has come for a while, the same frame is timed, so that neither the first picture nor a
-//! dragged light waits for the clock.
+//! dragged light waits for the clock; then memory that nothing uses is given back.
 //!
 //! ```text
 //! worker.rs   orders, opening and running     worker/done.rs    what is asked of a captured frame
@@ -198,7 +198,6 @@ impl Bench {
             Order::Judge { frame, progress } => return self.judge(frame, &progress),
             Order::History { frame, at } => return self.history(frame, at),
             Order::Anatomy { frame } => return self.anatomy(frame),
-            Order::MapReaders(job) => return (self.tell)(News::MapReaders(job.find())),
             Order::Walls { generation, request } => return self.walls(generation, &request),
             // Of a scene that is open no more.
             Order::Run { .. } => return,

@@ -26,6 +26,8 @@ pub struct GeometryCache {
     edges: HashMap<u64, Arc<EdgeList>>,
     /// By their keys, with whether the newest plan has asked for them.
     flattened: HashMap<u64, (FlattenedTriangles, bool)>,
+    /// In all of them.
+    flattened_kept: usize,
     planes: HashMap<(u64, PoseBits), Arc<Planes>>,
     topologies: HashMap<u64, Arc<Topology>>,
     solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
@@ -82,6 +84,7 @@ impl GeometryCache {
     /// Forgets flattened casters that the last plan did not ask for.
     pub fn next_plan(&mut self) {
         self.flattened.retain(|_, (_, used)| std::mem::take(used));
+        self.flattened_kept = self.flattened.values().map(|(triangles, _)| triangles.len()).sum();
     }
 
     /// A flattened caster: made again only if plane, caster or light changed.
@@ -92,8 +95,9 @@ impl GeometryCache {
             return triangles.clone();
         }
         let triangles = Arc::new(make());
-        let kept: usize = self.flattened.values().map(|(triangles, _)| triangles.len()).sum();
-        if kept + triangles.len() <= MOST_FLATTENED_KEPT {
+        let kept = self.flattened_kept + triangles.len();
+        if kept <= MOST_FLATTENED_KEPT {
+            self.flattened_kept = kept;
             self.flattened.insert(key, (triangles.clone(), true));
         }
         triangles

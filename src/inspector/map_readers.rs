@@ -64,7 +64,7 @@ impl MapReaders {
     /// Of the picture after the frame of `plan`; `None` where the light has no shadow map, or nothing is drawn.
     #[must_use]
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapReaders> {
-        let lookup = Lookup::new(capture, light)?;
+        let lookup = Lookup::new(capture, plan, light)?;
         let fragments = Fragments::new(capture, plan, light)?;
         let of_pixel = |at: [u32; 2]| match lookup.bias_normal == 0.0 {
             // Normals take time, and change nothing.
@@ -174,6 +174,8 @@ impl MapReaders {
 struct Lookup {
     /// Clip space of each face from world space.
     matrices: Vec<DMat4>,
+    /// Of each face: no pass draws it. Empty where that is not known, as of a folder.
+    left_out: Vec<bool>,
     /// Texels along each side.
     size: [u32; 2],
     /// Homogeneous.
@@ -186,11 +188,14 @@ struct Lookup {
 
 impl Lookup {
     /// `None` where the light has no shadow map.
-    fn new(capture: &Capture, light: usize) -> Option<Lookup> {
+    fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<Lookup> {
         let of = capture.lights.get(light)?;
         let map: &CapturedMap = of.map.as_ref().filter(|map| !map.holds_colors())?;
         let setting = capture.settings.get("bias-normal").and_then(|bias| bias.parse::<f64>().ok());
         Some(Lookup {
+            left_out: plan
+                .and_then(|plan| plan.lights.get(light)?.map.as_ref())
+                .map_or_else(Vec::new, |map| map.faces.iter().map(Option::is_none).collect()),
             matrices: map.clip_from_light.iter().map(|clip| *clip * map.light_from_world).collect(),
             size: map.faces.first()?.size(),
             light: of.position,
@@ -202,8 +207,11 @@ impl Lookup {
     /// The face that sees a point, and where it is in its clip space.
     fn seen(&self, world: DVec3) -> Option<(usize, DVec4)> {
         let is_in = |clip: &DVec4| clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w * BORDER;
-        let clips = self.matrices.iter().map(|matrix| *matrix * world.extend(1.0)).enumerate();
-        clips.into_iter().find(|(_, clip)| is_in(clip))
+        let clips = || self.matrices.iter().map(|matrix| *matrix * world.extend(1.0)).enumerate();
+        // On a border between two, the shader finds the one that is drawn: it has no other.
+        let is_drawn = |face: usize| !self.left_out.get(face).copied().unwrap_or(false);
+        let drawn = clips().find(|(face, clip)| is_drawn(*face) && is_in(clip));
+        drawn.or_else(|| clips().find(|(_, clip)| is_in(clip)))
     }
 
     /// The face that a fragment reads, and where it is looked up in its clip space. The face is chosen before the

@@ -46,6 +46,8 @@ pub struct MapTab {
     over_pixel: Option<[u32; 2]>,
     /// It was drawn in this frame; taken by the picture.
     is_shown: bool,
+    /// Nobody has chosen the face that is shown.
+    is_any_face: bool,
 }
 
 /// Which texel each pixel reads: asked for once for a frame and light, while the tab is shown.
@@ -192,12 +194,10 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
     let of_pick = read(state.pick);
     let map_faces = layers::layers(&capture, state.map_tab.light).len();
     let is_chosen = matches!(state.map_tab.view.face, FaceChoice::One(face) if face < map_faces);
-    if !is_chosen {
-        // The first is shown until it is known which one the picked pixel reads.
-        state.map_tab.view.face = match state.map_tab.readers.is_waited_for() {
-            true => FaceChoice::Grid,
-            false => FaceChoice::One(of_pick.map_or(0, |texel| texel.face)),
-        };
+    if !is_chosen || state.map_tab.is_any_face {
+        state.map_tab.view.face = FaceChoice::One(of_pick.map_or(0, |texel| texel.face));
+        // The first, until it is known which one the picked pixel reads.
+        state.map_tab.is_any_face = state.map_tab.readers.is_waited_for();
     }
     tools(ui, state, &capture, &lights);
     let rect = ui.available_rect_before_wrap();
@@ -301,6 +301,7 @@ fn tools(ui: &mut Ui, state: &mut State, capture: &Capture, lights: &[usize]) {
 
 fn show_face(state: &mut State, face: usize) {
     state.map_tab.view.face = FaceChoice::One(face);
+    state.map_tab.is_any_face = false;
     state.map_tab.view.zoom = Zoom::Fit;
     state.map_tab.pick = None;
 }

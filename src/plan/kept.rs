@@ -17,8 +17,6 @@ impl FramePlan {
         let mut hasher = FixedState::default().build_hasher();
         let Attachment { name: _, role: _, format, size, layers } = self.attachment(id);
         (format, size, layers).hash(&mut hasher);
-        // What left-out faces are cleared to.
-        map.lookup.map(|lookup| lookup.clear_depth.to_bits()).hash(&mut hasher);
         for pass in self.passes.iter().filter(|pass| pass.targets().any(|target| target == id)) {
             if pass.image.is_some() || pass.targets().any(|target| target != id) {
                 return None;

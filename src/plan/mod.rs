@@ -145,7 +145,8 @@ pub struct PlanLight {
 pub struct PlanMap {
     /// Its texture.
     pub attachment: AttachmentId,
-    /// The view of each face; `None` where a face sees no caster and keeps its clear value.
+    /// The view of each face; `None` where a face sees no caster: it takes no memory, and shows as
+    /// clear.
     pub faces: Vec<Option<ViewId>>,
     /// Light space from world space.
     pub light_from_world: DMat4,

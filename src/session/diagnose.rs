@@ -1,4 +1,4 @@
-//! Why a frame is wrong: runs it, asks the rules, and runs it again with each mend.
+//! Why a frame is wrong: runs it, asks the rules, and has each mend tried (`trials.rs`).
 
 use super::trials::{Judged, Runs, judged, labels_of};
 use super::truth::Traced;
@@ -26,6 +26,7 @@ const SAMPLES: usize = 3;
 const MOST_FLAGS: usize = 8;
 /// Objects of more triangles are taken to darken something without looking, as floors are small.
 const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
+
 /// A frame that was run.
 struct Run {
     scene: Scene,

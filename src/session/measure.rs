@@ -4,7 +4,6 @@ use super::truth::Traced;
 use super::{CaptureRequest, Session, SessionError, median, milliseconds};
 use crate::accuracy::ErrorCounts;
 use crate::geometry::GeometryCache;
-use crate::gpu::Prepared;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -22,7 +21,7 @@ pub struct Measurement {
     pub choices: Vec<Choice>,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Frames of each that are timed, after a warm-up.
+    /// Frames of each that are timed, each after one that is not.
     pub runs: usize,
 }
 
@@ -85,13 +84,16 @@ impl Session {
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
             go_on(self)?;
-            measured.extend(self.first_frame(scene, what, choice, &traced)?);
-            progress.advance();
+            let row = self.first_frame(scene, what, choice, &traced)?;
+            let steps = if row.is_some() { 1 } else { 1 + what.runs };
+            measured.extend(row);
+            (0..steps).for_each(|_| progress.advance());
         }
         let plans = self.kept(scene, what.size, &measured)?;
         let mut kept = Vec::with_capacity(plans.len());
         for plan in &plans {
-            kept.push(plan.as_ref().map(|plan| self.warmed_up(plan)).transpose()?);
+            go_on(self)?;
+            kept.push(plan.as_ref().map(|plan| self.executor.prepare(plan)).transpose()?);
         }
         let mut gpu: Vec<Vec<f64>> = vec![Vec::with_capacity(what.runs); plans.len()];
         for _ in 0..what.runs {
@@ -103,11 +105,12 @@ impl Session {
                     Some(ready) => ready,
                     None => {
                         plan = self.plan(scene, &CaptureRequest::new(row.choice.clone(), what.size))?;
-                        made = self.warmed_up(&plan)?;
+                        made = self.executor.prepare(&plan)?;
                         &made
                     }
                 };
-                // Before the frame that counts, of those that were kept and those that were not.
+                // What only a first frame does is done in one that does not count, of those that were kept too.
+                self.executor.time(ready, false)?;
                 gpu.extend(self.executor.gpu_ms(ready)?);
                 row.frames.push(self.executor.time(ready, false)?);
                 progress.advance();
@@ -132,11 +135,11 @@ impl Session {
         let cache = &mut GeometryCache::default();
         let start = Instant::now();
         let plan = technique::plan(Job { scene, size: what.size, choice, cache })?;
-        let plan = self.without_unseen(plan)?;
-        let (triangles, bytes) = (plan.triangles(), plan.bytes());
-        if self.room.is_some_and(|most| bytes > most) {
+        if self.room.is_some_and(|most| plan.bytes() > most) {
             return Ok(None);
         }
+        let plan = self.without_unseen(plan)?;
+        let (triangles, bytes) = (plan.triangles(), plan.bytes());
         let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());
         let labels = self.executor.labels(ready)?;
@@ -165,12 +168,5 @@ impl Session {
             kept[index] = Some(self.plan(scene, &CaptureRequest::new(row.choice.clone(), size))?);
         }
         Ok(kept)
-    }
-
-    /// Ready to be timed: what only the first frame does is done.
-    fn warmed_up<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, SessionError> {
-        let ready = self.executor.prepare(plan)?;
-        self.executor.time(&ready, false)?;
-        Ok(ready)
     }
 }

@@ -94,6 +94,14 @@ pub enum SessionError {
         /// Index of the step.
         step: usize,
     },
+    /// More than there is [room](Session::set_room) for.
+    #[error("it takes {} MiB, and no more than {} MiB are tried here: `stencilscope diagnose` tries it", needed >> 20, most >> 20)]
+    NoRoom {
+        /// Bytes of GPU memory.
+        needed: u64,
+        /// Bytes of GPU memory.
+        most: u64,
+    },
     /// A mend can't be made.
     #[error(transparent)]
     Mend(#[from] crate::diagnosis::MendError),

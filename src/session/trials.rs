@@ -9,7 +9,6 @@ use crate::diagnosis::proof::{Tried, Wrong, judge, ranked};
 use crate::diagnosis::regions::Region;
 use crate::diagnosis::rules::planar;
 use crate::diagnosis::{Advice, Cause, CauseFound, Mend, Proof, RegionFound};
-use crate::gpu::GpuError;
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -54,13 +53,10 @@ impl Session {
         Ok(judged(&plan, runs.traced, &labels, None).wrong)
     }
 
-    fn check_room(&self, plan: &FramePlan) -> Result<(), GpuError> {
+    fn check_room(&self, plan: &FramePlan) -> Result<(), SessionError> {
         let needed = plan.bytes();
         match self.room {
-            Some(most) if needed > most => {
-                let [needed, most] = [needed, most].map(|bytes| format!("{} MiB", bytes >> 20));
-                Err(GpuError::TooLarge { what: "the frame".to_owned(), needed, most })
-            }
+            Some(most) if needed > most => Err(SessionError::NoRoom { needed, most }),
             _ => Ok(()),
         }
     }

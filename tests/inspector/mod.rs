@@ -35,7 +35,7 @@ use egui_kittest::{Harness, kittest::Queryable};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Image, PixelFormat};
-use stencilscope::inspector::{Action, Inspector, PictureKind, RunRequest, SceneEntry, Zoom};
+use stencilscope::inspector::{Action, Inspector, MapReadersJob, PictureKind, RunRequest, SceneEntry, Zoom};
 use stencilscope::scene::Scene;
 use stencilscope::technique::{Choice, Technique};
 
@@ -45,6 +45,8 @@ const SIZE: [u32; 2] = [40, 30];
 struct Seen {
     inspector: Inspector,
     actions: Vec<Action>,
+    /// What was asked of map readers, where a test answers itself.
+    asked: Option<Vec<MapReadersJob>>,
 }
 
 fn run_request(technique: Technique) -> RunRequest {
@@ -72,14 +74,16 @@ fn inspector(capture: Capture) -> Inspector {
 }
 
 fn harness_of(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
-    let seen = Seen { inspector, actions: Vec::new() };
+    let seen = Seen { inspector, actions: Vec::new(), asked: None };
     let ui = |ui: &mut egui::Ui, seen: &mut Seen| {
         for action in seen.inspector.ui(ui) {
             match action {
-                // As the worker answers it.
                 Action::MapReaders => {
-                    let found = seen.inspector.map_readers_job().expect("a frame").find();
-                    seen.inspector.set_map_readers(found);
+                    let job = seen.inspector.map_readers_job().expect("a frame");
+                    match &mut seen.asked {
+                        Some(asked) => asked.push(job),
+                        None => seen.inspector.set_map_readers(job.find()),
+                    }
                 }
                 action => seen.actions.push(action),
             }

@@ -155,6 +155,31 @@ fn the_texel_that_is_found_explains_the_mask_of_a_real_frame() {
     assert!(unlike > 500, "the bias moves what is read: {unlike}");
 }
 
+/// Links come later than the frame: the map is there meanwhile, and those of a frame that was shown before are
+/// dropped.
+#[test]
+fn the_map_is_shown_while_its_links_are_waited_for() {
+    let mut harness = harness(capture());
+    harness.state_mut().asked = Some(Vec::new());
+    open_tab(&mut harness);
+    let waiting = "Finding which texel each pixel reads…";
+    harness.get_by_label(waiting);
+    harness.get_by_label("Shadow map canvas");
+    let asked = |harness: &Harness<Seen>| harness.state().asked.clone().expect("held back");
+    assert_eq!(asked(&harness).len(), 1);
+    harness.state_mut().inspector.set_capture(Arc::new(capture()));
+    harness.run_steps(3);
+    let [old, new] = &asked(&harness)[..] else { panic!("asked once for each frame") };
+    harness.state_mut().inspector.set_map_readers(old.find());
+    harness.run_steps(2);
+    harness.get_by_label(waiting);
+    assert!(harness.state().inspector.map_texel_of([4, 4]).is_none());
+    harness.state_mut().inspector.set_map_readers(new.find());
+    harness.run_steps(2);
+    assert!(harness.query_by_label(waiting).is_none());
+    assert_eq!(asked(&harness).len(), 2, "nothing is asked twice");
+}
+
 /// The times of a machine that others use too are no ground to fail: they are printed, and linking must not take
 /// seconds.
 #[test]

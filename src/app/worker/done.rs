@@ -20,8 +20,8 @@ const TIMED_FRAMES: usize = 5;
 /// Bytes that a row of a report may take beyond the frame that is shown, where the GPU's memory is this
 /// program's own: a window that is open for hours shares the machine.
 const MOST_OF_A_ROW: u64 = 128 << 20;
-/// Of a mend that is tried: one at a time, and a shadow map of four times the width shows the most.
-const MOST_OF_A_MEND: u64 = 320 << 20;
+/// Of a mend that is tried, one at a time: a shadow map of four times the usual width, all six faces of it.
+const MOST_OF_A_MEND: u64 = 400 << 20;
 
 /// While rows of a report come and go.
 const GIVE_BACK_EVERY: Duration = Duration::from_millis(500);
@@ -83,7 +83,6 @@ impl Done {
     /// about a frame that is shown no more.
     fn obey_short(&mut self, session: &mut Session, order: &Order) -> Option<News> {
         match *order {
-            Order::MapReaders(ref job) => Some(News::MapReaders(job.find())),
             Order::History { frame, at } if frame == self.frame => Some(self.history(session, at)),
             Order::Draws { frame, step } if frame == self.frame => Some(self.fill_draws(session, step)),
             Order::Anatomy { frame } if frame == self.frame => Some(self.anatomy(session)),
