@@ -3,7 +3,7 @@
 use crate::common::{cuboid, from_above, label_counts, request, session, square};
 use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
-use stencilscope::scene::{Light, Object, Pose, Scene};
+use stencilscope::scene::{Light, Object, OpenSpec, Pose, Scene, open};
 use stencilscope::session::Session;
 use stencilscope::technique::Technique;
 
@@ -273,19 +273,41 @@ fn a_snapshot_after_each_draw_ends_like_one_after_each_pass() {
         let plan = session.plan(&scene, &request(technique, SIZE)).expect("a plan");
         let by_pass = session.capture_plan(&scene, &plan).expect("a capture");
         let by_draw = session.capture_plan(&scene, &plan.split_at_draws()).expect("a capture");
-        assert_eq!(by_draw.lights, by_pass.lights, "{technique:?}");
-        let mut last = 0;
-        for (index, step) in by_pass.steps.iter().enumerate() {
-            last += step.draws.len().max(1);
-            let frames = (by_draw.frame_at(last - 1), by_pass.frame_at(index));
-            let (Some(split), Some(whole)) = frames else { continue };
-            assert_eq!(split.color.image, whole.color.image, "{technique:?} {}", step.name);
-            assert_eq!(split.depth.image, whole.depth.image, "{technique:?} {}", step.name);
-            let stencils = [split, whole].map(|frame| frame.stencil.as_ref().map(|aspect| aspect.image.clone()));
-            assert_eq!(stencils[0], stencils[1], "{technique:?} {}", step.name);
-        }
-        assert_eq!(by_draw.steps.len(), last);
+        assert_ends_alike(&by_draw, &by_pass);
     }
+}
+
+/// A frame whose copies are many runs in parts, and leaves what it leaves in one; only the CPU's pictures of what
+/// changed stay.
+#[test]
+fn a_frame_that_copies_much_is_the_same_in_parts() {
+    let mut session = session();
+    let scene = open(&OpenSpec::new("tori")).expect("a built-in scene");
+    let plan = session.plan(&scene, &request(Technique::ZFail, [1600, 1000])).expect("a plan");
+    let by_pass = session.capture_plan(&scene, &plan).expect("a capture");
+    let split = plan.split_at_draws();
+    // 9 bytes a pixel where a draw changes all of it: well over what one part copies.
+    assert!(split.passes.len() > 30, "{} draws", split.passes.len());
+    let by_draw = session.capture_plan(&scene, &split).expect("a capture");
+    assert_ends_alike(&by_draw, &by_pass);
+    assert!(by_draw.steps.iter().all(|step| step.gpu_ms.is_some()), "every part is timed");
+}
+
+/// A frame that was split at its draws leaves after each pass what it leaves in one piece.
+fn assert_ends_alike(by_draw: &Capture, by_pass: &Capture) {
+    let technique = &by_pass.technique;
+    assert_eq!(by_draw.lights, by_pass.lights, "{technique:?}");
+    let mut last = 0;
+    for (index, step) in by_pass.steps.iter().enumerate() {
+        last += step.draws.len().max(1);
+        let frames = (by_draw.frame_at(last - 1), by_pass.frame_at(index));
+        let (Some(split), Some(whole)) = frames else { continue };
+        assert_eq!(split.color.image, whole.color.image, "{technique:?} {}", step.name);
+        assert_eq!(split.depth.image, whole.depth.image, "{technique:?} {}", step.name);
+        let stencils = [split, whole].map(|frame| frame.stencil.as_ref().map(|aspect| aspect.image.clone()));
+        assert_eq!(stencils[0], stencils[1], "{technique:?} {}", step.name);
+    }
+    assert_eq!(by_draw.steps.len(), last);
 }
 
 fn color_after_all(capture: &Capture) -> std::sync::Arc<stencilscope::capture::Image> {

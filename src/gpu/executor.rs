@@ -1,18 +1,24 @@
-//! Runs a prepared plan: one command buffer, with copies between passes where snapshots are wanted.
+//! Runs a prepared plan: one command buffer, with copies between passes where snapshots are wanted; more than one
+//! where those copies are many.
 
 use super::buffers::Buffers;
+use super::collect::{Collector, Output, after, keep};
 use super::fragment_log::LogKeeper;
 use super::maps::Maps;
 use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
 use super::queries::{Notes, Samples, Timestamps};
-use super::readback::{self, Change, StagedPass, color_change, depth_change, stencil_change};
+use super::readback::{StagedPass, Staging, color_change};
 use super::{Context, GpuError, features};
-use crate::capture::{Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
+use crate::capture::{Image, PixelFormat};
 use crate::plan::{AttachmentRole, Draw, FramePlan, LightId, Pass, lint};
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use wgpu::{CommandEncoder, LoadOp, Operations, RenderPass, StoreOp};
+
+/// Bytes of copies after which a captured frame is looked at before it goes on: enough for the passes of most.
+const PART_BYTES: u64 = 1 << 26;
 
 /// Runs plans; keeps pipelines and buffers between them.
 #[derive(Debug)]
@@ -22,23 +28,6 @@ pub struct Executor {
     buffers: Buffers,
     maps: Maps,
     pub(super) log: LogKeeper,
-}
-
-/// What a captured frame left behind.
-#[derive(Debug)]
-pub struct Output {
-    /// One a pass.
-    pub steps: Vec<Step>,
-    /// One a pass: what it left in its own target, where that is not the picture.
-    pub targets: Vec<Option<Arc<Image>>>,
-    /// One a light: its labels.
-    pub labels: Vec<Option<Arc<Image>>>,
-    /// One a light: its volumes' count.
-    pub counts: Vec<Option<Arc<Image>>>,
-    /// One a light: the faces of its map, left-out ones at their clear value.
-    pub maps: Vec<Option<Vec<Arc<Image>>>>,
-    /// One a pass: it did not run, since what it draws was there from the frame before.
-    pub kept: Vec<bool>,
 }
 
 /// Which passes run, and what is kept.
@@ -122,7 +111,7 @@ impl Executor {
         run(prepared, mode, &Notes::default())?;
         let took = start.elapsed();
         if snapshots {
-            staged(prepared, mode)?.flat_map(StagedPass::iter).for_each(readback::Staging::unmap);
+            staged(prepared, mode, all_passes(prepared))?.flat_map(StagedPass::iter).for_each(Staging::unmap);
         }
         Ok(took)
     }
@@ -167,21 +156,16 @@ impl Executor {
     ///
     /// # Errors
     /// A driver that fails.
-    pub fn capture(&self, prepared: Prepared, bracket: bool) -> Result<Output, GpuError> {
-        let context = &prepared.context;
-        let kept: Vec<bool> = prepared.plan.passes.iter().map(|pass| prepared.is_kept(pass)).collect();
+    pub fn capture(&self, mut prepared: Prepared, bracket: bool) -> Result<Output, GpuError> {
+        let (plan, context) = (prepared.plan, prepared.context.clone());
         let notes = context.guarded(|| Ok(Notes::of_times(&prepared, Mode::Everything)))?;
-        let run = || run(&prepared, Mode::Everything, &notes);
-        if bracket {
-            context.bracketed(run)?
-        } else {
-            run()?
-        }
+        let mut run = || run_in_parts(&mut prepared, &notes);
+        let collector = if bracket { context.bracketed(run)? } else { run()? };
         let times = match &notes.timestamps {
-            Some(timestamps) => timestamps.read(context)?,
-            None => vec![None; prepared.plan.passes.len()],
+            Some(timestamps) => timestamps.read(&context)?,
+            None => vec![None; plan.passes.len()],
         };
-        collect(&prepared, &times, kept)
+        Ok(collector.finish(plan, times))
     }
 
     /// Runs all passes and keeps the labels of each light: what is lit, and what is in shadow. Nothing
@@ -234,16 +218,20 @@ fn labelled(plan: &FramePlan, pass: &Pass) -> Option<LightId> {
     }
 }
 
-/// The copies that a mode makes.
-fn staged<'a>(prepared: &'a Prepared, mode: Mode) -> Result<impl Iterator<Item = &'a StagedPass>, GpuError> {
+/// The copies that a mode makes of some passes.
+fn staged<'a>(
+    prepared: &'a Prepared,
+    mode: Mode,
+    passes: Range<usize>,
+) -> Result<impl Iterator<Item = &'a StagedPass>, GpuError> {
     let plan = prepared.plan;
-    let copied = plan.passes.iter().enumerate().filter(|(_, pass)| mode.copies(plan, pass));
-    Ok(copied.map(|(index, _)| prepared.staged(index)).collect::<Result<Vec<_>, _>>()?.into_iter())
+    let copied = passes.filter(|index| mode.copies(plan, &plan.passes[*index]));
+    Ok(copied.map(|index| prepared.staged(index)).collect::<Result<Vec<_>, _>>()?.into_iter())
 }
 
-/// Makes the pictures that come from the CPU and hands them to the GPU, before the frame.
-fn upload_images(prepared: &Prepared, mode: Mode) {
-    for (pass, targets) in prepared.plan.passes.iter().zip(&prepared.passes) {
+/// Makes the pictures that come from the CPU and hands them to the GPU, before the passes that they are of.
+fn upload_images(prepared: &Prepared, mode: Mode, passes: Range<usize>) {
+    for (pass, targets) in prepared.plan.passes[passes.clone()].iter().zip(&prepared.passes[passes]) {
         if let (Some(image), Some(texture), true) = (&pass.image, &targets.image_target, mode.runs(pass)) {
             let texels = image.source.make();
             let bytes_per_row = texels.len() as u32 / texture.height().max(1);
@@ -254,17 +242,60 @@ fn upload_images(prepared: &Prepared, mode: Mode) {
     }
 }
 
+fn all_passes(prepared: &Prepared) -> Range<usize> {
+    0..prepared.plan.passes.len()
+}
+
 /// Submits and waits. What is kept is kept only of frames that nothing went wrong in.
 fn run(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError> {
-    prepared.context.guarded(|| submit(prepared, mode, notes))?;
+    prepared.context.guarded(|| submit(prepared, mode, notes, all_passes(prepared)))?;
     prepared.set_drawn();
     Ok(())
 }
 
-fn submit(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError> {
-    upload_images(prepared, mode);
+/// The same, of all that a capture keeps, in parts: a frame whose copies are many does not hold those that show
+/// what was there before.
+fn run_in_parts(prepared: &mut Prepared, notes: &Notes) -> Result<Collector, GpuError> {
+    let plan = prepared.plan;
+    let context = prepared.context.clone();
+    let mut collector = Collector::new(plan, plan.passes.iter().map(|pass| prepared.is_kept(pass)).collect());
+    let mut start = 0;
+    while start < plan.passes.len() {
+        let part = context.guarded(|| {
+            let part = start..end_of_part(prepared, start)?;
+            submit(prepared, Mode::Everything, notes, part.clone())?;
+            Ok(part)
+        })?;
+        for index in part.clone() {
+            collector.take_in(prepared, index)?;
+            prepared.forget_staged(index);
+        }
+        start = part.end;
+    }
+    prepared.set_drawn();
+    Ok(collector)
+}
+
+/// The first pass that is not run with the one at `start`.
+fn end_of_part(prepared: &Prepared, start: usize) -> Result<usize, GpuError> {
+    let passes = all_passes(prepared).end;
+    let mut bytes = 0;
+    for index in start..passes {
+        bytes += prepared.staged(index)?.iter().map(Staging::byte_len).sum::<u64>();
+        if bytes >= PART_BYTES {
+            return Ok(index + 1);
+        }
+    }
+    Ok(passes)
+}
+
+/// One command buffer of some passes; what the frame notes is there after the last.
+fn submit(prepared: &Prepared, mode: Mode, notes: &Notes, passes: Range<usize>) -> Result<(), GpuError> {
+    upload_images(prepared, mode, passes.clone());
+    let is_last = passes.end == prepared.plan.passes.len();
     let mut encoder = prepared.context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    for (index, pass) in prepared.plan.passes.iter().enumerate() {
+    for index in passes.clone() {
+        let pass = &prepared.plan.passes[index];
         if !mode.runs(pass) {
             continue;
         }
@@ -275,10 +306,14 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError
             prepared.staged(index)?.iter().for_each(|staging| staging.record(&mut encoder));
         }
     }
-    notes.resolve(&mut encoder);
+    if is_last {
+        notes.resolve(&mut encoder);
+    }
     prepared.context.queue.submit([encoder.finish()]);
-    staged(prepared, mode)?.flat_map(StagedPass::iter).for_each(readback::Staging::request_map);
-    notes.request_map();
+    staged(prepared, mode, passes)?.flat_map(StagedPass::iter).for_each(Staging::request_map);
+    if is_last {
+        notes.request_map();
+    }
     prepared.context.wait()
 }
 
@@ -335,132 +370,5 @@ fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &
         pass.set_vertex_buffer(0, ready.vertices.slice(..));
         pass.set_index_buffer(ready.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(corners, draw.base_vertex as i32, 0..1);
-    }
-}
-
-/// Turns mapped copies into steps, sharing what did not change.
-fn collect(prepared: &Prepared, times: &[Option<f64>], kept: Vec<bool>) -> Result<Output, GpuError> {
-    let plan = prepared.plan;
-    let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
-    // wgpu clears new textures to zero.
-    let mut color = zero(PixelFormat::Rgba8Srgb);
-    let mut depth = zero(PixelFormat::Depth32F);
-    let mut stencil = zero(PixelFormat::U8);
-    let none = vec![None; plan.lights.len()];
-    let maps = empty_maps(plan);
-    let mut output = Output { steps: Vec::new(), targets: Vec::new(), labels: none.clone(), counts: none, maps, kept };
-    for (index, pass) in plan.passes.iter().enumerate() {
-        let staged = prepared.staged(index)?;
-        let role = |target| plan.attachment(target).role;
-        let color_role = pass.color.as_ref().map(|target| (role(target.attachment), target.layer));
-        let depth_role = pass.depth_stencil.as_ref().map(|target| (role(target.attachment), target.layer));
-        let (snapshot, target) = match (color_role, depth_role) {
-            (Some((AttachmentRole::Map(light), face)), _) | (_, Some((AttachmentRole::Map(light), face))) => {
-                let face = face as usize;
-                let faces = &mut output.maps[light.0];
-                if let (Some(faces), Some(staging)) = (faces.as_mut(), staged.color.as_ref().or(staged.depth.as_ref()))
-                {
-                    faces[face] = staging.image()?;
-                }
-                let image = faces.as_ref().map(|faces| faces[face].clone());
-                (Snapshot::Map { light: light.0, face }, image)
-            }
-            _ => {
-                let change = color_change(plan, pass);
-                let (mut color_after, mut own) = (None, None);
-                let target = match color_role.map(|(role, _)| role) {
-                    Some(AttachmentRole::Labels(light)) => {
-                        keep(&mut output.labels[light.0], after(&change, &staged.color, PixelFormat::U8, plan.size)?);
-                        own.clone_from(&output.labels[light.0]);
-                        FrameTarget::Labels
-                    }
-                    Some(AttachmentRole::Count(light)) => {
-                        let count = after(&change, &staged.color, PixelFormat::Count32F, plan.size)?;
-                        keep(&mut output.counts[light.0], count);
-                        own.clone_from(&output.counts[light.0]);
-                        FrameTarget::Count
-                    }
-                    _ => {
-                        color_after = after(&change, &staged.color, PixelFormat::Rgba8Srgb, plan.size)?;
-                        FrameTarget::Picture
-                    }
-                };
-                let depth_after = after(&depth_change(pass), &staged.depth, PixelFormat::Depth32F, plan.size)?;
-                let stencil_after = after(&stencil_change(pass), &staged.stencil, PixelFormat::U8, plan.size)?;
-                let frame = FrameSnapshot {
-                    color: step_aspect(&mut color, color_after),
-                    depth: step_aspect(&mut depth, depth_after),
-                    stencil: prepared.passes[index].has_stencil.then(|| step_aspect(&mut stencil, stencil_after)),
-                    target,
-                };
-                (Snapshot::Frame(frame), own)
-            }
-        };
-        // What the CPU makes takes the GPU no time.
-        let gpu_ms = times[index].filter(|_| pass.image.is_none());
-        output.steps.push(step(pass, gpu_ms, snapshot));
-        output.targets.push(target);
-    }
-    Ok(output)
-}
-
-fn empty_maps(plan: &FramePlan) -> Vec<Option<Vec<Arc<Image>>>> {
-    let faces = |map: &crate::plan::PlanMap| {
-        let size = plan.attachment(map.attachment).size;
-        let clear = match map.lookup {
-            Some(lookup) => Image::uniform(PixelFormat::Depth32F, size, &lookup.clear_depth.to_le_bytes()),
-            None => Image::uniform(PixelFormat::Rgba8, size, &[255; 4]),
-        };
-        std::iter::repeat_n(Arc::new(clear), map.faces.len()).collect()
-    };
-    plan.lights.iter().map(|light| light.map.as_ref().map(faces)).collect()
-}
-
-/// The picture that a change leaves; `None` where nothing changes.
-fn after(
-    change: &Change,
-    staged: &Option<readback::Staging>,
-    format: PixelFormat,
-    size: [u32; 2],
-) -> Result<Option<Arc<Image>>, GpuError> {
-    match (change, staged) {
-        (Change::Uniform(texel), _) => Ok(Some(Arc::new(Image::uniform(format, size, texel)))),
-        (Change::Drawn, Some(staging)) => staging.image().map(Some),
-        _ => Ok(None),
-    }
-}
-
-/// A pass that changes nothing leaves what was there.
-fn keep(known: &mut Option<Arc<Image>>, after: Option<Arc<Image>>) {
-    if after.is_some() {
-        *known = after;
-    }
-}
-
-/// Moves an aspect on by one step. A clear to what was there already changes nothing.
-fn step_aspect(current: &mut Arc<Image>, next: Option<Arc<Image>>) -> Aspect {
-    let changed = next.filter(|next| next != current);
-    let unchanged = changed.is_none();
-    if let Some(next) = changed {
-        *current = next;
-    }
-    Aspect { image: current.clone(), unchanged }
-}
-
-fn step(pass: &Pass, gpu_ms: Option<f64>, snapshot: Snapshot) -> Step {
-    let summary = |draw: &Draw| DrawSummary {
-        name: draw.name.clone(),
-        caster: draw.caster.clone(),
-        part: draw.part,
-        triangles: u64::from(draw.triangles.end - draw.triangles.start),
-        after: None,
-    };
-    Step {
-        name: pass.name.clone(),
-        purpose: pass.purpose.clone(),
-        light: pass.light.map(|light| light.0),
-        draws: pass.draws.iter().map(summary).collect(),
-        gpu_ms,
-        snapshot,
     }
 }

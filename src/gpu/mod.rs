@@ -10,9 +10,11 @@
 //! fragment_log every fragment of one pixel, tests or no tests
 //! queries      times of passes, samples of draws
 //! readback     snapshots: copies recorded between passes, mapped, never copied again
+//! collect      mapped copies → steps, with what did not change shared
 //! ```
 
 mod buffers;
+mod collect;
 mod context;
 mod error;
 mod executor;
@@ -26,8 +28,9 @@ mod readback;
 mod shaders;
 mod uniforms;
 
+pub use collect::Output;
 pub use context::{Context, MEMORY_HINTS};
 pub use error::GpuError;
-pub use executor::{Executor, Output};
+pub use executor::Executor;
 pub use prepared::Prepared;
 pub use shaders::shader_sources;

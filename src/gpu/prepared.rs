@@ -134,6 +134,11 @@ impl<'a> Prepared<'a> {
         Ok(cell.get_or_init(|| staged))
     }
 
+    /// Lets go of the copies of a pass; pictures made of them hold theirs.
+    pub(super) fn forget_staged(&mut self, index: usize) {
+        self.staged[index].take();
+    }
+
     /// Bytes that snapshots of the timed passes copy.
     ///
     /// # Errors

@@ -1,0 +1,187 @@
+//! Makes steps of the copies of a frame, part by part: what did not change is shared, and its copy given back.
+
+use super::GpuError;
+use super::prepared::Prepared;
+use super::readback::{Change, Staging, color_change, depth_change, stencil_change};
+use crate::capture::{Aspect, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
+use crate::plan::{AttachmentRole, Draw, FramePlan, Pass};
+use std::sync::Arc;
+
+/// What a captured frame left behind.
+#[derive(Debug)]
+pub struct Output {
+    /// One a pass.
+    pub steps: Vec<Step>,
+    /// One a pass: what it left in its own target, where that is not the picture.
+    pub targets: Vec<Option<Arc<Image>>>,
+    /// One a light: its labels.
+    pub labels: Vec<Option<Arc<Image>>>,
+    /// One a light: its volumes' count.
+    pub counts: Vec<Option<Arc<Image>>>,
+    /// One a light: the faces of its map, left-out ones at their clear value.
+    pub maps: Vec<Option<Vec<Arc<Image>>>>,
+    /// One a pass: it did not run, since what it draws was there from the frame before.
+    pub kept: Vec<bool>,
+}
+
+/// What the passes so far have left.
+pub(super) struct Collector {
+    color: Arc<Image>,
+    depth: Arc<Image>,
+    stencil: Arc<Image>,
+    output: Output,
+}
+
+impl Collector {
+    /// Before the first pass. `kept` are the passes that will not run.
+    pub fn new(plan: &FramePlan, kept: Vec<bool>) -> Collector {
+        // wgpu clears new textures to zero.
+        let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
+        let none = vec![None; plan.lights.len()];
+        let maps = empty_maps(plan);
+        let (steps, targets) = (Vec::new(), Vec::new());
+        Collector {
+            color: zero(PixelFormat::Rgba8Srgb),
+            depth: zero(PixelFormat::Depth32F),
+            stencil: zero(PixelFormat::U8),
+            output: Output { steps, targets, labels: none.clone(), counts: none, maps, kept },
+        }
+    }
+
+    /// Goes on by one pass, whose copies are mapped.
+    pub fn take_in(&mut self, prepared: &Prepared, index: usize) -> Result<(), GpuError> {
+        let plan = prepared.plan;
+        let pass = &plan.passes[index];
+        let staged = prepared.staged(index)?;
+        let output = &mut self.output;
+        let role = |target| plan.attachment(target).role;
+        let color_role = pass.color.as_ref().map(|target| (role(target.attachment), target.layer));
+        let depth_role = pass.depth_stencil.as_ref().map(|target| (role(target.attachment), target.layer));
+        let (snapshot, target) = match (color_role, depth_role) {
+            (Some((AttachmentRole::Map(light), face)), _) | (_, Some((AttachmentRole::Map(light), face))) => {
+                let face = face as usize;
+                let known = output.maps[light.0].as_mut().and_then(|faces| faces.get_mut(face));
+                let image = match (known, staged.color.as_ref().or(staged.depth.as_ref())) {
+                    (Some(known), Some(staging)) => {
+                        move_on(known, staging.image()?);
+                        Some(known.clone())
+                    }
+                    (known, _) => known.cloned(),
+                };
+                (Snapshot::Map { light: light.0, face }, image)
+            }
+            _ => {
+                let change = color_change(plan, pass);
+                let (mut color_after, mut own) = (None, None);
+                let target = match color_role.map(|(role, _)| role) {
+                    Some(AttachmentRole::Labels(light)) => {
+                        keep(&mut output.labels[light.0], after(&change, &staged.color, PixelFormat::U8, plan.size)?);
+                        own.clone_from(&output.labels[light.0]);
+                        FrameTarget::Labels
+                    }
+                    Some(AttachmentRole::Count(light)) => {
+                        let count = after(&change, &staged.color, PixelFormat::Count32F, plan.size)?;
+                        keep(&mut output.counts[light.0], count);
+                        own.clone_from(&output.counts[light.0]);
+                        FrameTarget::Count
+                    }
+                    _ => {
+                        color_after = after(&change, &staged.color, PixelFormat::Rgba8Srgb, plan.size)?;
+                        FrameTarget::Picture
+                    }
+                };
+                let depth_after = after(&depth_change(pass), &staged.depth, PixelFormat::Depth32F, plan.size)?;
+                let stencil_after = after(&stencil_change(pass), &staged.stencil, PixelFormat::U8, plan.size)?;
+                let frame = FrameSnapshot {
+                    color: step_aspect(&mut self.color, color_after),
+                    depth: step_aspect(&mut self.depth, depth_after),
+                    stencil: prepared.passes[index].has_stencil.then(|| step_aspect(&mut self.stencil, stencil_after)),
+                    target,
+                };
+                (Snapshot::Frame(frame), own)
+            }
+        };
+        output.steps.push(step(pass, snapshot));
+        output.targets.push(target);
+        Ok(())
+    }
+
+    /// After the last pass. `times` is one a pass, milliseconds.
+    pub fn finish(self, plan: &FramePlan, times: Vec<Option<f64>>) -> Output {
+        let mut output = self.output;
+        for ((step, pass), ms) in output.steps.iter_mut().zip(&plan.passes).zip(times) {
+            // What the CPU makes takes the GPU no time.
+            step.gpu_ms = ms.filter(|_| pass.image.is_none());
+        }
+        output
+    }
+}
+
+fn empty_maps(plan: &FramePlan) -> Vec<Option<Vec<Arc<Image>>>> {
+    let faces = |map: &crate::plan::PlanMap| {
+        let size = plan.attachment(map.attachment).size;
+        let clear = match map.lookup {
+            Some(lookup) => Image::uniform(PixelFormat::Depth32F, size, &lookup.clear_depth.to_le_bytes()),
+            None => Image::uniform(PixelFormat::Rgba8, size, &[255; 4]),
+        };
+        std::iter::repeat_n(Arc::new(clear), map.faces.len()).collect()
+    };
+    plan.lights.iter().map(|light| light.map.as_ref().map(faces)).collect()
+}
+
+/// The picture that a change leaves; `None` where nothing changes.
+pub(super) fn after(
+    change: &Change,
+    staged: &Option<Staging>,
+    format: PixelFormat,
+    size: [u32; 2],
+) -> Result<Option<Arc<Image>>, GpuError> {
+    match (change, staged) {
+        (Change::Uniform(texel), _) => Ok(Some(Arc::new(Image::uniform(format, size, texel)))),
+        (Change::Drawn, Some(staging)) => staging.image().map(Some),
+        _ => Ok(None),
+    }
+}
+
+/// A pass that changes nothing leaves what was there.
+pub(super) fn keep(known: &mut Option<Arc<Image>>, after: Option<Arc<Image>>) {
+    let Some(after) = after else { return };
+    match known {
+        Some(known) => _ = move_on(known, after),
+        None => *known = Some(after),
+    }
+}
+
+/// Moves an aspect on by one step. A clear to what was there already changes nothing.
+fn step_aspect(current: &mut Arc<Image>, next: Option<Arc<Image>>) -> Aspect {
+    let changed = next.is_some_and(|next| move_on(current, next));
+    Aspect { image: current.clone(), unchanged: !changed }
+}
+
+/// Goes on to the next picture, and says whether it is another: one that is equal is let go.
+fn move_on(current: &mut Arc<Image>, next: Arc<Image>) -> bool {
+    let is_another = next != *current;
+    if is_another {
+        *current = next;
+    }
+    is_another
+}
+
+/// Its time is not known yet.
+fn step(pass: &Pass, snapshot: Snapshot) -> Step {
+    let summary = |draw: &Draw| DrawSummary {
+        name: draw.name.clone(),
+        caster: draw.caster.clone(),
+        part: draw.part,
+        triangles: u64::from(draw.triangles.end - draw.triangles.start),
+        after: None,
+    };
+    Step {
+        name: pass.name.clone(),
+        purpose: pass.purpose.clone(),
+        light: pass.light.map(|light| light.0),
+        draws: pass.draws.iter().map(summary).collect(),
+        gpu_ms: None,
+        snapshot,
+    }
+}
