@@ -116,6 +116,8 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
     );
     assert_fails(&["pixel", "tori", "--at", "1,1", "--json", "models"], 2, &["models", "can't be written"]);
     assert_fails(&["bench", "nothing"], 2, &["choose capture"]);
+    assert_fails(&["bench", "--every", "draw"], 2, &["--every draw", "leave it out"]);
+    assert_fails(&["bench", "--external-capture"], 2, &["--external-capture", "leave it out"]);
 }
 
 /// Field by field as `spec/commands.md` has it.

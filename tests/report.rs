@@ -50,7 +50,8 @@ fn a_report_is_written_in_every_form() {
     let one = [&SMALL[..], &["-t", "z-pass", "-t", "none"][..]].concat();
     let csv = run(folder.path(), &[&one[..], &["--csv"][..]].concat());
     assert_eq!(text(&csv.stdout).lines().count(), 3, "{}", text(&csv.stdout));
-    let markdown = run(folder.path(), &[&one[..], &["--markdown", "r.md", "--plot", "r.png"][..]].concat());
+    let markdown =
+        run(folder.path(), &[&one[..], &["--markdown", "r.md", "--csv", "r.csv", "--plot", "r.png"][..]].concat());
     assert_eq!(markdown.status.code(), Some(0), "{}", text(&markdown.stderr));
     assert!(file("r.md").contains("z-pass"));
     assert!(fs::read(folder.path().join("r.png")).expect("a picture").starts_with(b"\x89PNG"));
@@ -125,6 +126,7 @@ fn what_a_report_can_not_do_is_refused_before_it_measures() {
         (&["tori", "--csv", "triangle.obj"], &["names a scene"]),
         (&["good.toml", "--markdown", "good.toml"], &["names a scene"]),
         (&["tori", "--json", "r.svg", "--plot", "r.svg"], &["two results"]),
+        (&["tori", "--json", "--markdown"], &["both go to standard output", "--json=FILE"]),
         (&["tory"], &["did you mean `tori`?"]),
     ];
     for (options, words) in cases {

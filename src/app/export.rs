@@ -5,6 +5,7 @@ use crate::capture::disk;
 use crate::files::write_whole;
 use crate::inspector::ExportData;
 use crate::picture::Picture;
+use crate::report::Report;
 use std::path::{Path, PathBuf};
 
 /// How an export ended.
@@ -59,6 +60,10 @@ fn write(data: &ExportData, path: &str, replace: bool) -> Exported {
         ExportData::Picture(picture) => png(picture),
         ExportData::AsShown(drawing) => png(&drawing.finish()),
         ExportData::Data(images) => disk::write_arrays(&file, images).map_err(|error| error.to_string()),
+        ExportData::Report(report) => match report_bytes(report, &file) {
+            Ok(bytes) => write_whole(&file, &bytes).map_err(|error| failed(&error)),
+            Err(reason) => Err(reason),
+        },
         ExportData::Capture(_) | ExportData::Scene(_) => Err("it is written elsewhere".to_owned()),
     };
     match written {
@@ -67,10 +72,28 @@ fn write(data: &ExportData, path: &str, replace: bool) -> Exported {
     }
 }
 
+/// The form of a report that the file's ending asks for.
+fn report_bytes(report: &Report, file: &Path) -> Result<Vec<u8>, String> {
+    let ending = file.extension().unwrap_or_default().to_ascii_lowercase();
+    let made = match ending.to_str() {
+        Some("csv") => Ok(report.to_csv().into_bytes()),
+        Some("md") => Ok(report.to_markdown().into_bytes()),
+        Some("json") => report.to_json().map(String::into_bytes),
+        Some("svg") => Ok(report.to_svg().into_bytes()),
+        Some("png") => report.to_png(),
+        _ => {
+            let what = "rows are written as .csv, .md or .json, the plot as .svg or .png";
+            return Err(format!("{what}: give the file's name one of these endings"));
+        }
+    };
+    made.map_err(|error| error.to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::capture::{Image, PixelFormat};
+    use crate::report::tests::{adapter, row};
     use std::sync::Arc;
 
     #[test]
@@ -100,5 +123,34 @@ mod tests {
         let data = ExportData::Picture(Picture::filled([1, 1], [0; 3]));
         let answer = write(&data, "/no such folder/a.png", false);
         assert!(matches!(answer, Exported::Failed(reason) if reason.contains("choose another place")));
+    }
+
+    #[test]
+    fn a_report_is_written_as_its_ending_says() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let report = Report::new(adapter(), vec![row("tori", "z-fail", "", 3, 9.5)]);
+        let written = |name: &str| {
+            let path = folder.path().join(name).display().to_string();
+            let data = ExportData::Report(Box::new(report.clone()));
+            (write(&data, &path, false), std::fs::read(&path).unwrap_or_default())
+        };
+        let starts: [(&str, &[u8]); 5] = [
+            ("r.csv", b"scene,technique"),
+            ("r.MD", b"|"),
+            ("r.json", b"{\n  \"schema\": 1"),
+            ("r.svg", b"<svg"),
+            ("r.png", b"\x89PNG"),
+        ];
+        for (name, start) in starts {
+            let (answer, bytes) = written(name);
+            assert!(matches!(answer, Exported::Done(_)), "{name}: {answer:?}");
+            let head = String::from_utf8_lossy(&bytes[..bytes.len().min(40)]).into_owned();
+            assert!(bytes.starts_with(start), "{name}: {head}");
+        }
+        for name in ["r", "r.txt"] {
+            let (answer, bytes) = written(name);
+            assert!(matches!(answer, Exported::Failed(reason) if reason.contains("endings")), "{name}");
+            assert!(bytes.is_empty());
+        }
     }
 }

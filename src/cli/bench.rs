@@ -51,6 +51,8 @@ pub struct BenchArguments {
 /// A benchmark that does not exist; a scene or frame that can't be made; no GPU.
 pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
     arguments.names.iter().try_for_each(|name| check_name(name))?;
+    arguments.frame.refuse_draws("a benchmark times whole passes")?;
+    arguments.frame.refuse_external_capture("a benchmark runs many frames")?;
     for name in &arguments.names {
         match name.as_str() {
             "truth" => truth(arguments)?,

@@ -9,7 +9,7 @@ use crate::diagnosis::{Cause, Diagnosis, Mend, Proof, Suited, wrong_pixels};
 use crate::picture::Picture;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::session::{CaptureRequest, Every, Fault, Session};
+use crate::session::{CaptureRequest, Fault, Session};
 use clap::Args;
 use std::collections::BTreeMap;
 use std::fs;
@@ -52,14 +52,8 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     let loaded = scene_options.load(&arguments.scene)?;
     let scene = loaded.at(scene_options.time);
     let mut request = frame.request(&scene)?;
-    if request.every == Every::Draw {
-        let line = "`--every draw` is for captures; a diagnosis looks at draws by itself: leave it out";
-        return Err(CliError::Usage(line.to_owned()));
-    }
-    if request.external_capture {
-        let line = "`--external-capture` is for captures; a diagnosis runs many frames: leave it out";
-        return Err(CliError::Usage(line.to_owned()));
-    }
+    frame.refuse_draws("a diagnosis looks at draws by itself")?;
+    frame.refuse_external_capture("a diagnosis runs many frames")?;
     request.timing_runs = 0;
     let json = arguments.json.as_ref().and_then(Option::as_deref);
     json.map_or(Ok(()), output::check_target)?;

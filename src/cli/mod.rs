@@ -17,6 +17,7 @@ mod pictures;
 mod pixel;
 mod progress;
 mod report;
+mod results;
 mod scenes;
 mod stress;
 mod usage;

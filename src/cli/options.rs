@@ -149,6 +149,28 @@ impl FrameOptions {
         Choice::parse(&TechniqueRequest { name, settings }).map_err(|error: ChoiceError| error.into())
     }
 
+    /// For a command that takes no snapshot of draws, and says why.
+    ///
+    /// # Errors
+    /// They were asked for.
+    pub fn refuse_draws(&self, why: &str) -> Result<(), CliError> {
+        match self.every()? {
+            Every::Pass => Ok(()),
+            Every::Draw => Err(CliError::Usage(format!("`--every draw` is for captures; {why}: leave it out"))),
+        }
+    }
+
+    /// For a command without a frame to bracket, and says why.
+    ///
+    /// # Errors
+    /// It was asked for.
+    pub fn refuse_external_capture(&self, why: &str) -> Result<(), CliError> {
+        if self.external_capture {
+            return Err(CliError::Usage(format!("`--external-capture` is for captures; {why}: leave it out")));
+        }
+        Ok(())
+    }
+
     fn every(&self) -> Result<Every, CliError> {
         match self.every.as_str() {
             "pass" => Ok(Every::Pass),

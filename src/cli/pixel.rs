@@ -3,7 +3,7 @@
 use super::options::{FrameOptions, SceneOptions, pixel};
 use super::{CliError, output};
 use crate::history::PixelDocument;
-use crate::session::{Every, Session, SessionError};
+use crate::session::{Session, SessionError};
 use clap::Args;
 use std::time::Instant;
 
@@ -31,10 +31,7 @@ pub struct PixelArguments {
 pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     let scene = arguments.scene_options.open(&arguments.scene)?;
     let mut request = arguments.frame.request(&scene)?;
-    if request.every == Every::Draw {
-        let line = "`--every draw` is for captures; a history always goes fragment by fragment: leave it out";
-        return Err(CliError::Usage(line.to_owned()));
-    }
+    arguments.frame.refuse_draws("a history always goes fragment by fragment")?;
     request.timing_runs = 0;
     let size = request.size;
     if let Some(pixel) = arguments.at.iter().find(|[x, y]| *x >= size[0] || *y >= size[1]) {

@@ -2,7 +2,7 @@
 
 use super::options::{SceneOptions, picture_size, setting, technique_named};
 use super::progress::with_bar;
-use super::{CliError, output};
+use super::{CliError, output, results};
 use crate::progress::Progress;
 use crate::report::{Report, Row};
 use crate::scene::Scene;
@@ -38,10 +38,10 @@ pub struct ReportArguments {
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     json: Option<Option<String>>,
     /// Comma-separated, to a file or to standard output in place of the table
-    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with = "json")]
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
     csv: Option<Option<String>>,
     /// A Markdown table, to a file or to standard output in place of the table
-    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["json", "csv"])]
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
     markdown: Option<Option<String>>,
     /// A picture of error against run time (.svg or .png)
     #[arg(long, value_name = "FILE", value_parser = plot_file)]
@@ -56,10 +56,9 @@ pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
     let choices = choices(arguments)?;
     let open = |name: &String| arguments.scene_options.open(name);
     let scenes = arguments.scenes.iter().map(open).collect::<Result<Vec<Scene>, _>>()?;
-    let files = [&arguments.json, &arguments.csv, &arguments.markdown].into_iter().flatten().flatten();
-    let files: Vec<&String> = files.chain(&arguments.plot).collect();
-    files.iter().try_for_each(|file| output::check_target(file))?;
-    check_distinct(&files, &arguments.scenes)?;
+    let forms = [&arguments.json, &arguments.csv, &arguments.markdown];
+    check_no_scene(&results::files(&forms, &arguments.plot), &arguments.scenes)?;
+    results::check(&forms, &arguments.plot)?;
     let mut session = Session::new(arguments.adapter.as_deref())?;
     let what = Measurement { choices, size: arguments.size, runs: usize::from(arguments.runs) };
     let mut rows: Vec<Row> = Vec::new();
@@ -75,12 +74,12 @@ fn deliver(arguments: &ReportArguments, report: &Report) -> Result<(), CliError>
         let bytes = if is_png(file) { report.to_png()? } else { report.to_svg().into_bytes() };
         output::write(file, &bytes)?;
     }
-    match (&arguments.json, &arguments.csv, &arguments.markdown) {
-        (Some(file), _, _) => output::deliver(&report.to_json()?, file.as_deref()),
-        (_, Some(file), _) => output::deliver(&report.to_csv(), file.as_deref()),
-        (_, _, Some(file)) => output::deliver(&report.to_markdown(), file.as_deref()),
-        _ => output::print(&report.to_table()),
-    }
+    let forms = [
+        (&arguments.json, report.to_json()?),
+        (&arguments.csv, report.to_csv()),
+        (&arguments.markdown, report.to_markdown()),
+    ];
+    results::deliver(forms, || report.to_table())
 }
 
 /// The default grid, or its rows of the techniques asked for, with settings changed.
@@ -114,24 +113,17 @@ fn distinct_names(scenes: &[Scene]) -> Vec<String> {
     scenes.iter().enumerate().map(name).collect()
 }
 
-/// No result may replace another, or a scene: an option takes the word after it for its file.
-fn check_distinct(files: &[&String], scenes: &[String]) -> Result<(), CliError> {
-    let is_scene = |file: &str| {
+/// No result may replace a scene: an option takes the word after it for its file.
+fn check_no_scene(files: &[&str], scenes: &[String]) -> Result<(), CliError> {
+    let is_scene = |file: &&&str| {
         let ending = Path::new(file).extension().map(|ending| ending.to_ascii_lowercase());
         let is_input = ending.is_some_and(|ending| ending == "obj" || ending == "toml");
-        is_input || Builtin::named(file).is_some() || scenes.iter().any(|scene| scene == file)
+        is_input || Builtin::named(file).is_some() || scenes.iter().any(|scene| scene == **file)
     };
-    for (index, file) in files.iter().enumerate() {
-        let what = if is_scene(file) {
-            "names a scene: put the option last, or give its file as `--json=FILE`"
-        } else if files[..index].contains(file) {
-            "is named for two results: choose another file for one"
-        } else {
-            continue;
-        };
-        return Err(CliError::Usage(format!("`{}` {what}", file.escape_debug())));
-    }
-    Ok(())
+    files.iter().find(is_scene).map_or(Ok(()), |file| {
+        let what = "names a scene: put the option last, or give its file as `--json=FILE`";
+        Err(CliError::Usage(format!("`{}` {what}", file.escape_debug())))
+    })
 }
 
 /// Does a file's ending ask for pixels?

@@ -3,7 +3,7 @@
 use super::options::{picture_size, technique_named};
 use super::progress::with_bar;
 use super::report::{is_png, plot_file};
-use super::{CliError, output};
+use super::{CliError, output, results};
 use crate::progress::Progress;
 use crate::scene::suggestion;
 use crate::session::Session;
@@ -33,7 +33,7 @@ pub struct StressArguments {
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     json: Option<Option<String>>,
     /// A Markdown table, to a file or to standard output in place of the table
-    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with = "json")]
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
     markdown: Option<Option<String>>,
     /// A picture of error against each sweep's number (.svg or .png)
     #[arg(long, value_name = "FILE", value_parser = plot_file)]
@@ -58,14 +58,7 @@ pub fn run(arguments: &StressArguments) -> Result<(), CliError> {
     let only = arguments.technique.iter().map(|name| technique_named(name)).collect::<Result<Vec<Technique>, _>>()?;
     let is_named = !arguments.case.is_empty();
     check_that_all_run(&chosen, is_named, &only)?;
-    let files = [&arguments.json, &arguments.markdown].into_iter().flatten().flatten().chain(&arguments.plot);
-    let files: Vec<&String> = files.collect();
-    files.iter().try_for_each(|file| output::check_target(file))?;
-    if let [one, other] = files[..]
-        && one == other
-    {
-        return Err(CliError::Usage(format!("`{}` is named for two results: choose another file", one.escape_debug())));
-    }
+    results::check(&[&arguments.json, &arguments.markdown], &arguments.plot)?;
     let mut session = Session::new(arguments.adapter.as_deref())?;
     let rows =
         with_bar("stress", &Progress::default(), |progress| session.stress(&chosen, &only, arguments.size, progress))?;
@@ -108,15 +101,10 @@ fn deliver(arguments: &StressArguments, stress: &Stress) -> Result<(), CliError>
         let bytes = if is_png(file) { plot.to_png()? } else { plot.to_svg().into_bytes() };
         output::write(file, &bytes)?;
     }
-    match (&arguments.json, &arguments.markdown) {
-        (Some(file), _) => {
-            let failed =
-                |error: serde_json::Error| CliError::Output { path: "the rows".to_owned(), source: error.into() };
-            output::deliver(&stress.to_json().map_err(failed)?, file.as_deref())
-        }
-        (_, Some(file)) => output::deliver(&stress.to_markdown(), file.as_deref()),
-        _ => output::print(&stress.to_table()),
-    }
+    let failed = |error: serde_json::Error| CliError::Output { path: "the rows".to_owned(), source: error.into() };
+    let json = stress.to_json().map_err(failed)?;
+    let forms = [(&arguments.json, json), (&arguments.markdown, stress.to_markdown())];
+    results::deliver(forms, || stress.to_table())
 }
 
 fn unknown(name: &str) -> CliError {

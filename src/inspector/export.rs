@@ -1,4 +1,4 @@
-//! Export: the shown picture, its data, the capture, or the scene, into a file.
+//! Export: the shown picture, its data, the capture, the scene, or the report, into a file.
 //!
 //! The panel asks for a place; the app writes. A place that is taken is asked about once more.
 
@@ -12,6 +12,7 @@ use super::texture;
 use super::theme;
 use crate::capture::{Capture, Image};
 use crate::picture::Picture;
+use crate::report::Report;
 use egui::{Context, Id, Key, RichText, Ui};
 use std::sync::Arc;
 
@@ -29,12 +30,20 @@ pub enum ExportKind {
     Capture,
     /// The scene as it is now, with its technique: a scene file.
     Scene,
+    /// The rows of the Report tab, or their plot: what the file's ending says.
+    Report,
 }
 
 impl ExportKind {
     /// All, in the order of the menu.
-    pub const ALL: [ExportKind; 5] =
-        [ExportKind::Picture, ExportKind::AsShown, ExportKind::Data, ExportKind::Capture, ExportKind::Scene];
+    pub const ALL: [ExportKind; 6] = [
+        ExportKind::Picture,
+        ExportKind::AsShown,
+        ExportKind::Data,
+        ExportKind::Capture,
+        ExportKind::Scene,
+        ExportKind::Report,
+    ];
 
     /// In the menu.
     #[must_use]
@@ -45,6 +54,7 @@ impl ExportKind {
             ExportKind::Data => "Shown values (.npy)…",
             ExportKind::Capture => "Capture folder…",
             ExportKind::Scene => "Scene file (TOML)…",
+            ExportKind::Report => "Report (table or plot)…",
         }
     }
 
@@ -59,6 +69,10 @@ impl ExportKind {
                 "Every buffer after every pass, with a manifest, to be opened again or scripted against"
             }
             ExportKind::Scene => "The scene with its lights, camera and technique as they are now",
+            ExportKind::Report => {
+                "Error against run time, as measured in the Report tab: .csv, .md or .json for the rows, .svg or .png \
+                 for the plot"
+            }
         }
     }
 }
@@ -86,6 +100,17 @@ impl ExportDialog {
     /// With a name that says what it is; none where there is nothing of this kind.
     #[must_use]
     pub fn new(kind: ExportKind, state: &State) -> Option<ExportDialog> {
+        let name = match kind {
+            ExportKind::Report => format!("{}-report.csv", state.report.measured()?.rows.first()?.scene),
+            kind => ExportDialog::name_of_shown(kind, state)?,
+        };
+        let plain = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-' | '_') { c } else { '-' };
+        let path = name.chars().map(plain).collect();
+        Some(ExportDialog { kind, path, taken: None, error: None })
+    }
+
+    /// What is made of the capture or the open scene.
+    fn name_of_shown(kind: ExportKind, state: &State) -> Option<String> {
         let capture = state.capture.as_ref()?;
         let title = || {
             let shown = state.shown(capture)?;
@@ -93,7 +118,7 @@ impl ExportDialog {
             Some(if is_change { format!("{}-change", shown.title) } else { shown.title })
         };
         let stem = format!("{}-{}", capture.scene, capture.technique);
-        let name = match kind {
+        Some(match kind {
             ExportKind::Picture => format!("{stem}-{}.png", title()?),
             // Nothing lies over layers side by side.
             ExportKind::AsShown if state.shown(capture)?.images.len() > 1 => return None,
@@ -101,10 +126,8 @@ impl ExportDialog {
             ExportKind::Data => format!("{stem}-{}.npy", state.shown(capture)?.title),
             ExportKind::Capture => format!("{stem}-capture"),
             ExportKind::Scene => format!("{}.toml", state.scene.as_ref()?.name),
-        };
-        let plain = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-' | '_') { c } else { '-' };
-        let path = name.chars().map(plain).collect();
-        Some(ExportDialog { kind, path, taken: None, error: None })
+            ExportKind::Report => return None,
+        })
     }
 }
 
@@ -130,16 +153,21 @@ pub enum ExportData {
     Capture(Arc<Capture>),
     /// The scene as this runs it.
     Scene(Box<RunRequest>),
+    /// What was measured.
+    Report(Box<Report>),
 }
 
 /// What `kind` means now; none where there is nothing of it.
 #[must_use]
 pub fn data(state: &mut State, kind: ExportKind) -> Option<ExportData> {
+    if kind == ExportKind::Report {
+        return state.report.measured().cloned().map(|report| ExportData::Report(Box::new(report)));
+    }
     let capture = state.capture.clone()?;
     match kind {
         ExportKind::Capture => return Some(ExportData::Capture(capture)),
         ExportKind::Scene => return Some(ExportData::Scene(Box::new(state.scene.as_ref()?.draft.clone()))),
-        ExportKind::Picture | ExportKind::AsShown | ExportKind::Data => {}
+        ExportKind::Picture | ExportKind::AsShown | ExportKind::Data | ExportKind::Report => {}
     }
     let shown = state.shown(&capture)?;
     if kind == ExportKind::Data {
@@ -180,6 +208,7 @@ pub fn menu(ui: &mut Ui, state: &mut State) {
         let button = button.on_hover_text(kind.explanation());
         let nothing = match kind {
             ExportKind::AsShown => "Overlays lie over one picture: show one, and not all layers of a light's map",
+            ExportKind::Report => "Nothing is measured yet: press Measure in the Report tab",
             _ => "There is nothing of this kind to export now",
         };
         if button.on_disabled_hover_text(nothing).clicked() {

@@ -3,6 +3,7 @@
 //! It shows data and asks for it; measuring is the app's.
 
 use super::action::Action;
+use super::export::{ExportDialog, ExportKind};
 use super::state::State;
 use super::{format, report_plot, report_table, theme};
 use crate::report::plot::{Page, Plot, layout};
@@ -67,8 +68,13 @@ impl ReportState {
         self.rows().is_empty() && self.view.running.is_none()
     }
 
+    /// The rows so far, or all; `None` while there is none.
+    pub fn measured(&self) -> Option<&Report> {
+        self.view.report.as_ref().filter(|report| !report.rows.is_empty())
+    }
+
     fn rows(&self) -> &[Row] {
-        self.view.report.as_ref().map_or(&[], |report| &report.rows)
+        self.measured().map_or(&[], |report| &report.rows)
     }
 
     /// The plot on a page.
@@ -126,7 +132,7 @@ fn plot_of(ui: &mut Ui, state: &mut State, height: f32, actions: &mut Vec<Action
 }
 
 /// What can be done, and how far it is.
-fn top_line(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
+fn top_line(ui: &mut Ui, state: &mut State, actions: &mut Vec<Action>) {
     let can_run = state.scene.is_some();
     ui.horizontal_wrapped(|ui| match &state.report.view.running {
         Some(progress) => {
@@ -146,6 +152,9 @@ fn top_line(ui: &mut Ui, state: &State, actions: &mut Vec<Action>) {
             let button = ui.add_enabled(can_run, egui::Button::new(words));
             if button.on_hover_text("Measure every technique on the open scene; this takes a while").clicked() {
                 actions.push(Action::RunReport);
+            }
+            if !is_new && ui.button("Save…").on_hover_text("Write the rows or the plot to a file").clicked() {
+                state.export.dialog = ExportDialog::new(ExportKind::Report, state);
             }
             ui.add(egui::Label::new(theme::note(explanation(state, can_run, is_new))).wrap());
         }

@@ -15,7 +15,7 @@ mod svg;
 mod table;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use crate::capture::AdapterInfo;
 use crate::numbers;

@@ -2,12 +2,12 @@
 
 use super::*;
 
-pub(super) fn adapter() -> AdapterInfo {
+pub(crate) fn adapter() -> AdapterInfo {
     AdapterInfo { name: "hand".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() }
 }
 
 /// A row with `wrong` of 1000 pixels wrong, `ms` milliseconds a frame.
-pub(super) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64) -> Row {
+pub(crate) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64) -> Row {
     Row {
         scene: scene.to_owned(),
         technique: technique.to_owned(),

@@ -81,11 +81,14 @@ impl Session {
         };
         progress.start(what.choices.len() * (what.runs + 1));
         let mut measured = Vec::with_capacity(what.choices.len());
+        // By row: which of the choices it is.
+        let mut items = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
             go_on(self)?;
             let row = self.first_frame(scene, what, choice, &traced)?;
             let steps = if row.is_some() { 1 } else { 1 + what.runs };
+            items.extend(row.is_some().then_some(item));
             measured.extend(row);
             (0..steps).for_each(|_| progress.advance());
         }
@@ -97,8 +100,8 @@ impl Session {
         }
         let mut gpu: Vec<Vec<f64>> = vec![Vec::with_capacity(what.runs); plans.len()];
         for _ in 0..what.runs {
-            for ((row, kept), gpu) in measured.iter_mut().zip(&kept).zip(&mut gpu) {
-                progress.turn_to(what.choices.iter().position(|choice| *choice == row.choice).unwrap_or_default());
+            for (((row, item), kept), gpu) in measured.iter_mut().zip(&items).zip(&kept).zip(&mut gpu) {
+                progress.turn_to(*item);
                 go_on(self)?;
                 let (plan, made);
                 let ready = match kept {

@@ -7,7 +7,7 @@ use egui::accesskit::{Role, Toggled};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::BTreeMap;
-use stencilscope::inspector::{Action, Inspector, ReportProgress, ReportView};
+use stencilscope::inspector::{Action, ExportData, ExportKind, Inspector, ReportProgress, ReportView};
 use stencilscope::report::{Report, Row};
 use stencilscope::technique::{Choice, Technique};
 
@@ -141,4 +141,23 @@ fn odd_rows_and_errors_are_shown() {
     let harness = showing(ReportView { error, ..with_rows(report) });
     harness.get_by_label("× no GPU: install mesa-vulkan-drivers");
     harness.get_by_role_and_label(Role::Button, "later: none wrong, 18.2 ms");
+}
+
+#[test]
+fn the_rows_can_be_saved() {
+    let report = one_scene();
+    let mut harness = showing(ReportView::default());
+    assert!(harness.query_by_role_and_label(Role::Button, "Save…").is_none(), "nothing is measured");
+    assert!(harness.state_mut().inspector.export(ExportKind::Report).is_none());
+    harness.state_mut().inspector.set_report(with_rows(report.clone()));
+    harness.run_steps(2);
+    click_button(&mut harness, "Save…");
+    harness.get_by_label("Export: Report (table or plot)");
+    click_button(&mut harness, "Save");
+    let Some(Action::Export { kind: ExportKind::Report, path, replace: false }) = harness.state().actions.last() else {
+        panic!("{:?}", harness.state().actions);
+    };
+    assert_eq!(*path, format!("{}-report.csv", report.rows[0].scene));
+    let data = harness.state_mut().inspector.export(ExportKind::Report);
+    assert!(matches!(data, Some(ExportData::Report(exported)) if *exported == report));
 }

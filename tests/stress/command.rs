@@ -31,11 +31,16 @@ fn the_command_tells_in_every_form() {
     let plot = std::fs::read_to_string(folder.path().join("s.svg")).expect("a plot");
     assert!(plot.contains("<svg") && plot.contains("aspect ratio") && plot.contains("z-fail at 1e8"), "{plot}");
 
-    let output = run(folder.path(), &[&volumes[..], &["--markdown", "s.md", "--plot", "s.png"][..]].concat());
+    let output = run(
+        folder.path(),
+        &[&volumes[..], &["--markdown", "s.md", "--json", "t.json", "--plot", "s.png"][..]].concat(),
+    );
     assert_eq!((output.status.code(), text(&output.stdout)), (Some(0), String::new()));
     let markdown = std::fs::read_to_string(folder.path().join("s.md")).expect("a table");
     assert!(markdown.contains("\nexpectations are measured at 320x240"), "{markdown}");
     assert!(markdown.contains("| sliver | aspect ratio 1 → 1e8 |  | · | · |  |"), "{markdown}");
+    let again = std::fs::read_to_string(folder.path().join("t.json")).expect("rows, in the same run");
+    assert!(again.contains("\"summary\""), "{again}");
     assert!(std::fs::read(folder.path().join("s.png")).expect("a picture").starts_with(b"\x89PNG"));
 
     let list = text(&run(folder.path(), &["stress", "--list"]).stdout);

@@ -1,0 +1,43 @@
+//! Results of one run in several forms: each to a file, one of them to standard output in place of the table.
+
+use super::{CliError, output};
+
+/// Where a form goes: `None` where it is not asked for, standard output where no file is named.
+pub type Target = Option<Option<String>>;
+
+/// The files that are named, those of forms first.
+pub fn files<'a>(forms: &[&'a Target], plot: &'a Option<String>) -> Vec<&'a str> {
+    let of_forms = forms.iter().filter_map(|target| target.as_ref()?.as_deref());
+    of_forms.chain(plot.as_deref()).collect()
+}
+
+/// Checks, before long work, that all results can be delivered.
+///
+/// # Errors
+/// A file that can't be made there, two results for one file, two for standard output.
+pub fn check(forms: &[&Target], plot: &Option<String>) -> Result<(), CliError> {
+    let files = files(forms, plot);
+    files.iter().try_for_each(|file| output::check_target(file))?;
+    let is_twice = |(index, file): &(usize, &&str)| files[..*index].contains(*file);
+    if let Some((_, file)) = files.iter().enumerate().find(is_twice) {
+        let line = format!("`{}` is named for two results: choose another file for one", file.escape_debug());
+        return Err(CliError::Usage(line));
+    }
+    if forms.iter().filter(|target| matches!(target, Some(None))).count() > 1 {
+        let line = "two results can't both go to standard output: give one a file, as `--json=FILE`";
+        return Err(CliError::Usage(line.to_owned()));
+    }
+    Ok(())
+}
+
+/// Writes the forms that are asked for; the table where none is.
+///
+/// # Errors
+/// As [`output::deliver`].
+pub fn deliver<const N: usize>(forms: [(&Target, String); N], table: impl FnOnce() -> String) -> Result<(), CliError> {
+    if forms.iter().all(|(target, _)| target.is_none()) {
+        return output::print(&table());
+    }
+    let asked = forms.iter().filter_map(|(target, text)| Some((target.as_ref()?, text)));
+    asked.into_iter().try_for_each(|(file, text)| output::deliver(text, file.as_deref()))
+}
