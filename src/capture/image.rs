@@ -1,10 +1,12 @@
 //! A picture in memory: rows of texels, top row first, possibly padded.
 //!
 //! Rows may be longer than their texels need (a GPU copy pads them to 256 bytes), so that a
-//! mapped GPU buffer can be shown without copying it again. Texels are read one at a time or by
-//! row; [`PartialEq`] compares texels, not padding.
+//! mapped GPU buffer can be shown without copying it again. A picture that differs little from one
+//! that is held too can share its other rows ([`Image::sharing`]): of many in a row, each costs what
+//! it changed. Texels are read one at a time or by row; [`PartialEq`] compares texels, not padding.
 
 use bytes::Bytes;
+use std::ops::Range;
 
 /// What one texel is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -32,13 +34,40 @@ impl PixelFormat {
     }
 }
 
+/// Rows that are shared together.
+const STRIP_ROWS: u32 = 8;
+/// A picture shares its rows where at most this many of four strips differ.
+const MOST_CHANGED_QUARTERS: usize = 3;
+
 /// Texels of one format.
 #[derive(Clone)]
 pub struct Image {
     format: PixelFormat,
     size: [u32; 2],
+    /// Rows of a strip; the last may have fewer.
+    strip_rows: u32,
+    strips: Vec<Strip>,
+}
+
+/// Some rows.
+#[derive(Clone)]
+struct Strip {
     row_stride: usize,
     bytes: Bytes,
+}
+
+impl Strip {
+    fn row(&self, y: u32, row_bytes: usize) -> &[u8] {
+        let start = y as usize * self.row_stride;
+        &self.bytes[start..start + row_bytes]
+    }
+
+    /// Some of its rows, in the same memory.
+    fn part(&self, rows: Range<u32>, row_bytes: usize) -> Strip {
+        let start = rows.start as usize * self.row_stride;
+        let last = rows.end.saturating_sub(1) as usize * self.row_stride;
+        Strip { row_stride: self.row_stride, bytes: self.bytes.slice(start..last + row_bytes) }
+    }
 }
 
 impl Image {
@@ -54,7 +83,11 @@ impl Image {
         assert!(row_stride >= row_bytes, "a row of {row_bytes} bytes does not fit a stride of {row_stride}");
         let needed = height.checked_sub(1).map_or(0, |rows| rows * row_stride + row_bytes);
         assert!(bytes.len() >= needed, "{} bytes are too few for {needed}", bytes.len());
-        Image { format, size, row_stride, bytes }
+        Image::of_one_strip(format, size, Strip { row_stride, bytes })
+    }
+
+    fn of_one_strip(format: PixelFormat, size: [u32; 2], strip: Strip) -> Image {
+        Image { format, size, strip_rows: size[1].max(1), strips: vec![strip] }
     }
 
     /// Wraps rows without padding.
@@ -74,7 +107,46 @@ impl Image {
     pub fn uniform(format: PixelFormat, size: [u32; 2], texel: &[u8]) -> Image {
         assert_eq!(texel.len(), format.texel_bytes());
         let row = texel.repeat(size[0] as usize);
-        Image { format, size, row_stride: 0, bytes: row.into() }
+        Image::of_one_strip(format, size, Strip { row_stride: 0, bytes: row.into() })
+    }
+
+    /// The same picture, with its rows in the memory of `other` wherever it has them too, and a copy of the rest;
+    /// `None` where that is most of it. What it shares stays in memory as long as one of the two does.
+    #[must_use]
+    pub fn sharing(&self, other: &Image) -> Option<Image> {
+        if (self.format, self.size) != (other.format, other.size) {
+            return None;
+        }
+        let starts = (0..self.size[1]).step_by(STRIP_ROWS as usize);
+        let rows_from = |start: u32| start..(start + STRIP_ROWS).min(self.size[1]);
+        let shared = |rows: Range<u32>| {
+            let is_equal = rows.clone().all(|y| self.row(y) == other.row(y));
+            is_equal.then(|| other.strip(rows)).flatten()
+        };
+        let shared: Vec<Option<Strip>> = starts.clone().map(|start| shared(rows_from(start))).collect();
+        let changed = shared.iter().filter(|strip| strip.is_none()).count();
+        if changed * 4 > shared.len() * MOST_CHANGED_QUARTERS {
+            return None;
+        }
+        let copied = |start: u32| {
+            let bytes: Vec<u8> = rows_from(start).flat_map(|y| self.row(y)).copied().collect();
+            Strip { row_stride: self.row_bytes(), bytes: bytes.into() }
+        };
+        let strips = starts.zip(shared).map(|(start, shared)| shared.unwrap_or_else(|| copied(start))).collect();
+        Some(Image { format: self.format, size: self.size, strip_rows: STRIP_ROWS, strips })
+    }
+
+    /// Some rows; `None` where they lie in different strips.
+    fn strip(&self, rows: Range<u32>) -> Option<Strip> {
+        let index = rows.start / self.strip_rows;
+        let first = index * self.strip_rows;
+        let strip = self.strips.get(index as usize)?;
+        let is_within = rows.end <= first.saturating_add(self.strip_rows);
+        is_within.then(|| strip.part(rows.start - first..rows.end - first, self.row_bytes()))
+    }
+
+    fn row_bytes(&self) -> usize {
+        self.size[0] as usize * self.format.texel_bytes()
     }
 
     /// What one texel is.
@@ -89,10 +161,13 @@ impl Image {
         self.size
     }
 
-    /// Bytes held, padding included.
-    #[must_use]
-    pub fn byte_len(&self) -> usize {
-        self.bytes.len()
+    /// Where its rows lie in memory, padding included: what several pictures share, they have at the same place.
+    pub fn memory(&self) -> impl Iterator<Item = Range<usize>> {
+        let place = |strip: &Strip| {
+            let start = strip.bytes.as_ptr() as usize;
+            start..start + strip.bytes.len()
+        };
+        self.strips.iter().map(place)
     }
 
     /// The texels of row `y` (0 at the top), without padding.
@@ -102,8 +177,7 @@ impl Image {
     #[must_use]
     pub fn row(&self, y: u32) -> &[u8] {
         assert!(y < self.size[1], "row {y} of {}", self.size[1]);
-        let start = y as usize * self.row_stride;
-        &self.bytes[start..start + self.size[0] as usize * self.format.texel_bytes()]
+        self.strips[(y / self.strip_rows) as usize].row(y % self.strip_rows, self.row_bytes())
     }
 
     /// All rows, top first.
@@ -169,5 +243,58 @@ impl PartialEq for Image {
 impl std::fmt::Debug for Image {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Image({:?}, {}x{})", self.format, self.size[0], self.size[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 5×20 stencil values, `at` of them 9.
+    fn picture(row_stride: usize, at: &[(usize, usize)]) -> Image {
+        let mut bytes = vec![0xEE; row_stride * 20];
+        bytes.chunks_mut(row_stride).for_each(|row| row[..5].fill(1));
+        at.iter().for_each(|(x, y)| bytes[y * row_stride + x] = 9);
+        Image::from_rows(PixelFormat::U8, [5, 20], row_stride, bytes)
+    }
+
+    fn held(images: &[&Image]) -> usize {
+        let places: std::collections::BTreeSet<(usize, usize)> =
+            images.iter().flat_map(|image| image.memory()).map(|place| (place.start, place.end)).collect();
+        places.iter().map(|(start, end)| end - start).sum()
+    }
+
+    #[test]
+    fn what_is_shared_is_the_same_picture_and_takes_what_differs() {
+        let first = picture(8, &[]);
+        let second = picture(8, &[(2, 9)]);
+        let shared = second.sharing(&first).expect("one strip of three differs");
+        assert_eq!((&shared, shared.texel([2, 9])), (&second, Some(&[9][..])));
+        assert_ne!(shared, first);
+        let within = first.memory().next().expect("a place");
+        let own = shared.memory().filter(|place| place.start < within.start || place.end > within.end);
+        assert_eq!(own.map(|place| place.len()).collect::<Vec<_>>(), [8 * 5]);
+        // A third has the strips of both.
+        let third = picture(16, &[(2, 9), (4, 19)]);
+        let of_both = third.sharing(&shared).expect("one strip differs");
+        assert_eq!((&of_both, of_both.rows().len()), (&third, 20));
+        assert_eq!(held(&[&shared, &of_both]), held(&[&shared]) + 4 * 5);
+    }
+
+    #[test]
+    fn a_cleared_picture_shares_its_one_row() {
+        let cleared = Image::uniform(PixelFormat::U8, [5, 20], &[1]);
+        let drawn = picture(8, &[(0, 0)]);
+        let shared = drawn.sharing(&cleared).expect("one strip differs");
+        assert_eq!(shared, drawn);
+        assert_eq!(held(&[&shared]), 5 + 8 * 5);
+    }
+
+    #[test]
+    fn what_differs_everywhere_or_is_of_another_kind_shares_nothing() {
+        let everywhere: Vec<(usize, usize)> = (0..20).map(|y| (y % 5, y)).collect();
+        assert!(picture(8, &everywhere).sharing(&picture(8, &[])).is_none());
+        let other = Image::uniform(PixelFormat::U8, [5, 19], &[1]);
+        assert!(picture(8, &[]).sharing(&other).is_none());
     }
 }

@@ -246,16 +246,18 @@ impl Capture {
         self.steps.get(step).is_some_and(|step| step.draws.iter().all(|draw| draw.after.is_some()))
     }
 
-    /// Bytes of all distinct images: shared ones count once.
+    /// Bytes of all images: what they share counts once.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        let mut seen = std::collections::BTreeSet::new();
+        let mut places = Vec::new();
+        self.for_each_image(|image| places.extend(image.memory().map(|place| (place.start, place.end))));
+        places.sort_unstable();
+        let mut counted = 0;
         let mut total = 0;
-        self.for_each_image(|image| {
-            if seen.insert(Arc::as_ptr(image)) {
-                total += image.byte_len() as u64;
-            }
-        });
+        for (start, end) in places {
+            total += end.saturating_sub(start.max(counted)) as u64;
+            counted = counted.max(end);
+        }
         total
     }
 

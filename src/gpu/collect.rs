@@ -30,6 +30,16 @@ pub(super) struct Collector {
     depth: Arc<Image>,
     stencil: Arc<Image>,
     output: Output,
+    memory: Memory,
+}
+
+/// Where pictures lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Memory {
+    /// In their mapped copies: nothing is copied once more.
+    Mapped,
+    /// Rows that are as in the picture before, there: many pictures that differ little take little.
+    Shared,
 }
 
 impl Collector {
@@ -45,7 +55,13 @@ impl Collector {
             depth: zero(PixelFormat::Depth32F),
             stencil: zero(PixelFormat::U8),
             output: Output { steps, targets, labels: none.clone(), counts: none, maps, kept },
+            memory: Memory::Mapped,
         }
+    }
+
+    /// More is to come than should be held whole.
+    pub fn share(&mut self) {
+        self.memory = Memory::Shared;
     }
 
     /// Goes on by one pass, whose copies are mapped.
@@ -53,7 +69,7 @@ impl Collector {
         let plan = prepared.plan;
         let pass = &plan.passes[index];
         let staged = prepared.staged(index)?;
-        let output = &mut self.output;
+        let (output, memory) = (&mut self.output, self.memory);
         let role = |target| plan.attachment(target).role;
         let color_role = pass.color.as_ref().map(|target| (role(target.attachment), target.layer));
         let depth_role = pass.depth_stencil.as_ref().map(|target| (role(target.attachment), target.layer));
@@ -63,7 +79,7 @@ impl Collector {
                 let known = output.maps[light.0].as_mut().and_then(|faces| faces.get_mut(face));
                 let image = match (known, staged.color.as_ref().or(staged.depth.as_ref())) {
                     (Some(known), Some(staging)) => {
-                        move_on(known, staging.image()?);
+                        move_on(known, staging.image()?, memory);
                         Some(known.clone())
                     }
                     (known, _) => known.cloned(),
@@ -75,13 +91,14 @@ impl Collector {
                 let (mut color_after, mut own) = (None, None);
                 let target = match color_role.map(|(role, _)| role) {
                     Some(AttachmentRole::Labels(light)) => {
-                        keep(&mut output.labels[light.0], after(&change, &staged.color, PixelFormat::U8, plan.size)?);
+                        let labels = after(&change, &staged.color, PixelFormat::U8, plan.size)?;
+                        keep(&mut output.labels[light.0], labels, memory);
                         own.clone_from(&output.labels[light.0]);
                         FrameTarget::Labels
                     }
                     Some(AttachmentRole::Count(light)) => {
                         let count = after(&change, &staged.color, PixelFormat::Count32F, plan.size)?;
-                        keep(&mut output.counts[light.0], count);
+                        keep(&mut output.counts[light.0], count, memory);
                         own.clone_from(&output.counts[light.0]);
                         FrameTarget::Count
                     }
@@ -93,9 +110,11 @@ impl Collector {
                 let depth_after = after(&depth_change(pass), &staged.depth, PixelFormat::Depth32F, plan.size)?;
                 let stencil_after = after(&stencil_change(pass), &staged.stencil, PixelFormat::U8, plan.size)?;
                 let frame = FrameSnapshot {
-                    color: step_aspect(&mut self.color, color_after),
-                    depth: step_aspect(&mut self.depth, depth_after),
-                    stencil: prepared.passes[index].has_stencil.then(|| step_aspect(&mut self.stencil, stencil_after)),
+                    color: step_aspect(&mut self.color, color_after, memory),
+                    depth: step_aspect(&mut self.depth, depth_after, memory),
+                    stencil: prepared.passes[index]
+                        .has_stencil
+                        .then(|| step_aspect(&mut self.stencil, stencil_after, memory)),
                     target,
                 };
                 (Snapshot::Frame(frame), own)
@@ -144,25 +163,26 @@ pub(super) fn after(
 }
 
 /// A pass that changes nothing leaves what was there.
-pub(super) fn keep(known: &mut Option<Arc<Image>>, after: Option<Arc<Image>>) {
+pub(super) fn keep(known: &mut Option<Arc<Image>>, after: Option<Arc<Image>>, memory: Memory) {
     let Some(after) = after else { return };
     match known {
-        Some(known) => _ = move_on(known, after),
+        Some(known) => _ = move_on(known, after, memory),
         None => *known = Some(after),
     }
 }
 
 /// Moves an aspect on by one step. A clear to what was there already changes nothing.
-fn step_aspect(current: &mut Arc<Image>, next: Option<Arc<Image>>) -> Aspect {
-    let changed = next.is_some_and(|next| move_on(current, next));
+fn step_aspect(current: &mut Arc<Image>, next: Option<Arc<Image>>, memory: Memory) -> Aspect {
+    let changed = next.is_some_and(|next| move_on(current, next, memory));
     Aspect { image: current.clone(), unchanged: !changed }
 }
 
 /// Goes on to the next picture, and says whether it is another: one that is equal is let go.
-fn move_on(current: &mut Arc<Image>, next: Arc<Image>) -> bool {
+fn move_on(current: &mut Arc<Image>, next: Arc<Image>, memory: Memory) -> bool {
     let is_another = next != *current;
     if is_another {
-        *current = next;
+        let sharing = if memory == Memory::Shared { next.sharing(current) } else { None };
+        *current = sharing.map_or(next, Arc::new);
     }
     is_another
 }

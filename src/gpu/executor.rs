@@ -2,7 +2,7 @@
 //! where those copies are many.
 
 use super::buffers::Buffers;
-use super::collect::{Collector, Output, after, keep};
+use super::collect::{Collector, Memory, Output, after, keep};
 use super::fragment_log::LogKeeper;
 use super::maps::Maps;
 use super::pipelines::Pipelines;
@@ -81,12 +81,28 @@ impl Executor {
     /// # Errors
     /// A plan that breaks a rule, pictures or meshes that are too large, a driver that refuses.
     pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
-        if let Some(error) = lint::check(plan).into_iter().next() {
-            return Err(GpuError::Plan(error));
-        }
-        self.provide(plan)?;
+        self.check(plan)?;
         let Executor { context, pipelines, buffers, maps, .. } = self;
         context.guarded(|| Prepared::new(context, pipelines, buffers, maps, plan))
+    }
+
+    /// The same for a plan that is run once and gives way to others: its maps go with it, and those of the plan
+    /// before stay.
+    ///
+    /// # Errors
+    /// As [`Executor::prepare`].
+    pub fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
+        self.check(plan)?;
+        let Executor { context, pipelines, buffers, .. } = self;
+        context.guarded(|| Prepared::new(context, pipelines, buffers, &mut Maps::default(), plan))
+    }
+
+    /// Finds what can't be run, and a device for what can.
+    fn check(&mut self, plan: &FramePlan) -> Result<(), GpuError> {
+        match lint::check(plan).into_iter().next() {
+            Some(error) => Err(GpuError::Plan(error)),
+            None => self.provide(plan),
+        }
     }
 
     /// Opens another device where this one can't do what the plan needs. What has been prepared keeps
@@ -181,7 +197,7 @@ impl Executor {
             if let Some(light) = labelled(plan, pass) {
                 let staged = prepared.staged(index)?;
                 let left = after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
-                keep(&mut labels[light.0], left);
+                keep(&mut labels[light.0], left, Memory::Mapped);
             }
         }
         Ok(labels)
@@ -253,8 +269,7 @@ fn run(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError> {
     Ok(())
 }
 
-/// The same, of all that a capture keeps, in parts: a frame whose copies are many does not hold those that show
-/// what was there before.
+/// The same, of all that a capture keeps, in parts: a frame whose copies are many holds of them only what differs.
 fn run_in_parts(prepared: &mut Prepared, notes: &Notes) -> Result<Collector, GpuError> {
     let plan = prepared.plan;
     let context = prepared.context.clone();
@@ -266,6 +281,9 @@ fn run_in_parts(prepared: &mut Prepared, notes: &Notes) -> Result<Collector, Gpu
             submit(prepared, Mode::Everything, notes, part.clone())?;
             Ok(part)
         })?;
+        if part.end < plan.passes.len() {
+            collector.share();
+        }
         for index in part.clone() {
             collector.take_in(prepared, index)?;
             prepared.forget_staged(index);

@@ -27,7 +27,7 @@ pub enum Every {
 }
 
 /// Bytes of a capture to which draws may be filled in without dropping others.
-const MOST_FILLED_BYTES: u64 = 1 << 28;
+const MOST_FILLED_BYTES: u64 = 1 << 27;
 
 impl Session {
     /// Runs a frame with a snapshot after each of its draws.

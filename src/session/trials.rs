@@ -48,7 +48,7 @@ impl Session {
             let capture = self.capture_plan(&scene, &plan)?;
             return Ok(judged(&plan, runs.traced, &labels_of(&capture), Some(&capture)).wrong);
         }
-        let ready = self.executor.prepare(&plan)?;
+        let ready = self.executor.prepare_once(&plan)?;
         let labels = self.executor.labels(ready)?;
         Ok(judged(&plan, runs.traced, &labels, None).wrong)
     }

@@ -17,11 +17,10 @@ use std::time::{Duration, Instant};
 /// Frames that are timed, each with and without snapshots.
 const TIMED_FRAMES: usize = 5;
 
-/// Bytes that a row of a report may take beyond the frame that is shown, where the GPU's memory is this
-/// program's own: a window that is open for hours shares the machine.
-const MOST_OF_A_ROW: u64 = 128 << 20;
-/// Of a mend that is tried, one at a time: a shadow map of four times the usual width, all six faces of it.
-const MOST_OF_A_MEND: u64 = 400 << 20;
+/// Bytes that a row of a report, or a mend that a diagnosis tries, may take beyond the frame that is shown, where
+/// the GPU's memory is this program's own: a window that is open for hours shares the machine. A mend that is
+/// applied takes as much again for its snapshots.
+const MOST_OF_A_TRIAL: u64 = 128 << 20;
 
 /// While rows of a report come and go.
 const GIVE_BACK_EVERY: Duration = Duration::from_millis(500);
@@ -43,10 +42,10 @@ pub(super) struct Done {
 }
 
 impl Done {
-    /// Lets so many bytes more than this frame takes be tried.
-    fn make_room(&self, session: &mut Session, more: u64) {
+    /// Lets no more be tried than there is room for.
+    fn make_room(&self, session: &mut Session) {
         let shares_memory = session.adapter().kind == "cpu";
-        session.set_room(shares_memory.then(|| self.plan.bytes() + more));
+        session.set_room(shares_memory.then(|| self.plan.bytes() + MOST_OF_A_TRIAL));
     }
 
     /// The history of a pixel: so quick that nothing has to say it is being done.
@@ -149,7 +148,7 @@ impl Bench {
         let meant = self.last.as_ref().filter(|done| done.frame == frame);
         let result = match (&mut self.session, meant) {
             (Some(session), Some(done)) => {
-                done.make_room(session, MOST_OF_A_MEND);
+                done.make_room(session);
                 let found = session.diagnose(&done.scene, &done.request, Fault::None, progress);
                 found.map(Arc::new).map_err(|error| error.to_string())
             }
@@ -213,7 +212,7 @@ impl Bench {
             }
             (Some(session), Some(done)) => {
                 let (scene, size) = (done.scene.clone(), done.request.size);
-                done.make_room(session, MOST_OF_A_ROW);
+                done.make_room(session);
                 let measurement = Measurement { choices: what.choices, size, runs: what.runs };
                 let mut given_back = Instant::now();
                 let mut between = |session: &mut Session| {

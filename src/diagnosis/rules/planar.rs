@@ -395,9 +395,14 @@ fn texture_aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
     Suspicion::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
 }
 
-/// A map of four times the size, and what needs none.
+/// A map of twice the size, one of four times, and what needs none.
 pub(crate) fn larger(size: f64, most: f64) -> Vec<Mend> {
-    let larger = (size * 4.0).min(most);
-    let grow = (larger > size).then(|| Mend::setting("size", &format!("{larger}")));
-    grow.into_iter().chain([Mend::technique(Technique::ZFail)]).collect()
+    let mut sizes = vec![size];
+    for larger in [size * 2.0, size * 4.0].map(|larger| larger.min(most)) {
+        if sizes.iter().all(|known| larger > *known) {
+            sizes.push(larger);
+        }
+    }
+    let grow = sizes[1..].iter().map(|larger| Mend::setting("size", &format!("{larger}")));
+    grow.chain([Mend::technique(Technique::ZFail)]).collect()
 }
