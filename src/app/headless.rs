@@ -124,7 +124,7 @@ impl Headless {
     pub fn settle(&mut self) -> Result<(), AppError> {
         self.frame(Vec::new());
         loop {
-            let is_busy = self.desk.inspector.is_busy() || self.desk.is_finding();
+            let is_busy = self.desk.inspector.is_busy() || self.desk.is_finding() || self.desk.watch_jobs();
             match self.news.recv_timeout(if is_busy { PATIENCE } else { SILENCE }) {
                 Ok(news) => {
                     self.desk.wake(news);

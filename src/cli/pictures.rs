@@ -54,7 +54,7 @@ mod shots {
     use crate::app::headless::Headless;
     use crate::app::{ViewRequest, ViewSource};
     use crate::cli::{CliError, output};
-    use crate::inspector::{Inspector, Overlay, Panel, PictureKind, ThemeChoice};
+    use crate::inspector::{Action, Inspector, Overlay, Panel, PictureKind, ThemeChoice};
     use crate::picture::{Picture, film};
     use crate::scene::{OpenSpec, open};
     use crate::session::{CaptureRequest, Every};
@@ -77,6 +77,9 @@ mod shots {
     /// In `inside`: the eye is in a shadow, so z-pass misses another one here.
     const MISSING: [u32; 2] = [330, 300];
 
+    /// Cases of which some technique breaks in each; the first is the one whose rows are shown.
+    const STRESSED: [&str; 3] = ["near-far", "world-offset", "nested"];
+
     /// What a picture shows.
     struct Shot {
         name: &'static str,
@@ -94,6 +97,8 @@ mod shots {
         overlay: Option<Overlay>,
         /// Compared with this technique under the divider.
         compared: Option<Technique>,
+        /// What is asked for, and waited for.
+        asks: Option<fn() -> Action>,
     }
 
     fn shot(name: &'static str, scene: &'static str, technique: Technique, panels: &'static [Panel]) -> Shot {
@@ -113,11 +118,12 @@ mod shots {
             keys: &[],
             overlay: None,
             compared: None,
+            asks: None,
         }
     }
 
     fn shots() -> Vec<Shot> {
-        use Panel::{Explain, Picture, Pixel, Scene, Settings, ShadowMap as MapTab, State};
+        use Panel::{Diagnosis, Explain, Picture, Pixel, Report, Scene, Settings, ShadowMap as MapTab, State, Stress};
         use PictureKind::{Error, Stencil};
         use Technique::{Auto, ShadowMap, ZFail, ZPass};
         let volumes = |shot: Shot| Shot { step: "volumes", kind: Stencil, ..shot };
@@ -136,6 +142,19 @@ mod shots {
                 ..shot("overlay", "tori", ZFail, &[Picture, Pixel])
             },
             Shot { compared: Some(ShadowMap), ..shot("compare", "table", ZFail, &[Picture, Pixel]) },
+            Shot {
+                kind: Error,
+                asks: Some(|| Action::Diagnose),
+                ..shot("diagnosis", "inside", ZPass, &[Picture, Pixel, Diagnosis])
+            },
+            Shot {
+                asks: Some(|| Action::RunReport),
+                ..shot("report-tab", "table", ShadowMap, &[Picture, Pixel, Report])
+            },
+            Shot {
+                asks: Some(|| Action::RunStress { cases: STRESSED.to_vec() }),
+                ..shot("stress-tab", "tori", ZFail, &[Picture, Pixel, Stress])
+            },
             Shot { theme: ThemeChoice::Light, ..volumes(shot("light-theme", "tori", ZFail, &[Picture, Pixel])) },
         ]
     }
@@ -225,6 +244,9 @@ mod shots {
         panels.settle()?;
         for key in shot.keys {
             panels.key(Modifiers::NONE, *key);
+        }
+        if let Some(asks) = shot.asks {
+            panels.act(vec![asks()]);
         }
         panels.settle()?;
         Ok(panels.picture()?)
