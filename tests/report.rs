@@ -54,6 +54,7 @@ fn a_report_is_written_in_every_form() {
         run(folder.path(), &[&one[..], &["--markdown", "r.md", "--csv", "r.csv", "--plot", "r.png"][..]].concat());
     assert_eq!(markdown.status.code(), Some(0), "{}", text(&markdown.stderr));
     assert!(file("r.md").contains("z-pass"));
+    assert_eq!(file("r.csv").lines().count(), 3, "{}", file("r.csv"));
     assert!(fs::read(folder.path().join("r.png")).expect("a picture").starts_with(b"\x89PNG"));
     let table = run(folder.path(), &one);
     assert!(text(&table.stdout).contains("z-pass") && !text(&table.stdout).contains("planar"));

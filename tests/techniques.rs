@@ -4,7 +4,7 @@ use crate::common::{cuboid, from_above, label_counts, request, session, square};
 use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::scene::{Light, Object, OpenSpec, Pose, Scene, open};
-use stencilscope::session::Session;
+use stencilscope::session::{CaptureRequest, Every, Session};
 use stencilscope::technique::Technique;
 
 const SHADOWING: [Technique; 4] = [Technique::Planar, Technique::ZPass, Technique::ZFail, Technique::ShadowMap];
@@ -277,8 +277,8 @@ fn a_snapshot_after_each_draw_ends_like_one_after_each_pass() {
     }
 }
 
-/// A frame whose copies are many runs in parts, and leaves what it leaves in one; only the CPU's pictures of what
-/// changed stay.
+/// A frame whose copies are many runs in parts, and leaves what it leaves in one. Of its draws, only what they change
+/// is held.
 #[test]
 fn a_frame_that_copies_much_is_the_same_in_parts() {
     let mut session = session();
@@ -290,7 +290,16 @@ fn a_frame_that_copies_much_is_the_same_in_parts() {
     assert!(split.passes.len() > 30, "{} draws", split.passes.len());
     let by_draw = session.capture_plan(&scene, &split).expect("a capture");
     assert_ends_alike(&by_draw, &by_pass);
-    assert!(by_draw.steps.iter().all(|step| step.gpu_ms.is_some()), "every part is timed");
+    assert!(by_draw.steps.iter().all(|step| step.gpu_ms.is_some_and(|ms| ms > 0.0)), "every part is timed");
+    let request = CaptureRequest { every: Every::Draw, ..request(Technique::ZFail, [1600, 1000]) };
+    let joined = session.capture(&scene, &request).expect("a capture");
+    assert_eq!((&joined.lights, joined.steps.len()), (&by_pass.lights, by_pass.steps.len()));
+    for (index, (joined, whole)) in joined.steps.iter().zip(&by_pass.steps).enumerate() {
+        assert_eq!(joined.snapshot, whole.snapshot, "{index}");
+    }
+    let [draws, passes] = [&joined, &by_pass].map(Capture::bytes);
+    let copies = by_draw.bytes();
+    assert!(draws < copies / 2 && draws < passes * 4, "{draws} of {copies} bytes, {passes} without draws");
 }
 
 /// A frame that was split at its draws leaves after each pass what it leaves in one piece.

@@ -60,10 +60,9 @@ fn write(data: &ExportData, path: &str, replace: bool) -> Exported {
         ExportData::Picture(picture) => png(picture),
         ExportData::AsShown(drawing) => png(&drawing.finish()),
         ExportData::Data(images) => disk::write_arrays(&file, images).map_err(|error| error.to_string()),
-        ExportData::Report(report) => match report_bytes(report, &file) {
-            Ok(bytes) => write_whole(&file, &bytes).map_err(|error| failed(&error)),
-            Err(reason) => Err(reason),
-        },
+        ExportData::Report(report) => {
+            report_bytes(report, &file).and_then(|bytes| write_whole(&file, &bytes).map_err(|error| failed(&error)))
+        }
         ExportData::Capture(_) | ExportData::Scene(_) => Err("it is written elsewhere".to_owned()),
     };
     match written {

@@ -36,7 +36,7 @@ impl PixelFormat {
 
 /// Rows that are shared together.
 const STRIP_ROWS: u32 = 8;
-/// A picture shares its rows where at most this many of four strips differ.
+/// A picture shares its rows where no more than so many quarters of its strips differ.
 const MOST_CHANGED_QUARTERS: usize = 3;
 
 /// Texels of one format.
@@ -111,7 +111,8 @@ impl Image {
     }
 
     /// The same picture, with its rows in the memory of `other` wherever it has them too, and a copy of the rest;
-    /// `None` where that is most of it. What it shares stays in memory as long as one of the two does.
+    /// `None` where that is more than three quarters. Memory that it shares stays as a whole as long as one of the
+    /// two does.
     #[must_use]
     pub fn sharing(&self, other: &Image) -> Option<Image> {
         if (self.format, self.size) != (other.format, other.size) {
@@ -121,7 +122,7 @@ impl Image {
         let rows_from = |start: u32| start..(start + STRIP_ROWS).min(self.size[1]);
         let shared = |rows: Range<u32>| {
             let is_equal = rows.clone().all(|y| self.row(y) == other.row(y));
-            is_equal.then(|| other.strip(rows)).flatten()
+            is_equal.then(|| other.strip(rows))
         };
         let shared: Vec<Option<Strip>> = starts.clone().map(|start| shared(rows_from(start))).collect();
         let changed = shared.iter().filter(|strip| strip.is_none()).count();
@@ -129,20 +130,19 @@ impl Image {
             return None;
         }
         let copied = |start: u32| {
-            let bytes: Vec<u8> = rows_from(start).flat_map(|y| self.row(y)).copied().collect();
+            let mut bytes = Vec::with_capacity(rows_from(start).len() * self.row_bytes());
+            rows_from(start).for_each(|y| bytes.extend_from_slice(self.row(y)));
             Strip { row_stride: self.row_bytes(), bytes: bytes.into() }
         };
         let strips = starts.zip(shared).map(|(start, shared)| shared.unwrap_or_else(|| copied(start))).collect();
         Some(Image { format: self.format, size: self.size, strip_rows: STRIP_ROWS, strips })
     }
 
-    /// Some rows; `None` where they lie in different strips.
-    fn strip(&self, rows: Range<u32>) -> Option<Strip> {
+    /// Rows of one strip.
+    fn strip(&self, rows: Range<u32>) -> Strip {
         let index = rows.start / self.strip_rows;
         let first = index * self.strip_rows;
-        let strip = self.strips.get(index as usize)?;
-        let is_within = rows.end <= first.saturating_add(self.strip_rows);
-        is_within.then(|| strip.part(rows.start - first..rows.end - first, self.row_bytes()))
+        self.strips[index as usize].part(rows.start - first..rows.end - first, self.row_bytes())
     }
 
     fn row_bytes(&self) -> usize {
@@ -234,6 +234,18 @@ impl Image {
     }
 }
 
+/// Bytes of memory, those of places that overlap once.
+pub(super) fn covered(mut places: Vec<Range<usize>>) -> u64 {
+    places.sort_unstable_by_key(|place| (place.start, place.end));
+    let mut end = 0;
+    let own = places.into_iter().map(|place| {
+        let own = place.end.saturating_sub(place.start.max(end));
+        end = end.max(place.end);
+        own as u64
+    });
+    own.sum()
+}
+
 impl PartialEq for Image {
     fn eq(&self, other: &Image) -> bool {
         self.format == other.format && self.size == other.size && self.rows().eq(other.rows())
@@ -279,6 +291,15 @@ mod tests {
         let of_both = third.sharing(&shared).expect("one strip differs");
         assert_eq!((&of_both, of_both.rows().len()), (&third, 20));
         assert_eq!(held(&[&shared, &of_both]), held(&[&shared]) + 4 * 5);
+    }
+
+    #[test]
+    fn memory_that_overlaps_counts_once() {
+        let first = picture(8, &[]);
+        let shared = picture(8, &[(2, 9)]).sharing(&first).expect("one strip of three differs");
+        let places = first.memory().chain(shared.memory()).collect();
+        assert_eq!(covered(places), 8 * 20 + 8 * 5);
+        assert_eq!(covered(vec![3..5, 0..10, 10..12, 20..21]), 13);
     }
 
     #[test]

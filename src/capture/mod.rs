@@ -246,19 +246,17 @@ impl Capture {
         self.steps.get(step).is_some_and(|step| step.draws.iter().all(|draw| draw.after.is_some()))
     }
 
-    /// Bytes of all images: what they share counts once.
+    /// Bytes of all images: what they share counts once. It looks at every image: to be asked once for each capture.
     #[must_use]
     pub fn bytes(&self) -> u64 {
+        let mut seen = std::collections::BTreeSet::new();
         let mut places = Vec::new();
-        self.for_each_image(|image| places.extend(image.memory().map(|place| (place.start, place.end))));
-        places.sort_unstable();
-        let mut counted = 0;
-        let mut total = 0;
-        for (start, end) in places {
-            total += end.saturating_sub(start.max(counted)) as u64;
-            counted = counted.max(end);
-        }
-        total
+        self.for_each_image(|image| {
+            if seen.insert(Arc::as_ptr(image)) {
+                places.extend(image.memory());
+            }
+        });
+        image::covered(places)
     }
 
     /// The errors of all lights together; `None` where no truth was asked for.

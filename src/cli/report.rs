@@ -2,7 +2,8 @@
 
 use super::options::{SceneOptions, picture_size, setting, technique_named};
 use super::progress::with_bar;
-use super::{CliError, output, results};
+use super::results::{self, Form};
+use super::{CliError, output};
 use crate::progress::Progress;
 use crate::report::{Report, Row};
 use crate::scene::Scene;
@@ -74,12 +75,12 @@ fn deliver(arguments: &ReportArguments, report: &Report) -> Result<(), CliError>
         let bytes = if is_png(file) { report.to_png()? } else { report.to_svg().into_bytes() };
         output::write(file, &bytes)?;
     }
-    let forms = [
-        (&arguments.json, report.to_json()?),
-        (&arguments.csv, report.to_csv()),
-        (&arguments.markdown, report.to_markdown()),
+    let forms: [Form; 3] = [
+        (&arguments.json, &|| Ok(report.to_json()?)),
+        (&arguments.csv, &|| Ok(report.to_csv())),
+        (&arguments.markdown, &|| Ok(report.to_markdown())),
     ];
-    results::deliver(forms, || report.to_table())
+    results::deliver(&forms, || report.to_table())
 }
 
 /// The default grid, or its rows of the techniques asked for, with settings changed.

@@ -24,20 +24,26 @@ pub fn check(forms: &[&Target], plot: &Option<String>) -> Result<(), CliError> {
         return Err(CliError::Usage(line));
     }
     if forms.iter().filter(|target| matches!(target, Some(None))).count() > 1 {
-        let line = "two results can't both go to standard output: give one a file, as `--json=FILE`";
+        let line =
+            "two results can't both go to standard output: give one a file, as `--json=FILE` or `--markdown=FILE`";
         return Err(CliError::Usage(line.to_owned()));
     }
     Ok(())
 }
 
-/// Writes the forms that are asked for; the table where none is.
+/// A form that may be asked for, and its text.
+pub type Form<'a> = (&'a Target, &'a dyn Fn() -> Result<String, CliError>);
+
+/// Makes and writes the forms that are asked for; the table where none is.
 ///
 /// # Errors
-/// As [`output::deliver`].
-pub fn deliver<const N: usize>(forms: [(&Target, String); N], table: impl FnOnce() -> String) -> Result<(), CliError> {
+/// As [`output::deliver`], and those of the forms.
+pub fn deliver(forms: &[Form], table: impl FnOnce() -> String) -> Result<(), CliError> {
     if forms.iter().all(|(target, _)| target.is_none()) {
         return output::print(&table());
     }
-    let asked = forms.iter().filter_map(|(target, text)| Some((target.as_ref()?, text)));
-    asked.into_iter().try_for_each(|(file, text)| output::deliver(text, file.as_deref()))
+    let mut asked: Vec<_> = forms.iter().filter_map(|(target, text)| Some((target.as_ref()?, text))).collect();
+    // Whoever reads standard output may leave: no file is missing for that.
+    asked.sort_by_key(|(file, _)| file.is_none());
+    asked.into_iter().try_for_each(|(file, text)| output::deliver(&text()?, file.as_deref()))
 }

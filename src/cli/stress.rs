@@ -3,7 +3,8 @@
 use super::options::{picture_size, technique_named};
 use super::progress::with_bar;
 use super::report::{is_png, plot_file};
-use super::{CliError, output, results};
+use super::results::{self, Form};
+use super::{CliError, output};
 use crate::progress::Progress;
 use crate::scene::suggestion;
 use crate::session::Session;
@@ -102,9 +103,9 @@ fn deliver(arguments: &StressArguments, stress: &Stress) -> Result<(), CliError>
         output::write(file, &bytes)?;
     }
     let failed = |error: serde_json::Error| CliError::Output { path: "the rows".to_owned(), source: error.into() };
-    let json = stress.to_json().map_err(failed)?;
-    let forms = [(&arguments.json, json), (&arguments.markdown, stress.to_markdown())];
-    results::deliver(forms, || stress.to_table())
+    let forms: [Form; 2] =
+        [(&arguments.json, &|| stress.to_json().map_err(failed)), (&arguments.markdown, &|| Ok(stress.to_markdown()))];
+    results::deliver(&forms, || stress.to_table())
 }
 
 fn unknown(name: &str) -> CliError {

@@ -33,9 +33,9 @@ pub(super) struct Collector {
     memory: Memory,
 }
 
-/// Where pictures lie.
+/// Where captured pictures lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Memory {
+pub enum Memory {
     /// In their mapped copies: nothing is copied once more.
     Mapped,
     /// Rows that are as in the picture before, there: many pictures that differ little take little.
@@ -44,7 +44,7 @@ pub(super) enum Memory {
 
 impl Collector {
     /// Before the first pass. `kept` are the passes that will not run.
-    pub fn new(plan: &FramePlan, kept: Vec<bool>) -> Collector {
+    pub fn new(plan: &FramePlan, kept: Vec<bool>, memory: Memory) -> Collector {
         // wgpu clears new textures to zero.
         let zero = |format: PixelFormat| Arc::new(Image::uniform(format, plan.size, &vec![0; format.texel_bytes()]));
         let none = vec![None; plan.lights.len()];
@@ -55,13 +55,8 @@ impl Collector {
             depth: zero(PixelFormat::Depth32F),
             stencil: zero(PixelFormat::U8),
             output: Output { steps, targets, labels: none.clone(), counts: none, maps, kept },
-            memory: Memory::Mapped,
+            memory,
         }
-    }
-
-    /// More is to come than should be held whole.
-    pub fn share(&mut self) {
-        self.memory = Memory::Shared;
     }
 
     /// Goes on by one pass, whose copies are mapped.

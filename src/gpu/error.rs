@@ -1,7 +1,8 @@
 //! What can go wrong on a GPU.
 
 impl GpuError {
-    /// Attachments and copies together may take this much memory; a frame of 8192 × 8192 fits.
+    /// Attachments and copies together may take this much memory, if all copies were held at once; a frame of
+    /// 8192 × 8192 fits.
     pub const MOST_BYTES: u64 = 8 << 30;
 }
 

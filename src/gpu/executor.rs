@@ -117,7 +117,8 @@ impl Executor {
     }
 
     /// Runs the timed passes and waits for the GPU: recording, submitting, executing and, with
-    /// `snapshots`, having every snapshot in memory.
+    /// `snapshots`, having every snapshot in memory: all at once, unlike [`Executor::capture`], which looks at a part
+    /// of many before it makes the next.
     ///
     /// # Errors
     /// A driver that fails.
@@ -167,15 +168,15 @@ impl Executor {
         }
     }
 
-    /// Runs all passes and keeps every attachment after each. With `bracket`, an attached
+    /// Runs all passes and keeps every attachment after each, in `memory`. With `bracket`, an attached
     /// graphics debugger records the frame.
     ///
     /// # Errors
     /// A driver that fails.
-    pub fn capture(&self, mut prepared: Prepared, bracket: bool) -> Result<Output, GpuError> {
+    pub fn capture(&self, mut prepared: Prepared, memory: Memory, bracket: bool) -> Result<Output, GpuError> {
         let (plan, context) = (prepared.plan, prepared.context.clone());
         let notes = context.guarded(|| Ok(Notes::of_times(&prepared, Mode::Everything)))?;
-        let mut run = || run_in_parts(&mut prepared, &notes);
+        let mut run = || run_in_parts(&mut prepared, &notes, memory);
         let collector = if bracket { context.bracketed(run)? } else { run()? };
         let times = match &notes.timestamps {
             Some(timestamps) => timestamps.read(&context)?,
@@ -269,11 +270,13 @@ fn run(prepared: &Prepared, mode: Mode, notes: &Notes) -> Result<(), GpuError> {
     Ok(())
 }
 
-/// The same, of all that a capture keeps, in parts: a frame whose copies are many holds of them only what differs.
-fn run_in_parts(prepared: &mut Prepared, notes: &Notes) -> Result<Collector, GpuError> {
+/// The same, of all that a capture keeps, in parts: of a frame whose copies are many, those that show what was there
+/// before are let go before the next are made.
+fn run_in_parts(prepared: &mut Prepared, notes: &Notes, memory: Memory) -> Result<Collector, GpuError> {
     let plan = prepared.plan;
     let context = prepared.context.clone();
-    let mut collector = Collector::new(plan, plan.passes.iter().map(|pass| prepared.is_kept(pass)).collect());
+    let kept = plan.passes.iter().map(|pass| prepared.is_kept(pass)).collect();
+    let mut collector = Collector::new(plan, kept, memory);
     let mut start = 0;
     while start < plan.passes.len() {
         let part = context.guarded(|| {
@@ -281,9 +284,6 @@ fn run_in_parts(prepared: &mut Prepared, notes: &Notes) -> Result<Collector, Gpu
             submit(prepared, Mode::Everything, notes, part.clone())?;
             Ok(part)
         })?;
-        if part.end < plan.passes.len() {
-            collector.share();
-        }
         for index in part.clone() {
             collector.take_in(prepared, index)?;
             prepared.forget_staged(index);

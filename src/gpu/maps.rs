@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use wgpu::Texture;
 
-/// By [`FramePlan::kept_by`]; they stay as long as the newest plan uses them.
+/// By [`FramePlan::kept_by`]; they stay as long as the newest plan that keeps maps uses them.
 #[derive(Debug, Default)]
 pub(super) struct Maps {
     kept: HashMap<u64, (Arc<KeptMap>, bool)>,

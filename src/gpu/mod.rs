@@ -6,10 +6,10 @@
 //! Buffers      vertices and indices, by the hash of their content
 //! Maps         what lights see, kept while nothing that makes it changes
 //! features     what few plans need, asked for when one does
-//! Executor     a plan → prepared textures, bind groups and draws → one command buffer
+//! Executor     a plan → prepared textures, bind groups and draws → one command buffer, or more
 //! fragment_log every fragment of one pixel, tests or no tests
 //! queries      times of passes, samples of draws
-//! readback     snapshots: copies recorded between passes, mapped, never copied again
+//! readback     snapshots: copies recorded between passes, mapped
 //! collect      mapped copies → steps, with what did not change shared
 //! ```
 
@@ -28,7 +28,7 @@ mod readback;
 mod shaders;
 mod uniforms;
 
-pub use collect::Output;
+pub use collect::{Memory, Output};
 pub use context::{Context, MEMORY_HINTS};
 pub use error::GpuError;
 pub use executor::Executor;

@@ -2,7 +2,8 @@
 //!
 //! What a pass can't have changed is known from its state, and a cleared aspect that nothing drew
 //! into is known from its clear value: neither is copied. The rest is copied to a mappable buffer
-//! between passes, in the frame's own command buffer. A mapped buffer becomes the picture's memory.
+//! between passes, in the command buffer that draws them. A mapped buffer becomes the picture's memory, unless
+//! that is to be [shared](super::Memory).
 
 use super::{Context, GpuError};
 use crate::capture::{Image, PixelFormat};

@@ -208,7 +208,7 @@ pub fn menu(ui: &mut Ui, state: &mut State) {
         let button = button.on_hover_text(kind.explanation());
         let nothing = match kind {
             ExportKind::AsShown => "Overlays lie over one picture: show one, and not all layers of a light's map",
-            ExportKind::Report => "Nothing is measured yet: press Measure in the Report tab",
+            ExportKind::Report => "Nothing is measured yet, or not all: press Measure in the Report tab",
             _ => "There is nothing of this kind to export now",
         };
         if button.on_disabled_hover_text(nothing).clicked() {

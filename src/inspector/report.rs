@@ -68,13 +68,14 @@ impl ReportState {
         self.rows().is_empty() && self.view.running.is_none()
     }
 
-    /// The rows so far, or all; `None` while there is none.
+    /// What was measured; `None` while that is nothing, or not yet all.
     pub fn measured(&self) -> Option<&Report> {
-        self.view.report.as_ref().filter(|report| !report.rows.is_empty())
+        let report = self.view.report.as_ref().filter(|_| self.view.running.is_none());
+        report.filter(|report| !report.rows.is_empty())
     }
 
     fn rows(&self) -> &[Row] {
-        self.measured().map_or(&[], |report| &report.rows)
+        self.view.report.as_ref().map_or(&[], |report| &report.rows)
     }
 
     /// The plot on a page.

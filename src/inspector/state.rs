@@ -96,6 +96,8 @@ pub struct Hover {
 pub struct State {
     /// What is looked at.
     pub capture: Option<Arc<Capture>>,
+    /// Memory of its pictures, bytes.
+    pub capture_bytes: u64,
     /// What was run; `None` for a capture folder.
     pub plan: Option<Arc<FramePlan>>,
     /// A run was asked for whose capture is not there yet.
@@ -233,6 +235,7 @@ impl State {
         self.playing = None;
         self.scroll_to_step = true;
         self.view.follow(&capture, self.step);
+        self.capture_bytes = capture.bytes();
         self.capture = Some(capture);
         self.explained.forget();
         self.cache.forget_unused();
@@ -246,6 +249,7 @@ impl State {
         }
         self.explained.forget();
         self.note_draws_of(&capture);
+        self.capture_bytes = capture.bytes();
         self.capture = Some(capture);
         self.cache.forget_unused();
     }

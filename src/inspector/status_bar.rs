@@ -80,7 +80,7 @@ fn costs(ui: &mut Ui, state: &State) {
             ui.label(theme::note(format!("frame {}", format::milliseconds(Some(frame)))))
                 .on_hover_text("Median time of a frame without snapshots");
         }
-        ui.label(theme::note(format!("capture {}", format::bytes(capture.bytes()))))
+        ui.label(theme::note(format!("capture {}", format::bytes(state.capture_bytes))))
             .on_hover_text("Memory of all pictures of this capture");
     }
     if let Some(job) = &state.job {

@@ -29,9 +29,7 @@ pub fn ui(ui: &mut Ui, state: &mut State) {
             state.toggle_play(ui.input(|input| input.time));
         }
         widgets.extend([back.id, forth.id, play.id]);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(theme::note(format!("step {} of {steps}", state.step + 1)));
-        });
+        at_the_right(ui, format!("step {} of {steps}", state.step + 1));
     });
     widgets.extend(draw_controls(ui, state));
     for id in &widgets {
@@ -68,10 +66,17 @@ fn draw_controls(ui: &mut Ui, state: &mut State) -> [egui::Id; 2] {
             None if draws == 0 => "it draws nothing".to_owned(),
             None => format!("after its {}", format::counted(draws as u64, "draw")),
         };
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(theme::note(words)));
+        at_the_right(ui, words);
         [back.id, forth.id]
     });
     row.inner
+}
+
+/// Words in what is left of a row, cut short where that is little.
+fn at_the_right(ui: &mut Ui, words: String) {
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        ui.add(egui::Label::new(theme::note(words)).truncate());
+    });
 }
 
 /// A sign that only the monospaced face has.

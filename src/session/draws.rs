@@ -3,7 +3,7 @@
 //!
 //! Joined steps are those of a capture without draw states: what a pass left is what its last
 //! part left, and it is unchanged where it ended as it began, whatever happened in between. What a
-//! draw did not change shares the picture of the draw before it.
+//! draw did not change shares the picture of the draw before it, and of what it changed the rows that it left alone.
 //!
 //! The draws of one pass can be filled in later ([`Session::fill_draws`]). Together they may take
 //! much memory: where a capture would hold more than [`MOST_FILLED_BYTES`], those of the passes
@@ -11,7 +11,7 @@
 
 use super::{Session, SessionError};
 use crate::capture::{Aspect, Capture, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step};
-use crate::gpu::{GpuError, Output};
+use crate::gpu::{GpuError, Memory, Output};
 use crate::plan::FramePlan;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -47,10 +47,11 @@ impl Session {
         let output = self.run_split(&plan.split_pass_at_draws(step), false)?;
         let joined = join(plan, |pass| pass == step, output);
         let known = known_images(capture, step);
+        let mut last = [const { None }; 4];
         for (draw, by_draw) in
             capture.steps[step].draws.iter_mut().zip(joined.steps.into_iter().skip(step).flat_map(|step| step.draws))
         {
-            draw.after = by_draw.after.map(|state| sharing(state, &known));
+            draw.after = by_draw.after.map(|state| sharing(state, &known, &mut last));
         }
         make_room(capture, step, MOST_FILLED_BYTES);
         Ok(())
@@ -59,7 +60,7 @@ impl Session {
     fn run_split(&mut self, split: &FramePlan, bracket: bool) -> Result<Output, SessionError> {
         let run = |session: &mut Session| {
             let prepared = session.executor.prepare(split)?;
-            session.executor.capture(prepared, bracket)
+            session.executor.capture(prepared, Memory::Shared, bracket)
         };
         run(self).map_err(|error| match error {
             GpuError::TooLarge { .. } => SessionError::TooManyDraws(error),
@@ -89,15 +90,21 @@ fn known_images(capture: &Capture, step: usize) -> Vec<Arc<Image>> {
     known
 }
 
-/// The same state in pictures that are held already, where there are equal ones.
-fn sharing(mut state: DrawState, known: &[Arc<Image>]) -> DrawState {
-    let share = |aspect: &mut Aspect| {
-        if let Some(image) = known.iter().find(|image| **image == aspect.image) {
-            aspect.image = image.clone();
+/// The same state in pictures that are held already, where there are equal ones, and else with the rows of those. `last`
+/// is colour, depth, stencil and the pass's own target after the draw before. The frame that was run anew for it is not
+/// kept alive.
+fn sharing(mut state: DrawState, known: &[Arc<Image>], last: &mut [Option<Arc<Image>>; 4]) -> DrawState {
+    let [color, depth, stencil] = frame_aspects(&mut state.snapshot);
+    for (aspect, last) in [color, depth, stencil, state.target.as_mut()].into_iter().zip(last) {
+        let Some(aspect) = aspect else { continue };
+        let mut held = last.iter().chain(known);
+        if let Some(equal) = held.clone().find(|held| **held == aspect.image) {
+            aspect.image = equal.clone();
+        } else if let Some(shared) = held.find_map(|held| aspect.image.sharing(held)) {
+            aspect.image = Arc::new(shared);
         }
-    };
-    frame_aspects(&mut state.snapshot).into_iter().flatten().for_each(share);
-    state.target.iter_mut().for_each(share);
+        *last = Some(aspect.image.clone());
+    }
     state
 }
 

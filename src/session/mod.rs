@@ -30,7 +30,7 @@ pub use volumes::{VolumeCost, volume_cost};
 
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::{GeometryCache, Topology};
-use crate::gpu::{Context, Executor, GpuError, Output, Prepared};
+use crate::gpu::{Context, Executor, GpuError, Memory, Output, Prepared};
 use crate::plan::{FramePlan, LeftOut};
 use crate::scene::{Object, Scene};
 use crate::technique::{self, Choice, ChoiceError, Job, PlanError};
@@ -241,7 +241,7 @@ impl Session {
             timing.captured_ms = median_ms(&cost.captured);
         }
         let output = match request.every {
-            Every::Pass => self.executor.capture(prepared, request.external_capture)?,
+            Every::Pass => self.executor.capture(prepared, Memory::Mapped, request.external_capture)?,
             Every::Draw => {
                 drop(prepared);
                 self.run_by_draw(&plan, request.external_capture)?
@@ -257,7 +257,7 @@ impl Session {
     /// A plan that can't run, a lost GPU.
     pub fn capture_plan(&mut self, scene: &Scene, plan: &FramePlan) -> Result<Capture, SessionError> {
         let prepared = self.executor.prepare(plan)?;
-        let output = self.executor.capture(prepared, false)?;
+        let output = self.executor.capture(prepared, Memory::Mapped, false)?;
         Ok(self.assemble(scene, plan, output, Timing::default()))
     }
 

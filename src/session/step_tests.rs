@@ -9,6 +9,7 @@
 
 use super::{Session, SessionError};
 use crate::capture::{Image, PixelFormat, Snapshot, StencilVerdict, StepTests};
+use crate::gpu::Memory;
 use crate::plan::{AttachmentRole, Draw, FramePlan, Pass, RasterState, StencilFace};
 use crate::stencil_machine::{Fragment, Stored, test};
 use std::sync::Arc;
@@ -27,7 +28,7 @@ impl Session {
     ) -> Result<StepTests, SessionError> {
         let (counting, draws) = counting_plan(plan, step, draw).ok_or(SessionError::NoTests { step })?;
         let prepared = self.executor.prepare(&counting)?;
-        let output = self.executor.capture(prepared, false)?;
+        let output = self.executor.capture(prepared, Memory::Mapped, false)?;
         let stencils: Vec<Arc<Image>> = output
             .steps
             .iter()
