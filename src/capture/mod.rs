@@ -203,6 +203,30 @@ pub struct CapturedTruth {
     pub worst: Option<Region>,
 }
 
+/// The ground truth of a frame: learned of a capture, and put beside it by [`Capture::with_truth`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameTruth {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Parallel to the capture's lights; `None` where the technique has no labels.
+    pub lights: Vec<Option<CapturedTruth>>,
+    /// The signed count of each light's volumes, where the technique counts them in the stencil: eight bits read a count of
+    /// 256 as none, and the truth alone would not say why.
+    pub counts: Vec<Option<Arc<Image>>>,
+}
+
+/// The states after the draws of a step: learned of a capture, and put beside it by [`Capture::with_draws`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepDraws {
+    /// Index of the step.
+    pub step: usize,
+    /// After each of its draws.
+    pub states: Vec<Option<DrawState>>,
+}
+
+/// Bytes of a capture to which the draws of a step may be added without dropping those of others.
+const MOST_DRAWS_BYTES: u64 = 1 << 27;
+
 /// What a light sees, after the whole frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CapturedMap {
@@ -264,6 +288,39 @@ impl Capture {
     pub fn error(&self) -> Option<ErrorCounts> {
         let of_lights = self.lights.iter().map(|light| light.truth.as_ref().map(|truth| truth.error));
         (!self.lights.is_empty()).then(|| of_lights.sum()).flatten()
+    }
+
+    /// The capture with its truth.
+    #[must_use]
+    pub fn with_truth(&self, truth: &FrameTruth) -> Capture {
+        let mut capture = self.clone();
+        for (light, truth) in capture.lights.iter_mut().zip(&truth.lights) {
+            light.truth.clone_from(truth);
+        }
+        for (light, count) in capture.lights.iter_mut().zip(&truth.counts) {
+            light.count = count.clone().or(light.count.take());
+        }
+        capture
+    }
+
+    /// The capture with the states after the draws of a step. Together they may take much memory: where it would hold
+    /// more than 128 MiB, those of other steps are dropped, and have to be asked for again.
+    #[must_use]
+    pub fn with_draws(&self, draws: &StepDraws) -> Capture {
+        self.with_draws_in(draws, MOST_DRAWS_BYTES)
+    }
+
+    fn with_draws_in(&self, draws: &StepDraws, most: u64) -> Capture {
+        let mut capture = self.clone();
+        let of_step = capture.steps.get_mut(draws.step).into_iter().flat_map(|step| &mut step.draws);
+        for (draw, state) in of_step.zip(&draws.states) {
+            draw.after.clone_from(state);
+        }
+        if capture.bytes() > most {
+            let others = capture.steps.iter_mut().enumerate().filter(|(index, _)| *index != draws.step);
+            others.flat_map(|(_, step)| &mut step.draws).for_each(|draw| draw.after = None);
+        }
+        capture
     }
 
     fn for_each_image(&self, mut visit: impl FnMut(&Arc<Image>)) {

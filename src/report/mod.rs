@@ -35,6 +35,15 @@ pub struct Report {
     pub rows: Vec<Row>,
 }
 
+/// A report that was measured where not all may have had room.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredReport {
+    /// The rows.
+    pub report: Report,
+    /// What has no row, since it would take too much of this machine's memory: `shadow-map 4096`.
+    pub left_out: Vec<String>,
+}
+
 /// One scene, rendered by one technique with one choice of settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {

@@ -19,7 +19,7 @@ mod table;
 mod trend;
 
 pub use expect::{Expected, Failure, Kind, Surprise, Symptom, Verdict};
-pub use judge::{Least, Row, Seen, Stress, Summary, summary};
+pub use judge::{Least, Row, Seen, Stress, StressRows, Summary, summary};
 pub use table::value_text;
 pub use trend::{Course, Trend};
 

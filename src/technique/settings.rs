@@ -276,6 +276,13 @@ impl Choice {
         TechniqueRequest { name: self.technique().name().to_owned(), settings: changed.collect() }
     }
 
+    /// Technique and size: `shadow-map 1024`.
+    #[must_use]
+    pub fn short_name(&self) -> String {
+        let technique = self.technique().name();
+        self.settings().get("size").map_or_else(|| technique.to_owned(), |size| format!("{technique} {size}"))
+    }
+
     /// What a report compares by default: every row of every technique.
     ///
     /// # Errors
