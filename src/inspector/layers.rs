@@ -6,6 +6,7 @@ use super::format;
 use super::moment::Moment;
 use super::view::{CUBE_FACES, FaceChoice, PictureKind, PictureView, Shown};
 use crate::capture::{Capture, PixelFormat, Snapshot};
+use crate::plan::DecidedBy;
 
 /// What the layers of a light's map hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,10 +34,11 @@ impl MapContent {
     /// Of a light's map; `None` where there is none.
     #[must_use]
     pub fn of(capture: &Capture, light: usize) -> Option<MapContent> {
-        let first = capture.lights.get(light)?.map.as_ref()?.faces.first()?;
-        Some(match (first.format(), capture.technique.as_str()) {
-            (PixelFormat::Rgba8, "projective") => MapContent::Silhouettes,
-            (PixelFormat::Rgba8, _) => MapContent::Textures,
+        let light = capture.lights.get(light)?;
+        let map = light.map.as_ref()?;
+        Some(match light.decided_by {
+            DecidedBy::Silhouettes => MapContent::Silhouettes,
+            _ if map.holds_colors() => MapContent::Textures,
             _ => MapContent::Depth,
         })
     }
@@ -106,9 +108,9 @@ fn layer(capture: &Capture, light: usize, content: MapContent, index: usize, cou
     let drew = Snapshot::Map { light, face: index };
     match capture.steps.iter().find(|step| step.snapshot == drew) {
         Some(step) => {
-            // `texture of floor`: what it is of.
-            let name = step.name.split_once(" of ").map_or(step.name.as_str(), |(_, of)| of);
-            Layer { name: name.to_owned(), full_name: step.name.clone(), note: None }
+            let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
+            let name = map.and_then(|map| map.layer_names.get(index)).unwrap_or(&step.name);
+            Layer { name: name.clone(), full_name: step.name.clone(), note: None }
         }
         None => {
             let name = format!("layer {}", index + 1);
