@@ -31,6 +31,9 @@
 //! Depth is reversed and infinite unless set otherwise: 1 at the near plane, 0 at infinity. Front faces are
 //! counter-clockwise. Row 0 of a picture is at the top. See [`math`] for the names of transforms.
 
+#[macro_use]
+mod named;
+
 pub mod accuracy;
 pub mod anatomy;
 #[cfg(feature = "inspector")]

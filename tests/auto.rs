@@ -10,11 +10,12 @@ use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::accuracy::ErrorCounts;
 use stencilscope::capture::{Capture, CapturedLight, FrameTarget, Snapshot, Step};
+use stencilscope::plan::Decision;
 use stencilscope::progress::Progress;
 use stencilscope::scene::builtin::{self, shapes};
 use stencilscope::scene::{Camera, Light, Material, Object, Scene};
 use stencilscope::session::{CaptureRequest, Session};
-use stencilscope::technique::{Decision, Technique};
+use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [96, 72];
 
@@ -49,7 +50,7 @@ fn left_out(session: &mut Session, scene: &Scene) -> Vec<String> {
     let wrong: u64 =
         judged.lights.iter().filter_map(|light| light.truth.as_ref()).map(|truth| truth.error.wrong()).sum();
     assert_eq!(wrong, 0, "{}", scene.name);
-    all.left_out.iter().map(|left| format!("{} of {}", left.what, left.of)).collect()
+    all.left_out.iter().map(ToString::to_string).collect()
 }
 
 /// In `taken` it is left out, in `kept`, the scene beside it, it is not; and where `decision` is forbidden
@@ -62,7 +63,7 @@ fn assert_decides(decision: Decision, what: &str, taken: &Scene, kept: &Scene) {
     assert!(!beside.iter().any(|left| left == what), "{decision:?}: `{what}` is in {beside:?}");
     let others = Decision::NAMES.into_iter().filter(|name| *name != decision.name()).collect::<Vec<_>>().join(",");
     let without = session.capture(taken, &auto(&others)).expect("a capture");
-    assert!(!without.left_out.iter().any(|left| format!("{} of {}", left.what, left.of) == what), "{decision:?}");
+    assert!(!without.left_out.iter().any(|left| left.to_string() == what), "{decision:?}");
 }
 
 fn closed_box(name: &str, low: [f64; 3], high: [f64; 3]) -> Object {
@@ -193,7 +194,7 @@ fn other_depths_leave_out_nothing_that_asks_for_depth() {
         let [all, none] = ["all", "none"].map(|what| session.capture(&scene, &with(what)).expect("a capture"));
         assert_eq!(labels(&all), labels(&none), "{depth}");
         assert!(picture(&all) == picture(&none), "{depth}");
-        assert!(!all.left_out.iter().any(|left| left.what == "caps"), "{depth}");
+        assert!(!all.left_out.iter().any(|left| left.decision == Some(Decision::Caps)), "{depth}");
     }
 }
 
@@ -266,7 +267,7 @@ fn a_light_is_not_added_to_what_faces_away_from_it() {
     let mut wrapped = auto("all");
     wrapped.choice.set("diffuse", "wrapped").expect("a setting");
     let capture = session.capture(&scene, &wrapped).expect("a capture");
-    assert!(!capture.left_out.iter().any(|left| unlit(&format!("{} of {}", left.what, left.of))));
+    assert!(!capture.left_out.iter().any(|left| unlit(&left.to_string())));
 }
 
 #[test]
@@ -309,7 +310,7 @@ fn shells_whose_far_sides_cast_nothing_count_once_each() {
     let mut session = session();
     let gate = builtin::ALL.iter().find(|of| of.name == "gate").expect("a scene");
     let scene = gate.scene().expect("a scene");
-    let of = |capture: &Capture| capture.left_out.iter().any(|left| left.what == "eight-bit count");
+    let of = |capture: &Capture| capture.left_out.iter().any(|left| left.decision == Some(Decision::EightBits));
     for (leave_out, in_float) in [("all", false), ("away-triangles", false), ("caster", true), ("none", true)] {
         let capture = session.capture(&scene, &auto(leave_out)).expect("a capture");
         assert_eq!((counts_in_float(&capture), of(&capture)), (in_float, in_float), "{leave_out}");

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 26] = [
+const MAY_USE: [(&str, &[&str]); 27] = [
+    ("named", &[]),
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
@@ -15,7 +16,7 @@ const MAY_USE: [(&str, &[&str]); 26] = [
     ("truth", &["math", "scene", "progress"]),
     ("accuracy", &["truth"]),
     ("geometry", &["math", "scene"]),
-    ("plan", &["math", "scene", "geometry"]),
+    ("plan", &["math", "scene", "geometry", "numbers"]),
     ("technique", &["math", "scene", "geometry", "plan", "truth", "progress", "numbers"]),
     ("capture", &["math", "scene", "plan", "accuracy"]),
     ("stencil_machine", &["plan"]),

@@ -2,7 +2,7 @@
 
 use crate::common::{from_above, square};
 use stencilscope::geometry::GeometryCache;
-use stencilscope::plan::{FramePlan, MeshId, Part, lint};
+use stencilscope::plan::{Decision, FramePlan, MeshId, Part, lint};
 use stencilscope::scene::{Light, Scene};
 use stencilscope::technique::{self, Choice, Job, PlanError, Technique};
 use wgpu::StencilOperation;
@@ -51,7 +51,7 @@ fn what_a_scene_does_not_need_is_left_out_and_said() {
     scene.lights = vec![Light::directional(glam::DVec3::Y)];
     let plan = plan_of(&scene, Technique::ZFail).expect("a plan");
     assert!(plan.passes.iter().flat_map(|pass| &pass.draws).all(|draw| draw.part != Part::DarkCap));
-    assert!(plan.left_out.iter().any(|left| left.what == "dark cap" && left.of == "caster"));
+    assert!(plan.left_out.iter().any(|left| left.is(Decision::DarkCap, "caster")));
     let plan = plan_of(&scene, Technique::ShadowMap).expect("a plan");
     assert!(plan.attachments.iter().all(|attachment| !attachment.format.has_stencil_aspect()));
     let floor = plan.left_out.iter().find(|left| left.what.contains("floor")).expect("the floor darkens nothing");

@@ -1,7 +1,7 @@
 //! Shadow volumes out of a plan.
 
 use super::{PlacedObject, ShadowVolume, VolumePart};
-use crate::plan::{Draw, DrawMesh, FramePlan, MeshId, Part, Pass, ViewId};
+use crate::plan::{Draw, DrawMesh, FramePlan, MeshId, Pass, ViewId};
 use glam::{DVec3, DVec4};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -33,7 +33,7 @@ pub fn of_plan(plan: &FramePlan, objects: &[PlacedObject]) -> Vec<ShadowVolume> 
 }
 
 fn draws_of_volumes(pass: &Pass) -> impl Iterator<Item = (usize, &Draw)> {
-    let is_of_volume = |draw: &&Draw| matches!(draw.part, Part::Side | Part::LightCap | Part::DarkCap);
+    let is_of_volume = |draw: &&Draw| draw.part.is_of_volume();
     let light = pass.light.map(|light| light.0);
     pass.draws.iter().filter(is_of_volume).filter_map(move |draw| Some((light?, draw)))
 }

@@ -257,7 +257,7 @@ impl Written {
 }
 
 fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<LightEntry, CaptureError> {
-    let mut entry = LightEntry::new(index, light.position);
+    let mut entry = LightEntry { decided_by: Some(light.decided_by), ..LightEntry::new(index, light.position) };
     if let Some(shadow) = &light.shadow {
         entry.shadow = Some(shadow_file(index));
         files::write_image(&folder.join(shadow_file(index)), shadow)?;
@@ -281,6 +281,7 @@ fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<Lig
         let file = if map.holds_colors() { textures_file(index) } else { map_file(index) };
         files::write_layers(&folder.join(&file), &map.faces)?;
         *(if map.holds_colors() { &mut entry.textures } else { &mut entry.map }) = Some(file);
+        entry.layer_names.clone_from(&map.layer_names);
         entry.matrices = Some(Matrices {
             light_from_world: manifest::rows(map.light_from_world),
             clip_from_light: map.clip_from_light.iter().copied().map(manifest::rows).collect(),

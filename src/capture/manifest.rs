@@ -5,7 +5,7 @@
 use super::{AdapterInfo, Capture, DrawSummary, Timing};
 use crate::accuracy::{ErrorCounts, Finding, Region};
 use crate::math::depth::DepthCurve;
-use crate::plan::{LeftOut, Part};
+use crate::plan::{DecidedBy, LeftOut, Part, Side};
 use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
@@ -118,6 +118,9 @@ pub(super) struct LightEntry {
     pub position: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub towards: Option<[f64; 3]>,
+    /// What decided where its shadow is; a folder without it is of an older version.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decided_by: Option<DecidedBy>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shadow: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -130,6 +133,9 @@ pub(super) struct LightEntry {
     /// What light passes of each receiver's texture or caster's silhouette: (layers, size, size, 4).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub textures: Option<String>,
+    /// What each layer of the textures is of: a receiver or a caster.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layer_names: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub matrices: Option<Matrices>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -244,11 +250,13 @@ impl LightEntry {
             kind,
             position,
             towards,
+            decided_by: None,
             shadow: None,
             count: None,
             wrapped_pixels: None,
             map: None,
             textures: None,
+            layer_names: Vec::new(),
             matrices: None,
             truth: None,
             error: None,
@@ -256,6 +264,26 @@ impl LightEntry {
             findings: Vec::new(),
             worst_region: None,
         }
+    }
+
+    /// What decided where its shadow is: as it says, or in a folder that does not, as technique and files tell.
+    pub fn decided_by(&self, technique: &str) -> DecidedBy {
+        let side = match technique {
+            "z-pass" | "z-pass-plus" => Some(Side::InFront),
+            "z-fail" => Some(Side::Behind),
+            "auto" => Some(Side::AsNeeded),
+            _ => None,
+        };
+        self.decided_by.unwrap_or(match (side, technique) {
+            (Some(side), _) if self.count.is_some() => DecidedBy::FloatCount { side },
+            (Some(side), _) => DecidedBy::StencilCount { side },
+            (None, "planar") => DecidedBy::Flattened,
+            (None, "ray-traced") => DecidedBy::Labels,
+            (None, "projective") if self.textures.is_some() => DecidedBy::Silhouettes,
+            (None, _) if self.textures.is_some() => DecidedBy::ReceiverTextures,
+            (None, _) if self.map.is_some() => DecidedBy::Map,
+            (None, _) => DecidedBy::Nothing,
+        })
     }
 
     /// Homogeneous; `None` where neither form is given.

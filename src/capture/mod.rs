@@ -16,7 +16,7 @@ pub use image::{Image, PixelFormat};
 pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
 
 use crate::accuracy::{ErrorCounts, Region};
-use crate::plan::{LeftOut, Part};
+use crate::plan::{DecidedBy, LeftOut, Part};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -159,6 +159,8 @@ pub struct Aspect {
 pub struct CapturedLight {
     /// Homogeneous world position: `w = 1` a point, `w = 0` the direction towards it.
     pub position: glam::DVec4,
+    /// What decided where its shadow is.
+    pub decided_by: DecidedBy,
     /// The technique's labels, one byte a pixel, as in `techniques.md` section 2.
     pub shadow: Option<Arc<Image>>,
     /// How many shadow volumes contain the surface at each pixel, where they are counted in floats.
@@ -233,6 +235,8 @@ pub struct CapturedMap {
     /// Depth as stored: one, or six in wgpu's order (+x −x +y −y +z −z). Or the colour that each
     /// texture lets through.
     pub faces: Vec<Arc<Image>>,
+    /// What each texture is of, a receiver or a caster, as far as that is known; empty where it holds depth.
+    pub layer_names: Vec<String>,
     /// Light space from world space.
     pub light_from_world: glam::DMat4,
     /// Clip space of each face from light space.
@@ -253,6 +257,18 @@ pub struct Timing {
 }
 
 impl Capture {
+    /// What decides where a light's shadow is.
+    #[must_use]
+    pub fn decided_by(&self, light: usize) -> DecidedBy {
+        self.lights.get(light).map_or(DecidedBy::Nothing, |light| light.decided_by)
+    }
+
+    /// Are shadow volumes counted for any light?
+    #[must_use]
+    pub fn counts_volumes(&self) -> bool {
+        self.lights.iter().any(|light| light.decided_by.counts_volumes())
+    }
+
     /// The picture's aspects after step `index`; for a map pass, those of the nearest step
     /// before it that has any.
     #[must_use]

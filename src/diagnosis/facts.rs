@@ -100,7 +100,7 @@ impl<'a> Facts<'a> {
 
     /// Are volumes counted for a light?
     pub fn counts_volumes(&self, light: usize) -> bool {
-        [Part::Side, Part::LightCap, Part::DarkCap].into_iter().any(|part| self.draws(light, part).next().is_some())
+        self.passes(light).any(|pass| pass.view.0 == 0 && pass.draws.iter().any(|draw| draw.part.is_of_volume()))
     }
 
     /// Is a caster's volume counted behind the visible surface?

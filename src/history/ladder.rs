@@ -1,9 +1,10 @@
 //! The view ray through a pixel with the shadow-volume faces on it, nearest first, and the count as
 //! it runs: from infinity towards the surface where faces behind it count (z-fail), else from the
-//! eye.
+//! eye; where some volumes count in front of it and others behind (auto), along the whole ray.
 
 use super::{Count, Event, PixelHistory};
 use crate::math::depth::DepthCurve;
+use crate::plan::Side;
 use std::collections::BTreeMap;
 
 /// The faces of one light's volumes along the ray of a pixel.
@@ -11,8 +12,8 @@ use std::collections::BTreeMap;
 pub struct Ladder {
     /// Distance of the visible surface along the view axis in metres; `None` for the background.
     pub surface: Option<f64>,
-    /// Faces count from infinity inwards, and not from the eye outwards.
-    pub is_from_infinity: bool,
+    /// Where faces count: behind the surface from infinity inwards, else from the eye outwards.
+    pub side: Side,
     /// What the count began with: volumes that contain the near plane, where that was counted.
     pub start: i32,
     /// What it ended with.
@@ -34,6 +35,14 @@ pub struct Rung {
     pub added: i32,
     /// The count once it was added, as it runs along the ray.
     pub running: i32,
+}
+
+impl Ladder {
+    /// Does the count run from infinity inwards, and not from the eye outwards?
+    #[must_use]
+    pub fn is_from_infinity(&self) -> bool {
+        self.side == Side::Behind
+    }
 }
 
 impl PixelHistory {
@@ -63,18 +72,18 @@ impl PixelHistory {
         }
         let mut rungs: Vec<Rung> = once.into_values().collect();
         rungs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let is_from_infinity = self.counts_behind(light).unwrap_or(false);
+        let side = self.counted_side(light).unwrap_or(Side::InFront);
         let tested = self.counted_at(light);
         let mut count = start;
         let mut run = |rung: &mut Rung| {
             count += rung.added;
             rung.running = count;
         };
-        if is_from_infinity {
+        if side == Side::Behind {
             rungs.iter_mut().rev().for_each(&mut run)
         } else {
             rungs.iter_mut().for_each(&mut run)
         }
-        Some(Ladder { surface: curve.distance(first.before.depth), is_from_infinity, start, count, tested, rungs })
+        Some(Ladder { surface: curve.distance(first.before.depth), side, start, count, tested, rungs })
     }
 }

@@ -28,7 +28,7 @@ pub use story::operation_name;
 pub use why::{Count, Counted, Faces, Flattened, LightPass, Why};
 
 use crate::capture::{Capture, FrameTarget, Snapshot};
-use crate::plan::{Clip, FramePlan, Part, Visibility};
+use crate::plan::{Clip, FramePlan, Part, Side, Visibility};
 use crate::stencil_machine::Stored;
 use wgpu::StencilOperation;
 
@@ -258,7 +258,7 @@ impl Event {
     /// It is a face of a shadow volume.
     #[must_use]
     pub fn is_of_volume(&self) -> bool {
-        self.triangle().is_some_and(|one| matches!(one.part, Part::Side | Part::LightCap | Part::DarkCap))
+        self.triangle().is_some_and(|one| one.part.is_of_volume())
     }
 }
 
@@ -284,10 +284,10 @@ impl PixelHistory {
         last.map(|event| event.after).or_else(|| tested().map(|event| event.before)).unwrap_or(self.computed)
     }
 
-    /// Do a light's volume faces count where they lie behind the visible surface, and not in front of
-    /// it? `None` where it has none here that would tell: what was clipped or culled counts nowhere.
+    /// On which side of the visible surface a light's volume faces count here. `None` where it has none here that
+    /// would tell: what was clipped or culled counts nowhere.
     #[must_use]
-    pub fn counts_behind(&self, light: usize) -> Option<bool> {
+    pub fn counted_side(&self, light: usize) -> Option<Side> {
         let is_behind = |event: &Event| {
             let depth = event.triangle()?.depth;
             let is_behind = if self.is_reversed { depth <= event.before.depth } else { depth >= event.before.depth };
@@ -298,8 +298,12 @@ impl PixelHistory {
         let faces = faces.filter(is_tested);
         let seen: Vec<(bool, bool)> = faces.filter(|event| event.is_of_volume()).filter_map(is_behind).collect();
         // Where none has counted, those that lie here are on the side that does not.
-        let counting = seen.iter().find(|(counts, _)| *counts).map(|(_, is_behind)| *is_behind);
-        counting.or_else(|| seen.first().map(|(_, is_behind)| !is_behind))
+        let counting = |side: bool| seen.iter().any(|(counts, is_behind)| *counts && *is_behind == side);
+        match (counting(false), counting(true), seen.first()?) {
+            (true, true, _) => Some(Side::AsNeeded),
+            (true, false, _) | (false, false, (_, true)) => Some(Side::InFront),
+            (false, true, _) | (false, false, (_, false)) => Some(Side::Behind),
+        }
     }
 
     /// Does an event of a pass change what the pixel holds, or reach its colour?

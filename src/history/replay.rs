@@ -3,8 +3,7 @@
 use super::{Disagreement, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent, captured_after};
 use crate::capture::{Capture, FrameTarget};
 use crate::plan::{
-    AttachmentRole, ColorWrite, Coverage, Covering, Draw, Face, FragmentLog, FramePlan, LightId, Part, Pass, Program,
-    ViewId,
+    AttachmentRole, ColorWrite, Coverage, Covering, Draw, Face, FragmentLog, FramePlan, LightId, Pass, Program, ViewId,
 };
 use crate::stencil_machine::{self, Fragment};
 use wgpu::CompareFunction;
@@ -149,7 +148,7 @@ fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
 
 /// For each light, whether any pass draws parts of its shadow volumes, over this pixel or elsewhere.
 fn counts_volumes(plan: &FramePlan) -> Vec<bool> {
-    let is_volume = |draw: &Draw| matches!(draw.part, Part::Side | Part::LightCap | Part::DarkCap);
+    let is_volume = |draw: &Draw| draw.part.is_of_volume();
     let counts = |light: usize| {
         let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
         passes.flat_map(|pass| &pass.draws).any(is_volume)

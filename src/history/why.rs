@@ -3,7 +3,7 @@
 use super::{Event, EventKind, Fate, PixelHistory, Test, TriangleEvent};
 use crate::capture::FrameTarget;
 use crate::numbers;
-use crate::plan::{Part, Visibility};
+use crate::plan::{Part, Side, Visibility};
 use crate::truth::{BACKGROUND, FACES_AWAY};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -22,8 +22,8 @@ pub enum Why {
 /// The faces of a light's volumes at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Counted {
-    /// Faces on the surface or behind it count, as their depth test fails; else those in front of it.
-    pub is_behind: bool,
+    /// Where they count: in front of the surface, as their depth test passes; on it or behind it, as it fails.
+    pub side: Side,
     /// Those that counted.
     pub faces: Faces,
     /// Volumes that contain the near plane, where that was asked.
@@ -121,7 +121,7 @@ impl PixelHistory {
         }
         let near = faces().filter(|event| !event.is_from_camera);
         Counted {
-            is_behind: self.counts_behind(light).unwrap_or(false),
+            side: self.counted_side(light).unwrap_or(Side::InFront),
             faces: counted,
             near: near.clone().next().map(|_| near.map(Event::counted).sum()),
             sum: faces().map(Event::counted).sum(),
@@ -198,32 +198,33 @@ impl fmt::Display for Why {
 
 impl fmt::Display for Counted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Counted { is_behind, faces, near, sum, count } = self;
+        let Counted { side, faces, near, sum, count } = self;
         if let Some(near) = near {
             // More back than front faces in it leave less than none.
             let sign = if *near < 0 { "−" } else { "" };
             write!(f, "the near plane is in {sign}{}; ", amount(near.unsigned_abs(), "volume"))?;
         }
         let all = faces.front + faces.back;
-        let where_ = match (is_behind, faces.on_surface) {
-            (true, 0) => "behind the surface",
-            (true, _) => "on or behind the surface",
-            (false, _) => "in front of the surface",
+        let where_ = match (side, faces.on_surface) {
+            (Side::Behind, 1..) => "on or behind".to_owned(),
+            (side, _) => side.preposition().to_owned(),
         };
-        let verb = match (count, is_behind, all) {
+        let verb = match (count, side, all) {
             // A float is counted by draws whose tests are the other way round.
             (Count::Float(_), _, 1) => "is counted",
             (Count::Float(_), ..) => "are counted",
-            (Count::Stencil(_), true, 1) => "fails the depth test",
-            (Count::Stencil(_), true, _) => "fail the depth test",
-            (Count::Stencil(_), false, 1) => "passes the depth test",
-            (Count::Stencil(_), false, _) => "pass the depth test",
+            (Count::Stencil(_), Side::Behind, 1) => "fails the depth test",
+            (Count::Stencil(_), Side::Behind, _) => "fail the depth test",
+            (Count::Stencil(_), Side::InFront, 1) => "passes the depth test",
+            (Count::Stencil(_), Side::InFront, _) => "pass the depth test",
+            (Count::Stencil(_), Side::AsNeeded, _) => "count as their volumes need it",
         };
         let Faces { front, back, .. } = faces;
-        match (all, is_behind) {
+        let faces_there = format!("{} {where_} the surface {verb}", amount(all, "volume face"));
+        match (all, side) {
             (0, _) => f.write_str("no volume face on the view ray counts")?,
-            (_, true) => write!(f, "{} {where_} {verb}: {back} back, {front} front", amount(all, "volume face"))?,
-            (_, false) => write!(f, "{} {where_} {verb}: {front} front, {back} back", amount(all, "volume face"))?,
+            (_, Side::Behind) => write!(f, "{faces_there}: {back} back, {front} front")?,
+            (_, Side::InFront | Side::AsNeeded) => write!(f, "{faces_there}: {front} front, {back} back")?,
         }
         if faces.stopped > 0 {
             write!(
@@ -305,7 +306,8 @@ mod tests {
     use super::*;
 
     fn counted(faces: Faces, near: Option<i32>, sum: i32, count: Count) -> Counted {
-        Counted { is_behind: near.is_none(), faces, near, sum, count }
+        let side = if near.is_none() { Side::Behind } else { Side::InFront };
+        Counted { side, faces, near, sum, count }
     }
 
     #[test]

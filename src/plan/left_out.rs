@@ -1,19 +1,85 @@
 //! A record of something that this scene does not need.
 
+use super::{Decision, LightId, Pass};
+use serde::{Deserialize, Deserializer, Serialize};
+
 /// Something the plan leaves out, with the reason: absence is a lesson too.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LeftOut {
-    /// For example `dark cap`, `stencil`, `map face +x`.
+    /// What decided it; `None` in a folder that does not say, or says what this version does not know.
+    #[serde(default, deserialize_with = "known", skip_serializing_if = "Option::is_none")]
+    pub decision: Option<Decision>,
+    /// Which of several things, where there are: a face, a receiver, a caster, a draw.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// In words, for example `dark cap`, `stencil buffer`, `map +x`.
     pub what: String,
     /// The object, light or pass it would have belonged to.
     pub of: String,
+    /// How many triangles or things, where that is counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<u64>,
     /// Why nothing changes without it.
     pub because: String,
 }
 
 impl LeftOut {
-    /// `what` of `of` is not needed because of `because`.
-    pub fn new(what: impl Into<String>, of: impl Into<String>, because: impl Into<String>) -> LeftOut {
-        LeftOut { what: what.into(), of: of.into(), because: because.into() }
+    /// What `decision` says of `of` is not needed because of `because`.
+    pub fn new(decision: Decision, of: impl Into<String>, because: impl Into<String>) -> LeftOut {
+        LeftOut::made(decision, None, None, of.into(), because.into())
     }
+
+    /// So many triangles or things of `of`.
+    pub fn counted(decision: Decision, count: u64, of: impl Into<String>, because: impl Into<String>) -> LeftOut {
+        LeftOut::made(decision, None, Some(count), of.into(), because.into())
+    }
+
+    /// The one of that name, of several that `of` has.
+    pub fn named(decision: Decision, name: &str, of: impl Into<String>, because: impl Into<String>) -> LeftOut {
+        LeftOut::made(decision, Some(name), None, of.into(), because.into())
+    }
+
+    /// A pass that did not run, since what it makes is there from the frame before.
+    #[must_use]
+    pub fn kept(pass: &Pass) -> LeftOut {
+        let of = pass.light.map_or_else(|| "the frame".to_owned(), LightId::name);
+        LeftOut::named(Decision::Kept, &pass.name, of, "nothing that makes it has changed since")
+    }
+
+    /// Triangles that a light gives nothing.
+    #[must_use]
+    pub fn unlit(count: u64, light: LightId, has_range: bool) -> LeftOut {
+        let of = format!("the pass of {}", light.name());
+        let mut left_out = LeftOut::counted(Decision::UnlitTriangles, count, of, "it adds nothing to them");
+        left_out.what += if has_range { " or are out of range" } else { "" };
+        left_out
+    }
+
+    /// Is it this that was left out of that object, light or pass?
+    #[must_use]
+    pub fn is(&self, decision: Decision, of: &str) -> bool {
+        self.decision == Some(decision) && self.of == of
+    }
+
+    /// Is it the one of that name that was left out?
+    #[must_use]
+    pub fn names(&self, decision: Decision, name: &str) -> bool {
+        self.decision == Some(decision) && self.name.as_deref() == Some(name)
+    }
+
+    fn made(decision: Decision, name: Option<&str>, count: Option<u64>, of: String, because: String) -> LeftOut {
+        let (what, name) = (decision.what(name, count), name.map(str::to_owned));
+        LeftOut { decision: Some(decision), name, what, of, count, because }
+    }
+}
+
+impl std::fmt::Display for LeftOut {
+    /// `dark cap of box`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} of {}", self.what, self.of)
+    }
+}
+
+fn known<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Decision>, D::Error> {
+    Ok(Decision::from_name(&String::deserialize(deserializer)?))
 }

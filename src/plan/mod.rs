@@ -14,6 +14,8 @@
 
 mod buffers;
 mod coverage;
+mod decided_by;
+mod decision;
 mod held;
 mod image;
 mod kept;
@@ -27,6 +29,8 @@ pub mod words;
 
 pub use buffers::{Blob, DrawMesh, SurfaceData};
 pub use coverage::{Clip, Coverage, Covering, Face, FragmentLog, LoggedFragment};
+pub use decided_by::{DecidedBy, Side};
+pub use decision::Decision;
 pub use image::{CpuImage, MakeImage};
 pub use left_out::LeftOut;
 pub use raster::{ColorWrite, RasterState, StencilFace};
@@ -47,6 +51,14 @@ pub struct ViewId(pub usize);
 /// Index of a light, in the scene and in [`FramePlan::lights`] alike.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LightId(pub usize);
+
+impl LightId {
+    /// For people, counted from 1: `light 1`.
+    #[must_use]
+    pub fn name(self) -> String {
+        format!("light {}", self.0 + 1)
+    }
+}
 
 /// Index into [`FramePlan::meshes`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -131,6 +143,8 @@ pub struct PlanLight {
     pub color: [f32; 3],
     /// Where it has faded to nothing; `None`: no falloff.
     pub range: Option<f32>,
+    /// What its light pass asks.
+    pub decided_by: DecidedBy,
     /// Its shadow map, where the technique makes one.
     pub map: Option<PlanMap>,
     /// Where its volumes are counted, if not in the stencil.
@@ -155,6 +169,8 @@ pub struct PlanMap {
     /// The clip space of each face from positions relative to the eye: what a receiver's
     /// fragment is carried by.
     pub clip_from_relative: Vec<Mat4>,
+    /// What the layers are of, where they hold colours: receivers or casters. Empty for the faces of a depth map.
+    pub layer_names: Vec<String>,
     /// How depths are looked up; `None` where it holds colours.
     pub lookup: Option<MapLookup>,
     /// Projected colours reach behind the light too.
@@ -215,6 +231,12 @@ impl Pass {
         };
         self.scissor.is_none_or(holds)
     }
+
+    /// Does it count the volumes that hold the near plane, as z-pass-plus begins? It sees them from the light.
+    #[must_use]
+    pub fn counts_at_near_plane(&self) -> bool {
+        self.view != ViewId(0) && self.draws.iter().any(|draw| draw.part.is_of_volume())
+    }
 }
 
 /// The colour target of a pass.
@@ -268,45 +290,31 @@ pub struct Draw {
     pub constants: DrawConstants,
 }
 
-/// Which part of a frame's geometry a draw is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Part {
-    /// Visible surface.
-    Surface,
-    /// Side of a shadow volume.
-    Side,
-    /// The casting triangles themselves.
-    LightCap,
-    /// The casting triangles carried to infinity.
-    DarkCap,
-    /// A plane that planar shadows fall on.
-    Receiver,
-    /// A caster flattened onto a receiver.
-    PlanarShadow,
-    /// Surface as a light sees it.
-    Map,
+named_enum! {
+    /// Which part of a frame's geometry a draw is.
+    pub enum Part {
+        /// Visible surface.
+        Surface = "surface",
+        /// Side of a shadow volume.
+        Side = "side",
+        /// The casting triangles themselves.
+        LightCap = "light-cap",
+        /// The casting triangles carried to infinity.
+        DarkCap = "dark-cap",
+        /// A plane that planar shadows fall on.
+        Receiver = "receiver",
+        /// A caster flattened onto a receiver.
+        PlanarShadow = "planar-shadow",
+        /// Surface as a light sees it.
+        Map = "map",
+    }
 }
 
 impl Part {
-    /// The name in manifests and JSON.
+    /// Is it a part of a shadow volume?
     #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Part::Surface => "surface",
-            Part::Side => "side",
-            Part::LightCap => "light-cap",
-            Part::DarkCap => "dark-cap",
-            Part::Receiver => "receiver",
-            Part::PlanarShadow => "planar-shadow",
-            Part::Map => "map",
-        }
-    }
-
-    /// The part of that name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Part> {
-        use Part::{DarkCap, LightCap, Map, PlanarShadow, Receiver, Side, Surface};
-        [Surface, Side, LightCap, DarkCap, Receiver, PlanarShadow, Map].into_iter().find(|part| part.name() == name)
+    pub fn is_of_volume(self) -> bool {
+        matches!(self, Part::Side | Part::LightCap | Part::DarkCap)
     }
 }
 

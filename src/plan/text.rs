@@ -46,7 +46,7 @@ impl Display for FramePlan {
             self.fmt_pass(f, index, pass)?;
         }
         for left in &self.left_out {
-            writeln!(f, "left out: {} of {}: {}", left.what, left.of, left.because)?;
+            writeln!(f, "left out: {left}: {}", left.because)?;
         }
         Ok(())
     }

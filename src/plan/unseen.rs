@@ -1,6 +1,6 @@
 //! The same frame without draws of which nothing shows.
 
-use super::{FramePlan, LeftOut};
+use super::{Decision, FramePlan, LeftOut};
 
 impl FramePlan {
     /// Leaves out of the timed passes each draw of which no sample passed its tests. `samples`: by pass and
@@ -17,7 +17,8 @@ impl FramePlan {
                 let is_unseen = samples.next().is_some_and(|samples| *samples == Some(0));
                 if is_unseen {
                     let because = "no sample of it passed its tests in the last frame, and nothing has moved";
-                    left_out.push(LeftOut::new(draw.name.clone(), format!("the pass `{name}`"), because));
+                    let of = format!("the pass `{name}`");
+                    left_out.push(LeftOut::named(Decision::Unseen, &draw.name, of, because));
                 }
                 !is_unseen
             });

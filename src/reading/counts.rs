@@ -8,12 +8,6 @@ use std::sync::Arc;
 /// How many texels have each count, rounded.
 pub type Tally = BTreeMap<i64, u64>;
 
-/// Does this technique count shadow volumes?
-#[must_use]
-pub fn are_made_by(technique: &str) -> bool {
-    matches!(technique, "z-pass" | "z-fail" | "z-pass-plus")
-}
-
 /// Would eight bits take it for zero, though it is not?
 #[must_use]
 pub fn reads_zero_in_eight_bits(count: f32) -> bool {

@@ -5,7 +5,7 @@
 
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
 use crate::history::{EventKind, PixelHistory};
-use crate::plan::Part;
+use crate::plan::{Part, Side};
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::scene::Light;
@@ -42,7 +42,7 @@ pub fn facts(known: &Known) -> Vec<Fact> {
     if matches!(step.snapshot, Snapshot::Map { .. }) {
         return vec![map(known, step)];
     }
-    if has(Part::Side) || has(Part::LightCap) || has(Part::DarkCap) {
+    if step.draws.iter().any(|draw| draw.part.is_of_volume()) {
         return vec![volumes(known), triangles(step)];
     }
     if has(Part::PlanarShadow) {
@@ -90,13 +90,16 @@ fn depth(known: &Known) -> Fact {
     fact("stored depth = offset + scale / distance along the view", here)
 }
 
-/// Which of z-pass and z-fail it is shows in what the technique is called; auto mixes both.
+/// By the side of the surface on which the light's volumes count.
 fn volumes(known: &Known) -> Fact {
-    let technique = known.capture.technique.as_str();
-    let formula = match technique {
-        "z-pass" | "z-pass-plus" => "count = front faces before the surface − back faces before it, seen from the eye",
-        "z-fail" => "count = back faces behind the surface − front faces behind it, seen from the eye",
-        _ => "count = volumes that contain the surface: each face the ray crosses adds or takes 1",
+    let light = known.capture.steps.get(known.step).and_then(|step| step.light);
+    let side = light.and_then(|light| known.capture.decided_by(light).counted_side());
+    let formula = match side {
+        Some(Side::InFront) => "count = front faces before the surface − back faces before it, seen from the eye",
+        Some(Side::Behind) => "count = back faces behind the surface − front faces behind it, seen from the eye",
+        Some(Side::AsNeeded) | None => {
+            "count = volumes that contain the surface: each face the ray crosses adds or takes 1"
+        }
     };
     let mut here = Vec::new();
     match (known.pick, known.history) {
@@ -105,7 +108,7 @@ fn volumes(known: &Known) -> Fact {
             let mut last = None;
             for event in history.events.iter().filter(|event| event.pass == known.step) {
                 let EventKind::Triangle(triangle) = &event.kind else { continue };
-                if !matches!(triangle.part, Part::Side | Part::LightCap | Part::DarkCap) {
+                if !triangle.part.is_of_volume() {
                     continue;
                 }
                 let (before, after) = (

@@ -7,6 +7,7 @@
 //! closer, and then more rungs are folded.
 
 use crate::history::Ladder;
+use crate::plan::Side;
 use std::ops::Range;
 
 /// Between two marks where there is room for all, and the least where there is not, points.
@@ -102,23 +103,24 @@ pub fn place(
     (placed, line)
 }
 
-/// The count along the ray: from where counting begins as far as the surface.
+/// The count along the ray: from where counting begins as far as the surface; where faces count on both sides of
+/// it, along all of the ray.
 #[must_use]
 pub fn stretches(ladder: &Ladder, placed: &[Placed]) -> Vec<Stretch> {
     let mut stretches = Vec::new();
     let mut count = ladder.start;
     let running = |mark: Mark| match mark {
         Mark::Rung(rung) => Some(ladder.rungs[rung].running),
-        Mark::More(from, to) => Some(ladder.rungs[if ladder.is_from_infinity { from } else { to - 1 }].running),
+        Mark::More(from, to) => Some(ladder.rungs[if ladder.is_from_infinity() { from } else { to - 1 }].running),
         _ => None,
     };
     let mut go = |from: &Placed, to: &Placed| {
         count = running(from.0).unwrap_or(count);
         stretches.push(Stretch { top: from.1.min(to.1), bottom: from.1.max(to.1), count });
-        to.0 != Mark::Surface
+        to.0 != Mark::Surface || ladder.side == Side::AsNeeded
     };
-    // Stops after the stretch that reaches the surface.
-    if ladder.is_from_infinity {
+    // Stops after the stretch that reaches the surface, unless faces count beyond it too.
+    if ladder.is_from_infinity() {
         placed.windows(2).rev().all(|pair| go(&pair[1], &pair[0]));
     } else {
         // What lies before the near plane is not drawn.
@@ -139,7 +141,7 @@ fn marks(
     let before_near = ladder.rungs.partition_point(|rung| rung.distance < near);
     let before_surface = ladder.surface.map(|surface| {
         // A face as far as the surface is on the side that its test says.
-        let is_before = |added: i32| (added != 0) != ladder.is_from_infinity;
+        let is_before = |added: i32| (added != 0) != ladder.is_from_infinity();
         let rungs = ladder.rungs.iter();
         let nearer = |distance: f64, added: i32| distance < surface || (distance == surface && is_before(added));
         rungs.take_while(|rung| nearer(rung.distance, rung.added)).count()
@@ -198,14 +200,8 @@ mod tests {
 
     /// Rungs at distances, each with what it added, counted from infinity.
     fn ladder(surface: Option<f64>, rungs: &[(f64, i32)]) -> Ladder {
-        let mut ladder = Ladder {
-            surface,
-            is_from_infinity: true,
-            start: 0,
-            count: 0,
-            tested: Count::Stencil(0),
-            rungs: Vec::new(),
-        };
+        let mut ladder =
+            Ladder { surface, side: Side::Behind, start: 0, count: 0, tested: Count::Stencil(0), rungs: Vec::new() };
         let rung = |(event, (distance, added)): (usize, &(f64, i32))| Rung {
             event,
             distance: *distance,
@@ -250,7 +246,7 @@ mod tests {
     #[test]
     fn from_the_eye_the_count_begins_with_what_holds_the_near_plane() {
         let mut ladder = ladder(Some(5.0), &[(2.0, -1), (7.0, 0)]);
-        (ladder.is_from_infinity, ladder.start) = (false, 1);
+        (ladder.side, ladder.start) = (Side::InFront, 1);
         ladder.rungs[0].running = 0;
         let stretches = stretches(&ladder, &placed(&ladder, 0.1, None, &[]));
         assert_eq!(stretches.iter().map(|one| one.count).collect::<Vec<_>>(), [1, 0]);

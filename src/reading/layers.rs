@@ -1,7 +1,8 @@
 //! What a light sees, in layers: the faces of its shadow map, the textures of receivers, or the
 //! silhouettes of casters; what each is called, and the picture of one or all.
 
-use crate::capture::{Capture, PixelFormat, Snapshot};
+use crate::capture::{Capture, Snapshot};
+use crate::plan::DecidedBy;
 
 /// Names of a cube map's faces in wgpu's order.
 pub const CUBE_FACES: [&str; 6] = ["+x", "−x", "+y", "−y", "+z", "−z"];
@@ -32,10 +33,11 @@ impl MapContent {
     /// Of a light's map; `None` where there is none.
     #[must_use]
     pub fn of(capture: &Capture, light: usize) -> Option<MapContent> {
-        let first = capture.lights.get(light)?.map.as_ref()?.faces.first()?;
-        Some(match (first.format(), capture.technique.as_str()) {
-            (PixelFormat::Rgba8, "projective") => MapContent::Silhouettes,
-            (PixelFormat::Rgba8, _) => MapContent::Textures,
+        let light = capture.lights.get(light)?;
+        let map = light.map.as_ref()?;
+        Some(match light.decided_by {
+            DecidedBy::Silhouettes => MapContent::Silhouettes,
+            _ if map.holds_colors() => MapContent::Textures,
             _ => MapContent::Depth,
         })
     }
@@ -105,9 +107,9 @@ fn layer(capture: &Capture, light: usize, content: MapContent, index: usize, cou
     let drew = Snapshot::Map { light, face: index };
     match capture.steps.iter().find(|step| step.snapshot == drew) {
         Some(step) => {
-            // `texture of floor`: what it is of.
-            let name = step.name.split_once(" of ").map_or(step.name.as_str(), |(_, of)| of);
-            Layer { name: name.to_owned(), full_name: step.name.clone(), note: None }
+            let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
+            let name = map.and_then(|map| map.layer_names.get(index)).unwrap_or(&step.name);
+            Layer { name: name.clone(), full_name: step.name.clone(), note: None }
         }
         None => {
             let name = format!("layer {}", index + 1);

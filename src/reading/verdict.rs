@@ -5,6 +5,7 @@
 
 use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot};
 use crate::history::PixelHistory;
+use crate::plan::{DecidedBy, Side};
 use crate::reading::counts;
 use crate::reading::format;
 
@@ -77,41 +78,49 @@ pub fn verdict(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
 fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verdict {
     let name = format::light(light);
     let title = if is_dark { format!("Dark under {name}") } else { format!("Lit by {name}") };
-    let reason = match (capture.technique.as_str(), is_dark) {
-        (technique, _) if counts::are_made_by(technique) => return counted(capture, light, at, is_dark, &title),
-        ("shadow-map", true) => {
+    let reason = match (capture.decided_by(light), is_dark) {
+        (DecidedBy::StencilCount { side } | DecidedBy::FloatCount { side }, _) => {
+            return counted(capture, light, at, (is_dark, side), &title);
+        }
+        (DecidedBy::Map, true) => {
             "The light's map holds something nearer to the light here, so the light pass adds nothing."
         }
-        ("shadow-map", false) => "The light's map holds nothing nearer to the light here, so the light pass adds it.",
-        ("planar", true) => "A caster, flattened onto this flat receiver from the light, covers the pixel.",
-        ("planar", false) => {
+        (DecidedBy::Map, false) => "The light's map holds nothing nearer to the light here, so the light pass adds it.",
+        (DecidedBy::Flattened, true) => "A caster, flattened onto this flat receiver from the light, covers the pixel.",
+        (DecidedBy::Flattened, false) => {
             "No flattened caster covers the pixel. Planar shadows fall on flat receivers only, so nothing else is asked."
         }
-        ("planar-texture", true) => {
+        (DecidedBy::ReceiverTextures, true) => {
             "The texture of this flat receiver lets less than half of the light through here: a caster between it and \
              the light was drawn there."
         }
-        ("planar-texture", false) => {
+        (DecidedBy::ReceiverTextures, false) => {
             "No caster was drawn here into this receiver's texture. Surfaces that are not flat have none, and are lit."
         }
-        ("projective", true) => {
+        (DecidedBy::Silhouettes, true) => {
             "The silhouette of another object falls here. Nobody asks whether that object is nearer to the light, and \
              translucent ones count as opaque for the mask."
         }
-        ("projective", false) => "No silhouette of another object falls here; an object's own is never asked.",
-        ("none", false) => "This technique makes no shadows: the light reaches every surface that faces it.",
-        (_, true) => "The technique's mask says that something lies between the surface and the light.",
-        (_, false) => "The technique's mask says that nothing lies between the surface and the light.",
+        (DecidedBy::Silhouettes, false) => {
+            "No silhouette of another object falls here; an object's own is never asked."
+        }
+        (DecidedBy::Nothing, false) => {
+            "No shadow of this light is made in this frame: it reaches every surface that faces it."
+        }
+        (DecidedBy::Labels | DecidedBy::Nothing, true) => {
+            "The technique's mask says that something lies between the surface and the light."
+        }
+        (DecidedBy::Labels, false) => "The technique's mask says that nothing lies between the surface and the light.",
     };
     Verdict { title: format!("{title}."), reason: reason.to_owned(), by_history: ByHistory::Replaced }
 }
 
 /// Shadow volumes: the count that the light pass tested.
-fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: &str) -> Verdict {
+fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool, Side), title: &str) -> Verdict {
     let in_float = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at));
-    let decides = capture.settings.get("counter").is_some_and(|counter| counter == "float");
+    let decides = capture.decided_by(light).counts_in_floats();
     if let Some(count) = in_float.filter(|_| decides) {
-        return counted_in_float(capture, count, is_dark, title);
+        return counted_in_float(count, is_dark, side.preposition(), title);
     }
     let Some(count) = tested_count(capture, light, at) else {
         return Verdict {
@@ -122,7 +131,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: 
     };
     let shown = crate::numbers::signed(count);
     let title = format!("{title}: its stencil count is {shown}.");
-    let side = counted_side(capture);
+    let side = side.preposition();
     let reason = match (is_dark, count) {
         (true, 1..=127) => {
             format!("The volume faces {side} the surface leave {shown}, not 0, so the light pass skips this pixel.")
@@ -148,13 +157,9 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool, title: 
     Verdict { title, reason, by_history }
 }
 
-fn counted_side(capture: &Capture) -> &'static str {
-    if capture.technique == "z-fail" { "behind" } else { "in front of" }
-}
-
-/// The same where the count is kept in a float: it has a sign, and no limits.
-fn counted_in_float(capture: &Capture, count: f32, is_dark: bool, title: &str) -> Verdict {
-    let (shown, side) = (counts::text(count), counted_side(capture));
+/// A count that is kept in a float has a sign, and no limits.
+fn counted_in_float(count: f32, is_dark: bool, side: &str, title: &str) -> Verdict {
+    let shown = counts::text(count);
     let title = format!("{title}: its count is {shown}.");
     let reason = match is_dark {
         true if counts::reads_zero_in_eight_bits(count) => format!(
@@ -183,7 +188,7 @@ fn counted_in_float(capture: &Capture, count: f32, is_dark: bool, title: &str) -
 }
 
 fn count_note(capture: &Capture, light: usize, at: [u32; 2]) -> String {
-    if !counts::are_made_by(&capture.technique) {
+    if !capture.decided_by(light).counts_volumes() {
         return String::new();
     }
     let in_float = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at)).map(counts::text);

@@ -312,19 +312,17 @@ impl Session {
 
     fn assemble(&self, scene: &Scene, plan: &FramePlan, output: Output, timing: Timing) -> Capture {
         let kept = plan.passes.iter().zip(&output.kept).filter(|(_, is_kept)| **is_kept);
-        let kept = kept.map(|(pass, _)| {
-            let of = pass.light.map_or_else(|| "the frame".to_owned(), |light| format!("light {}", light.0 + 1));
-            LeftOut::new(format!("drawing `{}` again", pass.name), of, "nothing that makes it has changed since")
-        });
-        let left_out = plan.left_out.iter().cloned().chain(kept).collect();
+        let left_out = plan.left_out.iter().cloned().chain(kept.map(|(pass, _)| LeftOut::kept(pass))).collect();
         let lights =
             scene.lights.iter().zip(&plan.lights).zip(output.labels.into_iter().zip(output.counts).zip(output.maps));
         let lights = lights.map(|((light, planned), ((shadow, count), faces))| CapturedLight {
             position: light.position,
+            decided_by: planned.decided_by,
             shadow,
             count,
             map: faces.zip(planned.map.as_ref()).map(|(faces, map)| CapturedMap {
                 faces,
+                layer_names: map.layer_names.clone(),
                 light_from_world: map.light_from_world,
                 clip_from_light: map.clip_from_light.clone(),
             }),

@@ -18,14 +18,13 @@
 
 use super::casters::{self, Darkened};
 use super::frame::{Frame, Job};
-use super::left_out::Decision;
 use super::volume::{Counting, Form};
 use super::{PlanError, ReportRows, volume};
 use crate::geometry::umbra::{self, Occluder};
 use crate::geometry::{NearClipVolume, Outside, ViewVolume, layers};
 use crate::math::AxisBox;
 use crate::numbers;
-use crate::plan::{FramePlan, LeftOut, LightId};
+use crate::plan::{Decision, FramePlan, LeftOut, LightId};
 use glam::{DVec3, DVec4};
 
 /// With all that may be left out, without what a look at the frame shows to be hidden, and with nothing
@@ -78,16 +77,22 @@ impl Questions {
     pub fn form(&self, frame: &mut Frame, index: usize) -> Result<Form, LeftOut> {
         let object = frame.placed[index].object;
         let allowed = |decision: Decision| decision.is_allowed(frame.job.choice);
-        let no_volume = |because: String| Err(LeftOut::new("volume", &object.name, because));
+        let no_volume = |why: Decision, because: String| Err(LeftOut::new(why, &object.name, because));
         if allowed(Decision::Caster) && !casters::can_darken(frame, index, self.light, Darkened::All) {
-            let light = Frame::light_name(self.light);
-            return no_volume(format!("all that receives lies on the side of {light}, or in its plane"));
+            let light = self.light.name();
+            return no_volume(
+                Decision::Caster,
+                format!("all that receives lies on the side of {light}, or in its plane"),
+            );
         }
         if allowed(Decision::Caster)
             && let Some(distance) = frame.beyond_range(self.light, index)
         {
-            let light = Frame::light_name(self.light);
-            return no_volume(format!("it lies {} beyond the range of {light}", numbers::metres(distance)));
+            let light = self.light.name();
+            return no_volume(
+                Decision::Caster,
+                format!("it lies {} beyond the range of {light}", numbers::metres(distance)),
+            );
         }
         let eye = frame.eye();
         let near: Vec<DVec4> = outline(&frame.placed[index].world).map(|point| (point - eye).extend(1.0)).collect();
@@ -98,28 +103,32 @@ impl Questions {
         if allowed(Decision::View)
             && let Some(outside) = self.view.outside(&whole)
         {
-            return no_volume(format!("it lies {}", beyond(outside, VIEW_PLANES[outside.plane])));
+            return no_volume(Decision::View, format!("it lies {}", beyond(outside, VIEW_PLANES[outside.plane])));
         }
         if let Some(other) = self.holder(frame, index) {
-            return no_volume(format!("{} holds all of it in its umbra", frame.placed[other].object.name));
+            return no_volume(
+                Decision::Umbra,
+                format!("{} holds all of it in its umbra", frame.placed[other].object.name),
+            );
         }
         if let Some(outside) = self.near_clip.outside(&near).filter(|_| allowed(Decision::Caps)) {
             let plane = format!("plane {} of the near-clip volume", outside.plane + 1);
-            frame.leave_out("caps", &object.name, &format!("it lies {}: z-pass counts it", beyond(outside, &plane)));
+            let because = format!("it lies {}: z-pass counts it", beyond(outside, &plane));
+            frame.leave_out(Decision::Caps, &object.name, because);
             // What is not drawn has no surface where its volume begins.
             return Ok(Form { counting: Counting::InFront, light_cap: !object.visible, dark_cap: false });
         }
         let mut form = Form { counting: Counting::Behind, light_cap: true, dark_cap: true };
         if let Some(outside) = self.view.outside(&near).filter(|_| allowed(Decision::LightCap)) {
             let because = format!("the caster lies {}", beyond(outside, VIEW_PLANES[outside.plane]));
-            frame.leave_out("light cap", &object.name, &because);
+            frame.leave_out(Decision::LightCap, &object.name, because);
             form.light_cap = false;
         }
         let directions: Vec<DVec3> = far.iter().map(|point| point.truncate()).collect();
         let far_end = self.view.outside_at_infinity(&directions);
         if let Some(outside) = far_end.filter(|_| light.w != 0.0 && allowed(Decision::DarkCap)) {
             let because = format!("at infinity it lies outside {}", VIEW_PLANES[outside.plane]);
-            frame.leave_out("dark cap", &object.name, &because);
+            frame.leave_out(Decision::DarkCap, &object.name, because);
             form.dark_cap = false;
         }
         Ok(form)
@@ -147,11 +156,7 @@ impl Questions {
         if !held.is_empty() {
             let count = held.iter().filter(|is_held| **is_held).count();
             let because = "another part of it holds them in its umbra";
-            frame.leave_out(
-                &format!("volume of parts ({} triangles)", numbers::count(count as u64)),
-                &placed.object.name,
-                because,
-            );
+            frame.plan.left_out.push(LeftOut::counted(Decision::Umbra, count as u64, &placed.object.name, because));
         }
         held
     }

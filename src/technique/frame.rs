@@ -3,16 +3,15 @@
 //! A technique starts a [`Frame`], adds its own passes between `ambient_pass` and, for each
 //! light, `mask_pass` and `light_pass`, and finishes it into a plan.
 
-use super::left_out::Decision;
 use super::{Choice, PlanError, surfaces};
 use crate::geometry::{self, GeometryCache, RangeInView, relative};
 use crate::math::depth::{DepthCurve, DepthMapping};
 use crate::math::projection;
 use crate::numbers;
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, ColorTarget, ColorWrite, DepthStencilTarget, Draw, DrawConstants,
-    DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Pass, PlanLight, PlanView, Program, RasterState, StencilFace,
-    ViewId, Visibility,
+    Attachment, AttachmentId, AttachmentRole, ColorTarget, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw,
+    DrawConstants, DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Pass, PlanLight, PlanView, Program,
+    RasterState, StencilFace, ViewId, Visibility,
 };
 use crate::scene::{Material, Object, Scene};
 use glam::{DMat4, DVec3};
@@ -230,11 +229,6 @@ impl<'a> Frame<'a> {
         Drawn { program: Program::Through, raster, label: LIT }
     }
 
-    /// Names a light for people, counted from 1.
-    pub fn light_name(light: LightId) -> String {
-        format!("light {}", light.0 + 1)
-    }
-
     /// Adds an attachment.
     pub fn add_attachment(&mut self, attachment: Attachment) -> AttachmentId {
         self.plan.attachments.push(attachment);
@@ -248,8 +242,8 @@ impl<'a> Frame<'a> {
     }
 
     /// Records that something is not needed.
-    pub fn leave_out(&mut self, what: &str, of: &str, because: &str) {
-        self.plan.left_out.push(LeftOut::new(what, of, because));
+    pub fn leave_out(&mut self, decision: Decision, of: impl Into<String>, because: impl Into<String>) {
+        self.plan.left_out.push(LeftOut::new(decision, of, because));
     }
 
     /// A pass of a light into stencil alone, over the camera's depth. The first one of a light
@@ -258,7 +252,7 @@ impl<'a> Frame<'a> {
         let is_untouched = self.stencil_of.is_none();
         let is_left_out = is_untouched && Decision::Clear.is_allowed(self.job.choice);
         if is_left_out {
-            self.leave_out("stencil clear", &Frame::light_name(light), "nothing has written the stencil before");
+            self.leave_out(Decision::Clear, light.name(), "nothing has written the stencil before");
         }
         self.push_pass(light, name, purpose, None, draws);
         let target = self.plan.passes.last_mut().and_then(|pass| pass.depth_stencil.as_mut());
@@ -294,7 +288,7 @@ impl<'a> Frame<'a> {
     /// Gives a light a float target to count its volumes in.
     pub fn add_count(&mut self, light: LightId) {
         let count = self.add_attachment(Attachment {
-            name: format!("{} count", Frame::light_name(light)),
+            name: format!("{} count", light.name()),
             role: AttachmentRole::Count(light),
             format: TextureFormat::R32Float,
             size: self.job.size,
@@ -376,7 +370,7 @@ impl<'a> Frame<'a> {
                         "its light ends {} from it, which is within {columns}x{rows} pixels",
                         numbers::metres(range)
                     );
-                    self.leave_out("pixels out of reach", &Frame::light_name(id), &because);
+                    self.leave_out(Decision::Scissor, id.name(), because);
                     self.scissors[id.0] = Some(pixels);
                 }
             }
@@ -530,7 +524,7 @@ impl<'a> Frame<'a> {
         };
         if !self.has_stencil {
             let because = "this technique counts and marks nothing, and no two triangles coincide";
-            self.leave_out("stencil buffer", "the frame", because);
+            self.leave_out(Decision::Stencil, "the frame", because);
         }
         let role = AttachmentRole::DepthStencil;
         self.depth_stencil = self.add_attachment(Attachment { name: name.to_owned(), role, format, size, layers: 1 });
@@ -540,7 +534,7 @@ impl<'a> Frame<'a> {
         for (light, id) in self.job.scene.lights.iter().zip(self.light_ids()) {
             light.check().map_err(|problem| PlanError::Unusable { problem: problem.to_owned() })?;
             let labels = self.add_attachment(Attachment {
-                name: format!("{} labels", Frame::light_name(id)),
+                name: format!("{} labels", id.name()),
                 role: AttachmentRole::Labels(id),
                 format: TextureFormat::R8Uint,
                 size: self.job.size,
@@ -548,12 +542,20 @@ impl<'a> Frame<'a> {
             });
             let relative_position = relative::homogeneous(light.homogeneous(), self.eye());
             if !relative_position.iter().all(|component| component.is_finite()) {
-                let problem = format!("{} is too far from the eye for single precision", Frame::light_name(id));
+                let problem = format!("{} is too far from the eye for single precision", id.name());
                 return Err(PlanError::Unusable { problem });
             }
             let color = light.color.map(|channel| channel * light.intensity);
             let range = light.range.map(|range| range as f32);
-            self.plan.lights.push(PlanLight { relative_position, color, range, map: None, count: None, labels });
+            self.plan.lights.push(PlanLight {
+                relative_position,
+                color,
+                range,
+                decided_by: DecidedBy::Nothing,
+                map: None,
+                count: None,
+                labels,
+            });
         }
         Ok(())
     }

@@ -22,7 +22,6 @@ mod surfaces;
 mod volume;
 
 pub use frame::{Job, MOST_LIGHTS};
-pub use left_out::Decision;
 pub use settings::{Choice, ChoiceError, ReportRows, SettingSpec, SettingValues};
 pub use volume::casting;
 

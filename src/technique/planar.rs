@@ -15,7 +15,8 @@ use super::{PlanError, ReportRows};
 use crate::geometry::planar::{Clip, Flattened, Flattener};
 use crate::geometry::relative;
 use crate::plan::{
-    Blob, ColorWrite, Draw, DrawConstants, DrawMesh, FramePlan, LightId, Part, Program, RasterState, StencilFace,
+    Blob, ColorWrite, DecidedBy, Decision, Draw, DrawConstants, DrawMesh, FramePlan, LeftOut, LightId, Part, Program,
+    RasterState, StencilFace,
 };
 use std::sync::Arc;
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
@@ -57,6 +58,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     frame.ambient_pass();
     let receivers = receivers::all(&mut frame);
     for light in frame.light_ids() {
+        frame.plan.lights[light.0].decided_by = DecidedBy::Flattened;
         let marked = marked_receivers(&mut frame, &receivers, light);
         if options.marks && options.blends_once {
             counted_shadows(&mut frame, &marked, light, options);
@@ -121,7 +123,7 @@ fn blended_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options
         mark_pass(frame, marked, light);
     } else if options.blends_once {
         let because = "without the stencil nothing keeps a pixel from being darkened twice";
-        frame.leave_out("blending once", &Frame::light_name(light), because);
+        frame.leave_out(Decision::BlendOnce, light.name(), because);
     }
     let on_mark = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
     let raster = |color, mark| match options.marks {
@@ -143,12 +145,13 @@ fn blended_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options
 /// The largest receivers whose lit side the eye sees: any other shows no shadow of this light.
 fn marked_receivers(frame: &mut Frame, all: &[FlatReceiver], light: LightId) -> Vec<Marked> {
     let shown: Vec<_> = all.iter().filter(|receiver| receiver.shows_lit_side(frame, light)).collect();
-    let name = Frame::light_name(light);
+    let name = light.name();
     if shown.is_empty() {
-        frame.leave_out("planar shadows", &name, "no flat receiver shows its lit side");
+        frame.leave_out(Decision::PlanarShadows, &name, "no flat receiver shows its lit side");
     } else if shown.len() < all.len() {
         let because = "light and eye are on different sides of them, so shading alone darkens them";
-        frame.leave_out(&format!("{} flat receivers", all.len() - shown.len()), &name, because);
+        let count = (all.len() - shown.len()) as u64;
+        frame.plan.left_out.push(LeftOut::counted(Decision::DarkReceivers, count, &name, because));
     }
     receivers::leave_out_small(frame, shown.len(), &name);
     // Marks are even and shadows one more: a byte would hold 127.
@@ -213,7 +216,7 @@ fn shadow_draws(
     }
     if draws.is_empty() && !marked.is_empty() {
         let because = "no caster is between the light and a flat receiver";
-        frame.leave_out("planar shadows", &Frame::light_name(light), because);
+        frame.leave_out(Decision::PlanarShadows, light.name(), because);
     }
     draws
 }

@@ -13,7 +13,7 @@ use super::surfaces;
 use super::{PlanError, ReportRows};
 use crate::geometry::Parallelogram;
 use crate::math::Plane;
-use crate::plan::{FramePlan, LightId, Visibility};
+use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, Visibility};
 use glam::{DMat4, DVec4};
 use std::collections::HashSet;
 
@@ -77,12 +77,12 @@ fn add_textures(frame: &mut Frame, receivers: &[FlatReceiver], light: LightId) {
     for (layer, (receiver, shape)) in receivers.iter().zip(&shapes).enumerate() {
         if shape.is_none() {
             let because = "the light lies in its plane";
-            frame.leave_out(&format!("texture of {}", receiver.name), &Frame::light_name(light), because);
+            frame.plan.left_out.push(LeftOut::named(Decision::Texture, &receiver.name, light.name(), because));
             continue;
         }
         if !receiver.shows_lit_side(frame, light) {
             let because = "light and eye are on different sides of it, so shading alone darkens it";
-            frame.leave_out(&format!("texture of {}", receiver.name), &Frame::light_name(light), because);
+            frame.plan.left_out.push(LeftOut::named(Decision::Texture, &receiver.name, light.name(), because));
             continue;
         }
         let towards_light = receiver.receiver.plane;
@@ -94,20 +94,22 @@ fn add_textures(frame: &mut Frame, receivers: &[FlatReceiver], light: LightId) {
         }
         if draws.is_empty() {
             let because = "no caster is between it and the light";
-            frame.leave_out(&format!("texture of {}", receiver.name), &Frame::light_name(light), because);
+            frame.plan.left_out.push(LeftOut::named(Decision::Texture, &receiver.name, light.name(), because));
             continue;
         }
         passes.push(LayerPass { layer, name: format!("texture of {}", receiver.name), draws });
     }
     if passes.is_empty() {
-        frame.leave_out("textures", &Frame::light_name(light), "no flat receiver has a shadow that shows");
+        frame.leave_out(Decision::Textures, light.name(), "no flat receiver has a shadow that shows");
         return;
     }
     let purpose = "Draws the casters between this receiver and the light through the box that the light's pyramid \
                    over the receiver becomes: their picture is the shadow on it.";
     let size = frame.job.choice.number("size") as u32;
     let shapes = shapes.into_iter().map(|shape| shape.unwrap_or(DMat4::IDENTITY)).collect();
-    silhouettes::add_map(frame, light, size, shapes, passes, purpose);
+    let names = receivers.iter().map(|receiver| receiver.name.clone()).collect();
+    silhouettes::add_map(frame, light, size, (names, shapes), passes, purpose);
+    frame.plan.lights[light.0].decided_by = DecidedBy::ReceiverTextures;
 }
 
 fn clip_from_world(frame: &Frame, receiver: &FlatReceiver, light: DVec4) -> Option<DMat4> {

@@ -10,7 +10,7 @@ use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::silhouettes::{self, LayerPass};
 use super::{PlanError, ReportRows};
 use crate::geometry::light_frame;
-use crate::plan::{FramePlan, LightId, PlanMap, Visibility};
+use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, PlanMap, Visibility};
 use glam::DMat4;
 
 /// Sizes of pictures.
@@ -72,7 +72,8 @@ fn casting_objects(frame: &mut Frame) -> Vec<usize> {
     if objects.len() > PlanMap::MOST_FACES {
         let count = objects.len() - PlanMap::MOST_FACES;
         let because = "a light passes through 64 silhouettes at most";
-        frame.leave_out(&format!("silhouettes of the last {count} objects"), "the frame", because);
+        let left_out = LeftOut::counted(Decision::MostSilhouettes, count as u64, "the frame", because);
+        frame.plan.left_out.push(left_out);
         objects.truncate(PlanMap::MOST_FACES);
     }
     objects
@@ -83,23 +84,22 @@ fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize]) {
     let mut passes = Vec::new();
     for (layer, object) in layers.iter().enumerate() {
         let name = frame.placed[*object].object.name.clone();
-        let what = format!("silhouette of {name}");
         if !casters::can_darken(frame, *object, light, Darkened::Others) {
             let because = "every other object that receives lies on the light's side of its triangles";
-            frame.leave_out(&what, &Frame::light_name(light), because);
+            frame.plan.left_out.push(LeftOut::named(Decision::Silhouette, &name, light.name(), because));
             continue;
         }
         let Some(clip_from_world) =
             light_frame::fit_silhouette(&frame.placed[*object].world, frame.light_position(light))
         else {
             let because = "it reaches behind the light or into its plane, so no picture holds it: it casts nothing";
-            frame.leave_out(&what, &Frame::light_name(light), because);
+            frame.plan.left_out.push(LeftOut::named(Decision::Silhouette, &name, light.name(), because));
             continue;
         };
         matrices[layer] = clip_from_world;
         let all: Vec<u32> = (0..frame.placed[*object].object.mesh.triangles().len() as u32).collect();
         let draws = silhouettes::draws(frame, *object, &all);
-        passes.push(LayerPass { layer, name: what, draws });
+        passes.push(LayerPass { layer, name: format!("silhouette of {name}"), draws });
     }
     if passes.is_empty() {
         return;
@@ -107,7 +107,9 @@ fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize]) {
     let purpose = "Draws the caster as the light sees it, in a frame that fits it: not how far it is, but how much \
                    light it lets through.";
     let size = frame.job.choice.number("size") as u32;
-    silhouettes::add_map(frame, light, size, matrices, passes, purpose);
+    let names = layers.iter().map(|object| frame.placed[*object].object.name.clone()).collect();
+    silhouettes::add_map(frame, light, size, (names, matrices), passes, purpose);
+    frame.plan.lights[light.0].decided_by = DecidedBy::Silhouettes;
     let reverses = frame.job.choice.word("reverse") == "on";
     if let Some(map) = &mut frame.plan.lights[light.0].map {
         map.projects_backwards = reverses;

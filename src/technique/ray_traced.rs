@@ -7,7 +7,7 @@
 use super::frame::{Frame, Job, StencilUse};
 use super::settings::ONE_ROW;
 use super::{PlanError, ReportRows};
-use crate::plan::{ColorTarget, CpuImage, FramePlan, LightId, MakeImage, Pass, ViewId, Visibility};
+use crate::plan::{ColorTarget, CpuImage, DecidedBy, FramePlan, LightId, MakeImage, Pass, ViewId, Visibility};
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::truth::Tracer;
@@ -39,6 +39,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let tracer = Arc::new(tracer);
     frame.ambient_pass();
     for light in frame.light_ids() {
+        frame.plan.lights[light.0].decided_by = DecidedBy::Labels;
         ray_pass(&mut frame, light, LightRays { tracer: tracer.clone(), light });
         let purpose = "Adds the light where its rays arrived.";
         frame.light_pass(light, purpose, &frame.light_by(Visibility::Labels));
@@ -61,11 +62,7 @@ fn ray_pass(frame: &mut Frame, light: LightId, rays: LightRays) {
         color: Some(ColorTarget { attachment, layer: 0, clear: None }),
         depth_stencil: None,
         draws: Vec::new(),
-        image: Some(CpuImage {
-            name: format!("rays of {}", Frame::light_name(light)),
-            content,
-            source: Arc::new(rays),
-        }),
+        image: Some(CpuImage { name: format!("rays of {}", light.name()), content, source: Arc::new(rays) }),
     });
 }
 

@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use crate::geometry::planar;
 use crate::math::{Sign, side_of_triangle};
-use crate::plan::LightId;
+use crate::plan::{Decision, LeftOut, LightId};
 
 /// The largest are served; each costs a draw a caster.
 pub const MOST_RECEIVERS: usize = 64;
@@ -53,6 +53,7 @@ impl FlatReceiver {
 pub fn leave_out_small(frame: &mut Frame, count: usize, of: &str) {
     if count > MOST_RECEIVERS {
         let because = "the 64 largest are kept: every one costs a draw for each caster";
-        frame.leave_out(&format!("{} small flat receivers", count - MOST_RECEIVERS), of, because);
+        let left_out = LeftOut::counted(Decision::SmallReceivers, (count - MOST_RECEIVERS) as u64, of, because);
+        frame.plan.left_out.push(left_out);
     }
 }

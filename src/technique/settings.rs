@@ -4,9 +4,9 @@
 //! one line here and its use in the technique. Only what works is listed: a value that is not
 //! there yet is refused, not ignored.
 
-use super::left_out::Decision;
 use super::{Technique, auto, none, planar, planar_texture, projective, ray_traced, shadow_map, volume};
 use crate::math::depth::DepthMapping;
+use crate::plan::Decision;
 use crate::scene::{TechniqueRequest, suggestion};
 use std::collections::BTreeMap;
 

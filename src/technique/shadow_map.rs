@@ -7,13 +7,13 @@
 
 use super::casters::{self, Darkened};
 use super::frame::{Drawn, Frame, Job, StencilUse};
-use super::left_out::Decision;
 use super::{PlanError, ReportRows};
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
-    Attachment, AttachmentRole, Blob, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh, FramePlan,
-    LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState, ViewId, Visibility,
+    Attachment, AttachmentRole, Blob, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw, DrawConstants,
+    DrawMesh, FramePlan, LeftOut, LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState,
+    ViewId, Visibility,
 };
 use glam::{DMat4, DVec3};
 use wgpu::{DepthBiasState, TextureFormat};
@@ -73,7 +73,7 @@ fn add_map(frame: &mut Frame, light: LightId) {
     let triangles: Vec<Vec<[DVec3; 3]>> = indices.iter().map(|index| casters::world_triangles(frame, *index)).collect();
     let storage = MapStorage { size, depth: frame.depth_mapping(), epsilon: frame.job.choice.number("epsilon") };
     let Some(light_frame) = light_frame::fit(&triangles.concat(), frame.light_position(light), &storage) else {
-        frame.leave_out("shadow map", &Frame::light_name(light), "nothing casts a shadow on anything");
+        frame.leave_out(Decision::Map, light.name(), "nothing casts a shadow on anything");
         return;
     };
     let casters: Vec<MapCaster> = indices
@@ -86,7 +86,7 @@ fn add_map(frame: &mut Frame, light: LightId) {
         })
         .collect();
     let attachment = frame.add_attachment(Attachment {
-        name: format!("{} map", Frame::light_name(light)),
+        name: format!("{} map", light.name()),
         role: AttachmentRole::Map(light),
         format: TextureFormat::Depth32Float,
         size: [size; 2],
@@ -97,9 +97,11 @@ fn add_map(frame: &mut Frame, light: LightId) {
     let faces: Vec<Option<ViewId>> = faces.collect();
     let light_from_eye = light_frame.light_from_world * DMat4::from_translation(frame.eye());
     let from_relative = |clip_from_light: &DMat4| (*clip_from_light * light_from_eye).as_mat4();
+    frame.plan.lights[light.0].decided_by = DecidedBy::Map;
     frame.plan.lights[light.0].map = Some(PlanMap {
         attachment,
         faces,
+        layer_names: Vec::new(),
         light_from_world: light_frame.light_from_world,
         clip_from_relative: light_frame.clip_from_light.iter().map(from_relative).collect(),
         clip_from_light: light_frame.clip_from_light,
@@ -130,11 +132,9 @@ fn darkening_casters(frame: &mut Frame, light: LightId) -> Vec<usize> {
         if casters::can_darken(frame, index, light, Darkened::All) {
             darkening.push(index);
         } else {
-            frame.leave_out(
-                &format!("{} in the shadow map", object.name),
-                &Frame::light_name(light),
-                "everything that receives lies on the light's side of its triangles",
-            );
+            let because = "everything that receives lies on the light's side of its triangles";
+            let left_out = LeftOut::named(Decision::MapCaster, &object.name, light.name(), because);
+            frame.plan.left_out.push(left_out);
         }
     }
     darkening
@@ -173,11 +173,12 @@ fn add_face(
     let raster = map_raster(frame);
     let draws: Vec<Draw> = casters.iter().filter(shows).map(|caster| map_draw(caster, &raster)).collect();
     if draws.is_empty() && Decision::MapFaces.is_allowed(frame.job.choice) {
-        frame.leave_out(&name, &Frame::light_name(light), "no caster shows in this face");
+        let left_out = LeftOut::named(Decision::MapFaces, &name, light.name(), "no caster shows in this face");
+        frame.plan.left_out.push(left_out);
         return None;
     }
     frame.plan.views.push(PlanView {
-        name: format!("{} {name}", Frame::light_name(light)),
+        name: format!("{} {name}", light.name()),
         origin: light_frame.origin,
         clip_from_relative: (clip_from_light * light_frame.light_from_relative).as_mat4(),
     });

@@ -5,11 +5,9 @@
 //! from it, so the light pass needs only the rest.
 
 use super::frame::{Frame, Piece};
-use super::left_out::Decision;
 use super::{auto, surfaces};
 use crate::geometry::{Caster, ViewVolume};
-use crate::numbers;
-use crate::plan::{DrawMesh, LightId};
+use crate::plan::{Decision, DrawMesh, LeftOut, LightId};
 use glam::{DVec3, DVec4};
 
 /// A triangle this nearly edge-on to the eye, as a sine, may be rasterised as facing it.
@@ -52,7 +50,7 @@ fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
         && let Some(outside) = view.outside(&relative)
     {
         let because = auto::beyond(outside, auto::VIEW_PLANES[outside.plane]);
-        frame.leave_out("surface", &object.name, &format!("it lies {because}"));
+        frame.leave_out(Decision::Surfaces, &object.name, format!("it lies {because}"));
         return Shown::Nothing;
     }
     if !Decision::HiddenTriangles.is_allowed(choice) || !view.is_beyond_near(&relative) {
@@ -78,11 +76,7 @@ fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
         return Shown::All;
     }
     let because = "the mesh is closed and wound outwards, the eye is outside it, and the near plane does not cut it";
-    frame.leave_out(
-        &format!("{} triangles that face away from the eye", numbers::count(hidden as u64)),
-        &object.name,
-        because,
-    );
+    frame.plan.left_out.push(LeftOut::counted(Decision::HiddenTriangles, hidden as u64, &object.name, because));
     Shown::Triangles(shows)
 }
 
@@ -124,9 +118,8 @@ pub fn lit_by(frame: &mut Frame, light: LightId) -> Vec<Piece> {
     }
     let unlit = all - total(&lit);
     if unlit > 0 {
-        let or_far = if frame.job.scene.lights[light.0].range.is_some() { " or are out of range" } else { "" };
-        let what = format!("{} triangles that face away{or_far}", numbers::count(unlit));
-        frame.leave_out(&what, &format!("the pass of {}", Frame::light_name(light)), "it adds nothing to them");
+        let has_range = frame.job.scene.lights[light.0].range.is_some();
+        frame.plan.left_out.push(LeftOut::unlit(unlit, light, has_range));
     }
     lit
 }

@@ -20,18 +20,18 @@ pub struct LayerPass {
     pub draws: Vec<Draw>,
 }
 
-/// Gives a light a map of so many layers as there are matrices, each clip space from world space,
+/// Gives a light a map of so many layers as there are names and matrices, each clip space from world space,
 /// and a pass for each layer that is drawn. In the others all of the light arrives.
 pub fn add_map(
     frame: &mut Frame,
     light: LightId,
     size: u32,
-    clip_from_world: Vec<DMat4>,
+    (layer_names, clip_from_world): (Vec<String>, Vec<DMat4>),
     passes: Vec<LayerPass>,
     purpose: &str,
 ) {
     let attachment = frame.add_attachment(Attachment {
-        name: format!("{} textures", Frame::light_name(light)),
+        name: format!("{} textures", light.name()),
         role: AttachmentRole::Map(light),
         format: TextureFormat::Rgba8Unorm,
         size: [size; 2],
@@ -43,7 +43,7 @@ pub fn add_map(
     let mut faces = vec![None; clip_from_world.len()];
     for LayerPass { layer, name, draws } in passes {
         frame.plan.views.push(PlanView {
-            name: format!("{} {name}", Frame::light_name(light)),
+            name: format!("{} {name}", light.name()),
             origin: frame.eye(),
             clip_from_relative: clip_from_relative[layer],
         });
@@ -68,6 +68,7 @@ pub fn add_map(
         light_from_world: DMat4::IDENTITY,
         clip_from_light: clip_from_world,
         clip_from_relative,
+        layer_names,
         lookup: None,
         projects_backwards: false,
         is_kept: frame.job.choice.keeps_maps(),

@@ -19,14 +19,14 @@ mod options;
 use super::auto::Questions;
 use super::casters::{self, Darkened};
 use super::frame::{Drawn, Frame, Job, StencilUse};
-use super::left_out::Decision;
 use super::settings::ONE_ROW;
 use super::{Choice, PlanError, ReportRows, Technique, shown};
 use crate::geometry::{
     Caster, Casters, DarkCap, Extruder, Extrusion, Fan, GeometryCache, SilhouetteBy, VolumeOf, VolumeParts, relative,
 };
 use crate::plan::{
-    Blob, Draw, DrawConstants, DrawMesh, FramePlan, LightId, MeshId, Part, Program, RasterState, Visibility,
+    Blob, DecidedBy, Decision, Draw, DrawConstants, DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, Program,
+    RasterState, Side, Visibility,
 };
 use crate::scene::Object;
 pub use counting::Counting;
@@ -73,7 +73,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let misses = frame.cut_to_ranges();
     for light in frame.light_ids() {
         if misses[light.0] {
-            frame.leave_out("all passes", &Frame::light_name(light), "its light ends before it reaches the view");
+            frame.leave_out(Decision::Light, light.name(), "its light ends before it reaches the view");
             frame.mask_pass(light, &[Drawn::lit()]);
             continue;
         }
@@ -81,7 +81,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
             let lit = shown::lit_by(&mut frame, light);
             if lit.is_empty() && Decision::Light.is_allowed(frame.job.choice) {
                 let because = "every surface in view faces away from it or lies beyond its range";
-                frame.leave_out("all passes", &Frame::light_name(light), because);
+                frame.leave_out(Decision::Light, light.name(), because);
                 frame.mask_pass(light, &[Drawn::lit()]);
                 continue;
             }
@@ -89,7 +89,10 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         }
         let (volumes, may_overflow) = volumes(&mut frame, light, &options);
         let counting = Counting::of(technique);
+        let side = counted_by(&volumes, counting).map_or(Side::AsNeeded, Counting::side);
+        frame.plan.lights[light.0].decided_by = DecidedBy::StencilCount { side };
         if options.counts_in_float || may_overflow {
+            frame.plan.lights[light.0].decided_by = DecidedBy::FloatCount { side };
             count_in_float(&mut frame, light, counting, &options, &volumes);
             continue;
         }
@@ -100,7 +103,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         for step in Step::all(options.two_pass) {
             let draws: Vec<Draw> = volumes.iter().flat_map(|volume| volume.draws(&options, *step)).collect();
             if draws.is_empty() && technique == Technique::Auto {
-                frame.leave_out("volume pass", &Frame::light_name(light), "no caster's volume is needed");
+                frame.leave_out(Decision::VolumePass, light.name(), "no caster's volume is needed");
                 continue;
             }
             frame.stencil_pass(light, step.name(), &counting::purpose(counted, light, *step), draws);
@@ -125,7 +128,7 @@ fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options
     frame.add_count(light);
     if options.two_pass || options.clamp {
         let because = "a float target adds and takes away in one draw, and has no limits to stop at";
-        frame.leave_out("two passes and clamping", &Frame::light_name(light), because);
+        frame.leave_out(Decision::TwoPasses, light.name(), because);
     }
     if counting == Counting::InFrontPlus {
         near_count::pass(frame, light, options, volumes);
@@ -252,13 +255,13 @@ fn volumes(frame: &mut Frame, light: LightId, options: &Options) -> (Vec<Volume>
                 Casters::LightFacing => "no triangle faces the light",
                 Casters::LightBackFacing => "no triangle faces away from the light",
             };
-            frame.leave_out("volume", &object.name, because);
+            frame.leave_out(Decision::NothingCasts, &object.name, because);
             continue;
         }
         // A bias of sides that hug it is a few steps, and rounding may be more.
         if !parts.hugging_sides.is_empty() && !casters::can_darken(frame, index, light, Darkened::All) {
             let because = "the light grazes it, so that depth can't tell it from its sides, and nothing is behind it";
-            frame.leave_out("volume", &object.name, because);
+            frame.leave_out(Decision::Caster, &object.name, because);
             continue;
         }
         let mut needed = needed_parts(frame, form, &parts, object);
@@ -271,7 +274,7 @@ fn volumes(frame: &mut Frame, light: LightId, options: &Options) -> (Vec<Volume>
     let may_overflow = questions.is_some_and(|questions| questions.may_overflow(&casting().collect::<Vec<_>>()));
     if may_overflow {
         let because = "a ray of it may meet more than 255 casting triangles: a float counts them";
-        frame.leave_out("eight-bit count", &Frame::light_name(light), because);
+        frame.leave_out(Decision::EightBits, light.name(), because);
     }
     (volumes, may_overflow)
 }
@@ -282,7 +285,7 @@ fn fixed_form(frame: &mut Frame, counting: Counting, options: &Options, caster: 
     let light_cap = counting == Counting::Behind || !caster.visible;
     if !light_cap {
         let because = "z-pass counts in front of surfaces, and a drawn caster's cap is never in front of itself";
-        frame.leave_out("caps", &caster.name, because);
+        frame.leave_out(Decision::Caps, &caster.name, because);
     }
     // A finite volume ends in front of whatever lies beyond it.
     Form { counting, light_cap, dark_cap: counting == Counting::Behind || options.extrusion != Extrusion::Infinite }
@@ -308,19 +311,19 @@ fn who_casts(frame: &mut Frame, light: LightId, index: usize, options: &Options)
     let (position, placed) = (frame.light_position(light), &frame.placed[index]);
     let object = placed.object;
     let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed.world };
-    let name = Frame::light_name(light);
+    let name = light.name();
     match frame.job.cache.light_facing_suffices(caster, position) {
         Ok(()) => {
             let because = format!(
                 "proven: the mesh is closed, consistently wound, nowhere inside out and does not meet itself, and \
                  {name} is outside it; the triangles that face the light cast the same shadow alone"
             );
-            frame.leave_out("triangles that face away", &object.name, &because);
+            frame.leave_out(Decision::AwayTriangles, &object.name, because);
             Casters::LightFacing
         }
         Err(doubt) => {
             let because = format!("not for {name}: {doubt}; so every triangle casts");
-            frame.leave_out("choice of light-facing triangles", &object.name, &because);
+            frame.leave_out(Decision::LightFacing, &object.name, because);
             Casters::All
         }
     }
@@ -367,7 +370,7 @@ fn needed_parts(frame: &mut Frame, form: Form, parts: &VolumeParts, caster: &Obj
     match &parts.dark_cap {
         DarkCap::None => {
             let because = "a directional light's volume closes in one point at infinity";
-            frame.leave_out("dark cap", &caster.name, because);
+            frame.leave_out(Decision::DarkCap, &caster.name, because);
         }
         DarkCap::Fan(triangles, _) => {
             needed.push(run(Part::DarkCap, false, triangles));
@@ -377,7 +380,8 @@ fn needed_parts(frame: &mut Frame, form: Form, parts: &VolumeParts, caster: &Obj
                     "at infinity only its outline matters: {} triangles close what {cap} would",
                     triangles.len()
                 );
-                frame.leave_out("inner triangles of the dark cap", &caster.name, &because);
+                let inner = (cap - triangles.len()) as u64;
+                frame.plan.left_out.push(LeftOut::counted(Decision::InnerDarkCap, inner, &caster.name, because));
             }
         }
         DarkCap::Carried(base) => {

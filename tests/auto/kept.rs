@@ -4,6 +4,7 @@ use super::{labels, picture};
 use crate::common::{cuboid, from_above, request, session};
 use glam::DVec3;
 use stencilscope::capture::{Capture, Snapshot};
+use stencilscope::plan::Decision;
 use stencilscope::scene::Scene;
 use stencilscope::session::{CaptureRequest, Every, Session};
 use stencilscope::technique::Technique;
@@ -25,7 +26,7 @@ fn maps(capture: &Capture) -> Vec<Vec<u8>> {
 
 /// Passes that were not run since their map is there.
 fn kept(capture: &Capture) -> usize {
-    capture.left_out.iter().filter(|left| left.what.starts_with("drawing `")).count()
+    capture.left_out.iter().filter(|left| left.decision == Some(Decision::Kept)).count()
 }
 
 /// A frame after another that keeps its map, against one that draws all of it.

@@ -4,9 +4,9 @@ use super::{assert_decides, auto, labels, left_out, looking};
 use crate::common::{cuboid, from_above, judged, request, session};
 use glam::DVec3;
 use stencilscope::capture::Capture;
-use stencilscope::plan::FramePlan;
+use stencilscope::plan::{Decision, FramePlan};
 use stencilscope::scene::{Light, Scene};
-use stencilscope::technique::{Decision, Technique};
+use stencilscope::technique::Technique;
 use stencilscope::truth::{FACES_AWAY, LIT, SHADOW};
 
 /// A lamp that reaches `range` metres, above a box on the floor, seen from above.

@@ -4,6 +4,7 @@ use super::{labels, picture};
 use crate::common::{cuboid, from_above, request, session};
 use glam::DVec3;
 use stencilscope::capture::Capture;
+use stencilscope::plan::Decision;
 use stencilscope::scene::{Light, Scene};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::Technique;
@@ -40,8 +41,8 @@ fn with_queries(session: &mut Session, scene: &Scene, technique: Technique) -> V
     assert!(picture(&whole) == picture(&less), "{technique:?}: the picture differs");
     let count = |capture: &Capture| capture.left_out.len();
     assert!(count(&less) >= count(&whole), "{technique:?}");
-    let unseen = less.left_out.iter().filter(|left| left.because.contains("no sample"));
-    unseen.map(|left| format!("{} of {}", left.what, left.of)).collect()
+    let unseen = less.left_out.iter().filter(|left| left.decision == Some(Decision::Unseen));
+    unseen.map(|left| left.to_string()).collect()
 }
 
 #[test]

@@ -99,7 +99,7 @@ fn the_ladder_runs_from_infinity_to_the_surface() {
     let curve = frame.capture().depth;
     let history = frame.at(INSIDE).history().clone();
     let ladder = history.ladder(0, &curve).expect("volumes");
-    assert!(ladder.is_from_infinity && ladder.start == 0 && ladder.count == 6);
+    assert!(ladder.is_from_infinity() && ladder.start == 0 && ladder.count == 6);
     assert!((ladder.surface.expect("a floor") - 10.0).abs() < 1e-5);
     let near: Vec<f64> = ladder.rungs[..6].iter().map(|rung| (rung.distance * 1000.0).round() / 1000.0).collect();
     assert_eq!(near, [8.0, 8.1, 8.2, 8.8, 8.9, 9.0]);
@@ -108,7 +108,7 @@ fn the_ladder_runs_from_infinity_to_the_surface() {
     let running: Vec<i32> = ladder.rungs[6..].iter().map(|rung| rung.running).collect();
     assert_eq!(running, [6, 5, 4, 3, 2, 1], "it runs inwards");
     let by_z_pass = rendered(Technique::ZPass, &[]).at(INSIDE).history().ladder(0, &curve).expect("volumes");
-    assert!(!by_z_pass.is_from_infinity && by_z_pass.rungs.iter().map(|rung| rung.running).eq(1..=6));
+    assert!(!by_z_pass.is_from_infinity() && by_z_pass.rungs.iter().map(|rung| rung.running).eq(1..=6));
 }
 
 /// The near plane inside the boxes: what it begins with stands in for the faces that it clips.

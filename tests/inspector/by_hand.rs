@@ -11,7 +11,7 @@ use stencilscope::capture::{
 };
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::math::projection::perspective;
-use stencilscope::plan::{LeftOut, Part};
+use stencilscope::plan::{DecidedBy, Decision, LeftOut, Part, Side};
 use stencilscope::scene::Camera;
 
 fn camera() -> Camera {
@@ -94,12 +94,13 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
         ],
         lights: vec![CapturedLight {
             position: DVec4::new(0.0, 4.0, 0.0, 1.0),
+            decided_by: DecidedBy::StencilCount { side: Side::Behind },
             shadow: Some(labels),
             count: None,
             map: None,
             truth: None,
         }],
-        left_out: vec![LeftOut::new("stencil clear", "light 1", "nothing has written the stencil before")],
+        left_out: vec![LeftOut::new(Decision::Clear, "light 1", "nothing has written the stencil before")],
         timing: Timing { frame_ms: Some(6.25), ..Timing::default() },
         plan_text: String::new(),
     }
@@ -171,6 +172,7 @@ pub fn with_draws(mut capture: Capture) -> Capture {
 pub fn cube_map() -> Capture {
     let mut capture = z_fail(SIZE);
     capture.technique = "shadow-map".to_owned();
+    capture.lights[0].decided_by = DecidedBy::Map;
     capture.steps.drain(1..3);
     for face in [3, 1] {
         let name = format!("map face {face}");
@@ -182,6 +184,7 @@ pub fn cube_map() -> Capture {
     };
     capture.lights[0].map = Some(CapturedMap {
         faces: (0..6).map(face).collect(),
+        layer_names: Vec::new(),
         light_from_world: DMat4::IDENTITY,
         clip_from_light: vec![perspective(90.0, 1.0, &DepthMapping::ReversedInfinite.curve(0.05, 0.0, 0.0)); 6],
     });
@@ -193,6 +196,8 @@ pub fn cube_map() -> Capture {
 pub fn layered(technique: &str, what: &str) -> Capture {
     let mut capture = z_fail(SIZE);
     technique.clone_into(&mut capture.technique);
+    let is_texture = technique == "planar-texture";
+    capture.lights[0].decided_by = if is_texture { DecidedBy::ReceiverTextures } else { DecidedBy::Silhouettes };
     capture.steps.drain(1..3);
     for step in &mut capture.steps {
         if let Snapshot::Frame(frame) = &mut step.snapshot {
@@ -213,6 +218,7 @@ pub fn layered(technique: &str, what: &str) -> Capture {
     let third = Arc::new(Image::uniform(PixelFormat::Rgba8, [16, 16], &[255; 4]));
     capture.lights[0].map = Some(CapturedMap {
         faces: vec![first, second, third],
+        layer_names: ["floor, flat piece 1", "wall, flat piece 2"].map(ToOwned::to_owned).to_vec(),
         light_from_world: DMat4::IDENTITY,
         clip_from_light: vec![DMat4::IDENTITY; 3],
     });
@@ -224,6 +230,7 @@ pub fn layered(technique: &str, what: &str) -> Capture {
 pub fn counted_in_floats() -> Capture {
     let mut capture = z_fail(SIZE);
     capture.settings.insert("counter".to_owned(), "float".to_owned());
+    capture.lights[0].decided_by = DecidedBy::FloatCount { side: Side::Behind };
     let count = image_of(PixelFormat::Count32F, SIZE, |x, y| {
         let count = match (x, y) {
             (0, 0) => -1.0,

@@ -88,7 +88,7 @@ fn what_was_left_out_stands_there_with_its_reason() {
     click(&mut harness, "Explain");
     // A tab has its sizes a frame after it is shown.
     harness.run_steps(3);
-    assert!(harness.query_all_by_label(&format!("{} of {}", left.what, left.of)).count() > 0);
+    assert!(harness.query_all_by_label(&left.to_string()).count() > 0);
     assert!(harness.query_all_by_label(&left.because).count() > 0);
 }
 

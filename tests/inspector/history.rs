@@ -347,7 +347,7 @@ fn what_the_near_plane_clipped_counts_nowhere_and_says_so() {
     assert!(rows(&harness).contains(&"pass 2: side of box, front; clipped at near; 0".to_owned()));
     harness.get_by_label("rung: side of box, triangle 1, front, at 0.0500 m: not counted, count 1");
     let clipped = history(DARK, &faces[..1]);
-    assert_eq!(clipped.counts_behind(0), None, "it does not tell which side counts");
+    assert_eq!(clipped.counted_side(0), None, "it does not tell which side counts");
     assert!(clipped.agrees());
 }
 

@@ -5,6 +5,7 @@ mod as_shown;
 mod by_hand;
 mod cards;
 mod counts;
+mod decided_by;
 mod diagnosis;
 mod draws;
 mod explain;

@@ -32,6 +32,7 @@ fn capture() -> Capture {
     }
     capture.settings.insert("bias-slope".to_owned(), "2".to_owned());
     capture.lights[0].map = Some(CapturedMap {
+        layer_names: Vec::new(),
         faces: vec![Arc::new(Image::uniform(PixelFormat::Depth32F, [4, 4], &0.5_f32.to_le_bytes()))],
         light_from_world: DMat4::from_translation(DVec3::NEG_Z),
         clip_from_light: vec![orthographic([0.4, 0.4], 0.0, 2.0, true)],

@@ -5,6 +5,7 @@ use crate::common::{from_above, judged, label_counts, session, square};
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Image, Snapshot};
+use stencilscope::plan::Decision;
 use stencilscope::scene::builtin::{Builtin, shapes};
 use stencilscope::scene::{Light, Material, Object, Scene};
 use stencilscope::technique::Technique;
@@ -67,7 +68,7 @@ fn no_stencil_is_kept_where_a_float_counts() {
     let found = capture(&mut session(), &scenes()[0], Technique::ZFail, &FLOAT);
     let has_stencil = |snapshot: &Snapshot| matches!(snapshot, Snapshot::Frame(frame) if frame.stencil.is_some());
     assert!(found.steps.iter().all(|step| !has_stencil(&step.snapshot)));
-    assert!(found.left_out.iter().any(|left| left.what == "stencil buffer"));
+    assert!(found.left_out.iter().any(|left| left.decision == Some(Decision::Stencil)));
 }
 
 /// Under `casters = all` each of 128 closed shells counts twice: 256 reads 0 in eight bits.
@@ -93,5 +94,5 @@ fn what_a_float_can_not_do_is_said() {
     let settings = [("counter", "float"), ("faces", "two-pass"), ("operations", "clamp")];
     let found = capture(&mut session, &scene, Technique::ZFail, &settings);
     assert_eq!(label_counts(&found)[1], 975);
-    assert!(found.left_out.iter().any(|left| left.what == "two passes and clamping"));
+    assert!(found.left_out.iter().any(|left| left.decision == Some(Decision::TwoPasses)));
 }

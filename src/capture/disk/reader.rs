@@ -28,7 +28,8 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
         return Err(wrong(format!("its picture is {}x{}", manifest.size[0], manifest.size[1])));
     }
     let mut reader = Reader { folder, size: manifest.size, images: BTreeMap::new() };
-    let lights = manifest.lights.iter().map(|light| reader.light(light)).collect::<Result<Vec<_>, _>>()?;
+    let lights =
+        manifest.lights.iter().map(|light| reader.light(light, &manifest.technique)).collect::<Result<Vec<_>, _>>()?;
     let steps = manifest.passes.iter().map(|pass| reader.step(pass, &lights)).collect::<Result<_, _>>()?;
     let capture = Capture {
         scene: manifest.scene,
@@ -204,7 +205,7 @@ impl Reader<'_> {
         }))
     }
 
-    fn light(&mut self, entry: &LightEntry) -> Result<CapturedLight, CaptureError> {
+    fn light(&mut self, entry: &LightEntry, technique: &str) -> Result<CapturedLight, CaptureError> {
         let position = entry.homogeneous().ok_or_else(|| self.wrong(MANIFEST, "a light has no place"))?;
         let shadow = entry.shadow.as_ref().map(|file| self.image(file, PixelFormat::U8)).transpose()?;
         let count = entry.count.as_ref().map(|file| self.image(file, PixelFormat::Count32F)).transpose()?;
@@ -216,12 +217,14 @@ impl Reader<'_> {
                 }
                 Some(CapturedMap {
                     faces: faces.into_iter().map(Arc::new).collect(),
+                    layer_names: entry.layer_names.clone(),
                     light_from_world: manifest::from_rows(&matrices.light_from_world),
                     clip_from_light: matrices.clip_from_light.iter().map(manifest::from_rows).collect(),
                 })
             }
             _ => None,
         };
-        Ok(CapturedLight { position, shadow, count, map, truth: self.truth(entry)? })
+        let decided_by = entry.decided_by(technique);
+        Ok(CapturedLight { position, decided_by, shadow, count, map, truth: self.truth(entry)? })
     }
 }

@@ -7,7 +7,7 @@ use crate::capture::{
     PixelFormat, Snapshot, Step, Timing,
 };
 use crate::math::depth::DepthMapping;
-use crate::plan::{LeftOut, Part};
+use crate::plan::{DecidedBy, Decision, LeftOut, Part, Side};
 use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
 use std::fs;
@@ -65,14 +65,18 @@ fn example() -> Capture {
     let cube = CapturedMap {
         faces: (0..6).map(|index| face(index as f32 / 7.0)).collect(),
         light_from_world: DMat4::from_translation(DVec3::new(0.1, -0.7, 1e-300)),
+        layer_names: Vec::new(),
         clip_from_light: (0..6).map(|index| DMat4::from_rotation_x(f64::from(index) / 3.0)).collect(),
     };
     let textures = CapturedMap {
         faces: (0..3).map(|index| Arc::new(Image::uniform(PixelFormat::Rgba8, [4, 4], &[index, 20, 30, 40]))).collect(),
         light_from_world: DMat4::IDENTITY,
+        layer_names: vec!["floor".to_owned(), "wall".to_owned(), "box".to_owned()],
         clip_from_light: (0..3).map(|index| DMat4::from_rotation_y(f64::from(index))).collect(),
     };
-    let unlit = |position: DVec4, map| CapturedLight { position, shadow: None, count: None, map, truth: None };
+    let decided_by = DecidedBy::StencilCount { side: Side::Behind };
+    let unlit =
+        |position: DVec4, map| CapturedLight { position, decided_by, shadow: None, count: None, map, truth: None };
     let lit = |position: DVec4, map| CapturedLight { shadow: Some(padded(PixelFormat::U8, 1)), ..unlit(position, map) };
     let truth = CapturedTruth {
         labels: padded(PixelFormat::U8, 0),
@@ -112,7 +116,7 @@ fn example() -> Capture {
                 ..unlit(DVec4::new(0.5, 0.0, 0.0, 1.0), Some(textures))
             },
         ],
-        left_out: vec![LeftOut::new("caps", "torus 2", "outside the near-clip volume")],
+        left_out: vec![LeftOut::counted(Decision::Caps, 1, "torus 2", "outside the near-clip volume")],
         timing: Timing { frame_ms: Some(9.1), captured_ms: None, write_ms: None, setup_ms: Some(0.3) },
         plan_text: "pass ambient\n".into(),
     }
@@ -332,4 +336,28 @@ fn a_cut_array_is_refused() {
         fs::write(&path, &whole).expect("written");
     }
     read(&folder).expect("whole again");
+}
+
+#[test]
+fn what_decides_a_light_is_written_and_derived_where_a_folder_does_not_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("capture");
+    write(&example(), &path, false).expect("written");
+    let mut json = manifest(&path);
+    assert_eq!(json["lights"][0]["decided_by"], serde_json::json!({"kind": "stencil-count", "side": "behind"}));
+    let left_out = serde_json::json!({
+        "decision": "caps", "what": "caps", "of": "torus 2", "count": 1, "because": "outside the near-clip volume"
+    });
+    assert_eq!(json["left_out"][0], left_out);
+    json["technique"] = "auto".into();
+    for light in json["lights"].as_array_mut().expect("lights") {
+        light.as_object_mut().expect("a light").remove("decided_by");
+    }
+    json["left_out"][0]["decision"] = "unheard-of".into();
+    fs::write(path.join(MANIFEST), json.to_string()).expect("written");
+    let older = read(&path).expect("read");
+    let side = Side::AsNeeded;
+    assert_eq!(older.lights[0].decided_by, DecidedBy::StencilCount { side });
+    assert_eq!(older.lights[2].decided_by, DecidedBy::FloatCount { side });
+    assert_eq!((older.left_out[0].decision, older.left_out[0].count), (None, Some(1)));
 }

@@ -7,7 +7,7 @@ use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion};
 use crate::diagnosis::mend::Mend;
 use crate::numbers;
-use crate::plan::Part;
+use crate::plan::{Decision, LeftOut, Part};
 use crate::technique::Technique;
 use crate::truth::SeenSurface;
 
@@ -100,8 +100,8 @@ fn aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
 
 fn no_fit(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let ((caster, _), shown_by) = shown(facts, case, Cause::OutsideMap)?;
-    let what = format!("silhouette of {caster}");
-    let because = facts.plan.left_out.iter().find(|left| left.what == what).map(|left| left.because.clone());
+    let is_its = |left: &&LeftOut| left.names(Decision::Silhouette, &caster);
+    let because = facts.plan.left_out.iter().find(is_its).map(|left| left.because.clone());
     let evidence =
         format!("there is no silhouette of {caster}: {}", because.unwrap_or_else(|| "none was drawn".to_owned()));
     Suspicion::new(Cause::OutsideMap, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)

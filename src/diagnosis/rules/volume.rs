@@ -7,7 +7,7 @@ use crate::geometry::ViewVolume;
 use crate::history::Fate;
 use crate::math::AxisBox;
 use crate::numbers;
-use crate::plan::{Clip, Draw, Part};
+use crate::plan::{Clip, Decision, Draw, Part, Pass};
 use crate::technique::Technique;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeSet;
@@ -25,7 +25,7 @@ pub(crate) const RULES: &[Rule] = &[
 
 /// Counting in front of surfaces begins at the near plane with 0, whatever is there.
 fn begins_at_zero(facts: &Facts, light: usize) -> bool {
-    let has_near_count = facts.passes(light).any(|pass| pass.name == "near plane");
+    let has_near_count = facts.passes(light).any(Pass::counts_at_near_plane);
     matches!(facts.technique(), Technique::ZPass | Technique::ZPassPlus) && !has_near_count
 }
 
@@ -128,8 +128,8 @@ fn part_of<'f>(facts: &'f Facts, light: usize, caster: &'f str, part: Part) -> i
 }
 
 /// The plan says why a caster does without something.
-fn is_excused(facts: &Facts, caster: &str, what: &[&str]) -> bool {
-    facts.plan.left_out.iter().any(|left| left.of == caster && what.contains(&left.what.as_str()))
+fn is_excused(facts: &Facts, caster: &str, decision: Decision) -> bool {
+    facts.plan.left_out.iter().any(|left| left.is(decision, caster) || left.is(Decision::Caps, caster))
 }
 
 /// The first caster counted wrongly at a sample of which `lacks` says so.
@@ -146,7 +146,7 @@ fn missing_dark_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
         needs
             && part_of(facts, light, caster, Part::Side).next().is_some()
             && part_of(facts, light, caster, Part::DarkCap).next().is_none()
-            && !is_excused(facts, caster, &["dark cap", "caps"])
+            && !is_excused(facts, caster, Decision::DarkCap)
     };
     let ((caster, counted, expected), shown_by) = lacking(facts, case, lacks)?;
     let evidence = format!(
@@ -167,7 +167,7 @@ fn missing_light_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
         needs(caster)
             && part_of(facts, light, caster, Part::Side).next().is_some()
             && part_of(facts, light, caster, Part::LightCap).next().is_none()
-            && !is_excused(facts, caster, &["light cap", "caps"])
+            && !is_excused(facts, caster, Decision::LightCap)
     };
     if let Some(((caster, counted, expected), shown_by)) = lacking(facts, case, lacks) {
         let evidence = format!(

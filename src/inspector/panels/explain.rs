@@ -53,7 +53,7 @@ fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
         ui.add(Label::new(theme::note("Nothing: this scene needs all that the technique has.")).wrap());
     }
     for left in &capture.left_out {
-        ui.add(Label::new(format!("{} of {}", left.what, left.of)).wrap());
+        ui.add(Label::new(left.to_string()).wrap());
         ui.add(Label::new(theme::note(left.because.as_str())).wrap());
     }
 }

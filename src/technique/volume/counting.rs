@@ -1,9 +1,8 @@
 //! Where volume faces count, and the raster state that makes them.
 
 use super::{NeededPart, Options, Part, RasterState};
-use crate::plan::{ColorWrite, LightId, StencilFace};
+use crate::plan::{ColorWrite, LightId, Side, StencilFace};
 use crate::technique::Technique;
-use crate::technique::frame::Frame;
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
 /// How far sides that hug a drawn surface are drawn behind their place, in steps of depth. Depths of a
@@ -64,6 +63,14 @@ impl Counting {
         }
     }
 
+    /// On which side of the surface its faces count.
+    pub fn side(self) -> Side {
+        match self {
+            Counting::InFront | Counting::InFrontPlus => Side::InFront,
+            Counting::Behind => Side::Behind,
+        }
+    }
+
     /// The state that a part counts with.
     pub(super) fn raster(self, part: &NeededPart, options: &Options, step: Step) -> RasterState {
         let (add, take) = operations(options);
@@ -120,7 +127,7 @@ fn depth_bias(part: &NeededPart) -> DepthBiasState {
 
 /// What a pass is for; `None` counts each volume in its own way.
 pub fn purpose(counting: Option<Counting>, light: LightId, step: Step) -> String {
-    let light = Frame::light_name(light);
+    let light = light.name();
     let (what, [adds, takes], left) = match counting {
         Some(Counting::InFront) => (
             format!("the shadow volumes of {light} in front of each surface"),

@@ -14,13 +14,15 @@
 use super::counting::operations;
 use super::{Options, Volume};
 use crate::geometry::near_view;
-use crate::plan::{ColorWrite, Draw, DrawConstants, LightId, PlanView, Program, RasterState, StencilFace, ViewId};
+use crate::plan::{
+    ColorWrite, Decision, Draw, DrawConstants, LightId, PlanView, Program, RasterState, StencilFace, ViewId,
+};
 use crate::technique::frame::Frame;
 use wgpu::CompareFunction;
 
 /// Adds the light's view and the pass; none where nothing can count.
 pub fn pass(frame: &mut Frame, light: LightId, options: &Options, volumes: &[Volume]) {
-    let name = Frame::light_name(light);
+    let name = light.name();
     let position = frame.light_position(light);
     let points = frame.placed.iter().filter(|placed| placed.object.casts).flat_map(|placed| &placed.world);
     let [width, height] = frame.job.size.map(f64::from);
@@ -28,7 +30,7 @@ pub fn pass(frame: &mut Frame, light: LightId, options: &Options, volumes: &[Vol
     let matrix = match matrix {
         Ok(matrix) => matrix,
         Err(because) => {
-            frame.leave_out("count at the near plane", &name, because);
+            frame.leave_out(Decision::NearPlane, &name, because);
             return;
         }
     };
@@ -36,7 +38,7 @@ pub fn pass(frame: &mut Frame, light: LightId, options: &Options, volumes: &[Vol
     let draws: Vec<_> =
         volumes.iter().flat_map(|volume| volume.casting().map(|part| volume.draw(&part, raster.clone()))).collect();
     if draws.is_empty() {
-        frame.leave_out("count at the near plane", &name, "nothing casts");
+        frame.leave_out(Decision::NearPlane, &name, "nothing casts");
         return;
     }
     let origin = frame.eye();

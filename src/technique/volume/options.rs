@@ -2,8 +2,9 @@
 
 use super::{Casters, Extrusion, PlanError, SilhouetteBy};
 use crate::geometry::MOST_TO_SEARCH;
+use crate::plan::Decision;
 use crate::scene::Scene;
-use crate::technique::{Choice, Decision};
+use crate::technique::Choice;
 
 /// A volume technique's settings.
 pub struct Options {

@@ -178,7 +178,7 @@ pub fn left_out(ui: &mut Ui, left_out: &[LeftOut]) {
     // enough to read.
     let mut reasons: Vec<(&str, Vec<(String, u32)>)> = Vec::new();
     for entry in left_out {
-        let title = format!("{} of {}", entry.what, entry.of);
+        let title = entry.to_string();
         let place = reasons.iter().position(|(because, _)| *because == entry.because).unwrap_or(reasons.len());
         if place == reasons.len() {
             reasons.push((&entry.because, Vec::new()));

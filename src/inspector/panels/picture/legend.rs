@@ -77,7 +77,7 @@ fn card(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
 
 fn stencil(ui: &mut Ui, model: &mut Model, shown: &Shown) {
     let histogram = model.textures.histogram(&shown.images[0]);
-    let are_counts = model.frame.capture.as_ref().is_some_and(|capture| counts::are_made_by(&capture.technique));
+    let are_counts = model.frame.capture.as_ref().is_some_and(|capture| capture.counts_volumes());
     theme::heading(ui, if are_counts { "Stencil count" } else { "Stencil value" });
     // 0, 1, 2 … and then −1, −2 …: the order in which people think of them.
     let values = (0..=127).chain((128..=255).rev()).map(|value: u8| (value, histogram[usize::from(value)]));

@@ -7,8 +7,7 @@ use crate::history::{Count, Fate, Ladder, PixelHistory, Rung};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::numbers;
-use crate::plan::Part;
-use crate::reading::counts;
+use crate::plan::{Part, Side};
 use crate::reading::format;
 use crate::reading::history_row::{self, named, side};
 use crate::reading::ladder_layout::{Mark, Placed, Stretch, place, stretches};
@@ -31,7 +30,7 @@ const OPENED_AT_ONCE: usize = 100;
 /// Does this frame count volumes, so that there is a ladder?
 #[must_use]
 pub fn is_shown(told: &Told, capture: &Capture) -> bool {
-    told.history.is_some() && counts::are_made_by(&capture.technique)
+    told.history.is_some() && capture.counts_volumes()
 }
 
 /// Draws the ladder of `light` under the history, if it can be in `room` points; nothing where no volumes are counted.
@@ -45,7 +44,7 @@ pub fn ui(
 ) {
     let top = ui.cursor().top();
     let Some(history) = &told.history else { return };
-    if !is_shown(told, capture) {
+    if !is_shown(told, capture) || !capture.decided_by(light).counts_volumes() {
         return;
     }
     ui.horizontal(|ui| {
@@ -72,11 +71,12 @@ pub fn ui(
 
 /// Which way it counts, and from what.
 fn direction(ladder: &Ladder) -> String {
-    let way = match (ladder.is_from_infinity, ladder.surface) {
-        (true, Some(_)) => "Counted from infinity towards the surface",
-        (true, None) => "Counted from infinity, and no surface ends it",
-        (false, Some(_)) => "Counted from the eye towards the surface",
-        (false, None) => "Counted from the eye, and no surface ends it",
+    let way = match (ladder.side, ladder.surface) {
+        (Side::Behind, Some(_)) => "Counted from infinity towards the surface",
+        (Side::Behind, None) => "Counted from infinity, and no surface ends it",
+        (Side::InFront, Some(_)) => "Counted from the eye towards the surface",
+        (Side::InFront, None) => "Counted from the eye, and no surface ends it",
+        (Side::AsNeeded, _) => "Counted along the whole ray, each volume in front of the surface or behind it",
     };
     let start = match ladder.start {
         0 => String::new(),
@@ -329,7 +329,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
             painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.5, theme::of(ui).dim), 4.0, 3.0));
             words("near plane", theme::of(ui).dim);
             number(columns.distance, short_metres(capture.camera.near), theme::of(ui).dim);
-            if ladder.start != 0 && !ladder.is_from_infinity {
+            if ladder.start != 0 && !ladder.is_from_infinity() {
                 number(columns.count, signed(ladder.start), theme::of(ui).text);
             }
         }
@@ -358,7 +358,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
                 theme::of(ui).dim,
             );
             words("infinity", theme::of(ui).dim);
-            if ladder.start != 0 && ladder.is_from_infinity {
+            if ladder.start != 0 && ladder.is_from_infinity() {
                 number(columns.count, signed(ladder.start), theme::of(ui).text);
             }
         }
@@ -385,7 +385,7 @@ fn paint_count(ui: &Ui, columns: Columns, top: f32, ladder: &Ladder, stretches: 
         painter.vline(x(0), top + low..=top + high, Stroke::new(1.0, theme::of(ui).line));
     }
     let along = stretches.iter().flat_map(|one| {
-        let ends = if ladder.is_from_infinity { [one.bottom, one.top] } else { [one.top, one.bottom] };
+        let ends = if ladder.is_from_infinity() { [one.bottom, one.top] } else { [one.top, one.bottom] };
         ends.map(|y| pos2(x(one.count), top + y))
     });
     let along: Vec<_> = along.collect();

@@ -1,0 +1,86 @@
+//! How a frame decides where a light's shadow is: what its light pass asks.
+//!
+//! It is said for each light, not for the technique: a light that reaches nothing in view is decided by
+//! nothing, and `auto` counts in the stencil or, where eight bits could be too few, in floats.
+
+use serde::{Deserialize, Serialize};
+
+/// What decides whether a light's shadow is at a pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum DecidedBy {
+    /// How many shadow volumes hold the surface, as eight bits of stencil: 0 is lit.
+    StencilCount {
+        /// On which side of the surface faces count.
+        side: Side,
+    },
+    /// How many shadow volumes hold the surface, as a signed float: 0 is lit.
+    FloatCount {
+        /// On which side of the surface faces count.
+        side: Side,
+    },
+    /// The depth that the light sees in its map.
+    Map,
+    /// What arrives on a flat receiver, drawn into a texture of its own.
+    ReceiverTextures,
+    /// What the casters let through, thrown over the scene.
+    Silhouettes,
+    /// Casters flattened onto flat receivers.
+    Flattened,
+    /// Labels that rays made on the CPU.
+    Labels,
+    /// Nobody asks: the light reaches all that faces it.
+    Nothing,
+}
+
+/// On which side of the visible surface the faces of shadow volumes count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// Between the eye and the surface: z-pass.
+    InFront,
+    /// Between the surface and infinity: z-fail.
+    Behind,
+    /// Those of some volumes in front of it, those of others behind it.
+    AsNeeded,
+}
+
+impl DecidedBy {
+    /// Are shadow volumes counted, in whatever way?
+    #[must_use]
+    pub fn counts_volumes(self) -> bool {
+        self.counted_side().is_some()
+    }
+
+    /// Are they counted in a float for each pixel, and not in eight bits?
+    #[must_use]
+    pub fn counts_in_floats(self) -> bool {
+        matches!(self, DecidedBy::FloatCount { .. })
+    }
+
+    /// The side on which shadow volumes count; `None` where none are counted.
+    #[must_use]
+    pub fn counted_side(self) -> Option<Side> {
+        match self {
+            DecidedBy::StencilCount { side } | DecidedBy::FloatCount { side } => Some(side),
+            DecidedBy::Map
+            | DecidedBy::ReceiverTextures
+            | DecidedBy::Silhouettes
+            | DecidedBy::Flattened
+            | DecidedBy::Labels
+            | DecidedBy::Nothing => None,
+        }
+    }
+}
+
+impl Side {
+    /// `behind`, as in "faces behind the surface".
+    #[must_use]
+    pub fn preposition(self) -> &'static str {
+        match self {
+            Side::InFront => "in front of",
+            Side::Behind => "behind",
+            Side::AsNeeded => "on either side of",
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! What decides a light's shadow, in the panels: where volumes are counted there are a ladder, a sum and a legend of
+//! counts, whatever the technique is called; elsewhere the sentence says what decided instead.
+
+use super::{Seen, click_button, harness_of};
+use crate::common;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use stencilscope::capture::Capture;
+use stencilscope::inspector::{Inspector, RunRequest};
+use stencilscope::plan::{DecidedBy, Side};
+use stencilscope::scene::{OpenSpec, Scene, open};
+use stencilscope::session::{CaptureRequest, Session};
+use stencilscope::technique::{Choice, Technique};
+use stencilscope::truth::SHADOW;
+
+const SIZE: [u32; 2] = [64, 36];
+
+/// The panels over a frame, with the history of a pixel that is in shadow, if there is one: in as many volumes as any.
+fn panels(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> (Harness<'static, Seen>, Capture) {
+    let (capture, plan) = session.capture_with_plan(scene, request).expect("a frame");
+    let labels = capture.lights[0].shadow.clone().expect("labels");
+    let pixels = || (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
+    let counted = capture.steps.iter().position(|step| step.name == "volumes").and_then(|step| capture.frame_at(step));
+    let counts = counted.and_then(|frame| frame.stencil.as_ref());
+    let depth = |at: &[u32; 2]| counts.and_then(|counts| counts.image.byte_at(*at));
+    let dark = pixels().filter(|at| labels.byte_at(*at) == Some(SHADOW)).max_by_key(depth).unwrap_or([32, 30]);
+    let history = session.history(&plan, &capture, dark).expect("a history");
+    let mut inspector = Inspector::new(Vec::new());
+    let run = RunRequest {
+        choice: request.choice.clone(),
+        size: SIZE,
+        camera: scene.camera,
+        lights: scene.lights.clone(),
+        time: 0.0,
+        off: BTreeSet::new(),
+    };
+    inspector.set_scene(scene, run);
+    inspector.set_capture(Arc::new(capture.clone()));
+    inspector.pick(dark);
+    let mut harness = harness_of(inspector, [1280.0, 2000.0]);
+    harness.state_mut().inspector.set_history(dark, Ok(Arc::new(history)));
+    harness.run_steps(3);
+    (harness, capture)
+}
+
+fn says(harness: &Harness<Seen>, text: &str) -> bool {
+    harness.query_all_by_label_contains(text).next().is_some()
+}
+
+/// The legend of the stencil picture, if there is one.
+fn stencil_legend(harness: &mut Harness<Seen>, capture: &Capture) -> Option<&'static str> {
+    capture.frame_at(capture.steps.len() - 1)?.stencil.as_ref()?;
+    click_button(harness, "Stencil");
+    ["Stencil count", "Stencil value"].into_iter().find(|title| says(harness, title))
+}
+
+#[test]
+fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
+    let mut session = common::session();
+    let scene = open(&OpenSpec::new("tori")).expect("a built-in scene");
+    for technique in Technique::ALL {
+        let request = CaptureRequest::new(Choice::new(technique), SIZE);
+        let (mut harness, capture) = panels(&mut session, &scene, &request);
+        let side = capture.lights[0].decided_by.counted_side();
+        let name = technique.name();
+        assert_eq!(says(&harness, "Ladder"), side.is_some(), "{name}: a ladder");
+        assert_eq!(says(&harness, "its stencil count is "), side.is_some(), "{name}: a sum");
+        let legend = stencil_legend(&mut harness, &capture);
+        let (expected_side, expected_legend, reason) = match technique {
+            Technique::ZPass | Technique::ZPassPlus => (Some(Side::InFront), Some("Stencil count"), "volume face"),
+            Technique::ZFail => (Some(Side::Behind), Some("Stencil count"), "volume face"),
+            // No caster of this scene holds the eye in its shadow.
+            Technique::Auto => (Some(Side::InFront), Some("Stencil count"), "volume face"),
+            Technique::Planar => (None, Some("Stencil value"), "flattened"),
+            Technique::PlanarTexture => (None, None, "The texture of this flat receiver"),
+            Technique::ShadowMap => (None, None, "The light's map holds something nearer"),
+            Technique::Projective => (None, None, "The silhouette of another object falls here"),
+            Technique::RayTraced => (None, None, "The technique's mask says that something lies between"),
+            Technique::None => (None, None, "No shadow of this light is made in this frame"),
+        };
+        assert_eq!((side, legend), (expected_side, expected_legend), "{name}");
+        assert!(says(&harness, reason), "{name}: {reason}");
+    }
+}
+
+#[test]
+fn a_pixel_whose_volumes_count_on_both_sides_has_one_ladder_of_them_all() {
+    let mut session = common::session();
+    // The roof holds the eye in its shadow, and a part of the slab.
+    let slab = common::cuboid("slab", [0.5, 3.0, -0.5], [2.0, 3.1, 0.5]);
+    let roof = common::cuboid("roof", [-6.0, 12.0, -1.0], [-2.0, 12.5, 1.0]);
+    let mut scene = common::from_above(vec![slab, roof]);
+    scene.lights[0].position = glam::DVec4::new(-12.0, 20.0, 0.2, 1.0);
+    let request = CaptureRequest::new(Choice::new(Technique::Auto), SIZE);
+    let (harness, capture) = panels(&mut session, &scene, &request);
+    assert_eq!(capture.lights[0].decided_by, DecidedBy::StencilCount { side: Side::AsNeeded });
+    for text in ["on either side of the surface", "Counted along the whole ray", "its stencil count is 2."] {
+        assert!(says(&harness, text), "{text}");
+    }
+}
+
+#[test]
+fn a_light_that_nothing_is_drawn_for_is_decided_by_nothing() {
+    let mut session = common::session();
+    let mut scene = common::from_above(Vec::new());
+    scene.lights[0].position.y = -4.0;
+    let request = CaptureRequest::new(Choice::new(Technique::Auto), SIZE);
+    let (harness, capture) = panels(&mut session, &scene, &request);
+    assert_eq!(capture.lights[0].decided_by, DecidedBy::Nothing);
+    assert!(!says(&harness, "Ladder"));
+}
