@@ -3,7 +3,7 @@
 
 use super::Model;
 use crate::ask::{DrawsOf, Kind, TestsOf, TimingOf, TruthOf};
-use crate::capture::Capture;
+use crate::capture::{Capture, FrameTruth};
 use crate::plan::FramePlan;
 use crate::reading::shown::has_truth;
 use std::sync::Arc;
@@ -36,8 +36,8 @@ impl Model {
         let before = self.frame.capture.take();
         self.select_in(before.as_deref(), &capture);
         self.answers.new_frame();
+        self.keep_truth(before.as_deref(), &capture);
         self.view.follow(&capture, self.selection.step);
-        self.view.older_truth = self.older_truth(&capture);
         self.view.tests = None;
         self.frame.number += 1;
         self.frame.set(capture);
@@ -53,10 +53,17 @@ impl Model {
         self.textures.forget_unused();
     }
 
-    /// What was shown of the truth of the frame before, until that of this one is known.
-    fn older_truth(&self, now: &Capture) -> Option<Arc<crate::capture::FrameTruth>> {
-        let (_, truth) = self.answers.last::<TruthOf>().filter(|_| self.view.kind.needs_truth() && !has_truth(now))?;
-        (truth.size == now.size).then(|| Arc::clone(truth))
+    /// Where truth is looked at, that of the frame before is shown until that of this one is known.
+    fn keep_truth(&mut self, before: Option<&Capture>, now: &Capture) {
+        let is_alike = |before: &&Capture| before.scene == now.scene && before.size == now.size;
+        match before.filter(is_alike).filter(|_| self.view.kind.needs_truth()) {
+            None => self.view.older_truth = None,
+            Some(before) if has_truth(before) => {
+                let lights = before.lights.iter().map(|light| light.truth.clone()).collect();
+                self.view.older_truth = Some(Arc::new(FrameTruth { size: now.size, lights, counts: Vec::new() }));
+            }
+            Some(_) => {}
+        }
     }
 
     /// Takes an answer to a question of this kind into the frame, where it belongs there.

@@ -2,7 +2,7 @@
 //! without one asks for those of its pass; until they come the picture stays as it was.
 
 use super::Model;
-use crate::ask::{DrawsOf, Reply};
+use crate::ask::{DrawsOf, Kind, Reply};
 use crate::capture::{Capture, Step, StepDraws};
 use crate::history::Event;
 use crate::reading::moment::Moment;
@@ -125,6 +125,7 @@ impl Model {
         self.selection.step = step.min(capture.steps.len().saturating_sub(1));
         self.selection.draw = None;
         self.selection.wants_scroll = true;
+        self.answers.try_again(Kind::DrawsOf);
         self.view.follow(&capture, self.selection.step);
     }
 

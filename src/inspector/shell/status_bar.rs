@@ -1,5 +1,6 @@
 //! The bar at the bottom: the picture's facts, what the pointer is over, what a frame costs.
 
+use crate::ask::TimingOf;
 use crate::capture::Capture;
 use crate::inspector::look::coloring::{self, Coloring};
 use crate::inspector::look::theme;
@@ -75,6 +76,9 @@ fn costs(ui: &mut Ui, model: &Model) {
         let adapter = &capture.adapter;
         let short_name = adapter.name.split(" (").next().unwrap_or_default();
         ui.label(theme::note(format!("{short_name}, {}", adapter.driver))).on_hover_text(&adapter.name);
+        if capture.timing.frame_ms.is_none() {
+            model.answers.want(TimingOf {});
+        }
         if let Some(frame) = capture.timing.frame_ms {
             ui.label(theme::note(format!("frame {}", format::milliseconds(Some(frame)))))
                 .on_hover_text("Median time of a frame without snapshots");

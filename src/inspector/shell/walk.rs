@@ -261,6 +261,7 @@ fn direction(camera: &Camera, goes: DVec3, flies: bool) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use egui::vec2;
 
     fn camera() -> Camera {
         Camera {
