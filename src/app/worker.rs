@@ -197,6 +197,9 @@ impl Work {
     /// Answers a question that is still asked: at once, or turn by turn.
     fn answer_in_turn(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
         if asked.progress.is_cancelled() {
+            if asked.ask.kind() == Kind::StressOf {
+                self.end_stress();
+            }
             return;
         }
         match asked.ask {
@@ -234,8 +237,12 @@ impl Work {
         if kind == Kind::DiagnosisOf && (frame != self.frames || !is_meant) {
             return Some(Err(SessionError::OtherFrame));
         }
-        if !is_meant || (kind.waits_for_quiet() && self.took > LONGEST_TIMED) {
+        if !is_meant {
             return None;
+        }
+        if kind.waits_for_quiet() && self.took > LONGEST_TIMED {
+            let reason = "the frame takes so long that what is asked next would wait for the clock";
+            return Some(Err(SessionError::Unanswered(reason.to_owned())));
         }
         let Some(open) = self.open.take() else { return Some(Err(SessionError::NoFrame)) };
         let last = self.last.take();

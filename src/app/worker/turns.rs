@@ -68,7 +68,7 @@ impl Work {
     }
 
     /// Hundreds of scenes were open: what was kept of them is of no use any longer.
-    fn end_stress(&mut self) {
+    pub(super) fn end_stress(&mut self) {
         self.stress = None;
         self.session.iter_mut().for_each(Session::forget);
         allocator::give_back();
