@@ -9,6 +9,7 @@ mod diagnose;
 mod diagnosis;
 mod diff;
 mod draws;
+mod help;
 mod history;
 #[cfg(feature = "inspector")]
 mod inspector;

@@ -159,7 +159,8 @@ pub struct Aspect {
 pub struct CapturedLight {
     /// Homogeneous world position: `w = 1` a point, `w = 0` the direction towards it.
     pub position: glam::DVec4,
-    /// The technique's labels, one byte a pixel, as in `techniques.md` section 2.
+    /// The technique's labels, one byte a pixel: 0 lit, 1 in shadow, 2 background, 3 turned away from the light or
+    /// beyond its range.
     pub shadow: Option<Arc<Image>>,
     /// How many shadow volumes contain the surface at each pixel, where they are counted in floats.
     pub count: Option<Arc<Image>>,
