@@ -19,6 +19,7 @@ mod memory;
 mod options;
 mod plan;
 mod ray_cast;
+mod readme;
 mod report;
 mod scenes;
 mod stencil_machine;
