@@ -67,7 +67,7 @@ struct Slot {
     asked: Option<Asked>,
     /// Parts of its answer that have come.
     parts: usize,
-    /// When the wait for it began, in the clock of [`Answers::take_asked`].
+    /// When the wait for it began, in the clock of [`Answers::tick`].
     since: f64,
     known: Option<Known>,
     /// What was given up, and why; `None`: by who asked.
@@ -211,9 +211,13 @@ impl Answers {
         self.slot_mut(kind).known = None;
     }
 
-    /// What has to be asked now, each once. `now`: seconds of any clock.
-    pub fn take_asked(&mut self, now: f64) -> Vec<Asked> {
+    /// Tells the time, in seconds of any clock: how long answers are waited for is reckoned by it.
+    pub fn tick(&mut self, now: f64) {
         self.now = now;
+    }
+
+    /// What has to be asked now, each once.
+    pub fn take_asked(&mut self) -> Vec<Asked> {
         let wanted = std::mem::take(self.wanted.get_mut());
         let started = std::mem::take(&mut self.started);
         let mut asked: Vec<Asked> = started.into_iter().filter_map(|ask| self.ask(ask)).collect();

@@ -161,7 +161,8 @@ pub struct CapturedLight {
     pub position: glam::DVec4,
     /// What decided where its shadow is.
     pub decided_by: DecidedBy,
-    /// The technique's labels, one byte a pixel, as in `techniques.md` section 2.
+    /// The technique's labels, one byte a pixel: 0 lit, 1 in shadow, 2 background, 3 turned away from the light or
+    /// beyond its range.
     pub shadow: Option<Arc<Image>>,
     /// How many shadow volumes contain the surface at each pixel, where they are counted in floats.
     pub count: Option<Arc<Image>>,

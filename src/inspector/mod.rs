@@ -87,6 +87,7 @@ impl Inspector {
         let Inspector { model, panels, dock, open_dialog, export_dialog, tours, .. } = self;
         let now = ui.input(|input| input.time);
         model.textures.tick();
+        model.answers.tick(now);
         take_dropped_files(ui.ctx(), &mut actions);
         model.undo.hold(ui.input(|input| input.pointer.any_down()) || model.walk.is_on());
         model.finish_restoring(&mut actions);
@@ -108,7 +109,7 @@ impl Inspector {
             *dock = Dock::new();
         }
         model.animate(now, &mut actions);
-        self.ask(ui.ctx(), now, &mut actions);
+        self.ask(ui.ctx(), &mut actions);
         actions
     }
 
@@ -125,14 +126,14 @@ impl Inspector {
     }
 
     /// What was wanted in this frame and is not known is asked for.
-    fn ask(&mut self, ctx: &egui::Context, now: f64, actions: &mut Vec<Action>) {
+    fn ask(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         let model = &mut self.model;
         model.want_truth();
         let _ = (model.want_draws(), model.want_tests_shown());
         if let Some(seconds) = model.want_history_until() {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds));
         }
-        actions.extend(model.answers.take_asked(now).into_iter().map(Action::Ask));
+        actions.extend(model.answers.take_asked().into_iter().map(Action::Ask));
     }
 
     /// Takes in the answer to what was asked with this ticket, or why there is none, with the mend. One to what is

@@ -1,7 +1,7 @@
 //! What a technique costs and how often it is wrong: the report's rows, and every form they take.
 //!
 //! ```text
-//! rows ──► Report ──► JSON, CSV, text table, Markdown
+//! rows ──► Report ──► JSON, CSV, text table, Markdown, page
 //!             └─────► plot::Plot (a layout in points) ──► SVG ──► PNG
 //!                                                     └─► the inspector's Report tab
 //! ```
@@ -9,6 +9,7 @@
 //! Nothing here measures, opens a file or knows a GPU: a report is data, and so is its plot.
 
 mod csv;
+mod page;
 pub mod plot;
 mod png;
 mod svg;
@@ -16,6 +17,8 @@ mod table;
 
 #[cfg(test)]
 pub(crate) mod tests;
+
+pub use page::PageOrigin;
 
 use crate::capture::AdapterInfo;
 use crate::numbers;
@@ -221,7 +224,7 @@ impl Report {
         table::text(self)
     }
 
-    /// A table for a README.
+    /// A table in Markdown.
     #[must_use]
     pub fn to_markdown(&self) -> String {
         table::markdown(self)

@@ -14,6 +14,7 @@ pub mod cases;
 mod expect;
 mod json;
 mod judge;
+mod page;
 mod plot;
 mod table;
 mod trend;

@@ -206,7 +206,7 @@ const SHADOW_MAP: &[SettingSpec] = &[
         key: "bias-slope",
         values: SettingValues::Number(-1000.0, 1000.0),
         default: "2.0",
-        meaning: "the same in units of a triangle's depth slope across one texel",
+        meaning: "depth slopes of a triangle across one texel by which the map is pushed away as well",
     },
     SettingSpec {
         key: "bias-normal",
