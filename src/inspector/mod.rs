@@ -86,7 +86,6 @@ mod report_plot;
 mod report_table;
 mod scene_view;
 mod settings;
-mod settings_off;
 mod settings_scene;
 mod shadow_map;
 mod state;

@@ -6,9 +6,6 @@ use crate::gpu::GpuError;
 use crate::scene::{Scene, TechniqueRequest};
 use crate::technique::Choice;
 
-/// The setting that says where volumes are counted.
-const COUNTER: &str = "counter";
-
 impl Session {
     /// Fills in the signed count of each light's volumes where the technique counts them in the
     /// stencil: the same frame is run again with a float target. Leaves a capture as it is whose
@@ -17,12 +14,8 @@ impl Session {
     /// # Errors
     /// A scene or setting that can't be planned, a lost GPU.
     pub fn count(&mut self, scene: &Scene, capture: &mut Capture) -> Result<(), SessionError> {
-        if capture.settings.get(COUNTER).is_none_or(|counter| counter == "float") {
-            return Ok(());
-        }
         let request = TechniqueRequest { name: capture.technique.clone(), settings: capture.settings.clone() };
-        let mut choice = Choice::parse(&request)?;
-        choice.set(COUNTER, "float")?;
+        let Some(choice) = Choice::parse(&request)?.counting_in_floats() else { return Ok(()) };
         let request = CaptureRequest::new(choice, capture.size);
         match self.capture(scene, &request) {
             Ok(counted) => {
