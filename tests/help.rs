@@ -209,7 +209,7 @@ fn a_setting_is_explained_with_its_values_and_a_technique_with_its_settings() {
         assert!(z_fail.contains(words), "`{words}` is not in\n{z_fail}");
     }
     let decisions = help("leave-out");
-    for decision in stencilscope::technique::Decision::NAMES {
+    for decision in stencilscope::plan::Decision::NAMES {
         assert_explained(section_of_decisions(&decisions), decision, "leave-out");
     }
     assert!(help("causes").contains("- `eye-in-volume`: "));

@@ -4,6 +4,7 @@ use super::options::{FrameOptions, SceneOptions};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::{Capture, disk};
+use crate::plan::DecidedBy;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, Session};
@@ -101,7 +102,7 @@ impl<'a> Job<'a> {
 /// Counts that eight bits can't tell from none; nothing where there are none.
 fn wrapped_line(capture: &Capture) -> String {
     let pixels: u64 = capture.lights.iter().filter_map(crate::capture::CapturedLight::wrapped_pixels).sum();
-    if pixels == 0 || capture.settings.get("counter").is_none_or(|counter| counter == "float") {
+    if pixels == 0 || !capture.lights.iter().any(|light| matches!(light.decided_by, DecidedBy::StencilCount { .. })) {
         return String::new();
     }
     format!(

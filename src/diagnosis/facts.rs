@@ -7,10 +7,11 @@ use super::mesh_facts::MeshFacts;
 use super::regions::Region;
 use crate::accuracy::Finding;
 use crate::capture::Capture;
+use crate::geometry::Casters;
 use crate::history::PixelHistory;
 use crate::plan::{Draw, FramePlan, Part, Pass};
 use crate::scene::{Object, Scene};
-use crate::technique::{Choice, Technique};
+use crate::technique::{Choice, MapSettings, Technique, VolumeSettings};
 use crate::truth::{Met, SeenSurface, Tracer};
 use std::collections::BTreeSet;
 
@@ -68,14 +69,19 @@ impl Suspicion {
 pub(crate) type Rule = fn(&Facts, &Case) -> Option<Suspicion>;
 
 impl<'a> Facts<'a> {
-    /// The value of a setting; empty where the technique has none of that name.
-    pub fn setting(&self, key: &str) -> &'a str {
-        self.choice.settings().get(key).map_or("", String::as_str)
+    /// What a technique that counts volumes was told; `None` of another.
+    pub fn volumes(&self) -> Option<VolumeSettings> {
+        VolumeSettings::of(self.choice)
     }
 
-    /// A setting as a number; 0 where it is none.
-    pub fn number(&self, key: &str) -> f64 {
-        self.setting(key).parse().unwrap_or(0.0)
+    /// What shadow maps were told: their defaults for another technique.
+    pub fn map(&self) -> MapSettings {
+        MapSettings::read(self.choice.settings())
+    }
+
+    /// Texels along each side of maps, textures or silhouettes; 0 where the technique has none.
+    pub fn texels(&self) -> f64 {
+        f64::from(self.choice.texels().unwrap_or(0))
     }
 
     pub fn technique(&self) -> Technique {
@@ -124,10 +130,10 @@ impl<'a> Facts<'a> {
 
     /// Does a casting triangle cast as the settings say?
     pub fn casts(&self, met: &Met) -> bool {
-        match self.setting("casters") {
-            "light-facing" => met.faces_light,
-            "light-back-facing" => !met.faces_light,
-            _ => true,
+        match self.volumes().map_or(Casters::All, |settings| settings.casters.fixed()) {
+            Casters::LightFacing => met.faces_light,
+            Casters::LightBackFacing => !met.faces_light,
+            Casters::All => true,
         }
     }
 

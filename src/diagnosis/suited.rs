@@ -20,13 +20,8 @@ impl Suited {
     #[must_use]
     pub fn candidates() -> Vec<Choice> {
         let makes_shadows = |technique: &Technique| !matches!(technique, Technique::None | Technique::RayTraced);
-        let mut choices: Vec<Choice> = Technique::ALL.into_iter().filter(makes_shadows).map(Choice::new).collect();
-        let mut in_float = Choice::new(Technique::ZFail);
-        // A setting of the table above: were it gone, there would be a candidate less.
-        if in_float.set("counter", "float").is_ok() {
-            choices.push(in_float);
-        }
-        choices
+        let plain = Technique::ALL.into_iter().filter(makes_shadows).map(Choice::new);
+        plain.chain(Choice::new(Technique::ZFail).counting_in_floats()).collect()
     }
 
     /// The technique with the settings that differ from its defaults: `z-fail counter=float`.

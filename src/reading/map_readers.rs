@@ -4,15 +4,13 @@
 use crate::capture::{Capture, CapturedMap};
 use crate::plan::FramePlan;
 use crate::reading::fragments::{Fragment, Fragments};
+use crate::technique::MapSettings;
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Points on the border between two faces belong to both, as in `arriving_by_map.wgsl`.
 const BORDER: f64 = 1.0001;
-
-/// No filter is wider, texels: a folder may tell anything.
-const WIDEST: u32 = 64;
 
 /// A texel of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -164,7 +162,7 @@ impl Lookup {
     fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<Lookup> {
         let of = capture.lights.get(light)?;
         let map: &CapturedMap = of.map.as_ref().filter(|map| !map.holds_colors())?;
-        let setting = capture.settings.get("bias-normal").and_then(|bias| bias.parse::<f64>().ok());
+        let settings = MapSettings::read(&capture.settings);
         Some(Lookup {
             left_out: plan
                 .and_then(|plan| plan.lights.get(light)?.map.as_ref())
@@ -172,8 +170,8 @@ impl Lookup {
             matrices: map.clip_from_light.iter().map(|clip| *clip * map.light_from_world).collect(),
             size: map.faces.first()?.size(),
             light: of.position,
-            filter: filter_width(capture),
-            bias_normal: setting.filter(|bias| bias.is_finite()).unwrap_or(0.0),
+            filter: settings.filter_width,
+            bias_normal: settings.bias_normal,
         })
     }
 
@@ -235,10 +233,4 @@ impl Lookup {
         let first = (self.texel(clip) - 0.5 * f64::from(self.filter - 1)).floor();
         [face as i16, first.x as i16, first.y as i16]
     }
-}
-
-/// Texels that are averaged along each side: `pcf:3` is 3.
-fn filter_width(capture: &Capture) -> u32 {
-    let filter = capture.settings.get("filter").and_then(|filter| filter.strip_prefix("pcf:"));
-    filter.and_then(|width| width.parse().ok()).unwrap_or(1).clamp(1, WIDEST)
 }

@@ -18,6 +18,7 @@ mod object;
 mod open;
 mod placement;
 mod read_text;
+pub mod shapes;
 mod suggestion;
 mod wall_tree;
 

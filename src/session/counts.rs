@@ -7,9 +7,6 @@ use crate::scene::{Scene, TechniqueRequest};
 use crate::technique::Choice;
 use std::sync::Arc;
 
-/// The setting that says where volumes are counted.
-const COUNTER: &str = "counter";
-
 impl Session {
     /// The signed count of each light's volumes where the technique counts them in the stencil: the same frame is run
     /// again with a float target. None of a technique that counts nothing, or on an adapter that can't blend floats.
@@ -17,12 +14,8 @@ impl Session {
     /// # Errors
     /// A scene or setting that can't be planned, a lost GPU.
     pub fn counts(&mut self, scene: &Scene, capture: &Capture) -> Result<Vec<Option<Arc<Image>>>, SessionError> {
-        if capture.settings.get(COUNTER).is_none_or(|counter| counter == "float") {
-            return Ok(Vec::new());
-        }
         let request = TechniqueRequest { name: capture.technique.clone(), settings: capture.settings.clone() };
-        let mut choice = Choice::parse(&request)?;
-        choice.set(COUNTER, "float")?;
+        let Some(choice) = Choice::parse(&request)?.counting_in_floats() else { return Ok(Vec::new()) };
         let request = CaptureRequest::new(choice, capture.size);
         match self.capture(scene, &request) {
             Ok(counted) => Ok(counted.lights.into_iter().map(|light| light.count).collect()),

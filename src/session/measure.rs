@@ -141,7 +141,7 @@ impl Session {
         if self.room.is_some_and(|most| plan.bytes() > most) {
             return Ok(None);
         }
-        let plan = self.without_unseen(plan)?;
+        let plan = self.without_unseen(plan, choice)?;
         let (triangles, bytes) = (plan.triangles(), plan.bytes());
         let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());

@@ -213,12 +213,12 @@ impl Session {
     pub fn plan(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<FramePlan, SessionError> {
         let job = Job { scene, size: request.size, choice: &request.choice, cache: &mut self.geometry };
         let plan = technique::plan(job)?;
-        self.without_unseen(plan)
+        self.without_unseen(plan, &request.choice)
     }
 
-    /// The plan without the draws that show nothing, where its settings ask for that: it runs once.
-    fn without_unseen(&mut self, plan: FramePlan) -> Result<FramePlan, SessionError> {
-        if plan.settings.get("occlusion").is_none_or(|occlusion| occlusion != "queries") {
+    /// The plan without the draws that show nothing, where the settings ask for that: it runs once.
+    fn without_unseen(&mut self, plan: FramePlan, choice: &Choice) -> Result<FramePlan, SessionError> {
+        if !choice.common().asks_what_shows {
             return Ok(plan);
         }
         let prepared = self.executor.prepare(&plan)?;

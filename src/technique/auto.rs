@@ -58,7 +58,7 @@ impl Questions {
         let [width, height] = frame.job.size.map(f64::from);
         let view = ViewVolume::new(&frame.job.scene.camera, width / height);
         let near_clip = view.near_clip(relative(position, frame.eye()));
-        let asks = Decision::Umbra.is_allowed(frame.job.choice);
+        let asks = frame.common.allows(Decision::Umbra);
         let (placed, cache) = (&frame.placed, &mut frame.job.cache);
         let mut occluder = |index: usize| {
             let placed = &placed[index];
@@ -76,7 +76,8 @@ impl Questions {
     /// Why it needs none.
     pub fn form(&self, frame: &mut Frame, index: usize) -> Result<Form, LeftOut> {
         let object = frame.placed[index].object;
-        let allowed = |decision: Decision| decision.is_allowed(frame.job.choice);
+        let common = frame.common;
+        let allowed = |decision: Decision| common.allows(decision);
         let no_volume = |why: Decision, because: String| Err(LeftOut::new(why, &object.name, because));
         if allowed(Decision::Caster) && !casters::can_darken(frame, index, self.light, Darkened::All) {
             let light = self.light.name();
@@ -146,7 +147,7 @@ impl Questions {
 
     /// Of each triangle of a caster: another part of the caster holds its part in the umbra. Empty: none.
     pub fn held_by_parts(&self, frame: &mut Frame, index: usize) -> Vec<bool> {
-        if !Decision::Umbra.is_allowed(frame.job.choice) {
+        if !frame.common.allows(Decision::Umbra) {
             return Vec::new();
         }
         let placed = &frame.placed[index];

@@ -3,7 +3,7 @@
 //! A technique starts a [`Frame`], adds its own passes between `ambient_pass` and, for each
 //! light, `mask_pass` and `light_pass`, and finishes it into a plan.
 
-use super::{Choice, PlanError, surfaces};
+use super::{Choice, CommonSettings, PlanError, surfaces};
 use crate::geometry::{self, GeometryCache, RangeInView, relative};
 use crate::math::depth::{DepthCurve, DepthMapping};
 use crate::math::projection;
@@ -70,6 +70,8 @@ pub struct Piece {
 /// A plan in the making.
 pub struct Frame<'a> {
     pub job: Job<'a>,
+    /// The job's settings that every technique has.
+    pub common: CommonSettings,
     pub placed: Vec<Placed<'a>>,
     /// All visible surfaces, in the order in which they are drawn.
     pub pieces: Vec<Piece>,
@@ -158,13 +160,14 @@ impl<'a> Frame<'a> {
         if scene.lights.len() > MOST_LIGHTS {
             return Err(PlanError::TooManyLights { count: scene.lights.len() });
         }
+        let common = job.choice.common();
         let technique = job.choice.technique().name().to_owned();
         let plan = FramePlan {
             technique,
             settings: job.choice.settings().clone(),
             size: job.size,
             depth: DepthMapping::ReversedInfinite.curve(scene.camera.near, 0.0, 0.0),
-            wraps_diffuse: job.choice.word("diffuse") == "wrapped",
+            wraps_diffuse: common.wraps_diffuse,
             attachments: Vec::new(),
             views: Vec::new(),
             lights: Vec::new(),
@@ -182,9 +185,10 @@ impl<'a> Frame<'a> {
             clips_volumes: false,
             color: no_target,
             depth_stencil: no_target,
-            has_stencil: stencil == StencilUse::Always || !Decision::Stencil.is_allowed(job.choice),
+            has_stencil: stencil == StencilUse::Always || !common.allows(Decision::Stencil),
             stencil_of: None,
             scissors: Vec::new(),
+            common,
             job,
         };
         frame.place_objects()?;
@@ -250,7 +254,7 @@ impl<'a> Frame<'a> {
     /// clears what the light before has left.
     pub fn stencil_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         let is_untouched = self.stencil_of.is_none();
-        let is_left_out = is_untouched && Decision::Clear.is_allowed(self.job.choice);
+        let is_left_out = is_untouched && self.common.allows(Decision::Clear);
         if is_left_out {
             self.leave_out(Decision::Clear, light.name(), "nothing has written the stencil before");
         }
@@ -309,7 +313,7 @@ impl<'a> Frame<'a> {
     /// Depth of all surfaces, and their colour under ambient light.
     pub fn ambient_pass(&mut self) {
         // Depth that is clamped lets through what lies between eye and near plane.
-        let from_near = self.depth_mapping().clamps();
+        let from_near = self.common.depth.clamps();
         let drawn = Drawn { program: Program::Ambient { from_near }, raster: RasterState::surface(), label: LIT };
         let draws = self.surface_draws(|_| Some(&drawn));
         let purpose = "Draws every surface in ambient light only, and leaves in the depth buffer how far the nearest \
@@ -358,7 +362,7 @@ impl<'a> Frame<'a> {
         for id in self.light_ids() {
             let light = &scene.lights[id.0];
             let Some(range) = light.range.filter(|_| !light.is_directional()) else { continue };
-            if !Decision::Scissor.is_allowed(self.job.choice) {
+            if !self.common.allows(Decision::Scissor) {
                 continue;
             }
             match geometry::range_in_view(&scene.camera, self.job.size, light.position.truncate(), range) {
@@ -481,12 +485,7 @@ impl<'a> Frame<'a> {
         let drawn = self.placed.iter().filter(|placed| placed.surface.is_some()).flat_map(|placed| &placed.world);
         let farthest = drawn.map(|position| (*position - camera.eye).dot(ahead)).fold(camera.near * 2.0, f64::max);
         let far = camera.far.unwrap_or(farthest * FAR_MARGIN);
-        self.depth_mapping().curve(camera.near, far, self.job.choice.number("epsilon"))
-    }
-
-    /// The mapping of the settings.
-    pub fn depth_mapping(&self) -> DepthMapping {
-        DepthMapping::from_name(self.job.choice.word("depth")).unwrap_or_default()
+        self.common.depth.curve(camera.near, far, self.common.epsilon)
     }
 
     /// The plan. Techniques are written for reversed depth: this turns it round where another is set.

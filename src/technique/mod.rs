@@ -7,7 +7,7 @@
 mod auto;
 mod casters;
 mod frame;
-mod left_out;
+mod maps;
 mod none;
 mod planar;
 mod planar_texture;
@@ -22,8 +22,10 @@ mod surfaces;
 mod volume;
 
 pub use frame::{Job, MOST_LIGHTS};
-pub use settings::{Choice, ChoiceError, ReportRows, SettingSpec, SettingValues};
-pub use volume::casting;
+pub use planar::PlanarSettings;
+pub use settings::{Choice, ChoiceError, CommonSettings, ReportRows, SettingSpec, SettingValues, Values};
+pub use shadow_map::MapSettings;
+pub use volume::{VolumeSettings, WhoCasts, casting};
 
 use crate::plan::FramePlan;
 

@@ -10,7 +10,7 @@
 
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
-use super::settings::Choice;
+use super::settings::{SettingSpec, Values, Words, with_own, words};
 use super::{PlanError, ReportRows};
 use crate::geometry::planar::{Clip, Flattened, Flattener};
 use crate::geometry::relative;
@@ -23,6 +23,7 @@ use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
 /// What is left of the light behind a shadow that is blended over it.
 const BLENDED: f32 = 0.4;
+const NO_OFFSET: DepthBiasState = DepthBiasState { constant: 0, slope_scale: 0.0, clamp: 0.0 };
 /// Towards the eye, in steps of depth and in depth slopes a pixel: enough for a plane that is
 /// projected apart from the surface that lies in it.
 const OFFSET: DepthBiasState = DepthBiasState { constant: 64, slope_scale: 2.0, clamp: 0.0 };
@@ -30,18 +31,47 @@ const OFFSET: DepthBiasState = DepthBiasState { constant: 64, slope_scale: 2.0, 
 /// What a report compares: the defaults, and shadows that fight with their plane.
 pub(super) const REPORT_ROWS: ReportRows = &[&[], &[("z-fighting", "none")]];
 
-/// How shadows are drawn.
-#[derive(Debug, Clone, Copy)]
-struct Options {
+const STENCIL: Words<bool> = words("stencil", &["on", "off"], &[true, false], "keeps shadows on their receiver");
+const BLEND: Words<bool> =
+    words("blend", &["once", "twice"], &[true, false], "how often overlapping triangles darken a pixel");
+const CLIP: Words<Clip> = words(
+    "clip",
+    &["on", "off"],
+    &[Clip::BetweenPlaneAndLight, Clip::Off],
+    "drops what is beyond the light or below the receiver",
+);
+const Z_FIGHTING: Words<(CompareFunction, DepthBiasState)> = words(
+    "z-fighting",
+    &["depth-off", "polygon-offset", "none"],
+    &[
+        (CompareFunction::Always, NO_OFFSET),
+        (CompareFunction::GreaterEqual, OFFSET),
+        (CompareFunction::GreaterEqual, NO_OFFSET),
+    ],
+    "how a shadow wins over the surface it lies on",
+);
+const CACHE: Words<bool> =
+    words("cache", &["on", "off"], &[true, false], "keeps flattened casters until plane, caster or light change");
+
+/// In the order in which they are shown.
+pub(super) const SETTINGS: [SettingSpec; 10] =
+    with_own([STENCIL.spec, BLEND.spec, CLIP.spec, Z_FIGHTING.spec, CACHE.spec]);
+
+/// What planar shadows are told, as types.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanarSettings {
     /// Receivers are marked first.
-    marks: bool,
+    pub marks: bool,
     /// The stencil keeps pixels from being darkened twice.
-    blends_once: bool,
-    clip: Clip,
-    depth_compare: CompareFunction,
-    depth_bias: DepthBiasState,
+    pub blends_once: bool,
+    /// What is kept of a caster.
+    pub clip: Clip,
+    /// By which test a shadow wins over the surface it lies on.
+    pub depth_compare: CompareFunction,
+    /// And by how much.
+    pub depth_bias: DepthBiasState,
     /// Flattened casters are kept between plans.
-    keeps: bool,
+    pub keeps: bool,
 }
 
 /// A receiver that can show shadows, and its mark.
@@ -52,7 +82,7 @@ struct Marked {
 
 /// Plans planar shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let options = Options::of(job.choice);
+    let options = PlanarSettings::read(job.choice.settings());
     let stencil = if options.marks { StencilUse::Always } else { StencilUse::ToLightOnce };
     let mut frame = Frame::new(job, stencil)?;
     frame.ambient_pass();
@@ -69,32 +99,36 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-impl Options {
-    fn of(choice: &Choice) -> Options {
-        let (depth_compare, depth_bias) = match choice.word("z-fighting") {
-            "polygon-offset" => (CompareFunction::GreaterEqual, OFFSET),
-            "none" => (CompareFunction::GreaterEqual, DepthBiasState::default()),
-            _ => (CompareFunction::Always, DepthBiasState::default()),
-        };
-        Options {
-            marks: choice.word("stencil") != "off",
-            blends_once: choice.word("blend") != "twice",
-            clip: if choice.word("clip") == "off" { Clip::Off } else { Clip::BetweenPlaneAndLight },
+impl PlanarSettings {
+    /// As they are set.
+    #[must_use]
+    pub fn read(values: &Values) -> PlanarSettings {
+        let (depth_compare, depth_bias) = Z_FIGHTING.read(values);
+        PlanarSettings {
+            marks: STENCIL.read(values),
+            blends_once: BLEND.read(values),
+            clip: CLIP.read(values),
             depth_compare,
             depth_bias,
-            keeps: choice.word("cache") != "off",
+            keeps: CACHE.read(values),
         }
+    }
+
+    /// Why a setting does nothing as the others are.
+    pub(super) fn without_effect(&self, key: &str) -> Option<&'static str> {
+        let is_off = key == BLEND.spec.key && !self.marks;
+        is_off.then_some("No effect: without the stencil nothing keeps a pixel from being darkened twice")
     }
 
     /// Of a draw of flattened casters, before stencil and colour.
     fn raster(&self, color: ColorWrite) -> RasterState {
-        let Options { depth_compare, depth_bias, .. } = *self;
+        let PlanarSettings { depth_compare, depth_bias, .. } = *self;
         RasterState { depth_compare, depth_bias, depth_write: false, color, ..RasterState::surface() }
     }
 }
 
 /// Shadows counted in the stencil: an odd number is in shadow.
-fn counted_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options: Options) {
+fn counted_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options: PlanarSettings) {
     mark_pass(frame, marked, light);
     let purpose = "Draws every caster, flattened onto each receiver's plane. Where the stencil still has the \
                    receiver's mark it goes up by one: overlapping triangles can't darken a pixel twice.";
@@ -116,7 +150,7 @@ fn counted_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options
 }
 
 /// Shadows blended over the lit picture, on their receivers only where those are marked.
-fn blended_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options: Options) {
+fn blended_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options: PlanarSettings) {
     let purpose = "Adds the light everywhere: shadows are blended over it afterwards.";
     frame.light_pass(light, purpose, &frame.light_everywhere());
     if options.marks {
@@ -198,7 +232,7 @@ fn shadow_draws(
     frame: &mut Frame,
     marked: &[Marked],
     light: LightId,
-    options: Options,
+    options: PlanarSettings,
     look: &dyn Fn(u8) -> (Program, RasterState),
 ) -> Vec<Draw> {
     let mut draws = Vec::new();
@@ -222,7 +256,13 @@ fn shadow_draws(
 }
 
 /// A caster flattened onto one receiver; `None` where no part of it is between plane and light.
-fn shadow_draw(frame: &mut Frame, one: &Marked, caster: usize, light: LightId, options: Options) -> Option<Draw> {
+fn shadow_draw(
+    frame: &mut Frame,
+    one: &Marked,
+    caster: usize,
+    light: LightId,
+    options: PlanarSettings,
+) -> Option<Draw> {
     let light_position = frame.light_position(light);
     let (placed, receiver) = (&frame.placed[caster], &one.receiver.receiver);
     let mesh = &placed.object.mesh;

@@ -7,7 +7,9 @@
 //! shadow, and edges are as coarse as the texture.
 
 use super::frame::{Drawn, Frame, Job, Piece, StencilUse};
+use super::maps::{self, REDRAW};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
+use super::settings::{Number, SettingSpec, with_own};
 use super::silhouettes::{self, LayerPass};
 use super::surfaces;
 use super::{PlanError, ReportRows};
@@ -16,6 +18,11 @@ use crate::math::Plane;
 use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, Visibility};
 use glam::{DMat4, DVec4};
 use std::collections::HashSet;
+
+const SIZE: Number = maps::size("256", 4096, "texels along each side of a receiver's texture");
+
+/// In the order in which they are shown.
+pub(super) const SETTINGS: [SettingSpec; 7] = with_own([SIZE.spec, REDRAW.spec]);
 
 /// Sizes of textures.
 pub(super) const REPORT_ROWS: ReportRows =
@@ -105,7 +112,7 @@ fn add_textures(frame: &mut Frame, receivers: &[FlatReceiver], light: LightId) {
     }
     let purpose = "Draws the casters between this receiver and the light through the box that the light's pyramid \
                    over the receiver becomes: their picture is the shadow on it.";
-    let size = frame.job.choice.number("size") as u32;
+    let size = SIZE.read(frame.job.choice.settings()) as u32;
     let shapes = shapes.into_iter().map(|shape| shape.unwrap_or(DMat4::IDENTITY)).collect();
     let names = receivers.iter().map(|receiver| receiver.name.clone()).collect();
     silhouettes::add_map(frame, light, size, (names, shapes), passes, purpose);

@@ -7,18 +7,33 @@
 
 use super::casters::{self, Darkened};
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::maps::{self, REDRAW};
+use super::settings::{Number, SettingSpec, Words, with_own, words};
 use super::silhouettes::{self, LayerPass};
 use super::{PlanError, ReportRows};
 use crate::geometry::light_frame;
 use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, PlanMap, Visibility};
 use glam::DMat4;
 
+const SIZE: Number = maps::size("512", 4096, "texels along each side of a silhouette's picture");
+const PASSES: Words<bool> = words(
+    "passes",
+    &["single", "multi"],
+    &[true, false],
+    "silhouettes are read while lighting, or darken the lit picture one by one",
+);
+const REVERSE: Words<bool> =
+    words("reverse", &["off", "on"], &[false, true], "silhouettes also fall on what is behind the light");
+
+/// In the order in which they are shown.
+pub(super) const SETTINGS: [SettingSpec; 9] = with_own([SIZE.spec, PASSES.spec, REVERSE.spec, REDRAW.spec]);
+
 /// Sizes of pictures.
 pub(super) const REPORT_ROWS: ReportRows = &[&[("size", "128")], &[("size", "512")], &[("size", "2048")]];
 
 /// Plans projective shadow textures.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let is_single = job.choice.word("passes") != "multi";
+    let is_single = PASSES.read(job.choice.settings());
     let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
     let layers = casting_objects(&mut frame);
     for piece in &mut frame.pieces {
@@ -106,11 +121,11 @@ fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize]) {
     }
     let purpose = "Draws the caster as the light sees it, in a frame that fits it: not how far it is, but how much \
                    light it lets through.";
-    let size = frame.job.choice.number("size") as u32;
+    let size = SIZE.read(frame.job.choice.settings()) as u32;
     let names = layers.iter().map(|object| frame.placed[*object].object.name.clone()).collect();
     silhouettes::add_map(frame, light, size, (names, matrices), passes, purpose);
     frame.plan.lights[light.0].decided_by = DecidedBy::Silhouettes;
-    let reverses = frame.job.choice.word("reverse") == "on";
+    let reverses = REVERSE.read(frame.job.choice.settings());
     if let Some(map) = &mut frame.plan.lights[light.0].map {
         map.projects_backwards = reverses;
     }

@@ -7,16 +7,99 @@
 
 use super::casters::{self, Darkened};
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::maps::{self, REDRAW};
+use super::settings::{Number, NumberOr, SettingSpec, Values, Words, number, number_or, whole, with_own, words};
 use super::{PlanError, ReportRows};
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
-    Attachment, AttachmentRole, Blob, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw, DrawConstants,
-    DrawMesh, FramePlan, LeftOut, LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState,
-    ViewId, Visibility,
+    Attachment, AttachmentId, AttachmentRole, Blob, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw,
+    DrawConstants, DrawMesh, FramePlan, LeftOut, LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program,
+    RasterState, ViewId, Visibility,
 };
 use glam::{DMat4, DVec3};
-use wgpu::{DepthBiasState, TextureFormat};
+use wgpu::{DepthBiasState, Face, TextureFormat};
+
+const SIZE: Number = maps::size("1024", 8192, "texels along each side of the map");
+// Rounding of positions to f32 differs by a few steps between the camera's and the light's view.
+const CONSTANT: Number = whole(
+    "bias-constant",
+    [-1_000_000, 1_000_000],
+    "16",
+    "steps of depth by which the map is pushed away from the light",
+);
+const SLOPE: Number =
+    number("bias-slope", [-1000.0, 1000.0], "2.0", "the same in units of a triangle's depth slope across one texel");
+const NORMAL: Number =
+    number("bias-normal", [-100.0, 100.0], "0", "texels by which a lookup is moved along the surface's normal");
+const RECEIVER_PLANE: Words<bool> = words(
+    "bias-receiver-plane",
+    &["off", "on"],
+    &[false, true],
+    "compares each texel with the surface's own plane there",
+);
+const CULL: Words<Option<Face>> = words(
+    "cull",
+    &["none", "back", "front"],
+    &[None, Some(Face::Back), Some(Face::Front)],
+    "which faces the map leaves out",
+);
+const FILTER: NumberOr = number_or(
+    "filter",
+    &["none"],
+    ("pcf:", [1.0, 15.0], true),
+    "how many texels along each side are compared and averaged",
+);
+
+/// In the order in which they are shown.
+pub(super) const SETTINGS: [SettingSpec; 13] = with_own([
+    SIZE.spec,
+    CONSTANT.spec,
+    SLOPE.spec,
+    NORMAL.spec,
+    RECEIVER_PLANE.spec,
+    CULL.spec,
+    FILTER.spec,
+    REDRAW.spec,
+]);
+
+/// What shadow maps are told, as types.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapSettings {
+    /// Texels along each side.
+    pub size: u32,
+    /// Steps of depth by which the map is pushed away from the light.
+    pub bias_constant: i32,
+    /// The same in units of a triangle's depth slope across one texel.
+    pub bias_slope: f64,
+    /// Texels by which a lookup is moved along the surface's normal.
+    pub bias_normal: f64,
+    /// Each texel is compared with the surface's own plane there.
+    pub bias_receiver_plane: bool,
+    /// Which faces the map leaves out.
+    pub cull: Option<Face>,
+    /// Texels that are compared and averaged along each side.
+    pub filter_width: u32,
+    /// Maps stay from frame to frame while nothing that makes them changes.
+    pub keeps: bool,
+}
+
+impl MapSettings {
+    /// As they are set: of a choice, or in a capture.
+    #[must_use]
+    pub fn read(values: &Values) -> MapSettings {
+        MapSettings {
+            size: SIZE.read(values) as u32,
+            bias_constant: CONSTANT.read(values) as i32,
+            bias_slope: SLOPE.read(values),
+            bias_normal: NORMAL.read(values),
+            bias_receiver_plane: RECEIVER_PLANE.read(values),
+            cull: CULL.read(values),
+            filter_width: FILTER.read(values).map_or(1, |width| width as u32),
+            keeps: REDRAW.read(values),
+        }
+    }
+}
 
 /// A caster in a light's map.
 struct MapCaster {
@@ -24,6 +107,12 @@ struct MapCaster {
     mesh: MeshId,
     /// World positions of its triangles.
     triangles: Vec<[DVec3; 3]>,
+}
+
+/// What a map's faces are drawn into, and how.
+struct MapTarget {
+    attachment: AttachmentId,
+    raster: RasterState,
 }
 
 /// Sizes with the default bias, and with so little that surfaces darken themselves; other ways to
@@ -48,9 +137,10 @@ pub(super) const REPORT_ROWS: ReportRows = &[
 
 /// Plans a frame with shadow maps.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+    let settings = MapSettings::read(job.choice.settings());
     let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
     for light in frame.light_ids() {
-        add_map(&mut frame, light);
+        add_map(&mut frame, light, &settings);
     }
     frame.ambient_pass();
     for light in frame.light_ids() {
@@ -67,11 +157,11 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-fn add_map(frame: &mut Frame, light: LightId) {
-    let size = frame.job.choice.number("size") as u32;
+fn add_map(frame: &mut Frame, light: LightId, settings: &MapSettings) {
+    let size = settings.size;
     let indices = darkening_casters(frame, light);
     let triangles: Vec<Vec<[DVec3; 3]>> = indices.iter().map(|index| casters::world_triangles(frame, *index)).collect();
-    let storage = MapStorage { size, depth: frame.depth_mapping(), epsilon: frame.job.choice.number("epsilon") };
+    let storage = MapStorage { size, depth: frame.common.depth, epsilon: frame.common.epsilon };
     let Some(light_frame) = light_frame::fit(&triangles.concat(), frame.light_position(light), &storage) else {
         frame.leave_out(Decision::Map, light.name(), "nothing casts a shadow on anything");
         return;
@@ -92,8 +182,9 @@ fn add_map(frame: &mut Frame, light: LightId) {
         size: [size; 2],
         layers: light_frame.clip_from_light.len() as u32,
     });
+    let target = MapTarget { attachment, raster: map_raster(settings) };
     let faces = (0..light_frame.clip_from_light.len())
-        .map(|face| add_face(frame, light, &light_frame, face, &casters, attachment));
+        .map(|face| add_face(frame, light, &light_frame, face, &casters, &target));
     let faces: Vec<Option<ViewId>> = faces.collect();
     let light_from_eye = light_frame.light_from_world * DMat4::from_translation(frame.eye());
     let from_relative = |clip_from_light: &DMat4| (*clip_from_light * light_from_eye).as_mat4();
@@ -105,20 +196,15 @@ fn add_map(frame: &mut Frame, light: LightId) {
         light_from_world: light_frame.light_from_world,
         clip_from_relative: light_frame.clip_from_light.iter().map(from_relative).collect(),
         clip_from_light: light_frame.clip_from_light,
-        lookup: Some(lookup(frame)),
+        lookup: Some(MapLookup {
+            clear_depth: frame.common.depth.clear_depth(),
+            bias_normal: settings.bias_normal as f32,
+            bias_receiver_plane: settings.bias_receiver_plane,
+            filter_width: settings.filter_width,
+        }),
         projects_backwards: false,
-        is_kept: frame.job.choice.keeps_maps(),
+        is_kept: settings.keeps,
     });
-}
-
-fn lookup(frame: &Frame) -> MapLookup {
-    let choice = frame.job.choice;
-    MapLookup {
-        clear_depth: frame.depth_mapping().clear_depth(),
-        bias_normal: choice.number("bias-normal") as f32,
-        bias_receiver_plane: choice.word("bias-receiver-plane") == "on",
-        filter_width: choice.number_after("filter", "pcf:").map_or(1, |width| width as u32),
-    }
 }
 
 /// Casters but those behind which, seen from the light, there is nothing that receives.
@@ -159,7 +245,7 @@ fn add_face(
     light_frame: &LightFrame,
     face: usize,
     casters: &[MapCaster],
-    attachment: crate::plan::AttachmentId,
+    target: &MapTarget,
 ) -> Option<ViewId> {
     let clip_from_light = light_frame.clip_from_light[face];
     let shows = |caster: &&MapCaster| {
@@ -170,9 +256,8 @@ fn add_face(
     };
     let is_cube = light_frame.clip_from_light.len() > 1;
     let name = if is_cube { format!("map {}", CUBE_FACES[face].0) } else { "map".to_owned() };
-    let raster = map_raster(frame);
-    let draws: Vec<Draw> = casters.iter().filter(shows).map(|caster| map_draw(caster, &raster)).collect();
-    if draws.is_empty() && Decision::MapFaces.is_allowed(frame.job.choice) {
+    let draws: Vec<Draw> = casters.iter().filter(shows).map(|caster| map_draw(caster, &target.raster)).collect();
+    if draws.is_empty() && frame.common.allows(Decision::MapFaces) {
         let left_out = LeftOut::named(Decision::MapFaces, &name, light.name(), "no caster shows in this face");
         frame.plan.left_out.push(left_out);
         return None;
@@ -195,7 +280,7 @@ fn add_face(
         view,
         color: None,
         depth_stencil: Some(DepthStencilTarget {
-            attachment,
+            attachment: target.attachment,
             layer: face as u32,
             clear_depth: Some(0.0),
             clear_stencil: None,
@@ -206,18 +291,10 @@ fn add_face(
 }
 
 /// With reversed depth, away from the light is down: biases change sign.
-fn map_raster(frame: &Frame) -> RasterState {
-    let depth_bias = DepthBiasState {
-        constant: -(frame.job.choice.number("bias-constant") as i32),
-        slope_scale: -(frame.job.choice.number("bias-slope") as f32),
-        clamp: 0.0,
-    };
-    let cull = match frame.job.choice.word("cull") {
-        "back" => Some(wgpu::Face::Back),
-        "front" => Some(wgpu::Face::Front),
-        _ => None,
-    };
-    RasterState { depth_bias, cull, color: ColorWrite::None, ..RasterState::surface() }
+fn map_raster(settings: &MapSettings) -> RasterState {
+    let depth_bias =
+        DepthBiasState { constant: -settings.bias_constant, slope_scale: -(settings.bias_slope as f32), clamp: 0.0 };
+    RasterState { depth_bias, cull: settings.cull, color: ColorWrite::None, ..RasterState::surface() }
 }
 
 fn map_draw(caster: &MapCaster, raster: &RasterState) -> Draw {

@@ -42,18 +42,18 @@ enum Shown {
 }
 
 fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
-    let (eye, choice) = (frame.eye(), frame.job.choice);
+    let eye = frame.eye();
     let placed = &frame.placed[index];
     let (object, world) = (placed.object, &placed.world);
     let relative: Vec<DVec4> = auto::outline(world).map(|point| (point - eye).extend(1.0)).collect();
-    if Decision::Surfaces.is_allowed(choice)
+    if frame.common.allows(Decision::Surfaces)
         && let Some(outside) = view.outside(&relative)
     {
         let because = auto::beyond(outside, auto::VIEW_PLANES[outside.plane]);
         frame.leave_out(Decision::Surfaces, &object.name, format!("it lies {because}"));
         return Shown::Nothing;
     }
-    if !Decision::HiddenTriangles.is_allowed(choice) || !view.is_beyond_near(&relative) {
+    if !frame.common.allows(Decision::HiddenTriangles) || !view.is_beyond_near(&relative) {
         return Shown::All;
     }
     let caster = Caster { mesh: &object.mesh, pose: &object.pose, world };
@@ -98,10 +98,7 @@ fn subset(frame: &mut Frame, piece: Piece, shows: impl Fn(u32) -> bool) -> Optio
 /// where of surfaces that coincide only the first may be lit.
 pub fn lit_by(frame: &mut Frame, light: LightId) -> Vec<Piece> {
     let pieces = frame.pieces.clone();
-    if !Decision::UnlitTriangles.is_allowed(frame.job.choice)
-        || frame.plan.wraps_diffuse
-        || surfaces::coincide(&frame.placed)
-    {
+    if !frame.common.allows(Decision::UnlitTriangles) || frame.plan.wraps_diffuse || surfaces::coincide(&frame.placed) {
         return pieces;
     }
     let total = |pieces: &[Piece]| pieces.iter().map(|piece| piece.triangles.len() as u64).sum::<u64>();

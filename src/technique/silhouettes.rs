@@ -1,6 +1,7 @@
 //! Pictures of what casters let through, one layer a receiver or a caster of a light.
 
 use super::frame::Frame;
+use super::maps::REDRAW;
 use crate::geometry::relative;
 use crate::plan::{
     Attachment, AttachmentRole, Blob, ColorTarget, ColorWrite, Draw, DrawConstants, DrawMesh, LightId, Part, Pass,
@@ -71,7 +72,7 @@ pub fn add_map(
         layer_names,
         lookup: None,
         projects_backwards: false,
-        is_kept: frame.job.choice.keeps_maps(),
+        is_kept: REDRAW.read(frame.job.choice.settings()),
     });
 }
 

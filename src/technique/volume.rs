@@ -14,7 +14,7 @@
 
 mod counting;
 mod near_count;
-mod options;
+mod settings;
 
 use super::auto::Questions;
 use super::casters::{self, Darkened};
@@ -32,7 +32,7 @@ use crate::scene::Object;
 pub use counting::Counting;
 use counting::Step;
 use glam::{DVec3, DVec4};
-use options::{Options, WhoCasts};
+pub use settings::{SETTINGS, VolumeSettings, WhoCasts};
 use std::ops::Range;
 
 /// What a report compares of z-pass and z-pass-plus: the defaults.
@@ -61,7 +61,7 @@ pub struct Form {
 /// Plans z-pass, z-fail, z-pass-plus or the mixture of them that is cheapest.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let technique = job.choice.technique();
-    let options = Options::of(job.choice);
+    let options = VolumeSettings::of(job.choice).unwrap_or_else(|| VolumeSettings::read(job.choice.settings()));
     options.check(job.scene)?;
     let stencil = if options.counts_in_float { StencilUse::ToLightOnce } else { StencilUse::Always };
     let mut frame = Frame::new(job, stencil)?;
@@ -79,7 +79,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         }
         if technique == Technique::Auto {
             let lit = shown::lit_by(&mut frame, light);
-            if lit.is_empty() && Decision::Light.is_allowed(frame.job.choice) {
+            if lit.is_empty() && frame.common.allows(Decision::Light) {
                 let because = "every surface in view faces away from it or lies beyond its range";
                 frame.leave_out(Decision::Light, light.name(), because);
                 frame.mask_pass(light, &[Drawn::lit()]);
@@ -124,7 +124,7 @@ fn counted_by(volumes: &[Volume], usual: Counting) -> Option<Counting> {
 
 /// The same in a float target: signed, and right beyond eight bits. It adds and takes away in one
 /// draw, and stops nowhere.
-fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options: &Options, volumes: &[Volume]) {
+fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options: &VolumeSettings, volumes: &[Volume]) {
     frame.add_count(light);
     if options.two_pass || options.clamp {
         let because = "a float target adds and takes away in one draw, and has no limits to stop at";
@@ -186,11 +186,11 @@ impl Volume {
         corners[casting].chunks_exact(3).map(|corners| [0, 1, 2].map(|corner| world[corners[corner] as usize]))
     }
 
-    fn draws(&self, options: &Options, step: Step) -> Vec<Draw> {
+    fn draws(&self, options: &VolumeSettings, step: Step) -> Vec<Draw> {
         self.needed.iter().map(|part| self.draw(part, self.counting.raster(part, options, step))).collect()
     }
 
-    fn float_draws(&self, options: &Options) -> Vec<Draw> {
+    fn float_draws(&self, options: &VolumeSettings) -> Vec<Draw> {
         let draw = |part: &NeededPart| {
             let (raster, count) = self.counting.float_raster(part, options);
             let constants = DrawConstants { count, ..DrawConstants::default() };
@@ -225,7 +225,7 @@ impl Volume {
 }
 
 /// All volumes of a light, and whether they may count beyond eight bits although nobody asked for that.
-fn volumes(frame: &mut Frame, light: LightId, options: &Options) -> (Vec<Volume>, bool) {
+fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings) -> (Vec<Volume>, bool) {
     let technique = frame.job.choice.technique();
     let counting = Counting::of(technique);
     let questions = (technique == Technique::Auto).then(|| Questions::new(frame, light));
@@ -280,7 +280,7 @@ fn volumes(frame: &mut Frame, light: LightId, options: &Options) -> (Vec<Volume>
 }
 
 /// What a technique gives every caster.
-fn fixed_form(frame: &mut Frame, counting: Counting, options: &Options, caster: &Object) -> Form {
+fn fixed_form(frame: &mut Frame, counting: Counting, options: &VolumeSettings, caster: &Object) -> Form {
     // In z-pass the view ray enters the volume of an undrawn caster through its light cap.
     let light_cap = counting == Counting::Behind || !caster.visible;
     if !light_cap {
@@ -294,11 +294,8 @@ fn fixed_form(frame: &mut Frame, counting: Counting, options: &Options, caster: 
 /// Which of a caster's triangles cast a volume's shadow, as `choice` says; all, where its technique has no volumes.
 #[must_use]
 pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light: DVec4) -> Casters {
-    use Technique::{Auto, ZFail, ZPass, ZPassPlus};
-    if !matches!(choice.technique(), ZPass | ZFail | ZPassPlus | Auto) {
-        return Casters::All;
-    }
-    match Options::of(choice).casters {
+    let who = VolumeSettings::of(choice).map_or(WhoCasts::Always(Casters::All), |settings| settings.casters);
+    match who {
         WhoCasts::Always(casters) => casters,
         WhoCasts::ByTopology if cache.light_facing_suffices(caster, light).is_ok() => Casters::LightFacing,
         WhoCasts::ByTopology => Casters::All,
@@ -306,7 +303,7 @@ pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light
 }
 
 /// Which triangles of an object cast; for `by-topology`, with what decided it.
-fn who_casts(frame: &mut Frame, light: LightId, index: usize, options: &Options) -> Casters {
+fn who_casts(frame: &mut Frame, light: LightId, index: usize, options: &VolumeSettings) -> Casters {
     let WhoCasts::ByTopology = options.casters else { return options.casters.fixed() };
     let (position, placed) = (frame.light_position(light), &frame.placed[index]);
     let object = placed.object;
@@ -334,7 +331,7 @@ fn make(
     light: LightId,
     index: usize,
     (casters, held): (Casters, &[bool]),
-    options: &Options,
+    options: &VolumeSettings,
 ) -> (DrawMesh, VolumeParts) {
     let (position, eye) = (frame.light_position(light), frame.eye());
     let placed = &frame.placed[index];

@@ -11,7 +11,7 @@ use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion};
 use crate::diagnosis::mend::{Mend, PlanEdit};
 use crate::numbers;
 use crate::plan::{Part, PlanMap};
-use crate::technique::Technique;
+use crate::technique::{MapSettings, Technique};
 use crate::truth::SeenSurface;
 use glam::{DMat4, DVec2, DVec3};
 
@@ -149,7 +149,7 @@ fn shown(facts: &Facts, case: &Case, cause: Cause) -> Option<(MapLook, usize)> {
 }
 
 /// Biases as they are by default, and some that are more or less.
-fn bias(constant: i64, slope: f64) -> Mend {
+fn bias(constant: i32, slope: f64) -> Mend {
     let mut mend = Mend::setting("bias-slope", &format!("{slope}"));
     mend.settings.insert("bias-constant".to_owned(), constant.to_string());
     mend
@@ -164,16 +164,16 @@ fn acne(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::metres(look.bias.max(0.0))
     );
     let steps = [(16, 2.0), (64, 4.0), (256, 8.0)];
-    let (constant, slope) = (facts.number("bias-constant"), facts.number("bias-slope"));
-    let more = steps.into_iter().filter(|(c, s)| *c as f64 > constant || *s > slope);
-    let mut mends: Vec<Mend> = more.map(|(c, s)| bias(c.max(constant as i64), s.max(slope))).collect();
+    let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
+    let more = steps.into_iter().filter(|(c, s)| *c > constant || *s > slope);
+    let mut mends: Vec<Mend> = more.map(|(c, s)| bias(c.max(constant), s.max(slope))).collect();
     mends.push(Mend::technique(Technique::ZFail));
     Suspicion::new(Cause::Acne, evidence, mends, shown_by)
 }
 
 fn peter_panning(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let (look, shown_by) = shown(facts, case, Cause::PeterPanning)?;
-    let evidence = match facts.number("bias-normal") {
+    let evidence = match facts.map().bias_normal {
         texels if texels > 0.0 => format!(
             "the surface is looked up {} of {} along its normal, and the caster is only {} before it",
             texels,
@@ -187,10 +187,10 @@ fn peter_panning(facts: &Facts, case: &Case) -> Option<Suspicion> {
         ),
     };
     let steps = [(16, 2.0), (16, 1.0), (4, 0.5)];
-    let (constant, slope) = (facts.number("bias-constant"), facts.number("bias-slope"));
-    let less = steps.into_iter().filter(|(c, s)| (*c as f64) < constant || *s < slope);
-    let mut mends: Vec<Mend> = less.map(|(c, s)| bias(c.min(constant as i64), s.min(slope))).collect();
-    if facts.number("bias-normal") != 0.0 {
+    let MapSettings { bias_constant: constant, bias_slope: slope, .. } = facts.map();
+    let less = steps.into_iter().filter(|(c, s)| *c < constant || *s < slope);
+    let mut mends: Vec<Mend> = less.map(|(c, s)| bias(c.min(constant), s.min(slope))).collect();
+    if facts.map().bias_normal != 0.0 {
         mends = vec![Mend::setting("bias-normal", "0")];
     }
     mends.push(Mend::technique(Technique::ZFail));
@@ -209,7 +209,7 @@ fn aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::metres(look.texel),
         numbers::digits(pixels)
     );
-    Suspicion::new(Cause::Aliasing, evidence, larger(facts.number("size"), 8192.0), shown_by)
+    Suspicion::new(Cause::Aliasing, evidence, larger(facts.texels(), 8192.0), shown_by)
 }
 
 fn outside_map(facts: &Facts, case: &Case) -> Option<Suspicion> {

@@ -4,6 +4,8 @@ use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion, amount};
 use crate::diagnosis::mend::{Mend, ObjectChange};
 use crate::diagnosis::mesh_facts::MeshFacts;
+use crate::geometry::Casters;
+use crate::technique::WhoCasts;
 
 pub(crate) const RULES: &[Rule] =
     &[light_inside, split_vertices, near_vertices, inconsistent_winding, non_manifold, open_mesh];
@@ -20,10 +22,10 @@ struct Suspect<'f> {
 /// Casters whose casting triangles alone do not make their shadow here.
 fn suspects<'f>(facts: &'f Facts, case: &Case) -> Vec<Suspect<'f>> {
     let light = case.light();
-    let way = match facts.setting("casters") {
-        "light-facing" => "towards",
-        "light-back-facing" => "away from",
-        _ => return Vec::new(),
+    let way = match facts.volumes().map(|settings| settings.casters) {
+        Some(WhoCasts::Always(Casters::LightFacing)) => "towards",
+        Some(WhoCasts::Always(Casters::LightBackFacing)) => "away from",
+        Some(WhoCasts::Always(Casters::All) | WhoCasts::ByTopology) | None => return Vec::new(),
     };
     let mut found: Vec<Suspect> = Vec::new();
     for sample in &case.samples {

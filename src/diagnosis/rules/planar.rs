@@ -4,11 +4,12 @@ use crate::capture::{Aspect, Capture, Snapshot};
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount, listed};
 use crate::diagnosis::mend::Mend;
+use crate::geometry::planar::Clip;
 use crate::history::{Event, Fate, Test, TriangleEvent};
 use crate::math::{Plane, Sign, side_of_triangle};
 use crate::numbers;
 use crate::plan::{ColorWrite, Draw, FramePlan, Part, Pass};
-use crate::technique::Technique;
+use crate::technique::{PlanarSettings, Technique};
 use crate::truth::SeenSurface;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeSet;
@@ -128,7 +129,7 @@ fn off_plane(facts: &Facts, one: &TriangleEvent, seen: &SeenSurface) -> Option<f
 }
 
 fn off_receiver(facts: &Facts, case: &Case) -> Option<Suspicion> {
-    if !case.is_false() || facts.setting("stencil") != "off" {
+    if !case.is_false() || settings(facts).is_none_or(|settings| settings.marks) {
         return None;
     }
     let light = case.light();
@@ -170,7 +171,7 @@ fn z_fighting(facts: &Facts, case: &Case) -> Option<Suspicion> {
 
 /// What a pixel of planar shadows alone tells: what lies on the light's line, but not between.
 pub(crate) fn hint(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<Cause> {
-    if facts.setting("clip") != "off" {
+    if !is_unclipped(facts) {
         return None;
     }
     let (beyond, below) = on_the_line(facts, light, seen);
@@ -249,8 +250,18 @@ fn holds(corners: [DVec4; 3], point: DVec3, normal: DVec3) -> bool {
     sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
 }
 
+/// What planar shadows were told; `None` of another technique.
+fn settings(facts: &Facts) -> Option<PlanarSettings> {
+    (facts.technique() == Technique::Planar).then(|| PlanarSettings::read(facts.choice.settings()))
+}
+
+/// Are casters flattened whole, with what lies beyond the light or below the receiver?
+fn is_unclipped(facts: &Facts) -> bool {
+    settings(facts).is_some_and(|settings| settings.clip == Clip::Off)
+}
+
 fn is_flattened_unclipped(facts: &Facts, case: &Case) -> bool {
-    facts.technique() == Technique::Planar && facts.setting("clip") == "off" && case.is_false()
+    is_unclipped(facts) && case.is_false()
 }
 
 fn anti_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
@@ -390,7 +401,7 @@ fn texture_aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
         let seen = sample.seen?;
         (case.is_false() || (case.is_missing() && has_texture(facts, light, &seen))).then_some(())
     })?;
-    let size = facts.number("size");
+    let size = facts.texels();
     let evidence = format!("the receiver's texture has {size} texels a side, and the outline runs between two of them");
     Suspicion::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
 }

@@ -93,7 +93,7 @@ fn self_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
 
 fn aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let (_, shown_by) = shown(facts, case, Cause::Aliasing)?;
-    let size = facts.number("size");
+    let size = facts.texels();
     let evidence = format!("the silhouette has {size} texels a side, and its outline runs between two of them");
     Suspicion::new(Cause::Aliasing, evidence, larger(size, 4096.0), shown_by)
 }

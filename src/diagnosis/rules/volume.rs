@@ -3,7 +3,7 @@
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount, listed};
 use crate::diagnosis::mend::{Mend, PlanEdit};
-use crate::geometry::ViewVolume;
+use crate::geometry::{Extrusion, ViewVolume};
 use crate::history::Fate;
 use crate::math::AxisBox;
 use crate::numbers;
@@ -139,7 +139,7 @@ fn lacking(facts: &Facts, case: &Case, lacks: impl Fn(&str) -> bool) -> Option<(
 
 fn missing_dark_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
-    let is_finite = facts.setting("extrusion").starts_with("finite:");
+    let is_finite = facts.volumes().is_some_and(|settings| settings.extrusion != Extrusion::Infinite);
     let is_point = facts.tracer.light_position(light).w != 0.0;
     let lacks = |caster: &str| {
         let needs = is_finite || (is_point && facts.counts_behind(light, caster));
@@ -250,7 +250,7 @@ fn beyond_clamped(facts: &Facts, case: &Case, far: f64) -> Option<Suspicion> {
 
 fn finite_extrusion(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
-    let factor: f64 = facts.setting("extrusion").strip_prefix("finite:")?.parse().ok()?;
+    let Extrusion::Finite(factor) = facts.volumes()?.extrusion else { return None };
     if !case.is_missing() {
         return None;
     }

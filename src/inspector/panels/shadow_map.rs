@@ -18,6 +18,7 @@ use crate::reading::layers::{self, MapContent};
 use crate::reading::map_readers::{MapReaders, MapTexel};
 use crate::reading::pick_ray;
 use crate::reading::shown::{FaceChoice, PictureKind, PictureView, Zoom};
+use crate::technique::MapSettings;
 use egui::{
     Color32, CornerRadius, Margin, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder,
     WidgetInfo, pos2, vec2,
@@ -336,7 +337,7 @@ fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &Links
             ui.end_row();
         }
     });
-    let is_moved = capture.settings.get("bias-normal").is_some_and(|bias| bias != "0");
+    let is_moved = MapSettings::read(&capture.settings).bias_normal != 0.0;
     if is_moved && links.readers.is_some_and(|readers| !readers.knows_normals()) {
         let note = "A folder holds no normals: surfaces are moved along those of the planes through neighbouring \
                     pixels.";
@@ -383,16 +384,16 @@ fn values(
         let down = (a.distance(d) + b.distance(c)) / 2.0;
         values.push(("pixel covers", format!("{across:.2} × {down:.2} texels")));
     }
-    let setting = |key: &str| capture.settings.get(key).and_then(|value| value.parse::<f64>().ok());
-    if let (Some(bias), Some(measure), Some(stored)) = (setting("bias-constant"), measure, stored) {
-        let step = measure.step_at(stored).unwrap_or(0.0);
-        values.push(("constant bias", format!("{} ({bias} steps)", format::metres(bias * step))));
+    let MapSettings { bias_constant, bias_slope, bias_normal, .. } = MapSettings::read(&capture.settings);
+    if let (Some(measure), Some(stored)) = (measure, stored) {
+        let moved = format::metres(f64::from(bias_constant) * measure.step_at(stored).unwrap_or(0.0));
+        values.push(("constant bias", format!("{moved} ({bias_constant} steps)")));
     }
-    if let (Some(bias), Some(width)) = (setting("bias-slope"), width) {
-        values.push(("slope bias", format!("{} at 45°", format::metres(bias * width))));
+    if let Some(width) = width {
+        values.push(("slope bias", format!("{} at 45°", format::metres(bias_slope * width))));
     }
-    if let (Some(bias), Some(width)) = (setting("bias-normal").filter(|bias| *bias != 0.0), width) {
-        values.push(("normal bias", format!("{} at most", format::metres(bias * width))));
+    if let Some(width) = width.filter(|_| bias_normal != 0.0) {
+        values.push(("normal bias", format!("{} at most", format::metres(bias_normal * width))));
     }
     values
 }

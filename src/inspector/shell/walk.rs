@@ -178,7 +178,7 @@ fn next_overlay(model: &mut Model) {
 
 fn next_size(model: &mut Model, actions: &mut Vec<Action>) {
     let Some(scene) = &mut model.scene else { return };
-    let now = scene.draft.choice.settings().get("size").and_then(|size| size.parse::<u32>().ok());
+    let now = scene.draft.choice.texels();
     let Some(now) = now else { return };
     let next = SIZES.into_iter().find(|size| *size > now).unwrap_or(SIZES[0]);
     match scene.draft.choice.set("size", &next.to_string()) {

@@ -1,6 +1,6 @@
 //! Where volume faces count, and the raster state that makes them.
 
-use super::{NeededPart, Options, Part, RasterState};
+use super::{NeededPart, Part, RasterState, VolumeSettings};
 use crate::plan::{ColorWrite, LightId, Side, StencilFace};
 use crate::technique::Technique;
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
@@ -72,7 +72,7 @@ impl Counting {
     }
 
     /// The state that a part counts with.
-    pub(super) fn raster(self, part: &NeededPart, options: &Options, step: Step) -> RasterState {
+    pub(super) fn raster(self, part: &NeededPart, options: &VolumeSettings, step: Step) -> RasterState {
         let (add, take) = operations(options);
         let adds_in_front = (self != Counting::Behind) != part.turned;
         let (front, back) = if adds_in_front { (add, take) } else { (take, add) };
@@ -96,7 +96,7 @@ impl Counting {
     /// The state for counting in a float target, and what a front face adds there (of a turned part: a
     /// back face that counts as one). What fails the depth test writes nothing, so counting behind
     /// the surface tests the other way round.
-    pub(super) fn float_raster(self, part: &NeededPart, options: &Options) -> (RasterState, f32) {
+    pub(super) fn float_raster(self, part: &NeededPart, options: &VolumeSettings) -> (RasterState, f32) {
         let surface = RasterState::surface();
         let never_passes = options.light_caps_never_pass && part.part == Part::LightCap;
         let depth_compare = match (self, never_passes) {
@@ -160,7 +160,7 @@ pub fn purpose(counting: Option<Counting>, light: LightId, step: Step) -> String
 }
 
 /// What adds 1 and what takes 1 away.
-pub fn operations(options: &Options) -> (StencilOperation, StencilOperation) {
+pub fn operations(options: &VolumeSettings) -> (StencilOperation, StencilOperation) {
     match options.clamp {
         false => (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap),
         true => (StencilOperation::IncrementClamp, StencilOperation::DecrementClamp),

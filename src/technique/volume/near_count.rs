@@ -12,7 +12,7 @@
 //! extrusion is not asked about: a near-plane point beyond a volume's end counts as inside.
 
 use super::counting::operations;
-use super::{Options, Volume};
+use super::{Volume, VolumeSettings};
 use crate::geometry::near_view;
 use crate::plan::{
     ColorWrite, Decision, Draw, DrawConstants, LightId, PlanView, Program, RasterState, StencilFace, ViewId,
@@ -21,7 +21,7 @@ use crate::technique::frame::Frame;
 use wgpu::CompareFunction;
 
 /// Adds the light's view and the pass; none where nothing can count.
-pub fn pass(frame: &mut Frame, light: LightId, options: &Options, volumes: &[Volume]) {
+pub fn pass(frame: &mut Frame, light: LightId, options: &VolumeSettings, volumes: &[Volume]) {
     let name = light.name();
     let position = frame.light_position(light);
     let points = frame.placed.iter().filter(|placed| placed.object.casts).flat_map(|placed| &placed.world);
@@ -65,7 +65,7 @@ pub fn pass(frame: &mut Frame, light: LightId, options: &Options, volumes: &[Vol
 }
 
 /// Either face adds 1, whatever the depth.
-fn raster(options: &Options) -> RasterState {
+fn raster(options: &VolumeSettings) -> RasterState {
     let count = StencilFace {
         compare: CompareFunction::Always,
         pass_op: operations(options).0,

@@ -2,7 +2,6 @@
 
 pub mod animation;
 pub mod meshes;
-pub mod off;
 pub mod scene;
 
 use crate::ask::MeshesOf;
@@ -72,7 +71,7 @@ fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
     ui.add_space(8.0);
     egui::Grid::new("technique settings").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
         for spec in scene.draft.choice.technique().settings() {
-            let off = off::reason(&scene.draft.choice, spec.key);
+            let off = scene.draft.choice.without_effect(spec.key);
             let ink = if off.is_some() { theme::of(ui).faint } else { theme::of(ui).dim };
             let label = ui.label(theme::note(spec.key).color(ink)).on_hover_text(hover(spec, off));
             let value = ui.add_enabled_ui(off.is_none(), |ui| setting(ui, &scene.draft.choice, spec, label.id, off));

@@ -1,0 +1,180 @@
+//! A setting's face: its key, what it may be, and what each value becomes.
+//!
+//! A setting is a constant of the technique that has it: [`Words`], [`Number`] or [`NumberOr`]. Its values are
+//! written once, each word beside what it stands for, so that nothing else compares words.
+
+use std::collections::BTreeMap;
+
+/// Key and value of settings, as on the command line, in files and in a capture.
+pub type Values = BTreeMap<String, String>;
+
+/// One setting of a technique.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SettingSpec {
+    /// As in `--set KEY=VALUE`.
+    pub key: &'static str,
+    /// What it may be.
+    pub values: SettingValues,
+    /// What it is unless set.
+    pub default: &'static str,
+    /// What it does, in a few words.
+    pub meaning: &'static str,
+}
+
+/// What a setting may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SettingValues {
+    /// One of these words.
+    OneOf(&'static [&'static str]),
+    /// A whole number in this range, ends included.
+    Integer(i64, i64),
+    /// A finite number in this range, ends included.
+    Number(f64, f64),
+    /// `all`, `none`, or some of these words between commas.
+    SomeOf(&'static [&'static str]),
+    /// One of these words, or a number in this range behind a prefix, as in `pcf:3`.
+    WordOr {
+        /// The words.
+        words: &'static [&'static str],
+        /// What the number follows, its colon included.
+        prefix: &'static str,
+        /// The smallest number.
+        low: f64,
+        /// The largest.
+        high: f64,
+        /// Without a fraction.
+        whole: bool,
+    },
+}
+
+impl SettingSpec {
+    /// What is set, or the default: also where what is set is not offered, as a folder may tell anything.
+    pub(super) fn of(self, values: &Values) -> &str {
+        let set = values.get(self.key).map(String::as_str);
+        set.filter(|value| self.values.check(value).is_ok()).unwrap_or(self.default)
+    }
+}
+
+/// A setting that is one of some words, the first unless set.
+pub(in crate::technique) struct Words<T: 'static> {
+    pub spec: SettingSpec,
+    values: &'static [T],
+}
+
+/// Words with what each stands for.
+pub(in crate::technique) const fn words<T>(
+    key: &'static str,
+    words: &'static [&'static str],
+    values: &'static [T],
+    meaning: &'static str,
+) -> Words<T> {
+    assert!(words.len() == values.len(), "each word stands for something");
+    Words { spec: SettingSpec { key, values: SettingValues::OneOf(words), default: words[0], meaning }, values }
+}
+
+impl<T: Copy + PartialEq> Words<T> {
+    /// The word for a value.
+    pub fn word(&self, value: T) -> &'static str {
+        let SettingValues::OneOf(words) = self.spec.values else { return self.spec.default };
+        words[self.values.iter().position(|one| *one == value).unwrap_or(0)]
+    }
+
+    /// What is set stands for.
+    pub fn read(&self, values: &Values) -> T {
+        let SettingValues::OneOf(words) = self.spec.values else { return self.values[0] };
+        let set = self.spec.of(values);
+        self.values[words.iter().position(|word| *word == set).unwrap_or(0)]
+    }
+}
+
+/// A setting that is a number.
+pub(in crate::technique) struct Number {
+    pub spec: SettingSpec,
+}
+
+/// A whole number.
+pub(in crate::technique) const fn whole(
+    key: &'static str,
+    [low, high]: [i64; 2],
+    default: &'static str,
+    meaning: &'static str,
+) -> Number {
+    Number { spec: SettingSpec { key, values: SettingValues::Integer(low, high), default, meaning } }
+}
+
+/// A number with or without a fraction.
+pub(in crate::technique) const fn number(
+    key: &'static str,
+    [low, high]: [f64; 2],
+    default: &'static str,
+    meaning: &'static str,
+) -> Number {
+    Number { spec: SettingSpec { key, values: SettingValues::Number(low, high), default, meaning } }
+}
+
+impl Number {
+    pub fn read(&self, values: &Values) -> f64 {
+        self.spec.of(values).parse().unwrap_or(0.0)
+    }
+}
+
+/// A setting that is one word, or a number behind a prefix.
+pub(in crate::technique) struct NumberOr {
+    pub spec: SettingSpec,
+}
+
+/// The word is the default.
+pub(in crate::technique) const fn number_or(
+    key: &'static str,
+    words: &'static [&'static str; 1],
+    (prefix, [low, high], whole): (&'static str, [f64; 2], bool),
+    meaning: &'static str,
+) -> NumberOr {
+    let values = SettingValues::WordOr { words, prefix, low, high, whole };
+    NumberOr { spec: SettingSpec { key, values, default: words[0], meaning } }
+}
+
+impl NumberOr {
+    /// The number; `None` where the word is set.
+    pub fn read(&self, values: &Values) -> Option<f64> {
+        let SettingValues::WordOr { prefix, .. } = self.spec.values else { return None };
+        self.spec.of(values).strip_prefix(prefix)?.parse().ok()
+    }
+}
+
+impl SettingValues {
+    pub(super) fn check(self, value: &str) -> Result<(), String> {
+        let in_range = match self {
+            SettingValues::OneOf(words) => words.contains(&value),
+            SettingValues::SomeOf(words) => {
+                let mut some = value.split(',').map(str::trim);
+                ["all", "none"].contains(&value) || some.all(|one| words.contains(&one))
+            }
+            SettingValues::Integer(low, high) => value.parse().is_ok_and(|n: i64| (low..=high).contains(&n)),
+            SettingValues::Number(low, high) => value.parse().is_ok_and(|n: f64| (low..=high).contains(&n)),
+            SettingValues::WordOr { words, prefix, low, high, whole } => {
+                let number = value.strip_prefix(prefix).and_then(|number| number.parse::<f64>().ok());
+                let fits = |n: f64| (low..=high).contains(&n) && (!whole || n.fract() == 0.0);
+                words.contains(&value) || number.is_some_and(fits)
+            }
+        };
+        if in_range { Ok(()) } else { Err(self.to_string()) }
+    }
+}
+
+impl std::fmt::Display for SettingValues {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            SettingValues::OneOf(words) => write!(f, "choose one of {}", words.join(", ")),
+            SettingValues::SomeOf(words) => {
+                write!(f, "choose all, none, or some of {}, between commas", words.join(", "))
+            }
+            SettingValues::Integer(low, high) => write!(f, "choose a whole number from {low} to {high}"),
+            SettingValues::Number(low, high) => write!(f, "choose a number from {low} to {high}"),
+            SettingValues::WordOr { words, prefix, low, high, whole } => {
+                let number = if *whole { "a whole number" } else { "a number" };
+                write!(f, "choose {}, or {prefix} and {number} from {low} to {high}", words.join(", "))
+            }
+        }
+    }
+}

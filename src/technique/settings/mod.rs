@@ -1,0 +1,279 @@
+//! Settings as data: keys, values and defaults of every technique, and the check of a request.
+//!
+//! The command line, scene files and the inspector read and write words, which are checked here and become a typed
+//! struct for each family of techniques ([`CommonSettings`], and one beside each technique): no word is compared
+//! anywhere else. Only what works is listed: a value that is not there yet is refused, not ignored.
+
+mod common;
+mod face;
+
+pub use common::CommonSettings;
+pub(super) use common::with_own;
+pub(super) use face::{Number, NumberOr, Words, number, number_or, whole, words};
+pub use face::{SettingSpec, SettingValues, Values};
+
+use super::planar::PlanarSettings;
+use super::volume::VolumeSettings;
+use super::{Technique, auto, maps, none, planar, planar_texture, projective, ray_traced, shadow_map, volume};
+use crate::scene::{TechniqueRequest, suggestion};
+
+/// Why a request for a technique can't be met.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ChoiceError {
+    /// No such technique.
+    #[error("no technique is called `{name}`: {hint}")]
+    UnknownTechnique {
+        /// What was asked for.
+        name: String,
+        /// The nearest name, or all of them.
+        hint: String,
+    },
+    /// The technique has no such setting.
+    #[error("{technique} has no setting `{key}`: {hint}")]
+    UnknownSetting {
+        /// The technique.
+        technique: &'static str,
+        /// What was asked for.
+        key: String,
+        /// The nearest key, or all of them.
+        hint: String,
+    },
+    /// The setting can't be that.
+    #[error("the setting `{key}` of {technique} can't be `{value}`: {hint}")]
+    BadValue {
+        /// The technique.
+        technique: &'static str,
+        /// The setting.
+        key: &'static str,
+        /// What was asked for.
+        value: String,
+        /// What it may be.
+        hint: String,
+    },
+}
+
+/// A technique with a value for each of its settings, all checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    technique: Technique,
+    settings: Values,
+}
+
+/// The settings of a technique that has none of its own.
+const COMMON: [SettingSpec; 5] = with_own([]);
+
+impl Technique {
+    /// Its settings, in the order in which they are shown.
+    #[must_use]
+    pub fn settings(self) -> &'static [SettingSpec] {
+        match self {
+            Technique::None | Technique::RayTraced | Technique::Auto => &COMMON,
+            Technique::Planar => &planar::SETTINGS,
+            Technique::PlanarTexture => &planar_texture::SETTINGS,
+            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => &volume::SETTINGS,
+            Technique::ShadowMap => &shadow_map::SETTINGS,
+            Technique::Projective => &projective::SETTINGS,
+        }
+    }
+}
+
+/// Rows of a technique in a report: the settings that each changes.
+pub type ReportRows = &'static [&'static [(&'static str, &'static str)]];
+
+/// One row with the defaults.
+pub(super) const ONE_ROW: ReportRows = &[&[]];
+
+impl Technique {
+    /// The settings that a report compares by default; each technique declares its own beside
+    /// its plan.
+    #[must_use]
+    pub fn report_rows(self) -> ReportRows {
+        match self {
+            Technique::None => none::REPORT_ROWS,
+            Technique::Planar => planar::REPORT_ROWS,
+            Technique::PlanarTexture => planar_texture::REPORT_ROWS,
+            Technique::ZPass | Technique::ZPassPlus => volume::REPORT_ROWS,
+            Technique::ZFail => volume::Z_FAIL_REPORT_ROWS,
+            Technique::Auto => auto::REPORT_ROWS,
+            Technique::ShadowMap => shadow_map::REPORT_ROWS,
+            Technique::Projective => projective::REPORT_ROWS,
+            Technique::RayTraced => ray_traced::REPORT_ROWS,
+        }
+    }
+}
+
+impl Choice {
+    /// As a scene file names it: the technique, and the settings that are not as they are by default.
+    #[must_use]
+    pub fn to_request(&self) -> TechniqueRequest {
+        let changed = self.technique().settings().iter().filter_map(|spec| {
+            let value = self.settings().get(spec.key)?;
+            (value != spec.default).then(|| (spec.key.to_owned(), value.clone()))
+        });
+        TechniqueRequest { name: self.technique().name().to_owned(), settings: changed.collect() }
+    }
+
+    /// What a report compares by default: every row of every technique.
+    ///
+    /// # Errors
+    /// A row that a technique's settings refuse: a bug, which a test finds.
+    pub fn report_grid() -> Result<Vec<Choice>, ChoiceError> {
+        let mut grid = Vec::new();
+        for technique in Technique::ALL {
+            for row in technique.report_rows() {
+                let mut choice = Choice::new(technique);
+                row.iter().try_for_each(|(key, value)| choice.set(key, value))?;
+                grid.push(choice);
+            }
+        }
+        Ok(grid)
+    }
+
+    /// `technique` with its defaults.
+    #[must_use]
+    pub fn new(technique: Technique) -> Choice {
+        let settings = technique.settings().iter().map(|spec| (spec.key.to_owned(), spec.default.to_owned()));
+        Choice { technique, settings: settings.collect() }
+    }
+
+    /// Checks names and values of a request.
+    ///
+    /// # Errors
+    /// An unknown technique or key, with the nearest name; a value that is not offered.
+    pub fn parse(request: &TechniqueRequest) -> Result<Choice, ChoiceError> {
+        let technique = Technique::from_name(&request.name).ok_or_else(|| {
+            let names: Vec<&str> = Technique::ALL.iter().map(|technique| technique.name()).collect();
+            ChoiceError::UnknownTechnique { name: request.name.clone(), hint: suggestion(&request.name, &names) }
+        })?;
+        let mut choice = Choice::new(technique);
+        for (key, value) in &request.settings {
+            choice.set(key, value)?;
+        }
+        Ok(choice)
+    }
+
+    /// Changes one setting.
+    ///
+    /// # Errors
+    /// An unknown key, or a value that is not offered; nothing is changed then.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), ChoiceError> {
+        let technique = self.technique.name();
+        let specs = self.technique.settings();
+        let Some(spec) = specs.iter().find(|spec| spec.key == key) else {
+            let keys: Vec<&str> = specs.iter().map(|spec| spec.key).collect();
+            return Err(ChoiceError::UnknownSetting { technique, key: key.to_owned(), hint: suggestion(key, &keys) });
+        };
+        spec.values.check(value).map_err(|hint| ChoiceError::BadValue {
+            technique,
+            key: spec.key,
+            value: value.to_owned(),
+            hint,
+        })?;
+        self.settings.insert(key.to_owned(), value.to_owned());
+        Ok(())
+    }
+
+    /// Which technique.
+    #[must_use]
+    pub fn technique(&self) -> Technique {
+        self.technique
+    }
+
+    /// Key and value of every setting.
+    #[must_use]
+    pub fn settings(&self) -> &Values {
+        &self.settings
+    }
+
+    /// The settings that every technique has, as types.
+    #[must_use]
+    pub fn common(&self) -> CommonSettings {
+        CommonSettings::read(&self.settings)
+    }
+
+    /// Texels along each side of maps, textures or silhouettes; `None` where the technique has none.
+    #[must_use]
+    pub fn texels(&self) -> Option<u32> {
+        let spec = self.technique.settings().iter().find(|spec| spec.key == maps::SIZE)?;
+        spec.of(&self.settings).parse().ok()
+    }
+
+    /// Technique and size: `shadow-map 1024`.
+    #[must_use]
+    pub fn short_name(&self) -> String {
+        let technique = self.technique().name();
+        self.texels().map_or_else(|| technique.to_owned(), |texels| format!("{technique} {texels}"))
+    }
+
+    /// This choice with shadow volumes counted in floats, and not in eight bits; `None` where they are, or where the
+    /// technique has no such setting.
+    #[must_use]
+    pub fn counting_in_floats(&self) -> Option<Choice> {
+        VolumeSettings::in_floats(self)
+    }
+
+    /// Why a setting does nothing as the others are; `None` where it does something.
+    #[must_use]
+    pub fn without_effect(&self, key: &str) -> Option<&'static str> {
+        let of_planar = || (self.technique == Technique::Planar).then(|| PlanarSettings::read(&self.settings));
+        common::without_effect(&self.settings, key)
+            .or_else(|| of_planar()?.without_effect(key))
+            .or_else(|| VolumeSettings::of(self)?.without_effect(key))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Casters, Extrusion};
+    use crate::plan::Decision;
+    use crate::technique::{MapSettings, WhoCasts};
+
+    fn with(technique: Technique, changes: &[(&str, &str)]) -> Choice {
+        let mut choice = Choice::new(technique);
+        changes.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
+        choice
+    }
+
+    #[test]
+    fn words_become_what_they_stand_for() {
+        let volumes = |changes: &[(&str, &str)]| VolumeSettings::of(&with(Technique::ZFail, changes)).expect("volumes");
+        assert_eq!(volumes(&[]), VolumeSettings::read(&Values::new()));
+        let changed = volumes(&[("casters", "light-facing"), ("extrusion", "finite:2.5"), ("counter", "float")]);
+        assert_eq!(changed.casters, WhoCasts::Always(Casters::LightFacing));
+        assert_eq!((changed.extrusion, changed.counts_in_float), (Extrusion::Finite(2.5), true));
+        let some = with(Technique::Auto, &[("leave-out", "caps, umbra")]).common();
+        let allowed = [Decision::Caps, Decision::Umbra, Decision::View, Decision::Light].map(|one| some.allows(one));
+        assert_eq!(allowed, [true, true, false, false]);
+        assert_eq!(VolumeSettings::of(&with(Technique::ShadowMap, &[])), None);
+    }
+
+    #[test]
+    fn what_a_folder_tells_is_read_as_far_as_it_is_offered() {
+        let told = [("filter", "pcf:9999"), ("bias-normal", "NaN"), ("bias-slope", "3"), ("cull", "sideways")];
+        let told = told.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
+        let expected = MapSettings { bias_slope: 3.0, ..MapSettings::read(&Values::new()) };
+        assert_eq!(MapSettings::read(&told), expected);
+    }
+
+    #[test]
+    fn what_has_no_effect_is_told() {
+        let off = |technique: Technique, changes: &[(&str, &str)]| {
+            let choice = with(technique, changes);
+            let keys = technique.settings().iter().map(|spec| spec.key);
+            keys.filter(|key| choice.without_effect(key).is_some()).collect::<Vec<_>>()
+        };
+        assert_eq!(off(Technique::Planar, &[]), ["epsilon"]);
+        assert_eq!(off(Technique::Planar, &[("stencil", "off")]), ["epsilon", "blend"]);
+        assert!(off(Technique::ZFail, &[("depth", "standard-infinite-epsilon")]).is_empty());
+        assert_eq!(off(Technique::ZPass, &[("counter", "float")]), ["epsilon", "faces", "operations"]);
+    }
+
+    #[test]
+    fn a_choice_counts_in_floats_where_a_setting_says_so() {
+        let in_floats = Choice::new(Technique::ZPass).counting_in_floats().expect("a setting");
+        assert!(VolumeSettings::of(&in_floats).is_some_and(|settings| settings.counts_in_float));
+        let others = [in_floats, Choice::new(Technique::Auto), Choice::new(Technique::Planar)];
+        assert!(others.iter().all(|choice| choice.counting_in_floats().is_none()));
+    }
+}

@@ -1,0 +1,175 @@
+//! The settings of techniques that count shadow volumes.
+
+use super::{Casters, Extrusion, PlanError, SilhouetteBy};
+use crate::geometry::MOST_TO_SEARCH;
+use crate::plan::Decision;
+use crate::scene::Scene;
+use crate::technique::settings::{NumberOr, SettingSpec, Values, Words, number_or, with_own, words};
+use crate::technique::{Choice, Technique};
+
+const CASTERS: Words<WhoCasts> = words(
+    "casters",
+    &["all", "by-topology", "light-facing", "light-back-facing"],
+    &[
+        WhoCasts::Always(Casters::All),
+        WhoCasts::ByTopology,
+        WhoCasts::Always(Casters::LightFacing),
+        WhoCasts::Always(Casters::LightBackFacing),
+    ],
+    "which triangles cast",
+);
+// Farther, single precision loses the silhouette; nearer than not at all makes no sense.
+const EXTRUSION: NumberOr = number_or(
+    "extrusion",
+    &["infinite"],
+    ("finite:", [0.0, 1e6], false),
+    "how far volumes reach: without end, or K times a vertex's distance from the light",
+);
+const FACES: Words<bool> = words(
+    "faces",
+    &["two-sided", "two-pass"],
+    &[false, true],
+    "front and back faces in one draw, or in passes of their own",
+);
+const OPERATIONS: Words<bool> =
+    words("operations", &["wrap", "clamp"], &[false, true], "what counts do beyond 0 and 255");
+const COUNTER: Words<bool> = words(
+    "counter",
+    &["stencil", "float"],
+    &[false, true],
+    "where counts are kept: in eight bits, or signed in a float a pixel",
+);
+const LIGHT_CAPS: Words<bool> = words(
+    "light-caps",
+    &["tested", "never"],
+    &[false, true],
+    "caps nearest the light pass the depth test, or never do",
+);
+const SILHOUETTE: Words<SilhouetteBy> = words(
+    "silhouette",
+    &["adjacency", "edge-list"],
+    &[SilhouetteBy::Adjacency, SilhouetteBy::Search],
+    "how shared edges are found: built once, or searched each time",
+);
+
+/// In the order in which they are shown.
+pub const SETTINGS: [SettingSpec; 12] = with_own([
+    CASTERS.spec,
+    EXTRUSION.spec,
+    FACES.spec,
+    OPERATIONS.spec,
+    COUNTER.spec,
+    LIGHT_CAPS.spec,
+    SILHOUETTE.spec,
+]);
+
+/// What a technique that counts volumes is told, as types.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VolumeSettings {
+    /// Which triangles cast.
+    pub casters: WhoCasts,
+    /// How far volumes reach.
+    pub extrusion: Extrusion,
+    /// Front and back faces in passes of their own.
+    pub two_pass: bool,
+    /// Counts stop at 0 and 255.
+    pub clamp: bool,
+    /// In a float target instead of the stencil.
+    pub counts_in_float: bool,
+    /// Light caps never pass the depth test, whatever is in front of them.
+    pub light_caps_never_pass: bool,
+    /// How shared edges are found.
+    pub silhouette: SilhouetteBy,
+}
+
+/// Which triangles cast, or what decides it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WhoCasts {
+    /// The same of every caster.
+    Always(Casters),
+    /// Those that face the light where that is proven to be enough, else all.
+    ByTopology,
+}
+
+impl WhoCasts {
+    /// Without a look at any mesh: all where that would decide.
+    #[must_use]
+    pub fn fixed(self) -> Casters {
+        match self {
+            WhoCasts::Always(casters) => casters,
+            WhoCasts::ByTopology => Casters::All,
+        }
+    }
+}
+
+impl VolumeSettings {
+    /// Of a technique that counts volumes; `None` of another.
+    #[must_use]
+    pub fn of(choice: &Choice) -> Option<VolumeSettings> {
+        match choice.technique() {
+            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => Some(VolumeSettings::read(choice.settings())),
+            Technique::Auto => Some(VolumeSettings::of_auto(choice)),
+            Technique::None
+            | Technique::Planar
+            | Technique::PlanarTexture
+            | Technique::ShadowMap
+            | Technique::Projective
+            | Technique::RayTraced => None,
+        }
+    }
+
+    /// What `auto` decides itself: it has no such settings, and triangles cast by topology unless that is forbidden.
+    #[must_use]
+    pub fn of_auto(choice: &Choice) -> VolumeSettings {
+        let by_topology = choice.common().allows(Decision::AwayTriangles);
+        let casters = if by_topology { WhoCasts::ByTopology } else { WhoCasts::Always(Casters::All) };
+        VolumeSettings { casters, ..VolumeSettings::read(&Values::new()) }
+    }
+
+    /// As they are set.
+    #[must_use]
+    pub fn read(values: &Values) -> VolumeSettings {
+        VolumeSettings {
+            casters: CASTERS.read(values),
+            extrusion: EXTRUSION.read(values).map_or(Extrusion::Infinite, Extrusion::Finite),
+            two_pass: FACES.read(values),
+            clamp: OPERATIONS.read(values),
+            counts_in_float: COUNTER.read(values),
+            light_caps_never_pass: LIGHT_CAPS.read(values),
+            silhouette: SILHOUETTE.read(values),
+        }
+    }
+
+    /// Why a setting does nothing as the others are.
+    pub(in crate::technique) fn without_effect(&self, key: &str) -> Option<&'static str> {
+        match key {
+            _ if !self.counts_in_float => None,
+            key if key == FACES.spec.key => Some("No effect: a float target adds and takes away in one draw"),
+            key if key == OPERATIONS.spec.key => Some("No effect: a float target has no limits to wrap or stop at"),
+            _ => None,
+        }
+    }
+
+    /// The same choice with its counts in floats; `None` where they are, or where nothing says so.
+    pub(in crate::technique) fn in_floats(choice: &Choice) -> Option<Choice> {
+        let mut in_floats = choice.clone();
+        let counts_in_eight_bits = VolumeSettings::of(choice).is_some_and(|settings| !settings.counts_in_float);
+        (counts_in_eight_bits && in_floats.set(COUNTER.spec.key, COUNTER.word(true)).is_ok()).then_some(in_floats)
+    }
+
+    /// Refuses what would take minutes.
+    pub(super) fn check(&self, scene: &Scene) -> Result<(), PlanError> {
+        let too_large = |triangles: usize| self.silhouette == SilhouetteBy::Search && triangles > MOST_TO_SEARCH;
+        let casting = scene.objects.iter().filter(|object| object.casts);
+        match casting.map(|object| (object, object.mesh.triangles().len())).find(|(_, count)| too_large(*count)) {
+            None => Ok(()),
+            Some((object, count)) => Err(PlanError::Unusable {
+                problem: format!(
+                    "silhouette = edge-list searches all edges for each one, and {} has {count} triangles: choose \
+                     silhouette = adjacency, or a caster of at most {MOST_TO_SEARCH}",
+                    object.name
+                ),
+            }),
+        }
+    }
+}
