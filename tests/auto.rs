@@ -11,8 +11,8 @@ use std::sync::Arc;
 use stencilscope::accuracy::ErrorCounts;
 use stencilscope::capture::{Capture, CapturedLight, FrameTarget, Snapshot, Step};
 use stencilscope::progress::Progress;
-use stencilscope::scene::builtin::{self, shapes};
 use stencilscope::scene::{Camera, Light, Material, Object, Scene};
+use stencilscope::scene::{builtin, shapes};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::{Decision, Technique};
 

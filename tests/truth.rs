@@ -4,7 +4,7 @@ use crate::common::{cuboid, from_above, mesh, square};
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::progress::Progress;
-use stencilscope::scene::builtin::shapes;
+use stencilscope::scene::shapes;
 use stencilscope::scene::{Light, Material, Mesh, MeshBuilder, Object, Pose, Scene};
 use stencilscope::truth::{BACKGROUND, FACES_AWAY, LIT, SHADOW, Tracer, Truth};
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::plan::{FramePlan, Part, StencilFace};
-use stencilscope::scene::builtin::shapes;
+use stencilscope::scene::shapes;
 use stencilscope::scene::{Light, Material, Mesh, Object, Scene};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::Technique;

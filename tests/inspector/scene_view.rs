@@ -13,7 +13,7 @@ use std::sync::Arc;
 use stencilscope::anatomy::{Anatomy, anatomy};
 use stencilscope::geometry::GeometryCache;
 use stencilscope::inspector::{Action, Inspector, RunRequest};
-use stencilscope::scene::builtin::shapes;
+use stencilscope::scene::shapes;
 use stencilscope::scene::{Camera, Material, Object, OpenSpec, Scene, open};
 use stencilscope::technique::{Choice, Job, Technique, plan};
 

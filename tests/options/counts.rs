@@ -5,7 +5,8 @@ use crate::common::{from_above, judged, label_counts, session, square};
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Image, Snapshot};
-use stencilscope::scene::builtin::{Builtin, shapes};
+use stencilscope::scene::builtin::Builtin;
+use stencilscope::scene::shapes;
 use stencilscope::scene::{Light, Material, Object, Scene};
 use stencilscope::technique::Technique;
 
