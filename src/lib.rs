@@ -58,3 +58,6 @@ pub mod stress;
 pub mod technique;
 pub mod testing;
 pub mod truth;
+
+/// The vectors and matrices, and the raster states, that this crate's types are made of.
+pub use {glam, wgpu};

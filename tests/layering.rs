@@ -104,7 +104,7 @@ const MAY_USE: [(&str, &[&str]); 26] = [
             "stress",
         ],
     ),
-    ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers"]),
+    ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers", "math"]),
     (
         "cli",
         &[
