@@ -34,19 +34,19 @@
 pub mod accuracy;
 pub mod anatomy;
 #[cfg(feature = "inspector")]
-pub mod app;
+mod app;
 pub mod capture;
 pub mod cli;
 pub mod diagnosis;
 pub mod difference;
 mod files;
 pub mod geometry;
-pub mod gpu;
+mod gpu;
 pub mod history;
 #[cfg(feature = "inspector")]
 pub mod inspector;
 pub mod math;
-pub mod numbers;
+mod numbers;
 pub mod picture;
 pub mod plan;
 pub mod progress;

@@ -112,16 +112,6 @@ fn only_raster_states_that_can_change_the_stencil_say_so() {
 }
 
 #[test]
-fn every_shader_is_valid() {
-    for (name, source) in stencilscope::gpu::shader_sources() {
-        let module = naga::front::wgsl::parse_str(&source).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let flags = naga::valid::ValidationFlags::all();
-        let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty());
-        validator.validate(&module).unwrap_or_else(|error| panic!("{name}: {error:?}"));
-    }
-}
-
-#[test]
 fn of_one_pass_only_that_one_is_split_and_nothing_runs_after_it() {
     let plan = plan_of(&scene(), Technique::ZFail).expect("a plan");
     for (index, pass) in plan.passes.iter().enumerate() {
