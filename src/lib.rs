@@ -37,7 +37,7 @@ mod named;
 pub mod accuracy;
 pub mod anatomy;
 #[cfg(feature = "inspector")]
-pub mod app;
+mod app;
 pub mod ask;
 pub mod capture;
 pub mod cli;
@@ -45,12 +45,12 @@ pub mod diagnosis;
 pub mod difference;
 mod files;
 pub mod geometry;
-pub mod gpu;
+mod gpu;
 pub mod history;
 #[cfg(feature = "inspector")]
 pub mod inspector;
 pub mod math;
-pub mod numbers;
+mod numbers;
 pub mod picture;
 pub mod plan;
 pub mod progress;
@@ -63,3 +63,6 @@ pub mod stress;
 pub mod technique;
 pub mod testing;
 pub mod truth;
+
+/// The vectors and matrices, and the raster states, that this crate's types are made of.
+pub use {glam, wgpu};

@@ -105,7 +105,7 @@ const MAY_USE: [(&str, &[&str]); 27] = [
             "stress",
         ],
     ),
-    ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers"]),
+    ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers", "math"]),
     (
         "cli",
         &[
