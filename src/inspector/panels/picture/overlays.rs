@@ -298,7 +298,7 @@ fn tests(ui: &mut Ui, model: &Model) {
     for (outcome, name, hover) in OUTCOMES {
         let pixels = known.pixels[usize::from(outcome)];
         if pixels > 0 {
-            super::legend::entry(ui, palette::outcome(outcome), name, pixels).on_hover_text(hover);
+            super::legend_entry::entry(ui, palette::outcome(outcome), name, pixels).on_hover_text(hover);
         }
     }
 }
