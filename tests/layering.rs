@@ -40,7 +40,7 @@ const MAY_USE: [(&str, &[&str]); 27] = [
         ],
     ),
     ("anatomy", &["math", "scene", "geometry", "plan", "technique"]),
-    ("report", &["capture", "numbers"]),
+    ("report", &["technique", "capture", "numbers"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
         "session",
