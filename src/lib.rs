@@ -38,6 +38,7 @@ pub mod accuracy;
 pub mod anatomy;
 #[cfg(feature = "inspector")]
 pub mod app;
+pub mod ask;
 pub mod capture;
 pub mod cli;
 pub mod diagnosis;
@@ -53,6 +54,7 @@ pub mod numbers;
 pub mod picture;
 pub mod plan;
 pub mod progress;
+pub mod reading;
 pub mod report;
 pub mod scene;
 pub mod session;

@@ -20,8 +20,8 @@ fn named(name: &str) -> Scene {
 }
 
 fn judged(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> Capture {
-    let mut capture = session.capture(scene, request).expect("a capture");
-    session.judge(scene, &mut capture, &Progress::default()).expect("a truth");
+    let capture = session.capture(scene, request).expect("a capture");
+    let capture = session.judged(scene, &capture, &Progress::default()).expect("a truth");
     capture
 }
 
@@ -161,8 +161,8 @@ fn a_truth_without_one_triangle_is_caught() {
     let triangles = mesh.triangles()[1..].to_vec();
     let builder = MeshBuilder { positions: mesh.positions().to_vec(), triangles, ..MeshBuilder::default() };
     without.objects[1].mesh = Arc::new(builder.build().expect("a mesh"));
-    let mut judged = capture;
-    session.judge(&without, &mut judged, &Progress::default()).expect("a truth");
+    let judged = capture;
+    let judged = session.judged(&without, &judged, &Progress::default()).expect("a truth");
     let truth = judged.lights[0].truth.as_ref().expect("judged");
     assert!(truth.error.false_shadow > 50, "{:?}", truth.error);
     let worst = truth.worst.expect("a region");
@@ -194,9 +194,9 @@ fn a_cancelled_judgement_leaves_the_capture_as_it_was() {
     let mut session = session();
     let scene = from_above(vec![]);
     let before = session.capture(&scene, &request(Technique::ZFail, SIZE)).expect("a capture");
-    let mut capture = before.clone();
+    let capture = before.clone();
     let progress = Progress::default();
     progress.cancel();
-    assert!(session.judge(&scene, &mut capture, &progress).is_err());
+    assert!(session.truth(&scene, &capture, &progress).is_err());
     assert_eq!(capture, before);
 }

@@ -333,8 +333,8 @@ fn from_any_place(name: &str) {
     for camera in 0..20 * CAMERAS {
         let seen = start.camera.anywhere(1000 * index as u64 + camera);
         let scene = Scene { camera: seen, name: format!("{name}, camera {camera}"), ..start.clone() };
-        let mut all = session.capture(&scene, &auto("all")).expect("a capture");
-        session.judge(&scene, &mut all, &Progress::default()).expect("a truth");
+        let all = session.capture(&scene, &auto("all")).expect("a capture");
+        let all = session.judged(&scene, &all, &Progress::default()).expect("a truth");
         let errors = all.lights.iter().filter_map(|light| light.truth.as_ref()).map(|truth| truth.error);
         let error: ErrorCounts = errors.sum();
         assert_eq!(error.wrong(), 0, "{}", scene.name);

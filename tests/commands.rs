@@ -120,7 +120,7 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
     assert_fails(&["bench", "--external-capture"], 2, &["--external-capture", "leave it out"]);
 }
 
-/// Field by field as `spec/commands.md` has it.
+/// The names and values that scripts rely on.
 #[test]
 fn pixel_tells_its_history_as_text_and_as_json() {
     let folder = folder();
@@ -152,6 +152,7 @@ fn pixel_tells_its_history_as_text_and_as_json() {
         assert_eq!(&side[key], value, "{key}");
     }
     assert!(side["primitive"].is_u64() && side["triangle"].is_u64() && side["depth"].is_f64());
+    crate::help::assert_json_is_explained("pixel", &one);
     let two = json(&["--at", "0,0", "--json"]);
     assert_eq!(two.as_array().map(Vec::len), Some(2), "several pixels are a list");
     run(folder.path(), &[&arguments[..], &["--json", "history.json"]].concat());

@@ -129,7 +129,7 @@ fn maps_are_told_how_to_stay_maps() {
     assert!(numbers.iter().all(|(bias, gap)| bias >= gap && *gap > 1e-9), "{numbers:?}");
 }
 
-/// Field by field as `spec/commands.md` has it.
+/// The names that scripts rely on.
 #[test]
 fn the_document_has_the_names_of_the_contract() {
     let folder = crate::commands::folder();
@@ -155,6 +155,7 @@ fn the_document_has_the_names_of_the_contract() {
     assert_eq!((&cause["proof"], &cause["pixels_left"]), (&"proven".into(), &0.into()));
     assert!(cause["evidence"].as_str().is_some_and(|evidence| !evidence.is_empty()));
     assert_eq!(document["suited"], serde_json::json!([]));
+    crate::help::assert_json_is_explained("diagnose", &document);
 }
 
 #[test]
@@ -166,6 +167,7 @@ fn a_mesh_with_holes_is_told_of_before_any_pixel() {
     let open = found.iter().find(|one| one["object"] == "triangle").expect("the triangle");
     assert_eq!((&open["cause"], &open["count"]), (&"open-mesh".into(), &3.into()));
     assert_eq!(open["at"].as_array().map(Vec::len), Some(3));
+    crate::help::assert_json_is_explained("diagnose", &document);
     let (code, told, _) = diagnose(folder.path(), &["triangle.obj", "-t", "z-fail", "--no-techniques"]);
     assert_eq!(code, Some(0));
     assert!(told.contains("triangle: 3 open-mesh: ") && told.contains("\n     at ("), "{told}");

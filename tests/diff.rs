@@ -310,6 +310,7 @@ fn the_command_tells_in_every_form_and_by_its_exit_code() {
     let aspect = &document["passes"][1]["aspects"][0];
     assert_eq!((&aspect["aspect"], &aspect["pixels"]), (&"stencil".into(), &1.into()));
     assert_eq!(aspect["region"]["box"], serde_json::json!([44, 29, 44, 29]));
+    crate::help::assert_json_is_explained("diff", &document);
     let output = run(folder.path(), &["diff", "a", "b", "--json", "d.json"]);
     assert_eq!((output.status.code(), text(&output.stdout)), (Some(1), String::new()));
     assert_eq!(json(&folder.path().join("d.json")), document);

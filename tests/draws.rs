@@ -153,7 +153,7 @@ fn the_draws_of_one_pass_are_filled_in_later_and_are_the_same() {
         let mut filled = plain.clone();
         for step in (0..all.steps.len()).rev() {
             assert_eq!(filled.holds_draws(step), filled.steps[step].draws.is_empty());
-            session.fill_draws(&plan, &mut filled, step).expect("draws");
+            filled = filled.with_draws(&session.step_draws(&plan, &plain, step).expect("draws"));
             assert!(filled.steps[step].draws == all.steps[step].draws, "{technique:?} {}", all.steps[step].name);
         }
         let [added, both] = [filled.bytes() - plain.bytes(), all.bytes()];
@@ -163,17 +163,16 @@ fn the_draws_of_one_pass_are_filled_in_later_and_are_the_same() {
 }
 
 #[test]
-fn what_is_filled_in_twice_or_beyond_the_last_pass_changes_nothing() {
+fn draws_that_are_added_twice_change_nothing_and_beyond_the_last_pass_there_are_none() {
     let mut session = session();
     let scene = scene();
     let request = request(Technique::ZFail, SIZE);
-    let (mut capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    session.fill_draws(&plan, &mut capture, 1).expect("draws");
-    let once = capture.clone();
-    session.fill_draws(&plan, &mut capture, 1).expect("draws");
-    session.fill_draws(&plan, &mut capture, 99).expect("nothing to do");
-    assert!(capture == once);
-    assert!(Arc::ptr_eq(stencil(state(&capture, 1, 0)), stencil(state(&once, 1, 0))));
+    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    let draws = session.step_draws(&plan, &capture, 1).expect("draws");
+    let once = capture.with_draws(&draws);
+    let twice = once.with_draws(&draws);
+    assert!(twice == once && Arc::ptr_eq(stencil(state(&twice, 1, 0)), stencil(state(&once, 1, 0))));
+    assert!(session.step_draws(&plan, &capture, 99).is_err());
 }
 
 #[test]
@@ -336,8 +335,8 @@ fn a_folder_may_hold_the_draws_of_some_passes() {
     let mut session: Session = session();
     let parent = tempfile::tempdir().expect("a folder");
     let (scene, request) = (scene(), request(Technique::ZFail, SIZE));
-    let (mut capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    session.fill_draws(&plan, &mut capture, 1).expect("draws");
+    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    let capture = capture.with_draws(&session.step_draws(&plan, &capture, 1).expect("draws"));
     let folder = written(&capture, parent.path(), "out");
     let mut back = read(&folder).expect("read");
     back.timing.write_ms = None;

@@ -9,6 +9,7 @@ mod diagnose;
 mod diagnosis;
 mod diff;
 mod draws;
+mod help;
 mod history;
 #[cfg(feature = "inspector")]
 mod inspector;
@@ -18,6 +19,7 @@ mod memory;
 mod options;
 mod plan;
 mod ray_cast;
+mod readme;
 mod report;
 mod scenes;
 mod stencil_machine;

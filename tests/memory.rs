@@ -54,7 +54,7 @@ fn draws_hold_few_pictures_at_once() {
         let (mut capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
         let before = memory("VmHWM");
         for step in 0..capture.steps.len() {
-            session.fill_draws(&plan, &mut capture, step).expect("draws");
+            capture = capture.with_draws(&session.step_draws(&plan, &capture, step).expect("draws"));
         }
         let held = memory("VmHWM").saturating_sub(before);
         assert!(held < MOST_HELD, "{} MiB", held >> 20);

@@ -32,8 +32,8 @@ fn capture(session: &mut Session, scene: &Scene, technique: Technique, settings:
 
 /// Wrong pixels: false shadow and missing shadow.
 fn wrong(session: &mut Session, scene: &Scene, technique: Technique, settings: &[(&str, &str)]) -> [u64; 2] {
-    let mut capture = capture(session, scene, technique, settings);
-    session.judge(scene, &mut capture, &Progress::default()).expect("a truth");
+    let capture = capture(session, scene, technique, settings);
+    let capture = session.judged(scene, &capture, &Progress::default()).expect("a truth");
     let error = capture.error().expect("an error");
     assert!(error.compared > 500 && error.wrong_surface == 0, "{error:?}");
     [error.false_shadow, error.missing_shadow]

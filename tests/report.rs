@@ -29,6 +29,7 @@ fn a_report_is_written_in_every_form() {
     let output = run(folder.path(), &[&SMALL[..], &["--json", "r.json", "--plot", "r.svg"][..]].concat());
     assert_eq!((output.status.code(), text(&output.stdout)), (Some(0), String::new()), "{}", text(&output.stderr));
     let report = Report::from_json(&file("r.json")).expect("a report");
+    crate::help::assert_json_is_explained("report", &serde_json::from_str(&file("r.json")).expect("JSON"));
     assert_eq!(report.rows.len(), Choice::report_grid().expect("a grid").len());
     let labels: BTreeSet<&str> = report.rows.iter().map(|row| row.label.as_str()).collect();
     assert!(labels.contains("1024") && labels.contains("256, bias-slope 0"), "{labels:?}");
@@ -56,6 +57,12 @@ fn a_report_is_written_in_every_form() {
     assert!(file("r.md").contains("z-pass"));
     assert_eq!(file("r.csv").lines().count(), 3, "{}", file("r.csv"));
     assert!(fs::read(folder.path().join("r.png")).expect("a picture").starts_with(b"\x89PNG"));
+    let page = run(folder.path(), &[&one[..], &["--plot", "models/r.svg", "-o", "r2.md"][..]].concat());
+    assert_eq!((page.status.code(), text(&page.stdout)), (Some(0), String::new()), "{}", text(&page.stderr));
+    let command = format!("```sh\nstencilscope {} --plot models/r.svg -o r2.md\n```\n", one.join(" "));
+    let page = file("r2.md");
+    assert!(page.contains(&command) && page.contains("](models/r.svg)"), "{page}");
+    assert!(page.contains("## triangle\n") && page.contains("z-pass") && page.contains("2 timed frames"), "{page}");
     let table = run(folder.path(), &one);
     assert!(text(&table.stdout).contains("z-pass") && !text(&table.stdout).contains("planar"));
 }
@@ -116,6 +123,9 @@ fn what_a_report_can_not_do_is_refused_before_it_measures() {
     let cases: &[(&[&str], &[&str])] = &[
         (&[], &["<SCENE>"]),
         (&["tori", "--plot", "r.gif"], &[".svg or .png"]),
+        (&["tori", "-o", "r.txt"], &["ends in .md"]),
+        (&["tori", "-o", "missing/r.md"], &["missing/r.md", "choose another file"]),
+        (&["tori", "--markdown", "r.md", "-o", "r.md"], &["two results"]),
         (&["tori", "--plot", "missing/r.svg"], &["missing/r.svg", "choose another file"]),
         (&["tori", "--json", "models"], &["models", "choose another file"]),
         (&["tori", "-t", "z-fial"], &["did you mean `z-fail`?"]),

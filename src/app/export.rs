@@ -1,23 +1,12 @@
 //! Writes what the panels export, on a thread of its own: a large capture takes a while.
 
-use super::news::{Tell, WindowNews};
+use super::news::{Exported, Tell, WindowNews};
 use crate::capture::disk;
 use crate::files::write_whole;
 use crate::inspector::ExportData;
 use crate::picture::Picture;
 use crate::report::Report;
 use std::path::{Path, PathBuf};
-
-/// How an export ended.
-#[derive(Debug)]
-pub enum Exported {
-    /// In words.
-    Done(String),
-    /// Something is there already.
-    Taken(String),
-    /// Why not, with the mend.
-    Failed(String),
-}
 
 /// Writes `data` to `path`, and tells the window how that ended. What is there is replaced only where `replace`
 /// says so. Scenes are the worker's to write.

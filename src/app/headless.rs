@@ -3,10 +3,11 @@
 //! Nothing is shown: a frame is what egui makes of the panels, and becomes a picture where one is asked
 //! for ([`Headless::picture`]). Time is given by hand, a sixtieth of a second a frame.
 
-use super::desk::Desk;
+use super::controller::Controller;
 use super::news::WindowNews;
 use super::{AppError, ViewRequest};
-use crate::inspector::{Inspector, RunRequest};
+use crate::ask::RunRequest;
+use crate::inspector::Inspector;
 use crate::picture::Picture;
 use egui::{Event, Key, Modifiers, Pos2, RawInput, Rect, ViewportId, pos2, vec2};
 use egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -24,7 +25,7 @@ const SILENCE: Duration = Duration::from_millis(700);
 /// Panels without a window.
 pub struct Headless {
     ctx: egui::Context,
-    desk: Desk,
+    controller: Controller,
     news: Receiver<WindowNews>,
     size: [f32; 2],
     scale: f32,
@@ -61,10 +62,10 @@ impl Headless {
     /// The system gives no thread.
     pub fn new(request: ViewRequest, size: [f32; 2], scale: f32) -> Result<Headless, AppError> {
         let (send, news) = channel();
-        let desk = Desk::new(request, Arc::new(move |news| drop(send.send(news))), false)?;
+        let controller = Controller::new(request, Arc::new(move |news| drop(send.send(news))), false)?;
         Ok(Headless {
             ctx: egui::Context::default(),
-            desk,
+            controller,
             news,
             size,
             scale,
@@ -77,15 +78,14 @@ impl Headless {
 
     /// The panels.
     pub fn inspector(&mut self) -> &mut Inspector {
-        &mut self.desk.inspector
+        &mut self.controller.inspector
     }
 
     /// A frame, in which these things happen.
     pub fn frame(&mut self, events: Vec<Event>) -> FrameCost {
         while let Ok(news) = self.news.try_recv() {
-            self.desk.wake(news);
+            self.controller.wake(news);
         }
-        self.desk.watch_jobs();
         self.time += FRAME;
         let mut input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(self.size[0], self.size[1]))),
@@ -100,7 +100,7 @@ impl Headless {
         }
         let mut actions = Vec::new();
         let start = Instant::now();
-        let inspector = &mut self.desk.inspector;
+        let inspector = &mut self.controller.inspector;
         let output = self.ctx.run_ui(input, |ui| actions.extend(inspector.ui(ui)));
         let panels = start.elapsed();
         let start = Instant::now();
@@ -113,7 +113,7 @@ impl Headless {
         drop(triangles);
         self.textures.append(output.textures_delta);
         self.shapes = output.shapes;
-        actions.into_iter().for_each(|action| self.desk.act(action));
+        actions.into_iter().for_each(|action| self.controller.act(action));
         cost
     }
 
@@ -124,10 +124,10 @@ impl Headless {
     pub fn settle(&mut self) -> Result<(), AppError> {
         self.frame(Vec::new());
         loop {
-            let is_busy = self.desk.inspector.is_busy() || self.desk.is_finding() || self.desk.watch_jobs();
+            let is_busy = self.controller.inspector.is_busy() || self.controller.is_answering();
             match self.news.recv_timeout(if is_busy { PATIENCE } else { SILENCE }) {
                 Ok(news) => {
-                    self.desk.wake(news);
+                    self.controller.wake(news);
                     self.frame(Vec::new());
                 }
                 Err(_) if is_busy => return Err(AppError::Silent),
@@ -143,7 +143,7 @@ impl Headless {
 
     /// Does what the panels wish.
     pub fn act(&mut self, actions: Vec<crate::inspector::Action>) {
-        actions.into_iter().for_each(|action| self.desk.act(action));
+        actions.into_iter().for_each(|action| self.controller.act(action));
     }
 
     /// Runs the open scene like this, and draws frames until its capture is shown: when it was.
@@ -151,12 +151,12 @@ impl Headless {
     /// # Errors
     /// The worker is silent for too long.
     pub fn run_and_show(&mut self, draft: RunRequest) -> Result<Instant, AppError> {
-        let actions = self.desk.inspector.rerun(draft);
+        let actions = self.controller.inspector.rerun(draft);
         self.act(actions);
         loop {
             let news = self.news.recv_timeout(PATIENCE).map_err(|_| AppError::Silent)?;
             let is_captured = matches!(&news, WindowNews::Worker(super::news::News::Captured { .. }));
-            self.desk.wake(news);
+            self.controller.wake(news);
             if is_captured {
                 self.frame(Vec::new());
                 return Ok(Instant::now());

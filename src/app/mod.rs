@@ -1,7 +1,7 @@
 //! The window: joins the session, which runs things, and the inspector, which shows them.
 //!
 //! ```text
-//! Inspector ──Action──►  Desk  ──Order──► Worker thread (owns the Session)
+//! Inspector ──Action──► Controller ─Order─► Worker thread (owns the Session)
 //!     ▲                   │  ▲                    │
 //!     └────── data ───────┘  └──────── News ──────┘
 //! ```
@@ -10,14 +10,13 @@
 //! before the window is made, so that the GPU's first frame and the window's come together.
 
 mod allocator;
-mod desk;
+mod controller;
 mod export;
 pub mod headless;
-mod jobs;
 mod memory;
 mod news;
-mod orders;
-mod readers;
+mod queue;
+mod reader;
 mod surface;
 mod watch;
 mod window;

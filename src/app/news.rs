@@ -1,14 +1,9 @@
 //! What wakes the window: news of the worker, a chosen file, a wish to repaint.
 
-use crate::anatomy::Anatomy;
-use crate::capture::{Capture, StepTests};
-use crate::diagnosis::Diagnosis;
-use crate::history::PixelHistory;
-use crate::inspector::{MapReadersFound, ObjectMesh, RunRequest};
+use crate::ask::{Answer, RunRequest};
+use crate::capture::Capture;
 use crate::plan::FramePlan;
-use crate::report::Report;
-use crate::scene::{Scene, Walls};
-use crate::technique::Choice;
+use crate::scene::Scene;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -23,7 +18,7 @@ pub enum News {
     /// A scene was opened and will be run as the request says.
     Opened {
         /// Tells runs of this scene from those of the one before.
-        generation: u64,
+        scene_number: u64,
         /// As loaded.
         scene: Box<Scene>,
         /// What opens it again; `None`: nothing does by name.
@@ -32,13 +27,6 @@ pub enum News {
         files: Vec<PathBuf>,
         /// Its first run.
         request: Box<RunRequest>,
-    },
-    /// How the meshes of a scene hang together.
-    Meshes {
-        /// The scene that is meant.
-        generation: u64,
-        /// One an object.
-        meshes: Vec<ObjectMesh>,
     },
     /// A capture folder was opened.
     OpenedFolder {
@@ -56,119 +44,39 @@ pub enum News {
         /// What was run.
         plan: Arc<FramePlan>,
     },
-    /// The open scene as another technique draws it.
-    Compared {
-        /// The scene that is meant.
-        generation: u64,
-        /// What was asked.
-        request: Box<RunRequest>,
-        /// What was seen, or why it can't be, with the mend.
-        result: Result<Arc<Capture>, String>,
+    /// The answer to a question, or why there is none, with the mend; not told of what was cancelled.
+    Answered {
+        /// The question that is meant.
+        ticket: u64,
+        /// What was found.
+        result: Result<Answer, String>,
     },
-    /// How fragments fared in the tests.
-    Tests {
-        /// The frame that is meant.
-        frame: u64,
-        /// Index of the step.
-        step: usize,
-        /// Index of the draw; `None`: all of the step.
-        draw: Option<usize>,
-        /// What was counted, or why nothing was, with the mend.
-        result: Result<Arc<StepTests>, String>,
+    /// A part of the answer to a question, of which more comes.
+    AnsweredPart {
+        /// The question that is meant.
+        ticket: u64,
+        /// What was found by now.
+        answer: Answer,
     },
-    /// The same frame was timed.
-    Timed {
-        /// The frame that is meant.
-        frame: u64,
-        /// With its time.
-        capture: Arc<Capture>,
-    },
-    /// The same frame, with the states after the draws of one more step.
-    Draws {
-        /// The frame that is meant.
-        frame: u64,
-        /// With its draws.
-        capture: Arc<Capture>,
-    },
-    /// The states after the draws of a step can't be had.
-    NoDraws {
-        /// The frame that is meant.
-        frame: u64,
-        /// Index of the step.
-        step: usize,
-        /// Why, with the mend.
-        reason: String,
-    },
-    /// The same frame was held against the truth.
-    Judged {
-        /// The frame that is meant.
-        frame: u64,
-        /// With its truth.
-        capture: Arc<Capture>,
-    },
-    /// The truth of a frame can't be told.
-    NotJudged {
-        /// The frame that is meant.
-        frame: u64,
-        /// Why, with the mend.
-        reason: String,
-    },
-    /// What happened to a pixel.
-    History {
-        /// The frame that is meant.
-        frame: u64,
-        /// Column and row.
-        at: [u32; 2],
-        /// Its history, or why there is none, with the mend.
-        history: Result<Arc<PixelHistory>, String>,
-    },
-    /// What a frame is made of in space.
-    Anatomy {
-        /// The frame that is meant.
-        frame: u64,
-        /// Its anatomy, or why there is none, with the mend.
-        anatomy: Result<Arc<Anatomy>, String>,
-    },
-    /// What can't be walked through.
-    Walls {
-        /// The scene that is meant.
-        generation: u64,
-        /// At the moment that was asked for.
-        walls: Arc<Walls>,
-    },
-    /// Techniques were measured, or could not be; not told of what was cancelled.
-    Measured {
-        /// The measuring that is meant.
-        job: u64,
-        /// The report, or why there is none.
-        result: Result<Report, String>,
-        /// What would have taken too much memory.
-        left_out: Vec<Choice>,
-    },
-    /// A frame was diagnosed, or could not be; not told of what was cancelled.
-    Diagnosed {
-        /// The diagnosing that is meant.
-        job: u64,
-        /// The diagnosis, or why there is none.
-        result: Result<Arc<Diagnosis>, String>,
-    },
-    /// The rows of a stress case.
-    Stressed {
-        /// The running that is meant.
-        job: u64,
-        /// Every technique at every value.
-        rows: Vec<crate::stress::Row>,
-    },
-    /// Stress cases run no more; not told of what was cancelled.
-    StressEnded {
-        /// The running that is meant.
-        job: u64,
-        /// Why they do not, where it was not that all are done.
-        error: Option<String>,
+    /// No more parts come.
+    AnswerEnded {
+        /// The question that is meant.
+        ticket: u64,
     },
     /// An export of the scene ended.
-    Exported(super::export::Exported),
+    Exported(Exported),
     /// Something failed; the text has the mend.
+    Failed(String),
+}
+
+/// How an export ended.
+#[derive(Debug)]
+pub enum Exported {
+    /// In words.
+    Done(String),
+    /// Something is there already.
+    Taken(String),
+    /// Why not, with the mend.
     Failed(String),
 }
 
@@ -185,9 +93,14 @@ pub enum WindowNews {
     /// The system's dialog gave this place for an export.
     ChosenExport(String),
     /// An export ended.
-    Exported(super::export::Exported),
-    /// Which texel of a light's map each pixel reads.
-    MapReaders(MapReadersFound),
+    Exported(Exported),
+    /// The answer to a question that follows from the capture.
+    Read {
+        /// The question that is meant.
+        ticket: u64,
+        /// What was found.
+        result: Result<Answer, String>,
+    },
     /// A file of the open scene changed.
     FileChanged(String),
     /// egui wants to draw at this time.

@@ -1,6 +1,6 @@
 //! The event loop: carries actions of the panels to the worker and its news to the panels.
 
-use super::desk::Desk;
+use super::controller::Controller;
 use super::news::WindowNews;
 use super::surface::Surface;
 use super::{AppError, ViewRequest, no_window};
@@ -30,7 +30,7 @@ pub fn run(request: ViewRequest) -> Result<(), AppError> {
 
 struct App {
     ctx: egui::Context,
-    desk: Desk,
+    controller: Controller,
     proxy: EventLoopProxy<WindowNews>,
     adapter: Option<String>,
     surface: Option<Surface>,
@@ -44,8 +44,8 @@ impl App {
         // A loop that has ended takes no news, and needs none.
         let to_window = proxy.clone();
         let tell = Arc::new(move |news| drop(to_window.send_event(news)));
-        let desk = Desk::new(request, tell, true)?;
-        Ok(App { ctx: context(&proxy), desk, proxy, adapter, surface: None, failure: None, repaint_at: None })
+        let controller = Controller::new(request, tell, true)?;
+        Ok(App { ctx: context(&proxy), controller, proxy, adapter, surface: None, failure: None, repaint_at: None })
     }
 
     fn redraw(&self) {
@@ -57,19 +57,19 @@ impl App {
     fn draw(&mut self, event_loop: &ActiveEventLoop) {
         let Some(surface) = &mut self.surface else { return };
         let mut actions = Vec::new();
-        let is_watching = self.desk.watch_jobs();
+        let is_watching = self.controller.is_answering();
         surface.draw(event_loop, &self.ctx, |ui| {
-            actions.extend(self.desk.inspector.ui(ui));
+            actions.extend(self.controller.inspector.ui(ui));
             if is_watching {
                 ui.ctx().request_repaint_after(WATCH);
             }
         });
         if let Some(reason) = surface.take_grab_failure() {
             let words = format!("the pointer can't be held ({reason}): walking turns until it meets an edge");
-            self.desk.inspector.push_error(words);
+            self.controller.inspector.push_error(words);
         }
         if !actions.is_empty() {
-            actions.into_iter().for_each(|action| self.desk.act(action));
+            actions.into_iter().for_each(|action| self.controller.act(action));
             self.redraw();
         }
     }
@@ -82,7 +82,7 @@ impl ApplicationHandler<WindowNews> for App {
         }
         match Surface::new(event_loop, &self.ctx, self.proxy.clone(), self.adapter.as_deref()) {
             Ok(mut surface) => {
-                if let Some(capture) = self.desk.inspector.capture() {
+                if let Some(capture) = self.controller.inspector.capture() {
                     surface.set_title(title(capture));
                 }
                 surface.request_redraw();
@@ -108,8 +108,8 @@ impl ApplicationHandler<WindowNews> for App {
                 }
             }
             news => {
-                self.desk.wake(news);
-                if let (Some(surface), Some(capture)) = (&mut self.surface, self.desk.inspector.capture()) {
+                self.controller.wake(news);
+                if let (Some(surface), Some(capture)) = (&mut self.surface, self.controller.inspector.capture()) {
                     surface.set_title(title(capture));
                 }
                 self.redraw();
@@ -120,7 +120,7 @@ impl ApplicationHandler<WindowNews> for App {
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _window: WindowId, event: WindowEvent) {
         match event {
             WindowEvent::CloseRequested => {
-                self.desk.remember();
+                self.controller.remember();
                 event_loop.exit();
             }
             WindowEvent::RedrawRequested => self.draw(event_loop),

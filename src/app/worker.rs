@@ -1,37 +1,32 @@
-//! The thread that owns the session: opens what is asked for, renders, and tells the window.
+//! The thread that owns the session: opens what is asked for, renders, answers, and tells the window.
 //!
-//! Of all orders that wait, only the newest counts ([`Waiting`]); what was asked for a scene or a
-//! frame that is shown no more is dropped. Long work (truth, report) is asked to stop by the
-//! window, through its [`Progress`](crate::progress::Progress). A report gives way to what is asked
-//! of the shown frame, stress cases give way to everything, row by row. Once a frame was captured and
-//! no order has come for a while, the same frame is timed, so that neither the first picture nor a
-//! dragged light waits for the clock; then memory that nothing uses is given back.
+//! Of all orders that wait, only the newest of a sort counts ([`Queue`]); what was asked of a scene or a
+//! frame that is shown no more is dropped. Long work is asked to stop by the window, through its
+//! [`Progress`](crate::progress::Progress). A report gives way to what is asked of the shown frame, stress cases give way to
+//! everything, row by row. Once no order has come for a while, what waits for quiet is done (the frame is timed, so that
+//! neither the first picture nor a dragged light waits for the clock); then memory that nothing uses is given back.
 //!
 //! ```text
-//! worker.rs   orders, opening and running     worker/done.rs    what is asked of a captured frame
-//!                                             worker/stress.rs  stress cases, run and opened
+//! worker.rs   orders, opening and running     worker/turns.rs   what takes many turns: a report, stress cases
 //! ```
 
-mod done;
-mod stress;
+mod turns;
 
-use super::export::Exported;
-use super::news::News;
-use super::orders::{Inbox, Order, Waiting};
+use super::news::{Exported, News};
+use super::queue::{Inbox, Order, Queue};
 use super::{AppError, ViewSource, allocator};
+use crate::ask::{Ask, Asked, Holds, Kind, RunRequest};
 use crate::capture::disk;
-use crate::inspector::{ObjectMesh, RunRequest};
 use crate::scene::file::store;
-use crate::scene::{OpenSpec, Scene, WallCache};
-use crate::session::{CaptureRequest, Every, Session, SessionError};
-use crate::technique::Choice;
-use done::Done;
+use crate::scene::{OpenSpec, Scene};
+use crate::session::{CaptureRequest, Every, RunFrame, Session, SessionError};
+use crate::stress::{Case, Drives, Entrant};
+use crate::technique::{Choice, ChoiceError};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
-use stress::Brought;
 
 /// A frame that takes longer to capture is not timed: the next order would wait for it.
 const LONGEST_TIMED: Duration = Duration::from_millis(250);
@@ -67,9 +62,9 @@ impl Worker {
     pub fn start(start: Start, tell: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
         let (orders, waiting) = channel();
         let run = move || {
-            let mut bench = Bench::new(start.adapter, &start.capture, Box::new(tell));
-            bench.begin(start.source, start.name, start.time);
-            bench.obey_all(&waiting);
+            let mut work = Work::new(start.adapter, &start.capture, Box::new(tell));
+            work.begin(start.source, start.name, start.time);
+            work.obey_all(&waiting);
         };
         let builder = thread::Builder::new().name("stencilscope worker".to_owned());
         builder.spawn(run).map_err(AppError::NoThread)?;
@@ -84,13 +79,14 @@ impl Worker {
 }
 
 /// Everything the thread works with.
-struct Bench {
+struct Work {
     adapter: Option<String>,
     session: Option<Session>,
-    scene: Option<Box<Scene>>,
+    open: Option<Box<Scene>>,
     /// What opened it; `None` for a stress case.
     spec: Option<OpenSpec>,
-    generation: u64,
+    /// How many scenes were opened.
+    scenes: u64,
     /// How the next scene is rendered, unless it says otherwise.
     choice: Choice,
     size: [u32; 2],
@@ -99,30 +95,42 @@ struct Bench {
     every: Every,
     /// How many frames were captured.
     frames: u64,
-    /// Of the scene that is walked through.
-    walls: WallCache,
     /// The frame that the window shows; `None` for a folder's.
-    last: Option<Done>,
+    last: Option<RunFrame>,
+    /// How long that took to capture.
+    took: Duration,
+    /// Stress cases that are being run.
+    stress: Option<turns::StressRun>,
     tell: Box<dyn Fn(News) + Send>,
 }
 
-impl Bench {
-    fn new(adapter: Option<String>, capture: &CaptureRequest, tell: Box<dyn Fn(News) + Send>) -> Bench {
+/// What a stress case brings along in place of what the user has chosen, which counts again when another
+/// scene is opened. What the user changes meanwhile is chosen.
+#[derive(Debug, Default)]
+struct Brought {
+    /// How its shadows are made.
+    choice: Option<Choice>,
+    /// Of the picture.
+    size: Option<[u32; 2]>,
+}
+
+impl Work {
+    fn new(adapter: Option<String>, capture: &CaptureRequest, tell: Box<dyn Fn(News) + Send>) -> Work {
         let CaptureRequest { choice, size, every, .. } = capture.clone();
-        let brought = Brought::default();
-        Bench {
+        Work {
             adapter,
             session: None,
-            scene: None,
+            open: None,
             spec: None,
-            generation: 0,
+            scenes: 0,
             choice,
             size,
-            brought,
+            brought: Brought::default(),
             every,
             frames: 0,
-            walls: WallCache::default(),
             last: None,
+            took: Duration::ZERO,
+            stress: None,
             tell,
         }
     }
@@ -141,70 +149,107 @@ impl Bench {
         }
     }
 
-    /// Obeys orders until the window is gone, and times what was captured in between.
+    /// Obeys orders until the window is gone, and what waits for quiet in between.
     fn obey_all(&mut self, orders: &Receiver<Order>) {
-        let mut inbox = Inbox { orders, waiting: Waiting::default() };
+        let mut inbox = Inbox { orders, queue: Queue::default() };
         let mut is_tidy = false;
         loop {
-            let order = inbox.next();
-            is_tidy &= order.is_none();
-            match order {
-                Some(Order::Stress(run)) => {
-                    // Row by row: what is asked for in between does not wait for all of them.
-                    self.stress(run).into_iter().for_each(|rest| inbox.waiting.put_back(rest));
-                    continue;
-                }
-                Some(Order::Measure(what)) => {
-                    self.measure(what, &mut inbox);
-                    continue;
-                }
-                Some(order) => {
-                    self.obey(order);
-                    continue;
-                }
-                None => {}
+            if let Some(order) = inbox.next_now() {
+                is_tidy = false;
+                self.obey(order, &mut inbox);
+                continue;
             }
-            let wants_timing = self.last.as_ref().is_some_and(|done| done.wants_timing);
-            let next = if wants_timing || !is_tidy {
-                orders.recv_timeout(IDLE)
-            } else {
+            let next = if is_tidy && inbox.queue.is_empty() {
                 orders.recv().map_err(|_| RecvTimeoutError::Disconnected)
+            } else {
+                orders.recv_timeout(IDLE)
             };
             match next {
-                Ok(order) => inbox.waiting.add(order),
-                Err(RecvTimeoutError::Timeout) if wants_timing => self.time(),
-                Err(RecvTimeoutError::Timeout) => {
-                    allocator::give_back();
-                    is_tidy = true;
-                }
+                Ok(order) => inbox.queue.add(order),
+                Err(RecvTimeoutError::Timeout) => match inbox.queue.next() {
+                    Some(order) => self.obey(order, &mut inbox),
+                    None => {
+                        allocator::give_back();
+                        is_tidy = true;
+                    }
+                },
                 Err(RecvTimeoutError::Disconnected) => return,
             }
         }
     }
 
-    fn obey(&mut self, order: Order) {
+    fn obey(&mut self, order: Order, inbox: &mut Inbox) {
         let done = match order {
             Order::Open(name) => self.open(&name),
             Order::Reload { request } => self.reload(&request),
-            Order::SaveScene { generation, request, path, replace } => {
-                return self.save_scene(generation, &request, &path, replace);
+            Order::SaveScene { scene, request, path, replace } => {
+                return self.save_scene(scene, &request, &path, replace);
             }
-            Order::Run { generation, request } if generation == self.generation => self.run(&request),
+            Order::Run { scene, request } if scene == self.scenes => self.run(&request),
             Order::OpenCase { case, value, entrant } => self.open_case(case, value, entrant),
-            Order::Draws { frame, step } => return self.fill_draws(frame, step),
-            Order::Compare { generation, request } => return self.compare(generation, request),
-            Order::Tests { frame, step, draw } => return self.tests(frame, step, draw),
-            Order::Diagnose { frame, job, progress } => return self.diagnose(frame, job, &progress),
-            Order::Judge { frame, progress } => return self.judge(frame, &progress),
-            Order::History { frame, at } => return self.history(frame, at),
-            Order::Anatomy { frame } => return self.anatomy(frame),
-            Order::Walls { generation, request } => return self.walls(generation, &request),
+            Order::Answer { scene, frame, asked } => return self.answer_in_turn([scene, frame], asked, inbox),
             // Of a scene that is open no more.
             Order::Run { .. } => return,
-            // Obeyed by the loop, as others come in between.
-            Order::Measure(_) | Order::Stress(_) => return,
         };
         self.finish(done);
+    }
+
+    /// Answers a question that is still asked: at once, or turn by turn.
+    fn answer_in_turn(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
+        if asked.progress.is_cancelled() {
+            if asked.ask.kind() == Kind::StressOf {
+                self.end_stress();
+            }
+            return;
+        }
+        match asked.ask {
+            Ask::StressOf(_) => self.stress_turn(of, asked, inbox),
+            Ask::ReportOf(_) => self.report(of, asked, inbox),
+            _ => self.answer(of, &asked),
+        }
+    }
+
+    /// Answers a question, if it is about what is shown.
+    fn answer(&mut self, of: [u64; 2], asked: &Asked) {
+        let doing = asked.ask.doing();
+        if let Some(doing) = &doing {
+            (self.tell)(News::Busy(doing.clone()));
+        }
+        if let Some(result) = self.found(of, asked) {
+            // Where it was cancelled, the window has asked for it.
+            if !asked.progress.is_cancelled() {
+                (self.tell)(News::Answered { ticket: asked.ticket, result: result.map_err(|error| error.to_string()) });
+            }
+        }
+        if doing.is_some() {
+            (self.tell)(News::Idle);
+        }
+    }
+
+    /// What a question comes to; `None` where nobody waits for it any longer.
+    fn found(&mut self, [scene, frame]: [u64; 2], asked: &Asked) -> Option<Result<crate::ask::Answer, SessionError>> {
+        let kind = asked.ask.kind();
+        let is_meant = match kind.holds() {
+            Holds::Frame => self.last.is_none() || frame == self.frames,
+            Holds::Scene => scene == self.scenes,
+            Holds::Always => true,
+        };
+        if kind == Kind::DiagnosisOf && (frame != self.frames || !is_meant) {
+            return Some(Err(SessionError::OtherFrame));
+        }
+        if !is_meant {
+            return None;
+        }
+        if kind.waits_for_quiet() && self.took > LONGEST_TIMED {
+            let reason = "the frame takes so long that what is asked next would wait for the clock";
+            return Some(Err(SessionError::Unanswered(reason.to_owned())));
+        }
+        let Some(open) = self.open.take() else { return Some(Err(SessionError::NoFrame)) };
+        let last = self.last.take();
+        let result =
+            self.session().and_then(|session| session.answer(&asked.ask, &open, last.as_ref(), &asked.progress));
+        (self.open, self.last) = (Some(open), last);
+        Some(result)
     }
 
     fn open(&mut self, name: &str) -> Result<(), String> {
@@ -212,9 +257,9 @@ impl Bench {
         let path = Path::new(name);
         if path.is_dir() {
             let capture = disk::read(path).map_err(|error| error.to_string())?;
-            self.scene = None;
+            self.open = None;
             self.last = None;
-            self.generation += 1;
+            self.scenes += 1;
             self.spec = None;
             (self.tell)(News::OpenedFolder { capture: Arc::new(capture), source: name.to_owned() });
             return Ok(());
@@ -240,14 +285,14 @@ impl Bench {
     }
 
     /// Writes the scene, changed as it is run, with its motions.
-    fn save_scene(&mut self, generation: u64, request: &RunRequest, path: &str, replace: bool) {
+    fn save_scene(&mut self, number: u64, request: &RunRequest, path: &str, replace: bool) {
         let file = Path::new(path);
-        let of_this = self.scene.as_ref().filter(|_| generation == self.generation);
+        let of_this = self.open.as_ref().filter(|_| number == self.scenes);
         let news = match (of_this, super::export::check(file, replace)) {
             (None, _) => Exported::Failed("another scene is open by now: export it again".to_owned()),
             (_, Some(problem)) => problem,
             (Some(loaded), None) => {
-                let mut scene = changed(loaded, request);
+                let mut scene = request.applied_to(loaded);
                 let choice = &request.choice;
                 scene.technique = Some(choice.to_request());
                 let source = self.spec.as_ref().map(|spec| Path::new(&spec.name));
@@ -273,65 +318,53 @@ impl Bench {
 
     fn show_scene(&mut self, scene: Box<Scene>, time: f64, brought: Brought) -> Result<(), String> {
         self.brought = brought;
-        let request = RunRequest {
-            choice: self.brought.choice.clone().unwrap_or_else(|| self.choice.clone()),
-            size: self.brought.size.unwrap_or(self.size),
-            camera: scene.camera,
-            lights: scene.lights.clone(),
-            time,
-            off: std::collections::BTreeSet::new(),
-        };
-        self.generation += 1;
+        let choice = self.brought.choice.clone().unwrap_or_else(|| self.choice.clone());
+        let size = self.brought.size.unwrap_or(self.size);
+        let request = RunRequest { time, ..RunRequest::of(&scene, choice, size) };
+        self.scenes += 1;
         let source = self.spec.as_ref().map(|spec| spec.name.clone());
         let files = self.spec.as_ref().map_or_else(Vec::new, crate::scene::files_of);
-        self.scene = Some(scene.clone());
+        self.open = Some(scene.clone());
         self.last = None;
         (self.tell)(News::Opened {
-            generation: self.generation,
+            scene_number: self.scenes,
             scene,
             source,
             files,
             request: Box::new(request.clone()),
         });
-        let done = self.run(&request);
-        self.look_at_meshes();
-        done
+        self.run(&request)
     }
 
-    /// Tells how the open scene's meshes hang together: after the first frame, which must not wait.
-    fn look_at_meshes(&mut self) {
-        let (Some(session), Some(scene)) = (&mut self.session, &self.scene) else { return };
-        (self.tell)(News::Busy("looking at meshes".to_owned()));
-        let mesh = |(object, topology)| ObjectMesh { object, topology };
-        let meshes = session.topologies(scene).into_iter().map(mesh).collect();
-        (self.tell)(News::Meshes { generation: self.generation, meshes });
+    /// Opens a stress case's scene at a value, with its shadows made as `entrant` says.
+    fn open_case(&mut self, case: &'static Case, value: f64, entrant: Option<Entrant>) -> Result<(), String> {
+        (self.tell)(News::Busy(format!("opening {}", case.name)));
+        let mut scene = case.scene(value).map_err(|error| format!("{} at {value}: {error}", case.name))?;
+        scene.name = format!("{} {value}", case.name);
+        let choice = match entrant {
+            Some(entrant) => case.choice(&entrant, value).map(Some),
+            None => driven(case, value, &self.choice),
+        };
+        let choice = choice.map_err(|error| format!("{}: {error}", case.name))?;
+        self.spec = None;
+        self.show_scene(Box::new(scene), 0.0, Brought { choice, size: case.size })
     }
 
-    /// The open scene at the moment of a request.
-    fn scene_of(&self, request: &RunRequest) -> Option<Scene> {
-        Some(changed(self.scene.as_ref()?, request).at(request.time))
-    }
-
-    /// Captures the open scene beside the frame that is shown, which stays.
-    fn compare(&mut self, generation: u64, request: Box<RunRequest>) {
-        let Some(scene) = self.scene_of(&request).filter(|_| generation == self.generation) else { return };
-        (self.tell)(News::Busy(format!("capturing {} to compare", request.choice.technique().name())));
-        let what = CaptureRequest::new(request.choice.clone(), request.size);
-        let result = self.session().and_then(|session| session.capture(&scene, &what));
-        let result = result.map(Arc::new).map_err(|error| error.to_string());
-        (self.tell)(News::Compared { generation, request, result });
-        (self.tell)(News::Idle);
-    }
-
-    /// Tells what can't be walked through.
-    fn walls(&mut self, generation: u64, request: &RunRequest) {
-        let Some(scene) = self.scene_of(request).filter(|_| generation == self.generation) else { return };
-        let walls = Arc::new(self.walls.walls(&scene));
-        (self.tell)(News::Walls { generation, walls });
+    /// Takes note of what a run asks for, but for what the open scene has brought along.
+    fn take_over(&mut self, request: &RunRequest) {
+        if self.brought.choice.as_ref() != Some(&request.choice) {
+            self.brought.choice = None;
+            self.choice = request.choice.clone();
+        }
+        if self.brought.size != Some(request.size) {
+            self.brought.size = None;
+            self.size = request.size;
+        }
     }
 
     fn run(&mut self, request: &RunRequest) -> Result<(), String> {
-        let Some(scene) = self.scene_of(request) else { return Ok(()) };
+        let Some(open) = &self.open else { return Ok(()) };
+        let scene = request.applied_to(open).at(request.time);
         self.take_over(request);
         self.capture(scene, request).map_err(|error| error.to_string())
     }
@@ -343,10 +376,10 @@ impl Bench {
         let start = Instant::now();
         let (capture, plan) = self.session()?.capture_with_plan(&scene, &request)?;
         let (capture, plan) = (Arc::new(capture), Arc::new(plan));
-        let wants_timing = start.elapsed() <= LONGEST_TIMED;
+        self.took = start.elapsed();
         self.frames += 1;
         (self.tell)(News::Captured { frame: self.frames, capture: Arc::clone(&capture), plan: Arc::clone(&plan) });
-        self.last = Some(Done { frame: self.frames, scene, request, capture, plan, wants_timing });
+        self.last = Some(RunFrame { scene, request, capture, plan });
         Ok(())
     }
 
@@ -359,17 +392,17 @@ impl Bench {
     }
 }
 
-/// The scene with what the panels change: camera, lights, and which objects are there.
-fn changed(loaded: &Scene, request: &RunRequest) -> Scene {
-    let mut scene = loaded.clone();
-    scene.camera = request.camera;
-    scene.lights.clone_from(&request.lights);
-    let mut index = 0;
-    scene.objects.retain(|_| {
-        index += 1;
-        !request.off.contains(&(index - 1))
-    });
-    scene
+/// Where a case drives a setting: `chosen` with the setting at that value, or the case's first
+/// technique that has it; `None` where the case drives the scene.
+fn driven(case: &Case, value: f64, chosen: &Choice) -> Result<Option<Choice>, ChoiceError> {
+    let Drives::Setting(key, _) = case.drives else { return Ok(None) };
+    if chosen.settings().contains_key(key) {
+        let mut choice = chosen.clone();
+        choice.set(key, &value.to_string())?;
+        return Ok(Some(choice));
+    }
+    let choices = case.entrants().into_iter().map(|entrant| case.choice(&entrant, value));
+    choices.collect::<Result<Vec<_>, _>>().map(|all| all.into_iter().find(|choice| choice.settings().contains_key(key)))
 }
 
 #[cfg(test)]

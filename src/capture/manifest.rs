@@ -1,4 +1,4 @@
-//! `manifest.json` of a capture folder, field by field as `spec/commands.md` has it.
+//! `manifest.json` of a capture folder; `assets/help/capture-folder.md` says what each field means.
 //!
 //! Names are a contract with scripts: add fields, rename none.
 

@@ -161,7 +161,8 @@ pub struct CapturedLight {
     pub position: glam::DVec4,
     /// What decided where its shadow is.
     pub decided_by: DecidedBy,
-    /// The technique's labels, one byte a pixel, as in `techniques.md` section 2.
+    /// The technique's labels, one byte a pixel: 0 lit, 1 in shadow, 2 background, 3 turned away from the light or
+    /// beyond its range.
     pub shadow: Option<Arc<Image>>,
     /// How many shadow volumes contain the surface at each pixel, where they are counted in floats.
     pub count: Option<Arc<Image>>,
@@ -204,6 +205,30 @@ pub struct CapturedTruth {
     /// The largest connected wrong region.
     pub worst: Option<Region>,
 }
+
+/// The ground truth of a frame: learned of a capture, and put beside it by [`Capture::with_truth`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameTruth {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Parallel to the capture's lights; `None` where the technique has no labels.
+    pub lights: Vec<Option<CapturedTruth>>,
+    /// The signed count of each light's volumes, where the technique counts them in the stencil: eight bits read a count of
+    /// 256 as none, and the truth alone would not say why.
+    pub counts: Vec<Option<Arc<Image>>>,
+}
+
+/// The states after the draws of a step: learned of a capture, and put beside it by [`Capture::with_draws`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepDraws {
+    /// Index of the step.
+    pub step: usize,
+    /// After each of its draws.
+    pub states: Vec<Option<DrawState>>,
+}
+
+/// Bytes of a capture to which the draws of a step may be added without dropping those of others.
+const MOST_DRAWS_BYTES: u64 = 1 << 27;
 
 /// What a light sees, after the whole frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -282,6 +307,39 @@ impl Capture {
         (!self.lights.is_empty()).then(|| of_lights.sum()).flatten()
     }
 
+    /// The capture with its truth.
+    #[must_use]
+    pub fn with_truth(&self, truth: &FrameTruth) -> Capture {
+        let mut capture = self.clone();
+        for (light, truth) in capture.lights.iter_mut().zip(&truth.lights) {
+            light.truth.clone_from(truth);
+        }
+        for (light, count) in capture.lights.iter_mut().zip(&truth.counts) {
+            light.count = count.clone().or(light.count.take());
+        }
+        capture
+    }
+
+    /// The capture with the states after the draws of a step. Together they may take much memory: where it would hold
+    /// more than 128 MiB, those of other steps are dropped, and have to be asked for again.
+    #[must_use]
+    pub fn with_draws(&self, draws: &StepDraws) -> Capture {
+        self.with_draws_in(draws, MOST_DRAWS_BYTES)
+    }
+
+    fn with_draws_in(&self, draws: &StepDraws, most: u64) -> Capture {
+        let mut capture = self.clone();
+        let of_step = capture.steps.get_mut(draws.step).into_iter().flat_map(|step| &mut step.draws);
+        for (draw, state) in of_step.zip(&draws.states) {
+            draw.after.clone_from(state);
+        }
+        if capture.bytes() > most {
+            let others = capture.steps.iter_mut().enumerate().filter(|(index, _)| *index != draws.step);
+            others.flat_map(|(_, step)| &mut step.draws).for_each(|draw| draw.after = None);
+        }
+        capture
+    }
+
     fn for_each_image(&self, mut visit: impl FnMut(&Arc<Image>)) {
         for step in &self.steps {
             step.snapshot.aspects().for_each(|aspect| visit(&aspect.image));
@@ -332,5 +390,29 @@ impl Step {
     pub fn caster(&self) -> Option<&str> {
         let first = self.draws.first()?.caster.as_deref()?;
         self.draws.iter().all(|draw| draw.caster.as_deref() == Some(first)).then_some(first)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::OpenSpec;
+    use crate::session::{CaptureRequest, Every, Session};
+    use crate::technique::{Choice, Technique};
+
+    #[test]
+    fn draws_of_other_passes_go_only_where_there_is_no_room_for_all() {
+        let scene = crate::scene::open(&OpenSpec::new("tetrahedron")).expect("a built-in scene");
+        let request = CaptureRequest::new(Choice::new(Technique::ZFail), [32, 24]);
+        let request = CaptureRequest { every: Every::Draw, ..request };
+        let capture = Session::new(None).and_then(|mut session| session.capture(&scene, &request)).expect("draws");
+        let states = capture.steps[1].draws.iter().map(|draw| draw.after.clone()).collect();
+        let draws = StepDraws { step: 1, states };
+        assert_eq!(capture.with_draws_in(&draws, capture.bytes()), capture);
+        let less = capture.with_draws_in(&draws, capture.bytes() - 1);
+        for (index, step) in less.steps.iter().enumerate() {
+            assert_eq!(less.holds_draws(index), index == 1 || step.draws.is_empty(), "{}", step.name);
+        }
+        assert_eq!(less.steps[1], capture.steps[1]);
     }
 }

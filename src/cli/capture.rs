@@ -88,8 +88,8 @@ impl<'a> Job<'a> {
         let mut capture = session.capture(&self.scene, &self.request)?;
         let Writing { folder, overwrite, truth } = self.writing;
         if truth {
-            with_bar("ground truth", &Progress::default(), |progress| {
-                session.judge(&self.scene, &mut capture, progress)
+            capture = with_bar("ground truth", &Progress::default(), |progress| {
+                session.judged(&self.scene, &capture, progress)
             })?;
         }
         // Loading the scene and opening the GPU come before the first frame too.

@@ -137,9 +137,8 @@ fn files(
     document: &str,
 ) -> Result<Files, CliError> {
     let mut pictured = |mend: &Mend| {
-        let (mut capture, _) = session.capture_mended(scene, request, Fault::None, mend)?;
-        session.judge(scene, &mut capture, &Progress::default())?;
-        Ok::<_, CliError>(capture)
+        let (capture, _) = session.capture_mended(scene, request, Fault::None, mend)?;
+        Ok::<_, CliError>(session.judged(scene, &capture, &Progress::default())?)
     };
     let png = |picture: &Picture| picture.to_png().map_err(|error| broken(std::io::Error::other(error.to_string())));
     let mut files = vec![("regions.png", png(&diagnosis.shown(&pictured(&Mend::default())?))?)];

@@ -64,9 +64,8 @@ impl<'a> Fix<'a> {
         let again = open(&OpenSpec { name: self.file.to_owned(), floor: false })?.at(time);
         let choice = again.technique.as_ref().map(Choice::parse).transpose()?;
         let request = CaptureRequest { choice: choice.unwrap_or_else(|| request.choice.clone()), ..request.clone() };
-        let mut capture = session.capture(&again, &request)?;
-        session.judge(&again, &mut capture, &Progress::default())?;
-        let error = capture.error().unwrap_or_default();
+        let capture = session.capture(&again, &request)?;
+        let error = session.judged(&again, &capture, &Progress::default())?.error().unwrap_or_default();
         Ok(format!(
             "{}: written so that it says: {mend}; opened again, {} of {} compared pixels are wrong\n",
             self.file,

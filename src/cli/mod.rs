@@ -11,6 +11,7 @@ mod diagnose;
 mod diff;
 mod error;
 mod fix;
+mod help;
 mod options;
 mod output;
 mod pictures;
@@ -36,7 +37,7 @@ const COMMANDS: [&str; 11] =
 
 /// An interactive visual debugger for stencil shadows and shadow maps
 #[derive(Debug, Parser)]
-#[command(name = "stencilscope", version, disable_help_subcommand = false, subcommand_required = true)]
+#[command(name = "stencilscope", version, disable_help_subcommand = true, subcommand_required = true)]
 struct CommandLine {
     #[command(subcommand)]
     command: Command,
@@ -64,6 +65,8 @@ enum Command {
     Bench(Box<bench::BenchArguments>),
     /// Take the README's pictures of the window, without a display
     Pictures(Box<pictures::PicturesArguments>),
+    /// Explain a technique, a setting, the scene file, the capture folder, JSON or a command
+    Help(help::HelpArguments),
 }
 
 /// Runs the command line `arguments`, the program's name first.
@@ -77,6 +80,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
     if let Some(near) = misspelled_command(&second).filter(|_| first == "view") {
         return Err(CliError::Usage(format!("`{second}` is neither a command nor a scene: did you mean `{near}`?")));
     }
+    let spoken = spoken(&arguments);
     let command_line = match CommandLine::try_parse_from(arguments) {
         Ok(command_line) => command_line,
         Err(error) => return usage::answer(&error),
@@ -87,12 +91,25 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
         Command::Pixel(arguments) => pixel::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
-        Command::Report(arguments) => report::run(&arguments),
-        Command::Stress(arguments) => stress::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments, &spoken),
+        Command::Stress(arguments) => stress::run(&arguments, &spoken),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Pictures(arguments) => pictures::run(&arguments),
+        Command::Help(arguments) => help::run(&arguments),
     }
+}
+
+/// The command line as a shell would take it again.
+fn spoken(arguments: &[OsString]) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=+".contains(c);
+    let quoted = |word: &OsString| {
+        let word = word.to_string_lossy();
+        let is_bare = !word.is_empty() && word.chars().all(is_plain);
+        if is_bare { word.into_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+    };
+    let words = arguments.iter().skip(1).map(quoted);
+    std::iter::once("stencilscope".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
 /// Puts `view` before a first word that is no command.
@@ -119,4 +136,16 @@ fn misspelled_command(word: &str) -> Option<&'static str> {
     let rated = COMMANDS.into_iter().map(|command| (strsim::jaro_winkler(word, command), command));
     let nearest = rated.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(likeness, _)| *likeness > NEARLY && !is_scene);
     nearest.map(|(_, command)| command)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_line_is_quoted_where_a_shell_needs_it() {
+        let words = ["/usr/bin/stencilscope", "report", "my scene.toml", "it's", "--size", "64x48", ""];
+        let words: Vec<OsString> = words.into_iter().map(OsString::from).collect();
+        assert_eq!(spoken(&words), r"stencilscope report 'my scene.toml' 'it'\''s' --size 64x48 ''");
+    }
 }

@@ -53,9 +53,11 @@ pub fn run(arguments: &PicturesArguments) -> Result<(), CliError> {
 mod shots {
     use crate::app::headless::Headless;
     use crate::app::{ViewRequest, ViewSource};
+    use crate::ask::{DiagnosisOf, ReportOf, StressOf};
     use crate::cli::{CliError, output};
-    use crate::inspector::{Action, Inspector, Overlay, Panel, PictureKind, ThemeChoice};
+    use crate::inspector::{Inspector, Overlay, Panel, ThemeChoice};
     use crate::picture::{Picture, film};
+    use crate::reading::shown::PictureKind;
     use crate::scene::{OpenSpec, open};
     use crate::session::{CaptureRequest, Every};
     use crate::technique::{Choice, Technique};
@@ -98,7 +100,7 @@ mod shots {
         /// Compared with this technique under the divider.
         compared: Option<Technique>,
         /// What is asked for, and waited for.
-        asks: Option<fn() -> Action>,
+        asks: Option<fn(&mut Inspector)>,
     }
 
     fn shot(name: &'static str, scene: &'static str, technique: Technique, panels: &'static [Panel]) -> Shot {
@@ -144,15 +146,15 @@ mod shots {
             Shot { compared: Some(ShadowMap), ..shot("compare", "table", ZFail, &[Picture, Pixel]) },
             Shot {
                 kind: Error,
-                asks: Some(|| Action::Diagnose),
+                asks: Some(|panels| panels.start(DiagnosisOf {})),
                 ..shot("diagnosis", "inside", ZPass, &[Picture, Pixel, Diagnosis])
             },
             Shot {
-                asks: Some(|| Action::RunReport),
+                asks: Some(|panels| ReportOf::grid().into_iter().for_each(|report| panels.start(report))),
                 ..shot("report-tab", "table", ShadowMap, &[Picture, Pixel, Report])
             },
             Shot {
-                asks: Some(|| Action::RunStress { cases: STRESSED.to_vec() }),
+                asks: Some(|panels| panels.start(StressOf { cases: STRESSED.to_vec() })),
                 ..shot("stress-tab", "tori", ZFail, &[Picture, Pixel, Stress])
             },
             Shot { theme: ThemeChoice::Light, ..volumes(shot("light-theme", "tori", ZFail, &[Picture, Pixel])) },
@@ -246,7 +248,7 @@ mod shots {
             panels.key(Modifiers::NONE, *key);
         }
         if let Some(asks) = shot.asks {
-            panels.act(vec![asks()]);
+            asks(panels.inspector());
         }
         panels.settle()?;
         Ok(panels.picture()?)

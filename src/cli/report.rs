@@ -5,7 +5,7 @@ use super::progress::with_bar;
 use super::results::{self, Form};
 use super::{CliError, output};
 use crate::progress::Progress;
-use crate::report::{Report, Row};
+use crate::report::{PageOrigin, Report, Row};
 use crate::scene::Scene;
 use crate::scene::builtin::Builtin;
 use crate::session::{Measurement, Session, report_rows};
@@ -47,17 +47,21 @@ pub struct ReportArguments {
     /// A picture of error against run time (.svg or .png)
     #[arg(long, value_name = "FILE", value_parser = plot_file)]
     plot: Option<String>,
+    /// A page in Markdown: this command, the machine, the plot, the tables, and how to read them
+    #[arg(short, long, value_name = "FILE.md", value_parser = page_file)]
+    output: Option<String>,
 }
 
-/// Measures and prints.
+/// Measures and prints; `command` is the command line, for the page.
 ///
 /// # Errors
 /// A scene, technique or setting that can't be used; no GPU; a file that can't be written.
-pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
+pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
     let choices = choices(arguments)?;
     let open = |name: &String| arguments.scene_options.open(name);
     let scenes = arguments.scenes.iter().map(open).collect::<Result<Vec<Scene>, _>>()?;
-    let forms = [&arguments.json, &arguments.csv, &arguments.markdown];
+    let page = results::target(&arguments.output);
+    let forms = [&arguments.json, &arguments.csv, &arguments.markdown, &page];
     check_no_scene(&results::files(&forms, &arguments.plot), &arguments.scenes)?;
     results::check(&forms, &arguments.plot)?;
     let mut session = Session::new(arguments.adapter.as_deref())?;
@@ -67,18 +71,22 @@ pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
         let measured = with_bar(&name, &Progress::default(), |progress| session.measure(scene, &what, progress))?;
         rows.extend(report_rows(&name, what.size, &measured));
     }
-    deliver(arguments, &Report::new(session.adapter().clone(), rows))
+    deliver(arguments, command, &Report::new(session.adapter().clone(), rows))
 }
 
-fn deliver(arguments: &ReportArguments, report: &Report) -> Result<(), CliError> {
+fn deliver(arguments: &ReportArguments, command: &str, report: &Report) -> Result<(), CliError> {
     if let Some(file) = &arguments.plot {
         let bytes = if is_png(file) { report.to_png()? } else { report.to_svg().into_bytes() };
         output::write(file, &bytes)?;
     }
-    let forms: [Form; 3] = [
+    let page = results::target(&arguments.output);
+    let plot = results::plot_beside(&arguments.output, &arguments.plot);
+    let origin = PageOrigin { command, plot: plot.as_deref() };
+    let forms: [Form; 4] = [
         (&arguments.json, &|| Ok(report.to_json()?)),
         (&arguments.csv, &|| Ok(report.to_csv())),
         (&arguments.markdown, &|| Ok(report.to_markdown())),
+        (&page, &|| Ok(report.to_page(origin))),
     ];
     results::deliver(&forms, || report.to_table())
 }
@@ -136,4 +144,10 @@ pub fn is_png(file: &str) -> bool {
 pub fn plot_file(text: &str) -> Result<String, String> {
     let is_svg = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
     if is_svg || is_png(text) { Ok(text.to_owned()) } else { Err("give a file that ends in .svg or .png".to_owned()) }
+}
+
+/// A page's file.
+pub fn page_file(text: &str) -> Result<String, String> {
+    let is_page = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md"));
+    if is_page { Ok(text.to_owned()) } else { Err("give a file that ends in .md".to_owned()) }
 }

@@ -1,9 +1,22 @@
 //! Results of one run in several forms: each to a file, one of them to standard output in place of the table.
 
 use super::{CliError, output};
+use crate::files::from_beside;
+use std::path::Path;
 
 /// Where a form goes: `None` where it is not asked for, standard output where no file is named.
 pub type Target = Option<Option<String>>;
+
+/// The target of a form that goes to files alone.
+pub fn target(file: &Option<String>) -> Target {
+    file.clone().map(Some)
+}
+
+/// The plot, which is written already, as the page names it.
+pub fn plot_beside(page: &Option<String>, plot: &Option<String>) -> Option<String> {
+    let (page, plot) = page.as_ref().zip(plot.as_ref())?;
+    Some(from_beside(Path::new(page), Path::new(plot)))
+}
 
 /// The files that are named, those of forms first.
 pub fn files<'a>(forms: &[&'a Target], plot: &'a Option<String>) -> Vec<&'a str> {

@@ -2,10 +2,11 @@
 
 use super::options::{picture_size, technique_named};
 use super::progress::with_bar;
-use super::report::{is_png, plot_file};
+use super::report::{is_png, page_file, plot_file};
 use super::results::{self, Form};
 use super::{CliError, output};
 use crate::progress::Progress;
+use crate::report::PageOrigin;
 use crate::scene::suggestion;
 use crate::session::Session;
 use crate::stress::{Case, Stress, cases, right_because};
@@ -18,7 +19,7 @@ pub struct StressArguments {
     #[arg(long, value_name = "NAME")]
     case: Vec<String>,
     /// List the cases, a line each, and run none
-    #[arg(long, conflicts_with_all = ["case", "json", "markdown", "plot"])]
+    #[arg(long, conflicts_with_all = ["case", "json", "markdown", "plot", "output"])]
     list: bool,
     /// Only these techniques; repeatable
     #[arg(short, long, value_name = "NAME")]
@@ -39,14 +40,17 @@ pub struct StressArguments {
     /// A picture of error against each sweep's number (.svg or .png)
     #[arg(long, value_name = "FILE", value_parser = plot_file)]
     plot: Option<String>,
+    /// A page in Markdown: this command, the machine, the plot, the table, and how to read it
+    #[arg(short, long, value_name = "FILE.md", value_parser = page_file)]
+    output: Option<String>,
 }
 
-/// Runs the cases.
+/// Runs the cases; `command` is the command line, for the page.
 ///
 /// # Errors
 /// A case or technique that does not exist; no GPU; a file that can't be written;
 /// [`CliError::Unexpected`] where a technique did not do as expected.
-pub fn run(arguments: &StressArguments) -> Result<(), CliError> {
+pub fn run(arguments: &StressArguments, command: &str) -> Result<(), CliError> {
     if arguments.list {
         let line = |case: &Case| {
             format!("{:22}  {} values of {}: {}\n", case.name, case.values.len(), case.parameter, case.lesson)
@@ -59,12 +63,12 @@ pub fn run(arguments: &StressArguments) -> Result<(), CliError> {
     let only = arguments.technique.iter().map(|name| technique_named(name)).collect::<Result<Vec<Technique>, _>>()?;
     let is_named = !arguments.case.is_empty();
     check_that_all_run(&chosen, is_named, &only)?;
-    results::check(&[&arguments.json, &arguments.markdown], &arguments.plot)?;
+    results::check(&[&arguments.json, &arguments.markdown, &results::target(&arguments.output)], &arguments.plot)?;
     let mut session = Session::new(arguments.adapter.as_deref())?;
     let rows =
         with_bar("stress", &Progress::default(), |progress| session.stress(&chosen, &only, arguments.size, progress))?;
     let stress = Stress { adapter: session.adapter().clone(), size: arguments.size, rows };
-    deliver(arguments, &stress)?;
+    deliver(arguments, command, &stress)?;
     let unexpected =
         stress.summary().into_iter().filter(|summary| summary.verdict == crate::stress::Verdict::Unexpected).count();
     if unexpected > 0 { Err(CliError::Unexpected { count: unexpected }) } else { Ok(()) }
@@ -96,15 +100,21 @@ fn runs_nowhere(chosen: &[&Case], is_named: bool, technique: Technique) -> CliEr
     }))
 }
 
-fn deliver(arguments: &StressArguments, stress: &Stress) -> Result<(), CliError> {
+fn deliver(arguments: &StressArguments, command: &str, stress: &Stress) -> Result<(), CliError> {
     if let Some(file) = &arguments.plot {
         let plot = stress.to_plot();
         let bytes = if is_png(file) { plot.to_png()? } else { plot.to_svg().into_bytes() };
         output::write(file, &bytes)?;
     }
     let failed = |error: serde_json::Error| CliError::Output { path: "the rows".to_owned(), source: error.into() };
-    let forms: [Form; 2] =
-        [(&arguments.json, &|| stress.to_json().map_err(failed)), (&arguments.markdown, &|| Ok(stress.to_markdown()))];
+    let page = results::target(&arguments.output);
+    let plot = results::plot_beside(&arguments.output, &arguments.plot);
+    let origin = PageOrigin { command, plot: plot.as_deref() };
+    let forms: [Form; 3] = [
+        (&arguments.json, &|| stress.to_json().map_err(failed)),
+        (&arguments.markdown, &|| Ok(stress.to_markdown())),
+        (&page, &|| Ok(stress.to_page(origin))),
+    ];
     results::deliver(&forms, || stress.to_table())
 }
 

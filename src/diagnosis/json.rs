@@ -1,4 +1,4 @@
-//! A diagnosis as JSON, as `spec/commands.md` has it: pixels, lights and regions count from 0.
+//! A diagnosis as JSON: pixels, lights and regions count from 0. `assets/help/json.md` says what each field means.
 
 use super::{CauseFound, Diagnosis, FlagFound, Mend, MeshFinding, Proof, RegionFound, Suited};
 use crate::technique::Technique;

@@ -44,8 +44,8 @@ pub fn facing(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> Vec<Sign
 /// The edges that bound the shadow when every casting triangle is turned towards the light, in
 /// order of (low, high): those where the sum over their triangles of +1 where the turned triangle
 /// runs from low to high and −1 where it runs back is not 0. Elsewhere the lit sheet goes on, and
-/// there is no side. Right for any triangle soup (techniques.md, section 5): the sides and caps
-/// that follow from it always close.
+/// there is no side. Right for any triangle soup: the sides and caps that follow from it always
+/// close.
 pub fn silhouette(edges: &EdgeList, facings: &Facings, out: &mut Vec<SilhouetteEdge>) {
     out.clear();
     let found = |blocks: Range<usize>, out: &mut Vec<SilhouetteEdge>| {

@@ -1,4 +1,4 @@
-//! `pixel --json`, field by field as `spec/commands.md` has it. Names are a contract with scripts.
+//! `pixel --json`; `assets/help/json.md` says what each field means. Names are a contract with scripts.
 
 use super::{Event, EventKind, Fate, PixelHistory, Test, operation_name};
 use crate::plan::Clip;

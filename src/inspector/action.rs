@@ -1,12 +1,11 @@
-//! What the panels ask of the app. Panels change nothing outside themselves.
+//! What the panels ask of the app, and what is named in it. Panels change nothing outside the inspector.
 
-use super::export::ExportKind;
-use crate::scene::{Camera, Light};
+use crate::ask::{Asked, RunRequest};
 use crate::stress::Entrant;
-use crate::technique::Choice;
-use std::collections::{BTreeMap, BTreeSet};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
-/// A wish of the user that needs files, windows or the GPU.
+/// A wish that needs files, windows or the GPU.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// Open a built-in scene by name, or a scene file, model or capture folder by path.
@@ -17,15 +16,8 @@ pub enum Action {
     BrowseFolder,
     /// Render again, with this changed.
     Run(Box<RunRequest>),
-    /// Render as this says, to compare with the frame that is shown, which stays.
-    Compare(Box<RunRequest>),
-    /// Count how fragments of the frame that is shown fare in the tests.
-    Tests {
-        /// Index of the step.
-        step: usize,
-        /// Index of the draw; `None`: all of the step.
-        draw: Option<usize>,
-    },
+    /// Answer a question: with [`Inspector::answer`](super::Inspector::answer).
+    Ask(Asked),
     /// Load the open scene again from its file, which changed.
     Reload,
     /// Write what is shown into a file.
@@ -39,46 +31,9 @@ pub enum Action {
     },
     /// Ask with the system's dialog where to export to.
     BrowseExport {
-        /// What is exported.
-        kind: ExportKind,
         /// The place so far.
         path: String,
     },
-    /// Trace the truth of the frame that is shown, and hold the technique against it.
-    Judge,
-    /// Capture the state after each draw of a step of the frame that is shown.
-    CaptureDraws {
-        /// Index of the step.
-        step: usize,
-    },
-    /// Stop tracing.
-    CancelJudge,
-    /// Tell the history of a pixel of the frame that is shown.
-    History {
-        /// Column and row.
-        at: [u32; 2],
-    },
-    /// Tell what the frame that is shown is made of in space.
-    Anatomy,
-    /// Find which texel of the shown map each pixel reads: [`Inspector::map_readers_job`](super::Inspector::map_readers_job).
-    MapReaders,
-    /// Tell what can't be walked through in the scene that would be run so.
-    Walls(Box<RunRequest>),
-    /// Measure every technique on the open scene.
-    RunReport,
-    /// Stop measuring; the rows so far stay.
-    CancelReport,
-    /// Say where the frame that is shown is wrong, why, and what mends it.
-    Diagnose,
-    /// Stop diagnosing.
-    CancelDiagnosis,
-    /// Run stress cases.
-    RunStress {
-        /// Their names.
-        cases: Vec<&'static str>,
-    },
-    /// Stop running; the cases that are done stay.
-    CancelStress,
     /// Open the scene of a stress case.
     OpenStress {
         /// Its name.
@@ -97,39 +52,189 @@ pub enum Action {
     },
 }
 
-/// Everything about a run that the panels can change; the objects are the app's.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunRequest {
-    /// How shadows are made.
-    pub choice: Choice,
-    /// Width and height of the picture in pixels.
-    pub size: [u32; 2],
-    /// The eye.
-    pub camera: Camera,
-    /// All lights, where they are at the scene's start.
-    pub lights: Vec<Light>,
-    /// The moment of an animated scene, seconds.
-    pub time: f64,
-    /// Objects that are switched off, by index: neither drawn nor casting.
-    pub off: BTreeSet<usize>,
+/// A dialog.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dialog {
+    /// Opens a scene.
+    Open,
+    /// Asks where to export to.
+    Export(ExportKind),
+    /// Lists all keys.
+    Help,
 }
 
-impl RunRequest {
-    /// Names what can't be run, in a few words with the mend.
-    ///
-    /// # Errors
-    /// A camera or light that can't be used, a picture without pixels.
-    pub fn check(&self) -> Result<(), String> {
-        self.camera.check()?;
-        for (index, light) in self.lights.iter().enumerate() {
-            light.check().map_err(|reason| format!("light {}: {reason}", index + 1))?;
+/// A tab.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Panel {
+    /// The frame, step by step.
+    Passes,
+    /// What can be changed.
+    Settings,
+    /// The selected buffer.
+    Picture,
+    /// A second camera that sees the first.
+    Scene,
+    /// A light's map, linked with the picture.
+    ShadowMap,
+    /// Everything about the picked pixel.
+    Pixel,
+    /// The raster state of the selected draw.
+    State,
+    /// What the step is for, and tours.
+    Explain,
+    /// Error against time.
+    Report,
+    /// What is wrong, and what mends it.
+    Diagnosis,
+    /// Extreme cases.
+    Stress,
+}
+
+impl Panel {
+    /// On its tab.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Panel::Passes => "Passes",
+            Panel::Settings => "Scene settings",
+            Panel::Picture => "Picture",
+            Panel::Scene => "Scene",
+            Panel::ShadowMap => "Shadow map",
+            Panel::Pixel => "Pixel",
+            Panel::State => "State",
+            Panel::Explain => "Explain",
+            Panel::Report => "Report",
+            Panel::Diagnosis => "Diagnosis",
+            Panel::Stress => "Stress",
         }
-        if self.size.contains(&0) {
-            return Err("the picture needs at least one pixel each way".to_owned());
+    }
+
+    /// In the order of their declaration.
+    pub const ALL: [Panel; 11] = [
+        Panel::Passes,
+        Panel::Settings,
+        Panel::Picture,
+        Panel::Scene,
+        Panel::ShadowMap,
+        Panel::Pixel,
+        Panel::State,
+        Panel::Explain,
+        Panel::Report,
+        Panel::Diagnosis,
+        Panel::Stress,
+    ];
+}
+
+/// Something drawn over the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Overlay {
+    /// The edges that bound the shadows of the shown light.
+    Silhouettes,
+    /// The edges of its shadow volumes.
+    Volumes,
+    /// How the step's fragments fared in depth and stencil test.
+    Tests,
+    /// Where objects receive shadows.
+    Receivers,
+    /// What throws shadows is called.
+    Names,
+}
+
+impl Overlay {
+    /// In the order of the menu.
+    pub const ALL: [Overlay; 5] =
+        [Overlay::Silhouettes, Overlay::Volumes, Overlay::Tests, Overlay::Receivers, Overlay::Names];
+
+    /// In the menu.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Overlay::Silhouettes => "Silhouettes",
+            Overlay::Volumes => "Wireframe of volumes",
+            Overlay::Tests => "Depth and stencil tests",
+            Overlay::Receivers => "Receivers",
+            Overlay::Names => "Casters' names",
         }
-        if !self.time.is_finite() {
-            return Err("the time must be a finite number of seconds".to_owned());
+    }
+
+    /// What one sees.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Overlay::Silhouettes => "The edges of casters that bound their shadow, of the shown light",
+            Overlay::Volumes => "Sides and caps of the shadow volumes that the frame draws, of the shown light",
+            Overlay::Tests => "Where fragments of the selected step pass or fail; hits of z-fail stay visible",
+            Overlay::Receivers => "Where objects are darkened by shadows",
+            Overlay::Names => "The name of each caster at the middle of what is seen of it",
         }
-        Ok(())
+    }
+
+    /// Does it follow from what the frame is made of in space?
+    #[must_use]
+    pub fn needs_anatomy(self) -> bool {
+        self != Overlay::Tests
+    }
+}
+
+/// What is exported.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExportKind {
+    /// The shown picture in its colours, or what the step changed, a pixel a texel: PNG. What lies over it
+    /// and what it is compared with is left out.
+    Picture,
+    /// The same with overlays and the compared half, at the same resolution: PNG.
+    AsShown,
+    /// The shown picture's values: NumPy.
+    Data,
+    /// The whole capture: a folder.
+    Capture,
+    /// The scene as it is now, with its technique: a scene file.
+    Scene,
+    /// The rows of the Report tab, or their plot: what the file's ending says.
+    Report,
+}
+
+impl ExportKind {
+    /// All, in the order of the menu.
+    pub const ALL: [ExportKind; 6] = [
+        ExportKind::Picture,
+        ExportKind::AsShown,
+        ExportKind::Data,
+        ExportKind::Capture,
+        ExportKind::Scene,
+        ExportKind::Report,
+    ];
+
+    /// In the menu.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            ExportKind::Picture => "Shown picture (PNG)…",
+            ExportKind::AsShown => "Picture with overlays (PNG)…",
+            ExportKind::Data => "Shown values (.npy)…",
+            ExportKind::Capture => "Capture folder…",
+            ExportKind::Scene => "Scene file (TOML)…",
+            ExportKind::Report => "Report (table or plot)…",
+        }
+    }
+
+    /// What is written.
+    #[must_use]
+    pub fn explanation(self) -> &'static str {
+        match self {
+            ExportKind::Picture => "The shown picture in its colours, a pixel a texel",
+            ExportKind::AsShown => {
+                "The shown picture with overlays and the compared half, whole and a pixel a texel, not as zoomed here"
+            }
+            ExportKind::Data => "The shown picture's values as an array that NumPy reads",
+            ExportKind::Capture => {
+                "Every buffer after every pass, with a manifest, to be opened again or scripted against"
+            }
+            ExportKind::Scene => "The scene with its lights, camera and technique as they are now",
+            ExportKind::Report => {
+                "Error against run time, as measured in the Report tab: .csv, .md or .json for the rows, .svg or .png \
+                 for the plot"
+            }
+        }
     }
 }

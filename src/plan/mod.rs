@@ -119,7 +119,8 @@ pub enum AttachmentRole {
     Map(LightId),
     /// How many shadow volumes of a light contain each pixel's surface, signed.
     Count(LightId),
-    /// The labels of `techniques.md` section 2 for a light, one byte a pixel.
+    /// What the technique says of a light, one byte a pixel: 0 lit, 1 in shadow, 2 background, 3 turned away from the
+    /// light or beyond its range.
     Labels(LightId),
 }
 

@@ -1,7 +1,7 @@
 //! What a technique costs and how often it is wrong: the report's rows, and every form they take.
 //!
 //! ```text
-//! rows ──► Report ──► JSON, CSV, text table, Markdown
+//! rows ──► Report ──► JSON, CSV, text table, Markdown, page
 //!             └─────► plot::Plot (a layout in points) ──► SVG ──► PNG
 //!                                                     └─► the inspector's Report tab
 //! ```
@@ -9,6 +9,7 @@
 //! Nothing here measures, opens a file or knows a GPU: a report is data, and so is its plot.
 
 mod csv;
+mod page;
 pub mod plot;
 mod png;
 mod svg;
@@ -16,6 +17,8 @@ mod table;
 
 #[cfg(test)]
 pub(crate) mod tests;
+
+pub use page::PageOrigin;
 
 use crate::capture::AdapterInfo;
 use crate::numbers;
@@ -33,6 +36,15 @@ pub struct Report {
     pub adapter: AdapterInfo,
     /// One a scene, technique and settings, in the order in which they are listed.
     pub rows: Vec<Row>,
+}
+
+/// A report that was measured where not all may have had room.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredReport {
+    /// The rows.
+    pub report: Report,
+    /// What has no row, since it would take too much of this machine's memory: `shadow-map 4096`.
+    pub left_out: Vec<String>,
 }
 
 /// One scene, rendered by one technique with one choice of settings.
@@ -212,7 +224,7 @@ impl Report {
         table::text(self)
     }
 
-    /// A table for a README.
+    /// A table in Markdown.
     #[must_use]
     pub fn to_markdown(&self) -> String {
         table::markdown(self)

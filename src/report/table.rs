@@ -137,22 +137,24 @@ fn milliseconds(value: f64, decimals: usize) -> String {
     if value.is_finite() { format!("{value:.decimals$}") } else { "-".to_owned() }
 }
 
-/// A Markdown table for a README; with several scenes, each under its name.
+/// A Markdown table; with several scenes, each under its name.
 pub fn markdown(report: &Report) -> String {
     let scenes = report.scenes();
+    let note = "\nBold: nothing else is both at least as fast and at least as right (Pareto front).\n";
     let blocks = scenes.iter().map(|scene| {
-        let rows: Vec<&Row> = report.rows.iter().filter(|row| row.scene == *scene).collect();
         let heading = if scenes.len() > 1 { format!("**{}**\n\n", escaped(scene)) } else { String::new() };
-        heading + &markdown_table(&rows, decimals(&report.rows))
+        heading + &markdown_of(report, scene) + note
     });
     blocks.collect::<Vec<_>>().join("\n")
 }
 
-fn markdown_table(rows: &[&Row], decimals: usize) -> String {
+/// The Markdown table of one scene.
+pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
+    let decimals = decimals(&report.rows);
     let mut text = "| technique | settings | wrong pixels | % of compared | frame ms | set-up ms | triangles | MiB |\n\
                     |---|---|--:|--:|--:|--:|--:|--:|\n"
         .to_owned();
-    for row in rows {
+    for row in report.rows.iter().filter(|row| row.scene == scene) {
         let strong = |cell: String| if row.pareto { format!("**{cell}**") } else { cell };
         let cells = [
             strong(escaped(&row.technique)),
@@ -166,7 +168,7 @@ fn markdown_table(rows: &[&Row], decimals: usize) -> String {
         ];
         text += &format!("| {} |\n", cells.join(" | "));
     }
-    text + "\nBold: nothing else is both at least as fast and at least as right (Pareto front).\n"
+    text
 }
 
 /// Text that can't end its cell.

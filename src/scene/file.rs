@@ -1,4 +1,4 @@
-//! Scene files (TOML), as described in `commands.md`.
+//! Scene files (TOML); `assets/help/scene-file.md` explains every key.
 //!
 //! The text becomes plain tables (`tables`) that know where each value stands; those are
 //! checked and become a [`Scene`] (`build`), meshes by `shape`. Whatever is wrong ends as one

@@ -18,6 +18,7 @@ mod object;
 mod open;
 mod placement;
 mod read_text;
+pub mod shapes;
 mod suggestion;
 mod wall_tree;
 
@@ -30,7 +31,7 @@ pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
 pub use model_scene::model_scene;
 pub use object::{Motion, Object, Orbit, Pose, Swing};
 pub use open::{OpenSpec, files_of, open};
-pub use suggestion::suggestion;
+pub use suggestion::{nearest, suggestion};
 
 use std::collections::BTreeMap;
 

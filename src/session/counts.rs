@@ -1,30 +1,25 @@
 //! The true count of shadow volumes, beyond what eight bits hold.
 
 use super::{CaptureRequest, Session, SessionError};
-use crate::capture::Capture;
+use crate::capture::{Capture, Image};
 use crate::gpu::GpuError;
 use crate::scene::{Scene, TechniqueRequest};
 use crate::technique::Choice;
+use std::sync::Arc;
 
 impl Session {
-    /// Fills in the signed count of each light's volumes where the technique counts them in the
-    /// stencil: the same frame is run again with a float target. Leaves a capture as it is whose
-    /// technique counts nothing, or on an adapter that can't blend floats.
+    /// The signed count of each light's volumes where the technique counts them in the stencil: the same frame is run
+    /// again with a float target. None of a technique that counts nothing, or on an adapter that can't blend floats.
     ///
     /// # Errors
     /// A scene or setting that can't be planned, a lost GPU.
-    pub fn count(&mut self, scene: &Scene, capture: &mut Capture) -> Result<(), SessionError> {
+    pub fn counts(&mut self, scene: &Scene, capture: &Capture) -> Result<Vec<Option<Arc<Image>>>, SessionError> {
         let request = TechniqueRequest { name: capture.technique.clone(), settings: capture.settings.clone() };
-        let Some(choice) = Choice::parse(&request)?.counting_in_floats() else { return Ok(()) };
+        let Some(choice) = Choice::parse(&request)?.counting_in_floats() else { return Ok(Vec::new()) };
         let request = CaptureRequest::new(choice, capture.size);
         match self.capture(scene, &request) {
-            Ok(counted) => {
-                for (light, counted) in capture.lights.iter_mut().zip(counted.lights) {
-                    light.count = counted.count;
-                }
-                Ok(())
-            }
-            Err(SessionError::Gpu(GpuError::MissingFeature { .. })) => Ok(()),
+            Ok(counted) => Ok(counted.lights.into_iter().map(|light| light.count).collect()),
+            Err(SessionError::Gpu(GpuError::MissingFeature { .. })) => Ok(Vec::new()),
             Err(error) => Err(error),
         }
     }

@@ -5,12 +5,10 @@
 //! part left, and it is unchanged where it ended as it began, whatever happened in between. What a
 //! draw did not change shares the picture of the draw before it, and of what it changed the rows that it left alone.
 //!
-//! The draws of one pass can be filled in later ([`Session::fill_draws`]). Together they may take
-//! much memory: where a capture would hold more than [`MOST_FILLED_BYTES`], those of the passes
-//! that were filled in before are dropped, and have to be asked for again.
+//! The draws of one pass can be asked for later ([`Session::step_draws`]).
 
 use super::{Session, SessionError};
-use crate::capture::{Aspect, Capture, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step};
+use crate::capture::{Aspect, Capture, DrawState, FrameTarget, Image, PixelFormat, Snapshot, Step, StepDraws};
 use crate::gpu::{GpuError, Memory, Output};
 use crate::plan::FramePlan;
 use std::collections::BTreeMap;
@@ -26,35 +24,27 @@ pub enum Every {
     Draw,
 }
 
-/// Bytes of a capture to which draws may be filled in without dropping others.
-const MOST_FILLED_BYTES: u64 = 1 << 27;
-
 impl Session {
     /// Runs a frame with a snapshot after each of its draws.
     pub(super) fn run_by_draw(&mut self, plan: &FramePlan, bracket: bool) -> Result<Output, SessionError> {
         Ok(join(plan, |_| true, self.run_split(&plan.split_at_draws(), bracket)?))
     }
 
-    /// Fills in the state after each draw of a step of `capture`, which `plan` left. Nothing else of it
-    /// changes, but that draw states of other steps may be dropped.
+    /// The states after the draws of a step of `capture`, which `plan` left.
     ///
     /// # Errors
-    /// A pass whose draws are too many for the memory, a lost GPU.
-    pub fn fill_draws(&mut self, plan: &FramePlan, capture: &mut Capture, step: usize) -> Result<(), SessionError> {
-        if step >= capture.steps.len() || capture.holds_draws(step) {
-            return Ok(());
+    /// A step that the frame does not have; a pass whose draws are too many for the memory, a lost GPU.
+    pub fn step_draws(&mut self, plan: &FramePlan, capture: &Capture, step: usize) -> Result<StepDraws, SessionError> {
+        if step >= capture.steps.len() {
+            return Err(SessionError::NoSuchStep { step, steps: capture.steps.len() });
         }
         let output = self.run_split(&plan.split_pass_at_draws(step), false)?;
         let joined = join(plan, |pass| pass == step, output);
         let known = known_images(capture, step);
         let mut last = [const { None }; 4];
-        for (draw, by_draw) in
-            capture.steps[step].draws.iter_mut().zip(joined.steps.into_iter().skip(step).flat_map(|step| step.draws))
-        {
-            draw.after = by_draw.after.map(|state| sharing(state, &known, &mut last));
-        }
-        make_room(capture, step, MOST_FILLED_BYTES);
-        Ok(())
+        let draws = joined.steps.into_iter().nth(step).map_or_else(Vec::new, |step| step.draws);
+        let states = draws.into_iter().map(|draw| draw.after.map(|state| sharing(state, &known, &mut last)));
+        Ok(StepDraws { step, states: states.collect() })
     }
 
     fn run_split(&mut self, split: &FramePlan, bracket: bool) -> Result<Output, SessionError> {
@@ -67,15 +57,6 @@ impl Session {
             error => error.into(),
         })
     }
-}
-
-/// Where a capture holds more than `most` bytes, only the draw states of one step stay.
-fn make_room(capture: &mut Capture, step: usize, most: u64) {
-    if capture.bytes() <= most {
-        return;
-    }
-    let others = capture.steps.iter_mut().enumerate().filter(|(index, _)| *index != step);
-    others.flat_map(|(_, step)| &mut step.draws).for_each(|draw| draw.after = None);
 }
 
 /// What draws of a step may have left just as it was: all that the frame holds around them.
@@ -237,28 +218,4 @@ fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: Output) -> O
         place.into_iter().for_each(|place| place.clone_from(&image));
     }
     joined
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::OpenSpec;
-    use crate::session::CaptureRequest;
-    use crate::technique::{Choice, Technique};
-
-    #[test]
-    fn draws_of_other_passes_go_only_where_there_is_no_room_for_all() {
-        let scene = crate::scene::open(&OpenSpec::new("tetrahedron")).expect("a built-in scene");
-        let request = CaptureRequest::new(Choice::new(Technique::ZFail), [32, 24]);
-        let request = CaptureRequest { every: Every::Draw, ..request };
-        let mut capture = Session::new(None).and_then(|mut session| session.capture(&scene, &request)).expect("draws");
-        let (bytes, steps) = (capture.bytes(), capture.steps.clone());
-        make_room(&mut capture, 1, bytes);
-        assert_eq!(capture.steps, steps);
-        make_room(&mut capture, 1, bytes - 1);
-        for (index, step) in capture.steps.iter().enumerate() {
-            assert_eq!(capture.holds_draws(index), index == 1 || step.draws.is_empty(), "{}", step.name);
-        }
-        assert_eq!(capture.steps[1], steps[1]);
-    }
 }

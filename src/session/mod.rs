@@ -4,6 +4,7 @@
 //! lists). Commands, the window and tests all go through it.
 
 mod anatomy;
+mod answer;
 mod counts;
 mod diagnose;
 mod draws;
@@ -19,6 +20,7 @@ mod truth;
 mod volumes;
 
 pub use crate::gpu::MEMORY_HINTS;
+pub use answer::RunFrame;
 pub use draws::Every;
 pub use history::HistoryCost;
 pub use measure::{Measured, Measurement};
@@ -32,7 +34,7 @@ use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::{GeometryCache, Topology};
 use crate::gpu::{Context, Executor, GpuError, Memory, Output, Prepared};
 use crate::plan::{FramePlan, LeftOut};
-use crate::scene::{Object, Scene};
+use crate::scene::{Object, Scene, WallCache};
 use crate::technique::{self, Choice, ChoiceError, Job, PlanError};
 use crate::truth::TruthError;
 use std::sync::Arc;
@@ -88,6 +90,23 @@ pub enum SessionError {
         /// Of the picture.
         size: [u32; 2],
     },
+    /// A step that the frame does not have.
+    #[error("there is no step {}: choose one from 1 to {steps}", step + 1)]
+    NoSuchStep {
+        /// Index of the step.
+        step: usize,
+        /// How many there are.
+        steps: usize,
+    },
+    /// A question without an answer.
+    #[error("{0}")]
+    Unanswered(String),
+    /// A frame that is shown no more.
+    #[error("another picture came meanwhile: diagnose again when it is the one you want")]
+    OtherFrame,
+    /// There is nothing to ask about.
+    #[error("the open scene was not rendered: mend what the error says, then ask again")]
+    NoFrame,
     /// No fragments of a step can be counted.
     #[error("step {} draws no triangles into the picture: select one that does", step + 1)]
     NoTests {
@@ -130,6 +149,7 @@ pub struct Session {
     /// Of the scene to which a stress case converges.
     limit: Option<Arc<truth::Traced>>,
     room: Option<u64>,
+    walls: WallCache,
 }
 
 /// A frame's cost, with and without snapshots.
@@ -156,6 +176,7 @@ impl Session {
             traced: None,
             limit: None,
             room: None,
+            walls: WallCache::default(),
         })
     }
 

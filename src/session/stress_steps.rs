@@ -120,8 +120,8 @@ mod tests {
             let row = session.stress_step(&mut steps).expect("a row").expect("one is left");
             assert_eq!((row.case, row.parameter, row.entrant), (expected.case, expected.parameter, expected.entrant));
             assert_eq!((row.error, row.flips), (expected.error, expected.flips));
-            let mut capture = session.capture(&between, &request).expect("a capture");
-            session.judge(&between, &mut capture, &Progress::default()).expect("a truth");
+            let capture = session.capture(&between, &request).expect("a capture");
+            session.truth(&between, &capture, &Progress::default()).expect("a truth");
         }
         assert_eq!((steps.left(), steps.next_case()), (0, None));
         assert_eq!(session.stress_step(&mut steps).expect("the end"), None);

@@ -2,7 +2,7 @@
 
 use super::{Session, SessionError};
 use crate::accuracy::{self, Accuracy};
-use crate::capture::{Capture, CapturedTruth, Image, PixelFormat};
+use crate::capture::{Capture, CapturedTruth, FrameTruth, Image, PixelFormat};
 use crate::progress::Progress;
 use crate::scene::{Camera, Pose, Scene};
 use crate::truth::{Tracer, Truth};
@@ -55,25 +55,35 @@ impl Key {
 }
 
 impl Session {
-    /// Adds the ground truth, and how the technique differs from it, to a capture of `scene`.
+    /// The ground truth of a capture of `scene`, and how the technique differs from it.
     ///
     /// # Errors
     /// A scene that no ray can be followed for; [`SessionError::Cancelled`] if `progress` was.
-    pub fn judge(&mut self, scene: &Scene, capture: &mut Capture, progress: &Progress) -> Result<(), SessionError> {
+    pub fn truth(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<FrameTruth, SessionError> {
         let traced = self.traced(scene, capture.size, progress)?;
         let size = capture.size;
-        for (index, light) in capture.lights.iter_mut().enumerate() {
+        let mut lights = Vec::with_capacity(capture.lights.len());
+        for (index, light) in capture.lights.iter().enumerate() {
             if progress.is_cancelled() {
                 return Err(SessionError::Cancelled);
             }
-            let Some(shadow) = &light.shadow else { continue };
-            let Accuracy { counts, findings, worst } = traced.compare(index, shadow);
-            let image = |bytes: Vec<u8>| Arc::new(Image::packed(PixelFormat::U8, size, bytes));
-            let labels = image(traced.truth.labels[index].clone());
-            light.truth = Some(CapturedTruth { labels, findings: image(findings), error: counts, worst });
+            lights.push(light.shadow.as_ref().map(|shadow| {
+                let Accuracy { counts, findings, worst } = traced.compare(index, shadow);
+                let image = |bytes: Vec<u8>| Arc::new(Image::packed(PixelFormat::U8, size, bytes));
+                let labels = image(traced.truth.labels[index].clone());
+                CapturedTruth { labels, findings: image(findings), error: counts, worst }
+            }));
         }
         // Where eight bits read a count of 256 as none, the truth alone would not say why.
-        self.count(scene, capture)
+        Ok(FrameTruth { size, lights, counts: self.counts(scene, capture)? })
+    }
+
+    /// A capture of `scene` with its truth.
+    ///
+    /// # Errors
+    /// As [`Session::truth`].
+    pub fn judged(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<Capture, SessionError> {
+        Ok(capture.with_truth(&self.truth(scene, capture, progress)?))
     }
 
     /// The truth of a scene, traced unless it is the last one traced.

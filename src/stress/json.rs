@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 const SCHEMA: u32 = 1;
 
 impl Stress {
-    /// As `spec/commands.md` has it.
+    /// Machine-readable; `assets/help/json.md` says what each field means.
     ///
     /// # Errors
     /// Numbers that JSON can't hold.

@@ -199,3 +199,32 @@ impl Summary {
         }
     }
 }
+
+/// Rows of stress cases with what they come to, as they are shown.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StressRows {
+    /// Case by case.
+    pub rows: Vec<Row>,
+    /// One entry a case and technique.
+    pub summaries: Vec<Summary>,
+}
+
+impl StressRows {
+    /// Of these rows.
+    #[must_use]
+    pub fn new(rows: Vec<Row>) -> StressRows {
+        StressRows { summaries: summary(&rows), rows }
+    }
+
+    /// These, and `newer`: rows of a case that was run again go.
+    #[must_use]
+    pub fn followed_by(&self, newer: &StressRows) -> StressRows {
+        let is_again = |row: &&Row| newer.rows.iter().any(|new| new.case == row.case);
+        StressRows::new(self.rows.iter().filter(|row| !is_again(row)).chain(&newer.rows).cloned().collect())
+    }
+
+    /// What a case came to, technique by technique.
+    pub fn of<'a>(&'a self, case: &'a Case) -> impl Iterator<Item = &'a Summary> {
+        self.summaries.iter().filter(|summary| summary.case == case.name)
+    }
+}

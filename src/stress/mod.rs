@@ -14,12 +14,13 @@ pub mod cases;
 mod expect;
 mod json;
 mod judge;
+mod page;
 mod plot;
 mod table;
 mod trend;
 
 pub use expect::{Expected, Failure, Kind, Surprise, Symptom, Verdict};
-pub use judge::{Least, Row, Seen, Stress, Summary, summary};
+pub use judge::{Least, Row, Seen, Stress, StressRows, Summary, summary};
 pub use table::value_text;
 pub use trend::{Course, Trend};
 

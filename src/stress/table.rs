@@ -1,4 +1,4 @@
-//! The table for people, a line a case and technique; and one for a README, a row a case.
+//! The table for people, a line a case and technique; and one in Markdown, a row a case.
 
 use super::{Case, Course, MEASURED_AT, Stress, Summary, Verdict};
 use crate::numbers;

@@ -60,7 +60,8 @@ pub struct TruthError {
     problem: String,
 }
 
-/// The labels of a picture (`techniques.md` section 2), one byte a pixel, row by row.
+/// What is true of each light at each pixel of a picture: [`LIT`], [`SHADOW`], [`BACKGROUND`] or [`FACES_AWAY`], one
+/// byte a pixel, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Truth {
     /// Width and height in pixels.

@@ -9,9 +9,11 @@ use egui::accesskit::{self, NodeId};
 use egui_kittest::Node;
 use egui_kittest::kittest::NodeT;
 use std::collections::{BTreeMap, BTreeSet};
-use stencilscope::inspector::{DiagnosisView, ReportView};
+use stencilscope::ask::{AnatomyOf, DiagnosisOf, HistoryOf, ReportOf, StressOf};
 use stencilscope::progress::Progress;
+use stencilscope::report::MeasuredReport;
 use stencilscope::scene::OpenSpec;
+use stencilscope::stress::StressRows;
 
 const TORI: [u32; 2] = [64, 48];
 const WINDOW: [f32; 2] = [1280.0, 800.0];
@@ -33,18 +35,20 @@ pub fn known(technique: Technique) -> Inspector {
     let scene = stencilscope::scene::open(&OpenSpec::new("tori")).expect("a built-in scene");
     let mut session = common::session();
     let request = common::request(technique, TORI);
-    let (mut capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    session.judge(&scene, &mut capture, &Progress::default()).expect("a truth");
+    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    let capture = session.judged(&scene, &capture, &Progress::default()).expect("a truth");
     let pick = [TORI[0] / 2, TORI[1] * 2 / 3];
     let history = session.history(&plan, &capture, pick).expect("a history");
     let anatomy = session.anatomy(&scene, &request.choice, &plan);
     let mut inspector = pictures::inspector(&scene, &request, &Arc::new(capture), pick);
     inspector.set_plan(Arc::new(plan));
-    inspector.set_history(pick, Ok(Arc::new(history)));
-    inspector.set_anatomy(Ok(Arc::new(anatomy)));
-    inspector.set_report(ReportView { report: Some(one_scene()), ..ReportView::default() });
-    inspector.set_diagnosis(DiagnosisView { diagnosis: Some(Arc::new(found())), ..DiagnosisView::default() });
-    inspector.add_stress(rows("nested", |_, _| 0));
+    inspector.tell(HistoryOf { at: pick }, Ok(Arc::new(history)));
+    inspector.tell(AnatomyOf {}, Ok(Arc::new(anatomy)));
+    let measured = MeasuredReport { report: one_scene(), left_out: Vec::new() };
+    inspector.tell(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
+    inspector.tell(DiagnosisOf {}, Ok(Arc::new(found())));
+    let nested = StressRows::new(rows("nested", |_, _| 0));
+    inspector.tell(StressOf { cases: Vec::new() }, Ok(Arc::new(nested)));
     inspector
 }
 

@@ -8,8 +8,11 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::sync::Arc;
+use stencilscope::ask::{AnatomyOf, TestsOf};
 use stencilscope::capture::{Image, PixelFormat, StepTests};
-use stencilscope::inspector::{Action, ExportData, ExportKind, Overlay, PictureKind, ThemeChoice};
+use stencilscope::inspector::{Action, ExportData, ExportKind, Overlay, ThemeChoice};
+use stencilscope::reading::TestOutcomes;
+use stencilscope::reading::shown::{PictureKind, Zoom};
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 
@@ -81,7 +84,7 @@ fn the_compared_half_is_in_it_up_to_the_texel_under_the_divider() {
     assert_eq!([flipped.at([3, 4]), flipped.at([36, 4])], [COUNTS[1], COUNTS[0]]);
     assert!(is_near(flipped.at([19, 10]), [255; 3], 120), "a light line between: {:?}", flipped.at([19, 10]));
     // Zoomed to the left quarter, the divider stands over column 10.
-    harness.state_mut().inspector.set_zoom(stencilscope::inspector::Zoom::Pixels(40.0), [10.0, 15.0]);
+    harness.state_mut().inspector.set_zoom(Zoom::Pixels(40.0), [10.0, 15.0]);
     harness.run_steps(2);
     let zoomed = exported(&mut harness, ExportKind::AsShown);
     assert_eq!(zoomed.size, SIZE, "the whole picture all the same");
@@ -97,7 +100,7 @@ fn tints_of_overlays_are_in_it() {
     harness.run_steps(2);
     let image = |value| Arc::new(Image::uniform(PixelFormat::U8, SIZE, &[value]));
     let tests = StepTests { step: 1, draw: None, fragments: image(1), depth_passes: image(1), stencil: image(0) };
-    harness.state_mut().inspector.set_tests(1, None, Ok(Arc::new(tests)));
+    harness.state_mut().inspector.tell(TestsOf { step: 1, draw: None }, Ok(Arc::new(TestOutcomes::new(tests))));
     harness.run_steps(2);
     let shown = exported(&mut harness, ExportKind::AsShown);
     for (x, count) in [(3, COUNTS[1]), (30, COUNTS[0])] {
@@ -150,7 +153,7 @@ fn edges_that_count_twice_have_their_number() {
         let mut harness = harness_of(inspector, [1280.0, 800.0]);
         harness.state_mut().inspector.lay_over(Overlay::Silhouettes);
         harness.run_steps(2);
-        harness.state_mut().inspector.set_anatomy(Ok(anatomy));
+        harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy));
         harness.run_steps(2);
         let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
         if let Some(folder) = std::env::var_os("INSPECTOR_PICTURES") {
@@ -184,7 +187,7 @@ fn lines_numbers_and_names_are_in_it_as_in_the_window() {
         harness.state_mut().inspector.lay_over(overlay);
     }
     harness.run_steps(2);
-    harness.state_mut().inspector.set_anatomy(Ok(anatomy));
+    harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy));
     harness.run_steps(2);
     let [plain, shown] = [ExportKind::Picture, ExportKind::AsShown].map(|kind| exported(&mut harness, kind));
     assert_eq!((plain.size, shown.size), (size, size));

@@ -8,7 +8,9 @@ use egui::{Key, Rect, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::sync::Arc;
-use stencilscope::inspector::{PictureKind, ThemeChoice, Zoom};
+use stencilscope::ask::{AnatomyOf, HistoryOf};
+use stencilscope::inspector::ThemeChoice;
+use stencilscope::reading::shown::{PictureKind, Zoom};
 
 const FINDINGS: [&str; 6] =
     ["false shadow", "missing shadow", "wrong surface", "edge, excused", "agrees", "not compared"];
@@ -142,7 +144,7 @@ fn the_ladder_is_whole_in_sight_in_windows_that_are_not_high() {
         let mut inspector = inspector(with_truth(z_fail(SIZE)));
         inspector.pick([3, 4]);
         let mut harness = harness_of(inspector, [1280.0, height]);
-        harness.state_mut().inspector.set_history([3, 4], Ok(Arc::new(history.clone())));
+        harness.state_mut().inspector.tell(HistoryOf { at: [3, 4] }, Ok(Arc::new(history.clone())));
         harness.run_steps(4);
         let ladder = harness.get_by_label_contains("Ladder of the view ray").rect();
         // Down to the status bar.
@@ -160,8 +162,8 @@ fn pictures_of_cards_can_be_drawn() {
     let mut session = common::session();
     let scene = stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("inside")).expect("a built-in scene");
     let request = common::request(stencilscope::technique::Technique::ZPass, [640, 360]);
-    let (mut capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    session.judge(&scene, &mut capture, &Default::default()).expect("a truth");
+    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    let capture = session.judged(&scene, &capture, &Default::default()).expect("a truth");
     let anatomy = Arc::new(session.anatomy(&scene, &request.choice, &plan));
     let capture = Arc::new(capture);
     let pick = [330, 225];
@@ -181,12 +183,12 @@ fn pictures_of_cards_can_be_drawn() {
         for size in sizes {
             for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
                 let mut inspector = super::pictures::inspector(&scene, &request, &capture, pick);
-                inspector.set_anatomy(Ok(anatomy.clone()));
+                inspector.tell(AnatomyOf {}, Ok(anatomy.clone()));
                 inspector.set_picture_kind(PictureKind::Error);
                 inspector.set_theme(theme);
                 let outer = size.map(|side| (side + 2 * super::pictures::MARGIN) as f32);
                 let mut harness = harness_of(inspector, outer);
-                harness.state_mut().inspector.set_history(pick, Ok(history.clone()));
+                harness.state_mut().inspector.tell(HistoryOf { at: pick }, Ok(history.clone()));
                 view(&mut harness);
                 harness.run_steps(3);
                 let name = format!("cards-{name}-{theme:?}").to_lowercase();

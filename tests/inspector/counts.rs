@@ -7,7 +7,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
 use stencilscope::capture::{Image, PixelFormat};
-use stencilscope::inspector::{Inspector, PictureKind};
+use stencilscope::inspector::Inspector;
+use stencilscope::reading::shown::PictureKind;
 
 fn picked(at: [u32; 2]) -> Harness<'static, Seen> {
     let mut inspector: Inspector = inspector(counted_in_floats());

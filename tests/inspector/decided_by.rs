@@ -7,8 +7,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use stencilscope::ask::HistoryOf;
+use stencilscope::ask::RunRequest;
 use stencilscope::capture::Capture;
-use stencilscope::inspector::{Inspector, RunRequest};
+use stencilscope::inspector::Inspector;
 use stencilscope::plan::{DecidedBy, Side};
 use stencilscope::scene::{OpenSpec, Scene, open};
 use stencilscope::session::{CaptureRequest, Session};
@@ -40,7 +42,7 @@ fn panels(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> (Ha
     inspector.set_capture(Arc::new(capture.clone()));
     inspector.pick(dark);
     let mut harness = harness_of(inspector, [1280.0, 2000.0]);
-    harness.state_mut().inspector.set_history(dark, Ok(Arc::new(history)));
+    harness.state_mut().inspector.tell(HistoryOf { at: dark }, Ok(Arc::new(history)));
     harness.run_steps(3);
     (harness, capture)
 }

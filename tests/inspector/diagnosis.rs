@@ -1,7 +1,9 @@
 //! The Diagnosis tab.
 
 use super::pictures::{self, MARGIN, draw, sizes};
-use super::{SIZE, Seen, click, click_button, harness_of, inspector, press, run_request, scene, z_fail};
+use super::{
+    SIZE, Seen, asks, click, click_button, harness_of, inspector, last_asked, press, reply, run_request, scene, z_fail,
+};
 use crate::common;
 use egui::Key;
 use egui::accesskit::Role;
@@ -9,11 +11,12 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::sync::Arc;
 use stencilscope::accuracy::{ErrorCounts, Finding};
+use stencilscope::ask::{DiagnosisOf, HistoryOf, TruthOf};
 use stencilscope::diagnosis::{
     Advice, Cause, CauseFound, Diagnosis, Mend, MeshFinding, MeshTrouble, ObjectChange, Proof, RegionFound, RegionKind,
     Rest,
 };
-use stencilscope::inspector::{Action, DiagnosisProgress, DiagnosisView, Inspector};
+use stencilscope::inspector::{Action, Inspector};
 use stencilscope::progress::Progress;
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::session::Fault;
@@ -73,10 +76,14 @@ pub fn found() -> Diagnosis {
     }
 }
 
-fn opened(view: DiagnosisView) -> Harness<'static, Seen> {
+fn tell(inspector: &mut Inspector, diagnosis: Diagnosis) {
+    inspector.tell(DiagnosisOf {}, Ok(Arc::new(diagnosis)));
+}
+
+fn opened(tell: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.set_scene(&scene(), run_request(Technique::ZPass));
-    inspector.set_diagnosis(view);
+    tell(&mut inspector);
     let mut harness = harness_of(inspector, [1280.0, 900.0]);
     click(&mut harness, "Diagnosis");
     harness.run_steps(2);
@@ -84,7 +91,7 @@ fn opened(view: DiagnosisView) -> Harness<'static, Seen> {
 }
 
 fn with_regions() -> Harness<'static, Seen> {
-    opened(DiagnosisView { diagnosis: Some(Arc::new(found())), ..DiagnosisView::default() })
+    opened(|inspector| tell(inspector, found()))
 }
 
 const FIRST: &str = "1 · missing shadow of box on floor: 70 pixels, eye-in-volume (proven)";
@@ -92,10 +99,10 @@ const SECOND: &str = "2 · false shadow of box on floor: 30 pixels, split-vertic
 
 #[test]
 fn before_anything_is_diagnosed_it_says_what_it_does() {
-    let mut harness = opened(DiagnosisView::default());
+    let mut harness = opened(|_| ());
     harness.get_by_label_contains("only what takes them away is called proven");
     click_button(&mut harness, "Diagnose");
-    assert_eq!(harness.state().actions, [Action::Diagnose]);
+    assert_eq!(asks::<DiagnosisOf>(&harness).len(), 1);
 }
 
 #[test]
@@ -109,14 +116,15 @@ fn without_a_scene_nothing_can_be_diagnosed() {
 
 #[test]
 fn while_it_runs_it_can_be_stopped_and_errors_are_shown() {
-    let running = Some(DiagnosisProgress { done: 3, of: 9 });
-    let mut harness = opened(DiagnosisView { running, ..DiagnosisView::default() });
+    let mut harness = opened(|_| ());
+    click_button(&mut harness, "Diagnose");
+    let progress = last_asked::<DiagnosisOf>(&harness).progress;
     harness.get_by_label("Diagnosing");
     assert!(harness.query_by_role_and_label(Role::Button, "Diagnose").is_none());
     click_button(&mut harness, "Cancel");
-    assert_eq!(harness.state().actions, [Action::CancelDiagnosis]);
-    let error = Some("the scene is too large: scale it down".to_owned());
-    let harness = opened(DiagnosisView { error, ..DiagnosisView::default() });
+    assert!(progress.is_cancelled());
+    click_button(&mut harness, "Diagnose");
+    reply::<DiagnosisOf>(&mut harness, Err("the scene is too large: scale it down".to_owned()));
     harness.get_by_label("× the scene is too large: scale it down");
 }
 
@@ -129,8 +137,8 @@ fn a_region_goes_to_its_pixel_its_history_and_the_step_that_decided() {
     harness.run_steps(3);
     let seen = harness.state();
     assert_eq!((seen.inspector.picked(), seen.inspector.step()), (Some([5, 6]), 1), "after the volumes");
-    assert!(seen.actions.contains(&Action::History { at: [5, 6] }), "{:?}", seen.actions);
-    assert!(seen.actions.contains(&Action::Judge), "the error picture is wished for");
+    assert!(asks::<HistoryOf>(&harness).contains(&HistoryOf { at: [5, 6] }));
+    assert!(!asks::<TruthOf>(&harness).is_empty(), "the error picture is wished for");
     // By keyboard alike.
     harness.get_by_role_and_label(Role::Row, SECOND).focus();
     harness.run_steps(2);
@@ -177,7 +185,7 @@ fn another_scene_forgets_what_was_found() {
     other.name = "another".to_owned();
     harness.state_mut().inspector.set_scene(&other, run_request(Technique::ZFail));
     harness.run_steps(2);
-    assert!(harness.state().inspector.diagnosis().diagnosis.is_none());
+    assert!(harness.state().inspector.answers().last::<DiagnosisOf>().is_none());
     assert!(harness.query_by_role_and_label(Role::Row, FIRST).is_none());
 }
 
@@ -190,12 +198,12 @@ fn a_right_frame_says_so_and_small_windows_hold_it() {
         error: ErrorCounts { compared: 1200, ..ErrorCounts::default() },
         ..found()
     };
-    let harness = opened(DiagnosisView { diagnosis: Some(Arc::new(right)), ..DiagnosisView::default() });
+    let harness = opened(|inspector| tell(inspector, right));
     harness.get_by_label("No pixel is wrong.");
     harness.get_by_label_contains("none of 1\u{2009}200 compared pixels is wrong");
     for size in [[1920.0, 1080.0], [700.0, 500.0], [320.0, 240.0]] {
         let mut inspector = inspector(z_fail(SIZE));
-        inspector.set_diagnosis(DiagnosisView { diagnosis: Some(Arc::new(found())), ..DiagnosisView::default() });
+        tell(&mut inspector, found());
         harness_of(inspector, size);
     }
 }
@@ -209,16 +217,15 @@ fn pictures_of_a_diagnosis_can_be_drawn() {
     let scene = open(&OpenSpec::new("assets/scenes/shade.toml")).expect("a scene");
     for technique in [Technique::ZPass, Technique::Planar] {
         let request = common::request(technique, size);
-        let mut capture = session.capture(&scene, &request).expect("a capture");
+        let capture = session.capture(&scene, &request).expect("a capture");
         let progress = Progress::default();
-        session.judge(&scene, &mut capture, &progress).expect("a truth");
+        let capture = session.judged(&scene, &capture, &progress).expect("a truth");
         let diagnosis = session.diagnose(&scene, &request, Fault::None, &progress).expect("a diagnosis");
         assert!(diagnosis.is_bad(), "{}", technique.name());
         for shown in sizes(folder.is_some()) {
             let at = diagnosis.regions[0].at;
             let mut inspector = pictures::inspector(&scene, &request, &Arc::new(capture.clone()), at);
-            let view = DiagnosisView { diagnosis: Some(Arc::new(diagnosis.clone())), ..DiagnosisView::default() };
-            inspector.set_diagnosis(view);
+            tell(&mut inspector, diagnosis.clone());
             let mut harness = harness_of(inspector, shown.map(|side| (side + 2 * MARGIN) as f32));
             click(&mut harness, "Diagnosis");
             harness.run_steps(2);

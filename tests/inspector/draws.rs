@@ -1,13 +1,14 @@
 //! Draw by draw: selecting, stepping, asking for states that are not there, and what is shown.
 
 use super::by_hand::{cube_map, with_draws};
-use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, press, z_fail};
+use super::{SIZE, Seen, asks, click, click_button, harness, harness_of, inspector, press, reply, z_fail};
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
+use stencilscope::ask::DrawsOf;
 use stencilscope::capture::Capture;
-use stencilscope::inspector::{Action, PictureKind};
+use stencilscope::reading::shown::PictureKind;
 
 fn at(harness: &Harness<Seen>) -> (usize, Option<usize>) {
     (harness.state().inspector.step(), harness.state().inspector.draw())
@@ -15,8 +16,7 @@ fn at(harness: &Harness<Seen>) -> (usize, Option<usize>) {
 
 /// Steps that draws were asked for of.
 fn asked(harness: &Harness<Seen>) -> Vec<usize> {
-    let step = |action: &Action| if let Action::CaptureDraws { step } = action { Some(*step) } else { None };
-    harness.state().actions.iter().filter_map(step).collect()
+    asks::<DrawsOf>(harness).into_iter().map(|ask| ask.step).collect()
 }
 
 /// How many texels of the shown stencil are 1.
@@ -167,7 +167,7 @@ fn why_there_are_no_states_is_said_and_selecting_again_asks_again() {
     let mut harness = harness(z_fail(SIZE));
     click(&mut harness, "2 · volumes");
     click(&mut harness, "sides of box");
-    harness.state_mut().inspector.set_draws_failed(1, "the GPU is lost".to_owned());
+    reply::<DrawsOf>(&mut harness, Err("the GPU is lost".to_owned()));
     harness.run_steps(3);
     harness.get_by_label("× The state after this draw is not known: the GPU is lost");
     assert_eq!(asked(&harness), [1]);
@@ -178,7 +178,7 @@ fn why_there_are_no_states_is_said_and_selecting_again_asks_again() {
 #[test]
 fn a_folder_without_draws_says_why_and_how() {
     let mut without = inspector(z_fail(SIZE));
-    without.clear_scene();
+    without.open_folder(None);
     let mut harness = harness_of(without, [1280.0, 800.0]);
     click(&mut harness, "2 · volumes");
     click(&mut harness, "sides of box");

@@ -47,7 +47,7 @@ fn the_state_of_a_volume_pass_is_told_in_a_sentence_and_in_three_apis_words() {
 fn a_capture_folder_tells_the_state_as_its_plan_has_it() {
     let mut inspector = over("tori", Technique::ZFail);
     let capture = Arc::clone(inspector.capture().expect("a capture"));
-    inspector.clear_scene();
+    inspector.open_folder(None);
     inspector.set_capture(capture);
     inspector.select_step(1);
     let mut harness = harness_of(inspector, [1600.0, 1200.0]);

@@ -6,7 +6,8 @@ use egui::{Key, PointerButton, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::{DVec3, DVec4};
-use stencilscope::inspector::{Action, RunRequest};
+use stencilscope::ask::RunRequest;
+use stencilscope::inspector::Action;
 use stencilscope::scene::Light;
 
 fn asked<'a>(harness: &'a Harness<'_, Seen>) -> &'a RunRequest {

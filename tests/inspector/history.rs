@@ -2,7 +2,7 @@
 //! triangle shows elsewhere.
 
 use super::history_by_hand::{FACES, Face, history};
-use super::{SIZE, Seen, click, harness_of, inspector, press, z_fail};
+use super::{SIZE, Seen, asks, click, harness_of, inspector, last_asked, press, reply, z_fail};
 use crate::common;
 use egui::Key;
 use egui::accesskit::{Role, Toggled};
@@ -10,8 +10,8 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use stencilscope::ask::{Answer, HistoryOf};
 use stencilscope::history::{Event, PixelHistory};
-use stencilscope::inspector::Action;
 use stencilscope::plan::Part;
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
@@ -28,7 +28,11 @@ fn picked(at: [u32; 2]) -> Harness<'static, Seen> {
 }
 
 fn answer(harness: &mut Harness<Seen>, history: PixelHistory) {
-    harness.state_mut().inspector.set_history(history.pixel, Ok(Arc::new(history)));
+    let asked = asks::<HistoryOf>(harness).pop();
+    // An answer to what is asked no more is dropped.
+    let is_asked = asked.is_some_and(|asked| asked.at == history.pixel);
+    let ticket = if is_asked { last_asked::<HistoryOf>(harness).ticket } else { 0 };
+    harness.state_mut().inspector.answer(ticket, Ok(Answer::HistoryOf(Arc::new(history))), true);
     harness.run_steps(2);
 }
 
@@ -39,8 +43,7 @@ fn answered(faces: &[Face]) -> Harness<'static, Seen> {
 }
 
 fn asked(harness: &Harness<Seen>) -> Vec<[u32; 2]> {
-    let at = |action: &Action| if let Action::History { at } = action { Some(*at) } else { None };
-    harness.state().actions.iter().filter_map(at).collect()
+    asks::<HistoryOf>(harness).into_iter().map(|ask| ask.at).collect()
 }
 
 fn rows(harness: &Harness<Seen>) -> Vec<String> {
@@ -239,7 +242,7 @@ fn an_answer_about_another_pixel_is_dropped_and_the_last_one_stays_greyed() {
 #[test]
 fn what_failed_is_said_and_not_asked_again_until_the_pick_moves() {
     let mut harness = picked(DARK);
-    harness.state_mut().inspector.set_history(DARK, Err("the GPU was lost: open the scene again".to_owned()));
+    reply::<HistoryOf>(&mut harness, Err("the GPU was lost: open the scene again".to_owned()));
     harness.run_steps(3);
     harness.get_by_label("× There is no history: the GPU was lost: open the scene again");
     assert_eq!(asked(&harness).len(), 1);
@@ -252,7 +255,7 @@ fn what_failed_is_said_and_not_asked_again_until_the_pick_moves() {
 #[test]
 fn a_folder_says_what_histories_need() {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.clear_scene();
+    inspector.open_folder(None);
     inspector.pick(DARK);
     let mut harness = harness_of(inspector, TALL);
     assert_eq!(asked(&harness), [[0; 2]; 0]);

@@ -9,6 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::PathBuf;
 use std::sync::Arc;
+use stencilscope::ask::HistoryOf;
 use stencilscope::capture::Capture;
 use stencilscope::history::PixelHistory;
 use stencilscope::inspector::Inspector;
@@ -28,7 +29,7 @@ impl Gallery {
         let sizes: &[[u32; 2]] = if self.folder.is_some() { &SIZES } else { sizes(false) };
         for size in sizes {
             let mut harness = harness_of(of(), size.map(|side| (side + 2 * MARGIN) as f32));
-            harness.state_mut().inspector.set_history(history.pixel, Ok(Arc::new(history.clone())));
+            harness.state_mut().inspector.tell(HistoryOf { at: history.pixel }, Ok(Arc::new(history.clone())));
             harness.run_steps(2);
             if let Some(rung) = select {
                 click_rung(&mut harness, rung);
@@ -90,7 +91,7 @@ fn pictures_of_histories_can_be_drawn() {
         "by-hand-late",
         || {
             let mut inspector = inspector(&scene, &request, &capture, [3, 4]);
-            inspector.set_history([3, 4], Ok(Arc::new(history([3, 4], &FACES))));
+            inspector.tell(HistoryOf { at: [3, 4] }, Ok(Arc::new(history([3, 4], &FACES))));
             inspector.pick([9, 9]);
             inspector
         },

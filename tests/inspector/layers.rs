@@ -8,7 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::sync::Arc;
 use stencilscope::capture::{Image, PixelFormat};
-use stencilscope::inspector::PictureKind;
+use stencilscope::reading::shown::PictureKind;
 
 /// The tab of shadow maps is there whatever is shown.
 fn says(harness: &Harness<Seen>, text: &str) -> bool {

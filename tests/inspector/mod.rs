@@ -35,8 +35,10 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::{Harness, kittest::Queryable};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use stencilscope::ask::{Answer, Ask, Asked, Question, RunRequest};
 use stencilscope::capture::{Capture, Image, PixelFormat};
-use stencilscope::inspector::{Action, Inspector, MapReadersJob, PictureKind, RunRequest, SceneEntry, Zoom};
+use stencilscope::inspector::{Action, Inspector, SceneEntry};
+use stencilscope::reading::shown::{PictureKind, Zoom};
 use stencilscope::scene::Scene;
 use stencilscope::technique::{Choice, Technique};
 
@@ -46,8 +48,8 @@ const SIZE: [u32; 2] = [40, 30];
 struct Seen {
     inspector: Inspector,
     actions: Vec<Action>,
-    /// What was asked of map readers, where a test answers itself.
-    asked: Option<Vec<MapReadersJob>>,
+    /// What was asked that follows from the capture, where a test answers itself.
+    asked: Option<Vec<Asked>>,
 }
 
 fn run_request(technique: Technique) -> RunRequest {
@@ -79,13 +81,15 @@ fn harness_of(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
     let ui = |ui: &mut egui::Ui, seen: &mut Seen| {
         for action in seen.inspector.ui(ui) {
             match action {
-                Action::MapReaders => {
-                    let job = seen.inspector.map_readers_job().expect("a frame");
-                    match &mut seen.asked {
-                        Some(asked) => asked.push(job),
-                        None => seen.inspector.set_map_readers(job.find()),
+                // Whether the frame is timed is seen in no panel.
+                Action::Ask(Asked { ask: Ask::TimingOf(_), .. }) => {}
+                Action::Ask(asked) if asked.ask.kind().is_read_from_capture() => match &mut seen.asked {
+                    Some(held) => held.push(asked),
+                    None => {
+                        let result = found(&seen.inspector, &asked);
+                        seen.inspector.answer(asked.ticket, result, true);
                     }
-                }
+                },
                 action => seen.actions.push(action),
             }
         }
@@ -93,6 +97,34 @@ fn harness_of(inspector: Inspector, size: [f32; 2]) -> Harness<'static, Seen> {
     let mut harness = Harness::builder().with_size(size).with_max_steps(32).build_ui_state(ui, seen);
     harness.run_steps(3);
     harness
+}
+
+/// The answer to what follows from the capture.
+fn found(inspector: &Inspector, asked: &Asked) -> Result<Answer, String> {
+    asked.ask.read_from(inspector.capture().expect("a frame"), inspector.plan())
+}
+
+/// What was asked, in order.
+fn asks<Q: Question>(harness: &Harness<Seen>) -> Vec<Q> {
+    let of = |action: &Action| if let Action::Ask(asked) = action { Q::of(&asked.ask).cloned() } else { None };
+    harness.state().actions.iter().filter_map(of).collect()
+}
+
+/// What was asked last of its kind.
+fn last_asked<Q: Question>(harness: &Harness<Seen>) -> Asked {
+    let of = |action: &Action| match action {
+        Action::Ask(asked) => Q::of(&asked.ask).map(|_| asked.clone()),
+        _ => None,
+    };
+    harness.state().actions.iter().rev().find_map(of).expect("it is asked for")
+}
+
+/// Answers what was asked last of a kind.
+fn reply<Q: Question>(harness: &mut Harness<Seen>, result: Result<Q::Answer, String>) {
+    let asked = last_asked::<Q>(harness);
+    let result = result.map(|answer| Q::into_answer(Arc::new(answer)));
+    harness.state_mut().inspector.answer(asked.ticket, result, true);
+    harness.run_steps(2);
 }
 
 fn harness(capture: Capture) -> Harness<'static, Seen> {
@@ -385,7 +417,7 @@ fn what_cannot_be_run_is_said_and_not_run() {
     // Where the target is: the eye of the scene looks straight down from 10 above.
     harness.get_by_label("camera eye y").set_value_accesskit(0.0);
     harness.run_steps(2);
-    assert!(harness.state().actions.is_empty());
+    assert!(!harness.state().actions.iter().any(|action| matches!(action, Action::Run(_))));
     harness.get_by_label_contains("the camera's eye equals its target");
 }
 
@@ -455,7 +487,7 @@ fn with_nothing_open_it_says_what_to_do() {
 #[test]
 fn a_capture_folder_is_looked_at_but_not_run() {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.clear_scene();
+    inspector.open_folder(None);
     let mut harness = harness_of(inspector, [1280.0, 800.0]);
     harness.get_by_label("technique z-fail");
     click(&mut harness, "Scene settings");

@@ -9,11 +9,12 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::PathBuf;
 use std::sync::Arc;
-use stencilscope::inspector::{Action, Inspector, PictureKind};
+use stencilscope::inspector::{Action, Inspector};
 use stencilscope::plan::FramePlan;
+use stencilscope::reading::shown::PictureKind;
 use stencilscope::scene::{OpenSpec, Scene, open};
-use stencilscope::session::{CaptureRequest, Session};
-use stencilscope::technique::Technique;
+use stencilscope::session::{CaptureRequest, RunFrame, Session};
+use stencilscope::technique::{Choice, Technique};
 
 type View = fn(&mut Harness<Seen>);
 
@@ -75,26 +76,15 @@ fn overlays(harness: &mut Harness<Seen>, names: &[&str]) {
 
 /// Does what the panels asked for, as the app would.
 fn answer(inspector: &mut Inspector, asked: &[Action], session: &mut Session, scene: &Scene, plan: &FramePlan) {
+    let capture = inspector.capture().cloned().expect("a frame");
+    let mut choice = Choice::new(Technique::from_name(&capture.technique).expect("a technique"));
+    capture.settings.iter().for_each(|(key, value)| drop(choice.set(key, value)));
+    let request = CaptureRequest::new(choice, capture.size);
+    let frame = RunFrame { scene: scene.clone(), request, capture, plan: Arc::new(plan.clone()) };
     for action in asked {
-        match action {
-            Action::Tests { step, draw } => {
-                let tests = session.step_tests(plan, *step, *draw).map(Arc::new);
-                inspector.set_tests(*step, *draw, tests.map_err(|error| error.to_string()));
-            }
-            Action::Compare(request) => {
-                let what = CaptureRequest::new(request.choice.clone(), request.size);
-                let result = session.capture(scene, &what).map(Arc::new).map_err(|error| error.to_string());
-                inspector.set_compared(request, result);
-            }
-            Action::Anatomy => {
-                let choice = inspector.capture().map(|capture| capture.technique.clone()).unwrap_or_default();
-                let technique = Technique::ALL.into_iter().find(|technique| technique.name() == choice);
-                let technique = technique.expect("a technique");
-                let anatomy = session.anatomy(scene, &stencilscope::technique::Choice::new(technique), plan);
-                inspector.set_anatomy(Ok(Arc::new(anatomy)));
-            }
-            _ => {}
-        }
+        let Action::Ask(asked) = action else { continue };
+        let result = session.answer(&asked.ask, scene, Some(&frame), &asked.progress);
+        inspector.answer(asked.ticket, result.map_err(|error| error.to_string()), true);
     }
 }
 

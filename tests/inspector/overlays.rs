@@ -1,15 +1,17 @@
 //! What is drawn over the picture: chosen in a menu, asked for once, listed with its colours.
 
 use super::by_hand::z_fail;
-use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, press};
+use super::{SIZE, Seen, asks, click, click_button, harness, harness_of, inspector, press, reply};
 use crate::common;
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
+use stencilscope::ask::{AnatomyOf, TestsOf};
 use stencilscope::capture::{Image, PixelFormat, StepTests};
-use stencilscope::inspector::{Action, PictureKind};
+use stencilscope::reading::TestOutcomes;
+use stencilscope::reading::shown::PictureKind;
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 
@@ -55,10 +57,9 @@ fn tests_of_the_step_are_asked_once_and_listed_with_their_pixels() {
     harness.state_mut().inspector.select_step(1);
     turn_on(&mut harness, &["Depth and stencil tests"]);
     harness.get_by_label("Overlay · 1");
-    let asked = Action::Tests { step: 1, draw: None };
-    assert_eq!(harness.state().actions.iter().filter(|action| **action == asked).count(), 1);
+    assert_eq!(asks::<TestsOf>(&harness), [TestsOf { step: 1, draw: None }]);
     harness.get_by_label("Counting fragments …");
-    harness.state_mut().inspector.set_tests(1, None, Ok(Arc::new(tests())));
+    reply::<TestsOf>(&mut harness, Ok(TestOutcomes::new(tests())));
     harness.run_steps(2);
     harness.get_by_label("Tests of step 2");
     for (name, pixels) in [("passed", "10"), ("depth failed", "20"), ("mixed", "40"), ("? not known", "1")] {
@@ -67,8 +68,8 @@ fn tests_of_the_step_are_asked_once_and_listed_with_their_pixels() {
     }
     harness.state_mut().inspector.select_step(3);
     harness.run_steps(2);
-    assert!(harness.state().actions.contains(&Action::Tests { step: 3, draw: None }));
-    harness.state_mut().inspector.set_tests(3, None, Err("no room: make it smaller".to_owned()));
+    assert!(asks::<TestsOf>(&harness).contains(&TestsOf { step: 3, draw: None }));
+    reply::<TestsOf>(&mut harness, Err("no room: make it smaller".to_owned()));
     harness.run_steps(2);
     harness.get_by_label("no room: make it smaller");
 }
@@ -81,7 +82,7 @@ fn overdraw_is_a_picture_of_how_many_fragments_came() {
     click_button(&mut harness, "Overdraw");
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Color));
     harness.get_by_label("Counting fragments …");
-    harness.state_mut().inspector.set_tests(1, None, Ok(Arc::new(tests())));
+    reply::<TestsOf>(&mut harness, Ok(TestOutcomes::new(tests())));
     harness.run_steps(2);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Overdraw));
     harness.get_by_label("Fragments a pixel");
@@ -95,11 +96,11 @@ fn overdraw_is_a_picture_of_how_many_fragments_came() {
 #[test]
 fn a_folder_says_that_it_has_no_geometry() {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.clear_scene();
+    inspector.open_folder(None);
     let mut harness = harness_of(inspector, [1280.0, 800.0]);
     turn_on(&mut harness, &["Silhouettes"]);
     harness.get_by_label_contains("Open the scene instead");
-    assert!(!harness.state().actions.iter().any(|action| matches!(action, Action::Anatomy | Action::Tests { .. })));
+    assert!(asks::<AnatomyOf>(&harness).is_empty() && asks::<TestsOf>(&harness).is_empty());
 }
 
 #[test]
@@ -126,9 +127,9 @@ fn lines_receivers_and_names_come_from_the_frames_anatomy() {
     let mut harness = harness_of(inspector, [1280.0, 800.0]);
     let plain = harness.render().expect("a picture");
     turn_on(&mut harness, &["Silhouettes", "Wireframe of volumes", "Receivers", "Casters' names"]);
-    assert!(harness.state().actions.contains(&Action::Anatomy));
+    assert_eq!(asks::<AnatomyOf>(&harness).len(), 1);
     harness.get_by_label("Looking at the geometry …");
-    harness.state_mut().inspector.set_anatomy(Ok(anatomy));
+    harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy));
     harness.run_steps(3);
     for text in ["silhouette; thick, ±2: twice", "side", "light cap", "dark cap", "receives shadows"] {
         assert!(shows(&harness, text), "{text}");

@@ -1,13 +1,13 @@
 //! Before, after and what changed; comparing two steps or techniques; bits and histograms.
 
 use super::by_hand::{cube_map, with_draws, z_fail};
-use super::{SIZE, Seen, click, click_button, harness, press};
+use super::{SIZE, Seen, asks, click, click_button, harness, press, reply};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use std::sync::Arc;
-use stencilscope::inspector::{Action, PictureKind, RunRequest};
+use stencilscope::ask::{CaptureOf, DrawsOf, RunRequest};
+use stencilscope::reading::shown::PictureKind;
 use stencilscope::technique::Technique;
 
 fn at_volumes() -> Harness<'static, Seen> {
@@ -93,9 +93,9 @@ fn a_draw_before_that_is_not_known_is_asked_for() {
     harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
     harness.state_mut().inspector.select_draw(1, 1);
     harness.run_steps(2);
-    assert!(!harness.state().actions.contains(&Action::CaptureDraws { step: 1 }), "the last draw is the step");
+    assert!(!asks::<DrawsOf>(&harness).contains(&DrawsOf { step: 1 }), "the last draw is the step");
     press(&mut harness, Key::B);
-    assert!(harness.state().actions.contains(&Action::CaptureDraws { step: 1 }));
+    assert!(asks::<DrawsOf>(&harness).contains(&DrawsOf { step: 1 }));
     harness.get_by_label_contains("not known yet");
 }
 
@@ -153,11 +153,7 @@ fn flipping_swaps_the_sides_and_off_is_off() {
 }
 
 fn asked(harness: &Harness<Seen>) -> Vec<RunRequest> {
-    let asked = harness.state().actions.iter().filter_map(|action| match action {
-        Action::Compare(request) => Some(RunRequest::clone(request)),
-        _ => None,
-    });
-    asked.collect()
+    asks::<CaptureOf>(harness).into_iter().map(|ask| *ask.request).collect()
 }
 
 #[test]
@@ -173,7 +169,7 @@ fn another_technique_is_asked_for_once_and_shown_at_the_pass_of_the_same_name() 
     harness.get_by_label_contains("Capturing z-pass");
     let mut other = z_fail(SIZE);
     other.technique = "z-pass".to_owned();
-    harness.state_mut().inspector.set_compared(&requests[0], Ok(Arc::new(other.clone())));
+    reply::<CaptureOf>(&mut harness, Ok(other.clone()));
     harness.run_steps(3);
     harness.get_by_label_contains("No texel differs");
     // The step of the frame that is shown has another name: the other's last step is shown.
@@ -190,22 +186,20 @@ fn a_technique_that_failed_says_why_and_one_without_such_a_picture_too() {
     click(&mut harness, "Compare with");
     click_button(&mut harness, "technique shadow-map");
     harness.run_steps(3);
-    let request = asked(&harness).pop().expect("a request");
-    harness.state_mut().inspector.set_compared(&request, Err("no room: make it smaller".to_owned()));
+    reply::<CaptureOf>(&mut harness, Err("no room: make it smaller".to_owned()));
     harness.run_steps(2);
     harness.get_by_label_contains("shadow-map can't be shown: no room: make it smaller");
     let mut again = harness;
     click(&mut again, "Compare with");
     click_button(&mut again, "technique projective");
     again.run_steps(3);
-    let request = asked(&again).pop().expect("a request");
     let mut other = cube_map();
     for step in &mut other.steps {
         if let stencilscope::capture::Snapshot::Frame(frame) = &mut step.snapshot {
             frame.stencil = None;
         }
     }
-    again.state_mut().inspector.set_compared(&request, Ok(Arc::new(other)));
+    reply::<CaptureOf>(&mut again, Ok(other));
     again.run_steps(2);
     again.get_by_label_contains("projective has no such picture");
 }

@@ -8,11 +8,13 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use stencilscope::ask::{MeshesOf, ReportOf, RunRequest, TruthOf};
 use stencilscope::capture::Capture;
-use stencilscope::inspector::{
-    Inspector, ObjectMesh, PictureKind, ReportProgress, ReportView, RunRequest, SceneEntry, TruthState, Zoom,
-};
+use stencilscope::inspector::{Inspector, SceneEntry};
 use stencilscope::progress::Progress;
+use stencilscope::reading::ObjectMesh;
+use stencilscope::reading::shown::{PictureKind, Zoom};
+use stencilscope::report::{MeasuredReport, Report};
 use stencilscope::scene::{OpenSpec, Scene, open};
 use stencilscope::session::CaptureRequest;
 use stencilscope::technique::Technique;
@@ -34,9 +36,7 @@ fn pictures_of_the_panels_can_be_drawn() {
         let timing_runs = if folder.is_some() { 5 } else { 0 };
         let request = CaptureRequest { timing_runs, ..common::request(technique, [1280, 720]) };
         let capture = Arc::new(session.capture(&scene, &request).expect("a capture"));
-        let mut judged = Capture::clone(&capture);
-        session.judge(&scene, &mut judged, &Progress::default()).expect("a truth");
-        let judged = Arc::new(judged);
+        let judged = Arc::new(session.judged(&scene, &capture, &Progress::default()).expect("a truth"));
         let views = VIEWS.iter().map(|view| (view, &capture)).chain(JUDGED_VIEWS.iter().map(|view| (view, &judged)));
         for ((name, view), capture) in views {
             for size in sizes {
@@ -54,14 +54,7 @@ fn pictures_of_the_panels_can_be_drawn() {
 pub fn inspector(scene: &Scene, request: &CaptureRequest, capture: &Arc<Capture>, pick: [u32; 2]) -> Inspector {
     let entry = SceneEntry { name: "tori".to_owned(), lesson: "four tori".to_owned() };
     let mut inspector = Inspector::new(vec![entry]);
-    let draft = RunRequest {
-        choice: request.choice.clone(),
-        size: request.size,
-        camera: scene.camera,
-        lights: scene.lights.clone(),
-        time: 0.0,
-        off: std::collections::BTreeSet::new(),
-    };
+    let draft = RunRequest::of(scene, request.choice.clone(), request.size);
     inspector.set_scene(scene, draft);
     inspector.set_capture(capture.clone());
     inspector.pick(pick);
@@ -95,7 +88,7 @@ fn pictures_of_textures_silhouettes_and_counts_can_be_drawn() {
         for (name, view) in *views {
             for size in sizes(folder.is_some()) {
                 let mut inspector = inspector(&scene, &request, &capture, *pick);
-                inspector.set_meshes(meshes.clone());
+                inspector.tell(MeshesOf {}, Ok(Arc::new(meshes.clone())));
                 let mut harness = harness_of(inspector, size.map(|side| (side + 2 * MARGIN) as f32));
                 view(&mut harness);
                 harness.run_steps(2);
@@ -113,15 +106,13 @@ fn pictures_of_draws_can_be_drawn() {
     let scene = open(&OpenSpec::new("tori")).expect("tori");
     let request = common::request(Technique::ZFail, [1280, 720]);
     let plain = Arc::new(session.capture(&scene, &request).expect("a capture"));
-    let mut filled = Capture::clone(&plain);
     let plan = session.plan(&scene, &request).expect("a plan");
-    session.fill_draws(&plan, &mut filled, 1).expect("draws");
-    let filled = Arc::new(filled);
+    let filled = Arc::new(plain.with_draws(&session.step_draws(&plan, &plain, 1).expect("draws")));
     let views: [(&str, &Arc<Capture>, View); 4] = [
         ("held", &filled, |_| ()),
         ("pass", &filled, |harness| harness.state_mut().inspector.select_step(1)),
         ("fetching", &plain, |_| ()),
-        ("folder", &plain, |harness| harness.state_mut().inspector.clear_scene()),
+        ("folder", &plain, |harness| harness.state_mut().inspector.open_folder(None)),
     ];
     for (name, capture, view) in views {
         for size in sizes(folder.is_some()) {
@@ -217,6 +208,11 @@ fn save(file: &Path, rgba: &[u8], [width, height]: [u32; 2]) {
 
 type View = fn(&mut Harness<Seen>);
 
+fn tell_report(harness: &mut Harness<Seen>, report: Report) {
+    let measured = MeasuredReport { report, left_out: Vec::new() };
+    harness.state_mut().inspector.tell(ReportOf::grid().expect("a grid"), Ok(Arc::new(measured)));
+}
+
 const VIEWS: [(&str, View); 13] = [
     ("colour", |_| ()),
     ("stencil", |harness| {
@@ -229,7 +225,9 @@ const VIEWS: [(&str, View); 13] = [
     ("tracing", |harness| {
         harness.state_mut().inspector.set_picture_kind(PictureKind::Error);
         harness.run_steps(1);
-        harness.state_mut().inspector.set_truth(TruthState::Running { done: 43, of: 100 });
+        let progress = super::last_asked::<TruthOf>(harness).progress;
+        progress.start(100);
+        (0..43).for_each(|_| progress.advance());
     }),
     ("large", |harness| {
         harness.state_mut().inspector.set_picture_kind(PictureKind::Stencil);
@@ -237,19 +235,21 @@ const VIEWS: [(&str, View); 13] = [
     }),
     ("settings", |harness| click(harness, "Scene settings")),
     ("report", |harness| {
-        let report = Some(one_scene());
-        harness.state_mut().inspector.set_report(ReportView { report, ..ReportView::default() });
+        tell_report(harness, one_scene());
     }),
     ("report-running", |harness| {
         let mut report = one_scene();
         report.rows.truncate(8);
         report.mark_pareto();
-        let running = Some(ReportProgress { done: 8, of: 15, what: "shadow-map 4096".to_owned() });
-        harness.state_mut().inspector.set_report(ReportView { report: Some(report), running, ..ReportView::default() });
+        tell_report(harness, report);
+        harness.state_mut().inspector.start(ReportOf::grid().expect("a grid"));
+        harness.run_steps(1);
+        let progress = super::last_asked::<ReportOf>(harness).progress;
+        progress.start(15);
+        (0..8).for_each(|_| progress.advance());
     }),
     ("report-scenes", |harness| {
-        let report = Some(three_scenes());
-        harness.state_mut().inspector.set_report(ReportView { report, ..ReportView::default() });
+        tell_report(harness, three_scenes());
     }),
     ("open", |harness| click(harness, "Open…")),
     ("error", |harness| {

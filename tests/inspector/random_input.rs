@@ -8,7 +8,7 @@ use super::*;
 use crate::common::random::Random;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use stencilscope::inspector::{DiagnosisProgress, DiagnosisView, ReportProgress, ReportView, TruthState};
+use stencilscope::ask::{AnatomyOf, DiagnosisOf, HistoryOf, ReportOf, TestsOf, TruthOf};
 
 const FRAMES: usize = 450;
 /// How many inputs before a failure are told.
@@ -176,7 +176,7 @@ impl Monkey {
 
     /// News from the worker, right, late or bad.
     fn answer(&mut self, harness: &mut Harness<Seen>) {
-        let what = self.below(14);
+        let what = self.below(15);
         self.tell(format!("news {what}"));
         let bad = || "it failed: try again".to_owned();
         let capture = self.below(self.captures.len());
@@ -187,10 +187,12 @@ impl Monkey {
         match what {
             0..3 => inspector.set_capture(capture),
             3 => inspector.update_capture(capture),
-            4 => inspector.set_history(pixel, Err(bad())),
-            5 => inspector.set_anatomy(Err(bad())),
-            6 => inspector.set_tests(pixel[0] as usize, Some(pixel[1] as usize), Err(bad())),
-            7 => inspector.set_truth(TruthState::Failed(bad())),
+            4 => inspector.tell(HistoryOf { at: pixel }, Err(bad())),
+            5 => inspector.tell(AnatomyOf {}, Err(bad())),
+            6 => {
+                inspector.tell(TestsOf { step: pixel[0] as usize, draw: Some(pixel[1] as usize) }, Err(bad()));
+            }
+            7 => inspector.tell(TruthOf {}, Err(bad())),
             8 => inspector.push_error(format!("broken-{}.obj: no faces: choose another file", pixel[0])),
             9 => inspector.set_job([None, Some("rendering".to_owned())][pixel[0] as usize % 2].clone()),
             10 => {
@@ -198,18 +200,27 @@ impl Monkey {
                 inspector.set_capture(capture);
             }
             11 => {
-                inspector.clear_scene();
+                inspector.open_folder(None);
                 inspector.set_capture(capture);
             }
             12 => {
-                let running = Some(ReportProgress { done: 3, of: 0, what: "z-fail".to_owned() });
-                inspector.set_report(ReportView { running, ..ReportView::default() });
-                let running = Some(DiagnosisProgress { done: 0, of: 0 });
-                inspector.set_diagnosis(DiagnosisView { running, ..DiagnosisView::default() });
+                inspector.start(ReportOf::grid().expect("a grid"));
+                inspector.start(DiagnosisOf {});
+            }
+            13 => {
+                // Of any question that was ever asked, right or late.
+                let asked: Vec<u64> = seen.actions.iter().filter_map(ticket).collect();
+                let ticket = asked.get(self.below(asked.len().max(1))).copied().unwrap_or_default();
+                inspector.answer(ticket, Err(bad()), pixel[0] % 2 == 0);
+                inspector.make_way();
             }
             _ => harness.input_mut().dropped_files.push(Arc::new(Dropped(PathBuf::from("broken.obj")))),
         }
     }
+}
+
+fn ticket(action: &Action) -> Option<u64> {
+    if let Action::Ask(asked) = action { Some(asked.ticket) } else { None }
 }
 
 /// What panels are shown over: by hand, empty, smallest, with maps and with broken values.

@@ -1,24 +1,31 @@
 //! The Report tab.
 
-use super::{SIZE, Seen, click_button, harness_of, inspector, press, run_request, scene, z_fail};
+use super::{SIZE, Seen, asks, click_button, harness_of, inspector, last_asked, press, run_request, scene, z_fail};
 use crate::common::report::{one_scene, three_scenes};
 use egui::Key;
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::BTreeMap;
-use stencilscope::inspector::{Action, ExportData, ExportKind, Inspector, ReportProgress, ReportView};
-use stencilscope::report::{Report, Row};
+use std::sync::Arc;
+use stencilscope::ask::ReportOf;
+use stencilscope::inspector::{Action, ExportData, ExportKind, Inspector};
+use stencilscope::report::{MeasuredReport, Report, Row};
 use stencilscope::technique::{Choice, Technique};
 
-fn showing(view: ReportView) -> Harness<'static, Seen> {
-    let mut inspector = inspector(z_fail(SIZE));
-    inspector.set_report(view);
-    harness_of(inspector, [1280.0, 800.0])
+fn tell(inspector: &mut Inspector, report: Report) {
+    tell_without(inspector, report, Vec::new());
 }
 
-fn with_rows(report: Report) -> ReportView {
-    ReportView { report: Some(report), ..ReportView::default() }
+fn tell_without(inspector: &mut Inspector, report: Report, left_out: Vec<String>) {
+    let question = ReportOf::grid().expect("a grid");
+    inspector.tell(question, Ok(Arc::new(MeasuredReport { report, left_out })));
+}
+
+fn showing(tell: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
+    let mut inspector = inspector(z_fail(SIZE));
+    tell(&mut inspector);
+    harness_of(inspector, [1280.0, 800.0])
 }
 
 /// What opening the row of `label` asks for.
@@ -30,10 +37,10 @@ fn opening(report: &Report, technique: &str, label: &str) -> Action {
 
 #[test]
 fn before_anything_is_measured_it_says_what_it_does() {
-    let mut harness = showing(ReportView::default());
+    let mut harness = showing(|_| ());
     harness.get_by_label_contains("Measures every technique on this scene");
     click_button(&mut harness, "Measure");
-    assert_eq!(harness.state().actions, [Action::RunReport]);
+    assert_eq!(asks::<ReportOf>(&harness).len(), 1);
 }
 
 #[test]
@@ -48,40 +55,48 @@ fn without_a_scene_nothing_can_be_measured() {
 fn while_it_measures_it_says_how_far_it_is_and_shows_the_rows_so_far() {
     let mut report = one_scene();
     report.rows.truncate(3);
-    let running = Some(ReportProgress { done: 3, of: 15, what: "z-fail".to_owned() });
-    let mut harness = showing(ReportView { running, ..with_rows(report) });
+    let mut harness = showing(|inspector| tell(inspector, report));
+    click_button(&mut harness, "Measure again");
+    let asked = last_asked::<ReportOf>(&harness);
+    harness.get_by_label("0 of 0 · the truth");
+    let is_z_fail = |choice: &Choice| choice.technique() == Technique::ZFail;
+    asked.progress.start(15);
+    (0..3).for_each(|_| asked.progress.advance());
+    let [question] = &asks::<ReportOf>(&harness)[..] else { panic!("asked once") };
+    asked.progress.turn_to(question.choices.iter().position(is_z_fail).expect("z-fail"));
+    harness.run_steps(2);
     harness.get_by_label("3 of 15 · z-fail");
     harness.get_by_label("Measuring");
     assert!(harness.query_by_role_and_label(Role::Button, "Measure again").is_none());
     harness.get_by_role_and_label(Role::Row, "z-pass: none wrong, 18.2 ms");
     click_button(&mut harness, "Cancel");
-    assert_eq!(harness.state().actions, [Action::CancelReport]);
+    assert!(asked.progress.is_cancelled());
 }
 
 #[test]
 fn a_point_and_a_row_open_what_they_stand_for() {
     let report = one_scene();
-    let mut harness = showing(with_rows(report.clone()));
+    let mut harness = showing(|inspector| tell(inspector, report.clone()));
     click_button(&mut harness, "shadow-map 1024: 1.5\u{a0}% wrong, 14.0 ms");
     assert_eq!(harness.state().actions.last(), Some(&opening(&report, "shadow-map", "1024")));
     harness.get_by_role_and_label(Role::Row, "planar: 9.0\u{a0}% wrong, 10.5 ms").click();
     harness.run_steps(2);
     assert_eq!(harness.state().actions.last(), Some(&opening(&report, "planar", "")));
     click_button(&mut harness, "Measure again");
-    assert_eq!(harness.state().actions.last(), Some(&Action::RunReport));
+    assert_eq!(asks::<ReportOf>(&harness).len(), 1);
 }
 
 #[test]
 fn what_was_left_out_is_named_and_where_it_is_measured() {
     let left_out = vec!["planar-texture 1024".to_owned(), "shadow-map 4096".to_owned()];
-    let harness = showing(ReportView { left_out, ..with_rows(one_scene()) });
+    let harness = showing(|inspector| tell_without(inspector, one_scene(), left_out));
     harness.get_by_label_contains("without planar-texture 1024, shadow-map 4096: too much memory for a window");
 }
 
 #[test]
 fn the_keyboard_reaches_points_and_rows() {
     let report = one_scene();
-    let mut harness = showing(with_rows(report.clone()));
+    let mut harness = showing(|inspector| tell(inspector, report.clone()));
     harness.get_by_role_and_label(Role::Button, "z-fail: none wrong, 21.7 ms").focus();
     harness.run_steps(2);
     press(&mut harness, Key::Enter);
@@ -104,7 +119,7 @@ fn what_is_shown_now_is_selected() {
     request.choice.set("size", "2048").expect("a size");
     request.choice.set("bias-slope", "2").expect("a slope");
     inspector.set_scene(&scene(), request);
-    inspector.set_report(with_rows(report));
+    tell(&mut inspector, report);
     let harness = harness_of(inspector, [1280.0, 800.0]);
     for role in [Role::Button, Role::Row] {
         let toggled = |label: &str| harness.get_by_role_and_label(role, label).accesskit_node().toggled();
@@ -115,12 +130,10 @@ fn what_is_shown_now_is_selected() {
 
 #[test]
 fn scenes_are_headed_and_narrow_windows_have_plot_and_table_below_each_other() {
-    let mut inspector = inspector(z_fail(SIZE));
-    inspector.set_report(with_rows(three_scenes()));
     for size in [[1920.0, 1080.0], [700.0, 500.0], [320.0, 240.0]] {
         let mut other = Inspector::new(Vec::new());
         other.set_scene(&scene(), run_request(Technique::ZFail));
-        other.set_report(inspector.report().clone());
+        tell(&mut other, three_scenes());
         let harness = harness_of(other, size);
         if size[0] > 1000.0 {
             harness.get_by_label("inside a volume");
@@ -137,8 +150,11 @@ fn odd_rows_and_errors_are_shown() {
     report.rows[2].settings = BTreeMap::from([("of".to_owned(), "the future".to_owned())]);
     report.rows[2].technique = "later".to_owned();
     report.mark_pareto();
-    let error = Some("no GPU: install mesa-vulkan-drivers".to_owned());
-    let harness = showing(ReportView { error, ..with_rows(report) });
+    let harness = showing(|inspector| {
+        tell(inspector, report);
+        let question = ReportOf::grid().expect("a grid");
+        inspector.tell(question, Err("no GPU: install mesa-vulkan-drivers".to_owned()));
+    });
     harness.get_by_label("× no GPU: install mesa-vulkan-drivers");
     harness.get_by_role_and_label(Role::Button, "later: none wrong, 18.2 ms");
 }
@@ -146,10 +162,10 @@ fn odd_rows_and_errors_are_shown() {
 #[test]
 fn the_rows_can_be_saved() {
     let report = one_scene();
-    let mut harness = showing(ReportView::default());
+    let mut harness = showing(|_| ());
     assert!(harness.query_by_role_and_label(Role::Button, "Save…").is_none(), "nothing is measured");
     assert!(harness.state_mut().inspector.export(ExportKind::Report).is_none());
-    harness.state_mut().inspector.set_report(with_rows(report.clone()));
+    tell(&mut harness.state_mut().inspector, report.clone());
     harness.run_steps(2);
     click_button(&mut harness, "Save…");
     harness.get_by_label("Export: Report (table or plot)");

@@ -1,7 +1,7 @@
 //! The Scene tab: a second camera that sees the first.
 
 use super::pictures::{draw, inspector as inspector_over, sizes};
-use super::{SIZE, Seen, click, harness_of, z_fail};
+use super::{SIZE, Seen, asks, click, harness_of, reply, z_fail};
 use crate::common;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2};
@@ -11,8 +11,9 @@ use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 use stencilscope::anatomy::{Anatomy, anatomy};
+use stencilscope::ask::{AnatomyOf, HistoryOf, RunRequest};
 use stencilscope::geometry::GeometryCache;
-use stencilscope::inspector::{Action, Inspector, RunRequest};
+use stencilscope::inspector::Inspector;
 use stencilscope::scene::builtin::shapes;
 use stencilscope::scene::{Camera, Material, Object, OpenSpec, Scene, open};
 use stencilscope::technique::{Choice, Job, Technique, plan};
@@ -51,7 +52,7 @@ pub fn over(scene: &Scene) -> Inspector {
     let mut capture = z_fail(SIZE);
     capture.camera = scene.camera;
     inspector.set_capture(Arc::new(capture));
-    inspector.set_anatomy(Ok(anatomy_of(scene, Technique::ZFail)));
+    inspector.tell(AnatomyOf {}, Ok(anatomy_of(scene, Technique::ZFail)));
     inspector
 }
 
@@ -98,7 +99,7 @@ fn look(harness: &mut Harness<Seen>, view: &str) -> Vec<[u8; 4]> {
 const FREE: &str = "Free view of the scene";
 
 fn anatomies(harness: &Harness<Seen>) -> usize {
-    harness.state().actions.iter().filter(|action| **action == Action::Anatomy).count()
+    asks::<AnatomyOf>(harness).len()
 }
 
 #[test]
@@ -124,13 +125,13 @@ fn geometry_is_asked_for_once_a_frame_and_only_while_it_is_shown() {
     harness.get_by_label("Looking at the scene's geometry…");
     harness.run_steps(5);
     assert_eq!(anatomies(&harness), 1);
-    harness.state_mut().inspector.set_anatomy(Err("out of reach: try again".to_owned()));
+    reply::<AnatomyOf>(&mut harness, Err("out of reach: try again".to_owned()));
     harness.run_steps(2);
     harness.get_by_label("out of reach: try again");
     harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
     harness.run_steps(3);
     assert_eq!(anatomies(&harness), 2);
-    harness.state_mut().inspector.set_anatomy(Ok(anatomy_of(&scene, Technique::ZFail)));
+    harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy_of(&scene, Technique::ZFail)));
     harness.run_steps(2);
     harness.get_by_label(FREE);
     // Until the next frame's is there, that of the one before stays.
@@ -313,8 +314,8 @@ fn harness_over(name: &str, technique: Technique, pick: [u32; 2], size: [f32; 2]
     let anatomy = session.anatomy(&scene, &request.choice, &plan);
     let history = session.history(&plan, &capture, pick).expect("a history");
     let mut inspector = inspector_over(&scene, &request, &Arc::new(capture), pick);
-    inspector.set_anatomy(Ok(Arc::new(anatomy)));
-    inspector.set_history(pick, Ok(Arc::new(history)));
+    inspector.tell(AnatomyOf {}, Ok(Arc::new(anatomy)));
+    inspector.tell(HistoryOf { at: pick }, Ok(Arc::new(history)));
     harness_of(inspector, size)
 }
 

@@ -6,8 +6,10 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::sync::Arc;
+use stencilscope::ask::MeshesOf;
 use stencilscope::geometry::{EdgeList, Topology};
-use stencilscope::inspector::{Action, ObjectMesh};
+use stencilscope::inspector::Action;
+use stencilscope::reading::ObjectMesh;
 use stencilscope::scene::Mesh;
 
 fn settings_of(technique: &str) -> Harness<'static, Seen> {
@@ -105,11 +107,14 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
     let mut inspector = inspector(z_fail(SIZE));
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let turned = common::mesh(&corners, &[[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
-    inspector.set_meshes(vec![
-        object("box", &common::cuboid("box", [0.0; 3], [1.0; 3]).mesh),
-        object("floor", &common::square("floor", 0.0, 1.0).mesh),
-        object("turned", &turned),
-    ]);
+    inspector.tell(
+        MeshesOf {},
+        Ok(Arc::new(vec![
+            object("box", &common::cuboid("box", [0.0; 3], [1.0; 3]).mesh),
+            object("floor", &common::square("floor", 0.0, 1.0).mesh),
+            object("turned", &turned),
+        ])),
+    );
     let mut harness = harness_of(inspector, [1280.0, 1200.0]);
     click(&mut harness, "Scene settings");
     harness.get_by_label("closed");
@@ -122,7 +127,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
 #[test]
 fn meshes_of_another_scene_are_not_known_yet() {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.set_meshes(vec![object("floor", &common::square("floor", 0.0, 1.0).mesh)]);
+    inspector.tell(MeshesOf {}, Ok(Arc::new(vec![object("floor", &common::square("floor", 0.0, 1.0).mesh)])));
     inspector.set_scene(&super::scene(), super::run_request(stencilscope::technique::Technique::ZFail));
     let mut harness = harness_of(inspector, [1280.0, 1200.0]);
     click(&mut harness, "Scene settings");

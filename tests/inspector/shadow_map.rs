@@ -171,11 +171,13 @@ fn the_map_is_shown_while_its_links_are_waited_for() {
     harness.state_mut().inspector.set_capture(Arc::new(capture()));
     harness.run_steps(3);
     let [old, new] = &asked(&harness)[..] else { panic!("asked once for each frame") };
-    harness.state_mut().inspector.set_map_readers(old.find());
+    let result = super::found(&harness.state().inspector, old);
+    harness.state_mut().inspector.answer(old.ticket, result, true);
     harness.run_steps(2);
     harness.get_by_label(waiting);
     assert!(harness.state().inspector.map_texel_of([4, 4]).is_none());
-    harness.state_mut().inspector.set_map_readers(new.find());
+    let result = super::found(&harness.state().inspector, new);
+    harness.state_mut().inspector.answer(new.ticket, result, true);
     harness.run_steps(2);
     assert!(harness.query_by_label(waiting).is_none());
     assert_eq!(asked(&harness).len(), 2, "nothing is asked twice");

@@ -141,7 +141,7 @@ fn an_export_that_fails_says_so_in_its_dialog() {
     harness.run_steps(2);
     harness.get_by_label("× no room: choose another place");
     click_button(&mut harness, "Browse…");
-    assert!(matches!(harness.state().actions.last(), Some(Action::BrowseExport { kind: ExportKind::Capture, .. })));
+    assert!(matches!(harness.state().actions.last(), Some(Action::BrowseExport { .. })));
     harness.state_mut().inspector.set_export_path("elsewhere".to_owned());
     harness.run_steps(2);
     click_button(&mut harness, "Save");
@@ -162,7 +162,7 @@ fn what_is_exported_is_what_is_shown() {
     assert_eq!(images[0].byte_at([3, 4]), Some(1));
     assert!(matches!(inspector.export(ExportKind::Capture), Some(ExportData::Capture(_))));
     assert!(matches!(inspector.export(ExportKind::Scene), Some(ExportData::Scene(_))));
-    inspector.clear_scene();
+    inspector.open_folder(None);
     assert!(inspector.export(ExportKind::Scene).is_none(), "a capture folder has no scene");
 }
 

@@ -1,13 +1,15 @@
 //! The Stress tab.
 
-use super::{SIZE, Seen, click_button, harness_of, inspector, z_fail};
+use super::{SIZE, Seen, asks, click_button, harness_of, inspector, last_asked, z_fail};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use stencilscope::accuracy::ErrorCounts;
-use stencilscope::inspector::{Action, Inspector, StressProgress};
-use stencilscope::stress::{self, Case, Row, cases};
+use stencilscope::ask::{Answer, Asked, StressOf};
+use stencilscope::inspector::{Action, Inspector};
+use stencilscope::stress::{self, Case, Row, StressRows, cases};
 
 fn showing(prepare: impl FnOnce(&mut Inspector)) -> Harness<'static, Seen> {
     let mut inspector = inspector(z_fail(SIZE));
@@ -45,8 +47,16 @@ pub fn rows(name: &str, wrong: impl Fn(&str, f64) -> u64) -> Vec<Row> {
     case.values.iter().flat_map(row).map(row_of).collect()
 }
 
-fn running(done: usize, of: usize, rows: (usize, usize), what: &str) -> StressProgress {
-    StressProgress { done, of, rows, what: what.to_owned() }
+fn add(inspector: &mut Inspector, rows: Vec<Row>) {
+    inspector.tell(StressOf { cases: Vec::new() }, Ok(Arc::new(StressRows::new(rows))));
+}
+
+fn fail(inspector: &mut Inspector) {
+    inspector.tell(StressOf { cases: Vec::new() }, Err("the GPU was lost".to_owned()));
+}
+
+fn rows_of(inspector: &Inspector) -> Vec<Row> {
+    inspector.answers().last::<StressOf>().map_or_else(Vec::new, |(_, rows)| rows.rows.clone())
 }
 
 fn select(harness: &mut Harness<Seen>, row: &str) {
@@ -62,23 +72,31 @@ fn cases_are_listed_run_and_cancelled() {
     let mut harness = showing(|_| ());
     let first = cases::all().next().expect("a case").name;
     click_button(&mut harness, &format!("Run {first}"));
+    click_button(&mut harness, "Cancel");
     select(&mut harness, "world-scale");
     click_button(&mut harness, "Run world-scale");
+    click_button(&mut harness, "Cancel");
     click_button(&mut harness, "Run all");
     let all: Vec<&str> = cases::all().map(|case| case.name).collect();
-    let expected = [vec![first], vec!["world-scale"], all].map(|cases| Action::RunStress { cases });
-    assert_eq!(harness.state().actions, expected);
-    harness.state_mut().inspector.set_stress(Some(running(3, 51, (40, 1200), "light-close")), None);
+    let asked = asks::<StressOf>(&harness).into_iter().map(|ask| ask.cases).collect::<Vec<_>>();
+    assert_eq!(asked, [vec![first], vec!["world-scale"], all.clone()]);
+    let Asked { ticket, progress, .. } = last_asked::<StressOf>(&harness);
+    progress.start(1200);
+    (0..40).for_each(|_| progress.advance());
+    for name in &all[..3] {
+        let part = StressRows::new(rows(name, |_, _| 0));
+        harness.state_mut().inspector.answer(ticket, Ok(Answer::StressOf(Arc::new(part))), false);
+    }
     harness.run_steps(2);
-    harness.get_by_label("3 of 51 · light-close · 40 of 1\u{2009}200 rows");
+    harness.get_by_label(&format!("3 of {} · {} · 40 of 1\u{2009}200 rows", all.len(), all[3]));
     click_button(&mut harness, "Cancel");
-    assert_eq!(harness.state().actions.last(), Some(&Action::CancelStress));
+    assert!(progress.is_cancelled());
 }
 
 #[test]
 fn a_case_that_was_run_says_who_broke_where_and_opens_there() {
     let wrong = |entrant: &str, value: f64| u64::from(entrant == "z-pass" && value % 256.0 == 0.0) * 7;
-    let mut harness = showing(|inspector| inspector.add_stress(rows("nested", wrong)));
+    let mut harness = showing(|inspector| add(inspector, rows("nested", wrong)));
     select(&mut harness, "nested: unexpected");
     harness.get_by_role_and_label(Role::Row, "shadow-map: no wrong pixel, holds");
     // It was known to fail, and did not: our knowledge is wrong.
@@ -99,7 +117,7 @@ fn a_case_that_was_run_says_who_broke_where_and_opens_there() {
 
 #[test]
 fn any_value_opens_as_a_scene_and_an_error_is_said() {
-    let mut harness = showing(|inspector| inspector.set_stress(None, Some("the GPU was lost".to_owned())));
+    let mut harness = showing(fail);
     harness.get_by_label("× the GPU was lost");
     select(&mut harness, "grazing");
     harness.get_by_label("z-fail: expected right");
@@ -129,12 +147,12 @@ fn what_is_unexpected_opens_and_a_course_is_told() {
     let wrong =
         |entrant: &str, value: f64| u64::from(entrant == "z-fail" && [256.0, 512.0, 600.0].contains(&value)) * 7;
     let mut harness = showing(|inspector| {
-        inspector.add_stress(rows("nested", wrong));
+        add(inspector, rows("nested", wrong));
         let row = |mut row: Row| {
             row.off_limit = Some(1);
             row
         };
-        inspector.add_stress(rows("light-far", |_, _| 0).into_iter().map(row).collect());
+        add(inspector, rows("light-far", |_, _| 0).into_iter().map(row).collect());
     });
     select(&mut harness, "light-far: unexpected");
     let course = "not as it must be: 1, 1, 1, 1, 1, 1 pixels differ from the limit";
@@ -147,21 +165,25 @@ fn what_is_unexpected_opens_and_a_course_is_told() {
 #[test]
 fn running_a_case_again_replaces_its_rows_and_no_others() {
     let mut inspector = Inspector::default();
-    inspector.add_stress(rows("nested", |_, _| 0));
-    inspector.add_stress(rows("grazing", |_, _| 0));
-    let count = inspector.stress().len();
-    inspector.add_stress(rows("nested", |_, _| 1));
-    assert_eq!(inspector.stress().len(), count);
+    add(&mut inspector, rows("nested", |_, _| 0));
+    add(&mut inspector, rows("grazing", |_, _| 0));
+    let count = rows_of(&inspector).len();
+    add(&mut inspector, rows("nested", |_, _| 1));
+    assert_eq!(rows_of(&inspector).len(), count);
     let wrong =
-        |name| inspector.stress().iter().filter(|row| row.case == name).map(|row| row.error.wrong()).sum::<u64>();
+        |name| rows_of(&inspector).iter().filter(|row| row.case == name).map(|row| row.error.wrong()).sum::<u64>();
     assert!(wrong("nested") > 0 && wrong("grazing") == 0);
 }
 
 #[test]
 fn progress_moves_within_a_case() {
     let mut harness = showing(|_| ());
-    let share = |harness: &mut Harness<Seen>, rows| {
-        harness.state_mut().inspector.set_stress(Some(running(0, 1, (rows, 1000), "random")), None);
+    harness.state_mut().inspector.start(StressOf { cases: vec!["random"] });
+    harness.run_steps(2);
+    let progress = last_asked::<StressOf>(&harness).progress;
+    let share = |harness: &mut Harness<Seen>, rows: usize| {
+        progress.start(1000);
+        (0..rows).for_each(|_| progress.advance());
         harness.run_steps(2);
         let bar = harness.get_by_role_and_label(Role::ProgressIndicator, "Running stress cases");
         bar.accesskit_node().numeric_value()
@@ -173,10 +195,9 @@ fn progress_moves_within_a_case() {
 
 #[test]
 fn the_error_of_a_run_goes_when_the_next_begins_and_does_not_come_back_when_that_is_cancelled() {
-    let mut harness = showing(|inspector| inspector.set_stress(None, Some("the GPU was lost".to_owned())));
-    for progress in [Some(running(0, 1, (0, 10), "random")), None] {
-        harness.state_mut().inspector.set_stress(progress, None);
-        harness.run_steps(2);
+    let mut harness = showing(fail);
+    for wish in ["Run all", "Cancel"] {
+        click_button(&mut harness, wish);
         assert!(harness.query_by_label_contains("the GPU was lost").is_none());
     }
 }

@@ -1,26 +1,22 @@
 //! Truth and error: asked for where they are not there, counted and found where they are.
 
 use super::by_hand::with_truth;
-use super::{SIZE, Seen, click_button, harness, harness_of, inspector, press, z_fail};
+use super::{SIZE, Seen, asks, click_button, harness, harness_of, inspector, last_asked, press, reply, z_fail};
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
+use stencilscope::ask::TruthOf;
 use stencilscope::capture::{Capture, CapturedTruth};
-use stencilscope::inspector::{Action, PictureKind, TruthState, Zoom};
+use stencilscope::reading::shown::{PictureKind, Zoom};
 
 fn asked(harness: &Harness<Seen>) -> usize {
-    harness.state().actions.iter().filter(|action| **action == Action::Judge).count()
+    asks::<TruthOf>(harness).len()
 }
 
 fn kind(harness: &Harness<Seen>) -> Option<PictureKind> {
     harness.state().inspector.picture_kind()
-}
-
-fn tell(harness: &mut Harness<Seen>, truth: TruthState) {
-    harness.state_mut().inspector.set_truth(truth);
-    harness.run_steps(2);
 }
 
 fn show(harness: &mut Harness<Seen>, capture: Capture) {
@@ -36,7 +32,10 @@ fn error_without_truth_asks_for_it_once_and_the_last_picture_stays() {
     click_button(&mut harness, "Error");
     harness.run_steps(4);
     assert_eq!((asked(&harness), kind(&harness)), (1, Some(PictureKind::Stencil)));
-    tell(&mut harness, TruthState::Running { done: 43, of: 100 });
+    let progress = last_asked::<TruthOf>(&harness).progress;
+    progress.start(100);
+    (0..43).for_each(|_| progress.advance());
+    harness.run_steps(2);
     harness.get_by_label("The truth is being traced … 43 %");
     harness.get_by_label("Shown until then: stencil after step 4.");
     harness.state_mut().inspector.update_capture(Arc::new(with_truth(z_fail(SIZE))));
@@ -79,14 +78,14 @@ fn tracing_is_cancelled_and_asked_for_again() {
     click_button(&mut harness, "Error");
     show(&mut harness, z_fail(SIZE));
     click_button(&mut harness, "Cancel");
-    assert_eq!(harness.state().actions.last(), Some(&Action::CancelJudge));
+    assert!(last_asked::<TruthOf>(&harness).progress.is_cancelled());
     harness.get_by_label("The truth was not traced.");
     assert_eq!(kind(&harness), Some(PictureKind::Color), "an error that is not this frame's is not left standing");
     harness.run_steps(3);
     assert_eq!(asked(&harness), 1);
     click_button(&mut harness, "Trace it");
     assert_eq!(asked(&harness), 2);
-    tell(&mut harness, TruthState::Failed("no GPU".to_owned()));
+    reply::<TruthOf>(&mut harness, Err("no GPU".to_owned()));
     harness.get_by_label("× There is no truth: no GPU");
     click_button(&mut harness, "Error");
     assert_eq!(asked(&harness), 3, "choosing it again tries again");
@@ -95,7 +94,7 @@ fn tracing_is_cancelled_and_asked_for_again() {
 #[test]
 fn a_folder_without_truth_says_so_and_one_with_truth_shows_it() {
     let mut without = inspector(z_fail(SIZE));
-    without.clear_scene();
+    without.open_folder(None);
     let mut harness = harness_of(without, [1280.0, 800.0]);
     click_button(&mut harness, "Truth");
     harness.get_by_label("This folder has no truth: capture it with --truth.");

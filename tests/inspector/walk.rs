@@ -2,7 +2,7 @@
 
 use super::pictures::draw;
 use super::scene_view::{box_scene, draft_of, over};
-use super::{SIZE, Seen, click, harness_of, place_of, press, z_fail};
+use super::{SIZE, Seen, asks, click, harness_of, place_of, press, reply, z_fail};
 use crate::common;
 use egui::{Event, Key, vec2};
 use egui_kittest::Harness;
@@ -10,7 +10,9 @@ use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
-use stencilscope::inspector::{Action, Inspector, PictureKind, RunRequest};
+use stencilscope::ask::{RunRequest, WallsOf, without};
+use stencilscope::inspector::{Action, Inspector};
+use stencilscope::reading::shown::PictureKind;
 use stencilscope::scene::{Scene, Swing, WallCache};
 use stencilscope::technique::Technique;
 
@@ -27,19 +29,13 @@ fn walking() -> Harness<'static, Seen> {
 
 /// The walls that were asked for last, as the app makes them.
 fn answer_walls(harness: &mut Harness<Seen>, scene: &Scene) {
-    let request = walls_asked(harness).pop().expect("walls are asked for");
-    let mut scene = scene.at(request.time);
-    let names: Vec<String> = request.off.iter().map(|index| scene.objects[*index].name.clone()).collect();
-    scene.objects.retain(|object| !names.contains(&object.name));
-    harness.state_mut().inspector.set_walls(Arc::new(WallCache::default().walls(&scene)));
+    let WallsOf { off, time } = walls_asked(harness).pop().expect("walls are asked for");
+    let scene = without(scene, &off).at(time);
+    reply::<WallsOf>(harness, Ok(WallCache::default().walls(&scene)));
 }
 
-fn walls_asked(harness: &Harness<Seen>) -> Vec<RunRequest> {
-    let asked = |action: &Action| match action {
-        Action::Walls(request) => Some(RunRequest::clone(request)),
-        _ => None,
-    };
-    harness.state().actions.iter().filter_map(asked).collect()
+fn walls_asked(harness: &Harness<Seen>) -> Vec<WallsOf> {
+    asks::<WallsOf>(harness)
 }
 
 /// The frame that was asked for is shown.

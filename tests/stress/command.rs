@@ -39,6 +39,13 @@ fn the_command_tells_in_every_form() {
     let markdown = std::fs::read_to_string(folder.path().join("s.md")).expect("a table");
     assert!(markdown.contains("\nexpectations are measured at 320x240"), "{markdown}");
     assert!(markdown.contains("| sliver | aspect ratio 1 → 1e8 |  | · | · |  |"), "{markdown}");
+    crate::help::assert_json_is_explained("stress", &json);
+    let page = run(folder.path(), &[&volumes[..], &["-o", "page.md"][..]].concat());
+    assert_eq!((page.status.code(), text(&page.stdout)), (Some(0), String::new()));
+    let page = std::fs::read_to_string(folder.path().join("page.md")).expect("a page");
+    let command = format!("```sh\nstencilscope {} -o page.md\n```\n", volumes.join(" "));
+    assert!(page.contains(&command) && page.contains("| sliver | aspect ratio 1 → 1e8 |"), "{page}");
+    assert!(page.contains("Of 2 cases by techniques 2 hold, 0 fail as known, and 0 are unexpected."), "{page}");
     let again = std::fs::read_to_string(folder.path().join("t.json")).expect("rows, in the same run");
     assert!(again.contains("\"summary\""), "{again}");
     assert!(std::fs::read(folder.path().join("s.png")).expect("a picture").starts_with(b"\x89PNG"));

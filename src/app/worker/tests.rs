@@ -1,8 +1,12 @@
 //! The worker by its orders and news.
 
 use super::*;
-use crate::app::orders::{Measure, StressRun};
+use crate::ask::{
+    Answer, DiagnosisOf, DrawsOf, HistoryOf, MeshesOf, Question, ReportOf, StressOf, TimingOf, TruthOf, WallsOf,
+};
 use crate::progress::Progress;
+use crate::report::MeasuredReport;
+use crate::scene::WallCache;
 use crate::stress::Case;
 use crate::technique::Technique;
 
@@ -32,19 +36,34 @@ fn wait<T>(news: &Receiver<News>, mut is_it: impl FnMut(News) -> Option<T>) -> T
     }
 }
 
-fn judge(worker: &Worker, frame: u64, progress: &Progress) {
-    assert!(worker.order(Order::Judge { frame, progress: progress.clone() }));
+/// Asks a question of the scene that was opened first.
+fn ask(worker: &Worker, frame: u64, ticket: u64, ask: impl Into<Ask>) -> Progress {
+    ask_of(worker, [1, frame], ticket, ask)
+}
+
+fn ask_of(worker: &Worker, [scene, frame]: [u64; 2], ticket: u64, ask: impl Into<Ask>) -> Progress {
+    let progress = Progress::default();
+    let asked = Asked { ticket, ask: ask.into(), progress: progress.clone() };
+    assert!(worker.order(Order::Answer { scene, frame, asked }));
+    progress
+}
+
+/// The answer to the question of this ticket.
+fn answer<Q: Question>(news: &Receiver<News>, of: u64) -> Result<Arc<Q::Answer>, String> {
+    wait(news, |news| match news {
+        News::Answered { ticket, result } if ticket == of => {
+            Some(result.map(|answer| Q::answer(&answer).expect("of its kind").clone()))
+        }
+        _ => None,
+    })
+}
+
+fn history(x: u32, y: u32) -> HistoryOf {
+    HistoryOf { at: [x, y] }
 }
 
 fn case(name: &str) -> &'static Case {
     Case::named(name).expect("a case")
-}
-
-fn stress(worker: &Worker, job: u64, cases: &[&str]) -> Progress {
-    let progress = Progress::default();
-    let cases: Vec<&Case> = cases.iter().map(|name| case(name)).collect();
-    assert!(worker.order(Order::Stress(Box::new(StressRun::new(job, &cases, progress.clone())))));
-    progress
 }
 
 fn wait_until_busy(news: &Receiver<News>, with: &str) {
@@ -60,43 +79,43 @@ fn captured(news: &Receiver<News>) -> (String, std::collections::BTreeMap<String
 #[test]
 fn stress_cases_run_one_by_one_and_a_cancelled_run_is_dropped() {
     let (worker, frame, news) = started();
-    let progress = stress(&worker, 5, &["one-pixel", "no-receiver"]);
+    let progress = ask(&worker, frame, 5, StressOf { cases: vec!["one-pixel", "no-receiver"] });
     let mut heard = Vec::new();
-    let error = wait(&news, |news| {
-        match news {
-            News::Stressed { job: 5, rows } => heard.push((rows[0].case, rows.len())),
-            News::StressEnded { job: 5, error } => return Some(error),
-            _ => {}
+    wait(&news, |news| match news {
+        News::AnsweredPart { ticket: 5, answer: Answer::StressOf(part) } => {
+            heard.push((part.rows[0].case, part.rows.len()));
+            None
         }
-        None
+        News::AnswerEnded { ticket: 5 } => Some(()),
+        _ => None,
     });
     let rows = ["one-pixel", "no-receiver"].map(|name| (name, case(name).entrants().len() * case(name).values.len()));
-    assert_eq!((&heard[..], error), (&rows[..], None));
+    assert_eq!(heard, rows);
     let all = rows.iter().map(|(_, count)| count).sum();
     assert_eq!(progress.steps(), (all, all));
     wait(&news, |news| matches!(news, News::Idle).then_some(()));
-    stress(&worker, 6, &["tall-picture"]).cancel();
-    judge(&worker, frame, &Progress::default());
+    ask(&worker, frame, 6, StressOf { cases: vec!["tall-picture"] }).cancel();
+    ask(&worker, frame, 7, TruthOf {});
     wait(&news, |news| {
-        assert!(!matches!(news, News::Stressed { .. } | News::StressEnded { .. }), "it was cancelled");
-        matches!(news, News::Judged { .. }).then_some(())
+        assert!(!matches!(news, News::AnsweredPart { .. } | News::AnswerEnded { .. }), "it was cancelled");
+        matches!(news, News::Answered { ticket: 7, .. }).then_some(())
     });
 }
 
 #[test]
 fn within_a_case_of_a_thousand_rows_pictures_and_pixels_are_answered_and_it_goes_on() {
     let (worker, frame, news) = started();
-    let progress = stress(&worker, 1, &["random"]);
+    let progress = ask(&worker, frame, 1, StressOf { cases: vec!["random"] });
     wait_until_busy(&news, "stress: random");
     // As a dragged pick asks: many at once, of which the last is to be answered.
-    (0..60).for_each(|x| assert!(worker.order(Order::History { frame, at: [x, 5] })));
+    (0..60).for_each(|x| drop(ask(&worker, frame, 100 + u64::from(x), history(x, 5))));
     wait(&news, |news| {
-        assert!(!matches!(news, News::Stressed { .. }), "the answer comes first");
-        matches!(news, News::History { at: [59, 5], history: Ok(_), .. }).then_some(())
+        assert!(!matches!(news, News::AnsweredPart { .. }), "the answer comes first");
+        matches!(news, News::Answered { ticket: 159, result: Ok(_) }).then_some(())
     });
     assert!(worker.order(Order::Open("tori".to_owned())));
     wait(&news, |news| {
-        assert!(!matches!(news, News::Stressed { .. }), "the picture comes first");
+        assert!(!matches!(news, News::AnsweredPart { .. }), "the picture comes first");
         matches!(news, News::Captured { .. }).then_some(())
     });
     let (done, all) = progress.steps();
@@ -109,36 +128,32 @@ fn within_a_case_of_a_thousand_rows_pictures_and_pixels_are_answered_and_it_goes
 #[test]
 fn a_pixel_is_answered_while_a_report_is_measured() {
     let (worker, frame, news) = started();
-    let progress = Progress::default();
     let choices = [Technique::ZFail, Technique::Planar].map(Choice::new).to_vec();
-    let what = Measure { generation: 1, job: 1, choices, runs: 1_000, progress: progress.clone() };
-    assert!(worker.order(Order::Measure(what)));
+    let progress = ask(&worker, frame, 1, ReportOf { choices, runs: 1_000 });
     wait_until_busy(&news, "measuring every technique");
     for y in 0..20 {
-        assert!(worker.order(Order::Draws { frame, step: 1 }));
-        (0..20).for_each(|x| assert!(worker.order(Order::History { frame, at: [x, y] })));
+        ask(&worker, frame, 2, DrawsOf { step: 1 });
+        (0..20).for_each(|x| drop(ask(&worker, frame, 10 + u64::from(x + 20 * y), history(x, y))));
     }
     let mut has_draws = false;
     wait(&news, |news| {
-        assert!(!matches!(news, News::Measured { .. }), "the answer comes first");
-        has_draws |= matches!(&news, News::Draws { capture, .. } if capture.holds_draws(1));
-        matches!(news, News::History { at: [19, 19], history: Ok(_), .. }).then_some(())
+        assert!(!matches!(news, News::Answered { ticket: 1, .. }), "the answer comes first");
+        has_draws |=
+            matches!(&news, News::Answered { ticket: 2, result: Ok(Answer::DrawsOf(draws)) } if draws.step == 1);
+        matches!(news, News::Answered { ticket: 409, result: Ok(_) }).then_some(())
     });
     assert!(has_draws);
     progress.cancel();
-    judge(&worker, frame, &Progress::default());
-    let judged = wait(&news, |news| if let News::Judged { capture, .. } = news { Some(capture) } else { None });
-    assert!(judged.holds_draws(1), "what was filled in stays");
+    ask(&worker, frame, 3, TruthOf {});
+    assert!(answer::<TruthOf>(&news, 3).is_ok());
 }
 
 #[test]
 fn a_report_of_a_scene_that_is_open_no_more_says_so() {
-    let (worker, _frame, news) = started();
-    let choices = vec![Choice::new(Technique::Planar)];
-    let what = Measure { generation: 0, job: 3, choices, runs: 1, progress: Progress::default() };
-    assert!(worker.order(Order::Measure(what)));
-    let result = wait(&news, |news| if let News::Measured { job: 3, result, .. } = news { Some(result) } else { None });
-    assert!(result.expect_err("another scene").contains("measure again"));
+    let (worker, frame, news) = started();
+    let question = ReportOf { choices: vec![Choice::new(Technique::Planar)], runs: 1 };
+    ask_of(&worker, [0, frame], 3, question);
+    assert!(answer::<ReportOf>(&news, 3).expect_err("another scene").contains("measure again"));
 }
 
 #[test]
@@ -168,7 +183,7 @@ fn a_setting_that_a_case_drives_is_set_on_the_chosen_technique_or_on_one_that_ha
     }
     let request = wait_for_request(&worker, &news);
     let texture = RunRequest { choice: Choice::new(Technique::PlanarTexture), ..request.1 };
-    assert!(worker.order(Order::Run { generation: request.0, request: Box::new(texture) }));
+    assert!(worker.order(Order::Run { scene: request.0, request: Box::new(texture) }));
     assert_eq!(captured(&news).0, "planar-texture");
     open(128.0);
     let (technique, settings, _) = captured(&news);
@@ -179,7 +194,7 @@ fn a_setting_that_a_case_drives_is_set_on_the_chosen_technique_or_on_one_that_ha
 fn wait_for_request(worker: &Worker, news: &Receiver<News>) -> (u64, RunRequest) {
     assert!(worker.order(Order::Open("table".to_owned())));
     let opened = wait(news, |news| match news {
-        News::Opened { generation, request, .. } => Some((generation, *request)),
+        News::Opened { scene_number, request, .. } => Some((scene_number, *request)),
         _ => None,
     });
     captured(news);
@@ -193,14 +208,14 @@ fn the_size_of_a_case_goes_with_it_but_what_is_changed_meanwhile_stays() {
     let open = || {
         assert!(worker.order(Order::OpenCase { case: case("wide-picture"), value: 0.0, entrant: z_fail }));
         let opened = wait(&news, |news| match news {
-            News::Opened { generation, request, .. } => Some((generation, *request)),
+            News::Opened { scene_number, request, .. } => Some((scene_number, *request)),
             _ => None,
         });
         assert_eq!(captured(&news).2, [16_384, 1]);
         opened
     };
     let run = |generation, request: &RunRequest| {
-        assert!(worker.order(Order::Run { generation, request: Box::new(request.clone()) }));
+        assert!(worker.order(Order::Run { scene: generation, request: Box::new(request.clone()) }));
         captured(&news)
     };
     let (generation, mut request) = open();
@@ -215,138 +230,113 @@ fn the_size_of_a_case_goes_with_it_but_what_is_changed_meanwhile_stays() {
 }
 
 #[test]
-fn after_the_first_frame_the_meshes_are_told() {
-    let (_worker, _frame, news) = started();
-    let meshes = wait(&news, |news| if let News::Meshes { meshes, .. } = news { Some(meshes) } else { None });
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
-    let names = |of: &[ObjectMesh]| of.iter().map(|mesh| mesh.object.clone()).collect::<Vec<_>>();
-    assert_eq!(names(&meshes), scene.objects.iter().map(|object| object.name.clone()).collect::<Vec<_>>());
-}
-
-#[test]
-fn the_last_frame_is_judged_and_keeps_its_truth_when_it_is_timed() {
-    let (tell, news) = channel();
-    let request = CaptureRequest::new(Choice::new(Technique::Planar), [64, 36]);
-    let mut bench = Bench::new(None, &request, Box::new(move |news| drop(tell.send(news))));
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
-    bench.begin(ViewSource::Scene(Box::new(scene)), OpenSpec::new("table"), 0.0);
-    bench.judge(1, &Progress::default());
-    bench.time();
-    let heard: Vec<News> = news.try_iter().collect();
-    let judged =
-        heard.iter().find_map(|news| if let News::Judged { capture, .. } = news { Some(capture) } else { None });
-    let judged = judged.expect("a truth");
-    assert!(judged.lights.iter().all(|light| light.truth.is_some()));
-    let Some(News::Timed { frame: 1, capture }) = heard.last() else { panic!("a time") };
-    assert!(capture.timing.frame_ms.is_some() && capture.error() == judged.error());
-}
-
-#[test]
-fn the_draws_of_a_pass_are_filled_in_and_stale_wishes_for_them_are_dropped() {
+fn meshes_are_told_object_by_object() {
     let (worker, frame, news) = started();
-    assert!(worker.order(Order::Draws { frame: frame + 1, step: 0 }));
+    ask(&worker, frame, 1, MeshesOf {});
+    let meshes = answer::<MeshesOf>(&news, 1).expect("meshes");
+    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let names = scene.objects.iter().map(|object| object.name.clone());
+    assert_eq!(meshes.iter().map(|mesh| mesh.object.clone()).collect::<Vec<_>>(), names.collect::<Vec<_>>());
+}
+
+#[test]
+fn the_last_frame_is_judged_and_timed_when_nothing_else_is_asked() {
+    let (worker, frame, news) = started();
+    ask(&worker, frame, 1, TimingOf {});
+    ask(&worker, frame, 2, TruthOf {});
+    let mut truth = None;
+    let timing = wait(&news, |news| match news {
+        News::Answered { ticket: 2, result: Ok(Answer::TruthOf(found)) } => {
+            truth = Some(found);
+            None
+        }
+        News::Answered { ticket: 1, result } => Some(result),
+        _ => None,
+    });
+    assert!(truth.expect("the truth comes first").lights.iter().all(Option::is_some));
+    match timing {
+        Ok(answer) => assert!(matches!(answer, Answer::TimingOf(timing) if timing.frame_ms.is_some())),
+        // On a machine that is busy with other work.
+        Err(reason) => assert!(reason.contains("takes so long"), "{reason}"),
+    }
+}
+
+#[test]
+fn the_draws_of_a_pass_are_told_and_stale_wishes_for_them_are_dropped() {
+    let (worker, frame, news) = started();
+    ask(&worker, frame + 1, 1, DrawsOf { step: 0 });
     // The order before is obeyed or replaced first: of both only one is answered.
-    assert!(worker.order(Order::Draws { frame, step: 1 }));
-    let filled = wait(&news, |news| if let News::Draws { capture, .. } = news { Some(capture) } else { None });
-    assert!(filled.holds_draws(1) && !filled.holds_draws(0));
-    judge(&worker, frame, &Progress::default());
-    let judged = wait(&news, |news| if let News::Judged { capture, .. } = news { Some(capture) } else { None });
-    assert!(judged.holds_draws(1), "what was filled in stays");
+    ask(&worker, frame, 2, DrawsOf { step: 1 });
+    let draws = wait(&news, |news| match news {
+        News::Answered { ticket: 1, .. } => panic!("of no frame that is there"),
+        News::Answered { ticket: 2, result: Ok(Answer::DrawsOf(draws)) } => Some(draws),
+        _ => None,
+    });
+    assert!(draws.step == 1 && !draws.states.is_empty() && draws.states.iter().all(Option::is_some));
+    ask(&worker, frame, 3, DrawsOf { step: 99 });
+    assert!(answer::<DrawsOf>(&news, 3).expect_err("no such step").contains("choose one"));
 }
 
 #[test]
 fn a_frame_that_is_shown_no_more_and_a_cancelled_truth_are_passed_over() {
     let (worker, frame, news) = started();
-    let cancelled = Progress::default();
-    cancelled.cancel();
-    judge(&worker, frame + 1, &Progress::default());
-    judge(&worker, frame, &cancelled);
+    ask(&worker, frame + 1, 1, TruthOf {});
+    ask(&worker, frame, 2, TruthOf {}).cancel();
     assert!(worker.order(Order::Open("no such scene".to_owned())));
-    let is_judged = wait(&news, |news| match news {
-        News::Judged { .. } => Some(true),
+    let is_answered = wait(&news, |news| match news {
+        News::Answered { .. } => Some(true),
         News::Failed(_) => Some(false),
         _ => None,
     });
-    assert!(!is_judged);
-    judge(&worker, frame, &Progress::default());
-    wait(&news, |news| if let News::Judged { .. } = news { Some(()) } else { None });
+    assert!(!is_answered);
+    ask(&worker, frame, 3, TruthOf {});
+    assert!(answer::<TruthOf>(&news, 3).is_ok());
 }
 
 #[test]
-fn a_pixel_of_the_last_frame_tells_its_history_and_of_another_frame_why_not() {
+fn a_pixel_of_the_last_frame_tells_its_history_and_one_outside_why_not() {
     let (worker, frame, news) = started();
-    let ask = |frame, at| {
-        assert!(worker.order(Order::History { frame, at }));
-        wait(&news, |news| match news {
-            News::History { frame, at, history } => Some((frame, at, history)),
-            _ => None,
-        })
-    };
-    let (of, at, history) = ask(frame, [32, 20]);
-    let history = history.expect("a history");
-    assert_eq!((of, at, history.pixel), (frame, [32, 20], [32, 20]));
-    assert!(history.agrees() && !history.events.is_empty());
-    let (.., outside) = ask(frame, [64, 0]);
-    assert!(outside.expect_err("no such pixel").contains("outside the picture"));
-    assert!(ask(frame + 1, [0, 0]).2.is_err());
+    ask(&worker, frame, 1, history(32, 20));
+    let found = answer::<HistoryOf>(&news, 1).expect("a history");
+    assert_eq!(found.pixel, [32, 20]);
+    assert!(found.agrees() && !found.events.is_empty());
+    ask(&worker, frame, 2, history(64, 0));
+    assert!(answer::<HistoryOf>(&news, 2).expect_err("no such pixel").contains("outside the picture"));
 }
 
 #[test]
 fn the_open_scene_is_measured_in_the_size_that_is_shown_without_what_a_window_has_no_room_for() {
-    let (worker, _, news) = started();
-    let measure = |generation, job| {
-        let mut large = Choice::new(Technique::ShadowMap);
-        large.set("size", "8192").expect("a size");
-        let choices = vec![Choice::new(Technique::ZFail), large, Choice::new(Technique::Planar)];
-        Order::Measure(Measure { generation, job, choices, runs: 1, progress: Progress::default() })
-    };
-    assert!(worker.order(measure(1, 7)));
-    let (result, left_out) = wait(&news, |news| match news {
-        News::Measured { job: 7, result, left_out } => Some((result, left_out)),
-        _ => None,
-    });
-    let report = result.expect("a report");
+    let (worker, frame, news) = started();
+    let mut large = Choice::new(Technique::ShadowMap);
+    large.set("size", "8192").expect("a size");
+    let choices = vec![Choice::new(Technique::ZFail), large, Choice::new(Technique::Planar)];
+    ask(&worker, frame, 7, ReportOf { choices, runs: 1 });
+    let MeasuredReport { report, left_out } = &*answer::<ReportOf>(&news, 7).expect("a report");
     assert!(report.rows.iter().all(|row| row.size == [64, 36]));
     let rows: Vec<_> = report.rows.iter().map(|row| row.technique.as_str()).collect();
-    let left_out: Vec<_> = left_out.iter().map(|choice| choice.technique().name()).collect();
     // A map of 268 MB, where the GPU's memory is the window's own.
     match report.adapter.kind.as_str() {
-        "cpu" => assert_eq!((rows, left_out), (vec!["z-fail", "planar"], vec!["shadow-map"])),
-        _ => assert_eq!((rows, left_out), (vec!["z-fail", "shadow-map", "planar"], vec![])),
+        "cpu" => assert_eq!((rows, &left_out[..]), (vec!["z-fail", "planar"], &["shadow-map 8192".to_owned()][..])),
+        _ => assert_eq!((rows, &left_out[..]), (vec!["z-fail", "shadow-map", "planar"], &[][..])),
     }
 }
 
 #[test]
 fn a_frame_is_diagnosed_and_what_was_cancelled_is_not_told() {
     let (worker, frame, news) = started();
-    let diagnose = |frame, job, progress: &Progress| {
-        assert!(worker.order(Order::Diagnose { frame, job, progress: progress.clone() }));
-    };
-    let result =
-        || wait(&news, |news| if let News::Diagnosed { job, result } = news { Some((job, result)) } else { None });
-    let cancelled = Progress::default();
-    cancelled.cancel();
-    diagnose(frame, 1, &cancelled);
-    wait_for_history(&worker, frame, &news);
-    diagnose(frame, 2, &Progress::default());
-    let (job, found) = result();
-    let found = found.expect("a diagnosis");
-    assert_eq!((job, found.technique, found.size), (2, Technique::Planar, [64, 36]));
-    assert!(found.is_bad() && found.regions.iter().all(|region| !region.causes.is_empty()), "{found:?}");
-    diagnose(frame + 7, 3, &Progress::default());
-    let (job, none) = result();
-    assert_eq!(job, 3);
-    assert!(none.expect_err("of no frame that is there").contains("diagnose again"));
-}
-
-/// An answer that comes after all that was ordered before it.
-fn wait_for_history(worker: &Worker, frame: u64, news: &Receiver<News>) {
-    assert!(worker.order(Order::History { frame, at: [1, 1] }));
-    wait(news, |news| match news {
-        News::Diagnosed { .. } => panic!("what was cancelled is told"),
-        News::History { .. } => Some(()),
+    ask(&worker, frame, 1, DiagnosisOf {}).cancel();
+    ask(&worker, frame, 2, history(1, 1));
+    wait(&news, |news| match news {
+        News::Answered { ticket: 1, .. } => panic!("what was cancelled is told"),
+        News::Answered { ticket: 2, .. } => Some(()),
         _ => None,
     });
+    ask(&worker, frame, 3, DiagnosisOf {});
+    let found = answer::<DiagnosisOf>(&news, 3).expect("a diagnosis");
+    assert_eq!((found.technique, found.size), (Technique::Planar, [64, 36]));
+    assert!(found.is_bad() && found.regions.iter().all(|region| !region.causes.is_empty()), "{found:?}");
+    ask(&worker, frame + 7, 4, DiagnosisOf {});
+    assert!(answer::<DiagnosisOf>(&news, 4).expect_err("of no frame that is there").contains("diagnose again"));
 }
 
 #[test]
@@ -362,7 +352,7 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
         time: 0.0,
         off,
     };
-    assert!(worker.order(Order::Run { generation: 1, request: Box::new(request) }));
+    assert!(worker.order(Order::Run { scene: 1, request: Box::new(request) }));
     let plan = wait(&news, |news| match news {
         News::Captured { plan, .. } if plan.technique == "z-fail" => Some(plan),
         _ => None,
@@ -376,29 +366,18 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
 fn walls_are_those_of_the_scene_as_it_would_be_run() {
     let (worker, frame, news) = started();
     let mut scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
-    let walls = |generation: u64, off: std::ops::Range<usize>| {
-        let request = RunRequest {
-            choice: Choice::new(Technique::ZFail),
-            size: [64, 36],
-            camera: scene.camera,
-            lights: scene.lights.clone(),
-            time: 0.0,
-            off: off.collect(),
-        };
-        assert!(worker.order(Order::Walls { generation, request: Box::new(request) }));
-    };
-    let told = || wait(&news, |news| if let News::Walls { walls, .. } = news { Some(walls) } else { None });
+    let walls = |off: std::ops::Range<usize>| WallsOf { off: off.collect(), time: 0.0 };
     // Of a scene that is open no more nothing is told.
-    walls(0, 0..0);
-    assert!(worker.order(Order::History { frame, at: [0, 0] }));
+    ask_of(&worker, [0, frame], 1, walls(0..0));
+    ask(&worker, frame, 2, history(0, 0));
     wait(&news, |news| {
-        assert!(!matches!(news, News::Walls { .. }), "they come before what was asked after them");
-        matches!(news, News::History { .. }).then_some(())
+        assert!(!matches!(news, News::Answered { ticket: 1, .. }), "they come before what was asked after them");
+        matches!(news, News::Answered { ticket: 2, .. }).then_some(())
     });
-    walls(1, 0..0);
-    assert_eq!(*told(), WallCache::default().walls(&scene));
-    walls(1, 1..scene.objects.len());
-    let one = told();
+    ask(&worker, frame, 3, walls(0..0));
+    assert_eq!(*answer::<WallsOf>(&news, 3).expect("walls"), WallCache::default().walls(&scene));
+    ask(&worker, frame, 4, walls(1..scene.objects.len()));
+    let one = answer::<WallsOf>(&news, 4).expect("walls");
     scene.objects.truncate(1);
     assert_eq!(*one, WallCache::default().walls(&scene));
 }
@@ -420,7 +399,7 @@ fn a_scene_is_saved_as_it_is_run_and_what_is_there_is_asked_about() {
         off: std::collections::BTreeSet::from([1]),
     };
     let save = |replace| {
-        let order = Order::SaveScene { generation: 1, request: Box::new(request.clone()), path: path.clone(), replace };
+        let order = Order::SaveScene { scene: 1, request: Box::new(request.clone()), path: path.clone(), replace };
         assert!(worker.order(order));
         wait(&news, |news| if let News::Exported(exported) = news { Some(exported) } else { None })
     };

@@ -5,7 +5,7 @@ mod glass;
 mod inside;
 mod panels;
 mod rings;
-pub mod shapes;
+pub use super::shapes;
 mod steps;
 mod table;
 mod teapot_like;

@@ -1,11 +1,11 @@
 //! Puts a scene into a file: the scene file, and the models that it needs beside it.
 
 use super::save::{SaveError, SavedScene, save};
-use crate::files::write_whole;
+use crate::files::{from_beside, write_whole};
 use crate::scene::{Scene, obj};
 use std::collections::BTreeMap;
 use std::io;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// Why a scene is not in its file.
 #[derive(Debug, thiserror::Error)]
@@ -72,36 +72,4 @@ fn write_files(saved: &SavedScene, file: &Path) -> Result<(), StoreError> {
         written.extend(is_new.then_some(file));
     }
     Ok(())
-}
-
-/// The path of a model as a scene file beside `file` names it.
-fn from_beside(file: &Path, model: &Path) -> String {
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let both = folder.canonicalize().ok().zip(model.canonicalize().ok());
-    let way = both.and_then(|(folder, model)| relative(&folder, &model));
-    way.unwrap_or_else(|| model.to_owned()).to_string_lossy().into_owned()
-}
-
-/// The way from a folder to a file, both from the root; `None` where there is none, as between two drives.
-fn relative(folder: &Path, file: &Path) -> Option<PathBuf> {
-    let (folder, file): (Vec<Component>, Vec<Component>) = (folder.components().collect(), file.components().collect());
-    let common = folder.iter().zip(&file).take_while(|(a, b)| a == b).count();
-    if common == 0 {
-        return None;
-    }
-    let up = folder[common..].iter().map(|_| Component::ParentDir);
-    Some(up.chain(file[common..].iter().copied()).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_way_goes_up_and_down() {
-        let way = |folder: &str, file: &str| relative(Path::new(folder), Path::new(file));
-        assert_eq!(way("/a/b", "/a/b/m.obj"), Some("m.obj".into()));
-        assert_eq!(way("/a/b/c", "/a/d/m.obj"), Some("../../d/m.obj".into()));
-        assert_eq!(way("a", "b/m.obj"), None);
-    }
 }

@@ -158,7 +158,14 @@ impl Choice {
         spec.of(&self.settings).parse().ok()
     }
 
-    /// The same with shadow volumes counted in floats, and not in eight bits; `None` where they are, or where the
+    /// Technique and size: `shadow-map 1024`.
+    #[must_use]
+    pub fn short_name(&self) -> String {
+        let technique = self.technique().name();
+        self.texels().map_or_else(|| technique.to_owned(), |texels| format!("{technique} {texels}"))
+    }
+
+    /// This choice with shadow volumes counted in floats, and not in eight bits; `None` where they are, or where the
     /// technique has no such setting.
     #[must_use]
     pub fn counting_in_floats(&self) -> Option<Choice> {

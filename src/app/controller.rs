@@ -1,0 +1,296 @@
+//! What the window is about, without the window: the panels, the worker, and what goes between them.
+//!
+//! The window, the benchmark of the panels and the pictures of the README all draw
+//! [`Controller::inspector`], hand its actions to [`Controller::act`] and what wakes them to [`Controller::wake`].
+
+use super::export;
+use super::memory;
+use super::news::{Exported, News, Tell, WindowNews};
+use super::queue::Order;
+use super::reader::{Reader, Reading};
+use super::watch::Watch;
+use super::worker::{Start, Worker};
+use super::{AppError, ViewRequest};
+use crate::ask::Asked;
+use crate::capture::Capture;
+use crate::inspector::{Action, ExportData, Inspector, Remembered, SceneEntry};
+use crate::reading::shown::PictureKind;
+use crate::scene::{TechniqueRequest, builtin};
+use crate::stress::Case;
+use crate::technique::Choice;
+use std::pin::Pin;
+use std::sync::Arc;
+
+/// What the system's dialog shows: it has files or folders, not both.
+#[derive(Debug, Clone, Copy)]
+enum Wanted {
+    /// Scenes and models.
+    File,
+    /// Captures.
+    Folder,
+}
+
+/// The panels and the worker.
+pub struct Controller {
+    /// The panels.
+    pub inspector: Inspector,
+    worker: Worker,
+    tell: Tell,
+    /// Of the scene that is open.
+    scene: u64,
+    /// Of the frame that is shown.
+    frame: u64,
+    reader: Reader,
+    /// Files of the open scene; `None` where nothing is remembered or watched.
+    watch: Option<Watch>,
+    /// What is selected when the first capture comes.
+    first_step: Option<usize>,
+    first_pick: Option<[u32; 2]>,
+    first_is_error: bool,
+    /// As stored last.
+    remembered: Remembered,
+}
+
+impl Controller {
+    /// Opens what is asked for. `tell` wakes whoever draws. What was remembered of the run before is recalled, and
+    /// this one's kept, where `remembers` says so.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn new(request: ViewRequest, tell: Tell, remembers: bool) -> Result<Controller, AppError> {
+        let start = Start {
+            source: request.source,
+            name: request.name,
+            capture: request.capture,
+            time: request.time,
+            adapter: request.adapter,
+        };
+        let to_window = Arc::clone(&tell);
+        let worker = Worker::start(start, move |news| to_window(WindowNews::Worker(news)))?;
+        let scene = |builtin: &builtin::Builtin| SceneEntry {
+            name: builtin.name.to_owned(),
+            lesson: builtin.lesson.to_owned(),
+        };
+        let mut inspector = Inspector::new(builtin::ALL.iter().map(scene).collect());
+        if remembers {
+            inspector.recall(memory::load());
+        }
+        let remembered = inspector.remembered();
+        inspector.set_job(Some("starting".to_owned()));
+        let watch = if remembers { Some(Watch::start(Arc::clone(&tell)).map_err(AppError::NoThread)?) } else { None };
+        Ok(Controller {
+            inspector,
+            worker,
+            tell,
+            scene: 0,
+            frame: 0,
+            reader: Reader::default(),
+            watch,
+            first_step: request.step,
+            first_pick: request.pick,
+            first_is_error: request.truth,
+            remembered,
+        })
+    }
+
+    /// Is anything being found out? How far that is changes without news.
+    #[must_use]
+    pub fn is_answering(&self) -> bool {
+        self.inspector.answers().is_waiting()
+    }
+
+    /// Takes in what woke the window, but for what is the window's own.
+    pub fn wake(&mut self, news: WindowNews) {
+        match news {
+            WindowNews::Worker(news) => self.hear(news),
+            WindowNews::Chosen(path) => self.act(Action::Open(path)),
+            WindowNews::ChosenExport(path) => self.inspector.set_export_path(path),
+            WindowNews::Exported(exported) => self.end_export(exported),
+            WindowNews::Read { ticket, result } => {
+                self.inspector.answer(ticket, result, true);
+                let next = self.reader.go_on(&self.tell);
+                self.say_if_failed(next);
+            }
+            WindowNews::FileChanged(file) => self.inspector.offer_reload(file),
+            WindowNews::Repaint(_) | WindowNews::Access(_) => {}
+        }
+    }
+
+    /// Takes in what the worker tells.
+    pub fn hear(&mut self, news: News) {
+        match news {
+            News::Busy(job) => self.inspector.set_job(Some(job)),
+            News::Idle => self.inspector.set_job(None),
+            News::Opened { scene_number, scene, source, files, request } => {
+                if let Some(watch) = &self.watch {
+                    watch.look_at(files);
+                }
+                self.scene = scene_number;
+                self.inspector.open_scene(&scene, *request, source);
+                self.remember();
+            }
+            News::OpenedFolder { capture, source } => {
+                if let Some(watch) = &self.watch {
+                    watch.look_at(Vec::new());
+                }
+                self.inspector.set_job(None);
+                self.inspector.open_folder(Some(&source));
+                self.show(capture);
+            }
+            News::Captured { frame, capture, plan } => {
+                self.frame = frame;
+                self.show(capture);
+                self.inspector.set_plan(plan);
+            }
+            News::Answered { ticket, result } => self.inspector.answer(ticket, result, true),
+            News::AnsweredPart { ticket, answer } => self.inspector.answer(ticket, Ok(answer), false),
+            News::AnswerEnded { ticket } => self.inspector.end_answer(ticket),
+            News::Exported(exported) => self.end_export(exported),
+            News::Failed(reason) => self.inspector.push_failure(reason),
+        }
+    }
+
+    fn say_if_failed(&mut self, begun: std::io::Result<()>) {
+        if let Err(error) = begun {
+            self.inspector
+                .push_error(format!("no pixel can be linked with its texel now: {error}; open the tab again"));
+        }
+    }
+
+    fn show(&mut self, capture: Arc<Capture>) {
+        self.inspector.set_capture(capture);
+        if let Some(step) = self.first_step.take() {
+            self.inspector.select_step(step);
+        }
+        if std::mem::take(&mut self.first_is_error) {
+            self.inspector.set_picture_kind(PictureKind::Error);
+        }
+        if let Some(pick) = self.first_pick.take() {
+            self.inspector.pick(pick);
+        }
+    }
+
+    /// Does what the panels wish.
+    pub fn act(&mut self, action: Action) {
+        let order = match action {
+            Action::Open(name) => {
+                self.inspector.make_way();
+                Order::Open(name)
+            }
+            Action::Run(request) => {
+                self.inspector.make_way();
+                Order::Run { scene: self.scene, request }
+            }
+            Action::Ask(asked) if asked.ask.kind().is_read_from_capture() => return self.read(asked),
+            Action::Ask(asked) => Order::Answer { scene: self.scene, frame: self.frame, asked },
+            Action::Browse => return self.browse(Wanted::File),
+            Action::BrowseFolder => return self.browse(Wanted::Folder),
+            Action::BrowseExport { path } => return self.browse_export(&path),
+            Action::Reload => {
+                let Some(request) = self.inspector.draft() else { return };
+                self.inspector.make_way();
+                Order::Reload { request }
+            }
+            Action::Export { kind, path, replace } => match self.inspector.export(kind) {
+                Some(ExportData::Scene(request)) => Order::SaveScene { scene: self.scene, request, path, replace },
+                Some(data) => {
+                    if let Err(error) = export::start(data, path, replace, Arc::clone(&self.tell)) {
+                        self.inspector.end_export(Err(format!("nothing can be written now: {error}; try again")));
+                    }
+                    return;
+                }
+                None => {
+                    self.inspector.end_export(Err("there is nothing to export any longer".to_owned()));
+                    return;
+                }
+            },
+            Action::OpenStress { case, value, entrant } => {
+                let Some(case) = Case::named(case) else { return };
+                self.inspector.make_way();
+                Order::OpenCase { case, value, entrant }
+            }
+            Action::OpenReportRow { technique, settings } => {
+                return self.open_report_row(TechniqueRequest { name: technique, settings });
+            }
+        };
+        if !self.worker.order(order) {
+            let lost = "the worker thread is gone: close the window and start again";
+            self.inspector.push_error(lost.to_owned());
+        }
+    }
+
+    /// Answers what follows from the shown capture.
+    fn read(&mut self, asked: Asked) {
+        let Some(capture) = self.inspector.capture().cloned() else { return };
+        let reading = Reading { asked, capture, plan: self.inspector.plan().cloned() };
+        let begun = self.reader.read(reading, &self.tell);
+        self.say_if_failed(begun);
+    }
+
+    /// Makes shadows as a row of the report did.
+    fn open_report_row(&mut self, row: TechniqueRequest) {
+        match Choice::parse(&row) {
+            Ok(choice) => self.inspector.choose(choice).into_iter().for_each(|action| self.act(action)),
+            Err(error) => self.inspector.push_error(error.to_string()),
+        }
+    }
+
+    /// Asks for a file or folder in the system's dialog, beside the window.
+    fn browse(&mut self, wanted: Wanted) {
+        let dialog = rfd::AsyncFileDialog::new();
+        // Made here, as some systems give dialogs to the first thread only.
+        let dialog: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match wanted {
+            Wanted::File => {
+                let dialog = dialog.set_title("Open a scene or a model");
+                Box::pin(dialog.add_filter("scenes and models", &["toml", "obj"]).pick_file())
+            }
+            Wanted::Folder => Box::pin(dialog.set_title("Open a capture folder").pick_folder()),
+        };
+        let tell = Arc::clone(&self.tell);
+        let wait = move || {
+            if let Some(chosen) = pollster::block_on(dialog) {
+                tell(WindowNews::Chosen(chosen.path().display().to_string()));
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {
+            self.inspector.push_error(format!("the file dialog can't be opened: {error}; type the path instead"));
+        }
+    }
+
+    /// Asks with the system's dialog where to export to, beside the window.
+    fn browse_export(&mut self, path: &str) {
+        let dialog = rfd::AsyncFileDialog::new().set_title("Export");
+        let name = std::path::Path::new(path).file_name().map(|name| name.to_string_lossy().into_owned());
+        let dialog = dialog.set_file_name(name.unwrap_or_default());
+        let tell = Arc::clone(&self.tell);
+        let wait = move || {
+            // A capture is a folder: its place is chosen like that of a file that is not there yet.
+            if let Some(file) = pollster::block_on(dialog.save_file()) {
+                tell(WindowNews::ChosenExport(file.path().display().to_string()));
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().name("file dialog".to_owned()).spawn(wait) {
+            self.inspector.push_error(format!("the file dialog can't be opened: {error}; type the path instead"));
+        }
+    }
+
+    /// An export ended.
+    pub fn end_export(&mut self, exported: Exported) {
+        match exported {
+            Exported::Done(what) => self.inspector.end_export(Ok(what)),
+            Exported::Taken(path) => self.inspector.ask_to_replace(path),
+            Exported::Failed(reason) => self.inspector.end_export(Err(reason)),
+        }
+    }
+
+    /// Remembers what was changed since; a failure is told, and the window goes on.
+    pub fn remember(&mut self) {
+        let now = self.inspector.remembered();
+        if self.watch.is_some() && now != self.remembered {
+            if let Err(reason) = memory::store(&now) {
+                self.inspector.push_error(reason);
+            }
+            self.remembered = now;
+        }
+    }
+}

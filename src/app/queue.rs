@@ -1,0 +1,267 @@
+//! What the window asks of the worker, and what of it still counts when the worker gets to it.
+
+use crate::ask::{Asked, Kind, RunRequest};
+use crate::stress::{Case, Entrant};
+use std::collections::BTreeMap;
+use std::sync::mpsc::Receiver;
+
+/// What the window asks for.
+#[derive(Debug)]
+pub enum Order {
+    /// A built-in scene, or the path of a scene file, model or capture folder.
+    Open(String),
+    /// The open scene from its file again, run as it is now.
+    Reload {
+        /// How it is run.
+        request: Box<RunRequest>,
+    },
+    /// The scene of a stress case.
+    OpenCase {
+        /// Which case.
+        case: &'static Case,
+        /// The value of its number.
+        value: f64,
+        /// How its shadows are made; `None`: as before.
+        entrant: Option<Entrant>,
+    },
+    /// The open scene again, changed.
+    Run {
+        /// The scene that is meant.
+        scene: u64,
+        /// The change.
+        request: Box<RunRequest>,
+    },
+    /// The scene as it is run, into a file.
+    SaveScene {
+        /// The scene that is meant.
+        scene: u64,
+        /// How it is run.
+        request: Box<RunRequest>,
+        /// Where to.
+        path: String,
+        /// What is there may be replaced.
+        replace: bool,
+    },
+    /// The answer to a question.
+    Answer {
+        /// The scene that is meant.
+        scene: u64,
+        /// The frame that is meant.
+        frame: u64,
+        /// The question.
+        asked: Asked,
+    },
+}
+
+/// Sorts of orders, the most urgent first: of each only the newest counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Sort {
+    /// A scene is saved before it is changed.
+    Save,
+    /// What the next picture depends on.
+    BeforePicture(Kind),
+    /// What is seen first.
+    Picture,
+    /// What is known of it later.
+    Question(Kind),
+}
+
+impl Order {
+    fn sort(&self) -> Sort {
+        match self {
+            Order::SaveScene { .. } => Sort::Save,
+            Order::Open(_) | Order::Reload { .. } | Order::OpenCase { .. } | Order::Run { .. } => Sort::Picture,
+            Order::Answer { asked, .. } if asked.ask.kind().is_urgent() => Sort::BeforePicture(asked.ask.kind()),
+            Order::Answer { asked, .. } => Sort::Question(asked.ask.kind()),
+        }
+    }
+
+    /// Opening wins over the runs around it, as those before are of the old scene and those after were made before the
+    /// window knew the new one.
+    fn is_kept_over(&self, later: &Order) -> bool {
+        !matches!(self, Order::Run { .. }) && matches!(later, Order::Run { .. })
+    }
+}
+
+/// Orders that wait, in order of urgency.
+#[derive(Debug, Default)]
+pub struct Queue(BTreeMap<Sort, Order>);
+
+impl Queue {
+    /// One more.
+    pub fn add(&mut self, order: Order) {
+        let sort = order.sort();
+        if sort != Sort::Picture || self.0.get(&sort).is_none_or(|earlier| !earlier.is_kept_over(&order)) {
+            self.0.insert(sort, order);
+        }
+    }
+
+    /// Puts back what was obeyed in part; a newer one of its sort counts instead.
+    pub fn put_back(&mut self, rest: Order) {
+        self.0.entry(rest.sort()).or_insert(rest);
+    }
+
+    /// The next to obey.
+    pub fn next(&mut self) -> Option<Order> {
+        self.0.pop_first().map(|(_, order)| order)
+    }
+
+    /// The next to obey, but for what waits for a quiet moment.
+    pub fn next_now(&mut self) -> Option<Order> {
+        let first = self.0.first_entry()?;
+        (!matches!(first.key(), Sort::Question(kind) if kind.waits_for_quiet())).then(|| first.remove())
+    }
+
+    /// The next that long work lets come between; none while a new picture is waited for.
+    pub fn next_short(&mut self) -> Option<Order> {
+        let first = self.0.first_entry()?;
+        matches!(first.key(), Sort::Question(kind) if kind.is_short()).then(|| first.remove())
+    }
+
+    /// Does nothing wait?
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+/// Where orders come in, and those that wait.
+#[derive(Debug)]
+pub struct Inbox<'a> {
+    /// From the window.
+    pub orders: &'a Receiver<Order>,
+    /// Taken in, and not obeyed yet.
+    pub queue: Queue,
+}
+
+impl Inbox<'_> {
+    /// [`Queue::next_now`], once all that came was taken in.
+    pub fn next_now(&mut self) -> Option<Order> {
+        self.take_in();
+        self.queue.next_now()
+    }
+
+    /// [`Queue::next_short`], once all that came was taken in.
+    pub fn next_short(&mut self) -> Option<Order> {
+        self.take_in();
+        self.queue.next_short()
+    }
+
+    fn take_in(&mut self) {
+        self.orders.try_iter().for_each(|order| self.queue.add(order));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ask::{Ask, DiagnosisOf, DrawsOf, HistoryOf, ReportOf, StressOf, TimingOf, TruthOf, WallsOf};
+    use crate::progress::Progress;
+    use crate::technique::{Choice, Technique};
+    use std::collections::BTreeSet;
+
+    fn run(width: u32) -> Order {
+        let scene = crate::scene::open(&crate::scene::OpenSpec::new("table")).expect("a built-in scene");
+        let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [width, 1]);
+        Order::Run { scene: 1, request: Box::new(request) }
+    }
+
+    fn asked(ticket: u64, ask: impl Into<Ask>) -> Order {
+        Order::Answer { scene: 1, frame: 1, asked: Asked { ticket, ask: ask.into(), progress: Progress::default() } }
+    }
+
+    fn queue(orders: impl IntoIterator<Item = Order>) -> Queue {
+        let mut queue = Queue::default();
+        orders.into_iter().for_each(|order| queue.add(order));
+        queue
+    }
+
+    /// Tickets of the questions in the order in which they are answered; 0: another order.
+    fn tickets(mut queue: Queue) -> Vec<u64> {
+        let orders = std::iter::from_fn(|| queue.next());
+        orders.map(|order| if let Order::Answer { asked, .. } = order { asked.ticket } else { 0 }).collect()
+    }
+
+    fn history(x: u32) -> HistoryOf {
+        HistoryOf { at: [x, 0] }
+    }
+
+    fn walls() -> WallsOf {
+        WallsOf { off: BTreeSet::new(), time: 0.0 }
+    }
+
+    #[test]
+    fn of_waiting_runs_the_newest_counts() {
+        let order = queue([run(1), run(2), run(3)]).next();
+        assert!(matches!(order, Some(Order::Run { request, .. }) if request.size[0] == 3));
+    }
+
+    #[test]
+    fn opening_is_not_lost_to_a_run_of_the_scene_before() {
+        let order = queue([run(1), Order::Open("table".to_owned()), run(2)]).next();
+        assert!(matches!(order, Some(Order::Open(name)) if name == "table"));
+    }
+
+    #[test]
+    fn draws_are_seen_before_a_truth_is_known_and_only_the_last_ones_count() {
+        let queue = queue([asked(1, TruthOf {}), asked(2, DrawsOf { step: 1 }), asked(3, DrawsOf { step: 2 })]);
+        assert_eq!(tickets(queue), [3, 1]);
+    }
+
+    #[test]
+    fn of_a_dragged_pick_only_the_newest_pixel_is_asked_about_and_before_all_long_work() {
+        let picks = (2..5).map(|ticket| asked(ticket, history(ticket as u32)));
+        assert_eq!(tickets(queue([asked(1, TruthOf {})].into_iter().chain(picks))), [4, 1]);
+    }
+
+    #[test]
+    fn the_rest_of_the_stress_cases_comes_last_and_gives_way_to_a_newer_run() {
+        let stress = |ticket| asked(ticket, StressOf { cases: Vec::new() });
+        let mut queue = queue([stress(2), asked(3, TruthOf {})]);
+        queue.put_back(stress(1));
+        assert_eq!(tickets(queue), [3, 2]);
+        let mut queue = Queue::default();
+        queue.put_back(stress(1));
+        assert_eq!(tickets(queue), [1]);
+    }
+
+    #[test]
+    fn between_steps_of_long_work_only_what_is_short_is_obeyed_and_nothing_of_a_frame_that_goes() {
+        let mut still = queue([asked(1, TruthOf {}), asked(2, history(0)), asked(3, DrawsOf { step: 1 })]);
+        let short = |queue: &mut Queue| match queue.next_short() {
+            Some(Order::Answer { asked, .. }) => Some(asked.ticket),
+            _ => None,
+        };
+        assert_eq!([short(&mut still), short(&mut still), short(&mut still)], [Some(3), Some(2), None]);
+        assert_eq!(tickets(still), [1], "a truth takes long");
+        assert!(queue([asked(2, history(0)), run(1)]).next_short().is_none());
+    }
+
+    #[test]
+    fn a_diagnosis_comes_after_the_truth_and_before_a_report_and_the_clock_runs_when_nothing_is_asked() {
+        let report = ReportOf { choices: Vec::new(), runs: 1 };
+        let orders = [
+            asked(5, TimingOf {}),
+            asked(1, report),
+            asked(2, DiagnosisOf {}),
+            asked(3, TruthOf {}),
+            asked(4, DiagnosisOf {}),
+        ];
+        let mut queue = queue(orders);
+        for expected in [3, 4, 1] {
+            assert!(matches!(queue.next_now(), Some(Order::Answer { asked, .. }) if asked.ticket == expected));
+        }
+        assert!(queue.next_now().is_none());
+        assert_eq!(tickets(queue), [5]);
+    }
+
+    #[test]
+    fn walls_are_known_before_the_next_step_among_them() {
+        assert_eq!(tickets(queue([asked(1, walls()), run(1), asked(2, walls())])), [2, 0]);
+    }
+
+    #[test]
+    fn a_truth_is_not_lost_to_a_run_but_waits_for_it() {
+        assert_eq!(tickets(queue([asked(1, TruthOf {}), run(1), asked(2, TruthOf {})])), [0, 2]);
+    }
+}

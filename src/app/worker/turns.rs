@@ -1,0 +1,130 @@
+//! What takes many turns: a report, which lets short questions come between its rows, and stress cases, which let
+//! everything come between theirs.
+
+use super::Work;
+use crate::app::allocator;
+use crate::app::news::News;
+use crate::app::queue::{Inbox, Order};
+use crate::ask::{Answer, Ask, Asked, Holds, ReportOf};
+use crate::report::{MeasuredReport, Report};
+use crate::session::{Measurement, Session, SessionError, StressSteps, report_rows};
+use crate::stress::{Case, Row, StressRows};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// While rows of a report come and go.
+const GIVE_BACK_EVERY: Duration = Duration::from_millis(500);
+/// Pictures of stress cases, but for those with a size of their own.
+const STRESS_SIZE: [u32; 2] = [320, 240];
+
+/// Stress cases that are being run.
+pub(super) struct StressRun {
+    ticket: u64,
+    /// The rows to make.
+    steps: StressSteps,
+    /// The rows so far of the case that is under way.
+    rows: Vec<Row>,
+}
+
+impl StressRun {
+    /// All of the named cases, but for what would keep the window waiting.
+    fn new(ticket: u64, cases: &[&'static str]) -> StressRun {
+        let cases: Vec<&'static Case> = cases.iter().filter_map(|name| Case::named(name)).collect();
+        let steps = StressSteps::new(&cases, &[], STRESS_SIZE).without_heavy();
+        StressRun { ticket, steps, rows: Vec::new() }
+    }
+}
+
+impl Work {
+    /// Makes the next row of the stress cases that are asked for, and puts the question back while any is left.
+    pub(super) fn stress_turn(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
+        let Ask::StressOf(question) = &asked.ask else { return };
+        let run = self.stress.take().filter(|run| run.ticket == asked.ticket);
+        let mut run = run.unwrap_or_else(|| {
+            let run = StressRun::new(asked.ticket, &question.cases);
+            asked.progress.start(run.steps.left());
+            run
+        });
+        let Some((case, name)) = run.steps.next_case() else {
+            (self.tell)(News::AnswerEnded { ticket: asked.ticket });
+            return self.end_stress();
+        };
+        (self.tell)(News::Busy(format!("stress: {name}")));
+        match self.session().and_then(|session| session.stress_step(&mut run.steps)) {
+            Ok(row) => run.rows.extend(row),
+            Err(error) => {
+                (self.tell)(News::Answered { ticket: asked.ticket, result: Err(error.to_string()) });
+                return self.end_stress();
+            }
+        }
+        asked.progress.advance();
+        if run.steps.next_case().is_none_or(|(next, _)| next != case) {
+            let rows = StressRows::new(std::mem::take(&mut run.rows));
+            (self.tell)(News::AnsweredPart { ticket: asked.ticket, answer: Answer::StressOf(Arc::new(rows)) });
+        }
+        self.stress = Some(run);
+        inbox.queue.put_back(Order::Answer { scene: of[0], frame: of[1], asked });
+    }
+
+    /// Hundreds of scenes were open: what was kept of them is of no use any longer.
+    pub(super) fn end_stress(&mut self) {
+        self.stress = None;
+        self.session.iter_mut().for_each(Session::forget);
+        allocator::give_back();
+        (self.tell)(News::Idle);
+    }
+
+    /// Measures the open scene as it was captured last. What is asked of its frame meanwhile is told
+    /// in between.
+    pub(super) fn report(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
+        let Ask::ReportOf(question) = &asked.ask else { return };
+        (self.tell)(News::Busy("measuring every technique".to_owned()));
+        let result = if of[0] == self.scenes {
+            self.measured(question, &asked, inbox).map_err(|error| error.to_string())
+        } else {
+            Err("another scene was opened meanwhile: measure again when it is the one you want".to_owned())
+        };
+        // Where it was cancelled, the window has asked for it.
+        if !asked.progress.is_cancelled() {
+            let result = result.map(|measured| Answer::ReportOf(Arc::new(measured)));
+            (self.tell)(News::Answered { ticket: asked.ticket, result });
+        }
+        (self.tell)(News::Idle);
+    }
+
+    fn measured(
+        &mut self,
+        question: &ReportOf,
+        asked: &Asked,
+        inbox: &mut Inbox,
+    ) -> Result<MeasuredReport, SessionError> {
+        let (Some(session), Some(frame), Some(open)) = (&mut self.session, &self.last, &self.open) else {
+            return Err(SessionError::NoFrame);
+        };
+        let (tell, frames) = (&self.tell, self.frames);
+        session.make_room(&frame.plan);
+        let what = Measurement { choices: question.choices.clone(), size: frame.request.size, runs: question.runs };
+        let mut given_back = Instant::now();
+        let mut between = |session: &mut Session| {
+            // What one row leaves behind, the next does not fill.
+            if given_back.elapsed() > GIVE_BACK_EVERY {
+                allocator::give_back();
+                given_back = Instant::now();
+            }
+            while let Some(order) = inbox.next_short() {
+                let Order::Answer { frame: of, asked, .. } = order else { continue };
+                if asked.ask.kind().holds() != Holds::Frame || of == frames {
+                    let result = session.answer(&asked.ask, open, Some(frame), &asked.progress);
+                    tell(News::Answered { ticket: asked.ticket, result: result.map_err(|error| error.to_string()) });
+                }
+            }
+        };
+        let measured = session.measure_between(&frame.scene, &what, &asked.progress, &mut between)?;
+        let is_left_out = |choice: &&crate::technique::Choice| measured.iter().all(|row| row.choice != **choice);
+        let left_out: BTreeSet<String> = what.choices.iter().filter(is_left_out).map(|one| one.short_name()).collect();
+        let rows = report_rows(&frame.scene.name, what.size, &measured);
+        let report = Report::new(session.adapter().clone(), rows);
+        Ok(MeasuredReport { report, left_out: left_out.into_iter().collect() })
+    }
+}

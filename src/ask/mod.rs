@@ -1,0 +1,275 @@
+//! Questions about a frame or a scene, and their answers: as data.
+//!
+//! A capture never changes. What is learned of it later, its truth, the history of a pixel, why it is wrong, is the
+//! answer to a question, and all questions go one way:
+//!
+//! ```text
+//! panel ─ want(History { at }) ─► Answers ─ take_asked ─► Asked ─► queue, by priority ─► Session::answer
+//!   ▲                                │ ▲                                                      │
+//!   └── Reply: ready, older, how far ┘ └───────────── answer(ticket, Result<Answer, String>) ─┘
+//! ```
+//!
+//! A new question is an entry in the table below, an arm of [`Session::answer`](crate::session::Session::answer), and
+//! the panel that wants it. [`Kind`] says how it is treated, by default as most are.
+
+mod answers;
+mod run_request;
+
+pub use answers::{Answers, Asked, Reply};
+pub use run_request::{RunRequest, without};
+
+use crate::anatomy::Anatomy;
+use crate::capture::{Capture, FrameTruth, StepDraws, Timing};
+use crate::diagnosis::Diagnosis;
+use crate::history::PixelHistory;
+use crate::plan::FramePlan;
+use crate::reading::{MapReaders, ObjectMesh, TestOutcomes};
+use crate::report::MeasuredReport;
+use crate::scene::Walls;
+use crate::stress::StressRows;
+use crate::technique::{Choice, ChoiceError};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// A question of one kind, with the type of its answer.
+pub trait Question: Clone + Into<Ask> {
+    /// What is learned.
+    type Answer;
+    /// Which kind it is.
+    const KIND: Kind;
+    /// The question, where `ask` is of this kind.
+    fn of(ask: &Ask) -> Option<&Self>;
+    /// The answer, where it is one to this kind.
+    fn answer(answer: &Answer) -> Option<&Arc<Self::Answer>>;
+    /// As one of any kind.
+    fn into_answer(answer: Arc<Self::Answer>) -> Answer;
+}
+
+macro_rules! questions {
+    ($($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty),* } -> $answer:ty;)*) => {
+        $(
+            $(#[$doc])*
+            #[derive(Debug, Clone, PartialEq)]
+            pub struct $name { $($(#[$field_doc])* pub $field: $type),* }
+
+            impl Question for $name {
+                type Answer = $answer;
+                const KIND: Kind = Kind::$name;
+
+                fn of(ask: &Ask) -> Option<&$name> {
+                    if let Ask::$name(question) = ask { Some(question) } else { None }
+                }
+
+                fn answer(answer: &Answer) -> Option<&Arc<$answer>> {
+                    if let Answer::$name(answer) = answer { Some(answer) } else { None }
+                }
+
+                fn into_answer(answer: Arc<$answer>) -> Answer {
+                    Answer::$name(answer)
+                }
+            }
+
+            impl From<$name> for Ask {
+                fn from(question: $name) -> Ask {
+                    Ask::$name(question)
+                }
+            }
+        )*
+
+        /// Any question.
+        #[derive(Debug, Clone, PartialEq)]
+        pub enum Ask { $($(#[$doc])* $name($name)),* }
+
+        /// The answer to a question of the same name.
+        #[derive(Debug, Clone)]
+        pub enum Answer { $($(#[$doc])* $name(Arc<$answer>)),* }
+
+        /// The kinds of questions, the most urgent first.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum Kind { $($(#[$doc])* $name),* }
+
+        impl Kind {
+            /// All of them, the most urgent first.
+            pub const ALL: &[Kind] = &[$(Kind::$name),*];
+        }
+
+        impl Ask {
+            /// Which kind it is.
+            #[must_use]
+            pub fn kind(&self) -> Kind {
+                match self { $(Ask::$name(_) => Kind::$name),* }
+            }
+        }
+    };
+}
+
+questions! {
+    /// What can't be walked through in the scene as it would be run.
+    WallsOf { /// Objects that are switched off, by index.
+        off: BTreeSet<usize>,
+        /// The moment, seconds; 0 where nothing moves.
+        time: f64 } -> Walls;
+    /// The states after the draws of a step.
+    DrawsOf { /// Index of the step.
+        step: usize } -> StepDraws;
+    /// What happened to a pixel.
+    HistoryOf { /// Column and row.
+        at: [u32; 2] } -> PixelHistory;
+    /// What the frame is made of in space.
+    AnatomyOf { } -> Anatomy;
+    /// How the fragments of a step, or of one of its draws, fared in the tests.
+    TestsOf { /// Index of the step.
+        step: usize,
+        /// Index of the draw; `None`: all of the step.
+        draw: Option<usize> } -> TestOutcomes;
+    /// Which texel of a light's shadow map each pixel reads.
+    ReadersOf { /// Index of the light.
+        light: usize } -> MapReaders;
+    /// The open scene run another way, beside the frame that is shown.
+    CaptureOf { /// How it is run.
+        request: Box<RunRequest> } -> Capture;
+    /// How each object's mesh hangs together.
+    MeshesOf { } -> Vec<ObjectMesh>;
+    /// The ground truth, and how the technique differs from it.
+    TruthOf { } -> FrameTruth;
+    /// Where the frame is wrong, why, and what mends it.
+    DiagnosisOf { } -> Diagnosis;
+    /// Every technique measured on the open scene.
+    ReportOf { /// Techniques with their settings.
+        choices: Vec<Choice>,
+        /// Timed frames of each.
+        runs: usize } -> MeasuredReport;
+    /// What stress cases came to.
+    StressOf { /// Their names.
+        cases: Vec<&'static str> } -> StressRows;
+    /// How long the frame takes, with and without snapshots.
+    TimingOf { } -> Timing;
+}
+
+impl ReportOf {
+    /// Timed frames of each row of the default report.
+    const RUNS: usize = 5;
+
+    /// Every technique over its default settings.
+    ///
+    /// # Errors
+    /// A setting of the grid that its technique does not know, which is a bug of the grid.
+    pub fn grid() -> Result<ReportOf, ChoiceError> {
+        Ok(ReportOf { choices: Choice::report_grid()?, runs: ReportOf::RUNS })
+    }
+}
+
+/// For how long an answer holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Holds {
+    /// While its frame is shown; until that of the next is known it stays as the older one.
+    Frame,
+    /// While its scene is open.
+    Scene,
+    /// Until another comes.
+    Always,
+}
+
+impl Kind {
+    /// For how long an answer holds.
+    #[must_use]
+    pub fn holds(self) -> Holds {
+        match self {
+            Kind::WallsOf | Kind::CaptureOf | Kind::MeshesOf | Kind::DiagnosisOf => Holds::Scene,
+            Kind::ReportOf | Kind::StressOf => Holds::Always,
+            _ => Holds::Frame,
+        }
+    }
+
+    /// Is it asked by a press of a button only, as it takes long?
+    #[must_use]
+    pub fn is_started_by_hand(self) -> bool {
+        matches!(self, Kind::DiagnosisOf | Kind::ReportOf | Kind::StressOf)
+    }
+
+    /// Is it about the shown frame, and answered within about the time of one? Long work lets it come between.
+    #[must_use]
+    pub fn is_short(self) -> bool {
+        matches!(self, Kind::DrawsOf | Kind::HistoryOf | Kind::AnatomyOf | Kind::TestsOf)
+    }
+
+    /// Does it follow from the capture and its plan, with nothing to run? Then a folder's frame answers it too, and
+    /// no picture waits for it.
+    #[must_use]
+    pub fn is_read_from_capture(self) -> bool {
+        self == Kind::ReadersOf
+    }
+
+    /// Is it found out only when nothing else is asked for for a while?
+    #[must_use]
+    pub fn waits_for_quiet(self) -> bool {
+        self == Kind::TimingOf
+    }
+
+    /// Is what is asked for next of no use without it, so that all long work makes way?
+    #[must_use]
+    pub fn is_urgent(self) -> bool {
+        self == Kind::WallsOf
+    }
+
+    /// Is it so much asked for by who looks on that a truth under way is begun again after it?
+    #[must_use]
+    pub fn interrupts_truth(self) -> bool {
+        matches!(self, Kind::DrawsOf | Kind::CaptureOf)
+    }
+
+    /// What is said of it when it is stopped because another picture is asked for; `None`: it goes on, or is asked
+    /// for again by who wants it.
+    #[must_use]
+    pub fn stopped_by_picture(self) -> Option<&'static str> {
+        match self {
+            Kind::DiagnosisOf => Some("stopped for another picture: diagnose again when it is the one you want"),
+            Kind::ReportOf => Some("stopped for another picture: measure again when it is the one you want"),
+            _ => None,
+        }
+    }
+}
+
+impl Ask {
+    /// What is being done for it, in a few words; `None` where it is so quick that nobody has to be told.
+    #[must_use]
+    pub fn doing(&self) -> Option<String> {
+        match self {
+            Ask::DrawsOf(DrawsOf { step }) => Some(format!("capturing the draws of step {}", step + 1)),
+            Ask::CaptureOf(CaptureOf { request }) => {
+                Some(format!("capturing {} to compare", request.choice.technique().name()))
+            }
+            Ask::MeshesOf(_) => Some("looking at meshes".to_owned()),
+            Ask::TruthOf(_) => Some("tracing the truth".to_owned()),
+            Ask::DiagnosisOf(_) => Some("diagnosing".to_owned()),
+            Ask::ReportOf(_) => Some("measuring every technique".to_owned()),
+            _ => None,
+        }
+    }
+
+    /// The answer, where it follows from the capture and its plan ([`Kind::is_read_from_capture`]).
+    ///
+    /// # Errors
+    /// There is none, in a few words.
+    pub fn read_from(&self, capture: &Capture, plan: Option<&Arc<FramePlan>>) -> Result<Answer, String> {
+        match self {
+            Ask::ReadersOf(ReadersOf { light }) => MapReaders::new(capture, plan, *light)
+                .map(|readers| Answer::ReadersOf(Arc::new(readers)))
+                .ok_or_else(|| format!("light {} has no shadow map in this frame", light + 1)),
+            _ => Err("it takes a run of the frame: open its scene".to_owned()),
+        }
+    }
+}
+
+impl Answer {
+    /// The answer with what was known before, where one comes in parts.
+    #[must_use]
+    fn after(self, before: Option<&Answer>) -> Answer {
+        match (self, before) {
+            (Answer::StressOf(rows), Some(Answer::StressOf(before))) => {
+                Answer::StressOf(Arc::new(before.followed_by(&rows)))
+            }
+            (answer, _) => answer,
+        }
+    }
+}

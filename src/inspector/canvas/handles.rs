@@ -1,0 +1,123 @@
+//! Handles of lights and camera: what can be moved, where it stands, and how it is grabbed.
+
+use crate::reading::format;
+use crate::scene::Light;
+use egui::{EventFilter, Id, Key, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use glam::{DMat3, DVec3, DVec4};
+
+/// How far an arrow key moves, in parts of the view's height, and with Shift.
+const STEPS: [f64; 2] = [0.01, 0.1];
+
+/// What can be moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Grip {
+    /// A light, or the direction towards it.
+    Light(usize),
+    /// The camera's eye.
+    Eye,
+    /// What the camera looks at.
+    Target,
+}
+
+impl Grip {
+    /// For people: `Light 1`.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Grip::Light(index) => format::light_title(index),
+            Grip::Eye => "Camera".to_owned(),
+            Grip::Target => "Camera target".to_owned(),
+        }
+    }
+}
+
+/// Where the handle of a directional light stands: so far from a point towards the light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Anchor {
+    /// World space.
+    pub middle: DVec3,
+    /// Metres.
+    pub reach: f64,
+}
+
+/// Where a light's handle is at a moment, world space.
+#[must_use]
+pub fn place_of_light(light: &Light, time: f64, anchor: Anchor) -> DVec3 {
+    let position = light.motion.apply_to_light(light.position, time);
+    match position.w == 0.0 {
+        true => anchor.middle + position.truncate().normalize_or_zero() * anchor.reach,
+        false => position.truncate() / position.w,
+    }
+}
+
+/// The light's homogeneous position at the scene's start once its handle was moved at a moment.
+#[must_use]
+pub fn moved_light(light: &Light, time: f64, by: DVec3, anchor: Anchor) -> DVec4 {
+    let turned = |axis: DVec3| light.motion.apply_to_light(axis.extend(0.0), time).truncate();
+    let back = DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z)).transpose();
+    if !light.is_directional() {
+        return light.position + (back * by * light.position.w).extend(0.0);
+    }
+    let towards = place_of_light(light, time, anchor) + by - anchor.middle;
+    let length = light.position.truncate().length();
+    match towards.try_normalize() {
+        Some(towards) => (back * towards * length).extend(0.0),
+        None => light.position,
+    }
+}
+
+/// A named thing that can be dragged, and takes the focus when it is.
+pub fn grabbed(ui: &Ui, id: Id, rect: Rect, name: &str) -> Response {
+    let response = ui.interact(rect, id, Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+    if response.clicked() || response.drag_started() {
+        response.request_focus();
+    }
+    response
+}
+
+/// How far the arrow keys of what has the focus go right and up, in parts of the view's height.
+pub fn arrows(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
+    if !response.has_focus() {
+        return None;
+    }
+    let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let by = ui.input(|input| {
+        let presses = |key| input.num_presses(key) as f64 * STEPS[usize::from(input.modifiers.shift)];
+        [presses(Key::ArrowRight) - presses(Key::ArrowLeft), presses(Key::ArrowUp) - presses(Key::ArrowDown)]
+    });
+    (by != [0.0; 2]).then_some(by)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Motion, Orbit, Swing};
+
+    const ANCHOR: Anchor = Anchor { middle: DVec3::new(1.0, 0.0, 2.0), reach: 5.0 };
+
+    #[test]
+    fn a_light_that_moves_is_moved_where_it_is_seen() {
+        let orbit =
+            Orbit { center: DVec3::new(2.0, 0.0, 1.0), axis: DVec3::new(1.0, 2.0, 0.5), degrees_per_second: 30.0 };
+        let swing = Swing { pivot: DVec3::Y * 4.0, axis: DVec3::Z, degrees: 25.0, period_seconds: 3.0 };
+        let motion = Motion { orbit: Some(orbit), swing: Some(swing), ..Motion::default() };
+        let light = Light { motion, ..Light::point(DVec3::new(1.0, 3.0, -2.0)) };
+        let by = DVec3::new(0.3, -0.2, 0.7);
+        for time in [0.0, 1.3, 7.7] {
+            let moved = Light { position: moved_light(&light, time, by, ANCHOR), ..light.clone() };
+            let found = place_of_light(&moved, time, ANCHOR) - place_of_light(&light, time, ANCHOR);
+            assert!((found - by).length() < 1e-9, "{time}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_direction_keeps_its_length_and_follows_its_handle() {
+        let light = Light::directional(DVec3::new(0.0, 3.0, 0.0));
+        assert_eq!(place_of_light(&light, 0.0, ANCHOR), DVec3::new(1.0, 5.0, 2.0));
+        let moved = moved_light(&light, 0.0, DVec3::X * 5.0, ANCHOR);
+        assert!((moved - DVec4::new(3.0, 3.0, 0.0, 0.0) / 2f64.sqrt()).length() < 1e-12, "{moved}");
+        assert_eq!(moved_light(&light, 0.0, DVec3::Y * -5.0, ANCHOR), light.position, "it has no direction there");
+    }
+}

@@ -1,0 +1,60 @@
+//! An inset that shows the texels around the pick with their numbers, while the picture is too
+//! small to show them itself.
+
+use crate::inspector::canvas;
+use crate::inspector::canvas::placement::Placement;
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::theme;
+use crate::reading::shown::Shown;
+use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
+
+/// Texels across and down; odd, so that the pick is in the middle.
+const CELLS: [i64; 2] = [7, 5];
+/// Size of a texel in the inset, points.
+const CELL: f32 = 26.0;
+
+/// Room between the inset and the picture's borders, points.
+const MARGIN: f32 = 12.0;
+
+/// Draws the inset around `pick` into the lower left corner of `rect`.
+pub fn ui(ui: &Ui, pick: [u32; 2], rect: Rect, shown: &Shown, coloring: Coloring, placement: Placement) {
+    let size = vec2(CELLS[0] as f32, CELLS[1] as f32) * CELL;
+    let is_large = placement.pixels(ui.pixels_per_point()) >= canvas::NUMBERS_FROM;
+    if is_large || rect.width() < size.x * 2.0 || rect.height() < size.y * 2.0 {
+        return;
+    }
+    let inset = Rect::from_min_size(pos2(rect.left() + MARGIN, rect.bottom() - MARGIN - size.y), size);
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(inset, CornerRadius::same(4), theme::of(ui).background);
+    let image = &shown.images[0];
+    for row in 0..CELLS[1] {
+        for column in 0..CELLS[0] {
+            let offset = [column - CELLS[0] / 2, row - CELLS[1] / 2];
+            let cell = Rect::from_min_size(inset.min + vec2(column as f32, row as f32) * CELL, vec2(CELL, CELL));
+            let texel = [0, 1].map(|axis| u32::try_from(i64::from(pick[axis]) + offset[axis]));
+            let [Ok(x), Ok(y)] = texel else { continue };
+            let Some(color) = coloring.color_at(image, [x, y]) else { continue };
+            painter.rect_filled(cell, CornerRadius::ZERO, color);
+            canvas::texel_number(&painter, image, coloring, [x, y], cell);
+        }
+    }
+    // Over the cells, so that it is seen on a count of zero too, which is as dark as the ground.
+    let grid = Stroke::new(1.0, theme::of(ui).faint);
+    for column in 1..CELLS[0] {
+        painter.vline(inset.left() + column as f32 * CELL, inset.y_range(), grid);
+    }
+    for row in 1..CELLS[1] {
+        painter.hline(inset.x_range(), inset.top() + row as f32 * CELL, grid);
+    }
+    let middle = Rect::from_center_size(inset.center(), vec2(CELL, CELL));
+    // Light on dark, so that it shows on any texel.
+    for (width, color) in [(5.0, Color32::from_black_alpha(170)), (2.0, Color32::WHITE)] {
+        painter.rect_stroke(middle, CornerRadius::ZERO, Stroke::new(width, color), StrokeKind::Middle);
+    }
+    painter.rect_stroke(
+        inset.expand(1.0),
+        CornerRadius::same(4),
+        Stroke::new(1.0, theme::of(ui).faint),
+        StrokeKind::Outside,
+    );
+}

@@ -1,0 +1,265 @@
+//! The picture itself: zoom, pan and pick by mouse and keys, numbers on large texels, and the
+//! crosshair of the pick.
+
+pub mod divider;
+pub mod handles;
+pub mod magnifier;
+pub mod overlay_lines;
+pub mod placement;
+
+use crate::capture::Image;
+use crate::inspector::canvas::placement::Placement;
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::palette;
+use crate::inspector::look::texture::{PictureCache, TextureSize};
+use crate::inspector::look::theme;
+use crate::reading::shown::{PictureView, Shown, Zoom};
+use egui::epaint::Mesh;
+use egui::{
+    Align2, Color32, CornerRadius, Id, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
+};
+use egui::{WidgetInfo, pos2, vec2};
+use std::sync::Arc;
+
+/// Screen pixels a texel from which on each texel shows its number.
+pub const NUMBERS_FROM: f32 = 24.0;
+/// Marks are at least so large, points.
+const LEAST_MARK: f32 = 2.5;
+/// Marks that are drawn at most.
+const MOST_MARKS: usize = 12_000;
+/// How much one point of wheel movement zooms, as a power of e; a notch is about 50 points.
+const WHEEL_ZOOM: f32 = 0.004;
+
+/// Name of the picture's own canvas.
+pub const PICTURE: &str = "Picture canvas";
+
+/// A picture over the shown one, of the same size.
+#[derive(Debug, Clone)]
+pub struct Sheet {
+    /// Its texels.
+    pub image: Arc<Image>,
+    /// What they mean.
+    pub coloring: Coloring,
+    /// Where on the screen it is seen.
+    pub part: Rect,
+    /// Do its texels show their numbers?
+    pub has_numbers: bool,
+}
+
+/// What a canvas shows, and changes: its own view and pick.
+#[derive(Debug)]
+pub struct Canvas<'a> {
+    /// The name of the widget.
+    pub name: &'a str,
+    /// Zoom and place.
+    pub view: &'a mut PictureView,
+    /// The picked texel.
+    pub pick: &'a mut Option<[u32; 2]>,
+    /// Where textures are kept.
+    pub textures: &'a mut PictureCache,
+}
+
+/// The widget of the picture's own canvas.
+#[must_use]
+pub fn picture_id() -> Id {
+    Id::unique(PICTURE)
+}
+
+/// Draws `shown` with `sheets` over it into `rect` and acts on mouse and keys. Returns where the picture lies, and
+/// the texel under the pointer.
+pub fn ui(
+    ui: &mut Ui,
+    canvas: Canvas<'_>,
+    rect: Rect,
+    shown: &Shown,
+    coloring: Coloring,
+    sheets: &[Sheet],
+) -> (Placement, Option<[u32; 2]>) {
+    let image = &shown.images[0];
+    let Canvas { name, view, pick, textures } = canvas;
+    let response = ui.interact(rect, Id::unique(name), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, name));
+    let pixels_per_point = ui.pixels_per_point();
+    let place = |view: &PictureView| Placement::new(view, image.size(), rect, pixels_per_point);
+    move_view(ui, view, &response, place(view), pixels_per_point);
+    let placement = place(view);
+    picked(ui, pick, &response, placement);
+    let hover = response.hover_pos().and_then(|at| placement.texel(at));
+
+    let painter = ui.painter_at(rect);
+    let visible = placement.rect().intersect(rect);
+    if visible.is_positive() {
+        let block = if coloring == Coloring::Findings { block_of(placement.pixels(pixels_per_point)) } else { 1 };
+        let size = if block > 1 { TextureSize::Blocks(block) } else { TextureSize::Full };
+        let texture = textures.texture(ui.ctx(), image, coloring, size);
+        // The last block of a row may reach over the picture's border.
+        let whole = placement.rect();
+        let covered = [0, 1].map(|axis| image.size()[axis].next_multiple_of(block) as f32 * placement.scale);
+        let whole = if block > 1 { Rect::from_min_size(whole.min, covered.into()) } else { whole };
+        painter.image(texture.id(), visible, uv_of(whole, visible), Color32::WHITE);
+        for sheet in sheets {
+            let part = visible.intersect(sheet.part);
+            if part.is_positive() {
+                let texture = textures.texture(ui.ctx(), &sheet.image, sheet.coloring, TextureSize::Full);
+                painter.image(texture.id(), part, uv_of(placement.rect(), part), Color32::WHITE);
+            }
+        }
+    }
+    painter.rect_stroke(
+        placement.rect(),
+        CornerRadius::ZERO,
+        Stroke::new(1.0, theme::of(ui).line),
+        StrokeKind::Outside,
+    );
+    if placement.pixels(pixels_per_point) >= NUMBERS_FROM {
+        let numbered = || sheets.iter().filter(|sheet| sheet.has_numbers);
+        let whole = numbered().rfind(|sheet| sheet.part.contains_rect(visible));
+        let (image, coloring) = whole.map_or((image, coloring), |sheet| (&sheet.image, sheet.coloring));
+        match numbered().find(|sheet| !sheet.part.contains_rect(visible)) {
+            Some(part) => {
+                numbers(ui, beside(rect, part.part), image, coloring, placement);
+                numbers(ui, rect.intersect(part.part), &part.image, part.coloring, placement);
+            }
+            None => numbers(ui, rect, image, coloring, placement),
+        }
+    }
+    if let Some(at) = *pick {
+        crosshair(&painter, placement.rect_of(at));
+    }
+    if response.has_focus() {
+        painter.rect_stroke(
+            rect.shrink(1.0),
+            CornerRadius::ZERO,
+            Stroke::new(1.0, theme::of(ui).focus),
+            StrokeKind::Inside,
+        );
+    }
+    (placement, hover)
+}
+
+/// How many texels have to be one, each way, so that every one is a screen pixel at least.
+fn block_of(pixels: f32) -> u32 {
+    (1.0 / pixels).ceil().clamp(1.0, 64.0) as u32
+}
+
+fn uv_of(whole: Rect, part: Rect) -> Rect {
+    let at = |p: Pos2| pos2((p.x - whole.min.x) / whole.width(), (p.y - whole.min.y) / whole.height());
+    Rect::from_min_max(at(part.min), at(part.max))
+}
+
+/// The wheel zooms at the pointer, left-drag pans.
+fn move_view(ui: &Ui, view: &mut PictureView, response: &Response, placement: Placement, pixels_per_point: f32) {
+    if response.dragged_by(PointerButton::Primary) && response.drag_delta() != egui::Vec2::ZERO {
+        let moved = placement.texel_position(response.rect.center() - response.drag_delta());
+        set_view(view, placement.pixels(pixels_per_point), moved);
+    }
+    let Some(pointer) = response.hover_pos() else { return };
+    let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+    let factor = (scroll * WHEEL_ZOOM).exp() * pinch;
+    if factor != 1.0 {
+        let [least, most] = Placement::ZOOM_LIMITS;
+        let pixels = (placement.pixels(pixels_per_point) * factor).clamp(least, most);
+        // The texel under the pointer stays there.
+        let under_pointer = placement.texel_position(pointer);
+        let center = under_pointer + (response.rect.center() - pointer) / (pixels / pixels_per_point);
+        set_view(view, pixels, center);
+    }
+}
+
+fn set_view(view: &mut PictureView, pixels: f32, center: egui::Vec2) {
+    view.zoom = Zoom::Pixels(pixels);
+    view.center = [f64::from(center.x), f64::from(center.y)];
+}
+
+/// Right-click and right-drag pick; arrow keys nudge the pick while the picture has the focus.
+fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: Placement) {
+    if response.clicked() || response.secondary_clicked() || response.drag_started() {
+        response.request_focus();
+    }
+    let by_mouse = response.secondary_clicked() || response.dragged_by(PointerButton::Secondary);
+    if let Some(texel) = response.interact_pointer_pos().filter(|_| by_mouse).and_then(|at| placement.texel(at)) {
+        *pick = Some(texel);
+    }
+    if response.has_focus() {
+        let arrows = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+        let by = nudge(ui);
+        if by != [0, 0] {
+            let from = pick.unwrap_or(placement.size.map(|side| side / 2));
+            *pick = Some([0, 1].map(|axis| {
+                let last = placement.size[axis].saturating_sub(1);
+                from[axis].saturating_add_signed(by[axis]).min(last)
+            }));
+        }
+    }
+}
+
+/// Texels to move by: one a key press, ten with Shift.
+fn nudge(ui: &Ui) -> [i32; 2] {
+    ui.input(|input| {
+        let far = if input.modifiers.shift { 10 } else { 1 };
+        let presses = |key| input.num_presses(key) as i32 * far;
+        [presses(Key::ArrowRight) - presses(Key::ArrowLeft), presses(Key::ArrowDown) - presses(Key::ArrowUp)]
+    })
+}
+
+/// What of `rect` lies left or right of `part`.
+fn beside(rect: Rect, part: Rect) -> Rect {
+    if part.left() <= rect.left() { rect.with_min_x(part.right()) } else { rect.with_max_x(part.left()) }
+}
+
+/// The number of every visible texel.
+fn numbers(ui: &Ui, rect: Rect, image: &Image, coloring: Coloring, placement: Placement) {
+    let painter = ui.painter_at(rect);
+    let first = placement.texel_position(rect.min).max(egui::Vec2::ZERO);
+    let last = placement.texel_position(rect.max);
+    let end = |position: f32, side: u32| (position.max(0.0).ceil() as u32).min(side);
+    for y in first.y as u32..end(last.y, placement.size[1]) {
+        for x in first.x as u32..end(last.x, placement.size[0]) {
+            texel_number(&painter, image, coloring, [x, y], placement.rect_of([x, y]));
+        }
+    }
+}
+
+/// Draws a texel's number into its cell, as large as fits, in black or white.
+pub fn texel_number(painter: &egui::Painter, image: &Image, coloring: Coloring, at: [u32; 2], cell: Rect) {
+    let Some(color) = coloring.color_at(image, at) else { return };
+    let lines = coloring.lines() as f32;
+    let size = (cell.height() * 0.38).min(cell.height() * 0.86 / (lines * 1.2)).clamp(6.0, 13.0);
+    // A character of the monospaced face is 0.6 of its size wide.
+    let columns = (cell.width() * 0.94 / (size * 0.6)) as usize;
+    let Some(text) = coloring.number_at(image, at, columns) else { return };
+    let longest = text.lines().map(|line| line.chars().count()).max().unwrap_or(1);
+    let size = size.min(cell.width() * 0.94 / (longest as f32 * 0.6));
+    let ink = palette::ink_on(color);
+    let galley = painter.layout_no_wrap(text, theme::number_font(size), ink);
+    let at = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), cell).min;
+    painter.galley(at, galley, ink);
+}
+
+/// A box around the picked texel with four ticks, light on dark so that it shows on any picture.
+pub fn crosshair(painter: &egui::Painter, texel: Rect) {
+    let middle = texel.center();
+    let half = vec2(texel.width().max(11.0), texel.height().max(11.0)) / 2.0;
+    let frame = Rect::from_center_size(middle, half * 2.0).expand(1.0);
+    let (inner, outer) = (half.x + 5.0, half.x + 17.0);
+    for (width, color) in [(4.0, Color32::from_black_alpha(170)), (1.5, Color32::WHITE)] {
+        let stroke = Stroke::new(width, color);
+        painter.rect_stroke(frame, CornerRadius::ZERO, stroke, StrokeKind::Middle);
+        for direction in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
+            painter.line_segment([middle + direction * inner, middle + direction * outer], stroke);
+        }
+    }
+}
+
+/// A square a pixel, as one mesh.
+#[must_use]
+pub fn marks(placement: Placement, pixels: &[[u32; 2]], color: Color32) -> Mesh {
+    let mut mesh = Mesh::default();
+    for at in pixels.iter().step_by(pixels.len().div_ceil(MOST_MARKS).max(1)) {
+        let pixel = placement.rect_of(*at);
+        let size = pixel.size().max(vec2(LEAST_MARK, LEAST_MARK));
+        mesh.add_colored_rect(Rect::from_center_size(pixel.center(), size), color.gamma_multiply(0.8));
+    }
+    mesh
+}

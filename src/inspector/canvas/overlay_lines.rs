@@ -1,0 +1,273 @@
+//! Lines of overlays as one mesh: projected once a frame of the scene, placed once a view.
+
+use crate::anatomy::Anatomy;
+use crate::capture::Capture;
+use crate::inspector::canvas::placement::Placement;
+use crate::inspector::look::theme::Theme;
+use crate::plan::Part;
+use crate::reading::projected::Projector;
+use egui::epaint::{Mesh, Vertex, WHITE_UV};
+use egui::{Color32, Pos2, Rect, pos2, vec2};
+use glam::DVec2;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// Lines that are drawn at most.
+const MOST_LINES: usize = 24_000;
+/// A multiplicity is written where its edge is so long on the screen, points.
+const LEAST_EDGE: f32 = 44.0;
+/// Multiplicities that are written at most.
+const MOST_NUMBERS: usize = 400;
+/// What a multiplicity takes on the screen, points.
+const NUMBER_SIZE: [f32; 2] = [26.0, 18.0];
+
+/// What a line is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineKind {
+    /// A silhouette edge, with its multiplicity.
+    Silhouette(i32),
+    /// An edge of a part of a shadow volume.
+    Volume(Part),
+}
+
+/// Lines in texels.
+#[derive(Debug, Default)]
+pub struct Lines {
+    /// Both ends, and what each is of.
+    pub lines: Vec<([DVec2; 2], LineKind)>,
+    /// Lines that were too many to be drawn.
+    pub left_out: usize,
+}
+
+impl Lines {
+    /// The silhouettes of the casters of a light.
+    #[must_use]
+    pub fn silhouettes(anatomy: &Anatomy, capture: &Capture, light: usize) -> Lines {
+        let projector = Projector::new(capture);
+        let mut lines = Lines::default();
+        for silhouette in anatomy.silhouettes.iter().filter(|silhouette| silhouette.light == light) {
+            let positions = &anatomy.objects[silhouette.caster].positions;
+            for edge in &silhouette.edges {
+                let ends = [edge.edge.low, edge.edge.high].map(|end| positions[end as usize].extend(1.0));
+                lines.add(projector.segment(ends), LineKind::Silhouette(edge.multiplicity));
+            }
+        }
+        lines
+    }
+
+    /// The edges of the shadow volumes of a light, each once a part.
+    #[must_use]
+    pub fn volumes(anatomy: &Anatomy, capture: &Capture, light: usize) -> Lines {
+        let projector = Projector::new(capture);
+        let mut lines = Lines::default();
+        for volume in anatomy.volumes.iter().filter(|volume| volume.light == light) {
+            for part in &volume.parts {
+                let sides = part.triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
+                let edges: BTreeSet<[u32; 2]> = sides.map(|[from, to]| [from.min(to), from.max(to)]).collect();
+                for edge in edges {
+                    let ends = edge.map(|end| volume.vertices[end as usize]);
+                    lines.add(projector.segment(ends), LineKind::Volume(part.part));
+                }
+            }
+        }
+        lines
+    }
+
+    /// Edges of silhouettes that do not count once, on the screen.
+    fn counting(&self, placement: Placement) -> impl Iterator<Item = ([Pos2; 2], i32)> {
+        self.lines.iter().filter_map(move |(ends, kind)| match kind {
+            LineKind::Silhouette(multiplicity) if multiplicity.unsigned_abs() != 1 => {
+                Some((ends.map(|end| on_screen(placement, end)), *multiplicity))
+            }
+            LineKind::Silhouette(_) | LineKind::Volume(_) => None,
+        })
+    }
+
+    /// The multiplicities that can be read: in the middle of their edges where those are long enough, lie in
+    /// `seen`, and do not lie on one another.
+    #[must_use]
+    pub fn numbers(&self, placement: Placement, seen: Rect) -> Vec<(Pos2, i32)> {
+        let mut numbers: Vec<(Pos2, i32)> = Vec::new();
+        let mut taken: Vec<Rect> = Vec::new();
+        for ([from, to], multiplicity) in self.counting(placement) {
+            let at = from + (to - from) / 2.0;
+            let room = Rect::from_center_size(at, NUMBER_SIZE.into());
+            let is_legible = (to - from).length() >= LEAST_EDGE && seen.contains_rect(room);
+            if is_legible && !taken.iter().any(|other| other.intersects(room)) {
+                taken.push(room);
+                numbers.push((at, multiplicity));
+            }
+            if numbers.len() == MOST_NUMBERS {
+                break;
+            }
+        }
+        numbers
+    }
+
+    /// The multiplicity of the nearest edge that does not count once, where one is so near to `at`, points.
+    #[must_use]
+    pub fn number_near(&self, placement: Placement, at: Pos2, reach: f32) -> Option<i32> {
+        let near = self.counting(placement).map(|(ends, multiplicity)| (distance(ends, at), multiplicity));
+        let nearest = near.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+        (nearest.0 <= reach).then_some(nearest.1)
+    }
+
+    fn add(&mut self, ends: Option<[DVec2; 2]>, kind: LineKind) {
+        let Some(ends) = ends else { return };
+        if self.lines.len() < MOST_LINES {
+            self.lines.push((ends, kind));
+        } else {
+            self.left_out += 1;
+        }
+    }
+
+    /// The lines on the screen, with soft edges.
+    #[must_use]
+    pub fn mesh(&self, placement: Placement, theme: &Theme, pixels_per_point: f32) -> Arc<Mesh> {
+        let mut mesh = Mesh::default();
+        for (ends, kind) in &self.lines {
+            let (color, width) = style(*kind, theme);
+            add_line(&mut mesh, ends.map(|end| on_screen(placement, end)), color, width, 1.0 / pixels_per_point);
+        }
+        Arc::new(mesh)
+    }
+}
+
+fn on_screen(placement: Placement, at: DVec2) -> Pos2 {
+    placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale
+}
+
+/// From a point to a segment.
+fn distance([from, to]: [Pos2; 2], at: Pos2) -> f32 {
+    let along = to - from;
+    let share = ((at - from).dot(along) / along.length_sq().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+    (from + along * share).distance(at)
+}
+
+/// A multiplicity with its sign: `+2`.
+#[must_use]
+pub fn multiplicity(value: i32) -> String {
+    format!("{}{}", if value < 0 { "−" } else { "+" }, value.unsigned_abs())
+}
+
+/// Colour and width in points.
+fn style(kind: LineKind, theme: &Theme) -> (Color32, f32) {
+    match kind {
+        LineKind::Silhouette(multiplicity) => (theme.lit, 0.6 + 0.6 * multiplicity.unsigned_abs().min(3) as f32),
+        LineKind::Volume(part) => (theme.part(part).unwrap_or(theme.dim).gamma_multiply(0.32), 0.6),
+    }
+}
+
+/// A strip of four rails: outside see-through, inside full.
+fn add_line(mesh: &mut Mesh, [from, to]: [Pos2; 2], color: Color32, width: f32, soft: f32) {
+    let along = (to - from).normalized();
+    let across = vec2(-along.y, along.x);
+    let first = mesh.vertices.len() as u32;
+    let rails = [
+        (-width / 2.0 - soft, Color32::TRANSPARENT),
+        (-width / 2.0, color),
+        (width / 2.0, color),
+        (width / 2.0 + soft, Color32::TRANSPARENT),
+    ];
+    for end in [from, to] {
+        mesh.vertices.extend(rails.map(|(aside, color)| Vertex { pos: end + across * aside, uv: WHITE_UV, color }));
+    }
+    for rail in first..first + 3 {
+        mesh.indices.extend([rail, rail + 1, rail + 4, rail + 1, rail + 5, rail + 4]);
+    }
+}
+
+/// A mesh that is placed again only where something it depends on has changed.
+#[derive(Debug, Default)]
+pub struct PlacedLines {
+    key: Option<(Placement, bool, u32)>,
+    mesh: Arc<Mesh>,
+    numbers_key: Option<(Placement, Rect)>,
+    numbers: Arc<Vec<(Pos2, i32)>>,
+}
+
+impl PlacedLines {
+    /// The mesh of `lines`.
+    pub fn of(&mut self, lines: &Lines, placement: Placement, theme: &Theme, is_dark: bool, pixels: f32) -> Arc<Mesh> {
+        let key = Some((placement, is_dark, pixels.to_bits()));
+        if self.key != key {
+            self.key = key;
+            self.mesh = lines.mesh(placement, theme, pixels);
+        }
+        self.mesh.clone()
+    }
+
+    /// The multiplicities of `lines` that can be read in `seen`.
+    pub fn numbers(&mut self, lines: &Lines, placement: Placement, seen: Rect) -> Arc<Vec<(Pos2, i32)>> {
+        let key = Some((placement, seen));
+        if self.numbers_key != key {
+            self.numbers_key = key;
+            self.numbers = Arc::new(lines.numbers(placement, seen));
+        }
+        self.numbers.clone()
+    }
+}
+
+/// The middle of a texel on the screen.
+#[must_use]
+pub fn middle(placement: Placement, at: [u32; 2]) -> Pos2 {
+    let Rect { min, max } = placement.rect_of(at);
+    pos2((min.x + max.x) / 2.0, (min.y + max.y) / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SEEN: Rect = Rect { min: Pos2::ZERO, max: Pos2::new(400.0, 300.0) };
+
+    fn lines(edges: &[([[f64; 2]; 2], i32)]) -> Lines {
+        let lines = edges.iter().map(|(ends, times)| (ends.map(DVec2::from_array), LineKind::Silhouette(*times)));
+        Lines { lines: lines.collect(), left_out: 0 }
+    }
+
+    fn placed(scale: f32) -> Placement {
+        Placement { origin: Pos2::ZERO, scale, size: [400, 300] }
+    }
+
+    #[test]
+    fn what_counts_twice_is_numbered_where_its_edge_is_long_and_in_sight() {
+        let long = [[10.0, 100.0], [90.0, 100.0]];
+        let lines = lines(&[
+            (long, 1),
+            ([[10.0, 40.0], [90.0, 40.0]], -2),
+            ([[200.0, 40.0], [230.0, 40.0]], 2),
+            ([[390.0, 0.0], [430.0, 200.0]], 2),
+        ]);
+        assert_eq!(lines.numbers(placed(1.0), SEEN), [(pos2(50.0, 40.0), -2)]);
+        // Twice as large the short one is long enough.
+        assert_eq!(lines.numbers(placed(2.0), SEEN).len(), 1, "and out of sight");
+        let wide = Rect::from_min_max(Pos2::ZERO, pos2(900.0, 600.0));
+        let found: Vec<i32> = lines.numbers(placed(2.0), wide).into_iter().map(|(_, times)| times).collect();
+        assert_eq!(found, [-2, 2, 2]);
+    }
+
+    #[test]
+    fn numbers_do_not_lie_on_one_another() {
+        let many: Vec<_> =
+            (0..30).map(|row| ([[0.0, f64::from(row) + 20.0], [100.0, f64::from(row) + 20.0]], 2)).collect();
+        let numbers = lines(&many).numbers(placed(1.0), SEEN);
+        assert!((1..4).contains(&numbers.len()), "{numbers:?}");
+        assert!(numbers.windows(2).all(|pair| pair[1].0.y - pair[0].0.y >= NUMBER_SIZE[1]));
+    }
+
+    #[test]
+    fn under_the_pointer_the_nearest_edge_that_counts_twice_is_told_however_short() {
+        let lines = lines(&[
+            ([[10.0, 10.0], [14.0, 10.0]], 3),
+            ([[10.0, 16.0], [300.0, 16.0]], -2),
+            ([[0.0, 0.0], [9.0, 9.0]], 1),
+        ]);
+        let near = |x, y| lines.number_near(placed(1.0), pos2(x, y), 5.0);
+        assert_eq!(near(12.0, 12.0), Some(3));
+        assert_eq!(near(200.0, 20.0), Some(-2));
+        assert_eq!(near(200.0, 22.0), None, "too far away");
+        assert_eq!(near(2.0, 2.0), None, "it counts once");
+        assert_eq!([multiplicity(3), multiplicity(-2)], ["+3", "−2"]);
+    }
+}

@@ -1,0 +1,223 @@
+//! What the texels of a picture mean: their colour, and their number where they are large.
+
+use crate::capture::Image;
+use crate::inspector::look::findings;
+use crate::inspector::look::palette;
+use crate::reading::change::{self, ChangeKind};
+use crate::reading::counts;
+use crate::reading::depth::DepthScale;
+use crate::reading::shown::{PictureKind, Shown};
+use egui::Color32;
+use egui::ecolor::gamma_u8_from_linear_f32;
+use std::sync::LazyLock;
+
+/// How much of what lies under an overlay of colours is hidden.
+pub const OVER: f32 = 0.62;
+
+/// What the texels of a picture mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Coloring {
+    /// sRGB bytes.
+    Srgb,
+    /// Bytes of linear shares of light.
+    Linear,
+    /// Stencil counts.
+    Stencil,
+    /// Signed counts in floats.
+    Count,
+    /// Labels of a light.
+    Labels,
+    /// Findings of an error picture.
+    Findings,
+    /// Stored depths.
+    Depth(DepthScale),
+    /// One bit of a stencil count.
+    Bit(u8),
+    /// How much more is counted, as a signed byte.
+    CountChange,
+    /// How much farther surfaces are, in floats.
+    DepthChange,
+    /// How fragments fared in the tests.
+    Outcomes,
+    /// Where objects receive shadows.
+    Receivers,
+    /// How many fragments there were.
+    Overdraw,
+    /// sRGB bytes where they changed; alpha 0 where they did not.
+    ColorChange,
+}
+
+impl Coloring {
+    /// Of a shown picture, depths over `range`.
+    #[must_use]
+    pub fn of_shown(shown: &Shown, range: [f64; 2]) -> Coloring {
+        match shown.kind {
+            PictureKind::Color => Coloring::Srgb,
+            PictureKind::Stencil => Coloring::Stencil,
+            PictureKind::Count => Coloring::Count,
+            PictureKind::Mask | PictureKind::Truth => Coloring::Labels,
+            PictureKind::Error => Coloring::Findings,
+            PictureKind::Overdraw => Coloring::Overdraw,
+            PictureKind::Map if shown.is_let_through() => Coloring::Linear,
+            PictureKind::Depth | PictureKind::Map => Coloring::Depth(DepthScale { measure: shown.measure, range }),
+        }
+    }
+
+    /// Of a picture of what changed.
+    #[must_use]
+    pub fn of_change(kind: ChangeKind) -> Coloring {
+        match kind {
+            ChangeKind::Count => Coloring::CountChange,
+            ChangeKind::Depth => Coloring::DepthChange,
+            ChangeKind::Color => Coloring::ColorChange,
+        }
+    }
+
+    /// The colour that a texel is drawn in; `None` outside the picture.
+    #[must_use]
+    pub fn color_at(self, image: &Image, at: [u32; 2]) -> Option<Color32> {
+        match self {
+            Coloring::Srgb => image.rgba_at(at).map(|[r, g, b, _]| Color32::from_rgb(r, g, b)),
+            Coloring::Linear => image.rgba_at(at).map(linear),
+            Coloring::Stencil => image.byte_at(at).map(palette::stencil),
+            Coloring::Count => image.count_at(at).map(palette::count),
+            Coloring::Labels => image.byte_at(at).map(palette::label),
+            Coloring::Findings => image.byte_at(at).map(findings::color),
+            Coloring::Depth(scale) => image.depth_at(at).map(|depth| self::depth(scale, depth)),
+            Coloring::Bit(bit) => image.byte_at(at).map(|value| bit_color(value, bit)),
+            Coloring::Outcomes => image.byte_at(at).map(|value| palette::outcome(value).gamma_multiply(OVER)),
+            Coloring::Receivers => image.byte_at(at).map(palette::receiver),
+            Coloring::Overdraw => image.byte_at(at).map(palette::overdraw),
+            Coloring::CountChange => image.byte_at(at).map(|by| count_color(by as i8)),
+            Coloring::DepthChange => image.count_at(at).map(depth_color),
+            Coloring::ColorChange => image.rgba_at(at).map(changed),
+        }
+    }
+
+    /// The texel's number for a cell that holds `columns` characters a line; `None` outside the
+    /// picture. Colours have a line a channel.
+    #[must_use]
+    pub fn number_at(self, image: &Image, at: [u32; 2], columns: usize) -> Option<String> {
+        match self {
+            Coloring::Srgb | Coloring::Linear => image.rgba_at(at).map(|[r, g, b, _]| format!("{r}\n{g}\n{b}")),
+            Coloring::Stencil | Coloring::Labels | Coloring::Findings => {
+                image.byte_at(at).map(|value| value.to_string())
+            }
+            Coloring::Count => image.count_at(at).map(counts::text),
+            Coloring::Depth(scale) => image.depth_at(at).map(|depth| match scale.measure.value(depth) {
+                Some(value) => fitted(value, columns),
+                None => "∞".to_owned(),
+            }),
+            Coloring::Bit(bit) => image.byte_at(at).map(|value| (value >> bit & 1).to_string()),
+            Coloring::Overdraw => image.byte_at(at).map(|value| value.to_string()),
+            Coloring::Outcomes | Coloring::Receivers => None,
+            Coloring::CountChange => image.byte_at(at).and_then(|by| change::signed(by as i8)),
+            Coloring::DepthChange => image.count_at(at).filter(|by| *by != 0.0).map(|by| {
+                let sign = if by < 0.0 { '−' } else { '+' };
+                let size = f64::from(by.abs());
+                if size.is_finite() {
+                    format!("{sign}{}", fitted(size, columns.saturating_sub(1)))
+                } else {
+                    format!("{sign}∞")
+                }
+            }),
+            Coloring::ColorChange => {
+                let texel = image.rgba_at(at).filter(|texel| texel[3] != 0);
+                texel.map(|[r, g, b, _]| format!("{r}\n{g}\n{b}"))
+            }
+        }
+    }
+
+    /// Lines that a texel's number takes.
+    #[must_use]
+    pub fn lines(self) -> usize {
+        if matches!(self, Coloring::Srgb | Coloring::Linear | Coloring::ColorChange) { 3 } else { 1 }
+    }
+}
+
+/// The ink of one bit of a value.
+#[must_use]
+pub fn bit_color(value: u8, bit: u8) -> Color32 {
+    palette::BITS[usize::from(value >> bit & 1)]
+}
+
+/// A colour where it changed.
+#[must_use]
+pub fn changed([r, g, b, a]: [u8; 4]) -> Color32 {
+    if a == 0 { Color32::TRANSPARENT } else { Color32::from_rgb(r, g, b) }
+}
+
+/// sRGB bytes of linear ones.
+static ENCODED: LazyLock<[u8; 256]> =
+    LazyLock::new(|| std::array::from_fn(|linear| gamma_u8_from_linear_f32(linear as f32 / 255.0)));
+
+/// How a share of light, linear bytes, is shown on the screen.
+#[must_use]
+pub fn linear([r, g, b, _]: [u8; 4]) -> Color32 {
+    let encoded = |share: u8| ENCODED[usize::from(share)];
+    Color32::from_rgb(encoded(r), encoded(g), encoded(b))
+}
+
+/// The colour of a count that went up or down: stronger the further it went; see-through where it did not.
+#[must_use]
+pub fn count_color(by: i8) -> Color32 {
+    let strength = match by.unsigned_abs() {
+        0 => return Color32::TRANSPARENT,
+        1 => 0.0,
+        steps => (f32::from(steps - 1) * 0.22).min(0.75),
+    };
+    let base = if by > 0 { palette::UP } else { palette::DOWN };
+    base.lerp_to_gamma(Color32::WHITE, strength)
+}
+
+/// The colour of a surface that came nearer or went farther away.
+#[must_use]
+pub fn depth_color(by: f32) -> Color32 {
+    match by {
+        0.0 => Color32::TRANSPARENT,
+        f32::NEG_INFINITY => palette::APPEARED,
+        f32::INFINITY => palette::WENT,
+        by if by < 0.0 => palette::UP,
+        _ => palette::DOWN,
+    }
+}
+
+/// The grey of a stored depth: near is light.
+#[must_use]
+pub fn depth(scale: DepthScale, depth: f32) -> Color32 {
+    scale.place(depth).map_or(palette::NO_SURFACE, palette::near_far)
+}
+
+/// As many digits of `value` as fit into `columns` characters.
+fn fitted(value: f64, columns: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let whole = format!("{value:.0}").len();
+    let decimals = columns.saturating_sub(whole + 1).min(6);
+    let text = format!("{value:.decimals$}");
+    // Every digit shown would be a zero: a power of ten says more.
+    if text.chars().all(|c| matches!(c, '0' | '.' | '-')) {
+        return format!("{value:.0e}");
+    }
+    text.strip_prefix('0').filter(|rest| rest.starts_with('.')).map_or(text.clone(), str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_the_light_is_brighter_than_half_of_the_byte() {
+        assert_eq!(linear([0, 255, 128, 0]), Color32::from_rgb(0, 255, 188));
+    }
+
+    #[test]
+    fn numbers_fit_their_cell() {
+        assert_eq!(fitted(13.4823, 4), "13.5");
+        assert_eq!(fitted(0.0, 4), "0");
+        assert_eq!(fitted(0.3712, 4), ".37");
+        assert_eq!(fitted(1234.5, 4), "1234");
+        assert_eq!(fitted(0.000_001, 4), "1e-6");
+    }
+}

@@ -1,0 +1,9 @@
+//! How things look: colours, words of colours, and pictures as textures.
+
+pub mod coloring;
+pub mod findings;
+pub mod palette;
+pub mod texture;
+pub mod theme;
+pub mod triangles;
+pub mod widgets;

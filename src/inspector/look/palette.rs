@@ -1,0 +1,258 @@
+//! The colours of integers and labels in pictures: exact, so that a number can be read off.
+//!
+//! Hues are Okabe and Ito's (2008), safe for the common kinds of colour blindness; the number
+//! itself is always shown too, in the legend and on large texels.
+
+use crate::picture::colors::{self, Rgb};
+use crate::reading::counts;
+use egui::Color32;
+
+/// Labels of `techniques.md` section 2, by value.
+pub const LABELS: [Label; 4] = [
+    Label { name: "lit", meaning: "the light reaches the surface", color: opaque(colors::LABELS[0]) },
+    Label { name: "shadow", meaning: "something lies between", color: opaque(colors::LABELS[1]) },
+    Label { name: "background", meaning: "no surface is here", color: opaque(colors::LABELS[2]) },
+    Label { name: "faces away", meaning: "the light is on the surface's other side", color: opaque(colors::LABELS[3]) },
+];
+
+/// What a byte of a shadow mask means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Label {
+    /// In words.
+    pub name: &'static str,
+    /// In more words.
+    pub meaning: &'static str,
+    /// In pictures and legends.
+    pub color: Color32,
+}
+
+/// The same colour for the window.
+pub(super) const fn opaque([red, green, blue]: Rgb) -> Color32 {
+    Color32::from_rgb(red, green, blue)
+}
+
+/// The colour of a stencil value: 0 dark, 1 to 7 distinct, then the same cycle darker by a step
+/// each turn; 255 (−1) downwards in reds, lighter further away.
+#[must_use]
+pub fn stencil(value: u8) -> Color32 {
+    opaque(colors::stencil(value))
+}
+
+/// The colour of a label; a value that is none is drawn as its stencil colour would be.
+#[must_use]
+pub fn label(value: u8) -> Color32 {
+    opaque(colors::label(value))
+}
+
+/// Grey for a place between near (0) and far (1): near is light.
+#[must_use]
+pub fn near_far(place: f32) -> Color32 {
+    opaque(colors::near_far(place))
+}
+
+/// A count that is not zero, but a multiple of 256: eight bits would take it for zero.
+pub const READS_ZERO: Color32 = Color32::from_rgb(0xff, 0x2b, 0xf2);
+
+/// Nothing was drawn here: the depth buffer's clear value.
+pub const NO_SURFACE: Color32 = opaque(colors::NOTHING);
+
+/// A count that went up, or a surface that came nearer.
+pub const UP: Color32 = Color32::from_rgb(0xe0, 0x70, 0x3a);
+
+/// A count that went down, or a surface that went farther away.
+pub const DOWN: Color32 = Color32::from_rgb(0x56, 0xb4, 0xe9);
+
+/// A surface where there was none.
+pub const APPEARED: Color32 = Color32::from_rgb(0x2f, 0xb5, 0x8a);
+
+/// No surface where there was one.
+pub const WENT: Color32 = Color32::from_rgb(0xcc, 0x79, 0xa7);
+
+/// The two inks of a bit: not set, set.
+pub const BITS: [Color32; 2] = [Color32::from_rgb(0x1b, 0x2a, 0x3d), Color32::from_rgb(0xf0, 0xe4, 0x42)];
+
+/// What becomes of a pixel's fragments, as bits of [`crate::capture::TestCounts`]; see-through where there are none.
+#[must_use]
+pub fn outcome(outcomes: u8) -> Color32 {
+    use crate::capture::TestCounts as Counts;
+    match outcomes {
+        0 => Color32::TRANSPARENT,
+        Counts::PASSED => Color32::from_rgb(0x2f, 0xb5, 0x8a),
+        Counts::DEPTH_FAILED => Color32::from_rgb(0xe0, 0x70, 0x3a),
+        Counts::STENCIL_FAILED => Color32::from_rgb(0x96, 0x78, 0xdc),
+        Counts::UNKNOWN => Color32::from_rgb(0x7b, 0x82, 0x90),
+        // Apart from the caps' and the light's yellow for every eye: see the test below.
+        _ => Color32::from_rgb(0x8f, 0xf2, 0xff),
+    }
+}
+
+/// The ink of a receiver: 1 on it, 2 at its outline; see-through elsewhere.
+#[must_use]
+pub fn receiver(ink: u8) -> Color32 {
+    let color = Color32::from_rgb(0x56, 0xb4, 0xe9);
+    match ink {
+        0 => Color32::TRANSPARENT,
+        1 => color.gamma_multiply(0.22),
+        _ => color,
+    }
+}
+
+/// How many fragments reached a pixel: dark for none, then lighter, twice as many a step.
+#[must_use]
+pub fn overdraw(fragments: u8) -> Color32 {
+    const RAMP: [(u8, u8, u8); 6] = [
+        (0x14, 0x17, 0x1d),
+        (0x1f, 0x3a, 0x5f),
+        (0x2a, 0x72, 0x9c),
+        (0x1f, 0xae, 0x84),
+        (0xf0, 0xe4, 0x42),
+        (0xff, 0xff, 0xff),
+    ];
+    let place = (f32::from(fragments) + 1.0).log2() / 8.0 * (RAMP.len() - 1) as f32;
+    let index = (place as usize).min(RAMP.len() - 2);
+    let [from, to] = [RAMP[index], RAMP[index + 1]].map(|(r, g, b)| Color32::from_rgb(r, g, b));
+    from.lerp_to_gamma(to, place - index as f32)
+}
+
+/// Black or white, whichever is read more easily on `background`.
+#[must_use]
+pub fn ink_on(background: Color32) -> Color32 {
+    let [red, green, blue, _] = background.to_array().map(f32::from);
+    let light = 0.299 * red + 0.587 * green + 0.114 * blue;
+    if light > 128.0 { Color32::from_gray(16) } else { Color32::from_gray(225) }
+}
+
+/// The colour of a count: that of the stencil's palette, whose cycle goes on in its last turn beyond
+/// 127. What eight bits would take for zero has a colour that nothing else has.
+#[must_use]
+pub fn count(count: f32) -> Color32 {
+    let whole = count.round() as i64;
+    if counts::reads_zero_in_eight_bits(count) {
+        return READS_ZERO;
+    }
+    let value = match whole {
+        ..-128 => 128,
+        // −1 is 255.
+        -128..0 => (256 + whole) as u8,
+        0..128 => whole as u8,
+        // 121 is the first of the last turn of seven.
+        _ => (121 + (whole - 121) % 7) as u8,
+    };
+    stencil(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capture::TestCounts;
+    use crate::inspector::look::theme;
+    use crate::numbers::signed;
+    use std::collections::BTreeSet;
+
+    /// Linear sRGB as the common kinds of colour blindness see it (Machado, Oliveira and Fernandes 2009, severity
+    /// 1): none, protanopia, deuteranopia, tritanopia.
+    const EYES: [[[f64; 3]; 3]; 4] = [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+        [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+        [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+    ];
+
+    fn times(matrix: [[f64; 3]; 3], vector: [f64; 3]) -> [f64; 3] {
+        matrix.map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum())
+    }
+
+    /// How far apart two colours are for these eyes, in Oklab (Ottosson 2020); black and white are 1 apart.
+    fn apart(eyes: [[f64; 3]; 3], a: Color32, b: Color32) -> f64 {
+        let seen = |color: Color32| {
+            let [red, green, blue, _] = color.to_array().map(|byte| {
+                let share = f64::from(byte) / 255.0;
+                if share <= 0.04045 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
+            });
+            let cones = times(
+                [
+                    [0.412_221_47, 0.536_332_54, 0.051_445_99],
+                    [0.211_903_5, 0.680_699_55, 0.107_396_96],
+                    [0.088_302_46, 0.281_718_84, 0.629_978_7],
+                ],
+                times(eyes, [red, green, blue]).map(|share| share.clamp(0.0, 1.0)),
+            );
+            times(
+                [
+                    [0.210_454_26, 0.793_617_79, -0.004_072_05],
+                    [1.977_998_5, -2.428_592_21, 0.450_593_71],
+                    [0.025_904_04, 0.782_771_77, -0.808_675_77],
+                ],
+                cones.map(f64::cbrt),
+            )
+        };
+        seen(a).iter().zip(seen(b)).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn pixels_with_both_outcomes_are_told_from_all_others_and_from_what_volumes_are_made_of_by_every_eye() {
+        let both = outcome(TestCounts::PASSED | TestCounts::DEPTH_FAILED);
+        let outcomes = [TestCounts::PASSED, TestCounts::DEPTH_FAILED, TestCounts::STENCIL_FAILED, TestCounts::UNKNOWN]
+            .map(outcome);
+        let of_theme = |theme: &theme::Theme| [theme.side, theme.light_cap, theme.dark_cap, theme.lit];
+        let volumes = [&theme::DARK, &theme::LIGHT].map(of_theme);
+        for other in outcomes.into_iter().chain(volumes.into_iter().flatten()).chain([receiver(2)]) {
+            for (kind, eyes) in EYES.into_iter().enumerate() {
+                // A step that one sees at a glance, five times what one can just tell.
+                let found = apart(eyes, both, other);
+                assert!(found >= 0.1, "{other:?}, eyes {kind}: {found:.3}");
+            }
+        }
+        let black_and_white = apart(EYES[0], Color32::BLACK, Color32::WHITE);
+        assert!((black_and_white - 1.0).abs() < 1e-3, "{black_and_white}");
+    }
+
+    #[test]
+    fn small_counts_and_minus_one_have_the_colours_of_the_design() {
+        assert_eq!(stencil(0), Color32::from_rgb(0x14, 0x17, 0x1d));
+        assert_eq!(stencil(1), Color32::from_rgb(0x56, 0xb4, 0xe9));
+        assert_eq!(stencil(7), Color32::from_rgb(0x96, 0x78, 0xdc));
+        assert_eq!(stencil(255), Color32::from_rgb(0xff, 0x59, 0x64));
+    }
+
+    #[test]
+    fn every_turn_of_the_cycle_is_darker_than_the_one_before() {
+        let light = |value: u8| stencil(value).to_array()[..3].iter().map(|c| u32::from(*c)).sum::<u32>();
+        assert!((1..=120).all(|value| light(value + 7) < light(value)));
+    }
+
+    #[test]
+    fn neighbouring_values_differ() {
+        let distinct: BTreeSet<[u8; 4]> = (0..=20).map(|value| stencil(value).to_array()).collect();
+        assert_eq!(distinct.len(), 21);
+        assert!((0..=126).all(|value| stencil(value) != stencil(value + 1)));
+        assert_ne!(stencil(255), stencil(254));
+    }
+
+    #[test]
+    fn values_from_128_on_read_as_negative() {
+        assert_eq!(signed(127), "127");
+        assert_eq!(signed(255), "−1 (255)");
+        assert_eq!(signed(128), "−128 (128)");
+    }
+
+    #[test]
+    fn small_counts_are_coloured_as_in_the_stencil() {
+        for (number, value) in [(0.0, 0), (1.0, 1), (127.0, 127), (-1.0, 255), (-128.0, 128), (-999.0, 128)] {
+            assert_eq!(count(number), stencil(value), "{number}");
+        }
+    }
+
+    #[test]
+    fn large_counts_go_on_in_the_cycle() {
+        assert_eq!(count(128.0), stencil(121));
+        assert!((1..1000_u16).all(|number| count(f32::from(number)) != count(f32::from(number) + 1.0)));
+        assert!((128..1000_u16).all(|number| count(f32::from(number)) != stencil(0)));
+    }
+
+    #[test]
+    fn what_eight_bits_take_for_zero_has_a_colour_of_its_own() {
+        assert!([256.0, 512.0, -256.0, 25_600.0].into_iter().all(|number| count(number) == READS_ZERO));
+        assert!((0..=255).all(|value| stencil(value) != READS_ZERO));
+    }
+}

@@ -1,0 +1,89 @@
+//! The frame that is shown: its capture with all that is known of it by now. The capture as it was captured stays as it
+//! is; its truth, its draws and its time are answers, and are put beside it here and nowhere else.
+
+use super::Model;
+use crate::ask::{DrawsOf, Kind, TestsOf, TimingOf, TruthOf};
+use crate::capture::{Capture, FrameTruth};
+use crate::plan::FramePlan;
+use crate::reading::shown::has_truth;
+use std::sync::Arc;
+
+/// What is looked at.
+#[derive(Debug, Default)]
+pub struct ShownFrame {
+    /// The capture with what is known of it.
+    pub capture: Option<Arc<Capture>>,
+    /// Memory of its pictures, bytes.
+    pub bytes: u64,
+    /// What was run; `None` for a capture folder.
+    pub plan: Option<Arc<FramePlan>>,
+    /// How many frames were shown: what is made for one is of no use for the next.
+    pub number: u64,
+}
+
+impl ShownFrame {
+    fn set(&mut self, capture: Arc<Capture>) {
+        self.bytes = capture.bytes();
+        self.capture = Some(capture);
+    }
+}
+
+impl Model {
+    /// Shows another capture. The step stays where it means the same, and so does the pick
+    /// where it still lies inside.
+    pub fn set_capture(&mut self, capture: Arc<Capture>) {
+        self.activity.is_waiting = false;
+        let before = self.frame.capture.take();
+        self.select_in(before.as_deref(), &capture);
+        self.answers.new_frame();
+        self.keep_truth(before.as_deref(), &capture);
+        self.view.follow(&capture, self.selection.step);
+        self.view.tests = None;
+        self.frame.number += 1;
+        self.frame.set(capture);
+        self.textures.forget_unused();
+    }
+
+    /// Shows the same frame, of which more is known.
+    pub fn update_capture(&mut self, capture: Arc<Capture>) {
+        if has_truth(&capture) {
+            self.view.older_truth = None;
+        }
+        self.frame.set(capture);
+        self.textures.forget_unused();
+    }
+
+    /// Where truth is looked at, that of the frame before is shown until that of this one is known.
+    fn keep_truth(&mut self, before: Option<&Capture>, now: &Capture) {
+        let is_alike = |before: &&Capture| before.scene == now.scene && before.size == now.size;
+        match before.filter(is_alike).filter(|_| self.view.kind.needs_truth()) {
+            None => self.view.older_truth = None,
+            Some(before) if has_truth(before) => {
+                let lights = before.lights.iter().map(|light| light.truth.clone()).collect();
+                self.view.older_truth = Some(Arc::new(FrameTruth { size: now.size, lights, counts: Vec::new() }));
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// Takes an answer to a question of this kind into the frame, where it belongs there.
+    pub fn take_in(&mut self, kind: Kind) {
+        let Some(capture) = &self.frame.capture else { return };
+        let known = match kind {
+            Kind::TruthOf => self.answers.current::<TruthOf>().map(|(_, truth)| capture.with_truth(truth)),
+            Kind::DrawsOf => self.answers.current::<DrawsOf>().map(|(_, draws)| capture.with_draws(draws)),
+            Kind::TimingOf => {
+                let timing = self.answers.current::<TimingOf>();
+                timing.map(|(_, timing)| Capture { timing: **timing, ..Capture::clone(capture) })
+            }
+            Kind::TestsOf => {
+                self.view.tests = self.answers.current::<TestsOf>().map(|(_, found)| Arc::clone(&found.tests));
+                None
+            }
+            _ => None,
+        };
+        if let Some(capture) = known {
+            self.update_capture(Arc::new(capture));
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! The history of the picked pixel, while it is known, on its way, or of what was picked just before.
+//!
+//! An answer takes a few milliseconds. For as long as [`PATIENCE`] what was known of the pixel
+//! before stays as it is, so that a dragged pick does not flicker; after that it is greyed.
+
+use super::Model;
+use crate::ask::{HistoryOf, Reply};
+use crate::history::PixelHistory;
+use std::sync::Arc;
+
+/// How long an answer may take before what is shown is greyed, seconds.
+pub const PATIENCE: f64 = 0.12;
+
+impl Model {
+    /// Wants the history of the picked pixel; nothing where no pixel is picked, or the frame is a folder's.
+    #[must_use]
+    pub fn want_history(&self) -> Reply<PixelHistory> {
+        match self.selection.pick.filter(|_| self.scene.is_some() && self.frame.capture.is_some()) {
+            Some(at) => self.answers.want(HistoryOf { at }),
+            None => Reply::default(),
+        }
+    }
+
+    /// Wants the history of the picked pixel; seconds until it is late, while it is waited for and not late yet.
+    #[must_use]
+    pub fn want_history_until(&self) -> Option<f64> {
+        let reply = self.want_history();
+        let is_waited_for = self.selection.pick.is_some() && reply.ready.is_none() && reply.failed.is_none();
+        (is_waited_for && self.scene.is_some() && !is_late(&reply)).then(|| (PATIENCE - reply.waits_for).max(0.001))
+    }
+
+    /// The history of the picked pixel, or of the one that was picked just before, of the same frame.
+    #[must_use]
+    pub fn history_of_frame(&self) -> Option<Arc<PixelHistory>> {
+        let reply = self.want_history();
+        let is_late = is_late(&reply);
+        let before = || self.answers.current::<HistoryOf>().map(|(_, history)| Arc::clone(history));
+        reply.ready.or_else(|| before().filter(|_| !is_late))
+    }
+
+    /// Index of the event of the selected triangle.
+    #[must_use]
+    pub fn selected_in(&self, history: &PixelHistory) -> Option<usize> {
+        history.events.iter().position(|event| self.selection.has_event(event))
+    }
+}
+
+/// What is shown is of another pixel or frame, and has been for a while.
+#[must_use]
+pub fn is_late(reply: &Reply<PixelHistory>) -> bool {
+    reply.ready.is_none() && reply.waits_for >= PATIENCE
+}

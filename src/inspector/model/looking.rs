@@ -1,0 +1,287 @@
+//! How the picture is looked at: before or after a step, what the step changed, beside another picture, one bit of it,
+//! and what is drawn over it.
+
+use super::Model;
+use super::selection::same_step;
+use crate::ask::{CaptureOf, Reply, RunRequest, TestsOf};
+use crate::capture::{Capture, CapturedLight, Image};
+use crate::inspector::action::Overlay;
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::texture::PictureCache;
+use crate::numbers::percent;
+use crate::reading::counts;
+use crate::reading::format;
+use crate::reading::moment::Moment;
+use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::tests::TestOutcomes;
+use crate::technique::{Choice, Technique};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// What the divider moves by a key press, in shares of the panel.
+pub const NUDGE: f32 = 0.02;
+
+/// Which side of the selected step or draw is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Phase {
+    /// As it was before.
+    Before,
+    /// As it is now.
+    #[default]
+    After,
+    /// What changed.
+    Diff,
+}
+
+impl Phase {
+    /// In the order of their buttons.
+    pub const ALL: [Phase; 3] = [Phase::Before, Phase::After, Phase::Diff];
+    /// Labels and explanations of the buttons.
+    pub const LABELS: [(&'static str, &'static str); 3] = [
+        ("Before", "As it was before the selected step or draw (B goes there and back)"),
+        ("After", "As the selected step or draw left it"),
+        ("Diff", "What the selected step or draw changed (D)"),
+    ];
+}
+
+/// Why there is nothing to show of the time before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoBefore {
+    /// It is the first step.
+    First,
+    /// The state after the draw before is being captured, or can't be had.
+    NotKnown,
+}
+
+impl NoBefore {
+    /// In a sentence, with what to do.
+    #[must_use]
+    pub fn sentence(self) -> &'static str {
+        match self {
+            NoBefore::First => "Nothing comes before the first step: its buffers start cleared. Select a later one.",
+            NoBefore::NotKnown => {
+                "The state before this draw is not known yet; a folder has it where it was captured with --every draw."
+            }
+        }
+    }
+}
+
+/// A comparison.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compare {
+    /// What is shown beside the picture.
+    pub with: With,
+    /// Where the divider is: 0 at the left, 1 at the right.
+    pub at: f32,
+    /// The current picture is on the left, the compared one on the right.
+    pub flipped: bool,
+}
+
+/// What is compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum With {
+    /// Another step of the frame, by index.
+    Step(usize),
+    /// The same step of another technique.
+    Technique(Technique),
+}
+
+impl Compare {
+    /// Beside step `step`: the one before it, or the one after the first.
+    #[must_use]
+    pub fn new(step: usize) -> Compare {
+        Compare { with: With::Step(step.checked_sub(1).unwrap_or(1)), at: 0.5, flipped: false }
+    }
+}
+
+impl With {
+    /// In a few words.
+    #[must_use]
+    pub fn words(self, capture: &Capture) -> String {
+        match self {
+            With::Step(step) => step_words(capture, step),
+            With::Technique(technique) => technique.name().to_owned(),
+        }
+    }
+}
+
+/// `step 2 · volumes`.
+#[must_use]
+pub fn step_words(capture: &Capture, step: usize) -> String {
+    let name = capture.steps.get(step).map_or("", |step| step.name.as_str());
+    format!("step {} · {name}", step + 1)
+}
+
+/// How the picture is looked at.
+#[derive(Debug, Default)]
+pub struct Modes {
+    /// Before, after, or what changed.
+    pub phase: Phase,
+    /// The one bit of the stencil that is shown; `None`: all.
+    pub bit: Option<u8>,
+    /// What is shown beside it.
+    pub compare: Option<Compare>,
+    /// What is drawn over it.
+    pub overlays: BTreeSet<Overlay>,
+}
+
+/// Has this kind of picture a state before and after each step?
+#[must_use]
+pub fn has_phases(kind: PictureKind) -> bool {
+    matches!(kind, PictureKind::Color | PictureKind::Stencil | PictureKind::Depth)
+}
+
+/// What came before a moment.
+///
+/// # Errors
+/// There is nothing, or it is not known.
+pub fn before(capture: &Capture, at: Moment) -> Result<Moment, NoBefore> {
+    match at.draw.and_then(|draw| draw.checked_sub(1)) {
+        Some(draw) => {
+            let before = Moment { draw: Some(draw), ..at };
+            if before.is_held(capture) { Ok(before) } else { Err(NoBefore::NotKnown) }
+        }
+        None => at.step.checked_sub(1).map(Moment::from).ok_or(NoBefore::First),
+    }
+}
+
+impl Model {
+    /// The picture that is shown: of the selected moment, or of the one before it.
+    #[must_use]
+    pub fn shown(&self, capture: &Capture) -> Option<Shown> {
+        let now = self.view.shown(capture, self.moment());
+        match self.modes.phase {
+            Phase::Before => match now {
+                Some(now) if !has_phases(now.kind) => Some(now),
+                _ => self.shown_before(capture).ok(),
+            },
+            Phase::After | Phase::Diff => now,
+        }
+    }
+
+    /// The picture before the selected moment.
+    ///
+    /// # Errors
+    /// There is nothing before it, or it is not known.
+    pub fn shown_before(&self, capture: &Capture) -> Result<Shown, NoBefore> {
+        let at = self.moment();
+        let mut shown = self.view.shown(capture, before(capture, at)?).ok_or(NoBefore::First)?;
+        let of = shown.title.split(" after ").next().unwrap_or_default().to_owned();
+        shown.title = format!("{of} before {}", at.words());
+        Ok(shown)
+    }
+
+    /// Does something that is shown need the state before the selected draw, which is not known?
+    #[must_use]
+    pub fn lacks_draw_before(&self) -> bool {
+        let lacks = |capture: &Capture| before(capture, self.selected()) == Err(NoBefore::NotKnown);
+        self.modes.phase != Phase::After && self.frame.capture.as_ref().is_some_and(|capture| lacks(capture))
+    }
+
+    /// The run that captures another technique as the shown frame was.
+    fn request_of(&self, technique: Technique) -> Option<RunRequest> {
+        let scene = self.scene.as_ref().filter(|scene| scene.problem.is_none())?;
+        let remembered = scene.choices.get(&technique).cloned();
+        let choice = remembered.unwrap_or_else(|| Choice::new(technique));
+        Some(RunRequest { choice, ..scene.draft.clone() })
+    }
+
+    /// The picture that is compared with the shown one.
+    ///
+    /// # Errors
+    /// There is none, in a sentence.
+    pub fn shown_compared(&self, capture: &Capture, shown: &Shown) -> Result<Shown, String> {
+        let compare = self.modes.compare.ok_or("Nothing is compared.")?;
+        let found = match compare.with {
+            With::Step(step) if step >= capture.steps.len() => {
+                return Err(format!("This frame has no step {}: choose another.", step + 1));
+            }
+            With::Step(step) => self.view.shown(capture, step),
+            With::Technique(technique) => {
+                let request = self.request_of(technique).ok_or("A folder holds one technique only: choose a step.")?;
+                match self.answers.want(CaptureOf { request: Box::new(request) }) {
+                    Reply { ready: Some(other), .. } => {
+                        self.view.shown(&other, same_step(capture, self.selection.step, &other))
+                    }
+                    Reply { failed: Some(reason), .. } => {
+                        return Err(format!("{} can't be shown: {reason}", technique.name()));
+                    }
+                    _ => return Err(format!("Capturing {} …", technique.name())),
+                }
+            }
+        };
+        let what = format!("{} has no such picture", compare.with.words(capture));
+        let found = found.filter(|found| found.kind == shown.kind && found.images.len() == shown.images.len());
+        let found = found.ok_or_else(|| format!("{what}: choose another kind above."))?;
+        let is_like = found.images.first().map(|image| image.size()) == shown.images.first().map(|image| image.size());
+        if is_like { Ok(found) } else { Err(format!("{what} of this size.")) }
+    }
+    /// Wants to know how the fragments of the selected step or draw fared in the tests.
+    pub fn want_tests(&self) -> Reply<TestOutcomes> {
+        let Moment { step, draw } = self.selected();
+        self.answers.want(TestsOf { step, draw })
+    }
+
+    /// Wants to know that where the picture of it is wished for.
+    pub fn want_tests_shown(&self) -> Option<Reply<TestOutcomes>> {
+        (self.view.kind == PictureKind::Overdraw).then(|| self.want_tests())
+    }
+
+    /// The counts to show a pixel of: of the light whose picture is shown, or else of the step's.
+    #[must_use]
+    pub fn counts_to_show<'a>(&self, capture: &'a Capture) -> Option<(usize, &'a Arc<Image>)> {
+        let at = self.moment();
+        if self.view.shown(capture, at).is_some_and(|shown| shown.kind == PictureKind::Count) {
+            let light = self.view.light_with(capture, |light: &CapturedLight| light.count.is_some())?;
+            let drawn = at.count(capture).filter(|(of, _)| *of == light);
+            return drawn.or_else(|| Some((light, capture.lights.get(light)?.count.as_ref()?)));
+        }
+        at.count(capture).or_else(|| counts::known_after(capture, at.step))
+    }
+}
+
+impl Model {
+    /// What the texels of `shown` mean as it is looked at, and the ends of the grey ramp.
+    pub fn shown_coloring(&mut self, shown: &Shown) -> (Coloring, [f64; 2]) {
+        let range = self.shown_range(shown);
+        match (Coloring::of_shown(shown, range), self.modes.bit) {
+            (Coloring::Stencil, Some(bit)) => (Coloring::Bit(bit), range),
+            (coloring, _) => (coloring, range),
+        }
+    }
+
+    /// The grey ramp's ends: as set by hand, or those of all shown pictures.
+    fn shown_range(&mut self, shown: &Shown) -> [f64; 2] {
+        self.view.depth_range.unwrap_or_else(|| self.full_range(shown))
+    }
+
+    /// The smallest and largest depth of all shown pictures; `[0, 1]` where there is none.
+    pub fn full_range(&mut self, shown: &Shown) -> [f64; 2] {
+        full_range(&mut self.textures, shown)
+    }
+}
+
+/// As [`Model::full_range`].
+pub fn full_range(textures: &mut PictureCache, shown: &Shown) -> [f64; 2] {
+    if !matches!(Coloring::of_shown(shown, [0.0, 1.0]), Coloring::Depth(_)) {
+        return [0.0, 1.0];
+    }
+    let ranges = shown.images.iter().filter_map(|image| textures.depth_range(image, shown.measure));
+    ranges.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]).unwrap_or([0.0, 1.0])
+}
+
+/// How many texels differ, in a sentence.
+#[must_use]
+pub fn sentence(texels: Option<u64>, all: u64) -> String {
+    match texels {
+        None => "Pictures of different kinds: nothing to count.".to_owned(),
+        Some(0) => "No texel differs.".to_owned(),
+        Some(texels) => {
+            let share = texels as f64 / all.max(1) as f64;
+            let verb = if texels == 1 { "differs" } else { "differ" };
+            // A few of many are not none.
+            let share = if share < 1e-3 { percent(share) } else { format!("{:.1} %", share * 100.0) };
+            format!("{} {verb}: {share}", format::counted(texels, "texel"))
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! What the panels show: the frame, the scene and how it is to be run, what is selected, what is known.
+//!
+//! Panels read it. What they may change of it, the selection, the picture that is looked at and the next run, they change
+//! through its methods; what only one of them needs to remember is its own. No widget is drawn here.
+//!
+//! ```text
+//! frame.rs     the capture that is shown, and all that is known of it by now     scene.rs   the open scene and its next run
+//! selection.rs step, draw, pixel, triangle                                       looking.rs which picture, and how
+//! history.rs   the picked pixel's history while it is on its way                 undo.rs    changes that can be taken back
+//! animation.rs, walk.rs  time and eye that move by themselves                    memory.rs  from one run to the next
+//! ```
+
+pub mod animation;
+pub mod frame;
+pub mod history;
+pub mod looking;
+pub mod memory;
+pub mod scene;
+pub mod selection;
+pub mod undo;
+pub mod walk;
+
+use crate::ask::{Answers, Kind, TruthOf};
+use crate::inspector::action::{Dialog, Panel};
+use crate::inspector::look::texture::PictureCache;
+use crate::reading::shown::{PictureKind, PictureView, available, has_truth};
+use animation::Animation;
+use frame::ShownFrame;
+use looking::Modes;
+use memory::ThemeChoice;
+use scene::OpenScene;
+use selection::Selection;
+use undo::Undo;
+use walk::Walk;
+
+/// All that more than one panel looks at.
+#[derive(Debug, Default)]
+pub struct Model {
+    /// What is looked at.
+    pub frame: ShownFrame,
+    /// What can be changed; `None` for a capture folder.
+    pub scene: Option<OpenScene>,
+    /// How many scenes were opened: what is remembered of one is of no use for the next.
+    pub scenes_opened: u64,
+    /// What was asked of frame and scene.
+    pub answers: Answers,
+    /// What is selected.
+    pub selection: Selection,
+    /// The picture panel's picture.
+    pub view: PictureView,
+    /// How it is looked at.
+    pub modes: Modes,
+    /// What goes on.
+    pub activity: Activity,
+    /// What one panel wishes of another.
+    pub requests: Requests,
+    /// The dialog that is open.
+    pub dialog: Option<Dialog>,
+    /// Dark or light.
+    pub theme: ThemeChoice,
+    /// What was opened, the last first.
+    pub recent: Vec<String>,
+    /// Changes that can be taken back.
+    pub undo: Undo,
+    /// How the scene is to be run that was asked for by taking a change back.
+    restoring: Option<undo::Moment>,
+    /// The scene's animation.
+    pub animation: Animation,
+    /// Walking through the scene.
+    pub walk: Walk,
+    /// Textures and facts of images.
+    pub textures: PictureCache,
+}
+
+/// What goes on, and what has to be said.
+#[derive(Debug, Default)]
+pub struct Activity {
+    /// What is being done, in a few words.
+    pub job: Option<String>,
+    /// A run was asked for whose capture is not there yet.
+    pub is_waiting: bool,
+    /// Errors that were not dismissed yet.
+    pub errors: Vec<String>,
+    /// The file that is open changed: it can be loaded again.
+    pub changed_file: Option<String>,
+    /// What was exported last.
+    pub exported: Option<String>,
+}
+
+/// What one panel wishes of another: done in the same or the next frame.
+#[derive(Debug, Default)]
+pub struct Requests {
+    /// Tabs to show.
+    pub panels: Vec<Panel>,
+    /// A tour to begin, by its index.
+    pub tour: Option<usize>,
+    /// The Scene tab brings the selected triangle to the middle.
+    pub triangle_in_scene: bool,
+    /// The menu of overlays opens.
+    pub overlay_menu: bool,
+    /// The search field of the passes opens.
+    pub search: Option<StepSearch>,
+    /// The panels go to their first places.
+    pub first_layout: bool,
+}
+
+/// The field above the passes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum StepSearch {
+    /// Ctrl-G: a step's number.
+    GoTo(String),
+    /// Ctrl-F: words of a pass.
+    Find(String),
+}
+
+impl Model {
+    /// The user wishes to see `kind`. Wishing again for what was not traced tries again.
+    pub fn choose_picture(&mut self, kind: PictureKind) {
+        if kind.needs_truth() {
+            self.answers.try_again(Kind::TruthOf);
+        }
+        self.view.choose(kind);
+    }
+
+    /// Wants the truth where its picture is wished for and it is not known.
+    pub fn want_truth(&self) {
+        let is_missing =
+            self.frame.capture.as_ref().is_some_and(|capture| {
+                !has_truth(capture) && available(capture, self.moment()).contains(&self.view.kind)
+            });
+        if self.view.kind.needs_truth() && is_missing {
+            self.answers.want(TruthOf {});
+        }
+    }
+
+    /// Shows an error with its mend until it is dismissed; what was shown before stays.
+    pub fn push_error(&mut self, error: String) {
+        // What failed is tried no further by itself.
+        self.restoring = None;
+        self.animation.is_running = false;
+        if !self.activity.errors.contains(&error) {
+            self.activity.errors.push(error);
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! The open scene, and the run that the settings describe.
+
+use super::{Model, undo};
+use crate::ask::RunRequest;
+use crate::inspector::action::Action;
+use crate::scene::Scene;
+use crate::technique::{Choice, Technique};
+use std::collections::BTreeMap;
+
+/// The scene that is open.
+#[derive(Debug, Clone)]
+pub struct OpenScene {
+    /// For people.
+    pub name: String,
+    /// What opens it again: a built-in name or a path.
+    pub source: Option<String>,
+    /// Does anything move?
+    pub animated: bool,
+    /// Names of its objects.
+    pub objects: Vec<String>,
+    /// What the next run will be.
+    pub draft: RunRequest,
+    /// The settings of techniques used before, to come back to.
+    pub choices: BTreeMap<Technique, Choice>,
+    /// Why the draft can't be run.
+    pub problem: Option<String>,
+}
+
+impl Model {
+    /// Another scene is open; `None` for a capture folder, which can't be run again.
+    pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>, source: Option<String>) {
+        self.frame.plan = None;
+        self.activity.changed_file = None;
+        self.animation = Default::default();
+        if let Some(source) = &source {
+            self.note_recent(source);
+        }
+        self.answers.new_scene(scene.is_some());
+        self.modes.compare = None;
+        self.view.older_truth = None;
+        self.scenes_opened += 1;
+        self.scene = scene.map(|(scene, draft)| OpenScene {
+            name: scene.name.clone(),
+            source,
+            animated: scene.is_animated(),
+            objects: scene.objects.iter().map(|object| object.name.clone()).collect(),
+            choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
+            problem: draft.check().err(),
+            draft,
+        });
+        self.activity.is_waiting = self.scene.is_some();
+        self.note_for_undo();
+    }
+
+    /// Chooses a technique, with the settings it had when it was last chosen, and runs it.
+    pub fn choose_technique(&mut self, technique: Technique, actions: &mut Vec<Action>) {
+        let Some(scene) = &mut self.scene else { return };
+        if scene.draft.choice.technique() != technique {
+            let remembered = scene.choices.get(&technique).cloned();
+            self.choose(remembered.unwrap_or_else(|| Choice::new(technique)), actions);
+        }
+    }
+
+    /// Makes shadows as `choice` says, and runs it.
+    pub fn choose(&mut self, choice: Choice, actions: &mut Vec<Action>) {
+        let Some(scene) = &mut self.scene else { return };
+        scene.choices.insert(scene.draft.choice.technique(), scene.draft.choice.clone());
+        scene.draft.choice = choice;
+        self.run_draft(actions);
+    }
+
+    /// Asks for a run of the draft, or notes why it can't be run.
+    pub fn run_draft(&mut self, actions: &mut Vec<Action>) {
+        if let Some(scene) = &mut self.scene {
+            scene.problem = scene.draft.check().err();
+            if scene.problem.is_none() {
+                actions.push(Action::Run(Box::new(scene.draft.clone())));
+                self.activity.is_waiting = true;
+                self.note_for_undo();
+            }
+        }
+    }
+
+    /// How the scene is run now is a step that can be taken back.
+    fn note_for_undo(&mut self) {
+        if let Some(scene) = self.scene.as_ref().filter(|_| self.restoring.is_none()) {
+            self.undo.note(undo::Moment { source: scene.source.clone(), request: scene.draft.clone() });
+        }
+    }
+
+    /// Takes the last change back.
+    pub fn take_back(&mut self, actions: &mut Vec<Action>) {
+        let before = self.undo.undo();
+        self.restore(before, actions);
+    }
+
+    /// Makes it again.
+    pub fn make_again(&mut self, actions: &mut Vec<Action>) {
+        let after = self.undo.redo();
+        self.restore(after, actions);
+    }
+
+    fn restore(&mut self, moment: Option<undo::Moment>, actions: &mut Vec<Action>) {
+        let Some(moment) = moment else { return };
+        self.animation.is_running = false;
+        match &mut self.scene {
+            Some(scene) if scene.source == moment.source => {
+                scene.draft = moment.request;
+                self.run_draft(actions);
+            }
+            _ => {
+                // Another scene was open then: it is opened first.
+                actions.extend(moment.source.clone().map(Action::Open));
+                self.restoring = moment.source.is_some().then_some(moment);
+            }
+        }
+    }
+
+    /// Runs the scene that was opened by taking a change back as it was run then.
+    pub fn finish_restoring(&mut self, actions: &mut Vec<Action>) {
+        let is_open =
+            |moment: &mut undo::Moment| self.scene.as_ref().is_some_and(|scene| scene.source == moment.source);
+        if let Some(moment) = self.restoring.take_if(is_open)
+            && let Some(scene) = &mut self.scene
+        {
+            scene.choices.insert(moment.request.choice.technique(), moment.request.choice.clone());
+            scene.draft = moment.request;
+            self.run_draft(actions);
+        }
+    }
+
+    /// No change is waited for any longer that would open another scene.
+    pub fn stop_restoring(&mut self) {
+        self.restoring = None;
+    }
+}

@@ -1,0 +1,215 @@
+//! What is selected: step and draw, pixel, triangle. A capture need not hold the state after each draw: selecting a draw
+//! without one asks for those of its pass; until they come the picture stays as it was.
+
+use super::Model;
+use crate::ask::{DrawsOf, Kind, Reply};
+use crate::capture::{Capture, Step, StepDraws};
+use crate::history::Event;
+use crate::reading::moment::Moment;
+use crate::reading::shown::{PictureKind, Zoom};
+use std::sync::Arc;
+
+/// Seconds a step is shown while playing.
+const SECONDS_A_STEP: f64 = 0.8;
+/// Screen pixels that a region is to take where the picture goes to it.
+const GO_TO_PIXELS: f32 = 240.0;
+/// Screen pixels a texel at most where the picture goes to a region.
+const MOST_GO_TO_ZOOM: f32 = 12.0;
+
+/// A place under the pointer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Hover {
+    /// Which of the shown images.
+    pub image: usize,
+    /// Its texel.
+    pub at: [u32; 2],
+}
+
+/// A triangle of a frame: pass, draw, primitive.
+pub type TriangleKey = [usize; 3];
+
+/// What is selected.
+#[derive(Debug, Default)]
+pub struct Selection {
+    /// Index of the step.
+    pub step: usize,
+    /// Index of the draw of that step; `None`: the step as a whole.
+    pub draw: Option<usize>,
+    /// What is shown while the state after the selected draw is not there.
+    stays: Moment,
+    /// Its row has to be scrolled to.
+    pub wants_scroll: bool,
+    /// While playing: the time of the next step, in egui's seconds.
+    pub playing: Option<f64>,
+    /// The picked pixel of the picture.
+    pub pick: Option<[u32; 2]>,
+    /// The picked texel of the map that the picture panel shows.
+    pub map_pick: Option<[u32; 2]>,
+    /// What the pointer is over.
+    pub hover: Option<Hover>,
+    /// The triangle of the picked pixel's history.
+    pub triangle: Option<TriangleKey>,
+    /// Pixels that read the texel which the Shadow map tab marks.
+    pub readers: Arc<Vec<[u32; 2]>>,
+}
+
+impl Selection {
+    /// The pick of the picture that is shown: of the map, or of the frame.
+    pub fn pick_of(&mut self, kind: PictureKind) -> &mut Option<[u32; 2]> {
+        if kind == PictureKind::Map { &mut self.map_pick } else { &mut self.pick }
+    }
+
+    /// Selects the triangle of an event, or nothing where it has none.
+    pub fn select_event(&mut self, event: &Event) {
+        self.triangle = key(event);
+    }
+
+    /// Is the event that of the selected triangle?
+    #[must_use]
+    pub fn has_event(&self, event: &Event) -> bool {
+        self.triangle.is_some() && key(event) == self.triangle
+    }
+}
+
+fn key(event: &Event) -> Option<TriangleKey> {
+    event.triangle().map(|one| [event.pass, one.draw, one.primitive as usize])
+}
+
+impl Model {
+    /// How many steps there are.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.frame.capture.as_ref().map_or(0, |capture| capture.steps.len())
+    }
+
+    /// What is selected.
+    #[must_use]
+    pub fn selected(&self) -> Moment {
+        Moment { step: self.selection.step, draw: self.selection.draw }
+    }
+
+    /// What is shown: what is selected, or what was shown before while that is not known.
+    #[must_use]
+    pub fn moment(&self) -> Moment {
+        let selected = self.selected();
+        let is_held = self.frame.capture.as_ref().is_none_or(|capture| selected.is_held(capture));
+        if is_held { selected } else { self.selection.stays }
+    }
+
+    /// Another capture takes the place of `before`: what is selected stays where it means the same.
+    pub(super) fn select_in(&mut self, before: Option<&Capture>, now: &Capture) {
+        let at = self.selected();
+        let [width, height] = now.size;
+        self.selection = Selection {
+            step: before.map_or(now.steps.len().saturating_sub(1), |before| same_step(before, at.step, now)),
+            pick: self.selection.pick.filter(|[x, y]| *x < width && *y < height),
+            wants_scroll: true,
+            hover: None,
+            playing: None,
+            readers: Arc::default(),
+            ..std::mem::take(&mut self.selection)
+        };
+        let draws = now.steps.get(self.selection.step).map_or(&[][..], |step| &step.draws);
+        if let Some(before) = before {
+            // The draw of the same name stays selected, and its state is asked for again.
+            let name = at.draw.and_then(|draw| Some(&before.steps.get(at.step)?.draws.get(draw)?.name));
+            let same = |draw: &usize| draws.get(*draw).is_some_and(|draw| Some(&draw.name) == name);
+            self.selection.draw = at.draw.filter(same).or_else(|| (0..draws.len()).find(same));
+        }
+        self.selection.stays = self.selection.step.into();
+    }
+
+    /// Selects a step; the last one if there are fewer.
+    pub fn select_step(&mut self, step: usize) {
+        let Some(capture) = self.frame.capture.clone() else { return };
+        self.selection.step = step.min(capture.steps.len().saturating_sub(1));
+        self.selection.draw = None;
+        self.selection.wants_scroll = true;
+        self.answers.try_again(Kind::DrawsOf);
+        self.view.follow(&capture, self.selection.step);
+    }
+
+    /// Selects a moment; without a draw of that number, the step.
+    pub fn select(&mut self, at: Moment) {
+        let stays = self.moment();
+        self.select_step(at.step);
+        self.selection.stays = stays;
+        let step = self.frame.capture.as_ref().and_then(|capture| capture.steps.get(self.selection.step));
+        let draws = step.map_or(0, |step| step.draws.len());
+        self.selection.draw = at.draw.filter(|draw| *draw < draws);
+        self.selection.playing = None;
+    }
+
+    /// Goes `by` steps on, or back where negative.
+    pub fn step_by(&mut self, by: isize) {
+        self.select_step(self.selection.step.saturating_add_signed(by));
+    }
+
+    /// Goes `by` draws on through the whole frame, or back where negative.
+    pub fn draw_by(&mut self, by: isize) {
+        let Some(capture) = self.frame.capture.clone() else { return };
+        let mut at = self.selected();
+        for _ in 0..by.unsigned_abs() {
+            let Some(next) = (if by > 0 { at.next(&capture) } else { at.previous(&capture) }) else { break };
+            at = next;
+        }
+        if at != self.selected() {
+            self.select(at);
+        }
+    }
+
+    /// Wants the states after the draws of the selected step, where one of them is looked at and not known.
+    pub fn want_draws(&self) -> Reply<StepDraws> {
+        let is_missing = self.frame.capture.as_ref().is_some_and(|capture| !self.selected().is_held(capture));
+        if is_missing || self.lacks_draw_before() {
+            self.answers.want(DrawsOf { step: self.selection.step })
+        } else {
+            Reply::default()
+        }
+    }
+
+    /// Starts to play at time `now`, from the start if the end is reached; or stops.
+    pub fn toggle_play(&mut self, now: f64) {
+        if self.selection.playing.take().is_none() && self.steps() > 1 {
+            if self.selection.step + 1 >= self.steps() {
+                self.select_step(0);
+            }
+            self.selection.playing = Some(now + SECONDS_A_STEP);
+        }
+    }
+
+    /// Goes on if it is time to; seconds until the next step while playing.
+    pub fn play(&mut self, now: f64) -> Option<f64> {
+        if now >= self.selection.playing? {
+            self.step_by(1);
+            let at_end = self.selection.step + 1 >= self.steps();
+            self.selection.playing = (!at_end).then_some(now + SECONDS_A_STEP);
+        }
+        self.selection.playing.map(|next| (next - now).max(0.0))
+    }
+
+    /// Picks a pixel and brings it to the middle, large enough that `side` texels around it take
+    /// a good part of the panel.
+    pub fn go_to(&mut self, at: [u32; 2], side: u32) {
+        self.selection.pick = Some(at);
+        let fitting = (GO_TO_PIXELS / side.max(1) as f32).clamp(1.0, MOST_GO_TO_ZOOM);
+        self.view.zoom = match self.view.zoom {
+            Zoom::Fit => Zoom::Pixels(fitting),
+            Zoom::Pixels(pixels) => Zoom::Pixels(pixels.max(1.0)),
+        };
+        self.view.center = at.map(|v| f64::from(v) + 0.5);
+    }
+}
+
+/// The step of `now` that means what step `index` of `before` meant: the last stays the last,
+/// a pass of the same name and light is the same.
+#[must_use]
+pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
+    let last = now.steps.len().saturating_sub(1);
+    let Some(step) = before.steps.get(index).filter(|_| index + 1 < before.steps.len()) else { return last };
+    let is_same = |candidate: &Step| candidate.name == step.name && candidate.light == step.light;
+    if now.steps.get(index).is_some_and(is_same) {
+        return index;
+    }
+    now.steps.iter().position(is_same).unwrap_or(index.min(last))
+}

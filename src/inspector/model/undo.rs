@@ -1,0 +1,150 @@
+//! Undo and redo: what was run, in which scene, step by step.
+//!
+//! A step is a whole [`RunRequest`] with what it belongs to, so that nothing can be undone in part.
+//! What is changed while a button is held (a dragged number, a dragged light) is one step, and the
+//! running time of an animation is none.
+
+use crate::ask::RunRequest;
+
+/// Steps that are kept.
+const MOST: usize = 200;
+
+/// How a scene was run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Moment {
+    /// What opened the scene: a built-in name or a path; `None` where it can't be opened again by name.
+    pub source: Option<String>,
+    /// How it was run.
+    pub request: RunRequest,
+}
+
+/// What can be undone and redone.
+#[derive(Debug, Default)]
+pub struct Undo {
+    past: Vec<Moment>,
+    now: Option<Moment>,
+    future: Vec<Moment>,
+    /// A button is held, or one walks: what changes now belongs to one step.
+    is_held: bool,
+    /// The step under way has begun.
+    has_begun: bool,
+}
+
+impl Undo {
+    /// Tells whether what changes from now on belongs to one step.
+    pub fn hold(&mut self, is_held: bool) {
+        self.has_begun &= is_held;
+        self.is_held = is_held;
+    }
+
+    /// The scene is run like this now.
+    pub fn note(&mut self, moment: Moment) {
+        let Some(before) = self.now.replace(moment.clone()) else { return };
+        if before == moment {
+            return;
+        }
+        let only_time_runs = RunRequest { time: moment.request.time, ..before.request.clone() } == moment.request
+            && before.source == moment.source;
+        if only_time_runs {
+            return;
+        }
+        self.future.clear();
+        if self.has_begun {
+            return;
+        }
+        self.has_begun = self.is_held;
+        if self.past.len() == MOST {
+            self.past.remove(0);
+        }
+        self.past.push(before);
+    }
+
+    /// Is there a step to undo?
+    #[must_use]
+    pub fn can_undo(&self) -> bool {
+        !self.past.is_empty()
+    }
+
+    /// Is there a step to redo?
+    #[must_use]
+    pub fn can_redo(&self) -> bool {
+        !self.future.is_empty()
+    }
+
+    /// Goes a step back: how it was.
+    pub fn undo(&mut self) -> Option<Moment> {
+        let before = self.past.pop()?;
+        self.future.extend(self.now.replace(before.clone()));
+        Some(before)
+    }
+
+    /// Goes a step forth again: how it is after it.
+    pub fn redo(&mut self) -> Option<Moment> {
+        let after = self.future.pop()?;
+        self.past.extend(self.now.replace(after.clone()));
+        Some(after)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Camera;
+    use crate::technique::{Choice, Technique};
+    use glam::DVec3;
+    use std::collections::BTreeSet;
+
+    fn moment(width: u32, time: f64) -> Moment {
+        let camera =
+            Camera { eye: DVec3::Y, target: DVec3::ZERO, up: DVec3::X, fov_y_degrees: 45.0, near: 0.1, far: None };
+        let choice = Choice::new(Technique::ZFail);
+        let request = RunRequest { choice, size: [width, 1], camera, lights: Vec::new(), time, off: BTreeSet::new() };
+        Moment { source: Some("tori".to_owned()), request }
+    }
+
+    fn widths(undo: &mut Undo) -> Vec<u32> {
+        std::iter::from_fn(|| undo.undo()).map(|moment| moment.request.size[0]).collect()
+    }
+
+    #[test]
+    fn steps_go_back_and_forth_and_a_change_forgets_what_was_undone() {
+        let mut undo = Undo::default();
+        (1..=3).for_each(|width| undo.note(moment(width, 0.0)));
+        assert_eq!(undo.undo(), Some(moment(2, 0.0)));
+        assert_eq!(undo.redo(), Some(moment(3, 0.0)));
+        assert_eq!(undo.redo(), None);
+        undo.undo();
+        undo.note(moment(9, 0.0));
+        assert!(!undo.can_redo());
+        assert_eq!(widths(&mut undo), [2, 1]);
+    }
+
+    #[test]
+    fn what_is_dragged_is_one_step() {
+        let mut undo = Undo::default();
+        undo.note(moment(1, 0.0));
+        undo.hold(true);
+        (2..=5).for_each(|width| undo.note(moment(width, 0.0)));
+        undo.hold(false);
+        undo.note(moment(6, 0.0));
+        assert_eq!(widths(&mut undo), [5, 1]);
+    }
+
+    #[test]
+    fn a_running_animation_is_no_step_and_neither_is_the_same_again() {
+        let mut undo = Undo::default();
+        undo.note(moment(1, 0.0));
+        undo.note(moment(1, 0.5));
+        undo.note(moment(1, 0.5));
+        assert!(!undo.can_undo());
+        undo.note(moment(2, 0.5));
+        assert_eq!(undo.undo(), Some(moment(1, 0.5)), "at the moment where it was left");
+    }
+
+    #[test]
+    fn only_so_many_steps_are_kept() {
+        let mut undo = Undo::default();
+        (0..500).for_each(|width| undo.note(moment(width, 0.0)));
+        assert_eq!(widths(&mut undo).len(), MOST);
+    }
+}

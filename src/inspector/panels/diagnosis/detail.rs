@@ -1,0 +1,137 @@
+//! The selected region of the Diagnosis tab: its causes with evidence, mends and proofs; below them what is to be
+//! known of meshes and flags.
+
+use super::fields::{Applied, DiagnosisPanel};
+use crate::diagnosis::{CauseFound, Diagnosis, Mend, Proof, RegionFound};
+use crate::inspector::action::Action;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::format;
+use egui::{Button, Color32, Label, RichText, Ui};
+
+/// Draws it.
+pub fn ui(
+    ui: &mut Ui,
+    own: &mut DiagnosisPanel,
+    model: &mut Model,
+    diagnosis: &Diagnosis,
+    selected: Option<&RegionFound>,
+    actions: &mut Vec<Action>,
+) {
+    before_and_after(ui, own, model, actions);
+    if let Some(advice) = &diagnosis.advice {
+        wrapped(ui, RichText::new(&advice.sentence).color(theme::of(ui).text));
+        apply_button(ui, own, model, &advice.mend, "Apply all", actions);
+        ui.add_space(8.0);
+    }
+    if let Some(region) = selected {
+        theme::heading(ui, &region.title());
+        if region.causes.is_empty() {
+            wrapped(ui, theme::note("No known cause fits: its history, on the right, tells how a pixel came about."));
+        }
+        for (index, found) in region.causes.iter().enumerate() {
+            cause(ui, own, model, found, index == 0, actions);
+        }
+    }
+    meshes_and_flags(ui, diagnosis);
+}
+
+/// While a mend is applied: the picture with it and without.
+fn before_and_after(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
+    let Some(applied) = own.applied.clone() else { return };
+    let is_after = model.scene.as_ref().is_some_and(|scene| scene.draft.choice == applied.after);
+    ui.horizontal_wrapped(|ui| {
+        let (words, other) = if is_after { ("Show before", &applied.before) } else { ("Show after", &applied.after) };
+        if ui.button(words).on_hover_text("Renders without the mend, and with it again").clicked() {
+            model.choose(other.clone(), actions);
+        }
+        let shown = if is_after { "shown: after, with the mend" } else { "shown: before, without the mend" };
+        ui.label(theme::note(shown));
+    });
+    ui.add_space(4.0);
+}
+
+fn cause(
+    ui: &mut Ui,
+    own: &mut DiagnosisPanel,
+    model: &mut Model,
+    found: &CauseFound,
+    is_first: bool,
+    actions: &mut Vec<Action>,
+) {
+    ui.add_space(4.0);
+    let color = proof_color(ui, found.proof);
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::number(found.cause.name()).color(theme::of(ui).text));
+        ui.label(theme::note(found.proof.name()).color(color));
+        if let Some(left) = found.pixels_left.filter(|left| *left > 0) {
+            ui.label(theme::note(format!("{} stay wrong", format::counted(left, "pixel"))));
+        }
+    });
+    wrapped(ui, theme::note(&found.evidence).color(theme::of(ui).text));
+    if is_first {
+        wrapped(ui, theme::note(found.cause.meaning()));
+    }
+    if let Some(mend) = &found.mend {
+        apply_button(ui, own, model, mend, "Apply the mend", actions);
+    }
+}
+
+/// Changes technique and settings as a mend says; what it changes in the scene is the user's to change.
+fn apply_button(
+    ui: &mut Ui,
+    own: &mut DiagnosisPanel,
+    model: &mut Model,
+    mend: &Mend,
+    words: &str,
+    actions: &mut Vec<Action>,
+) {
+    let choice = model.scene.as_ref().filter(|_| mend.is_a_choice()).and_then(|scene| {
+        let mut choice = scene.draft.choice.clone();
+        mend.choose(&mut choice).ok().map(|()| (scene.draft.choice.clone(), choice))
+    });
+    let Some((before, after)) = choice else {
+        wrapped(ui, theme::note(format!("To mend it in the scene: {mend}")));
+        return;
+    };
+    let is_done = before == after;
+    let button = ui.add_enabled(!is_done, Button::new(format!("{words}: {mend}")));
+    let hover = if is_done { "It is applied" } else { "Renders the scene so" };
+    if button.on_hover_text(hover).on_disabled_hover_text(hover).clicked() {
+        model.choose(after.clone(), actions);
+        own.applied = Some(Applied { before, after });
+    }
+}
+
+fn meshes_and_flags(ui: &mut Ui, diagnosis: &Diagnosis) {
+    if !diagnosis.mesh_findings.is_empty() {
+        ui.add_space(8.0);
+        theme::heading(ui, "Meshes, whether it shows here or not");
+        for found in &diagnosis.mesh_findings {
+            let count = format::count(found.count as u64);
+            let words = format!("{}: {count} {}: {}", found.object, found.kind.name(), found.effect);
+            wrapped(ui, theme::note(words));
+        }
+    }
+    if !diagnosis.flags.is_empty() {
+        ui.add_space(8.0);
+        theme::heading(ui, "By the scene's own wish, so not wrong");
+        for found in &diagnosis.flags {
+            let pixels = format::counted(found.pixels, "pixel");
+            wrapped(ui, theme::note(format!("{}: {}: {pixels} would change", found.object, found.cause)));
+        }
+    }
+}
+
+fn proof_color(ui: &Ui, proof: Proof) -> Color32 {
+    match proof {
+        Proof::Proven => theme::of(ui).passed,
+        Proof::Part => theme::of(ui).lit,
+        Proof::NotIt => theme::of(ui).failed,
+        Proof::NotRun => theme::of(ui).decided,
+    }
+}
+
+fn wrapped(ui: &mut Ui, text: RichText) {
+    ui.add(Label::new(text).wrap());
+}

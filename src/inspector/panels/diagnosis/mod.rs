@@ -1,0 +1,199 @@
+//! The Diagnosis tab: where the frame is wrong, why, and what mends it.
+//!
+//! Regions are rows; a click goes to a pixel of one, to its history and to the step that decided it. The
+//! causes of the selected region, their mends and what they left are in `detail.rs`. It shows data and
+//! asks for it; running is the app's.
+
+pub mod detail;
+pub mod fields;
+
+use crate::accuracy::Finding;
+use crate::ask::{DiagnosisOf, Kind, Reply};
+use crate::capture::{Capture, FrameTarget, Snapshot};
+use crate::diagnosis::{Diagnosis, RegionFound, RegionKind};
+use crate::inspector::action::Action;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::format;
+use crate::reading::shown::PictureKind;
+use egui::{Align, Layout, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+pub use fields::DiagnosisPanel;
+use std::sync::Arc;
+
+/// Width of the list of regions, points, and the most it may take of the panel.
+const LIST_WIDTH: f32 = 320.0;
+const LIST_SHARE: f32 = 0.5;
+/// Height of a region's row: two lines, points.
+const ROW: f32 = 40.0;
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
+    let reply = model.answers.under_way::<DiagnosisOf>();
+    let known = model.answers.last::<DiagnosisOf>().map(|(_, diagnosis)| Arc::clone(diagnosis));
+    top_line(ui, model, &reply, known.as_deref());
+    if let Some(error) = &reply.failed {
+        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
+    }
+    let Some(diagnosis) = known else { return };
+    own.follow(&diagnosis);
+    ui.add_space(4.0);
+    let size = ui.available_size();
+    let list = LIST_WIDTH.min(size.x * LIST_SHARE);
+    ui.horizontal_top(|ui| {
+        ui.allocate_ui_with_layout(vec2(list, size.y), Layout::top_down(Align::Min), |ui| {
+            let scroll = ScrollArea::vertical().id_salt("wrong regions").auto_shrink([false, false]);
+            scroll.show(ui, |ui| regions(ui, own, model, &diagnosis));
+        });
+        ui.allocate_ui_with_layout(vec2(ui.available_width(), size.y), Layout::top_down(Align::Min), |ui| {
+            let scroll = ScrollArea::vertical().id_salt("causes").auto_shrink([false, false]);
+            let selected = diagnosis.regions.get(own.selected);
+            scroll.show(ui, |ui| detail::ui(ui, own, model, &diagnosis, selected, actions));
+        });
+    });
+}
+
+/// What can be done, and how far it is.
+fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Option<&Diagnosis>) {
+    let can_run = model.scene.is_some() && model.frame.capture.is_some();
+    ui.horizontal_wrapped(|ui| match reply.steps() {
+        Some((done, of)) => {
+            if ui.button("Cancel").on_hover_text("Stop diagnosing; what was found before stays").clicked() {
+                model.answers.cancel(Kind::DiagnosisOf);
+            }
+            let bar = egui::ProgressBar::new(done as f32 / of.max(1) as f32);
+            let width = ui.available_width().min(180.0);
+            ui.add(bar.desired_width(width).desired_height(8.0)).accessible_name("Diagnosing");
+            ui.label(theme::note("following rays, and running what may mend it"));
+        }
+        None => {
+            let is_new = known.is_none();
+            let words = if is_new { "Diagnose" } else { "Diagnose again" };
+            let button = ui.add_enabled(can_run, egui::Button::new(words));
+            if button.on_hover_text("Say where this frame is wrong, why, and what mends it").clicked() {
+                model.answers.start(DiagnosisOf {});
+            }
+            ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
+        }
+    });
+}
+
+/// What was found, in a sentence.
+fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
+    match known {
+        Some(diagnosis) => {
+            let error = &diagnosis.error;
+            let of = format!("{}, {}", diagnosis.scene, diagnosis.technique.name());
+            let compared = format::count(error.compared);
+            let earlier = if is_current(model, diagnosis) { "" } else { " (not as it is shown now)" };
+            match error.wrong() {
+                0 => format!("{of}{earlier}: none of {compared} compared pixels is wrong"),
+                wrong => format!("{of}{earlier}: {} of {compared} compared pixels are wrong", format::count(wrong)),
+            }
+        }
+        None if can_run => {
+            "Follows rays through the scene, groups wrong pixels, and runs what may mend them: only what \
+                            takes them away is called proven."
+                .to_owned()
+        }
+        None => "Open a scene to find out why its shadows are wrong.".to_owned(),
+    }
+}
+
+/// Is the diagnosis of what is shown now: the same technique and settings?
+fn is_current(model: &Model, diagnosis: &Diagnosis) -> bool {
+    model.scene.as_ref().is_some_and(|scene| {
+        let choice = &scene.draft.choice;
+        choice.technique() == diagnosis.technique && *choice.settings() == diagnosis.settings
+    })
+}
+
+fn regions(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, diagnosis: &Diagnosis) {
+    if diagnosis.regions.is_empty() {
+        ui.label(theme::note("No pixel is wrong."));
+    }
+    for (index, region) in diagnosis.regions.iter().enumerate() {
+        region_row(ui, own, model, (diagnosis, region), index);
+    }
+    if diagnosis.rest.regions > 0 {
+        let pixels = format::counted(diagnosis.rest.pixels, "pixel");
+        ui.label(theme::note(format!("and {} smaller of {pixels}", format::count(diagnosis.rest.regions as u64))));
+    }
+}
+
+fn region_row(
+    ui: &mut Ui,
+    own: &mut DiagnosisPanel,
+    model: &mut Model,
+    (diagnosis, region): (&Diagnosis, &RegionFound),
+    index: usize,
+) {
+    let is_selected = own.selected == index;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+    let (title, because) = (region.title(), because(diagnosis, region));
+    let pixels = format::counted(region.pixels, "pixel");
+    let name = format!("{} · {title}: {pixels}, {because}", index + 1);
+    response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, &name));
+    theme::row_background(ui, rect, is_selected, &response);
+    let left = rect.left() + 12.0;
+    let painter = ui.painter();
+    let swatch = egui::Rect::from_min_size(pos2(left, rect.top() + 8.0), vec2(10.0, 10.0));
+    painter.rect_filled(swatch, 2.0, color(region.kind));
+    let font = TextStyle::Small.resolve(ui.style());
+    let count = painter.text(
+        pos2(rect.right() - 8.0, rect.top() + 13.0),
+        egui::Align2::RIGHT_CENTER,
+        &pixels,
+        font,
+        theme::of(ui).dim,
+    );
+    let title_at = pos2(left + 16.0, rect.top() + 5.0);
+    let numbered = format!("{} · {title}", index + 1);
+    theme::line(ui, title_at, count.left() - title_at.x - 8.0, &numbered, TextStyle::Body, theme::of(ui).text);
+    let second = pos2(left + 16.0, rect.top() + 22.0);
+    theme::line(ui, second, rect.right() - second.x - 8.0, &because, TextStyle::Small, theme::of(ui).dim);
+    let hover = "Click to go to a pixel of it, to what happened there, and to the step that decided it.";
+    if response.on_hover_text(hover).clicked() {
+        own.selected = index;
+        go_to(model, region);
+    }
+}
+
+/// The most likely cause, and how sure it is.
+fn because(diagnosis: &Diagnosis, region: &RegionFound) -> String {
+    let none = || diagnosis.without_cause(region).to_owned();
+    region.causes.first().map_or_else(none, |found| format!("{} ({})", found.cause, found.proof.name()))
+}
+
+/// As in the error picture.
+fn color(kind: RegionKind) -> egui::Color32 {
+    let finding = match kind {
+        RegionKind::Wrong(finding) => finding,
+        RegionKind::TooDark => Finding::FalseShadow,
+    };
+    crate::inspector::look::findings::style(finding).color
+}
+
+/// Picks a pixel of a region, shows what is wrong around it, and selects the step that decided it.
+fn go_to(model: &mut Model, region: &RegionFound) {
+    let [left, top, right, bottom] = region.bounds;
+    if let Some(step) = model.frame.capture.as_ref().and_then(|capture| deciding_step(capture, region.light)) {
+        model.select_step(step);
+    }
+    model.choose_picture(PictureKind::Error);
+    model.go_to(region.at, (right - left).max(bottom - top) + 1);
+}
+
+/// The last pass of a light that draws into the picture before its labels are written: where its shadow was
+/// counted or drawn. Else where the labels are written.
+fn deciding_step(capture: &Capture, light: usize) -> Option<usize> {
+    let target = |index: usize| match &capture.steps.get(index)?.snapshot {
+        Snapshot::Frame(frame) => Some(frame.target),
+        Snapshot::Map { .. } => None,
+    };
+    let of_light: Vec<usize> =
+        (0..capture.steps.len()).filter(|index| capture.steps[*index].light == Some(light)).collect();
+    let mask = of_light.iter().copied().find(|index| target(*index) == Some(FrameTarget::Labels));
+    let counts = |index: &usize| matches!(target(*index), Some(FrameTarget::Picture | FrameTarget::Count));
+    let before = of_light.iter().copied().rfind(|index| mask.is_some_and(|mask| *index < mask) && counts(index));
+    before.or(mask).or(of_light.last().copied())
+}

@@ -1,0 +1,102 @@
+//! The Explain tab: the step's purpose, its formula with this scene's numbers, the guided tours, and
+//! what the frame left out and why.
+
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::inspector::tours::TOURS;
+use crate::reading::explain_facts::{Known, facts};
+use egui::{Label, RichText, Ui};
+
+/// Draws the tab.
+pub fn ui(ui: &mut Ui, own: &mut Explain, model: &mut Model) {
+    let Some(capture) = model.frame.capture.clone() else {
+        ui.add(Label::new(theme::note("Open a scene: what each pass is for is told here.")).wrap());
+        return;
+    };
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        if let Some(step) = capture.steps.get(model.selection.step) {
+            theme::heading(ui, &format!("{} · {}", model.selection.step + 1, step.name));
+            ui.add(Label::new(step.purpose.as_str()).wrap());
+            ui.add_space(8.0);
+        }
+        let history = model.history_of_frame();
+        let known = Known {
+            capture: &capture,
+            step: model.selection.step,
+            lights: model.scene.as_ref().map_or(&[], |scene| &scene.draft.lights),
+            pick: model.selection.pick,
+            history: history.as_deref(),
+        };
+        // Counting a picture is not free: it is done once for each step and pixel.
+        let told = own.of(model.frame.number, &known);
+        for fact in told.iter() {
+            theme::card(ui).show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                ui.add(Label::new(RichText::new(&fact.formula).color(theme::of(ui).text)).wrap());
+                for line in &fact.here {
+                    ui.add(Label::new(theme::note(line.as_str())).wrap());
+                }
+            });
+            ui.add_space(4.0);
+        }
+        ui.add_space(8.0);
+        tours(ui, model);
+        ui.add_space(8.0);
+        left_out(ui, &capture);
+        ui.add_space(16.0);
+    });
+}
+
+fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
+    theme::heading(ui, "Left out");
+    if capture.left_out.is_empty() {
+        ui.add(Label::new(theme::note("Nothing: this scene needs all that the technique has.")).wrap());
+    }
+    for left in &capture.left_out {
+        ui.add(Label::new(left.to_string()).wrap());
+        ui.add(Label::new(theme::note(left.because.as_str())).wrap());
+    }
+}
+
+/// The tab: the facts that were told last, with what they were told of.
+#[derive(Debug, Default)]
+pub struct Explain {
+    of: Option<Key>,
+    facts: std::rc::Rc<Vec<crate::reading::explain_facts::Fact>>,
+}
+
+/// Facts change with these: frame, step, pixel, and whether its history is there.
+type Key = (u64, usize, Option<[u32; 2]>, bool, bool);
+
+impl Explain {
+    fn of(&mut self, frame: u64, known: &Known) -> std::rc::Rc<Vec<crate::reading::explain_facts::Fact>> {
+        let has_truth = known.capture.lights.iter().any(|light| light.truth.is_some());
+        let key = (frame, known.step, known.pick, known.history.is_some(), has_truth);
+        if self.of != Some(key) {
+            self.of = Some(key);
+            self.facts = std::rc::Rc::new(facts(known));
+        }
+        std::rc::Rc::clone(&self.facts)
+    }
+}
+
+/// The tours, the chosen technique's first.
+fn tours(ui: &mut Ui, model: &mut Model) {
+    theme::heading(ui, "Guided tours");
+    ui.add(
+        Label::new(theme::note("Each goes through a technique, stop by stop, and moves the panels for you.")).wrap(),
+    );
+    let current = model.scene.as_ref().map(|scene| scene.draft.choice.technique());
+    let mut order: Vec<usize> = (0..TOURS.len()).collect();
+    order.sort_by_key(|index| Some(TOURS[*index].technique) != current);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        for index in order {
+            let tour = &TOURS[index];
+            let button = ui.button(format!("Tour of {}", tour.technique.name()));
+            if button.on_hover_text(tour.promise).clicked() {
+                model.requests.tour = Some(index);
+            }
+        }
+    });
+}

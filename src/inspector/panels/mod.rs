@@ -1,0 +1,65 @@
+//! The tabs, one file or folder each: what it remembers, and a function that draws it of that and of the model. A new one
+//! is a file here, a field and an arm below, and its name among [`Panel`]s.
+
+pub mod diagnosis;
+pub mod explain;
+pub mod passes;
+pub mod picture;
+pub mod pixel;
+pub mod raster_state;
+pub mod report;
+pub mod scene;
+pub mod settings;
+pub mod shadow_map;
+pub mod stress;
+
+use crate::inspector::action::{Action, Panel};
+use crate::inspector::model::Model;
+use diagnosis::DiagnosisPanel;
+use egui::Ui;
+use explain::Explain;
+use passes::Passes;
+use picture::PicturePanel;
+use pixel::Pixel;
+use raster_state::RasterStatePanel;
+use report::ReportPanel;
+use scene::SceneView;
+use shadow_map::ShadowMapPanel;
+use stress::StressPanel;
+
+/// What each tab remembers.
+#[derive(Debug, Default)]
+pub struct Panels {
+    /// The frame, step by step.
+    pub passes: Passes,
+    /// The selected buffer.
+    pub picture: PicturePanel,
+    scene: SceneView,
+    /// A light's map, linked with the picture.
+    pub shadow_map: ShadowMapPanel,
+    pixel: Pixel,
+    raster_state: RasterStatePanel,
+    explain: Explain,
+    report: ReportPanel,
+    diagnosis: DiagnosisPanel,
+    stress: StressPanel,
+}
+
+impl Panels {
+    /// Draws a tab.
+    pub fn ui(&mut self, panel: Panel, ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+        match panel {
+            Panel::Passes => passes::ui(ui, &mut self.passes, model),
+            Panel::Settings => settings::ui(ui, model, actions),
+            Panel::Picture => picture::ui(ui, &mut self.picture, model, actions),
+            Panel::Scene => scene::ui(ui, &mut self.scene, model, actions),
+            Panel::ShadowMap => shadow_map::ui(ui, &mut self.shadow_map, model),
+            Panel::Pixel => pixel::ui(ui, &mut self.pixel, model),
+            Panel::State => raster_state::ui(ui, &mut self.raster_state, model),
+            Panel::Explain => explain::ui(ui, &mut self.explain, model),
+            Panel::Report => report::ui(ui, &mut self.report, model, actions),
+            Panel::Diagnosis => diagnosis::ui(ui, &mut self.diagnosis, model, actions),
+            Panel::Stress => stress::ui(ui, &mut self.stress, model, actions),
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! Under the passes: the draws of the selected one, and what the frame left out.
+
+use super::fields::Passes;
+use super::thumbnail;
+use crate::ask::Reply;
+use crate::capture::{Capture, DrawState, DrawSummary, FrameTarget, Image, Snapshot, StepDraws};
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::theme;
+use crate::inspector::look::widgets;
+use crate::inspector::model::Model;
+use crate::plan::LeftOut;
+use crate::reading::format;
+use crate::reading::moment::Moment;
+use egui::{CornerRadius, Rect, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use std::sync::Arc;
+
+/// Draws that are listed before the rest is folded away.
+const LISTED: usize = 16;
+/// Height of a draw, points.
+const HEIGHT: f32 = 24.0;
+/// Where a draw's thumbnail is, points from the row's corners.
+const THUMBNAIL: [f32; 2] = [12.0, 3.0];
+/// How wide it is.
+const THUMBNAIL_WIDTH: f32 = 32.0;
+/// Where a draw's swatch is.
+const INDENT: f32 = THUMBNAIL[0] + THUMBNAIL_WIDTH + 8.0;
+
+/// The draws of the selected step: part, name and triangles, and a thumbnail where the state after
+/// each is known. Many are folded away until all are wished for, or one of them is selected.
+pub fn of_step(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>) {
+    let draws = &capture.steps[model.selection.step].draws;
+    // One line less is folded away for the line that says so.
+    let short = if draws.len() <= LISTED { draws.len() } else { LISTED - 1 };
+    if model.selection.draw.is_some_and(|draw| draw >= short) {
+        own.all_draws = Some(model.selection.step);
+    }
+    let listed = if own.all_draws == Some(model.selection.step) { draws.len() } else { short };
+    let fetched = model.want_draws();
+    for draw in 0..listed {
+        row(ui, own, model, (capture, &fetched), draw);
+        if model.selection.draw == Some(draw) {
+            note(ui, model, capture, &fetched);
+        }
+    }
+    let folded = &draws[listed..];
+    if !folded.is_empty() {
+        let triangles = folded.iter().map(|draw| draw.triangles).sum();
+        let text = format!("{} more draws · {}", folded.len(), format::counted(triangles, "triangle"));
+        ui.horizontal(|ui| {
+            ui.add_space(INDENT);
+            let button = egui::Button::new(theme::note(text)).frame_when_inactive(false);
+            if ui.add(button).on_hover_text("List all draws of this pass").clicked() {
+                own.all_draws = Some(model.selection.step);
+            }
+        });
+    }
+}
+
+/// One draw: it can be selected, and says so while its state is being fetched.
+fn row(
+    ui: &mut Ui,
+    own: &mut Passes,
+    model: &mut Model,
+    (capture, fetched): (&Arc<Capture>, &Reply<StepDraws>),
+    index: usize,
+) {
+    let draw = &capture.steps[model.selection.step].draws[index];
+    let is_selected = model.selection.draw == Some(index);
+    let is_missing = is_selected && !model.selected().is_held(capture);
+    let is_fetched = is_missing && model.scene.is_some() && fetched.failed.is_none();
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    let name = if is_fetched { format!("{}, being fetched", draw.name) } else { draw.name.clone() };
+    response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &name));
+    own.widgets.push(response.id);
+    widgets::keep_arrows(ui, &response);
+    if is_selected && model.selection.wants_scroll {
+        response.scroll_to_me(None);
+    }
+    if response.clicked() {
+        model.select(Moment { step: model.selection.step, draw: Some(index) });
+        model.selection.wants_scroll = false;
+    }
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    thumbnail::paint_row_background(ui, rect, is_selected, response.hovered(), response.has_focus());
+    if capture.holds_draws(model.selection.step) {
+        paint_change(ui, model, capture, index, rect);
+    }
+    let right = if is_fetched { "fetching …".to_owned() } else { format::count(draw.triangles) };
+    paint_words(ui, draw, is_selected, &right, rect);
+    let changes = if changes_nothing(draw) { "\nIt changed nothing" } else { "" };
+    response.on_hover_text(format!("{}: {}{changes}", draw.part.name(), draw.name));
+}
+
+fn changes_nothing(draw: &DrawSummary) -> bool {
+    draw.after.as_ref().is_some_and(DrawState::changes_nothing)
+}
+
+/// A thumbnail of what the draw changed, or that it changed nothing.
+fn paint_change(ui: &Ui, model: &mut Model, capture: &Capture, index: usize, row: Rect) {
+    let size = vec2(THUMBNAIL_WIDTH, HEIGHT - 2.0 * THUMBNAIL[1]);
+    let place = Rect::from_min_size(row.min + vec2(THUMBNAIL[0], THUMBNAIL[1]), size);
+    let changed = changed_picture(model, capture, index);
+    thumbnail::paint_thumbnail(ui, model, changed, place);
+    if changes_nothing(&capture.steps[model.selection.step].draws[index]) {
+        let font = TextStyle::Monospace.resolve(ui.style());
+        ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, "=", font, theme::of(ui).faint);
+    }
+}
+
+/// The part's swatch, the draw's name, and at the right its triangles.
+fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, right: &str, row: Rect) {
+    let left = row.left() + INDENT;
+    if let Some(color) = theme::of(ui).part(draw.part) {
+        let swatch = Rect::from_center_size(pos2(left + 5.0, row.center().y), vec2(10.0, 10.0));
+        let outline = Stroke::new(1.0, theme::of(ui).faint);
+        ui.painter().rect(swatch, CornerRadius::same(2), color, outline, StrokeKind::Inside);
+    }
+    let left = left + 18.0;
+    let at = pos2(row.right() - 8.0, row.center().y);
+    let font = TextStyle::Monospace.resolve(ui.style());
+    let right = ui.painter().text(at, egui::Align2::RIGHT_CENTER, right, font, theme::of(ui).dim);
+    let color = match (is_selected, changes_nothing(draw)) {
+        (true, _) => theme::of(ui).text,
+        (false, true) => theme::of(ui).faint,
+        (false, false) => theme::of(ui).dim,
+    };
+    let room = right.left() - left - 8.0;
+    theme::line(ui, pos2(left, row.center().y - 7.0), room, &draw.name, TextStyle::Small, color);
+}
+
+/// What a draw changed, as a picture with its colouring.
+fn changed_picture(model: &mut Model, capture: &Capture, index: usize) -> Option<(Arc<Image>, Coloring)> {
+    let after = capture.steps[model.selection.step].draws[index].after.as_ref()?;
+    let target = after.target.as_ref().filter(|target| !target.unchanged).map(|target| &target.image);
+    match &after.snapshot {
+        Snapshot::Map { light, face } => Some(thumbnail::colored_layer(model, capture, [*light, *face], target?)),
+        Snapshot::Frame(frame) => match frame.target {
+            FrameTarget::Picture => thumbnail::changed_aspect(model, capture, frame),
+            FrameTarget::Labels => Some((target?.clone(), Coloring::Labels)),
+            FrameTarget::Count => Some((target?.clone(), Coloring::Count)),
+        },
+    }
+}
+
+/// Under a selected draw whose state is not there and does not come: why.
+fn note(ui: &mut Ui, model: &Model, capture: &Capture, fetched: &Reply<StepDraws>) {
+    if model.selected().is_held(capture) {
+        return;
+    }
+    let (text, color) = match &fetched.failed {
+        _ if model.scene.is_none() => {
+            let text = "This folder has no states after draws, so draws can't be stepped through: capture it with \
+                        --every draw.";
+            (text.to_owned(), theme::of(ui).text)
+        }
+        Some(reason) => (format!("× The state after this draw is not known: {reason}"), theme::of(ui).error),
+        // The row says so, so that nothing moves when it comes.
+        None => return,
+    };
+    ui.horizontal(|ui| {
+        ui.add_space(INDENT);
+        ui.add(egui::Label::new(RichText::new(text).size(theme::SMALL_SIZE).color(color)).wrap());
+    });
+    ui.add_space(4.0);
+}
+
+/// What the frame did without, faint, with the reason: absence is a lesson too.
+pub fn left_out(ui: &mut Ui, left_out: &[LeftOut]) {
+    if left_out.is_empty() {
+        return;
+    }
+    ui.add_space(8.0);
+    ui.label(theme::note("Left out"));
+    ui.add_space(2.0);
+    // The same is decided again for every light, and for many objects with one reason: once is
+    // enough to read.
+    let mut reasons: Vec<(&str, Vec<(String, u32)>)> = Vec::new();
+    for entry in left_out {
+        let title = entry.to_string();
+        let place = reasons.iter().position(|(because, _)| *because == entry.because).unwrap_or(reasons.len());
+        if place == reasons.len() {
+            reasons.push((&entry.because, Vec::new()));
+        }
+        let titles = &mut reasons[place].1;
+        match titles.iter_mut().find(|(known, _)| *known == title) {
+            Some((_, times)) => *times += 1,
+            None => titles.push((title, 1)),
+        }
+    }
+    for (because, titles) in reasons {
+        ui.horizontal(|ui| {
+            ui.add_space(8.0);
+            ui.vertical(|ui| {
+                let small = |text: String, color| {
+                    egui::Label::new(RichText::new(text).size(theme::SMALL_SIZE).color(color)).wrap()
+                };
+                for (title, times) in titles {
+                    let title = if times > 1 { format!("{title} ×{times}") } else { title };
+                    ui.add(small(title, theme::of(ui).dim));
+                }
+                ui.add(small(because.to_owned(), theme::of(ui).faint));
+            });
+        });
+        ui.allocate_space(vec2(0.0, 6.0));
+    }
+}

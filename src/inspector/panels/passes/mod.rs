@@ -1,0 +1,213 @@
+//! The passes of the frame as a tree: scene and lights, their passes in order, the draws of the
+//! selected one, what was left out, and why the selected pass is there.
+
+pub mod draws;
+pub mod fields;
+pub mod thumbnail;
+pub mod transport;
+
+use crate::capture::{Capture, FrameTarget, Image, Snapshot, Step};
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::theme;
+use crate::inspector::look::widgets;
+use crate::inspector::model::{Model, StepSearch};
+use crate::reading::counts;
+use crate::reading::format;
+use egui::{CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
+pub use fields::Passes;
+use std::sync::Arc;
+use thumbnail::{changed_aspect, colored_layer, paint_row_background, paint_thumbnail};
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
+    own.widgets.clear();
+    if let Some(search) = model.requests.search.take() {
+        own.search = Some(search);
+        own.search_wants_focus = true;
+    }
+    let Some(capture) = model.frame.capture.clone() else { return empty(ui, model) };
+    if capture.steps.is_empty() {
+        ui.label(theme::note("This capture has no passes."));
+        return;
+    }
+    transport::ui(ui, own, model);
+    purpose(ui, &capture.steps[model.selection.step.min(capture.steps.len() - 1)]);
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        tree(ui, own, model, &capture);
+        draws::left_out(ui, &capture.left_out);
+    });
+    model.selection.wants_scroll = false;
+}
+
+fn empty(ui: &mut Ui, model: &Model) {
+    let text = match &model.activity.job {
+        Some(_) => "The passes appear here as soon as the frame is captured.",
+        None => "Nothing is open. Open a scene, a model or a capture folder, or drop one onto this window.",
+    };
+    ui.add(egui::Label::new(theme::note(text)).wrap());
+}
+
+fn tree(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>) {
+    let filter = match &own.search {
+        Some(StepSearch::Find(words)) => words.clone(),
+        _ => String::new(),
+    };
+    let mut group = None;
+    let mut found = 0;
+    for (index, step) in capture.steps.iter().enumerate() {
+        if !transport::matches(step, &filter) {
+            continue;
+        }
+        found += 1;
+        if group.replace(step.light) != Some(step.light) {
+            let last = capture.steps[index..].iter().take_while(|other| other.light == step.light).count();
+            group_heading(ui, own, model, capture, step.light, index + last - 1);
+        }
+        pass_row(ui, own, model, capture, index);
+        if index == model.selection.step {
+            draws::of_step(ui, own, model, capture);
+        }
+    }
+    if found == 0 {
+        ui.add_space(8.0);
+        ui.label(theme::note("No pass has these words. Escape shows all again."));
+    }
+}
+
+/// What the passes below belong to; pressed it selects `last`, the last of them: the state after all.
+fn group_heading(
+    ui: &mut Ui,
+    own: &mut Passes,
+    model: &mut Model,
+    capture: &Capture,
+    light: Option<usize>,
+    last: usize,
+) {
+    ui.add_space(8.0);
+    let text = match light {
+        None => "Scene".to_owned(),
+        Some(index) => {
+            let kind = capture
+                .lights
+                .get(index)
+                .map_or("", |light| if light.position.w == 0.0 { " · directional" } else { " · point" });
+            format!("Light {}{kind}", index + 1)
+        }
+    };
+    let heading = ui.add(egui::Label::new(theme::note(&text)).selectable(false).sense(Sense::click()));
+    heading.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, false, &text));
+    own.widgets.push(heading.id);
+    widgets::keep_arrows(ui, &heading);
+    if heading.has_focus() {
+        let outline = Stroke::new(1.0, theme::of(ui).focus);
+        ui.painter().rect_stroke(heading.rect.expand(2.0), CornerRadius::same(2), outline, StrokeKind::Outside);
+    }
+    if heading.on_hover_text(format!("The state after step {}, the last of these", last + 1)).clicked() {
+        model.selection.playing = None;
+        model.select_step(last);
+    }
+    ui.add_space(2.0);
+}
+
+/// One pass: thumbnail of what it changed, number and name, what it drew, its time.
+fn pass_row(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>, index: usize) {
+    let step = &capture.steps[index];
+    let is_selected = index == model.selection.step && model.selection.draw.is_none();
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::PASS_ROW_HEIGHT), Sense::click());
+    let title = format!("{} · {}", index + 1, step.name);
+    response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &title));
+    own.widgets.push(response.id);
+    widgets::keep_arrows(ui, &response);
+    if is_selected && model.selection.wants_scroll {
+        response.scroll_to_me(None);
+    }
+    if response.clicked() {
+        model.selection.playing = None;
+        model.select_step(index);
+        model.selection.wants_scroll = false;
+    }
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    paint_row_background(ui, rect, is_selected, response.hovered(), response.has_focus());
+    let thumbnail = Rect::from_min_size(rect.min + vec2(8.0, 6.0), vec2(52.0, 32.0));
+    let changed = changed_picture(model, capture, index);
+    paint_thumbnail(ui, model, changed, thumbnail);
+    let time = format::milliseconds(step.gpu_ms);
+    let font = TextStyle::Monospace.resolve(ui.style());
+    let time_rect = ui.painter().text(
+        pos2(rect.right() - 8.0, rect.top() + 14.0),
+        egui::Align2::RIGHT_CENTER,
+        time,
+        font,
+        theme::of(ui).dim,
+    );
+    let left = thumbnail.right() + 8.0;
+    let room = time_rect.left() - left - 4.0;
+    theme::line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, theme::of(ui).text);
+    let is_touched = model.history_of_frame().is_some_and(|one| one.is_touched_by(index));
+    if is_touched {
+        pick_mark(ui, pos2(rect.right() - 14.0, rect.top() + 31.0), index);
+    }
+    let room = rect.right() - if is_touched { 26.0 } else { 8.0 } - left;
+    theme::line(ui, pos2(left, rect.top() + 23.0), room, &summary(step), TextStyle::Small, theme::of(ui).dim);
+}
+
+/// The crosshair of the pick, small: the pass did something to the picked pixel.
+fn pick_mark(ui: &Ui, at: egui::Pos2, index: usize) {
+    let place = Rect::from_center_size(at, egui::Vec2::splat(12.0));
+    let response = ui.interact(place, ui.scope_id().with(("pick mark", index)), Sense::hover());
+    let name = format!("pass {} touched the picked pixel", index + 1);
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+    let stroke = Stroke::new(1.2, theme::of(ui).text);
+    ui.painter().rect_stroke(
+        Rect::from_center_size(at, vec2(5.0, 5.0)),
+        CornerRadius::ZERO,
+        stroke,
+        StrokeKind::Middle,
+    );
+    for direction in [vec2(1.0, 0.0), vec2(-1.0, 0.0), vec2(0.0, 1.0), vec2(0.0, -1.0)] {
+        ui.painter().line_segment([at + direction * 3.5, at + direction * 6.0], stroke);
+    }
+    response.on_hover_text("This pass did something to the picked pixel");
+}
+
+fn summary(step: &Step) -> String {
+    if step.draws.is_empty() {
+        return "no draws".to_owned();
+    }
+    let draws = format::counted(step.draws.len() as u64, "draw");
+    format!("{draws} · {}", format::counted(step.triangles(), "triangle"))
+}
+
+/// What a step changed, as a picture with its colouring.
+fn changed_picture(model: &mut Model, capture: &Capture, index: usize) -> Option<(Arc<Image>, Coloring)> {
+    let step = capture.steps.get(index)?;
+    match &step.snapshot {
+        Snapshot::Map { light, face } => {
+            let map = capture.lights.get(*light)?.map.as_ref()?;
+            Some(colored_layer(model, capture, [*light, *face], map.faces.get(*face)?))
+        }
+        Snapshot::Frame(frame) if frame.target == FrameTarget::Count => {
+            counts::finished_by(capture, index).map(|(_, count)| (count.clone(), Coloring::Count))
+        }
+        Snapshot::Frame(frame) if frame.target == FrameTarget::Labels => {
+            Some((capture.lights.get(step.light?)?.shadow.clone()?, Coloring::Labels))
+        }
+        Snapshot::Frame(frame) => changed_aspect(model, capture, frame),
+    }
+}
+
+/// "Why this pass", at the panel's foot.
+fn purpose(ui: &mut Ui, step: &Step) {
+    let frame = egui::Frame::new().inner_margin(Margin { top: 8, ..Margin::ZERO });
+    let panel = egui::Panel::bottom("why this pass").frame(frame).show_separator_line(false).resizable(false);
+    panel.show(ui, |ui| {
+        theme::card(ui).show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            theme::heading(ui, "Why this pass");
+            ui.add(egui::Label::new(theme::note(step.purpose.as_str())).wrap());
+        });
+    });
+}

@@ -1,0 +1,70 @@
+//! Rows of the tree: their background, and the small picture of what a step or draw changed.
+
+use crate::capture::{Capture, FrameSnapshot, Image, PixelFormat};
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::texture::TextureSize;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::depth::{DepthMeasure, DepthScale};
+use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
+use std::sync::Arc;
+
+/// The background of a row of the tree, and the marks of what is selected or has the focus.
+pub fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: bool, has_focus: bool) {
+    let painter = ui.painter();
+    if is_selected {
+        painter.rect_filled(rect, CornerRadius::ZERO, theme::of(ui).selected_row);
+        let bar = Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
+        painter.rect_filled(bar, CornerRadius::ZERO, theme::of(ui).selected);
+    } else if is_hovered {
+        painter.rect_filled(rect, CornerRadius::ZERO, theme::of(ui).raised);
+    }
+    if has_focus {
+        painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::of(ui).focus), StrokeKind::Inside);
+    }
+}
+
+/// A layer of a light's map with its colouring.
+pub fn colored_layer(
+    model: &mut Model,
+    capture: &Capture,
+    [light, face]: [usize; 2],
+    image: &Arc<Image>,
+) -> (Arc<Image>, Coloring) {
+    if image.format() == PixelFormat::Rgba8 {
+        return (image.clone(), Coloring::Linear);
+    }
+    let measure = DepthMeasure::of_map(capture, light, face).unwrap_or(DepthMeasure::Raw);
+    let range = model.textures.depth_range(image, measure).unwrap_or([0.0, 1.0]);
+    (image.clone(), Coloring::Depth(DepthScale { measure, range }))
+}
+
+/// What a step or a draw changed of the picture.
+pub fn changed_aspect(model: &mut Model, capture: &Capture, frame: &FrameSnapshot) -> Option<(Arc<Image>, Coloring)> {
+    if !frame.color.unchanged {
+        return Some((frame.color.image.clone(), Coloring::Srgb));
+    }
+    if let Some(stencil) = frame.stencil.as_ref().filter(|stencil| !stencil.unchanged) {
+        return Some((stencil.image.clone(), Coloring::Stencil));
+    }
+    if !frame.depth.unchanged {
+        let measure = DepthMeasure::of_camera(capture);
+        let range = model.textures.depth_range(&frame.depth.image, measure).unwrap_or([0.0, 1.0]);
+        return Some((frame.depth.image.clone(), Coloring::Depth(DepthScale { measure, range })));
+    }
+    None
+}
+
+/// A small picture in its frame; the frame alone where there is none.
+pub fn paint_thumbnail(ui: &Ui, model: &mut Model, picture: Option<(Arc<Image>, Coloring)>, rect: Rect) {
+    let painter = ui.painter();
+    painter.rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
+    if let Some((image, coloring)) = picture {
+        let texture = model.textures.texture(ui.ctx(), &image, coloring, TextureSize::Thumbnail);
+        let size = texture.size_vec2();
+        let fitted = size * (rect.width() / size.x).min(rect.height() / size.y);
+        let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        painter.image(texture.id(), Rect::from_center_size(rect.center(), fitted), uv, Color32::WHITE);
+    }
+    painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, theme::of(ui).line), StrokeKind::Outside);
+}

@@ -1,0 +1,149 @@
+//! Step controls: back, forth, play, draw by draw, a scrubber, and the search fields of Ctrl-G and Ctrl-F.
+
+use super::fields::Passes;
+use crate::inspector::look::theme;
+use crate::inspector::look::widgets;
+use crate::inspector::model::{Model, StepSearch};
+use crate::reading::format;
+use egui::{Key, Ui, vec2};
+
+/// Draws the controls above the passes.
+pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
+    let steps = model.steps();
+    let mut ids = Vec::new();
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let back = ui.add_enabled(model.selection.step > 0, egui::Button::new(symbol("◀")));
+        let back = back.accessible_name("Previous step").on_hover_text("Previous step (left arrow)");
+        let forth = ui.add_enabled(model.selection.step + 1 < steps, egui::Button::new(symbol("▶")));
+        let forth = forth.accessible_name("Next step").on_hover_text("Next step (right arrow)");
+        let (sign, word) = if model.selection.playing.is_some() { ("■", "Pause") } else { ("▷", "Play") };
+        let play = ui.add_enabled(steps > 1, egui::Button::new((symbol(sign), word)));
+        let play = play.accessible_name(word).on_hover_text("Step through the frame (Space)");
+        if back.clicked() {
+            model.step_by(-1);
+        }
+        if forth.clicked() {
+            model.step_by(1);
+        }
+        if play.clicked() {
+            model.toggle_play(ui.input(|input| input.time));
+        }
+        ids.extend([back.id, forth.id, play.id]);
+        at_the_right(ui, format!("step {} of {steps}", model.selection.step + 1));
+    });
+    ids.extend(draw_controls(ui, model));
+    for id in &ids {
+        if let Some(response) = ui.ctx().read_response(*id) {
+            widgets::keep_arrows(ui, &response);
+        }
+    }
+    if steps > 1 {
+        ids.push(scrubber(ui, model, steps));
+    }
+    search(ui, own, model);
+    own.widgets.extend(ids);
+}
+
+/// Back and forth through the draws of the whole frame, and which one is selected.
+fn draw_controls(ui: &mut Ui, model: &mut Model) -> [egui::Id; 2] {
+    let Some(capture) = model.frame.capture.clone() else { return [egui::Id::NULL; 2] };
+    let at = model.selected();
+    let row = ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let back = ui.add_enabled(at.previous(&capture).is_some(), egui::Button::new(symbol("▲")));
+        let back = back.accessible_name("Previous draw").on_hover_text("Previous draw (up arrow)");
+        let forth = ui.add_enabled(at.next(&capture).is_some(), egui::Button::new(symbol("▼")));
+        let forth = forth.accessible_name("Next draw").on_hover_text("Next draw (down arrow)");
+        if back.clicked() {
+            model.draw_by(-1);
+        }
+        if forth.clicked() {
+            model.draw_by(1);
+        }
+        let draws = capture.steps.get(at.step).map_or(0, |step| step.draws.len());
+        let words = match at.draw {
+            Some(draw) => format!("draw {} of {draws}", draw + 1),
+            None if draws == 0 => "it draws nothing".to_owned(),
+            None => format!("after its {}", format::counted(draws as u64, "draw")),
+        };
+        at_the_right(ui, words);
+        [back.id, forth.id]
+    });
+    row.inner
+}
+
+/// Words in what is left of a row, cut short where that is little.
+fn at_the_right(ui: &mut Ui, words: String) {
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        ui.add(egui::Label::new(theme::note(words)).truncate());
+    });
+}
+
+/// A sign that only the monospaced face has.
+fn symbol(text: &str) -> egui::RichText {
+    theme::number(text)
+}
+
+fn scrubber(ui: &mut Ui, model: &mut Model, steps: usize) -> egui::Id {
+    ui.spacing_mut().slider_width = ui.available_width();
+    let mut number = model.selection.step + 1;
+    let slider = egui::Slider::new(&mut number, 1..=steps).show_value(false).trailing_fill(true);
+    let response = ui.add(slider).accessible_name("Step scrubber");
+    if response.changed() {
+        model.selection.playing = None;
+        model.select_step(number - 1);
+    }
+    response.id
+}
+
+/// The field of Ctrl-G or Ctrl-F while it is open: Enter goes, Escape closes.
+fn search(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
+    let Some(mut search) = own.search.take() else { return };
+    let (text, name, hint) = match &mut search {
+        StepSearch::GoTo(text) => (text, "Go to step", "step number"),
+        StepSearch::Find(text) => (text, "Find a pass", "name, light or caster"),
+    };
+    let field = egui::TextEdit::singleline(text).hint_text(hint).desired_width(f32::INFINITY).min_size(vec2(0.0, 22.0));
+    let field = field.align(egui::Align2::LEFT_CENTER);
+    let field = ui.add(field).accessible_name(name);
+    if own.search_wants_focus {
+        field.request_focus();
+        own.search_wants_focus = false;
+    }
+    let (entered, escaped) = ui.input(|input| (input.key_pressed(Key::Enter), input.key_pressed(Key::Escape)));
+    if field.lost_focus() && entered {
+        go(model, &search);
+    } else if !(field.lost_focus() && escaped) {
+        // A filter stays while it has words; an empty field that lost the focus goes.
+        let is_kept = field.has_focus() || matches!(&search, StepSearch::Find(words) if !words.is_empty());
+        own.search = (is_kept || field.gained_focus() || !field.lost_focus()).then_some(search);
+    }
+}
+
+fn go(model: &mut Model, search: &StepSearch) {
+    match search {
+        StepSearch::GoTo(text) => {
+            if let Ok(number) = text.trim().parse::<usize>() {
+                model.select_step(number.saturating_sub(1));
+            }
+        }
+        StepSearch::Find(words) => {
+            let Some(capture) = model.frame.capture.clone() else { return };
+            let found = capture.steps.iter().position(|step| matches(step, words));
+            if let Some(index) = found {
+                model.select_step(index);
+            }
+        }
+    }
+}
+
+/// Do a pass or its draws contain all words?
+#[must_use]
+pub fn matches(step: &crate::capture::Step, words: &str) -> bool {
+    let light = step.light.map_or_else(|| "scene".to_owned(), format::light);
+    let draws = step.draws.iter().flat_map(|draw| [draw.name.as_str(), draw.part.name()]);
+    let text =
+        [step.name.as_str(), light.as_str()].into_iter().chain(draws).collect::<Vec<_>>().join(" ").to_lowercase();
+    words.to_lowercase().split_whitespace().all(|word| text.contains(word))
+}

@@ -1,0 +1,97 @@
+//! The shown picture with what lies over it, for a file: overlays and the compared half, a pixel a texel.
+//!
+//! Pictures are laid over one another texel by texel. Lines, numbers and names are drawn by the code that draws them
+//! in the window, into a window of the picture's size that nobody sees; `look/triangles.rs` fills its triangles, which may take
+//! a while and needs nothing of the window: [`Drawing::finish`].
+
+use super::overlays;
+use super::{Layers, PicturePanel, compared_names, layers};
+use crate::capture::Capture;
+use crate::inspector::canvas::divider;
+use crate::inspector::canvas::placement::Placement;
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::texture;
+use crate::inspector::look::theme;
+use crate::inspector::look::triangles;
+use crate::inspector::model::Model;
+use crate::inspector::model::looking::Compare;
+use crate::picture::Picture;
+use crate::reading::shown::{PictureKind, Shown};
+use egui::epaint::{ClippedPrimitive, Primitive};
+use egui::{ColorImage, Context, Pos2, RawInput, Rect, Ui, vec2};
+
+/// Sides of a comparison have their names in pictures of this width on, pixels.
+const NAMED_FROM: u32 = 480;
+
+/// A picture, and triangles that are yet to be drawn over it.
+#[derive(Debug, Clone)]
+pub struct Drawing {
+    picture: Picture,
+    triangles: Vec<ClippedPrimitive>,
+    letters: ColorImage,
+}
+
+impl Drawing {
+    /// Draws the triangles: some tenths of a second where there are wireframes.
+    #[must_use]
+    pub fn finish(&self) -> Picture {
+        let mut picture = self.picture.clone();
+        for primitive in &self.triangles {
+            if let Primitive::Mesh(mesh) = &primitive.primitive {
+                triangles::fill(&mut picture, mesh, primitive.clip_rect, &self.letters);
+            }
+        }
+        picture
+    }
+}
+
+/// `shown`, which is one image, as it is drawn, but for the pick, handles, legends and cards. The divider stands over
+/// the texel over which it stands in the window.
+#[must_use]
+pub fn drawing(
+    own: &mut PicturePanel,
+    model: &mut Model,
+    capture: &Capture,
+    shown: &Shown,
+    coloring: (Coloring, [f64; 2]),
+) -> Drawing {
+    let size = shown.images[0].size();
+    let rect = Rect::from_min_size(Pos2::ZERO, vec2(size[0] as f32, size[1] as f32));
+    let seam = own.seam;
+    let compare = model.modes.compare;
+    let compare = compare.map(|compare| Compare { at: seam.unwrap_or(compare.at).clamp(0.0, 1.0), ..compare });
+    let mut picture = texture::picture(&shown.images[0], coloring.0);
+    let Layers { sheets, compared, .. } = layers(own, model, (capture, rect), shown, coloring, compare);
+    for sheet in &sheets {
+        let columns = sheet.part.left().round() as u32..sheet.part.right().round() as u32;
+        texture::lay_over(&mut picture, &sheet.image, sheet.coloring, columns);
+    }
+    let sides = compared.map(|compare| {
+        // In a small picture names would hide what they are of.
+        let is_named = size[0] >= NAMED_FROM;
+        (compare, if is_named { compared_names(model, capture, &compare) } else { Default::default() })
+    });
+    let placement = Placement { origin: Pos2::ZERO, scale: 1.0, size };
+    let (triangles, letters) = painted(rect, model.theme.in_egui(), |ui| {
+        if shown.kind != PictureKind::Map {
+            overlays::paint(ui, &mut own.overlays, &model.modes.overlays, rect, placement);
+        }
+        if let Some((compare, [beside, now])) = &sides {
+            divider::paint(ui, rect, compare, rect.width() * compare.at, [beside, now]);
+        }
+    });
+    Drawing { picture, triangles, letters }
+}
+
+/// What `paint` draws into a window of this size, a point a pixel, and the texture of its letters.
+fn painted(rect: Rect, theme: egui::Theme, mut paint: impl FnMut(&mut Ui)) -> (Vec<ClippedPrimitive>, ColorImage) {
+    let ctx = Context::default();
+    theme::apply(&ctx);
+    ctx.set_theme(theme);
+    let input = RawInput { screen_rect: Some(rect), ..RawInput::default() };
+    let mut output = ctx.run_ui(input, |ui| paint(ui));
+    let letters = triangles::letters(&output.textures_delta);
+    // They are drawn from this copy; egui takes dropping them for a bug otherwise.
+    output.textures_delta.clear();
+    (ctx.tessellate(output.shapes, output.pixels_per_point), letters)
+}

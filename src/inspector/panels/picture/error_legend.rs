@@ -1,0 +1,139 @@
+//! The legend of the error picture: how much is wrong and what the hatching means in two rows, so that little
+//! of the picture is hidden; a switch adds the sentence and the counts.
+
+use super::legend;
+use crate::accuracy::{ErrorCounts, Finding};
+use crate::inspector::look::findings::{self, Pattern, Style};
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::numbers::percent;
+use crate::reading::format;
+use crate::reading::shown::Shown;
+use egui::{Align, Button, Color32, CornerRadius, FontId, Label, Layout, Rect, Sense, Stroke, Ui};
+use egui::{Role, StrokeKind, WidgetInfo, pos2, vec2};
+
+/// Width where there is room, points: three findings side by side.
+pub const WIDTH: f32 = 320.0;
+/// Height of a line, and side of a swatch, points.
+const LINE: f32 = 18.0;
+const SWATCH: f32 = 12.0;
+/// What is wrong stands in the first row.
+const ORDER: [Finding; 6] = [
+    Finding::FalseShadow,
+    Finding::MissingShadow,
+    Finding::WrongSurface,
+    Finding::EdgeBand,
+    Finding::Agrees,
+    Finding::NotCompared,
+];
+
+/// Draws the legend of `shown`, which is an error picture.
+pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &Shown) {
+    ui.spacing_mut().interact_size.y = LINE;
+    let truth = model.frame.capture.as_ref().and_then(|capture| model.view.truth_to_show(capture));
+    let found = truth.map(|(_, truth)| (truth.error, truth.worst));
+    ui.horizontal(|ui| {
+        theme::heading(ui, &legend::title(shown));
+        if let Some((error, _)) = &found {
+            ui.label(theme::note(share(error)));
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let word = theme::switch_word(ui, "Counts", *counts).size(theme::SMALL_SIZE);
+            let switch = ui.add(Button::selectable(*counts, word).small());
+            if switch.on_hover_text("How many pixels there are of each kind, or only what the colours mean").clicked() {
+                *counts = !*counts;
+            }
+            if let Some(region) = found.and_then(|(_, worst)| worst) {
+                let button = ui.add(Button::new(theme::note("Largest")).small()).accessible_name("Go to the largest");
+                let hover = "Pick a pixel of the largest wrong patch, and show it large";
+                if button.on_hover_text(hover).clicked() {
+                    let [left, top, right, bottom] = region.bounds;
+                    model.go_to(region.at, (right - left).max(bottom - top) + 1);
+                }
+            }
+        });
+    });
+    let histogram = model.textures.histogram(&shown.images[0]);
+    let pixels = |finding: Finding| histogram[finding as usize];
+    if *counts {
+        if let Some((error, worst)) = &found {
+            ui.add(Label::new(theme::note(findings::sentence(error, worst.as_ref()))).wrap());
+        }
+        Finding::ALL.into_iter().for_each(|finding| counted(ui, finding, pixels(finding)));
+    } else {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(12.0, 0.0);
+            ORDER.into_iter().for_each(|finding| named(ui, finding, pixels(finding)));
+        });
+    }
+}
+
+/// How much of what was compared is wrong, in a few words.
+fn share(error: &ErrorCounts) -> String {
+    match (error.compared, error.wrong()) {
+        (0, _) => "nothing compared".to_owned(),
+        (_, 0) => "none wrong".to_owned(),
+        (compared, wrong) => format!("{} wrong", percent(wrong as f64 / compared as f64)),
+    }
+}
+
+/// Swatch and name, as one widget so that rows break between findings; faint where no pixel has it.
+fn named(ui: &mut Ui, finding: Finding, pixels: u64) {
+    let style = findings::style(finding);
+    let ink = if pixels > 0 { theme::of(ui).text } else { theme::of(ui).dim };
+    let name = style.name.to_owned();
+    let galley = ui.painter().layout_no_wrap(name, FontId::proportional(theme::SMALL_SIZE), ink);
+    let (rect, response) = ui.allocate_exact_size(vec2(SWATCH + 4.0 + galley.size().x, LINE), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, style.name));
+    let swatch = Rect::from_center_size(pos2(rect.left() + SWATCH / 2.0, rect.center().y), vec2(SWATCH, SWATCH));
+    paint(ui, swatch, style);
+    ui.painter().galley(pos2(swatch.right() + 4.0, rect.center().y - galley.size().y / 2.0), galley, ink);
+    response.on_hover_text(format!("{}. {}", format::counted(pixels, "pixel"), style.meaning));
+}
+
+/// A line: swatch, number and name, how many.
+fn counted(ui: &mut Ui, finding: Finding, pixels: u64) {
+    let style = findings::style(finding);
+    let line = ui.horizontal(|ui| {
+        hatched(ui, style);
+        ui.label(theme::number(format!("{} {}", finding as u8, style.name)).color(theme::of(ui).text));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(theme::number(format::count(pixels)).color(theme::of(ui).dim));
+        });
+    });
+    line.response.on_hover_text(style.meaning);
+}
+
+/// A swatch with the hatching of a finding.
+pub fn hatched(ui: &mut Ui, style: Style) {
+    let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, SWATCH), Sense::hover());
+    paint(ui, rect, style);
+}
+
+fn paint(ui: &Ui, rect: Rect, style: Style) {
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, CornerRadius::same(2), style.color);
+    let stroke = Stroke::new(1.5, style.color.lerp_to_gamma(Color32::BLACK, 0.6));
+    let (rising, falling) = match style.pattern {
+        Pattern::Rising => (true, false),
+        Pattern::Falling => (false, true),
+        Pattern::Crossed => (true, true),
+        Pattern::Plain => (false, false),
+        Pattern::Dotted => {
+            for (x, y) in [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)] {
+                painter.circle_filled(rect.lerp_inside(vec2(x, y)), 1.4, stroke.color);
+            }
+            (false, false)
+        }
+    };
+    for shift in [-6.0, 0.0, 6.0] {
+        let aside = vec2(shift, 0.0);
+        if rising {
+            painter.line_segment([rect.left_bottom() + aside, rect.right_top() + aside], stroke);
+        }
+        if falling {
+            painter.line_segment([rect.left_top() + aside, rect.right_bottom() + aside], stroke);
+        }
+    }
+    painter.rect_stroke(rect, CornerRadius::same(2), Stroke::new(1.0, theme::of(ui).faint), StrokeKind::Inside);
+}

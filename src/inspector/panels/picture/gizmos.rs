@@ -1,0 +1,89 @@
+//! Lights that are in view, as handles over the picture: dragged in the plane parallel to it.
+
+use crate::inspector::action::Action;
+use crate::inspector::canvas::handles::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
+use crate::inspector::canvas::placement::Placement;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::pick_ray;
+use crate::reading::shown::{PictureKind, Shown};
+use egui::{Color32, Pos2, Rect, Stroke, Ui, Vec2, pos2};
+use glam::DVec3;
+
+/// Side of what can be grabbed, points.
+const GRAB: f32 = 20.0;
+/// How far before the eye the handle of a directional light is put, metres: any distance shows its direction.
+const SUN: f64 = 10.0;
+
+/// The switch in the picture's toolbar.
+pub fn button(ui: &mut Ui, is_on: &mut bool, model: &Model) {
+    if model.scene.is_some() {
+        let word = theme::switch_word(ui, "Gizmos", *is_on);
+        let button = ui.add(egui::Button::selectable(*is_on, word));
+        if button.on_hover_text("Handles of the lights that are in view: drag them, or use the arrow keys").clicked() {
+            *is_on ^= true;
+        }
+    }
+}
+
+/// Draws the handles and moves the lights of the draft.
+pub fn ui(ui: &Ui, model: &mut Model, rect: Rect, shown: &Shown, placement: Placement, actions: &mut Vec<Action>) {
+    let (Some(capture), Some(scene)) = (&model.frame.capture, &mut model.scene) else { return };
+    if shown.kind == PictureKind::Map || model.walk.is_on() {
+        return;
+    }
+    let draft = &mut scene.draft;
+    let camera = capture.camera;
+    let anchor = Anchor { middle: camera.eye, reach: SUN };
+    let ahead = (camera.target - camera.eye).normalize_or_zero();
+    let whole = placement.rect().intersect(rect);
+    let mut changed = false;
+    for index in 0..draft.lights.len() {
+        let point = place_of_light(&draft.lights[index], draft.time, anchor);
+        let Some(texel) = pick_ray::texel_of(capture, point.extend(1.0)) else { continue };
+        let at = pos2(texel[0] as f32, texel[1] as f32).to_vec2() * placement.scale + placement.origin.to_vec2();
+        let at = at.to_pos2();
+        if !whole.is_positive() || !whole.contains(at) {
+            continue;
+        }
+        let id = ui.scope_id().with(("light in the picture", index));
+        let name = format!("{} in the picture", Grip::Light(index).name());
+        let response = grabbed(ui, id, Rect::from_center_size(at, Vec2::splat(GRAB)), &name);
+        let is_held = response.hovered() || response.dragged() || response.has_focus();
+        let response = response.on_hover_text(format!("{}: drag it, or use the arrow keys", Grip::Light(index).name()));
+        sign(ui, whole, at, is_held);
+        let mut by = response.drag_delta() / placement.scale;
+        if let Some([right, up]) = arrows(ui, &response) {
+            by += Vec2::new(right as f32, -up as f32) * placement.size[1] as f32;
+        }
+        if by == Vec2::ZERO {
+            continue;
+        }
+        let to = [texel[0] + f64::from(by.x), texel[1] + f64::from(by.y)];
+        let depth = (point - camera.eye).dot(ahead);
+        let moved: DVec3 = camera.eye + pick_ray::ray_at(capture, to) * depth - point;
+        draft.lights[index].position = moved_light(&draft.lights[index], draft.time, moved, anchor);
+        changed = true;
+    }
+    if changed {
+        model.run_draft(actions);
+    }
+}
+
+/// A sun, dark under light so that it shows on any picture.
+fn sign(ui: &Ui, whole: Rect, at: Pos2, is_held: bool) {
+    let painter = ui.painter_at(whole);
+    let colors = theme::of(ui);
+    let ink = theme::DARK.lit;
+    for (width, color) in [(4.0, Color32::from_black_alpha(150)), (1.8, ink)] {
+        for turn in 0..8 {
+            let ray = Vec2::angled(turn as f32 * std::f32::consts::FRAC_PI_4);
+            painter.line_segment([at + ray * 8.0, at + ray * 11.0], Stroke::new(width, color));
+        }
+        painter.circle_stroke(at, 5.0, Stroke::new(width, color));
+    }
+    painter.circle_filled(at, 4.5, ink);
+    if is_held {
+        painter.circle_stroke(at, 15.0, Stroke::new(1.5, colors.selected));
+    }
+}

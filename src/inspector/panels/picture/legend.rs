@@ -1,0 +1,269 @@
+//! The legend over the picture's upper right corner: what its colours mean, with counts, and the
+//! range of depths.
+
+use super::error_legend;
+use super::modes_legend;
+use crate::inspector::look::palette;
+use crate::inspector::look::texture::Shares;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::change::Change;
+use crate::reading::counts;
+use crate::reading::depth::DepthMeasure;
+use crate::reading::format;
+use crate::reading::layers::MapContent;
+use crate::reading::shown::{PictureKind, Shown};
+use egui::{Color32, CornerRadius, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
+
+/// Width of the legend, points.
+const WIDTH: f32 = 168.0;
+/// Stencil values that are listed one by one.
+const MOST_VALUES: usize = 12;
+/// Counts that eight bits would take for zero, listed one by one.
+const MOST_MISREAD: usize = 4;
+
+/// What the legend takes of a picture of this size, points.
+#[must_use]
+pub fn room(rect: Rect, shown: &Shown) -> f32 {
+    if fits(rect, shown.kind) { width(rect, shown.kind) + 12.0 } else { 0.0 }
+}
+
+fn fits(rect: Rect, kind: PictureKind) -> bool {
+    kind != PictureKind::Color && rect.width() >= WIDTH * 2.0
+}
+
+fn width(rect: Rect, kind: PictureKind) -> f32 {
+    if kind == PictureKind::Error { error_legend::WIDTH.min(rect.width() / 2.0 - 12.0).max(WIDTH) } else { WIDTH }
+}
+
+/// Draws the legend of `shown`; `range` is that of the grey ramp.
+pub fn ui(ui: &mut Ui, counts_findings: &mut bool, model: &mut Model, rect: Rect, shown: &Shown, range: [f64; 2]) {
+    if !fits(rect, shown.kind) {
+        return;
+    }
+    card(ui, rect, width(rect, shown.kind), |ui| match (shown.kind, model.modes.bit) {
+        (PictureKind::Stencil, Some(bit)) => modes_legend::bit(ui, model, shown, bit),
+        (PictureKind::Stencil, None) => stencil(ui, model, shown),
+        (PictureKind::Overdraw, _) => modes_legend::overdraw(ui, model, shown),
+        (PictureKind::Count, _) => signed_counts(ui, model, shown),
+        (PictureKind::Map, _) if shown.is_let_through() => let_through(ui, model, shown),
+        (PictureKind::Mask | PictureKind::Truth, _) => labels(ui, model, shown),
+        (PictureKind::Error, _) => error_legend::ui(ui, counts_findings, model, shown),
+        _ => depth(ui, model, shown, range),
+    });
+}
+
+/// Draws the legend of what a step changed.
+pub fn of_change(ui: &mut Ui, rect: Rect, change: &Change) {
+    if rect.width() >= WIDTH * 2.0 {
+        card(ui, rect, WIDTH, |ui| modes_legend::change(ui, change));
+    }
+}
+
+/// A card in the upper right corner of `rect`.
+fn card(ui: &mut Ui, rect: Rect, width: f32, contents: impl FnOnce(&mut Ui)) {
+    let corner = Rect::from_min_size(pos2(rect.right() - width - 12.0, rect.top() + 12.0), vec2(width, rect.height()));
+    // Senses clicks, so that they do not reach the picture underneath.
+    let builder = UiBuilder::new().max_rect(corner).sense(Sense::CLICK | Sense::DRAG).id_salt("legend");
+    ui.scope_builder(builder, |ui| {
+        let frame = theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94));
+        frame.show(ui, |ui| {
+            ui.set_width(width - 16.0);
+            ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
+            contents(ui);
+        });
+    });
+}
+
+fn stencil(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+    let histogram = model.textures.histogram(&shown.images[0]);
+    let are_counts = model.frame.capture.as_ref().is_some_and(|capture| capture.counts_volumes());
+    theme::heading(ui, if are_counts { "Stencil count" } else { "Stencil value" });
+    // 0, 1, 2 … and then −1, −2 …: the order in which people think of them.
+    let values = (0..=127).chain((128..=255).rev()).map(|value: u8| (value, histogram[usize::from(value)]));
+    let (listed, rest) = most_frequent(values.filter(|(_, pixels)| *pixels > 0).collect(), MOST_VALUES);
+    let most = listed.iter().map(|(_, pixels)| *pixels).max().unwrap_or(0);
+    for (value, pixels) in listed {
+        entry(ui, palette::stencil(value), &crate::numbers::signed(value), pixels);
+        modes_legend::bar(ui, pixels, most);
+    }
+    more_values(ui, &rest);
+}
+
+/// Values with how many pixels have each.
+type Counted<V> = Vec<(V, u64)>;
+
+/// As many values as are listed, those of the most pixels, and the rest; both in the order given.
+fn most_frequent<V>(values: Counted<V>, most: usize) -> (Counted<V>, Counted<V>) {
+    let mut by_pixels: Vec<usize> = (0..values.len()).collect();
+    by_pixels.sort_by_key(|index| std::cmp::Reverse(values[*index].1));
+    let listed: std::collections::BTreeSet<usize> = by_pixels.into_iter().take(most).collect();
+    let (listed, rest): (Vec<_>, Vec<_>) =
+        values.into_iter().enumerate().partition(|(index, _)| listed.contains(index));
+    let value = |(_, value): (usize, (V, u64))| value;
+    (listed.into_iter().map(value).collect(), rest.into_iter().map(value).collect())
+}
+
+fn more_values<V>(ui: &mut Ui, rest: &[(V, u64)]) {
+    if !rest.is_empty() {
+        let pixels = format::count(rest.iter().map(|(_, pixels)| pixels).sum());
+        let more = format::counted(rest.len() as u64, "more value");
+        ui.label(theme::note(format!("{more} · {pixels}")))
+            .on_hover_text("Those above have the most pixels; any other shows its number in the picture, when large");
+    }
+}
+
+/// Signed counts; those that eight bits would take for zero apart.
+fn signed_counts(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+    let tally = model.textures.tally(&shown.images[0]);
+    theme::heading(ui, &title(shown));
+    let in_order = tally.range(0..).chain(tally.range(..0).rev()).map(|(count, pixels)| (*count as f32, *pixels));
+    let (misread, read): (Vec<_>, Vec<_>) = in_order.partition(|(count, _)| counts::reads_zero_in_eight_bits(*count));
+    let list = |ui: &mut Ui, values, most| {
+        let (listed, rest) = most_frequent(values, most);
+        for (count, pixels) in listed {
+            let hover = format!("In eight bits it would read {}", counts::in_eight_bits(count));
+            entry(ui, palette::count(count), &counts::text(count), pixels).on_hover_text(hover);
+        }
+        more_values(ui, &rest);
+    };
+    list(ui, read, MOST_VALUES);
+    if !misread.is_empty() {
+        ui.add_space(4.0);
+        ui.label(theme::note("would read 0 in eight bits"))
+            .on_hover_text("Multiples of 256: a stencil buffer would take these pixels for lit");
+        list(ui, misread, MOST_MISREAD);
+    }
+}
+
+/// What white, black and colours mean where a picture holds what light comes through.
+fn let_through(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+    let content = model.frame.capture.as_ref().and_then(|capture| MapContent::of_capture(capture));
+    let arrives = content == Some(MapContent::Textures);
+    theme::heading(ui, if arrives { "Light that arrives" } else { "Light let through" });
+    let mut total = Shares::default();
+    for image in &shown.images {
+        let shares = model.textures.shares(image);
+        total.all += shares.all;
+        total.none += shares.none;
+        total.part += shares.part;
+    }
+    entry(ui, Color32::WHITE, "all of it", total.all).on_hover_text("White: nothing is in the light's way");
+    entry(ui, Color32::BLACK, "none of it", total.none).on_hover_text("Black: an opaque caster is in its way");
+    let part = "A colour: so much of the light's red, green and blue comes through a translucent caster. Stored are \
+                linear shares; they are encoded for the screen";
+    let line = entry_with(ui, "a part", total.part, |ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+        let third = rect.width() / 3.0;
+        for (place, color) in [Color32::RED, Color32::GREEN, Color32::BLUE].into_iter().enumerate() {
+            let corner = pos2(rect.left() + place as f32 * third, rect.top());
+            let slice = Rect::from_min_size(corner, vec2(third, rect.height()));
+            ui.painter().rect_filled(slice, CornerRadius::ZERO, color.lerp_to_gamma(Color32::GRAY, 0.4));
+        }
+        let outline = egui::Stroke::new(1.0, theme::of(ui).faint);
+        ui.painter().rect_stroke(rect, CornerRadius::same(2), outline, egui::StrokeKind::Inside);
+    });
+    line.on_hover_text(part);
+    if let [layer] = &shown.layers[..]
+        && let Some(note) = layer.note
+    {
+        ui.add(egui::Label::new(theme::note(note)).wrap());
+    }
+}
+
+fn labels(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+    let histogram = model.textures.histogram(&shown.images[0]);
+    theme::heading(ui, &title(shown));
+    for (value, label) in palette::LABELS.iter().enumerate() {
+        let text = format!("{value} {}", label.name);
+        entry(ui, label.color, &text, histogram[value]).on_hover_text(label.meaning);
+    }
+    let others: u64 = histogram[palette::LABELS.len()..].iter().sum();
+    if others > 0 {
+        ui.label(theme::note(format!("other values · {}", format::count(others))));
+    }
+}
+
+/// `Mask, light 1`.
+#[must_use]
+pub fn title(shown: &Shown) -> String {
+    let of = shown.title.split_once(" of ").map_or(shown.title.as_str(), |(_, of)| of);
+    let kind = match shown.kind {
+        PictureKind::Count => "Count",
+        PictureKind::Mask => "Mask",
+        PictureKind::Truth => "Truth",
+        _ => "Error",
+    };
+    format!("{kind}, {of}")
+}
+
+/// A line of the legend: colour, value, how many.
+pub fn entry(ui: &mut Ui, color: Color32, name: &str, pixels: u64) -> egui::Response {
+    entry_with(ui, name, pixels, |ui| theme::swatch(ui, color))
+}
+
+fn entry_with(ui: &mut Ui, name: &str, pixels: u64, swatch: impl FnOnce(&mut Ui)) -> egui::Response {
+    let line = ui.horizontal(|ui| {
+        swatch(ui);
+        ui.label(theme::number(name).color(theme::of(ui).text));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(theme::number(format::count(pixels)).color(theme::of(ui).dim));
+        });
+    });
+    line.response
+}
+
+/// The grey ramp with its ends and handles.
+fn depth(ui: &mut Ui, model: &mut Model, shown: &Shown, range: [f64; 2]) {
+    let is_raw = shown.measure == DepthMeasure::Raw;
+    theme::heading(ui, if is_raw { "Depth as stored" } else { "Distance" });
+    let full = model.full_range(shown);
+    if full[1] > full[0] {
+        modes_legend::depth_bars(ui, model, shown, range, full);
+    }
+    ramp(ui, is_raw);
+    let unit = |value: f64| if is_raw { format::digits(value) } else { format::metres(value) };
+    ui.horizontal(|ui| {
+        ui.label(theme::number(unit(range[0])).color(theme::of(ui).text));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(theme::number(unit(range[1])).color(theme::of(ui).text));
+        });
+    });
+    if full[1] > full[0] {
+        handles(ui, model, range, full);
+    }
+    ui.horizontal(|ui| {
+        let is_fitted = model.view.depth_range.is_none();
+        let fit = ui.add_enabled(!is_fitted, egui::Button::new("Autofit").small());
+        if fit.on_hover_text("From the nearest to the farthest surface").clicked() {
+            model.view.depth_range = None;
+        }
+        theme::swatch(ui, palette::NO_SURFACE);
+        ui.label(RichText::new("no surface").size(theme::SMALL_SIZE).color(theme::of(ui).dim));
+    });
+}
+
+fn handles(ui: &mut Ui, model: &mut Model, range: [f64; 2], full: [f64; 2]) {
+    ui.spacing_mut().slider_width = ui.available_width();
+    // Where the user's range came from another picture, the handles still reach its ends.
+    let [mut low, mut high] = range;
+    let limits = full[0].min(low)..=full[1].max(high);
+    let slider = egui::RangeSlider::new(&mut low, &mut high, limits).show_value(false).smart_aim(false);
+    if ui.add(slider).accessible_name("Depth range").changed() {
+        model.view.depth_range = Some([low, high]);
+    }
+}
+
+/// Near is light; a stored depth is small where it is far.
+fn ramp(ui: &mut Ui, is_raw: bool) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 8.0), Sense::hover());
+    let steps = 48;
+    let width = rect.width() / steps as f32;
+    for step in 0..steps {
+        let place = step as f32 / (steps - 1) as f32;
+        let left = rect.left() + step as f32 * width;
+        let slice = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width + 0.5, rect.bottom()));
+        let color = palette::near_far(if is_raw { 1.0 - place } else { place });
+        ui.painter().rect_filled(slice, CornerRadius::ZERO, color);
+    }
+}

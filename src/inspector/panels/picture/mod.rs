@@ -1,0 +1,400 @@
+//! The picture panel: which picture, its tools, and the picture itself.
+
+pub mod as_shown;
+pub mod error_legend;
+pub mod face_grid;
+pub mod gizmos;
+pub mod legend;
+pub mod modes_bar;
+pub mod modes_legend;
+pub mod outline;
+pub mod overlays;
+pub mod truth_note;
+pub mod walking;
+
+use crate::capture::{Capture, Image};
+use crate::inspector::action::Action;
+use crate::inspector::canvas::divider;
+use crate::inspector::canvas::magnifier;
+use crate::inspector::canvas::{self, Canvas, Sheet, marks};
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::theme;
+use crate::inspector::look::widgets::segments;
+use crate::inspector::model::Model;
+use crate::inspector::model::looking::{Compare, With};
+use crate::inspector::model::looking::{NoBefore, Phase, has_phases};
+use crate::inspector::model::selection::Hover;
+use crate::reading::change::{Change, ChangeCache};
+use crate::reading::format;
+use crate::reading::layers::{self, MapContent};
+use crate::reading::shown::{DepthMode, FaceChoice, PictureKind, Shown, Zoom, available};
+use egui::{CornerRadius, Margin, Rect, Ui, pos2, vec2};
+use overlays::Overlays;
+use std::sync::Arc;
+
+/// What is compared with has its place at the right end of the second row where so much is left there, points.
+const COMPARE_WIDTH: f32 = 232.0;
+
+/// The panel.
+#[derive(Debug, Default)]
+pub struct PicturePanel {
+    /// What overlays draw.
+    overlays: Overlays,
+    /// What changed, made once.
+    changes: ChangeCache,
+    /// Lights in view are handles.
+    has_gizmos: bool,
+    /// Where the divider was last: 0 at the picture's left border, 1 at its right one.
+    seam: Option<f32>,
+    /// The legend of the error picture counts, and does not only say what colours mean.
+    counts_findings: bool,
+    /// The frame that the caches are of.
+    frame: u64,
+}
+
+impl PicturePanel {
+    /// What was made of a frame that is shown no more goes.
+    fn follow(&mut self, frame: u64) {
+        if std::mem::replace(&mut self.frame, frame) != frame {
+            self.changes.forget();
+            self.overlays = Overlays::default();
+        }
+    }
+}
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut Vec<Action>) {
+    own.follow(model.frame.number);
+    model.selection.hover = None;
+    let Some(capture) = model.frame.capture.clone() else { return empty(ui, model) };
+    toolbar(ui, own, model, &capture);
+    let rect = ui.available_rect_before_wrap();
+    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
+    let Some(shown) = model.shown(&capture) else { return nothing(ui, model, &capture, rect) };
+    let (coloring, range) = model.shown_coloring(&shown);
+    let corners = walking::under_banner(model, rect);
+    if shown.images.len() == 1 {
+        single(ui, own, model, (&capture, rect), &shown, (coloring, range), actions);
+    } else {
+        face_grid::ui(ui, model, rect, &shown, coloring);
+        legend::ui(ui, &mut own.counts_findings, model, corners, &shown, range);
+    }
+    truth_note::ui(ui, model, corners, &shown);
+    if model.view.kind == PictureKind::Overdraw && shown.kind != PictureKind::Overdraw {
+        overlays::counting_note(ui, model, corners);
+    }
+    walking::banner(ui, model, rect);
+}
+
+/// One picture with what is over it: what changed, or what is compared.
+fn single(
+    ui: &mut Ui,
+    own: &mut PicturePanel,
+    model: &mut Model,
+    (capture, rect): (&Capture, Rect),
+    shown: &Shown,
+    (coloring, range): (Coloring, [f64; 2]),
+    actions: &mut Vec<Action>,
+) {
+    let Layers { change, sheets, compared } =
+        layers(own, model, (capture, rect), shown, (coloring, range), model.modes.compare);
+    let canvas = Canvas {
+        name: canvas::PICTURE,
+        view: &mut model.view,
+        pick: model.selection.pick_of(shown.kind),
+        textures: &mut model.textures,
+    };
+    let (placement, hover) = canvas::ui(ui, canvas, rect, shown, coloring, &sheets);
+    model.selection.hover = hover.map(|at| Hover { image: 0, at });
+    overlays::ui(ui, &mut own.overlays, model, rect, shown, placement);
+    if shown.kind != PictureKind::Map {
+        let mesh = marks(placement, &model.selection.readers, theme::of(ui).selected);
+        ui.painter_at(placement.rect().intersect(rect)).add(egui::Shape::mesh(mesh));
+        // Lines and marks must not hide it.
+        if let Some(at) = model.selection.pick {
+            canvas::crosshair(&ui.painter_at(rect), placement.rect_of(at));
+        }
+    }
+    outline::ui(ui, model, rect, shown, placement);
+    if own.has_gizmos {
+        gizmos::ui(ui, model, rect, shown, placement, actions);
+    }
+    let corners = walking::under_banner(model, rect);
+    match &change {
+        Some(change) => legend::of_change(ui, corners, change),
+        None => {
+            if let Some(pick) = *model.selection.pick_of(shown.kind) {
+                magnifier::ui(ui, pick, rect, shown, coloring, placement);
+            }
+            legend::ui(ui, &mut own.counts_findings, model, corners, shown, range);
+        }
+    }
+    modes_bar::compare_note(ui, &mut own.changes, model, capture, shown, corners);
+    own.seam = compared.map(|compare| {
+        let x = rect.left() + rect.width() * compare.at;
+        placement.texel_position(pos2(x, rect.top())).x / shown.images[0].size()[0].max(1) as f32
+    });
+    if let Some(mut compare) = compared {
+        let [beside, now] = compared_names(model, capture, &compare);
+        divider::ui(ui, rect, &mut compare, [&beside, &now]);
+        model.modes.compare = Some(compare);
+    }
+}
+
+/// What lies over a picture.
+pub struct Layers {
+    /// What the step changed.
+    pub change: Option<Change>,
+    /// The pictures, in the order in which they lie.
+    pub sheets: Vec<Sheet>,
+    /// The comparison, where there is something to compare with.
+    pub compared: Option<Compare>,
+}
+
+/// What lies over `shown` in `rect`: what changed, tints, and on one side of `compare`'s divider what is compared.
+pub fn layers(
+    own: &mut PicturePanel,
+    model: &mut Model,
+    (capture, rect): (&Capture, Rect),
+    shown: &Shown,
+    (coloring, range): (Coloring, [f64; 2]),
+    compare: Option<Compare>,
+) -> Layers {
+    let mut sheets = Vec::new();
+    let change = change_of(own, model, capture, shown);
+    if let Some((ground, change)) = &change {
+        let sheet = |image: &Arc<Image>, coloring, has_numbers| Sheet {
+            image: image.clone(),
+            coloring,
+            part: rect,
+            has_numbers,
+        };
+        sheets.push(sheet(ground, Coloring::Srgb, false));
+        sheets.push(sheet(&change.image, Coloring::of_change(change.kind), true));
+    }
+    sheets.extend(overlays::sheets(&mut own.overlays, model, capture, shown, rect));
+    let compared = compare.and_then(|compare| Some((compare, model.shown_compared(capture, shown).ok()?)));
+    if let Some((compare, other)) = &compared {
+        let mut beside = Coloring::of_shown(other, range);
+        if let Coloring::Bit(_) = coloring {
+            beside = coloring;
+        }
+        let part = divider::part(rect, compare);
+        sheets.push(Sheet { image: other.images[0].clone(), coloring: beside, part, has_numbers: true });
+    }
+    Layers { change: change.map(|(_, change)| change), sheets, compared: compared.map(|(compare, _)| compare) }
+}
+
+/// What the sides of a comparison are called: the compared one, and the one that is shown.
+pub fn compared_names(model: &Model, capture: &Capture, compare: &Compare) -> [String; 2] {
+    let now = match compare.with {
+        With::Step(_) => model.moment().words(),
+        With::Technique(_) => capture.technique.clone(),
+    };
+    [compare.with.words(capture), now]
+}
+
+/// What the selected step or draw changed, over the frame's colours in grey; `None` where that is not shown.
+pub fn change_of(
+    own: &mut PicturePanel,
+    model: &Model,
+    capture: &Capture,
+    shown: &Shown,
+) -> Option<(Arc<Image>, Change)> {
+    if model.modes.phase != Phase::Diff || !has_phases(shown.kind) {
+        return None;
+    }
+    let before = model.shown_before(capture).ok().filter(|before| before.kind == shown.kind)?;
+    let change = own.changes.change([&before.images[0], &shown.images[0]], shown.measure)?;
+    // Of counts and depths it is the finished frame that shows where one is.
+    let at = if shown.kind == PictureKind::Color { model.moment() } else { capture.steps.len().checked_sub(1)?.into() };
+    let colors = at.frame(capture)?.color.image.clone();
+    Some((own.changes.ground(&colors), change))
+}
+
+/// There is no picture, and why.
+fn nothing(ui: &mut Ui, model: &Model, capture: &Capture, rect: Rect) {
+    let text = match model.modes.phase {
+        Phase::Before => model.shown_before(capture).err().map(NoBefore::sentence),
+        Phase::After | Phase::Diff => None,
+    };
+    let text = text.unwrap_or("Nothing is drawn into the picture yet at this step.");
+    let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 32.0).min(420.0), 48.0));
+    ui.put(place, egui::Label::new(theme::note(text)).wrap());
+}
+
+fn empty(ui: &mut Ui, model: &Model) {
+    let rect = ui.available_rect_before_wrap();
+    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
+    let lines = match &model.activity.job {
+        Some(job) => [job.as_str(), ""],
+        None => ["Nothing is open yet.", "Press Open…, or drop a scene, a model or a capture folder here."],
+    };
+    let middle = Rect::from_center_size(rect.center(), vec2(rect.width().min(420.0), 60.0));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(middle), |ui| {
+        ui.vertical_centered(|ui| {
+            theme::heading(ui, lines[0]);
+            ui.label(theme::note(lines[1]));
+        });
+    });
+}
+
+/// Two rows in every window, and what is always there first: nothing moves when tools of one kind of picture
+/// come and go, and the picture keeps its place.
+fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
+    egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
+        let shown = model.shown(capture);
+        ui.horizontal(|ui| {
+            kinds(ui, model, capture);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| zoom(ui, own, model, capture));
+        });
+        let mut has_place = true;
+        // As high as segments are, whether there are any or not.
+        let row = vec2(ui.available_width(), theme::ROW_HEIGHT + 2.0);
+        ui.allocate_ui_with_layout(row, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            modes_bar::ui(ui, model, shown.as_ref());
+            options(ui, model, capture, shown.as_ref());
+            has_place = ui.available_width() >= COMPARE_WIDTH;
+            if has_place {
+                modes_bar::compare_row(ui, model, capture);
+            }
+        });
+        if !has_place && model.modes.compare.is_some() {
+            ui.horizontal(|ui| modes_bar::compare_row(ui, model, capture));
+        }
+    });
+}
+
+/// What goes with one kind of picture only.
+fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Shown>) {
+    match shown.map(|shown| shown.kind) {
+        Some(PictureKind::Count) => lights(ui, model, capture, |light| light.count.is_some()),
+        Some(PictureKind::Mask) => lights(ui, model, capture, |light| light.shadow.is_some()),
+        Some(PictureKind::Truth | PictureKind::Error) => {
+            lights(ui, model, capture, |light| light.shadow.is_some() || light.truth.is_some());
+        }
+        Some(PictureKind::Map) => {
+            lights(ui, model, capture, |light| light.map.is_some());
+            map_layers(ui, model, capture);
+            if MapContent::of_capture(capture) == Some(MapContent::Depth) {
+                depth_mode(ui, model);
+            }
+        }
+        Some(PictureKind::Depth) => depth_mode(ui, model),
+        _ => {}
+    }
+}
+
+/// A button for each kind of picture that exists at this step.
+fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
+    let kinds = available(capture, model.moment());
+    let labels: Vec<(&str, &str)> = kinds.iter().map(|kind| (kind.name(capture), kind.meaning(capture))).collect();
+    // What was chosen, even while its truth is not known yet.
+    let is_made_later = model.view.kind.needs_truth() || model.view.kind == PictureKind::Overdraw;
+    let is_asked_for = is_made_later && kinds.contains(&model.view.kind);
+    let shown = || model.shown(capture).map(|shown| shown.kind);
+    let current = if is_asked_for { Some(model.view.kind) } else { shown() };
+    let chosen = kinds.iter().position(|kind| Some(*kind) == current);
+    if let Some(index) = segments(ui, &labels, chosen) {
+        model.choose_picture(kinds[index]);
+    }
+}
+
+/// Which light's mask or map, where there are several.
+fn lights(
+    ui: &mut Ui,
+    model: &mut Model,
+    capture: &Capture,
+    has: impl Fn(&crate::capture::CapturedLight) -> bool + Copy,
+) {
+    let lights: Vec<usize> = (0..capture.lights.len()).filter(|index| has(&capture.lights[*index])).collect();
+    if lights.len() < 2 {
+        return;
+    }
+    let Some(current) = model.view.light_with(capture, has) else { return };
+    let combo = egui::ComboBox::new("picture light", "").width(72.0).selected_text(format::light(current));
+    let combo = combo.show_ui(ui, |ui| {
+        for index in lights {
+            ui.selectable_value(&mut model.view.light, index, format::light(index));
+        }
+    });
+    combo.response.accessible_name("Light of the picture");
+}
+
+/// Which layer of a map, or all.
+fn map_layers(ui: &mut Ui, model: &mut Model, capture: &Capture) {
+    let Some(light) = model.view.light_with(capture, |light| light.map.is_some()) else { return };
+    let layers = layers::layers(capture, light);
+    if layers.len() < 2 {
+        return;
+    }
+    let chosen = match model.view.face {
+        FaceChoice::One(layer) if layer < layers.len() => layer + 1,
+        _ => 0,
+    };
+    let choice = if MapContent::of(capture, light) == Some(MapContent::Depth) {
+        let mut labels = vec![("All", "All faces of the cube")];
+        labels.extend(layers.iter().map(|layer| (layer.name.as_str(), "One face of the cube")));
+        segments(ui, &labels, Some(chosen))
+    } else {
+        layer_list(ui, &layers, chosen)
+    };
+    if let Some(index) = choice {
+        model.view.face = index.checked_sub(1).map_or(FaceChoice::Grid, FaceChoice::One);
+        model.selection.map_pick = None;
+    }
+}
+
+/// Names too long and too many for buttons.
+fn layer_list(ui: &mut Ui, layers: &[layers::Layer], mut chosen: usize) -> Option<usize> {
+    let before = chosen;
+    let all = format!("All {}", layers.len());
+    let current = chosen.checked_sub(1).map_or(all.as_str(), |layer| &layers[layer].name);
+    let combo = egui::ComboBox::new("picture layer", "").width(112.0).selected_text(current).truncate();
+    let combo = combo.show_ui(ui, |ui| {
+        ui.selectable_value(&mut chosen, 0, all.as_str());
+        for (index, layer) in layers.iter().enumerate() {
+            let ink = if layer.note.is_some() { theme::of(ui).dim } else { theme::of(ui).text };
+            let text = egui::RichText::new(&layer.full_name).color(ink);
+            let response = ui.selectable_value(&mut chosen, index + 1, text);
+            if let Some(note) = layer.note {
+                response.on_hover_text(note);
+            }
+        }
+    });
+    combo.response.accessible_name("Layer of the picture");
+    (chosen != before).then_some(chosen)
+}
+
+fn depth_mode(ui: &mut Ui, model: &mut Model) {
+    let labels = [("Linear", "The distance in metres"), ("Raw", "As stored: 1 at the near plane, 0 at infinity")];
+    let chosen = usize::from(model.view.depth_mode == DepthMode::Raw);
+    if let Some(index) = segments(ui, &labels, Some(chosen)) {
+        model.view.depth_mode = if index == 0 { DepthMode::Linear } else { DepthMode::Raw };
+        model.view.depth_range = None;
+    }
+}
+
+/// Right to left: Fit, 1:1, the other buttons, and the zoom in per cent where it moves none of them.
+fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
+    let size = model.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));
+    let Some(size) = size else { return };
+    let fits = model.view.zoom == Zoom::Fit;
+    let word = theme::switch_word(ui, "Fit", fits);
+    if ui.add(egui::Button::selectable(fits, word)).on_hover_text("The whole picture").clicked() {
+        model.view.zoom = Zoom::Fit;
+    }
+    let is_exact = model.view.zoom == Zoom::Pixels(1.0);
+    let word = theme::switch_word(ui, "1:1", is_exact);
+    if ui.add(egui::Button::selectable(is_exact, word)).on_hover_text("One screen pixel a texel").clicked() {
+        if fits {
+            model.view.center = size.map(|side| f64::from(side) / 2.0);
+        }
+        model.view.zoom = Zoom::Pixels(1.0);
+    }
+    gizmos::button(ui, &mut own.has_gizmos, model);
+    walking::button(ui, model);
+    if let Zoom::Pixels(pixels) = model.view.zoom {
+        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
+    }
+}

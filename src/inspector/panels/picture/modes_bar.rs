@@ -1,0 +1,129 @@
+//! The picture's second row of tools: what to draw over it and what to compare with; before, after, what
+//! changed; bits of the stencil.
+
+use super::overlays;
+use crate::capture::Capture;
+use crate::inspector::look::theme;
+use crate::inspector::look::widgets::segments;
+use crate::inspector::model::Model;
+use crate::inspector::model::looking::{self, Compare, Phase, With, has_phases, step_words};
+use crate::reading::change::ChangeCache;
+use crate::reading::shown::{PictureKind, Shown};
+use crate::technique::Technique;
+use egui::{Align, Button, Layout, Rect, Ui, UiBuilder, vec2};
+
+/// Width of the note on a comparison, points.
+const NOTE_WIDTH: f32 = 232.0;
+
+/// Draws the tools that go with `shown`: those that are always there first, so that they keep their place.
+pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&Shown>) {
+    let kind = shown.map_or(model.view.kind, |shown| shown.kind);
+    let is_single = shown.is_none_or(|shown| shown.images.len() == 1);
+    ui.add_enabled_ui(is_single, |ui| {
+        toggle(ui, model);
+        overlays::menu(ui, model);
+    });
+    phases(ui, model, kind);
+    if kind == PictureKind::Stencil {
+        bits(ui, model);
+    }
+}
+
+fn phases(ui: &mut Ui, model: &mut Model, kind: PictureKind) {
+    if !has_phases(kind) {
+        return;
+    }
+    let chosen = Phase::ALL.iter().position(|phase| *phase == model.modes.phase);
+    if let Some(index) = segments(ui, &Phase::LABELS, chosen) {
+        model.modes.phase = Phase::ALL[index];
+    }
+}
+
+fn bits(ui: &mut Ui, model: &mut Model) {
+    let name = |bit: Option<u8>| bit.map_or_else(|| "All bits".to_owned(), |bit| format!("Bit {bit}"));
+    let combo = egui::ComboBox::new("picture bits", "").width(76.0).selected_text(name(model.modes.bit));
+    let combo = combo.show_ui(ui, |ui| {
+        for bit in std::iter::once(None).chain((0..8).map(Some)) {
+            ui.selectable_value(&mut model.modes.bit, bit, name(bit));
+        }
+    });
+    let hover = "One bit of every value as a plane of its own; bit 0 is the lowest";
+    combo.response.on_hover_text(hover).accessible_name("Bits of the stencil");
+}
+
+fn toggle(ui: &mut Ui, model: &mut Model) {
+    let is_on = model.modes.compare.is_some();
+    let word = theme::switch_word(ui, "Compare", is_on);
+    let button = ui.add(Button::selectable(is_on, word));
+    let button = button.on_disabled_hover_text("Several pictures at once: choose one of them to compare it");
+    if button.on_hover_text("Another step or technique beside this picture, under a divider").clicked() {
+        model.modes.compare = if is_on { None } else { Some(Compare::new(model.selection.step)) };
+    }
+}
+
+/// What is compared with, flush right; drawn while comparing.
+pub fn compare_row(ui: &mut Ui, model: &mut Model, capture: &Capture) {
+    let Some(mut compare) = model.modes.compare else { return };
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| compared_with(ui, model, capture, &mut compare));
+    model.modes.compare = Some(compare);
+}
+
+/// Right to left: swaps the sides, and what is compared with.
+fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Compare) {
+    if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
+        compare.flipped = !compare.flipped;
+    }
+    let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
+    let combo = combo.selected_text(compare.with.words(capture)).height(420.0).show_ui(ui, |ui| {
+        for step in 0..capture.steps.len() {
+            let text = if step == model.selection.step {
+                format!("{} (this)", step_words(capture, step))
+            } else {
+                step_words(capture, step)
+            };
+            ui.selectable_value(&mut compare.with, With::Step(step), text);
+        }
+        if model.scene.is_some() {
+            ui.separator();
+            for technique in Technique::ALL.into_iter().filter(|technique| technique.name() != capture.technique) {
+                let line = ui.selectable_value(
+                    &mut compare.with,
+                    With::Technique(technique),
+                    format!("technique {}", technique.name()),
+                );
+                line.on_hover_text(technique.summary());
+            }
+        }
+    });
+    combo.response.accessible_name("Compare with");
+    ui.label(theme::note("with"));
+}
+
+/// In the upper left corner of `rect`: how many texels differ, or why nothing is compared.
+pub fn compare_note(
+    ui: &mut Ui,
+    changes: &mut ChangeCache,
+    model: &Model,
+    capture: &Capture,
+    shown: &Shown,
+    rect: Rect,
+) {
+    if model.modes.compare.is_none() {
+        return;
+    }
+    let text = match model.shown_compared(capture, shown) {
+        Ok(other) => {
+            let [width, height] = shown.images[0].size().map(u64::from);
+            let texels = changes.differing([&other.images[0], &shown.images[0]]);
+            looking::sentence(texels, width * height)
+        }
+        Err(reason) => reason,
+    };
+    let place =
+        Rect::from_min_size(rect.min + vec2(12.0, 12.0), vec2(NOTE_WIDTH.min(rect.width() / 2.0), rect.height()));
+    ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("compare note"), |ui| {
+        theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
+            ui.add(egui::Label::new(theme::note(text)).wrap());
+        });
+    });
+}

@@ -1,0 +1,128 @@
+//! Legends of what changed and of one bit, and the bars beside the others.
+
+use super::legend::entry;
+use crate::inspector::look::texture::DEPTH_BARS;
+use crate::inspector::look::theme;
+use crate::inspector::look::{coloring, palette};
+use crate::inspector::model::Model;
+use crate::reading::change::{self, Change, Sorts};
+use crate::reading::format;
+use crate::reading::shown::Shown;
+use egui::{Color32, CornerRadius, Rect, Sense, Ui, pos2, vec2};
+
+/// Changes of counts that are listed one by one.
+const MOST_LISTED: usize = 10;
+/// Height of a histogram of depths, points.
+const BARS_HEIGHT: f32 = 32.0;
+
+/// What changed, with how many texels.
+pub fn change(ui: &mut Ui, found: &Change) {
+    theme::heading(ui, &format!("{} changed", format::counted(found.texels, "texel")));
+    let [width, height] = found.image.size().map(u64::from);
+    let entries: Vec<(Color32, String, u64, &str)> = match &found.sorts {
+        Sorts::Counts(counts) => {
+            let listed = counts.iter().rev().take(MOST_LISTED);
+            listed
+                .map(|(by, texels)| {
+                    let name = change::signed(*by).unwrap_or_default();
+                    (coloring::count_color(*by), name, *texels, "By how much the value went up or down")
+                })
+                .collect()
+        }
+        Sorts::Depths([nearer, farther, appeared, went]) => [
+            (palette::UP, "nearer", *nearer, "The surface is nearer than before"),
+            (palette::DOWN, "farther", *farther, "The surface is farther than before"),
+            (palette::APPEARED, "new surface", *appeared, "Nothing was drawn here before"),
+            (palette::WENT, "cleared", *went, "The surface is gone"),
+        ]
+        .into_iter()
+        .filter(|(_, _, texels, _)| *texels > 0)
+        .map(|(color, name, texels, hover)| (color, name.to_owned(), texels, hover))
+        .collect(),
+        Sorts::Colors => Vec::new(),
+    };
+    for (color, name, texels, hover) in entries {
+        entry(ui, color, &name, texels).on_hover_text(hover);
+    }
+    if found.sorts == Sorts::Colors && found.texels > 0 {
+        ui.label(theme::note("in their new colour"));
+    }
+    if let Sorts::Counts(counts) = &found.sorts
+        && counts.len() > MOST_LISTED
+    {
+        ui.label(theme::note(format::counted((counts.len() - MOST_LISTED) as u64, "more sort")));
+    }
+    entry(ui, Color32::from_gray(70), "unchanged", width * height - found.texels)
+        .on_hover_text("In grey: the picture's colours, dimmed");
+}
+
+/// The two inks of a bit, with how many texels have each.
+pub fn bit(ui: &mut Ui, model: &mut Model, shown: &Shown, bit: u8) {
+    let histogram = model.textures.histogram(&shown.images[0]);
+    theme::heading(ui, &format!("Bit {bit} of the stencil"));
+    ui.label(theme::note(format!("worth {}", 1_u32 << bit)));
+    let set: u64 =
+        (0..=255_u8).zip(histogram).filter(|(value, _)| value >> bit & 1 == 1).map(|(_, texels)| texels).sum();
+    let all: u64 = histogram.iter().sum();
+    entry(ui, palette::BITS[1], "1 set", set);
+    entry(ui, palette::BITS[0], "0 not set", all - set);
+}
+
+/// How many pixels had how many fragments.
+pub fn overdraw(ui: &mut Ui, model: &mut Model, shown: &Shown) {
+    let histogram = model.textures.histogram(&shown.images[0]);
+    theme::heading(ui, "Fragments a pixel");
+    let all: u64 = (0..=255_u64).zip(histogram).map(|(count, pixels)| count * pixels).sum();
+    ui.label(theme::note(format!("{} in all", format::count(all))));
+    let most = histogram[1..].iter().copied().max().unwrap_or(0);
+    let single = (0..=8_u8).map(|count| (count, count.to_string(), histogram[usize::from(count)]));
+    let ranges = [(9_u8, 16_u8), (17, 32), (33, 64), (65, 128), (129, 254), (255, 255)].map(|(from, to)| {
+        let pixels = histogram[usize::from(from)..=usize::from(to)].iter().sum();
+        (to, if from == to { "255 or more".to_owned() } else { format!("{from} to {to}") }, pixels)
+    });
+    for (count, name, pixels) in single.chain(ranges).filter(|(_, _, pixels)| *pixels > 0) {
+        entry(ui, palette::overdraw(count), &name, pixels);
+        bar(ui, pixels.min(most), most);
+    }
+}
+
+/// A bar under a line of the legend: its share of the largest.
+pub fn bar(ui: &mut Ui, texels: u64, most: u64) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 3.0), Sense::hover());
+    let share = texels as f32 / most.max(1) as f32;
+    let width = (rect.width() * share).max(1.0);
+    ui.painter().rect_filled(rect, CornerRadius::same(1), theme::of(ui).line);
+    ui.painter().rect_filled(
+        Rect::from_min_size(rect.min, vec2(width, rect.height())),
+        CornerRadius::same(1),
+        theme::of(ui).dim,
+    );
+}
+
+/// How often each depth of `full` occurs; what the grey ramp covers is lighter.
+pub fn depth_bars(ui: &mut Ui, model: &mut Model, shown: &Shown, range: [f64; 2], full: [f64; 2]) {
+    let mut bars = [0_u64; DEPTH_BARS];
+    for image in &shown.images {
+        let of_image = model.textures.depth_histogram(image, shown.measure, full);
+        bars.iter_mut().zip(of_image).for_each(|(bar, texels)| *bar += texels);
+    }
+    let most = bars.iter().copied().max().unwrap_or(0).max(1);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), BARS_HEIGHT), Sense::hover());
+    let name = format!("Histogram of depths, {} at most", format::counted(most, "texel"));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
+    let width = rect.width() / DEPTH_BARS as f32;
+    let value = |bar: usize| full[0] + (full[1] - full[0]) * (bar as f64 + 0.5) / DEPTH_BARS as f64;
+    for (index, texels) in bars.into_iter().enumerate().filter(|(_, texels)| *texels > 0) {
+        let height = (texels as f32 / most as f32 * rect.height()).max(1.0);
+        let left = rect.left() + index as f32 * width;
+        let bar = Rect::from_min_max(pos2(left, rect.bottom() - height), pos2(left + width - 0.5, rect.bottom()));
+        let is_covered = (range[0]..=range[1]).contains(&value(index));
+        let ink = if is_covered { theme::of(ui).dim } else { theme::of(ui).faint };
+        ui.painter().rect_filled(bar, CornerRadius::ZERO, ink);
+    }
+    ui.painter().hline(rect.x_range(), rect.bottom(), egui::Stroke::new(1.0, theme::of(ui).line));
+    if let Some(pointer) = response.hover_pos() {
+        let index = (((pointer.x - rect.left()) / width) as usize).min(DEPTH_BARS - 1);
+        response.on_hover_text(format!("{}: {}", format::digits(value(index)), format::counted(bars[index], "texel")));
+    }
+}

@@ -1,0 +1,31 @@
+//! The selected triangle of a history, outlined in the picture.
+//!
+//! What of it is seen is found in [`projected`](crate::reading::projected).
+
+use crate::inspector::canvas::placement::Placement;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::projected::outline;
+use crate::reading::shown::{PictureKind, Shown};
+use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, vec2};
+
+/// Draws the outline over the picture in `rect`; maps have pixels of their own.
+pub fn ui(ui: &Ui, model: &Model, rect: Rect, shown: &Shown, placement: Placement) {
+    let Some(capture) = &model.frame.capture else { return };
+    let Some(history) = model.history_of_frame().filter(|_| shown.kind != PictureKind::Map) else { return };
+    let event = model.selected_in(&history).map(|index| &history.events[index]);
+    // From another place than the eye it has another outline.
+    let Some(triangle) = event.filter(|event| event.is_from_camera).and_then(|event| event.triangle()) else { return };
+    let texels = outline(capture, triangle.corners);
+    let points: Vec<Pos2> =
+        texels.iter().map(|at| placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale).collect();
+    if points.len() < 3 {
+        return;
+    }
+    let painter = ui.painter_at(placement.rect().intersect(rect));
+    let fill = theme::of(ui).selected.gamma_multiply(0.14);
+    painter.add(Shape::convex_polygon(points.clone(), fill, Stroke::NONE));
+    // Dark under light, so that it shows on any picture.
+    painter.add(Shape::closed_line(points.clone(), Stroke::new(4.0, Color32::from_black_alpha(150))));
+    painter.add(Shape::closed_line(points, Stroke::new(1.5, theme::of(ui).selected)));
+}

@@ -1,0 +1,304 @@
+//! What is drawn over the picture, several at once: silhouettes, wireframes of volumes, how fragments
+//! fared in the tests, receivers, names of casters. Chosen in a menu, listed in a card with their colours.
+
+use crate::anatomy::Anatomy;
+use crate::ask::AnatomyOf;
+use crate::capture::{Capture, Image};
+use crate::inspector::action::Overlay;
+use crate::inspector::canvas::Sheet;
+use crate::inspector::canvas::overlay_lines::{Lines, PlacedLines, middle, multiplicity};
+use crate::inspector::canvas::placement::Placement;
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::palette;
+use crate::inspector::look::theme;
+use crate::inspector::look::widgets::plate;
+use crate::inspector::model::Model;
+use crate::plan::Part;
+use crate::reading::format;
+use crate::reading::object_ids::ObjectIds;
+use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::tests::OUTCOMES;
+use egui::{Align2, CornerRadius, FontId, Pos2, Rect, Sense, Shape, Ui, UiBuilder, pos2, vec2};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// Width of the card, points.
+const WIDTH: f32 = 176.0;
+/// How near to an edge the pointer has to be, points.
+const REACH: f32 = 5.0;
+/// Least width of the menu's button, points.
+const BUTTON_WIDTH: f32 = 84.0;
+
+/// What was made for the overlays of a frame.
+#[derive(Debug, Default)]
+pub struct Overlays {
+    made: Option<Made>,
+}
+
+/// What follows from an anatomy and a light.
+#[derive(Debug)]
+struct Made {
+    anatomy: Arc<Anatomy>,
+    capture: [u32; 2],
+    light: usize,
+    silhouettes: Option<(Lines, PlacedLines)>,
+    volumes: Option<(Lines, PlacedLines)>,
+    objects: Option<SeenObjects>,
+}
+
+/// Which objects are seen where.
+#[derive(Debug)]
+struct SeenObjects {
+    receivers: Arc<Image>,
+    middles: Vec<Option<[u32; 2]>>,
+}
+
+impl Overlays {
+    fn make(&mut self, on: &BTreeSet<Overlay>, anatomy: &Arc<Anatomy>, capture: &Capture, light: usize) -> &mut Made {
+        let is_it =
+            |made: &Made| Arc::ptr_eq(&made.anatomy, anatomy) && made.light == light && made.capture == capture.size;
+        let made = self.made.take().filter(is_it);
+        let mut made = made.unwrap_or_else(|| Made {
+            anatomy: anatomy.clone(),
+            capture: capture.size,
+            light,
+            silhouettes: None,
+            volumes: None,
+            objects: None,
+        });
+        if on.contains(&Overlay::Silhouettes) && made.silhouettes.is_none() {
+            made.silhouettes = Some((Lines::silhouettes(anatomy, capture, light), PlacedLines::default()));
+        }
+        if on.contains(&Overlay::Volumes) && made.volumes.is_none() {
+            made.volumes = Some((Lines::volumes(anatomy, capture, light), PlacedLines::default()));
+        }
+        if (on.contains(&Overlay::Receivers) || on.contains(&Overlay::Names)) && made.objects.is_none() {
+            let ids = ObjectIds::new(anatomy, capture);
+            made.objects = Some(SeenObjects { receivers: Arc::new(ids.receivers), middles: ids.middles });
+        }
+        self.made.insert(made)
+    }
+}
+
+/// The menu, with a box and a swatch an overlay.
+pub fn menu(ui: &mut Ui, model: &mut Model) {
+    let count = model.modes.overlays.len();
+    let text = if count == 0 { "Overlay".to_owned() } else { format!("Overlay · {count}") };
+    // Of the same width with and without a number, so that nothing beside it moves.
+    let button = ui.add(egui::Button::new(text).min_size(vec2(BUTTON_WIDTH, 0.0)));
+    let button = button.on_hover_text("What is drawn over the picture (O)");
+    let button = button.on_disabled_hover_text("Several pictures at once: choose one of them to draw over it");
+    let id = egui::Popup::default_response_id(&button);
+    if std::mem::take(&mut model.requests.overlay_menu) && button.enabled() {
+        egui::Popup::open_id(ui.ctx(), id);
+    }
+    let popup = egui::Popup::menu(&button).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
+    popup.show(|ui| {
+        ui.set_min_width(190.0);
+        for overlay in Overlay::ALL {
+            ui.horizontal(|ui| {
+                let color = swatch_of(ui, overlay);
+                theme::swatch(ui, color);
+                let mut is_on = model.modes.overlays.contains(&overlay);
+                let line = ui.checkbox(&mut is_on, overlay.name()).on_hover_text(overlay.meaning());
+                if line.changed() && is_on {
+                    model.modes.overlays.insert(overlay);
+                } else if line.changed() {
+                    model.modes.overlays.remove(&overlay);
+                }
+            });
+        }
+    });
+}
+
+fn swatch_of(ui: &Ui, overlay: Overlay) -> egui::Color32 {
+    let theme = theme::of(ui);
+    match overlay {
+        Overlay::Silhouettes => theme.lit,
+        Overlay::Volumes => theme.side,
+        Overlay::Tests => theme.failed,
+        Overlay::Receivers => palette::receiver(2),
+        Overlay::Names => theme.text,
+    }
+}
+
+/// Pictures over the shown one; asks for what they need.
+pub fn sheets(own: &mut Overlays, model: &Model, capture: &Capture, shown: &Shown, rect: Rect) -> Vec<Sheet> {
+    let mut sheets = Vec::new();
+    if shown.kind == PictureKind::Map {
+        return sheets;
+    }
+    if model.modes.overlays.iter().any(|overlay| overlay.needs_anatomy()) && model.scene.is_some() {
+        let light = model.view.light;
+        if let Some(anatomy) = model.answers.want(AnatomyOf {}).ready {
+            let made = own.make(&model.modes.overlays, &anatomy, capture, light);
+            let receivers = made.objects.as_ref().map(|objects| objects.receivers.clone());
+            if let Some(image) = receivers.filter(|_| model.modes.overlays.contains(&Overlay::Receivers)) {
+                sheets.push(Sheet { image, coloring: Coloring::Receivers, part: rect, has_numbers: false });
+            }
+        }
+    }
+    if model.modes.overlays.contains(&Overlay::Tests) && model.scene.is_some() {
+        if let Some(known) = model.want_tests().ready {
+            let image = known.outcomes.clone();
+            sheets.push(Sheet { image, coloring: Coloring::Outcomes, part: rect, has_numbers: false });
+        }
+    }
+    sheets
+}
+
+/// Lines and names over the picture, and the card that lists what is on.
+pub fn ui(ui: &mut Ui, own: &mut Overlays, model: &mut Model, rect: Rect, shown: &Shown, placement: Placement) {
+    if model.modes.overlays.is_empty() || shown.kind == PictureKind::Map {
+        return;
+    }
+    let seen = placement.rect().intersect(rect);
+    paint(ui, own, &model.modes.overlays, seen, placement);
+    if let Some(pointer) = ui.input(|input| input.pointer.hover_pos()).filter(|_| model.selection.hover.is_some()) {
+        number_under(ui, (own, &model.modes.overlays), seen, placement, pointer);
+    }
+    card(ui, own, model, rect);
+}
+
+/// Lines, their numbers and names, clipped to `seen`.
+pub fn paint(ui: &Ui, own: &mut Overlays, on: &BTreeSet<Overlay>, seen: Rect, placement: Placement) {
+    let painter = ui.painter_at(seen);
+    let (theme, is_dark, pixels) = (theme::of(ui), ui.visuals().dark_mode, ui.pixels_per_point());
+    let Some(made) = &mut own.made else { return };
+    let kinds = [(Overlay::Volumes, &mut made.volumes), (Overlay::Silhouettes, &mut made.silhouettes)];
+    for (_, lines) in kinds.into_iter().filter(|(overlay, _)| on.contains(overlay)) {
+        if let Some((lines, placed)) = lines {
+            painter.add(Shape::mesh(placed.of(lines, placement, theme, is_dark, pixels)));
+            for (at, times) in placed.numbers(lines, placement, seen).iter() {
+                plate(&painter, *at, Align2::CENTER_CENTER, &multiplicity(*times), true, theme);
+            }
+        }
+    }
+    if let Some(SeenObjects { middles, .. }) = made.objects.as_ref().filter(|_| on.contains(&Overlay::Names)) {
+        let casters = made.anatomy.objects.iter().zip(middles).filter(|(object, _)| object.casts);
+        for (object, at) in casters.filter_map(|(object, at)| Some((object, (*at)?))) {
+            name(ui, &painter, middle(placement, at), &object.name);
+        }
+    }
+}
+
+/// Beside the pointer: how often the edge under it counts, where that is not once. Short edges have no number.
+fn number_under(ui: &Ui, (own, on): (&Overlays, &BTreeSet<Overlay>), seen: Rect, placement: Placement, pointer: Pos2) {
+    let made = own.made.as_ref().filter(|_| on.contains(&Overlay::Silhouettes));
+    let Some((lines, _)) = made.and_then(|made| made.silhouettes.as_ref()) else { return };
+    if let Some(times) = lines.number_near(placement, pointer, REACH) {
+        let words = format!("{}: counts {} times", multiplicity(times), times.unsigned_abs());
+        plate(&ui.painter_at(seen), pointer + vec2(14.0, -4.0), Align2::LEFT_BOTTOM, &words, false, theme::of(ui));
+    }
+}
+
+fn name(ui: &Ui, painter: &egui::Painter, at: Pos2, text: &str) {
+    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(theme::SMALL_SIZE), theme::of(ui).text);
+    let place = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), Rect::from_center_size(at, vec2(0.0, 0.0)));
+    painter.rect_filled(place.expand2(vec2(6.0, 3.0)), CornerRadius::same(4), theme::of(ui).panel.gamma_multiply(0.9));
+    painter.galley(place.min, galley, theme::of(ui).text);
+}
+
+/// In the lower right corner: what is on, in its colours. Its height is that of the frame before.
+fn card(ui: &mut Ui, own: &Overlays, model: &Model, rect: Rect) {
+    let id = ui.scope_id().with("overlay card height");
+    let height: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(96.0);
+    let corner = pos2(rect.right() - WIDTH - 12.0, rect.bottom() - height - 12.0);
+    let place = Rect::from_min_size(corner, vec2(WIDTH, rect.height()));
+    let builder = UiBuilder::new().max_rect(place).id_salt("overlay card").sense(Sense::CLICK | Sense::DRAG);
+    let card = ui.scope_builder(builder, |ui| {
+        let frame = theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94));
+        frame.show(ui, |ui| {
+            ui.set_width(WIDTH - 16.0);
+            ui.spacing_mut().item_spacing = vec2(6.0, 2.0);
+            contents(ui, own, model);
+        })
+    });
+    let needed = card.inner.response.rect.height();
+    if needed != height {
+        ui.data_mut(|data| data.insert_temp(id, needed));
+        ui.ctx().request_repaint();
+    }
+}
+
+fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
+    if model.scene.is_none() {
+        ui.add(
+            egui::Label::new(theme::note("Opened from a folder: its geometry is not known. Open the scene instead."))
+                .wrap(),
+        );
+        return;
+    }
+    let on = model.modes.overlays.clone();
+    if on.iter().any(|overlay| overlay.needs_anatomy()) {
+        let anatomy = model.answers.of(AnatomyOf {});
+        if let Some(reason) = anatomy.failed {
+            ui.add(egui::Label::new(theme::note(reason)).wrap());
+        } else if anatomy.ready.is_none() {
+            ui.label(theme::note("Looking at the geometry …"));
+        }
+    }
+    let line = |ui: &mut Ui, color, text: &str| {
+        ui.horizontal(|ui| {
+            theme::swatch(ui, color);
+            ui.label(theme::note(text));
+        });
+    };
+    let theme = theme::of(ui);
+    let made = own.made.as_ref();
+    let left_out = |lines: Option<&(Lines, PlacedLines)>| lines.map_or(0, |(lines, _)| lines.left_out);
+    if on.contains(&Overlay::Silhouettes) {
+        line(ui, theme.lit, "silhouette; thick, ±2: twice");
+    }
+    if on.contains(&Overlay::Volumes) {
+        let has_any = made.and_then(|made| made.volumes.as_ref()).is_none_or(|(lines, _)| !lines.lines.is_empty());
+        if has_any {
+            for (part, name) in [(Part::Side, "side"), (Part::LightCap, "light cap"), (Part::DarkCap, "dark cap")] {
+                line(ui, theme.part(part).unwrap_or(theme.dim), name);
+            }
+        } else {
+            ui.label(theme::note("this frame draws no volumes here"));
+        }
+    }
+    let left = made.map_or(0, |made| left_out(made.silhouettes.as_ref()) + left_out(made.volumes.as_ref()));
+    if left > 0 {
+        ui.label(theme::note(format!("{} left out", format::counted(left as u64, "line"))));
+    }
+    if on.contains(&Overlay::Receivers) {
+        line(ui, palette::receiver(2), "receives shadows");
+    }
+    if on.contains(&Overlay::Tests) {
+        tests(ui, model);
+    }
+}
+
+/// While the overdraw is wished for and not there: that it is counted, or why it can't be.
+pub fn counting_note(ui: &mut Ui, model: &Model, rect: Rect) {
+    let text = match (&model.scene, model.want_tests().failed) {
+        (None, _) => "Opened from a folder: its fragments can't be counted. Open the scene instead.".to_owned(),
+        (_, Some(reason)) => reason,
+        (_, None) => "Counting fragments …".to_owned(),
+    };
+    let place = Rect::from_min_size(rect.min + vec2(12.0, 12.0), vec2(WIDTH * 1.5, rect.height()));
+    ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("counting note"), |ui| {
+        theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
+            ui.add(egui::Label::new(text).wrap());
+        });
+    });
+}
+
+fn tests(ui: &mut Ui, model: &Model) {
+    let reply = model.want_tests();
+    let Some(known) = reply.ready else {
+        let text = reply.failed.unwrap_or_else(|| "Counting fragments …".to_owned());
+        ui.add(egui::Label::new(theme::note(text)).wrap());
+        return;
+    };
+    theme::heading(ui, &format!("Tests of {}", model.selected().words()));
+    for (outcome, name, hover) in OUTCOMES {
+        let pixels = known.pixels[usize::from(outcome)];
+        if pixels > 0 {
+            super::legend::entry(ui, palette::outcome(outcome), name, pixels).on_hover_text(hover);
+        }
+    }
+}

@@ -1,0 +1,339 @@
+//! "History" in the Pixel panel: one row an event, in the order in which they happened.
+
+use super::room::Rows;
+use super::told::{Pixel, Told};
+use crate::capture::Capture;
+use crate::history::{Event, PixelHistory, Test};
+use crate::inspector::action::Panel;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::plan::Part;
+use crate::reading::format;
+use crate::reading::history_row::{Cells, Outcome, line, short, sign};
+use crate::reading::moment::Moment;
+use egui::{Align2, Color32, CornerRadius, FontId, Margin, Pos2, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo};
+use egui::{pos2, vec2};
+
+/// Contradictions that are listed.
+const MOST_WRONG: usize = 3;
+/// Where a history is not of what is picked.
+const GREYED: f32 = 0.4;
+
+/// Draws heading, rows and the selected event of the picked pixel. Returns where the rows end.
+pub fn ui(
+    ui: &mut Ui,
+    own: &mut Pixel,
+    model: &mut Model,
+    told: &Told,
+    (capture, at): (&Capture, [u32; 2]),
+    rows: Rows,
+) -> f32 {
+    heading(ui, own, model, told, at);
+    if model.scene.is_none() {
+        let text = "A capture folder holds pictures and no geometry, so what happened between them is not known. Open \
+                    the scene itself, or run `stencilscope pixel SCENE --at X,Y`.";
+        ui.add(egui::Label::new(theme::note(text)).wrap());
+        return ui.cursor().top();
+    }
+    if let Some(reason) = &told.failed {
+        let text = RichText::new(format!("× There is no history: {reason}")).color(theme::of(ui).error);
+        ui.add(egui::Label::new(text).wrap());
+        return ui.cursor().top();
+    }
+    let Some(history) = &told.history else { return ui.cursor().top() };
+    let drawn = ui.scope(|ui| {
+        if told.is_late {
+            ui.set_opacity(GREYED);
+        }
+        wrong(ui, &told.wrong);
+        let shown = shown(own, model, history);
+        table(ui, own, model, (capture, history), &shown, rows);
+        let end = ui.cursor().top();
+        selected(ui, model, capture, history);
+        end
+    });
+    drawn.inner
+}
+
+/// Title, how many events, and the switch; while another pixel's are waited for, that.
+fn heading(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, at: [u32; 2]) {
+    ui.horizontal(|ui| {
+        theme::heading(ui, "History");
+        if model.scene.is_none() || told.failed.is_some() {
+            return;
+        }
+        let Some(history) = told.history.as_ref().filter(|_| !told.is_late) else {
+            let job = model.activity.job.as_ref().map_or_else(String::new, |job| format!(": {job}"));
+            let text = theme::note(format!("waiting for {}, {}{job} …", at[0], at[1]));
+            ui.add(egui::Label::new(text).truncate());
+            return;
+        };
+        let all = history.events.len();
+        let count = shown(own, model, history).len();
+        let counted = format::counted(all as u64, "event");
+        let text = if count < all { format!("{count} of {counted}") } else { counted };
+        ui.label(theme::note(text));
+        if told.wrong.is_empty() && history.captured.is_some() {
+            let agrees = ui.label(theme::note("· as the GPU stored it"));
+            agrees.on_hover_text("After every pass the events make what was captured here, bit for bit");
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let text = theme::note("Hide idle");
+            let switch = ui.checkbox(&mut own.hides_idle, text);
+            switch.on_hover_text("Hide events that changed nothing, whichever tests they passed or failed");
+        });
+    });
+}
+
+/// A history that contradicts the GPU is a bug of this program, and must not be believed.
+fn wrong(ui: &mut Ui, wrong: &[String]) {
+    if wrong.is_empty() {
+        return;
+    }
+    let frame = theme::card(ui).stroke(Stroke::new(1.0, theme::of(ui).error)).inner_margin(Margin::same(8));
+    frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        let title =
+            RichText::new("× This history is wrong, which is our bug. Please report it.").color(theme::of(ui).error);
+        ui.add(egui::Label::new(title).wrap());
+        for one in wrong.iter().take(MOST_WRONG) {
+            ui.add(egui::Label::new(theme::note(one.as_str()).color(theme::of(ui).text)).wrap());
+        }
+        if wrong.len() > MOST_WRONG {
+            ui.label(theme::note(format!("and {} more", wrong.len() - MOST_WRONG)));
+        }
+    });
+    ui.add_space(4.0);
+}
+
+/// Indices of the events that are listed.
+fn shown(own: &Pixel, model: &Model, history: &PixelHistory) -> Vec<usize> {
+    let is_shown = |event: &Event| !own.hides_idle || event.does_something() || model.selection.has_event(event);
+    history.events.iter().enumerate().filter(|(_, event)| is_shown(event)).map(|(index, _)| index).collect()
+}
+
+fn table(
+    ui: &mut Ui,
+    own: &mut Pixel,
+    model: &mut Model,
+    (capture, history): (&Capture, &PixelHistory),
+    shown: &[usize],
+    Rows { height: row_height, most }: Rows,
+) {
+    if shown.is_empty() {
+        let none = history.events.is_empty();
+        let text = if none { "Nothing was drawn or cleared here." } else { "No event changed anything here." };
+        ui.label(theme::note(text));
+        return;
+    }
+    ui.spacing_mut().item_spacing.y = 0.0;
+    head(ui, history.has_stencil);
+    let height = row_height * shown.len().min(most) as f32;
+    let area = egui::ScrollArea::vertical().id_salt("history rows").auto_shrink([false, true]);
+    // In the panel's own scroll area too it is not to shrink.
+    let mut area = area.max_height(height).min_scrolled_height(height);
+    let selected = || model.selected_in(history).and_then(|event| shown.iter().position(|one| *one == event));
+    if let Some(place) = own.scrolls_to_selected.then(selected).flatten() {
+        let first = place.saturating_sub(most / 2).min(shown.len().saturating_sub(most));
+        area = area.vertical_scroll_offset(row_height * first as f32);
+    }
+    own.scrolls_to_selected = false;
+    area.show_rows(ui, row_height, shown.len(), |ui, rows| {
+        for event in &shown[rows] {
+            row(ui, model, capture, history, &history.events[*event], row_height);
+        }
+    });
+    ui.add_space(4.0);
+}
+
+/// Where the columns are.
+struct Columns {
+    pass: f32,
+    what: f32,
+    what_room: f32,
+    side: f32,
+    depth: f32,
+    stencil: Option<f32>,
+    operation: f32,
+    change: f32,
+}
+
+impl Columns {
+    /// In a row; tests and operations of a stencil have columns only where there is one.
+    fn of(row: Rect, has_stencil: bool) -> Columns {
+        let change = row.right() - 6.0;
+        let operation = change - 80.0;
+        let stencil = operation - 42.0;
+        let depth = if has_stencil { stencil - 37.0 } else { change - 100.0 };
+        let side = depth - 32.0;
+        let what = row.left() + 36.0;
+        Columns {
+            pass: row.left() + 20.0,
+            what,
+            what_room: side - what - 4.0,
+            side,
+            depth,
+            stencil: has_stencil.then_some(stencil),
+            operation,
+            change,
+        }
+    }
+}
+
+fn head(ui: &mut Ui, has_stencil: bool) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
+    response.widget_info(|| {
+        WidgetInfo::labeled(
+            Role::ColumnHeader,
+            true,
+            "Columns: pass, face, side, depth test, stencil test, operation, change",
+        )
+    });
+    let columns = Columns::of(rect, has_stencil);
+    let write = |x: f32, align: Align2, text: &str| {
+        let font = FontId::proportional(theme::SMALL_SIZE);
+        ui.painter().text(pos2(x, rect.center().y), align, text, font, theme::of(ui).faint);
+    };
+    write(columns.pass, Align2::RIGHT_CENTER, "#");
+    write(columns.what, Align2::LEFT_CENTER, "face");
+    write(columns.side, Align2::LEFT_CENTER, "side");
+    write(columns.depth, Align2::LEFT_CENTER, "depth");
+    if let Some(stencil) = columns.stencil {
+        write(stencil, Align2::LEFT_CENTER, "stencil");
+        write(columns.operation, Align2::LEFT_CENTER, "op");
+    }
+    write(columns.change, Align2::RIGHT_CENTER, "change");
+    let line = Stroke::new(1.0, theme::of(ui).line);
+    ui.painter().hline(rect.x_range(), rect.bottom() - 0.5, line);
+}
+
+fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory, event: &Event, height: f32) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
+    let cells = Cells::of(history, event, &capture.depth);
+    let is_selected = model.selection.has_event(event);
+    response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, cells.name()));
+    if response.clicked() {
+        model.selection.select_event(event);
+    }
+    if response.double_clicked() {
+        go_to(model, event);
+    }
+    if response.gained_focus() {
+        response.scroll_to_me(None);
+    }
+    if ui.is_rect_visible(rect) {
+        theme::row_background(ui, rect, is_selected, &response);
+        let ink = if event.does_something() { theme::of(ui).text } else { theme::of(ui).dim };
+        paint(ui, rect, &cells, history.has_stencil, ink);
+    }
+    response.context_menu(|ui| {
+        if ui.button("Go to this step").clicked() {
+            go_to(model, event);
+            ui.close();
+        }
+        let can = can_show_in_scene(model, event);
+        let button = ui.add_enabled(can, egui::Button::new(IN_SCENE));
+        if button.on_disabled_hover_text("Only triangles that the camera draws, of an open scene, are there").clicked()
+        {
+            show_in_scene(model, event);
+            ui.close();
+        }
+    });
+    let line = line(history, event, &capture.depth);
+    response.on_hover_text(format!("pass {}, {}: {line}. Double-click to go there.", event.pass + 1, event.pass_name));
+}
+
+/// Of the menu of a row, and of the selected event.
+const IN_SCENE: &str = "Show the triangle in the Scene tab";
+
+fn can_show_in_scene(model: &Model, event: &Event) -> bool {
+    model.scene.is_some() && event.is_from_camera && event.triangle().is_some()
+}
+
+fn show_in_scene(model: &mut Model, event: &Event) {
+    model.selection.select_event(event);
+    model.requests.triangle_in_scene = true;
+    model.requests.panels.push(Panel::Scene);
+}
+
+/// After the draw of an event; a clear comes before all draws of its step.
+fn moment_of(event: &Event) -> Moment {
+    Moment { step: event.pass, draw: event.triangle().map(|one| one.draw) }
+}
+
+fn go_to(model: &mut Model, event: &Event) {
+    model.select(moment_of(event));
+}
+
+fn paint(ui: &Ui, rect: Rect, cells: &Cells, has_stencil: bool, ink: Color32) {
+    let columns = Columns::of(rect, has_stencil);
+    let painter = ui.painter();
+    let middle = rect.center().y;
+    let number = theme::number_font(theme::SMALL_SIZE);
+    let words = FontId::proportional(theme::SMALL_SIZE);
+    painter.text(pos2(columns.pass, middle), Align2::RIGHT_CENTER, &cells.pass, number.clone(), theme::of(ui).dim);
+    if let Some(color) = cells.part.and_then(|part| theme::of(ui).part(part)) {
+        let swatch = Rect::from_center_size(pos2(columns.pass + 10.0, middle), vec2(8.0, 8.0));
+        painter.rect_filled(swatch, CornerRadius::same(2), color);
+    }
+    // Of both words more has to be seen than the first.
+    let what = if cells.part == Some(Part::PlanarShadow) { "flat" } else { cells.what.as_str() };
+    theme::two_inks(ui, pos2(columns.what, middle), columns.what_room, [what, &cells.of], ink);
+    painter.text(pos2(columns.side, middle), Align2::LEFT_CENTER, cells.side, words.clone(), theme::of(ui).dim);
+    match cells.outcome {
+        Outcome::Cleared => {}
+        Outcome::Nothing(why) => {
+            painter.text(pos2(columns.depth, middle), Align2::LEFT_CENTER, why, words, theme::of(ui).faint);
+        }
+        Outcome::Tested { depth, stencil, operation } => {
+            test(ui, pos2(columns.depth, middle), depth);
+            if let Some(x) = columns.stencil {
+                test(ui, pos2(x, middle), stencil);
+                let (text, color) = match operation {
+                    None => ("", theme::of(ui).faint),
+                    Some(wgpu::StencilOperation::Keep) => (short(wgpu::StencilOperation::Keep), theme::of(ui).faint),
+                    Some(other) => (short(other), ink),
+                };
+                painter.text(pos2(columns.operation, middle), Align2::LEFT_CENTER, text, number.clone(), color);
+            }
+        }
+    }
+    let color = if cells.has_changed { theme::of(ui).text } else { theme::of(ui).faint };
+    painter.text(pos2(columns.change, middle), Align2::RIGHT_CENTER, &cells.change, number, color);
+}
+
+/// How a test went: a tick, a cross, a word or a dash, and its colour.
+fn test(ui: &Ui, at: Pos2, test: Test) {
+    let painter = ui.painter();
+    let mark = |points: &[(f32, f32)], color: Color32| {
+        let points = points.iter().map(|(x, y)| at + vec2(*x + 2.0, *y)).collect();
+        painter.line(points, Stroke::new(1.7, color));
+    };
+    match test {
+        Test::Passed => mark(&[(0.0, 0.5), (3.0, 3.5), (9.0, -3.5)], theme::of(ui).passed),
+        Test::Failed => {
+            mark(&[(0.5, -3.5), (7.5, 3.5)], theme::of(ui).failed);
+            mark(&[(0.5, 3.5), (7.5, -3.5)], theme::of(ui).failed);
+        }
+        Test::Always | Test::NotReached => {
+            let font = FontId::proportional(theme::SMALL_SIZE);
+            painter.text(at, Align2::LEFT_CENTER, sign(test), font, theme::of(ui).decided);
+        }
+    }
+}
+
+/// The selected event in full, and the way to its step.
+fn selected(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory) {
+    let Some(event) = model.selected_in(history).and_then(|index| history.events.get(index)) else { return };
+    theme::card(ui).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.add(egui::Label::new(theme::note(line(history, event, &capture.depth)).color(theme::of(ui).text)).wrap());
+        let text = theme::note(format!("Go to {}, {}", moment_of(event).words(), event.pass_name));
+        if moment_of(event) != model.selected() && ui.button(text).clicked() {
+            go_to(model, event);
+        }
+        if can_show_in_scene(model, event) && ui.button(theme::note(IN_SCENE)).clicked() {
+            show_in_scene(model, event);
+        }
+    });
+}

@@ -1,0 +1,398 @@
+//! The ladder: the view ray through the picked pixel from the eye (top) to infinity, with every face
+//! of a light's shadow volumes on it, what each added, and the count as it runs.
+
+use super::told::{Pixel, Told};
+use crate::capture::Capture;
+use crate::history::{Count, Fate, Ladder, PixelHistory, Rung};
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::numbers;
+use crate::plan::{Part, Side};
+use crate::reading::format;
+use crate::reading::history_row::{self, named, side};
+use crate::reading::ladder_layout::{Mark, Placed, Stretch, place, stretches};
+use egui::{
+    Align2, Color32, CornerRadius, FontId, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+};
+use std::ops::Range;
+
+/// Room above the eye and below infinity, points.
+const MARGIN: f32 = 12.0;
+/// The least between eye and infinity, points: less can't be read, and the panel scrolls.
+const LEAST_ROOM: f32 = 120.0;
+/// Points that the running count moves for one, at most, and in all.
+const COUNT_STEP: f32 = 10.0;
+const COUNT_ROOM: f32 = 40.0;
+
+/// Folded rungs that a click opens: of more, the nearest.
+const OPENED_AT_ONCE: usize = 100;
+
+/// Does this frame count volumes, so that there is a ladder?
+#[must_use]
+pub fn is_shown(told: &Told, capture: &Capture) -> bool {
+    told.history.is_some() && capture.counts_volumes()
+}
+
+/// Draws the ladder of `light` under the history, if it can be in `room` points; nothing where no volumes are counted.
+pub fn ui(
+    ui: &mut Ui,
+    own: &mut Pixel,
+    model: &mut Model,
+    told: &Told,
+    (capture, light): (&Capture, usize),
+    room: f32,
+) {
+    let top = ui.cursor().top();
+    let Some(history) = &told.history else { return };
+    if !is_shown(told, capture) || !capture.decided_by(light).counts_volumes() {
+        return;
+    }
+    ui.horizontal(|ui| {
+        theme::heading(ui, "Ladder");
+        ui.label(theme::note(format!("of {}, along the view ray", format::light(light))));
+        let is_open = own.unfolded.contains_key(&light);
+        if is_open && ui.small_button("Fold").on_hover_text("Fold faces again").clicked() {
+            own.unfolded.remove(&light);
+        }
+    });
+    ui.scope(|ui| {
+        if told.is_late {
+            ui.set_opacity(0.4);
+        }
+        match history.ladder(light, &capture.depth) {
+            Some(ladder) => drawn(ui, own, model, (capture, history), (light, &ladder), top + room),
+            None => {
+                let none = format!("No volume face of {} is on this pixel's view ray.", format::light(light));
+                ui.add(egui::Label::new(theme::note(none)).wrap());
+            }
+        }
+    });
+}
+
+/// Which way it counts, and from what.
+fn direction(ladder: &Ladder) -> String {
+    let way = match (ladder.side, ladder.surface) {
+        (Side::Behind, Some(_)) => "Counted from infinity towards the surface",
+        (Side::Behind, None) => "Counted from infinity, and no surface ends it",
+        (Side::InFront, Some(_)) => "Counted from the eye towards the surface",
+        (Side::InFront, None) => "Counted from the eye, and no surface ends it",
+        (Side::AsNeeded, _) => "Counted along the whole ray, each volume in front of the surface or behind it",
+    };
+    let start = match ladder.start {
+        0 => String::new(),
+        start => format!(", starting at {}: the volumes that hold the near plane", signed(start)),
+    };
+    let all = ladder.rungs.len() as u64;
+    let counted = ladder.rungs.iter().filter(|rung| rung.added != 0).count();
+    let faces = format::counted(all, "face");
+    format!("{way}{start}. {counted} of {faces} count: {} in all{}.", signed(ladder.count), in_eight_bits(ladder))
+}
+
+/// What the light pass reads where eight bits do not hold the count.
+fn in_eight_bits(ladder: &Ladder) -> String {
+    match ladder.tested {
+        Count::Stencil(byte) if !(-128..=255).contains(&ladder.count) => format!(", in eight bits {byte}"),
+        Count::Stencil(_) | Count::Float(_) => String::new(),
+    }
+}
+
+/// A whole number with the sign that stencil values have.
+fn signed(value: i32) -> String {
+    if value < 0 { format!("−{}", value.unsigned_abs()) } else { value.to_string() }
+}
+
+/// What a face added: `+1`, or nothing.
+fn added(value: i32) -> String {
+    match value {
+        0 => String::new(),
+        1.. => format!("+{value}"),
+        _ => signed(value),
+    }
+}
+
+/// Where the columns are in the ladder's rectangle.
+#[derive(Clone, Copy)]
+struct Columns {
+    ray: f32,
+    name: f32,
+    name_room: f32,
+    distance: f32,
+    added: f32,
+    steps: f32,
+    count: f32,
+}
+
+impl Columns {
+    fn of(rect: Rect) -> Columns {
+        let count = rect.right() - 6.0;
+        let steps = count - 26.0 - COUNT_ROOM;
+        let added = steps - 10.0;
+        let distance = added - 34.0;
+        let (ray, name) = (rect.left() + 20.0, rect.left() + 40.0);
+        Columns { ray, name, name_room: distance - 50.0 - name, distance, added, steps, count }
+    }
+}
+
+/// The ladder itself, down to `bottom` if it can be.
+fn drawn(
+    ui: &mut Ui,
+    own: &mut Pixel,
+    model: &mut Model,
+    (capture, history): (&Capture, &PixelHistory),
+    (light, ladder): (usize, &Ladder),
+    bottom: f32,
+) {
+    ui.add(egui::Label::new(theme::note(direction(ladder))).wrap());
+    let chosen = model.selected_in(history);
+    let selected = chosen.and_then(|event| ladder.rungs.iter().position(|rung| rung.event == event));
+    let open = own.unfolded.get(&light).map_or(&[][..], Vec::as_slice);
+    let room = (bottom - ui.cursor().top() - 2.0 * MARGIN).max(LEAST_ROOM);
+    let (placed, line) = place(ladder, capture.camera.near, selected, open, room);
+    let height = placed.last().map_or(0.0, |(_, y)| *y) + 2.0 * MARGIN;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    response.widget_info(|| {
+        WidgetInfo::labeled(Role::Image, true, format!("Ladder of the view ray. {}", direction(ladder)))
+    });
+    let columns = Columns::of(rect);
+    let top = rect.top() + MARGIN;
+    let row = |y: f32| Rect::from_center_size(pos2(rect.center().x, top + y), vec2(rect.width(), line));
+    // Rungs first, as what is selected has a background.
+    for (mark, y) in &placed {
+        match mark {
+            Mark::Rung(index) => rung(ui, own, model, (capture, history), &ladder.rungs[*index], row(*y)),
+            Mark::More(from, to) => {
+                if let Some(opened) = fold(ui, ladder, *from..*to, row(*y)) {
+                    own.unfolded.entry(light).or_default().push(opened);
+                }
+            }
+            _ => {}
+        }
+    }
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    ray(ui, columns, top, &placed);
+    for (mark, y) in &placed {
+        let rect = row(*y);
+        match mark {
+            Mark::Rung(index) => paint_rung(ui, history, &ladder.rungs[*index], rect),
+            Mark::More(from, to) => paint_more(ui, &ladder.rungs[*from..*to], rect),
+            other => paint_end(ui, capture, history, ladder, *other, rect),
+        }
+    }
+    paint_count(ui, columns, top, ladder, &stretches(ladder, &placed));
+}
+
+/// A rung as a widget: clicking it selects its triangle everywhere.
+fn rung(
+    ui: &mut Ui,
+    own: &mut Pixel,
+    model: &mut Model,
+    (capture, history): (&Capture, &PixelHistory),
+    rung: &Rung,
+    rect: Rect,
+) {
+    let Some(event) = history.events.get(rung.event) else { return };
+    let response = ui.interact(rect, ui.scope_id().with(("rung", rung.event)), Sense::click());
+    let is_selected = model.selection.has_event(event);
+    response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_selected, name(history, rung)));
+    if response.clicked() {
+        model.selection.select_event(event);
+        own.scrolls_to_selected = true;
+    }
+    if response.gained_focus() {
+        response.scroll_to_me(None);
+    }
+    theme::row_background(ui, rect, is_selected, &response);
+    response.on_hover_text(history_row::line(history, event, &capture.depth));
+}
+
+/// Folded rungs as a widget; those that a click opens.
+fn fold(ui: &mut Ui, ladder: &Ladder, rungs: Range<usize>, rect: Rect) -> Option<Range<usize>> {
+    let response = ui.interact(rect, ui.scope_id().with(("fold", rungs.start)), Sense::click());
+    let opened = rungs.start..rungs.end.min(rungs.start + OPENED_AT_ONCE);
+    let hover = format!("Open {}", format::counted(opened.len() as u64, "face"));
+    let name = folded(&ladder.rungs[rungs]);
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    if response.gained_focus() {
+        response.scroll_to_me(None);
+    }
+    theme::row_background(ui, rect, false, &response);
+    response.on_hover_text(hover).clicked().then_some(opened)
+}
+
+/// Rungs that are folded, in words: how many, and what they added.
+fn folded(rungs: &[Rung]) -> String {
+    let counting = rungs.iter().filter(|rung| rung.added != 0).count();
+    let sum: i32 = rungs.iter().map(|rung| rung.added).sum();
+    match (counting, sum) {
+        (0, _) => format!("+{} more, not counted", rungs.len()),
+        (_, 0) => format!("+{} more, adding 0", rungs.len()),
+        _ => format!("+{} more, adding {}", rungs.len(), added(sum)),
+    }
+}
+
+/// A rung in words.
+fn name(history: &PixelHistory, rung: &Rung) -> String {
+    let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return String::new() };
+    let (part, of) = named(one);
+    let counted = if rung.added == 0 { "not counted".to_owned() } else { added(rung.added) };
+    let (triangle, side) = (one.triangle + 1, side(one));
+    let [distance, running] = [numbers::metres(rung.distance), signed(rung.running)];
+    format!("rung: {part} of {of}, triangle {triangle}, {side}, at {distance}: {counted}, count {running}")
+}
+
+/// The line itself, from the eye to infinity.
+fn ray(ui: &Ui, columns: Columns, top: f32, placed: &[Placed]) {
+    let [Some(first), Some(last)] = [placed.first(), placed.last()] else { return };
+    let stroke = Stroke::new(1.5, theme::of(ui).faint);
+    ui.painter().vline(columns.ray, top + first.1..=top + last.1, stroke);
+}
+
+fn paint_rung(ui: &Ui, history: &PixelHistory, rung: &Rung, rect: Rect) {
+    let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return };
+    let columns = Columns::of(rect);
+    let (painter, y) = (ui.painter(), rect.center().y);
+    let counts = rung.added != 0;
+    let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(20.0, 6.0));
+    let color = theme::of(ui).part(one.part).unwrap_or(theme::of(ui).dim);
+    if counts {
+        painter.rect_filled(bar, CornerRadius::same(1), color);
+    } else {
+        painter.rect(
+            bar,
+            CornerRadius::same(1),
+            theme::of(ui).panel,
+            Stroke::new(1.0, theme::of(ui).faint),
+            StrokeKind::Inside,
+        );
+    }
+    let (part, of) = named(one);
+    let ink = if counts { theme::of(ui).text } else { theme::of(ui).faint };
+    let what = format!("{part}, {}", side(one));
+    theme::two_inks(ui, pos2(columns.name, y), columns.name_room, [&what, &of], ink);
+    let number = theme::number_font(theme::SMALL_SIZE);
+    let ink = if counts { theme::of(ui).dim } else { theme::of(ui).faint };
+    let is_clipped = matches!(one.fate, Fate::Clipped(_) | Fate::Discarded(_) | Fate::Culled);
+    let distance = if is_clipped { "clipped".to_owned() } else { short_metres(rung.distance) };
+    painter.text(pos2(columns.distance, y), Align2::RIGHT_CENTER, distance, number.clone(), ink);
+    if !counts {
+        return;
+    }
+    let color = if rung.added > 0 { theme::of(ui).count_up } else { theme::of(ui).count_down };
+    painter.text(pos2(columns.added, y), Align2::RIGHT_CENTER, added(rung.added), number.clone(), color);
+    // Up or down beside the sign.
+    let (tip, base) = if rung.added > 0 { (-3.5, 3.0) } else { (3.5, -3.0) };
+    let x = columns.added - 24.0;
+    let triangle = [vec2(0.0, tip), vec2(3.5, base), vec2(-3.5, base)].map(|corner| pos2(x, y) + corner);
+    painter.add(Shape::convex_polygon(triangle.to_vec(), color, Stroke::NONE));
+    painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, signed(rung.running), number, theme::of(ui).text);
+}
+
+/// Metres in as few digits as a column has room for.
+fn short_metres(distance: f64) -> String {
+    match distance {
+        _ if !distance.is_finite() => "∞".to_owned(),
+        ..0.1 => numbers::metres(distance),
+        ..100.0 => format!("{distance:.2} m"),
+        100.0..10_000.0 => format!("{distance:.0} m"),
+        _ => numbers::metres(distance),
+    }
+}
+
+fn paint_more(ui: &Ui, rungs: &[Rung], rect: Rect) {
+    let columns = Columns::of(rect);
+    let (painter, y) = (ui.painter(), rect.center().y);
+    for offset in [-4.0, 0.0, 4.0] {
+        painter.circle_filled(pos2(columns.ray, y + offset), 1.5, theme::of(ui).dim);
+    }
+    let font = FontId::proportional(theme::SMALL_SIZE);
+    painter.text(pos2(columns.name, y), Align2::LEFT_CENTER, folded(rungs), font, theme::of(ui).dim);
+}
+
+/// Eye, near plane, surface, infinity.
+fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder, mark: Mark, rect: Rect) {
+    let columns = Columns::of(rect);
+    let (painter, y) = (ui.painter(), rect.center().y);
+    let words =
+        |text: &str, color: Color32| theme::two_inks(ui, pos2(columns.name, y), columns.name_room, [text, ""], color);
+    let number = |x: f32, text: String, color: Color32| {
+        painter.text(pos2(x, y), Align2::RIGHT_CENTER, text, theme::number_font(theme::SMALL_SIZE), color);
+    };
+    match mark {
+        Mark::Eye => {
+            painter.circle_filled(pos2(columns.ray, y), 4.0, theme::of(ui).text);
+            words("eye", theme::of(ui).dim);
+        }
+        Mark::Near => {
+            let [from, to] = [columns.ray - 14.0, columns.ray + 14.0].map(|x| pos2(x, y));
+            painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.5, theme::of(ui).dim), 4.0, 3.0));
+            words("near plane", theme::of(ui).dim);
+            number(columns.distance, short_metres(capture.camera.near), theme::of(ui).dim);
+            if ladder.start != 0 && !ladder.is_from_infinity() {
+                number(columns.count, signed(ladder.start), theme::of(ui).text);
+            }
+        }
+        Mark::Surface => {
+            let bar = Rect::from_center_size(pos2(columns.ray, y), vec2(32.0, 7.0));
+            painter.rect_filled(bar, CornerRadius::same(1), theme::of(ui).text);
+            let of = surface_name(history).unwrap_or("");
+            let words = ["surface", of];
+            theme::two_inks(ui, pos2(columns.name, y), columns.name_room, words, theme::of(ui).text);
+            number(columns.distance, ladder.surface.map(short_metres).unwrap_or_default(), theme::of(ui).text);
+            // What the light pass asks about.
+            let count = match ladder.tested {
+                Count::Stencil(byte) if !(-128..=255).contains(&ladder.count) => byte.to_string(),
+                _ => signed(ladder.count),
+            };
+            let size = theme::TEXT_SIZE;
+            let ink = if ladder.tested.is_zero() { theme::of(ui).lit } else { theme::of(ui).text };
+            painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, count, theme::number_font(size), ink);
+        }
+        Mark::Infinity => {
+            painter.text(
+                pos2(columns.ray, y + 7.0),
+                Align2::CENTER_CENTER,
+                "∞",
+                theme::number_font(15.0),
+                theme::of(ui).dim,
+            );
+            words("infinity", theme::of(ui).dim);
+            if ladder.start != 0 && ladder.is_from_infinity() {
+                number(columns.count, signed(ladder.start), theme::of(ui).text);
+            }
+        }
+        Mark::Rung(_) | Mark::More(..) => {}
+    }
+}
+
+/// What the visible surface is of.
+fn surface_name(history: &PixelHistory) -> Option<&str> {
+    let wrote =
+        history.triangles().filter(|(event, one)| one.part == Part::Surface && event.before.depth != event.after.depth);
+    wrote.last().map(|(_, one)| one.draw_name.as_str())
+}
+
+/// The running count as a step line, further right where it is higher, with an arrow where it goes.
+fn paint_count(ui: &Ui, columns: Columns, top: f32, ladder: &Ladder, stretches: &[Stretch]) {
+    let counts = || stretches.iter().map(|one| one.count).chain([0]);
+    let (Some(least), Some(most)) = (counts().min(), counts().max()) else { return };
+    let step = (COUNT_ROOM / (most - least).max(1) as f32).min(COUNT_STEP);
+    let x = |count: i32| columns.steps + 4.0 + (count - least) as f32 * step;
+    let painter = ui.painter();
+    if let (Some(first), Some(last)) = (stretches.first(), stretches.last()) {
+        let (low, high) = (first.top.min(last.top), first.bottom.max(last.bottom));
+        painter.vline(x(0), top + low..=top + high, Stroke::new(1.0, theme::of(ui).line));
+    }
+    let along = stretches.iter().flat_map(|one| {
+        let ends = if ladder.is_from_infinity() { [one.bottom, one.top] } else { [one.top, one.bottom] };
+        ends.map(|y| pos2(x(one.count), top + y))
+    });
+    let along: Vec<_> = along.collect();
+    if let [.., before, last] = along[..] {
+        let back = if before.y > last.y { 6.0 } else { -6.0 };
+        let tip = [vec2(-3.5, back), vec2(0.0, 0.0), vec2(3.5, back)].map(|corner| last + corner);
+        painter.line(tip.to_vec(), Stroke::new(1.5, theme::of(ui).text));
+    }
+    painter.line(along, Stroke::new(1.5, theme::of(ui).text));
+}

@@ -1,0 +1,316 @@
+//! The picked pixel: one sentence, then its values at the selected step, then how they came to be.
+
+pub mod history_rows;
+pub mod ladder;
+pub mod room;
+pub mod run;
+pub mod told;
+
+use crate::accuracy::Finding;
+use crate::capture::{Capture, CapturedLight, FrameSnapshot};
+use crate::inspector::look::coloring;
+use crate::inspector::look::findings;
+use crate::inspector::look::palette;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::inspector::panels::picture::error_legend;
+use crate::reading::counts;
+use crate::reading::depth::{DepthMeasure, FIXED_BITS};
+use crate::reading::format;
+use crate::reading::layers::MapContent;
+use crate::reading::shown::{PictureKind, has_truth};
+use crate::reading::verdict::{explained, verdict};
+use egui::{Color32, RichText, Ui};
+
+pub use told::Pixel;
+use told::Told;
+
+/// Height of a row of values where room is short, points.
+const TIGHT_ROW: f32 = 18.0;
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
+    let Some(capture) = model.frame.capture.clone() else {
+        ui.add(egui::Label::new(theme::note("Open a scene to look at its pixels.")).wrap());
+        return;
+    };
+    let Some(at) = model.selection.pick else { return how_to_pick(ui) };
+    let told = own.told(model);
+    let size = ui.available_size();
+    let is_tight = room::is_tight(size);
+    let gap = if is_tight { 4.0 } else { 8.0 };
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        if is_tight {
+            ui.spacing_mut().interact_size.y = TIGHT_ROW;
+            ui.spacing_mut().item_spacing.y = 2.0;
+        }
+        let bottom = ui.cursor().top() + size.y;
+        sentence(ui, own, model, &told, (&capture, at));
+        ui.add_space(gap);
+        values(ui, model, &capture, at, is_tight);
+        if !capture.lights.is_empty() {
+            ui.add_space(gap);
+            lights(ui, &capture, at);
+        }
+        ui.add_space(gap);
+        run::ui(ui, model, &capture, at);
+        ui.add_space(gap);
+        let events = told.history.as_ref().map_or(0, |history| history.events.len());
+        let rows = room::rows(bottom - ui.cursor().top(), events, ladder::is_shown(&told, &capture));
+        // The card of a selected event moves the ladder, and takes none of its room: else its rungs would fold under
+        // the pointer.
+        let end = history_rows::ui(ui, own, model, &told, (&capture, at), rows);
+        ui.add_space(gap);
+        let light = light_in_question(model, &capture, at);
+        ladder::ui(ui, own, model, &told, (&capture, light), bottom - end - gap);
+    });
+}
+
+fn how_to_pick(ui: &mut Ui) {
+    theme::heading(ui, "No pixel is picked.");
+    let text = "Right-click a pixel of the picture, or drag with the right button. The arrow keys move the pick while \
+                the picture has the focus, ten pixels at a time with Shift.";
+    ui.add(egui::Label::new(theme::note(text)).wrap());
+}
+
+/// The light that the sentence is about: the selected step's, or the first that is blocked.
+fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
+    let of_step = capture.steps.get(model.selection.step).and_then(|step| step.light);
+    let is_dark = |light: &CapturedLight| light.shadow.as_ref().and_then(|mask| mask.byte_at(at)) == Some(1);
+    of_step.or_else(|| capture.lights.iter().position(is_dark)).unwrap_or(0)
+}
+
+/// While the history of a pixel is on its way the last sentence stays, so that it does not change
+/// twice.
+fn sentence(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, (capture, at): (&Capture, [u32; 2])) {
+    let light = light_in_question(model, capture, at);
+    // One that is wrong explains nothing.
+    let history = told.history.as_ref().filter(|_| told.is_of_pick && told.wrong.is_empty());
+    let is_waiting = !told.is_of_pick && told.failed.is_none() && model.scene.is_some();
+    let held = own.sentence.take().filter(|_| is_waiting && !told.is_late);
+    let verdict = held.unwrap_or_else(|| {
+        let verdict = verdict(capture, light, at);
+        match history {
+            Some(history) => explained(verdict, history, light),
+            None => verdict,
+        }
+    });
+    own.sentence = Some(verdict.clone());
+    theme::card(ui).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        theme::heading(ui, &verdict.title);
+        ui.add(egui::Label::new(theme::note(verdict.reason)).wrap());
+    });
+}
+
+/// A name and a value, or two of them in a row where `is_tight`.
+fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight: bool) {
+    theme::heading(ui, &format!("After {}", model.moment().words()));
+    let row_height = ui.spacing().interact_size.y.min(20.0);
+    let grid = |name| egui::Grid::new(name).min_row_height(row_height);
+    let in_row = if is_tight { 2 } else { 1 };
+    let spacing = if is_tight { [10.0, 0.0] } else { [16.0, 2.0] };
+    grid("pixel values").num_columns(2 * in_row).spacing(spacing).show(ui, |ui| {
+        let mut pairs = Pairs { in_row, done: 0 };
+        pairs.text(ui, "pixel", &format!("{}, {}", at[0], at[1]));
+        match model.moment().frame(capture) {
+            Some(frame) => frame_values(ui, &mut pairs, capture, frame, at),
+            None => pairs.text(ui, "picture", "not begun yet"),
+        }
+    });
+    let has_count = model.moment().frame(capture).is_some() && model.counts_to_show(capture).is_some();
+    let texel = model.selection.map_pick.filter(|_| model.view.kind == PictureKind::Map);
+    if has_count || texel.is_some() {
+        // Some of these are long.
+        grid("pixel further values").num_columns(2).spacing(spacing).show(ui, |ui| {
+            if has_count {
+                count_row(ui, model, capture, at);
+            }
+            if let Some(texel) = texel {
+                map_values(ui, model, capture, texel);
+            }
+        });
+    }
+}
+
+/// Cells of a grid: names and values, so many pairs in a row.
+struct Pairs {
+    in_row: usize,
+    done: usize,
+}
+
+impl Pairs {
+    fn add(&mut self, ui: &mut Ui, name: &str, value: impl FnOnce(&mut Ui)) {
+        ui.label(theme::note(name));
+        value(ui);
+        self.done += 1;
+        if self.done.is_multiple_of(self.in_row) {
+            ui.end_row();
+        }
+    }
+
+    fn text(&mut self, ui: &mut Ui, name: &str, value: &str) {
+        self.add(ui, name, |ui| {
+            ui.label(theme::number(value).color(theme::of(ui).text));
+        });
+    }
+}
+
+fn frame_values(ui: &mut Ui, pairs: &mut Pairs, capture: &Capture, frame: &FrameSnapshot, at: [u32; 2]) {
+    if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
+        let is_alone = pairs.in_row == 1;
+        pairs.add(ui, "colour", |ui| {
+            ui.horizontal(|ui| {
+                theme::swatch(ui, Color32::from_rgb(red, green, blue));
+                ui.label(theme::number(format!("{red} {green} {blue}"))).on_hover_text("sRGB");
+                if is_alone {
+                    ui.label(theme::note("sRGB"));
+                }
+            });
+        });
+    }
+    if let Some(depth) = frame.depth.image.depth_at(at) {
+        pairs.text(ui, "depth", &format::depth(depth));
+        let measure = DepthMeasure::of_camera(capture);
+        let distance = measure.value(depth);
+        pairs.text(ui, "distance", &distance.map_or_else(|| "no surface".to_owned(), format::metres));
+        let metres = |step: Option<f64>| step.map_or_else(|| "–".to_owned(), format::metres);
+        pairs.text(ui, "one step", &metres(measure.step_at(depth)));
+        pairs.text(ui, &format!("in {FIXED_BITS} bits"), &metres(measure.fixed_step_at(depth)));
+    }
+    match frame.stencil.as_ref().map(|stencil| stencil.image.byte_at(at)) {
+        Some(Some(stencil)) => stencil_cells(ui, pairs, stencil),
+        Some(None) => {}
+        None if capture.lights.iter().any(|light| light.count.is_some()) => {}
+        None => pairs.text(ui, "stencil", "no buffer"),
+    }
+}
+
+fn stencil_cells(ui: &mut Ui, pairs: &mut Pairs, stencil: u8) {
+    let bits = theme::number(format!("{:04b} {:04b}", stencil >> 4, stencil & 15)).color(theme::of(ui).dim);
+    let is_alone = pairs.in_row == 1;
+    let beside = is_alone.then(|| bits.clone());
+    pairs.add(ui, "stencil", |ui| {
+        ui.horizontal(|ui| {
+            theme::swatch(ui, palette::stencil(stencil));
+            ui.label(theme::number(crate::numbers::signed(stencil)).color(theme::of(ui).text));
+            if let Some(bits) = beside {
+                ui.label(bits);
+            }
+        });
+    });
+    if !is_alone {
+        pairs.add(ui, "its bits", |ui| {
+            ui.label(bits);
+        });
+    }
+}
+
+/// The signed count of the light in question, where it is known after the step.
+fn count_row(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2]) {
+    let Some((light, image)) = model.counts_to_show(capture) else { return };
+    let Some(count) = image.count_at(at) else { return };
+    let is_only = capture.lights.iter().filter(|light| light.count.is_some()).count() < 2;
+    let name = if is_only { "count".to_owned() } else { format!("count, {}", format::light(light)) };
+    ui.label(theme::note(name));
+    ui.horizontal(|ui| {
+        theme::swatch(ui, palette::count(count));
+        ui.label(theme::number(counts::text(count)).color(theme::of(ui).text));
+        let read = counts::in_eight_bits(count);
+        if f32::from(read) != count {
+            ui.label(theme::number(format!("would read {read} in eight bits")).color(theme::of(ui).dim));
+        }
+    });
+    ui.end_row();
+}
+
+/// The picked texel of a picture of what light comes through.
+fn let_through_values(ui: &mut Ui, what: &str, layer: &str, texel: [u32; 2], [r, g, b, a]: [u8; 4]) {
+    row(ui, what, layer);
+    row(ui, "texel", &format!("{}, {}", texel[0], texel[1]));
+    ui.label(theme::note("lets through")).on_hover_text("Linear shares of the light's red, green and blue");
+    ui.horizontal(|ui| {
+        theme::swatch(ui, coloring::linear([r, g, b, a]));
+        ui.label(theme::number(format::shares([r, g, b, a])).color(theme::of(ui).text));
+    });
+    ui.end_row();
+    row(ui, "stored", &format!("{r} {g} {b}, alpha {a}"));
+    ui.label(theme::note("for labels")).on_hover_text("Alpha: below a half, labels take the light for blocked");
+    ui.label(theme::number(if a < 128 { "blocked" } else { "arrives" }).color(theme::of(ui).text));
+    ui.end_row();
+}
+
+/// The picked texel of the map that is shown.
+fn map_values(ui: &mut Ui, model: &Model, capture: &Capture, texel: [u32; 2]) {
+    let Some(shown) = model.view.shown(capture, model.moment()).filter(|shown| shown.images.len() == 1) else { return };
+    if let (Some(bytes), Some(layer)) = (shown.images[0].rgba_at(texel), shown.layers.first()) {
+        let what = MapContent::of_capture(capture).map_or("map", MapContent::one);
+        return let_through_values(ui, what, &layer.name, texel, bytes);
+    }
+    let Some(depth) = shown.images[0].depth_at(texel) else { return };
+    row(ui, "map texel", &format!("{}, {}", texel[0], texel[1]));
+    row(ui, "map depth", &format::depth(depth));
+    if shown.measure != DepthMeasure::Raw {
+        let distance = shown.measure.value(depth);
+        row(ui, "map distance", &distance.map_or_else(|| "nothing seen".to_owned(), format::metres));
+    }
+}
+
+fn row(ui: &mut Ui, name: &str, value: &str) {
+    ui.label(theme::note(name));
+    ui.label(theme::number(value).color(theme::of(ui).text));
+    ui.end_row();
+}
+
+/// Every light with its label in words; where the truth is known, beside it and with the finding.
+fn lights(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
+    theme::heading(ui, "Lights");
+    if has_truth(capture) {
+        for (index, light) in capture.lights.iter().enumerate() {
+            judged(ui, capture, index, light, at);
+        }
+        return;
+    }
+    egui::Grid::new("pixel lights").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
+        for (index, light) in capture.lights.iter().enumerate() {
+            ui.label(theme::note(format::light(index)));
+            let label = light.shadow.as_ref().and_then(|mask| mask.byte_at(at));
+            ui.horizontal(|ui| label_words(ui, label, "no mask"));
+            ui.end_row();
+        }
+    });
+}
+
+fn label_words(ui: &mut Ui, label: Option<u8>, without: &str) {
+    match label.and_then(|label| palette::LABELS.get(usize::from(label))) {
+        Some(label) => {
+            theme::swatch(ui, label.color);
+            ui.label(RichText::new(label.name).color(theme::of(ui).text)).on_hover_text(label.meaning);
+        }
+        None => {
+            ui.label(theme::note(without));
+        }
+    }
+}
+
+/// The technique's label beside the truth's, and below them what follows.
+fn judged(ui: &mut Ui, capture: &Capture, index: usize, light: &CapturedLight, at: [u32; 2]) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::note(format::light(index)));
+        ui.add_space(4.0);
+        ui.label(theme::note(capture.technique.as_str()));
+        label_words(ui, light.shadow.as_ref().and_then(|mask| mask.byte_at(at)), "no mask");
+        ui.add_space(4.0);
+        ui.label(theme::note("truth"));
+        label_words(ui, light.truth.as_ref().and_then(|truth| truth.labels.byte_at(at)), "unknown");
+    });
+    let finding = light.truth.as_ref().and_then(|truth| Finding::from_byte(truth.findings.byte_at(at)?));
+    if let Some(finding) = finding {
+        let style = findings::style(finding);
+        ui.horizontal(|ui| {
+            error_legend::hatched(ui, style);
+            ui.add(egui::Label::new(RichText::new(style.meaning).color(theme::of(ui).text)).wrap());
+        });
+    }
+    ui.add_space(4.0);
+}

@@ -1,0 +1,149 @@
+//! How the picked pixel's values ran over the steps: what each pass changed here, and what it left.
+
+use crate::capture::{Capture, FrameSnapshot, Snapshot};
+use crate::inspector::look::palette;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::counts;
+use crate::reading::depth::DepthMeasure;
+use crate::reading::format;
+use crate::reading::layers::MapContent;
+use egui::{Color32, CornerRadius, RichText, Ui};
+
+/// Letters of a pass's name where it has the most room.
+const MOST_LETTERS: usize = 24;
+
+/// A value in the table, with the colour that stands for it.
+#[derive(Debug, Clone, PartialEq)]
+struct Value {
+    text: String,
+    color: Option<Color32>,
+}
+
+/// The pixel's values after a step.
+#[derive(Debug, Clone, PartialEq)]
+struct Values {
+    stencil: Option<Value>,
+    count: Option<Value>,
+    color: Option<Value>,
+    depth: Option<Value>,
+}
+
+/// Draws the table; clicking a pass selects its step.
+pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
+    theme::heading(ui, "Over the steps");
+    let mut selected = None;
+    let last = capture.steps.len().saturating_sub(1);
+    let has_stencil = capture.frame_at(last).is_some_and(|frame| frame.stencil.is_some());
+    let runs = capture.steps.iter().enumerate().map(|(index, step)| match &step.snapshot {
+        Snapshot::Frame(frame) => Some(values(capture, index, frame, at)),
+        Snapshot::Map { .. } => None,
+    });
+    let runs: Vec<Option<Values>> = runs.collect();
+    let has_count = runs.iter().flatten().any(|values| values.count.is_some());
+    let has = [has_stencil, has_count];
+    // The columns beside it keep their place.
+    let longest = if has_stencil { MOST_LETTERS - 9 } else { MOST_LETTERS };
+    let of_map = MapContent::of_capture(capture).map_or("map", MapContent::one);
+    let grid = egui::Grid::new("pixel over the steps").num_columns(5).spacing([12.0, 2.0]);
+    let row_height = ui.spacing().interact_size.y.min(20.0);
+    grid.min_row_height(row_height).show(ui, |ui| {
+        head(ui, has);
+        let mut before: Option<&Values> = None;
+        for (index, step) in capture.steps.iter().enumerate() {
+            if pass_cell(ui, index, &step.name, longest, index == model.selection.step) {
+                selected = Some(index);
+            }
+            match &runs[index] {
+                Some(now) => {
+                    row(ui, now, before, has);
+                    before = Some(now);
+                }
+                None => {
+                    ui.label(
+                        RichText::new(format!("{of_map} only")).size(theme::SMALL_SIZE).color(theme::of(ui).faint),
+                    );
+                }
+            }
+            ui.end_row();
+        }
+    });
+    if let Some(index) = selected {
+        model.selection.playing = None;
+        model.select_step(index);
+    }
+}
+
+/// Head of the columns. Where there are counts in floats too, the distance has no room: it is told above.
+fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
+    let columns =
+        [("pass", true), ("stencil", has_stencil), ("count", has_count), ("colour", true), ("distance", !has_count)];
+    for (name, _) in columns.into_iter().filter(|(_, is_shown)| *is_shown) {
+        ui.label(theme::note(name));
+    }
+    ui.end_row();
+}
+
+/// Number and name of a pass, shortened to so many letters; true when it is clicked.
+fn pass_cell(ui: &mut Ui, index: usize, name: &str, longest: usize, is_selected: bool) -> bool {
+    let color = if is_selected { theme::of(ui).text } else { theme::of(ui).dim };
+    let short: String = match name.char_indices().nth(longest) {
+        Some(_) => name.chars().take(longest - 1).chain(['…']).collect(),
+        None => name.to_owned(),
+    };
+    let text = RichText::new(format!("{} {short}", index + 1)).size(theme::SMALL_SIZE).color(color);
+    let button = egui::Button::selectable(is_selected, text).corner_radius(CornerRadius::same(2));
+    ui.add(button).on_hover_text(format!("Go to step {}, {name}", index + 1)).clicked()
+}
+
+fn values(capture: &Capture, step: usize, frame: &FrameSnapshot, at: [u32; 2]) -> Values {
+    let count = counts::known_after(capture, step).and_then(|(_, image)| image.count_at(at));
+    let stencil = frame.stencil.as_ref().and_then(|aspect| aspect.image.byte_at(at));
+    Values {
+        stencil: stencil
+            .map(|value| Value { text: crate::numbers::signed(value), color: Some(palette::stencil(value)) }),
+        count: count.map(|count| Value { text: counts::text(count), color: Some(palette::count(count)) }),
+        color: frame.color.image.rgba_at(at).map(|[red, green, blue, _]| Value {
+            text: format!("{red} {green} {blue}"),
+            color: Some(Color32::from_rgb(red, green, blue)),
+        }),
+        depth: frame.depth.image.depth_at(at).map(|depth| Value { text: distance(capture, depth), color: None }),
+    }
+}
+
+fn distance(capture: &Capture, depth: f32) -> String {
+    DepthMeasure::of_camera(capture).value(depth).map_or_else(|| "–".to_owned(), format::metres)
+}
+
+fn row(ui: &mut Ui, now: &Values, before: Option<&Values>, [has_stencil, has_count]: [bool; 2]) {
+    if has_stencil {
+        cell(ui, now.stencil.as_ref(), before.and_then(|before| before.stencil.as_ref()));
+    }
+    if has_count {
+        cell(ui, now.count.as_ref(), before.and_then(|before| before.count.as_ref()));
+    }
+    cell(ui, now.color.as_ref(), before.and_then(|before| before.color.as_ref()));
+    if !has_count {
+        cell(ui, now.depth.as_ref(), before.and_then(|before| before.depth.as_ref()));
+    }
+}
+
+/// A value with its colour; faint where the pass left it as it was at this pixel.
+fn cell(ui: &mut Ui, now: Option<&Value>, before: Option<&Value>) {
+    let Some(value) = now else {
+        ui.label("");
+        return;
+    };
+    let unchanged = before == Some(value);
+    let ink = if unchanged { theme::of(ui).faint } else { theme::of(ui).text };
+    let line = ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        if let Some(color) = value.color {
+            theme::swatch(ui, if unchanged { color.gamma_multiply(0.45) } else { color });
+        }
+        ui.label(theme::number(value.text.as_str()).color(ink));
+    });
+    if unchanged {
+        line.response.on_hover_text("Unchanged here by this pass");
+    }
+}

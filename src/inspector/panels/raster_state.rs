@@ -1,0 +1,156 @@
+//! The State tab: the whole state of the selected draw, in a sentence, in three APIs' words, and
+//! the matrices with the names of their spaces.
+
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::plan::words::{self, Api};
+use crate::plan::{Draw, FramePlan, Pass};
+use crate::reading::format;
+use egui::{Label, Ui};
+
+/// The tab.
+#[derive(Debug, Default)]
+pub struct RasterStatePanel {
+    /// In whose words it tells.
+    api: Api,
+}
+
+/// Draws the tab.
+pub fn ui(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model) {
+    let Some(capture) = model.frame.capture.clone() else {
+        ui.add(Label::new(theme::note("Open a scene: the state of its passes is shown here.")).wrap());
+        return;
+    };
+    let step = model.selection.step;
+    let plan = model.frame.plan.clone();
+    let Some(pass) = plan.as_ref().and_then(|plan| plan.passes.get(step)) else {
+        return from_text(ui, &capture.plan_text, step);
+    };
+    let Some(plan) = plan.as_ref() else { return };
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        theme::heading(ui, &format!("{} · {}", step + 1, pass.name));
+        attachments(ui, plan, pass);
+        let draw = model.selection.draw.and_then(|draw| pass.draws.get(draw)).or_else(|| pass.draws.last());
+        match draw {
+            Some(draw) => of_draw(ui, own, model, pass, draw),
+            None => {
+                ui.add(Label::new(theme::note("This pass draws nothing: it has no raster model.")).wrap());
+            }
+        }
+        ui.add_space(12.0);
+        matrices(ui, model, plan, pass, &capture);
+        ui.add_space(16.0);
+    });
+}
+
+/// What the pass draws into, and what that holds at the start.
+fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
+    let name = |id: crate::plan::AttachmentId| plan.attachments.get(id.0).map_or("?", |attachment| &attachment.name);
+    let kept = || "kept".to_owned();
+    egui::Grid::new("pass attachments").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+        let mut row = |what: &str, text: String| {
+            ui.label(theme::note(what));
+            ui.add(Label::new(text).wrap());
+            ui.end_row();
+        };
+        row("seen from", plan.views.get(pass.view.0).map_or_else(|| "?".to_owned(), |view| view.name.clone()));
+        if let Some(color) = &pass.color {
+            let load = color.clear.map_or_else(kept, |_| "cleared".to_owned());
+            row("colour", format!("{}, {load} at the start", name(color.attachment)));
+        }
+        if let Some(target) = &pass.depth_stencil {
+            let depth = target.clear_depth.map_or_else(kept, |value| format!("cleared to {value}"));
+            let stencil = target.clear_stencil.map_or_else(kept, |value| format!("cleared to {value}"));
+            row("depth, stencil", format!("{}: depth {depth}, stencil {stencil}", name(target.attachment)));
+        }
+        if let Some([left, top, columns, rows]) = pass.scissor {
+            row("scissor", format!("{columns}×{rows} pixels from {left}, {top}"));
+        }
+    });
+    ui.add_space(8.0);
+}
+
+fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, draw: &Draw) {
+    let which = if model.selection.draw.is_some() { "The selected draw" } else { "Its last draw" };
+    theme::heading(ui, &format!("{which}: {}", draw.name));
+    for sentence in words::sentences(&draw.raster, pass) {
+        ui.add(Label::new(sentence).wrap());
+    }
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        let labels = Api::ALL.map(|api| (api.name(), "The same state in these words"));
+        let chosen = Api::ALL.iter().position(|api| *api == own.api);
+        if let Some(index) = crate::inspector::look::widgets::segments(ui, &labels, chosen) {
+            own.api = Api::ALL[index];
+        }
+    });
+    let lines = words::lines(&draw.raster, own.api);
+    theme::card(ui).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        for line in &lines {
+            ui.add(Label::new(theme::number(line.as_str())).wrap().selectable(true));
+        }
+    });
+    if ui.button("Copy state").on_hover_text("To the clipboard, in these words").clicked() {
+        ui.ctx().copy_text(lines.join("\n"));
+    }
+}
+
+/// From world to clip space, each matrix by the names of its spaces.
+fn matrices(ui: &mut Ui, model: &Model, plan: &FramePlan, pass: &Pass, capture: &crate::capture::Capture) {
+    let Some(view) = plan.views.get(pass.view.0) else { return };
+    theme::heading(ui, "Matrices");
+    let origin = view.origin;
+    let from = format!(
+        "relative = world − ({}, {}, {}), in f64: what is near stays exact however far it is from the world's origin.",
+        format::digits(origin.x),
+        format::digits(origin.y),
+        format::digits(origin.z)
+    );
+    ui.add(Label::new(theme::note(from)).wrap());
+    matrix(ui, &format!("clip_from_relative ({})", view.name), &view.clip_from_relative.to_cols_array());
+    let light = pass.light.map_or(model.view.light, |light| light.0);
+    if let Some(map) = capture.lights.get(light).and_then(|light| light.map.as_ref()) {
+        matrix(ui, "light_from_world", &map.light_from_world.to_cols_array().map(|value| value as f32));
+        let face = match model.view.face {
+            crate::reading::shown::FaceChoice::One(face) => face,
+            crate::reading::shown::FaceChoice::Grid => 0,
+        };
+        if let Some(clip) = map.clip_from_light.get(face) {
+            matrix(ui, &format!("clip_from_light, layer {face}"), &clip.to_cols_array().map(|value| value as f32));
+        }
+    }
+}
+
+/// Four rows of four, from the columns.
+fn matrix(ui: &mut Ui, name: &str, columns: &[f32; 16]) {
+    ui.label(theme::note(name));
+    let rows: Vec<String> = (0..4)
+        .map(|row| (0..4).map(|column| format!("{:>10.4}", columns[column * 4 + row])).collect::<Vec<_>>().join(" "))
+        .collect();
+    ui.add(Label::new(theme::number(rows.join("\n"))).extend().selectable(true));
+    ui.add_space(4.0);
+}
+
+/// Of a capture folder only the plan's text is known: the part about the pass.
+fn from_text(ui: &mut Ui, text: &str, step: usize) {
+    let start = format!("pass {step}: ");
+    let lines: Vec<&str> = text
+        .lines()
+        .skip_while(|line| !line.starts_with(&start))
+        .enumerate()
+        .take_while(|(index, line)| *index == 0 || line.starts_with(' '))
+        .map(|(_, line)| line)
+        .collect();
+    if lines.is_empty() {
+        ui.add(Label::new(theme::note("The capture does not tell the state of this step.")).wrap());
+        return;
+    }
+    egui::ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
+        theme::heading(ui, "As the capture's plan tells it");
+        ui.add(Label::new(theme::number(lines.join("\n"))).extend().selectable(true));
+        if ui.button("Copy state").on_hover_text("To the clipboard").clicked() {
+            ui.ctx().copy_text(lines.join("\n"));
+        }
+    });
+}

@@ -1,0 +1,155 @@
+//! The Report tab: what every technique costs on the open scene, and how often it is wrong.
+//!
+//! It shows data and asks for it; measuring is the app's.
+
+pub mod plot;
+pub mod row;
+pub mod table;
+
+use crate::ask::{Kind, Reply, ReportOf};
+use crate::inspector::action::{Action, Dialog, ExportKind};
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::format;
+use crate::report::MeasuredReport;
+use crate::report::plot::{Page, Plot, layout};
+use crate::technique::Choice;
+use egui::{Align, Layout, RichText, ScrollArea, Ui, vec2};
+use std::sync::{Arc, Weak};
+
+/// From this width on, in points, plot and table are side by side.
+const SIDE_BY_SIDE: f32 = 600.0;
+/// Width of the table beside the plot, points.
+const TABLE_WIDTH: std::ops::RangeInclusive<f32> = 296.0..=480.0;
+/// Height of the plot above the table, points.
+const STACKED_PLOT_HEIGHT: f32 = 240.0;
+
+/// The tab: its plot, laid out once for each size.
+#[derive(Debug, Default)]
+pub struct ReportPanel {
+    plot: Option<(Weak<MeasuredReport>, Page, Arc<Plot>)>,
+}
+
+impl ReportPanel {
+    /// The plot of a report on a page.
+    fn plot(&mut self, measured: &Arc<MeasuredReport>, page: Page) -> Arc<Plot> {
+        match &self.plot {
+            Some((of, laid_out, plot)) if std::ptr::eq(of.as_ptr(), Arc::as_ptr(measured)) && *laid_out == page => {
+                Arc::clone(plot)
+            }
+            _ => {
+                let plot = Arc::new(layout(&measured.report, &page));
+                self.plot = Some((Arc::downgrade(measured), page, Arc::clone(&plot)));
+                plot
+            }
+        }
+    }
+}
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, own: &mut ReportPanel, model: &mut Model, actions: &mut Vec<Action>) {
+    let reply = model.answers.under_way::<ReportOf>();
+    let measured = model.answers.last::<ReportOf>().map(|(_, measured)| Arc::clone(measured));
+    top_line(ui, model, &reply, measured.as_deref());
+    if let Some(error) = &reply.failed {
+        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
+    }
+    let Some(measured) = measured.filter(|measured| !measured.report.rows.is_empty()) else { return };
+    let size = ui.available_size();
+    if size.x >= SIDE_BY_SIDE {
+        let table = (size.x * 0.42).clamp(*TABLE_WIDTH.start(), *TABLE_WIDTH.end());
+        let plot = vec2(size.x - table - ui.spacing().item_spacing.x, size.y);
+        ui.horizontal_top(|ui| {
+            ui.allocate_ui_with_layout(plot, Layout::top_down(Align::Min), |ui| {
+                ScrollArea::vertical()
+                    .id_salt("report plot")
+                    .show(ui, |ui| plot_of(ui, own, model, &measured, plot.y, actions));
+            });
+            ui.allocate_ui_with_layout(vec2(table, size.y), Layout::top_down(Align::Min), |ui| {
+                let scroll = ScrollArea::vertical().id_salt("report table").auto_shrink([false, false]);
+                scroll.show(ui, |ui| table::ui(ui, model, &measured.report, actions));
+            });
+        });
+    } else {
+        ScrollArea::both().id_salt("report").auto_shrink([false, false]).show(ui, |ui| {
+            plot_of(ui, own, model, &measured, STACKED_PLOT_HEIGHT, actions);
+            table::ui(ui, model, &measured.report, actions);
+        });
+    }
+}
+
+fn plot_of(
+    ui: &mut Ui,
+    own: &mut ReportPanel,
+    model: &Model,
+    measured: &Arc<MeasuredReport>,
+    height: f32,
+    actions: &mut Vec<Action>,
+) {
+    let width = f64::from(ui.available_width().floor());
+    // A little less than there is: a scroll bar would ask for another width.
+    let height = Some(f64::from((height - 2.0).floor()));
+    let page = Page { width, height, most_columns: 4, compact: true };
+    plot::ui(ui, model, (&measured.report, &own.plot(measured, page)), actions);
+}
+
+/// What can be done, and how far it is.
+fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measured: Option<&MeasuredReport>) {
+    let can_run = model.scene.is_some();
+    ui.horizontal_wrapped(|ui| match &reply.running {
+        Some(progress) => {
+            if ui.button("Cancel").on_hover_text("Stop measuring; the rows so far stay").clicked() {
+                model.answers.cancel(Kind::ReportOf);
+            }
+            let choices = model.answers.asked::<ReportOf>().map_or(&[][..], |ask| &ask.choices);
+            // The truth comes first, with steps of its own.
+            let what = progress.item().and_then(|item| choices.get(item));
+            let what = what.map_or_else(|| "the truth".to_owned(), Choice::short_name);
+            let (done, of) = progress.steps();
+            let share = done as f32 / of.max(1) as f32;
+            let width = ui.available_width().min(180.0);
+            let bar = egui::ProgressBar::new(share).desired_width(width).desired_height(8.0);
+            ui.add(bar).accessible_name("Measuring");
+            let count = |value: usize| format::count(value as u64);
+            ui.label(theme::note(format!("{} of {} · {what}", count(done), count(of))));
+        }
+        None => {
+            let is_new = measured.is_none_or(|measured| measured.report.rows.is_empty());
+            let words = if is_new { "Measure" } else { "Measure again" };
+            let button = ui.add_enabled(can_run, egui::Button::new(words));
+            if button.on_hover_text("Measure every technique on the open scene; this takes a while").clicked() {
+                match ReportOf::grid() {
+                    Ok(question) => model.answers.start(question),
+                    Err(error) => model.push_error(error.to_string()),
+                }
+            }
+            if !is_new && ui.button("Save…").on_hover_text("Write the rows or the plot to a file").clicked() {
+                model.dialog = Some(Dialog::Export(ExportKind::Report));
+            }
+            ui.add(egui::Label::new(theme::note(explanation(measured.filter(|_| !is_new), can_run))).wrap());
+        }
+    });
+}
+
+fn explanation(measured: Option<&MeasuredReport>, can_run: bool) -> String {
+    match measured {
+        Some(MeasuredReport { report, left_out }) => {
+            let rows = format::counted(report.rows.len() as u64, "row");
+            let adapter = &report.adapter.name;
+            let without = match &left_out[..] {
+                [] => String::new(),
+                left_out => {
+                    let names = left_out.join(", ");
+                    format!(" · without {names}: too much memory for a window, `stencilscope report` measures all")
+                }
+            };
+            format!("{rows} on {adapter} · filled: no other row is both faster and more right{without}")
+        }
+        None if can_run => {
+            "Measures every technique on this scene: how many pixels are wrong against a ray-traced truth, \
+             and how many milliseconds a frame takes."
+                .to_owned()
+        }
+        None => "Open a scene to measure what each technique costs on it, and how often it is wrong.".to_owned(),
+    }
+}

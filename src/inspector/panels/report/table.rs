@@ -1,0 +1,119 @@
+//! The report's rows as a table: what the plot shows as places, in numbers. A row is a button.
+
+use super::{plot, row};
+use crate::inspector::action::Action;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::numbers;
+use crate::reading::format;
+use crate::report::plot::{style_of, text_width};
+use crate::report::{Report, Row};
+use egui::{Align2, Pos2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+
+/// Widths of what stands before a name: its sign.
+const SIGN_WIDTH: f32 = 30.0;
+/// What names take at most, points.
+const WIDEST_NAME: f32 = 200.0;
+
+/// A column of numbers.
+struct Column {
+    heading: &'static str,
+    width: f32,
+    /// Lower ones are given room first.
+    rank: usize,
+    cell: fn(&Row) -> String,
+}
+
+const COLUMNS: [Column; 6] = [
+    Column { heading: "wrong", width: 58.0, rank: 2, cell: |row| format::count(row.wrong()) },
+    Column { heading: "%", width: 46.0, rank: 0, cell: |row| numbers::per_hundred(row.wrong_fraction) },
+    Column { heading: "ms", width: 46.0, rank: 1, cell: |row| numbers::milliseconds(row.frame_ms.median) },
+    Column { heading: "set-up ms", width: 66.0, rank: 3, cell: |row| numbers::milliseconds(row.setup_ms) },
+    Column { heading: "triangles", width: 66.0, rank: 4, cell: |row| format::count(row.triangles) },
+    Column { heading: "MiB", width: 46.0, rank: 5, cell: |row| numbers::mebibytes(row.bytes) },
+];
+
+/// Draws the table in the width that there is.
+pub fn ui(ui: &mut Ui, model: &Model, report: &Report, actions: &mut Vec<Action>) {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let columns = columns(&report.rows, ui.available_width());
+    let scenes = report.scenes();
+    for scene in &scenes {
+        headings(ui, if scenes.len() > 1 { scene } else { "technique" }, &columns);
+        for row in report.rows.iter().filter(|row| row.scene == *scene) {
+            table_row(ui, model, row, &columns, actions);
+        }
+        ui.add_space(8.0);
+    }
+}
+
+/// The columns that fit beside the names, the more important ones first; error and time always.
+fn columns(rows: &[Row], width: f32) -> Vec<&'static Column> {
+    let name = |row: &Row| text_width(&row.name(), f64::from(theme::TEXT_SIZE)) as f32;
+    let names = SIGN_WIDTH + rows.iter().map(name).fold(0.0, f32::max).min(WIDEST_NAME);
+    let taken = |column: &Column| {
+        COLUMNS.iter().filter(|other| other.rank <= column.rank).fold(names + 12.0, |sum, other| sum + other.width)
+    };
+    COLUMNS.iter().filter(|column| column.rank < 2 || taken(column) <= width).collect()
+}
+
+fn headings(ui: &mut Ui, name: &str, columns: &[&'static Column]) {
+    let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::RowHeader, true, name));
+    let font = egui::FontId::proportional(theme::SMALL_SIZE);
+    let painter = ui.painter();
+    painter.text(rect.left_center() + vec2(8.0, 0.0), Align2::LEFT_CENTER, name, font.clone(), theme::of(ui).dim);
+    for (column, at) in places(columns, rect) {
+        painter.text(at, Align2::RIGHT_CENTER, column.heading, font.clone(), theme::of(ui).dim);
+    }
+}
+
+/// Each column with the right end of its cell in a row.
+fn places(columns: &[&'static Column], row: Rect) -> impl Iterator<Item = (&'static Column, Pos2)> {
+    let mut right = row.right() - 6.0;
+    columns.iter().copied().rev().map(move |column| {
+        let at = pos2(right, row.center().y);
+        right -= column.width;
+        (column, at)
+    })
+}
+
+fn table_row(ui: &mut Ui, model: &Model, row: &Row, columns: &[&'static Column], actions: &mut Vec<Action>) {
+    let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let is_current = row::is_current(model, row);
+    response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_current, row.summary()));
+    if response.clicked() {
+        actions.push(row::open_row(row));
+    }
+    if response.gained_focus() {
+        response.scroll_to_me(None);
+    }
+    if ui.is_rect_visible(rect) {
+        theme::row_background(ui, rect, is_current, &response);
+        plot::key(ui, plot::sign_at(rect), style_of(&row.technique), row.pareto);
+        name(ui, rect, row, columns);
+        let font = theme::number_font(theme::SMALL_SIZE);
+        for (column, at) in places(columns, rect) {
+            ui.painter().text(at, Align2::RIGHT_CENTER, (column.cell)(row), font.clone(), theme::of(ui).text);
+        }
+    }
+    response.on_hover_text(row.details());
+}
+
+/// Technique and label, cut where the numbers begin.
+fn name(ui: &Ui, rect: Rect, row: &Row, columns: &[&'static Column]) {
+    let numbers: f32 = columns.iter().map(|column| column.width).sum();
+    let width = (rect.width() - numbers - SIGN_WIDTH - 6.0).max(40.0);
+    let mut job = egui::text::LayoutJob::default();
+    let part = |color| egui::TextFormat::simple(TextStyle::Body.resolve(ui.style()), color);
+    job.append(&row.technique, 0.0, part(theme::of(ui).text));
+    if !row.label.is_empty() {
+        job.append(&row.label, 6.0, part(theme::of(ui).dim));
+    }
+    job.wrap = egui::text::TextWrapping::truncate_at_width(width);
+    let galley = ui.painter().layout_job(job);
+    let at = pos2(rect.left() + SIGN_WIDTH, rect.center().y - galley.size().y / 2.0);
+    ui.painter().galley(at, galley, theme::of(ui).text);
+}

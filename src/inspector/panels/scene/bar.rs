@@ -1,0 +1,175 @@
+//! The toolbar and the legend of the Scene tab.
+
+use super::stage::Stage;
+use super::view::{Layout, Pane, SceneView};
+use crate::anatomy::Anatomy;
+use crate::inspector::look::theme;
+use crate::inspector::look::widgets::segments;
+use crate::plan::Part;
+use crate::reading::format;
+use egui::{Color32, Margin, Rect, Sense, Stroke, Ui, UiBuilder, vec2};
+
+/// Draws the toolbar.
+pub fn toolbar(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
+    egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            layouts(ui, view);
+            if ui.button("Reset").on_hover_text("Show the whole scene in every view").clicked() {
+                view.reset(anatomy);
+            }
+            let see = ui.button("See from the camera");
+            if see.on_hover_text("The free view becomes the picture's own").clicked() {
+                view.see_from(&anatomy.camera);
+            }
+            let gizmos = ui.checkbox(&mut view.gizmos, "Gizmos");
+            gizmos.on_hover_text("Handles that move lights and camera: drag them, or use the arrow keys");
+        });
+    });
+}
+
+fn layouts(ui: &mut Ui, view: &mut SceneView) {
+    const LAYOUTS: [(Layout, &str, &str); 5] = [
+        (Layout::One(Pane::Free), "Free", "One view that is turned by hand"),
+        (Layout::One(Pane::Top), "Top", "From above"),
+        (Layout::One(Pane::Front), "Front", "From the front, along −z"),
+        (Layout::One(Pane::Right), "Right", "From the right, along −x"),
+        (Layout::Four, "Four views", "Top, free, front and right"),
+    ];
+    let labels = LAYOUTS.map(|(_, label, meaning)| (label, meaning));
+    let chosen = LAYOUTS.iter().position(|(layout, ..)| *layout == view.layout);
+    if let Some(index) = segments(ui, &labels, chosen) {
+        view.layout = LAYOUTS[index].0;
+    }
+}
+
+/// What is shown, with its colours: each entry is a switch.
+pub fn legend(ui: &mut Ui, view: &mut SceneView, (anatomy, is_of_frame): (&Anatomy, bool), stage: &Stage, rect: Rect) {
+    ui.painter().rect_filled(rect, egui::CornerRadius::ZERO, theme::of(ui).panel);
+    let builder = UiBuilder::new().max_rect(rect.shrink2(vec2(8.0, 6.0))).id_salt("scene legend");
+    ui.scope_builder(builder, |ui| {
+        let scroll = egui::ScrollArea::vertical().id_salt("scene legend").auto_shrink([false, false]);
+        scroll.show(ui, |ui| {
+            switches(ui, view, anatomy);
+            ui.add_space(8.0);
+            choosers(ui, view, anatomy);
+            ui.add_space(8.0);
+            if !is_of_frame {
+                ui.label(theme::note("Of the frame before."));
+            }
+            notes(ui, anatomy, stage);
+        });
+    });
+}
+
+fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
+    let colors = theme::of(ui);
+    let count = |part: Part| -> u64 {
+        let parts = anatomy.volumes.iter().flat_map(|volume| &volume.parts);
+        parts.filter(|one| one.part == part).map(|one| one.triangles.len() as u64).sum()
+    };
+    let edges: u64 = anatomy.silhouettes.iter().map(|one| one.edges.len() as u64).sum();
+    let shown = &mut view.shown;
+    let objects = anatomy.objects.iter().map(|object| object.mesh.triangles().len() as u64).sum();
+    theme::heading(ui, "Shown");
+    let triangles = |count: u64| format!("{} triangles", format::count(count));
+    switch(ui, &mut shown.objects, Mark::Square(colors.dim), "Objects", &triangles(objects));
+    switch(ui, &mut shown.sides, Mark::Square(colors.side), "Sides", &triangles(count(Part::Side)));
+    switch(ui, &mut shown.light_caps, Mark::Square(colors.light_cap), "Light caps", &triangles(count(Part::LightCap)));
+    switch(ui, &mut shown.dark_caps, Mark::Square(colors.dark_cap), "Dark caps", &triangles(count(Part::DarkCap)));
+    let hint = format!("{} edges; thicker and numbered where the multiplicity is not ±1", format::count(edges));
+    switch(ui, &mut shown.silhouettes, Mark::Line(colors.text, 2.0), "Silhouettes", &hint);
+    let hint = "What the camera sees, with the near rectangle, and what each light's map sees; of a receiver's texture \
+                from its rectangle to the light, of a silhouette as the light projects it";
+    switch(ui, &mut shown.frusta, Mark::Line(colors.lit, 1.0), "Frusta", hint);
+    let hint = "The space between the near rectangle and the light: what casts within it holds the eye in its shadow, or \
+                is cut by the near plane";
+    switch(ui, &mut shown.near_clip, Mark::Square(colors.decided), "Near-clip volume", hint);
+    let hint = "From the eye to the picked pixel's surface, and on to the light: full where it is lit, dashed where \
+                it is not";
+    switch(ui, &mut shown.rays, Mark::Line(colors.text, 1.0), "Rays of the pick", hint);
+    switch(ui, &mut shown.names, Mark::None, "Names", "What each object is called");
+}
+
+/// The sign of an entry.
+enum Mark {
+    Square(Color32),
+    Line(Color32, f32),
+    None,
+}
+
+fn switch(ui: &mut Ui, on: &mut bool, mark: Mark, name: &str, hint: &str) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        match mark {
+            Mark::Square(color) => theme::swatch(ui, color),
+            Mark::Line(color, width) => {
+                let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+                ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(width, color));
+            }
+            Mark::None => {
+                ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+            }
+        }
+        ui.checkbox(on, name).on_hover_text(hint);
+    });
+}
+
+/// Of which light and caster.
+fn choosers(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
+    theme::heading(ui, "Shadows of");
+    let lights = (0..anatomy.lights.len()).map(format::light_title).collect::<Vec<_>>();
+    chooser(ui, "Light shown", "all lights", &lights, &mut view.choice.light);
+    let casters = anatomy.objects.iter().map(|object| object.name.clone()).collect::<Vec<_>>();
+    let casts = |index: usize| anatomy.objects[index].casts;
+    let mut caster = view.choice.caster;
+    let text = caster.and_then(|one| casters.get(one)).map_or("all casters", String::as_str);
+    let combo = egui::ComboBox::from_id_salt("caster shown").width(ui.available_width() - 8.0).truncate();
+    let combo = combo.selected_text(text).show_ui(ui, |ui| {
+        ui.selectable_value(&mut caster, None, "all casters");
+        for index in (0..casters.len()).filter(|index| casts(*index)) {
+            ui.selectable_value(&mut caster, Some(index), &casters[index]);
+        }
+    });
+    combo.response.accessible_name("Caster shown");
+    view.choice.caster = caster;
+}
+
+fn chooser(ui: &mut Ui, name: &str, all: &str, names: &[String], chosen: &mut Option<usize>) {
+    let text = chosen.and_then(|one| names.get(one)).map_or(all, String::as_str);
+    let combo = egui::ComboBox::from_id_salt(name).width(ui.available_width() - 8.0).truncate();
+    let combo = combo.selected_text(text).show_ui(ui, |ui| {
+        ui.selectable_value(chosen, None, all);
+        for (index, one) in names.iter().enumerate() {
+            ui.selectable_value(chosen, Some(index), one);
+        }
+    });
+    combo.response.accessible_name(name);
+}
+
+fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
+    if let Some(coarser) = &stage.coarser {
+        ui.add(egui::Label::new(theme::note(coarser)).wrap());
+    }
+    if !stage.left_out.is_empty() {
+        let names = stage.left_out.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
+        let words = format!("Without the volumes of what holds everything ({names}): choose it to see them.");
+        ui.add(egui::Label::new(theme::note(words)).wrap());
+    }
+    if anatomy.volumes.is_empty() && anatomy.silhouettes.iter().any(|one| !one.edges.is_empty()) {
+        let words = format!("{} draws no volumes; silhouettes exist all the same.", anatomy.technique);
+        ui.add(egui::Label::new(theme::note(words)).wrap());
+    }
+    if !anatomy.volumes.is_empty() {
+        let lacks = |part: Part| anatomy.volumes.iter().all(|volume| volume.parts.iter().all(|one| one.part != part));
+        let lacking = [(Part::LightCap, "light caps"), (Part::DarkCap, "dark caps")];
+        let lacking: Vec<&str> = lacking.into_iter().filter(|(part, _)| lacks(*part)).map(|(_, name)| name).collect();
+        if !lacking.is_empty() {
+            let words = format!("This frame draws no {}.", lacking.join(" and no "));
+            ui.add(egui::Label::new(theme::note(words)).wrap());
+        }
+    }
+    if anatomy.near_clips.iter().any(Option::is_none) {
+        let words = "A light lies in the near plane: it has no near-clip volume.";
+        ui.add(egui::Label::new(theme::note(words)).wrap());
+    }
+}

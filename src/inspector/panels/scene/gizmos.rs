@@ -1,0 +1,188 @@
+//! Lights and camera as handles: dragged in the plane parallel to the view, or along an axis.
+//!
+//! Handles stand where the draft has things, so that they follow the hand before the next frame is
+//! there. What moves in the scene is shown at the draft's moment, and moved at its start.
+
+use super::lens::Lens;
+use super::stage::Stage;
+use super::view::{Pane, SceneView};
+use crate::ask::RunRequest;
+use crate::inspector::action::Action;
+use crate::inspector::canvas::handles::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
+use crate::inspector::look::{theme, widgets};
+use crate::inspector::model::Model;
+use egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
+use glam::DVec3;
+
+/// Side of what can be grabbed, points.
+const GRAB: f32 = 18.0;
+/// Length of an axis, points.
+const AXIS: f64 = 44.0;
+const AXES: [(&str, DVec3); 3] = [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)];
+
+/// Draws lights and camera into a view, with handles where they are wanted.
+pub fn ui(
+    ui: &Ui,
+    model: &mut Model,
+    view: &mut SceneView,
+    stage: &Stage,
+    (pane, lens, rect): (Pane, &Lens, Rect),
+    actions: &mut Vec<Action>,
+) {
+    let Some(draft) = model.scene.as_mut().map(|scene| &mut scene.draft) else { return };
+    let anchor = Anchor { middle: stage.middle, reach: 0.85 * stage.radius };
+    let painter = ui.painter_at(rect);
+    let mut changed = false;
+    let lights = (0..draft.lights.len()).map(Grip::Light);
+    let grips: Vec<Grip> = [Grip::Target, Grip::Eye].into_iter().chain(lights).collect();
+    let here = Here { pane, lens, rect, anchor };
+    if let (Some(eye), Some(target)) = (lens.place(draft.camera.eye), lens.place(draft.camera.target)) {
+        painter.extend(egui::Shape::dashed_line(&[eye, target], Stroke::new(1.0, theme::of(ui).dim), 2.0, 4.0));
+    }
+    for grip in grips {
+        let Some(at) = lens.place(place(draft, grip, anchor)).filter(|at| rect.contains(*at)) else { continue };
+        sign(ui, &painter, draft, grip, at, &here);
+        if view.gizmos {
+            changed |= handle(ui, view, draft, (grip, at), &here);
+        }
+        if view.shown.names {
+            let below = at + vec2(0.0, 10.0);
+            widgets::plate(&painter, below, Align2::CENTER_TOP, &grip.name(), false, theme::of(ui));
+        }
+    }
+    if changed {
+        model.run_draft(actions);
+    }
+}
+
+/// Of the view that is drawn.
+struct Here<'a> {
+    pane: Pane,
+    lens: &'a Lens,
+    rect: Rect,
+    anchor: Anchor,
+}
+
+fn place(draft: &RunRequest, grip: Grip, anchor: Anchor) -> DVec3 {
+    match grip {
+        Grip::Light(index) => place_of_light(&draft.lights[index], draft.time, anchor),
+        Grip::Eye => draft.camera.eye,
+        Grip::Target => draft.camera.target,
+    }
+}
+
+fn move_by(draft: &mut RunRequest, grip: Grip, by: DVec3, anchor: Anchor) {
+    match grip {
+        Grip::Light(index) => {
+            draft.lights[index].position = moved_light(&draft.lights[index], draft.time, by, anchor);
+        }
+        Grip::Eye => draft.camera.eye += by,
+        Grip::Target => draft.camera.target += by,
+    }
+}
+
+/// What a thing looks like, whether it can be moved or not.
+fn sign(ui: &Ui, painter: &Painter, draft: &RunRequest, grip: Grip, at: Pos2, here: &Here) {
+    let colors = theme::of(ui);
+    match grip {
+        Grip::Light(index) => {
+            if draft.lights[index].is_directional()
+                && let Some(middle) = here.lens.place(here.anchor.middle)
+            {
+                let along = (middle - at) * 0.35;
+                painter.arrow(at, along, Stroke::new(1.5, colors.lit));
+            }
+            for turn in 0..8 {
+                let ray = Vec2::angled(turn as f32 * std::f32::consts::FRAC_PI_4);
+                painter.line_segment([at + ray * 7.0, at + ray * 10.0], Stroke::new(1.5, colors.lit));
+            }
+            painter.circle(at, 5.0, colors.lit, Stroke::new(1.0, colors.background));
+        }
+        Grip::Eye => {
+            let body = Rect::from_center_size(at, vec2(11.0, 8.0));
+            painter.rect(body, 2, colors.text, Stroke::new(1.0, colors.background), egui::StrokeKind::Outside);
+            painter.circle_filled(at, 2.2, colors.background);
+        }
+        Grip::Target => {
+            painter.circle_stroke(at, 4.0, Stroke::new(1.5, colors.dim));
+            painter.circle_filled(at, 1.2, colors.dim);
+        }
+    }
+}
+
+/// The handle and, where it is the chosen one, its axes. True where it was moved.
+fn handle(ui: &Ui, view: &mut SceneView, draft: &mut RunRequest, (grip, at): (Grip, Pos2), here: &Here) -> bool {
+    let in_view = format!("in the {} view", here.pane.name());
+    let id = ui.scope_id().with(("gizmo", here.pane.name(), grip));
+    let (grab, name) = (Rect::from_center_size(at, Vec2::splat(GRAB)), format!("{} {in_view}", grip.name()));
+    let response = grabbed(ui, id, grab, &name);
+    let response = response.on_hover_text(format!("{}: drag it, or use the arrow keys", grip.name()));
+    if response.drag_started() || response.clicked() || response.gained_focus() {
+        view.grip = Some(grip);
+    }
+    let painter = ui.painter_at(here.rect);
+    if response.hovered() || response.has_focus() || view.grip == Some(grip) {
+        let ink = if response.has_focus() { theme::of(ui).focus } else { theme::of(ui).selected };
+        painter.circle_stroke(at, GRAB / 2.0 + 2.0, Stroke::new(1.5, ink));
+    }
+    let lens = here.lens;
+    let point = place(draft, grip, here.anchor);
+    let mut by = DVec3::ZERO;
+    if response.dragged() && response.drag_delta() != Vec2::ZERO {
+        by += lens.moved(point, response.drag_delta());
+    }
+    if let Some([right, up]) = arrows(ui, &response) {
+        let step = f64::from(here.rect.height()) / lens.scale;
+        by += (nearest_axis(lens.rotation.row(0)) * right + nearest_axis(lens.rotation.row(1)) * up) * step;
+    }
+    let is_direction = matches!(grip, Grip::Light(index) if draft.lights[index].is_directional());
+    if view.grip == Some(grip) && !is_direction {
+        for (letter, axis) in AXES {
+            let length = lens.moved(point, vec2(AXIS as f32, 0.0)).length();
+            let Some([from, tip]) = lens.line([point, point + axis * length]) else { continue };
+            // Seen from its end it has no way to go.
+            if (tip - from).length() < 8.0 {
+                continue;
+            }
+            let grab = Rect::from_center_size(tip, Vec2::splat(GRAB));
+            let name = format!("{} along {letter} {in_view}", grip.name());
+            let response = grabbed(ui, id.with(letter), grab, &name);
+            let ink = if response.hovered() || response.dragged() || response.has_focus() {
+                theme::of(ui).selected
+            } else {
+                theme::of(ui).text
+            };
+            painter.arrow(from, tip - from, Stroke::new(1.5, ink));
+            let beside = tip + (tip - from).normalized() * 8.0;
+            painter.text(beside, Align2::CENTER_CENTER, letter, theme::number_font(theme::SMALL_SIZE), ink);
+            if response.dragged() && response.drag_delta() != Vec2::ZERO {
+                by += lens.moved_along(point, axis, response.drag_delta());
+            }
+            if let Some([right, up]) = arrows(ui, &response) {
+                by += axis * (right + up) * f64::from(here.rect.height()) / lens.scale;
+            }
+        }
+    }
+    if by != DVec3::ZERO {
+        move_by(draft, grip, by, here.anchor);
+    }
+    by != DVec3::ZERO
+}
+
+/// The axis of the world that is nearest to a direction.
+fn nearest_axis(direction: DVec3) -> DVec3 {
+    let along = |axis: &&(&str, DVec3)| direction.dot(axis.1).abs();
+    let nearest = AXES.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
+    nearest.map_or(DVec3::ZERO, |(_, axis)| *axis * direction.dot(*axis).signum())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrow_keys_go_along_the_axis_that_is_nearest() {
+        assert_eq!(nearest_axis(DVec3::new(0.3, 0.1, -0.9)), DVec3::NEG_Z);
+        assert_eq!(nearest_axis(DVec3::new(0.8, 0.1, -0.3)), DVec3::X);
+    }
+}

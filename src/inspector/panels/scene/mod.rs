@@ -1,0 +1,113 @@
+//! The Scene tab: a free second camera that sees the first one, with all that shadows are made of.
+//!
+//! ```text
+//! Anatomy ──► stage.rs (faces, lines; once a frame) ──► paint.rs (sorted; once a view) ──► egui mesh
+//! lens.rs     projections, world to screen        pane.rs     one view: mouse, keys, what is on top
+//! bar.rs      the toolbar and the legend          rays.rs     the pick's rays, the selected triangle
+//! gizmos.rs   lights and camera as handles    walls.rs    what all else is behind or before
+//! far_end.rs  where volumes that have no end are ended   coarse.rs  large meshes as fewer triangles
+//! ```
+//!
+//! No GPU code: everything is sorted and projected on the CPU, and only when something changed.
+
+mod bar;
+mod coarse;
+mod far_end;
+mod gizmos;
+mod lens;
+mod paint;
+mod pane;
+mod rays;
+mod stage;
+mod toggles;
+mod view;
+mod walls;
+
+pub use view::SceneView;
+use view::{Layout, Pane};
+
+use crate::ask::AnatomyOf;
+use crate::inspector::action::Action;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use egui::{CornerRadius, Rect, Ui, vec2};
+
+/// Width of the legend beside the views, points.
+const LEGEND_WIDTH: f32 = 164.0;
+/// Narrower than this the legend is left out.
+const LEAST_WIDTH: f32 = 420.0;
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, view: &mut SceneView, model: &mut Model, actions: &mut Vec<Action>) {
+    view.follow(model.scenes_opened);
+    if let Some(words) = missing(model) {
+        return empty(ui, words);
+    }
+    let reply = model.answers.want(AnatomyOf {});
+    let Some(anatomy) = reply.latest().filter(|_| reply.failed.is_none()) else {
+        let words = reply.failed.map_or_else(
+            || ["Looking at the scene's geometry…".to_owned(), String::new()],
+            |reason| ["The scene's geometry can't be shown.".to_owned(), reason],
+        );
+        return empty(ui, words);
+    };
+    if !view.fitted {
+        view.reset(anatomy);
+    }
+    bar::toolbar(ui, view, anatomy);
+    let rect = ui.available_rect_before_wrap();
+    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
+    if std::mem::take(&mut model.requests.triangle_in_scene) {
+        view.go_to_triangle();
+    }
+    let stage = view.stage(anatomy, theme::of(ui));
+    if std::mem::take(&mut view.wants_triangle)
+        && let Some(middle) = rays::middle_of_selected(model, &stage, anatomy)
+    {
+        view.views.iter_mut().for_each(|one| one.center = middle);
+    }
+    let views = if rect.width() < LEAST_WIDTH {
+        rect
+    } else {
+        let (legend, views) = rect.split_left_right_at_x(rect.left() + LEGEND_WIDTH);
+        bar::legend(ui, view, (anatomy, reply.ready.is_some()), &stage, legend);
+        views
+    };
+    match view.layout {
+        Layout::One(pane) => pane::ui(ui, model, view, anatomy, &stage, (pane, views), actions),
+        Layout::Four => {
+            for (index, pane) in Pane::ALL.into_iter().enumerate() {
+                let size = views.size() / 2.0;
+                let corner = vec2((index % 2) as f32 * size.x, (index / 2) as f32 * size.y);
+                let rect = Rect::from_min_size(views.min + corner, size);
+                pane::ui(ui, model, view, anatomy, &stage, (pane, rect), actions);
+            }
+        }
+    }
+}
+
+/// Why there is nothing to see, and what to do.
+fn missing(model: &Model) -> Option<[String; 2]> {
+    let own = |words: [&str; 2]| Some(words.map(ToOwned::to_owned));
+    match (&model.frame.capture, &model.scene, &model.activity.job) {
+        (None, _, Some(job)) => own([job, ""]),
+        (None, _, None) => own(["Nothing is open yet.", "Press Open…, or drop a scene or a model here."]),
+        (Some(_), None, _) => own([
+            "Opened from a folder: its geometry is not known.",
+            "Open the scene instead, with Open… or by dropping its file here.",
+        ]),
+        _ => None,
+    }
+}
+
+fn empty(ui: &mut Ui, [heading, note]: [String; 2]) {
+    let rect = ui.available_rect_before_wrap();
+    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
+    let middle = Rect::from_center_size(rect.center(), vec2(rect.width().min(420.0), 60.0));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(middle), |ui| {
+        ui.vertical_centered(|ui| {
+            theme::heading(ui, &heading);
+            ui.label(theme::note(note));
+        });
+    });
+}

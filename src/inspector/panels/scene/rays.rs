@@ -1,0 +1,98 @@
+//! The pick's rays and the history's selected triangle, over a view.
+
+use super::lens::Lens;
+use super::stage::{Stage, finite_triangle};
+use super::toggles::Choice;
+use crate::anatomy::Anatomy;
+use crate::capture::Capture;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::pick_ray;
+use egui::{Rect, Shape, Stroke, Ui};
+use glam::{DVec3, DVec4};
+
+/// The label of pixels that the light reaches.
+const LIT: u8 = 0;
+
+/// Draws rays and triangle.
+pub fn ui(ui: &Ui, model: &Model, choice: Choice, stage: &Stage, anatomy: &Anatomy, lens: &Lens, rect: Rect) {
+    let (Some(capture), Some(at)) = (&model.frame.capture, model.selection.pick) else { return };
+    selected_triangle(ui, model, capture, (stage, anatomy, lens, rect));
+    let painter = ui.painter_at(rect);
+    let colors = theme::of(ui);
+    let reach = 4.0 * stage.radius;
+    let surface = pick_ray::surface(capture, at);
+    let end = surface.unwrap_or_else(|| capture.camera.eye + pick_ray::ray(capture, at).normalize() * reach);
+    if let Some(ends) = lens.line([capture.camera.eye, end]) {
+        painter.line_segment(ends, Stroke::new(1.5, colors.text));
+    }
+    let Some(surface) = surface else { return };
+    for (index, light) in anatomy.lights.iter().enumerate() {
+        if choice.light.is_some_and(|one| one != index) {
+            continue;
+        }
+        let towards = light.position.truncate();
+        let end = match light.position.w == 0.0 {
+            true => surface + towards.normalize_or_zero() * reach,
+            false => towards / light.position.w,
+        };
+        let Some(ends) = lens.line([surface, end]) else { continue };
+        let label = capture.lights.get(index).and_then(|light| light.shadow.as_ref()?.byte_at(at));
+        match label {
+            Some(LIT) => {
+                painter.line_segment(ends, Stroke::new(1.5, colors.lit));
+            }
+            _ => {
+                painter.extend(Shape::dashed_line(&ends, Stroke::new(1.5, colors.dim), 5.0, 4.0));
+            }
+        }
+    }
+    if let Some(at) = lens.place(surface) {
+        painter.circle(at, 3.5, colors.text, Stroke::new(1.0, colors.background));
+    }
+}
+
+/// Where the selected triangle is: the middle of what of it is drawn. `None` where none is selected.
+pub fn middle_of_selected(model: &Model, stage: &Stage, anatomy: &Anatomy) -> Option<DVec3> {
+    let triangles = selected(model, model.frame.capture.as_ref()?, stage, anatomy);
+    let corners: Vec<DVec3> = triangles.into_iter().flatten().collect();
+    let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    middle.is_finite().then_some(middle)
+}
+
+/// What is drawn of the selected triangle: it may reach to infinity.
+fn selected(model: &Model, capture: &Capture, stage: &Stage, anatomy: &Anatomy) -> Vec<[DVec3; 3]> {
+    let history = model.history_of_frame();
+    let event = history.as_ref().and_then(|history| {
+        let event = history.events.get(model.selected_in(history)?)?;
+        Some(event).filter(|event| event.is_from_camera)
+    });
+    let Some((event, triangle)) = event.and_then(|event| Some((event, event.triangle()?))) else { return Vec::new() };
+    // Corners are relative to the eye.
+    let world = triangle.corners.map(|corner| {
+        let relative = DVec4::from_array(corner.map(f64::from));
+        relative + (capture.camera.eye * relative.w).extend(0.0)
+    });
+    let light = event.light.and_then(|light| anatomy.lights.get(light));
+    finite_triangle(world, light, stage)
+}
+
+fn selected_triangle(
+    ui: &Ui,
+    model: &Model,
+    capture: &Capture,
+    (stage, anatomy, lens, rect): (&Stage, &Anatomy, &Lens, Rect),
+) {
+    let painter = ui.painter_at(rect);
+    let color = theme::of(ui).selected;
+    for corners in selected(model, capture, stage, anatomy) {
+        let edges = [[corners[0], corners[1]], [corners[1], corners[2]], [corners[2], corners[0]]];
+        let points: Vec<_> = corners.iter().filter_map(|corner: &DVec3| lens.place(*corner)).collect();
+        if points.len() == 3 {
+            painter.add(Shape::convex_polygon(points, color.gamma_multiply(0.25), Stroke::NONE));
+        }
+        for edge in edges.into_iter().filter_map(|edge| lens.line(edge)) {
+            painter.line_segment(edge, Stroke::new(1.5, color));
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! What of a scene is shown.
+
+/// What is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Toggles {
+    /// Objects.
+    pub objects: bool,
+    /// Sides of volumes.
+    pub sides: bool,
+    /// Their caps near the light.
+    pub light_caps: bool,
+    /// Their caps away from it.
+    pub dark_caps: bool,
+    /// Silhouettes with multiplicities.
+    pub silhouettes: bool,
+    /// Frusta of camera and maps.
+    pub frusta: bool,
+    /// The near-clip volume.
+    pub near_clip: bool,
+    /// The pick's view ray and shadow rays.
+    pub rays: bool,
+    /// Names of objects, lights and camera.
+    pub names: bool,
+}
+
+impl Default for Toggles {
+    fn default() -> Toggles {
+        Toggles {
+            objects: true,
+            sides: true,
+            light_caps: true,
+            dark_caps: true,
+            silhouettes: true,
+            frusta: true,
+            near_clip: false,
+            rays: true,
+            names: false,
+        }
+    }
+}
+
+/// Of which light and caster volumes and silhouettes are shown; `None`: of all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Choice {
+    /// Index of the light.
+    pub light: Option<usize>,
+    /// Index of the object.
+    pub caster: Option<usize>,
+}
+
+impl Choice {
+    /// Are the volume and silhouette of a light and caster shown? Those of what holds everything are only
+    /// where they are asked for by name.
+    #[must_use]
+    pub fn has(self, light: usize, caster: usize, holders: &[bool]) -> bool {
+        let holds = holders.get(caster).is_some_and(|holds| *holds);
+        self.light.is_none_or(|one| one == light) && self.caster.map_or(!holds, |one| one == caster)
+    }
+
+    /// Is the frustum of a light's map shown, or of the silhouette of one caster in it?
+    #[must_use]
+    pub fn has_frustum(self, light: usize, caster: Option<usize>) -> bool {
+        let is_other = caster.is_some_and(|caster| self.caster.is_some_and(|one| one != caster));
+        self.light.is_none_or(|one| one == light) && !is_other
+    }
+}

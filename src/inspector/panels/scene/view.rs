@@ -1,0 +1,221 @@
+//! What the tab remembers: its views, what they show, and what was made for them.
+
+use super::coarse::Coarsened;
+use super::lens::{PaneView, Projection};
+use super::paint;
+use super::stage::{self, Stage};
+use super::toggles::{Choice, Toggles};
+use crate::anatomy::Anatomy;
+use crate::inspector::canvas::handles::Grip;
+use crate::inspector::look::theme;
+use crate::scene::Camera;
+use egui::{Mesh, Rect};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// One of the views.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pane {
+    /// Turned by hand.
+    Free,
+    /// From above.
+    Top,
+    /// Along −z.
+    Front,
+    /// Along −x.
+    Right,
+}
+
+impl Pane {
+    /// As laid out in rows.
+    pub const ALL: [Pane; 4] = [Pane::Top, Pane::Free, Pane::Front, Pane::Right];
+
+    /// On buttons and in names of widgets.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Pane::Free => "Free",
+            Pane::Top => "Top",
+            Pane::Front => "Front",
+            Pane::Right => "Right",
+        }
+    }
+
+    fn first_view(self) -> PaneView {
+        let (yaw, pitch, projection) = match self {
+            Pane::Free => (0.0, 0.0, Projection::Perspective),
+            Pane::Top => (0.0, 90.0, Projection::Orthographic),
+            Pane::Front => (0.0, 0.0, Projection::Orthographic),
+            Pane::Right => (90.0, 0.0, Projection::Orthographic),
+        };
+        PaneView { center: DVec3::ZERO, height: 10.0, yaw, pitch, fov_y: 40.0, projection, oblique: 45.0 }
+    }
+}
+
+/// Which views are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    /// One.
+    One(Pane),
+    /// All four.
+    Four,
+}
+
+/// What the Scene tab remembers.
+#[derive(Debug)]
+pub struct SceneView {
+    pub layout: Layout,
+    pub views: [PaneView; 4],
+    /// The views show the whole scene of this name already.
+    pub fitted: bool,
+    pub shown: Toggles,
+    pub choice: Choice,
+    /// Lights and camera have handles.
+    pub gizmos: bool,
+    /// The handle whose axes are shown.
+    pub grip: Option<Grip>,
+    /// The history's selected triangle is to be in the middle.
+    pub wants_triangle: bool,
+    /// Which scene that is.
+    scenes_opened: u64,
+    built: Option<Built>,
+    coarsened: Coarsened,
+    painted: [Option<Painted>; 4],
+}
+
+impl Default for SceneView {
+    fn default() -> SceneView {
+        SceneView {
+            layout: Layout::One(Pane::Free),
+            views: Pane::ALL.map(Pane::first_view),
+            fitted: false,
+            shown: Toggles::default(),
+            choice: Choice::default(),
+            gizmos: true,
+            grip: None,
+            wants_triangle: false,
+            scenes_opened: 0,
+            built: None,
+            coarsened: Coarsened::default(),
+            painted: [const { None }; 4],
+        }
+    }
+}
+
+/// A stage and what it is of.
+#[derive(Debug)]
+struct Built {
+    anatomy: Arc<Anatomy>,
+    shown: Toggles,
+    choice: Choice,
+    is_dark: bool,
+    stage: Arc<Stage>,
+}
+
+/// A painted view and what it is of.
+#[derive(Debug)]
+struct Painted {
+    stage: Arc<Stage>,
+    view: PaneView,
+    rect: Rect,
+    mesh: Arc<Mesh>,
+}
+
+impl SceneView {
+    /// Another scene is open: it is looked at as a whole.
+    fn forget(&mut self) {
+        self.fitted = false;
+        self.choice = Choice::default();
+        self.grip = None;
+        self.built = None;
+        self.painted = [const { None }; 4];
+    }
+
+    /// Forgets what belongs to another scene than the one that was opened last.
+    pub fn follow(&mut self, scenes_opened: u64) {
+        if std::mem::replace(&mut self.scenes_opened, scenes_opened) != scenes_opened {
+            self.forget();
+        }
+    }
+
+    /// Brings the history's selected triangle to the middle when the tab is drawn next.
+    pub fn go_to_triangle(&mut self) {
+        self.wants_triangle = true;
+        self.shown.rays = true;
+    }
+
+    pub fn view_mut(&mut self, pane: Pane) -> &mut PaneView {
+        &mut self.views[index_of(pane)]
+    }
+
+    /// Every view as first shown: all of the scene.
+    pub fn reset(&mut self, anatomy: &Anatomy) {
+        let (middle, radius) = stage::sphere(anatomy, &stage::holders(anatomy));
+        for pane in Pane::ALL {
+            let kept = *self.view_mut(pane);
+            let mut view = PaneView { projection: kept.projection, oblique: kept.oblique, ..pane.first_view() };
+            view.center = middle;
+            view.height = 2.1 * radius;
+            if pane == Pane::Free {
+                // Over the camera's shoulder, so that one sees what it sees.
+                (view.yaw, view.pitch) = angles(&anatomy.camera);
+                view.orbit(-38.0, 0.0);
+                view.pitch = 24.0;
+                view.height = 2.0 * radius;
+            }
+            *self.view_mut(pane) = view;
+        }
+        self.fitted = true;
+    }
+
+    /// The free view becomes the camera's; a camera that is rolled is seen upright.
+    pub fn see_from(&mut self, camera: &Camera) {
+        let view = self.view_mut(Pane::Free);
+        (view.yaw, view.pitch) = angles(camera);
+        view.projection = Projection::Perspective;
+        view.center = camera.target;
+        view.fov_y = camera.fov_y_degrees;
+        let distance = (camera.target - camera.eye).length();
+        view.height = 2.0 * distance * (camera.fov_y_degrees.to_radians() / 2.0).tan();
+        self.layout = Layout::One(Pane::Free);
+    }
+
+    pub fn stage(&mut self, anatomy: &Arc<Anatomy>, theme: &theme::Theme) -> Arc<Stage> {
+        let is_dark = *theme == theme::DARK;
+        if let Some(built) = &self.built
+            && Arc::ptr_eq(&built.anatomy, anatomy)
+            && (built.shown, built.choice, built.is_dark) == (self.shown, self.choice, is_dark)
+        {
+            return built.stage.clone();
+        }
+        let stage = Arc::new(Stage::new(anatomy, &self.shown, self.choice, theme, &mut self.coarsened));
+        let (anatomy, stage_too) = (anatomy.clone(), stage.clone());
+        self.built = Some(Built { anatomy, shown: self.shown, choice: self.choice, is_dark, stage: stage_too });
+        stage
+    }
+
+    pub fn painted(&mut self, stage: &Arc<Stage>, pane: Pane, rect: Rect) -> Arc<Mesh> {
+        let view = *self.view_mut(pane);
+        let slot = &mut self.painted[index_of(pane)];
+        if let Some(painted) = slot
+            && Arc::ptr_eq(&painted.stage, stage)
+            && painted.view == view
+            && painted.rect == rect
+        {
+            return painted.mesh.clone();
+        }
+        let mesh = paint::paint(stage, &view.lens(rect), rect);
+        *slot = Some(Painted { stage: stage.clone(), view, rect, mesh: mesh.clone() });
+        mesh
+    }
+}
+
+fn index_of(pane: Pane) -> usize {
+    Pane::ALL.iter().position(|one| *one == pane).unwrap_or_default()
+}
+
+/// Yaw and pitch of a camera, degrees.
+fn angles(camera: &Camera) -> (f64, f64) {
+    let ahead = (camera.target - camera.eye).normalize_or_zero();
+    ((-ahead.x).atan2(-ahead.z).to_degrees(), (-ahead.y).clamp(-1.0, 1.0).asin().to_degrees())
+}

@@ -1,0 +1,37 @@
+//! The controls of the scene's animation.
+
+use crate::inspector::action::Action;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use egui::Ui;
+
+/// The controls: run or stop, a frame on, back to the start.
+pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+    if !model.is_animated() {
+        return;
+    }
+    theme::heading(ui, "Animation");
+    ui.horizontal_wrapped(|ui| {
+        let (word, hint) = if model.animation.is_running {
+            ("Stop animation", "Stay at this moment (T)")
+        } else {
+            ("Run animation", "Objects and lights move; each shown moment is captured (T)")
+        };
+        if ui.button(word).on_hover_text(hint).clicked() {
+            model.animation.toggle();
+        }
+        if ui.button("Step").on_hover_text("A thirtieth of a second on (.)").clicked() {
+            model.step_animation(actions);
+        }
+        let is_started = model.scene.as_ref().is_some_and(|scene| scene.draft.time != 0.0);
+        let back = ui.add_enabled(is_started, egui::Button::new("To the start"));
+        if back.on_hover_text("The moment at which the scene was loaded").clicked()
+            && let Some(scene) = &mut model.scene
+        {
+            scene.draft.time = 0.0;
+            model.animation.is_running = false;
+            model.run_draft(actions);
+        }
+    });
+    ui.add_space(12.0);
+}

@@ -1,0 +1,196 @@
+//! The settings: technique with its settings, lights, camera, picture. Every change asks for a run.
+
+pub mod animation;
+pub mod meshes;
+pub mod scene;
+
+use crate::ask::MeshesOf;
+use crate::inspector::action::Action;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::technique::{Choice, SettingSpec, SettingValues, Technique};
+use egui::{DragValue, RichText, Ui};
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+    if model.scene.is_none() {
+        let text = match (&model.frame.capture, &model.activity.job) {
+            (Some(_), _) => {
+                "This is a capture folder: what is in it can be looked at, not run again. Open a scene to change settings."
+            }
+            (None, Some(_)) => "The settings appear here with the scene.",
+            (None, None) => "Open a scene to choose its technique, lights and camera.",
+        };
+        ui.add(egui::Label::new(theme::note(text)).wrap());
+        return;
+    }
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        animation::ui(ui, model, actions);
+        techniques(ui, model, actions);
+        let mut changed = technique_settings(ui, model);
+        if let Some(scene) = &mut model.scene {
+            changed |= scene::ui(ui, &mut scene.draft, &scene.objects, scene.animated);
+        }
+        if changed {
+            model.run_draft(actions);
+        }
+        if let Some(problem) = model.scene.as_ref().and_then(|scene| scene.problem.as_ref()) {
+            ui.add_space(8.0);
+            let text = RichText::new(format!("× Not run: {problem}")).color(theme::of(ui).error);
+            ui.add(egui::Label::new(text).wrap());
+        }
+        ui.add_space(12.0);
+        let known = model.answers.want(MeshesOf {}).ready;
+        meshes::ui(ui, known.as_ref().map(|meshes| &meshes[..]));
+        ui.add_space(16.0);
+    });
+}
+
+fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+    theme::heading(ui, "Technique");
+    let Some(current) = model.scene.as_ref().map(|scene| scene.draft.choice.technique()) else { return };
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        for technique in Technique::ALL {
+            let is_current = technique == current;
+            let name = RichText::new(technique.name()).color(theme::of(ui).text);
+            let button = egui::Button::selectable(is_current, name).frame_when_inactive(true);
+            let button = ui.add(button).accessible_name(format!("Technique {}", technique.name()));
+            if button.on_hover_text(technique.summary()).clicked() {
+                model.choose_technique(technique, actions);
+            }
+        }
+    });
+    ui.add(egui::Label::new(theme::note(current.summary())).wrap());
+}
+
+/// The settings of the technique; true when one changed.
+fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
+    let Some(scene) = &mut model.scene else { return false };
+    let mut changed = false;
+    ui.add_space(8.0);
+    egui::Grid::new("technique settings").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+        for spec in scene.draft.choice.technique().settings() {
+            let off = scene.draft.choice.without_effect(spec.key);
+            let ink = if off.is_some() { theme::of(ui).faint } else { theme::of(ui).dim };
+            let label = ui.label(theme::note(spec.key).color(ink)).on_hover_text(hover(spec, off));
+            let value = ui.add_enabled_ui(off.is_none(), |ui| setting(ui, &scene.draft.choice, spec, label.id, off));
+            if let Some(value) = value.inner {
+                changed |= scene.draft.choice.set(spec.key, &value).is_ok();
+            }
+            ui.end_row();
+        }
+    });
+    changed
+}
+
+/// What a setting does, and why it does nothing now.
+fn hover(spec: &SettingSpec, off: Option<&str>) -> String {
+    let mut letters = spec.meaning.chars();
+    let meaning: String =
+        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect());
+    off.map_or_else(|| meaning.clone(), |reason| format!("{meaning}\n\n{reason}"))
+}
+
+/// The widget of one setting; its new value when it changed. It tells on hover why it is `off`.
+fn setting(ui: &mut Ui, choice: &Choice, spec: &SettingSpec, label: egui::Id, off: Option<&str>) -> Option<String> {
+    let hover = hover(spec, off);
+    let explained = |response: egui::Response| response.on_hover_text(&hover).on_disabled_hover_text(&hover);
+    let current = choice.settings().get(spec.key).map_or(spec.default, String::as_str);
+    match spec.values {
+        // Nothing to choose: a fact, not a widget.
+        SettingValues::OneOf([_] | []) => {
+            explained(ui.label(theme::number(current).color(theme::of(ui).faint)));
+            None
+        }
+        SettingValues::OneOf(words) => {
+            let (response, chosen) = choose(ui, spec.key, words, current);
+            explained(response.labelled_by(label));
+            chosen
+        }
+        SettingValues::SomeOf(words) => some_of(ui, spec.key, words, current, &explained),
+        SettingValues::WordOr { words, prefix, low, high, whole } => {
+            let number = current.strip_prefix(prefix).and_then(|number| number.parse::<f64>().ok());
+            let numbered = prefix.trim_end_matches(':');
+            let options: Vec<&str> = words.iter().copied().chain([numbered]).collect();
+            ui.horizontal(|ui| {
+                let (response, chosen) = choose(ui, spec.key, &options, number.map_or(current, |_| numbered));
+                explained(response.labelled_by(label));
+                let chosen =
+                    chosen.map(|word| if word == numbered { format!("{prefix}{}", low.max(3.0)) } else { word });
+                let Some(mut value) = number else { return chosen };
+                let widget = DragValue::new(&mut value).range(low..=high).update_while_editing(false);
+                let widget = if whole { widget.fixed_decimals(0) } else { any_size(widget, current) };
+                let response = explained(ui.add(widget).accessible_name(format!("{} {numbered}", spec.key)));
+                let number = response.changed().then(|| format!("{prefix}{value}"));
+                chosen.or(number)
+            })
+            .inner
+        }
+        SettingValues::Integer(low, high) => {
+            let mut value: i64 = current.parse().unwrap_or(low);
+            let widget = DragValue::new(&mut value).range(low..=high).update_while_editing(false);
+            explained(ui.add(widget).labelled_by(label)).changed().then(|| value.to_string())
+        }
+        SettingValues::Number(low, high) => {
+            let mut value: f64 = current.parse().unwrap_or(low);
+            let widget = any_size(DragValue::new(&mut value).range(low..=high), current);
+            explained(ui.add(widget).labelled_by(label)).changed().then(|| value.to_string())
+        }
+    }
+}
+
+/// A menu of words to tick, all or none of them included.
+fn some_of(
+    ui: &mut Ui,
+    name: &str,
+    words: &[&str],
+    current: &str,
+    explained: &impl Fn(egui::Response) -> egui::Response,
+) -> Option<String> {
+    let is_ticked = |word: &str| current == "all" || current.split(',').any(|one| one.trim() == word);
+    let ticked: Vec<&str> = words.iter().copied().filter(|word| is_ticked(word)).collect();
+    let shown = match ticked.len() {
+        0 => "none".to_owned(),
+        count if count == words.len() => "all".to_owned(),
+        count => format!("{count} of {}", words.len()),
+    };
+    let mut chosen = None;
+    let menu = ui.menu_button(shown, |ui| {
+        for word in words {
+            let mut is_on = ticked.contains(word);
+            if ui.checkbox(&mut is_on, *word).changed() {
+                let on = |other: &&&str| if **other == *word { is_on } else { ticked.contains(*other) };
+                let some: Vec<&str> = words.iter().filter(on).copied().collect();
+                chosen = Some(match some.len() {
+                    0 => "none".to_owned(),
+                    count if count == words.len() => "all".to_owned(),
+                    _ => some.join(","),
+                });
+            }
+        }
+    });
+    explained(menu.response.accessible_name(name));
+    chosen
+}
+
+/// A number that may be tiny: it moves by a part of itself, and a power of ten says how small it is.
+fn any_size<'a>(widget: DragValue<'a>, current: &str) -> DragValue<'a> {
+    let size = current.rsplit(':').next().and_then(|number| number.parse::<f64>().ok()).map_or(0.0, f64::abs);
+    if size == 0.0 || size >= 1e-3 {
+        return widget.speed(0.05).update_while_editing(false);
+    }
+    widget.speed(size * 0.02).update_while_editing(false).custom_formatter(|value, _| format!("{value:.1e}"))
+}
+
+/// One of several words: its widget, and the new word when it changed.
+fn choose(ui: &mut Ui, key: &str, words: &[&str], current: &str) -> (egui::Response, Option<String>) {
+    let mut value = current.to_owned();
+    let combo = egui::ComboBox::from_id_salt(key).selected_text(current);
+    let combo = combo.show_ui(ui, |ui| {
+        for word in words {
+            ui.selectable_value(&mut value, (*word).to_owned(), *word);
+        }
+    });
+    (combo.response, (value != current).then_some(value))
+}

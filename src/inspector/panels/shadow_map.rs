@@ -1,0 +1,399 @@
+//! The shadow map tab: a face of a light's map with the values of its texels, beside a small picture. A
+//! texel and the pixels that read it are marked in both, and so is what each covers of the other: a pixel of
+//! the map, a texel of the surface.
+
+use crate::ask::ReadersOf;
+use crate::capture::{Capture, CapturedMap};
+use crate::inspector::canvas::placement::Placement;
+use crate::inspector::canvas::{self, Canvas, marks};
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::texture::{PictureCache, TextureSize};
+use crate::inspector::look::theme;
+use crate::inspector::look::widgets::segments;
+use crate::inspector::model::Model;
+use crate::inspector::model::looking::full_range;
+use crate::reading::depth::DepthMeasure;
+use crate::reading::format;
+use crate::reading::layers::{self, MapContent};
+use crate::reading::map_readers::{MapReaders, MapTexel};
+use crate::reading::pick_ray;
+use crate::reading::shown::{FaceChoice, PictureKind, PictureView, Zoom};
+use crate::technique::MapSettings;
+use egui::{
+    Color32, CornerRadius, Margin, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
+};
+use glam::DVec2;
+use std::sync::{Arc, Weak};
+
+/// Width of the column beside the map, points.
+const COLUMN: f32 = 232.0;
+
+/// What the tab remembers.
+#[derive(Debug, Default)]
+pub struct ShadowMapPanel {
+    view: PictureView,
+    /// The picked texel of the shown face.
+    pick: Option<[u32; 2]>,
+    /// Whose map.
+    light: usize,
+    /// The marked texel, with the pixels that read it, of these readers.
+    marked: Option<(MapTexel, Weak<MapReaders>, Arc<Vec<[u32; 2]>>)>,
+    /// What the pointer is over in the small picture.
+    over_pixel: Option<[u32; 2]>,
+    /// Nobody has chosen the face that is shown.
+    is_any_face: bool,
+    /// The frame that the pointer was over.
+    frame: u64,
+}
+
+impl ShadowMapPanel {
+    /// Which texel each pixel reads, of the shown frame and light, where the tab was shown.
+    #[must_use]
+    pub fn readers(&self, model: &Model) -> Option<Arc<MapReaders>> {
+        model.answers.of(ReadersOf { light: self.light }).ready
+    }
+
+    /// The pixels that read a texel, found once.
+    fn pixels(&mut self, readers: &Arc<MapReaders>, texel: MapTexel) -> Arc<Vec<[u32; 2]>> {
+        if let Some((of, from, pixels)) = &self.marked
+            && *of == texel
+            && std::ptr::eq(from.as_ptr(), Arc::as_ptr(readers))
+        {
+            return pixels.clone();
+        }
+        let pixels = Arc::new(readers.of_texel(texel));
+        self.marked = Some((texel, Arc::downgrade(readers), pixels.clone()));
+        pixels
+    }
+
+    fn face(&self) -> usize {
+        match self.view.face {
+            FaceChoice::One(face) => face,
+            FaceChoice::Grid => 0,
+        }
+    }
+}
+
+/// Draws the tab.
+pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
+    let rect = ui.available_rect_before_wrap();
+    ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).background);
+    if std::mem::replace(&mut own.frame, model.frame.number) != model.frame.number {
+        own.over_pixel = None;
+    }
+    let lights = |capture: &Capture| -> Vec<usize> {
+        (0..capture.lights.len()).filter(|light| MapContent::of(capture, *light) == Some(MapContent::Depth)).collect()
+    };
+    let Some(capture) = model.frame.capture.clone() else {
+        return empty(ui, rect, "Nothing is open yet. Press Open…, and choose the technique shadow-map.");
+    };
+    let lights = lights(&capture);
+    let Some(first) = lights.first() else {
+        return empty(ui, rect, "This frame has no shadow map. Choose the technique shadow-map above.");
+    };
+    if !lights.contains(&own.light) {
+        own.light = *first;
+    }
+    own.view.kind = PictureKind::Map;
+    own.view.light = own.light;
+    let reply = model.answers.want(ReadersOf { light: own.light });
+    let is_waited_for = reply.ready.is_none() && reply.failed.is_none();
+    let readers = reply.ready;
+    let read = |pixel: Option<[u32; 2]>| pixel.and_then(|pixel| readers.as_ref()?.texel_of(pixel));
+    let of_pick = read(model.selection.pick);
+    let map_faces = layers::layers(&capture, own.light).len();
+    let is_chosen = matches!(own.view.face, FaceChoice::One(face) if face < map_faces);
+    if !is_chosen || own.is_any_face {
+        own.view.face = FaceChoice::One(of_pick.map_or(0, |texel| texel.face));
+        // The first, until it is known which one the picked pixel reads.
+        own.is_any_face = is_waited_for;
+    }
+    tools(ui, own, &capture, &lights);
+    let rect = ui.available_rect_before_wrap();
+    let [map, column] = split(rect);
+    let pixel = own.over_pixel.filter(|over| read(Some(*over)).is_some()).or(model.selection.pick);
+    let linked = read(pixel);
+    let footprint = pixel.and_then(|pixel| readers.as_ref()?.footprint(pixel));
+    let over = face(ui, own, &mut model.textures, &capture, map, linked, footprint);
+    let face = own.face();
+    let chosen = over.or(own.pick).map(|at| MapTexel { face, at }).or(linked);
+    let pixels = match (&readers, chosen) {
+        (Some(readers), Some(texel)) => own.pixels(readers, texel),
+        _ => {
+            own.marked = None;
+            Arc::default()
+        }
+    };
+    let links = Links {
+        readers: readers.as_deref(),
+        is_waited_for,
+        of_pick,
+        texel: chosen,
+        pixel: pixel.filter(|_| chosen.is_some() && chosen == linked),
+        footprint: footprint.map(|(_, corners)| corners),
+        pixels: &pixels,
+    };
+    ui.scope_builder(UiBuilder::new().max_rect(column.shrink(8.0)), |ui| {
+        small_picture(ui, own, model, &capture, &links);
+        facts(ui, own, &capture, &links);
+    });
+    model.selection.readers = pixels;
+}
+
+/// What is linked with what in this frame.
+struct Links<'a> {
+    readers: Option<&'a MapReaders>,
+    /// They are being found.
+    is_waited_for: bool,
+    /// The texel that the picked pixel reads.
+    of_pick: Option<MapTexel>,
+    /// The texel that is told about.
+    texel: Option<MapTexel>,
+    /// The pixel under the pointer, or else the picked one, where it is what led to that texel.
+    pixel: Option<[u32; 2]>,
+    /// What it covers of the map, texels.
+    footprint: Option<[DVec2; 4]>,
+    /// The pixels that read the texel.
+    pixels: &'a [[u32; 2]],
+}
+
+impl Links<'_> {
+    /// A pixel on whose surface the texel is measured: of many the middle one in reading order.
+    fn on_surface(&self) -> Option<[u32; 2]> {
+        self.pixel.or_else(|| self.pixels.get(self.pixels.len() / 2).copied())
+    }
+}
+
+fn empty(ui: &mut Ui, rect: Rect, text: &str) {
+    let place = Rect::from_center_size(rect.center(), vec2((rect.width() - 32.0).min(420.0), 48.0));
+    ui.put(place, egui::Label::new(theme::note(text)).wrap());
+}
+
+/// The map, and the column beside it where there is room.
+fn split(rect: Rect) -> [Rect; 2] {
+    let column = COLUMN.min(rect.width() * 0.4);
+    let x = rect.right() - column;
+    [rect.with_max_x(x), rect.with_min_x(x)]
+}
+
+fn tools(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, lights: &[usize]) {
+    let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 6));
+    frame.show(ui, |ui| {
+        ui.set_min_width(ui.available_width());
+        ui.horizontal(|ui| {
+            if lights.len() > 1 {
+                let combo = egui::ComboBox::new("map light", "").width(72.0);
+                let combo = combo.selected_text(format::light(own.light)).show_ui(ui, |ui| {
+                    for light in lights {
+                        ui.selectable_value(&mut own.light, *light, format::light(*light));
+                    }
+                });
+                combo.response.accessible_name("Light of the shadow map");
+            }
+            let layers = layers::layers(capture, own.light);
+            if layers.len() > 1 {
+                let labels: Vec<(&str, &str)> =
+                    layers.iter().map(|layer| (layer.name.as_str(), "One face of the cube")).collect();
+                if let Some(face) = segments(ui, &labels, Some(own.face())) {
+                    show_face(own, face);
+                }
+            }
+            if ui.button("Fit map").on_hover_text("The whole face").clicked() {
+                own.view.zoom = Zoom::Fit;
+            }
+            if own.pick.is_some()
+                && ui.button("Clear").on_hover_text("No texel is picked, and none of its pixels marked").clicked()
+            {
+                own.pick = None;
+            }
+            let hint = "Wheel zooms, drag pans, right-click picks a texel";
+            ui.add(egui::Label::new(theme::note(hint)).truncate());
+        });
+    });
+}
+
+fn show_face(own: &mut ShadowMapPanel, face: usize) {
+    own.view.face = FaceChoice::One(face);
+    own.is_any_face = false;
+    own.view.zoom = Zoom::Fit;
+    own.pick = None;
+}
+
+/// Draws the shown face; the texel under the pointer.
+fn face(
+    ui: &mut Ui,
+    own: &mut ShadowMapPanel,
+    textures: &mut PictureCache,
+    capture: &Capture,
+    rect: Rect,
+    linked: Option<MapTexel>,
+    footprint: Option<(usize, [DVec2; 4])>,
+) -> Option<[u32; 2]> {
+    let shown = own.view.shown(capture, capture.steps.len().checked_sub(1)?)?;
+    let shown = Some(shown).filter(|shown| shown.kind == PictureKind::Map && shown.images.len() == 1)?;
+    let range = own.view.depth_range.unwrap_or_else(|| full_range(textures, &shown));
+    let coloring = Coloring::of_shown(&shown, range);
+    let canvas = Canvas { name: "Shadow map canvas", view: &mut own.view, pick: &mut own.pick, textures };
+    let (placement, over) = canvas::ui(ui, canvas, rect, &shown, coloring, &[]);
+    if let Some(texel) = linked.filter(|texel| texel.face == own.face()) {
+        mark_texel(ui, rect, placement, texel.at);
+    }
+    if let Some((_, corners)) = footprint.filter(|(face, _)| *face == own.face()) {
+        quadrilateral(&ui.painter_at(rect), placement, corners, theme::of(ui).text);
+    }
+    over
+}
+
+/// A quadrilateral over a picture, light on dark; `corners` are in its texels.
+fn quadrilateral(painter: &Painter, placement: Placement, corners: [DVec2; 4], color: Color32) {
+    let place = |at: DVec2| placement.origin + vec2(at.x as f32, at.y as f32) * placement.scale;
+    let points: Vec<Pos2> = corners.into_iter().map(place).filter(|at| at.is_finite()).collect();
+    if points.len() == corners.len() {
+        painter.add(Shape::closed_line(points.clone(), Stroke::new(3.5, Color32::from_black_alpha(170))));
+        painter.add(Shape::closed_line(points, Stroke::new(1.5, color)));
+    }
+}
+
+/// The texel that a pixel reads: a box, light on dark.
+fn mark_texel(ui: &Ui, rect: Rect, placement: Placement, at: [u32; 2]) {
+    let texel = placement.rect_of(at);
+    let texel = Rect::from_center_size(texel.center(), texel.size().max(vec2(9.0, 9.0)));
+    let painter = ui.painter_at(rect);
+    for (width, color) in [(4.0, Color32::from_black_alpha(170)), (2.0, theme::of(ui).selected)] {
+        painter.rect_stroke(texel, CornerRadius::ZERO, Stroke::new(width, color), StrokeKind::Middle);
+    }
+}
+
+/// The frame's colours with the marked pixels; pointing at a pixel marks its texel, a click picks it.
+fn small_picture(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model, capture: &Capture, links: &Links) {
+    let [width, height] = capture.size.map(|side| side as f32);
+    let scale = (ui.available_width() / width.max(1.0)).min(240.0 / height.max(1.0));
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height) * scale, Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Small picture"));
+    let Some(frame) = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last)) else { return };
+    let colors = Coloring::Srgb;
+    let texture = model.textures.texture(ui.ctx(), &frame.color.image, colors, TextureSize::Full);
+    let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    ui.painter().image(texture.id(), rect, uv, Color32::WHITE);
+    let placement = Placement { origin: rect.min, scale, size: capture.size };
+    ui.painter_at(rect).add(Shape::mesh(marks(placement, links.pixels, theme::of(ui).selected)));
+    if let Some(corners) = texel_in_picture(capture, links) {
+        quadrilateral(&ui.painter_at(rect), placement, corners, theme::of(ui).selected);
+    }
+    if let Some(pick) = model.selection.pick {
+        let pixel = Rect::from_center_size(placement.rect_of(pick).center(), vec2(7.0, 7.0));
+        ui.painter_at(rect).rect_stroke(
+            pixel,
+            CornerRadius::ZERO,
+            Stroke::new(1.0, Color32::WHITE),
+            StrokeKind::Outside,
+        );
+    }
+    let over = response.hover_pos().and_then(|at| placement.texel(at));
+    if over != own.over_pixel {
+        own.over_pixel = over;
+        // The map was drawn before it was known.
+        ui.ctx().request_repaint();
+    }
+    if let Some(at) = over.filter(|_| response.clicked()) {
+        model.selection.pick = Some(at);
+        own.pick = None;
+    }
+}
+
+/// What the texel covers of the surface, in texels of the picture.
+fn texel_in_picture(capture: &Capture, links: &Links) -> Option<[DVec2; 4]> {
+    let corners = links.readers?.texel_on_surface(links.texel?, links.on_surface()?)?;
+    let [a, b, c, d] = corners.map(|corner| pick_ray::texel_of(capture, corner.extend(1.0)).map(DVec2::from_array));
+    Some([a?, b?, c?, d?])
+}
+
+fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &Links) {
+    ui.add_space(4.0);
+    let light = own.light;
+    let Some(map) = capture.lights.get(light).and_then(|light| light.map.as_ref()) else { return };
+    if links.is_waited_for {
+        ui.label(theme::note("Finding which texel each pixel reads…"));
+    }
+    let Some(texel) = links.texel else {
+        ui.add(egui::Label::new(theme::note("Point at a texel, or at a pixel of the small picture.")).wrap());
+        return;
+    };
+    let [x, y] = texel.at;
+    let name = layers::layers(capture, light).get(texel.face).map_or_else(String::new, |layer| layer.full_name.clone());
+    theme::heading(ui, &format!("Texel {x}, {y}"));
+    if links.readers.is_some() {
+        ui.label(match links.pixels.len() {
+            0 => "No pixel reads it.".to_owned(),
+            1 => "1 pixel reads it.".to_owned(),
+            count => format!("{} pixels read it.", format::count(count as u64)),
+        });
+    }
+    egui::Grid::new("texel facts").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
+        for (what, value) in values(capture, light, map, texel, links, name) {
+            ui.label(theme::note(what));
+            ui.label(theme::number(value));
+            ui.end_row();
+        }
+    });
+    let is_moved = MapSettings::read(&capture.settings).bias_normal != 0.0;
+    if is_moved && links.readers.is_some_and(|readers| !readers.knows_normals()) {
+        let note = "A folder holds no normals: surfaces are moved along those of the planes through neighbouring \
+                    pixels.";
+        ui.add(egui::Label::new(theme::note(note)).wrap());
+    }
+    if let Some(texel) = links.of_pick {
+        let text = "Show the picked pixel's texel";
+        if ui.button(text).on_hover_text("Brings the texel that the picked pixel reads to the middle").clicked() {
+            show_face(own, texel.face);
+            own.view.zoom = Zoom::Pixels(canvas::NUMBERS_FROM + 4.0);
+            own.view.center = texel.at.map(|place| f64::from(place) + 0.5);
+        }
+    }
+}
+
+/// What is known of a texel, and how far each bias moves the surface there.
+fn values(
+    capture: &Capture,
+    light: usize,
+    map: &CapturedMap,
+    texel: MapTexel,
+    links: &Links,
+    name: String,
+) -> Vec<(&'static str, String)> {
+    let [width, height] = map.faces.get(texel.face).map_or([0, 0], |face| face.size());
+    let mut values = vec![("map", format!("{name}, {width}×{height}"))];
+    let stored = map.faces.get(texel.face).and_then(|face| face.depth_at(texel.at));
+    let measure = DepthMeasure::of_map(capture, light, texel.face);
+    if let Some(stored) = stored {
+        values.push(("stored depth", format::depth(stored)));
+        let distance = measure.and_then(|measure| measure.value(stored));
+        values.push(("caster at", distance.map_or_else(|| "no caster".to_owned(), format::metres)));
+    }
+    let readers = links.readers;
+    if let Some(depth) = links.pixel.and_then(|pixel| readers?.depth_of(pixel)) {
+        values.push(("pixel's depth", format::depth(depth as f32)));
+    }
+    let width = links.on_surface().and_then(|pixel| readers?.texel_width(texel.face, pixel));
+    if let Some(width) = width {
+        values.push(("texel covers", format::metres(width)));
+    }
+    if let (Some(_), Some([a, b, c, d])) = (links.pixel, links.footprint) {
+        let across = (a.distance(b) + d.distance(c)) / 2.0;
+        let down = (a.distance(d) + b.distance(c)) / 2.0;
+        values.push(("pixel covers", format!("{across:.2} × {down:.2} texels")));
+    }
+    let MapSettings { bias_constant, bias_slope, bias_normal, .. } = MapSettings::read(&capture.settings);
+    if let (Some(measure), Some(stored)) = (measure, stored) {
+        let moved = format::metres(f64::from(bias_constant) * measure.step_at(stored).unwrap_or(0.0));
+        values.push(("constant bias", format!("{moved} ({bias_constant} steps)")));
+    }
+    if let Some(width) = width {
+        values.push(("slope bias", format!("{} at 45°", format::metres(bias_slope * width))));
+    }
+    if let Some(width) = width.filter(|_| bias_normal != 0.0) {
+        values.push(("normal bias", format!("{} at most", format::metres(bias_normal * width))));
+    }
+    values
+}

@@ -1,0 +1,216 @@
+//! The docked panels: passes and settings on the left, picture in the middle with the report below
+//! it, pixel on the right.
+//!
+//! They can be dragged and resized. Until the user does, the side panels keep their width, the
+//! report its height, and the picture takes what is left.
+
+use crate::ask::ReportOf;
+use crate::inspector::action::{Action, Panel};
+use crate::inspector::model::Model;
+use crate::inspector::panels::Panels;
+
+use crate::inspector::look::theme;
+use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
+use egui_tiles::{
+    Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
+};
+use std::collections::BTreeSet;
+
+/// Widths of the side panels in points, where the window is wide enough.
+const LEFT_WIDTH: f32 = 264.0;
+const RIGHT_WIDTH: f32 = 332.0;
+/// What a side panel may take of the window at most.
+const SIDE_SHARE: f32 = 0.26;
+/// Height of the report in points, without and with something to show.
+const EMPTY_REPORT_HEIGHT: f32 = 88.0;
+const REPORT_HEIGHT: f32 = 312.0;
+/// What the report may take of the window at most.
+const REPORT_SHARE: f32 = 0.42;
+
+/// A layout as stored: egui's own form of it.
+pub type Layout = serde_json::Value;
+
+/// The panels and where they are.
+#[derive(Debug)]
+pub struct Dock {
+    tree: Tree<Panel>,
+    row: TileId,
+    left: TileId,
+    middle: TileId,
+    picture: TileId,
+    report: TileId,
+    right: TileId,
+    arranged_by_user: bool,
+}
+
+impl Dock {
+    /// As first shown.
+    #[must_use]
+    pub fn new() -> Dock {
+        let mut tiles = Tiles::default();
+        let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
+        let left = tiles.insert_tab_tile(sides.to_vec());
+        let [picture, report, right] = [
+            &[Panel::Picture, Panel::Scene, Panel::ShadowMap][..],
+            &[Panel::Report, Panel::Diagnosis, Panel::Stress],
+            &[Panel::Pixel, Panel::State, Panel::Explain],
+        ]
+        .map(|panels| {
+            let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
+            tiles.insert_tab_tile(panes)
+        });
+        let middle = tiles.insert_vertical_tile(vec![picture, report]);
+        let row = tiles.insert_horizontal_tile(vec![left, middle, right]);
+        let tree = Tree::new(Id::unique("inspector dock"), row, tiles);
+        Dock { tree, row, left, middle, picture, report, right, arranged_by_user: false }
+    }
+
+    /// Where the panels are; `None` while they are where they were at first.
+    #[must_use]
+    pub fn layout(&self) -> Option<Layout> {
+        self.arranged_by_user.then(|| serde_json::to_value(&self.tree).ok()).flatten()
+    }
+
+    /// Puts the panels where they were. A layout that is not one of these panels is not taken.
+    pub fn restore(&mut self, layout: Layout) {
+        let Ok(tree) = serde_json::from_value::<Tree<Panel>>(layout) else { return };
+        let mut panels = Vec::new();
+        let is_whole = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
+        panels.sort_unstable();
+        if is_whole && panels == Panel::ALL {
+            self.tree = tree;
+            self.arranged_by_user = true;
+        }
+    }
+
+    /// Draws all panels into what is left of the window.
+    pub fn ui(&mut self, ui: &mut Ui, panels: &mut Panels, model: &mut Model, actions: &mut Vec<Action>) {
+        if !self.arranged_by_user {
+            self.keep_widths(ui.available_width());
+            let is_shown = |panel| {
+                self.tree
+                    .active_tiles()
+                    .into_iter()
+                    .any(|id| matches!(self.tree.tiles.get(id), Some(Tile::Pane(shown)) if *shown == panel))
+            };
+            let has_report = model.answers.last::<ReportOf>().is_some_and(|(_, found)| !found.report.rows.is_empty());
+            let is_full = has_report || model.answers.asked::<ReportOf>().is_some();
+            let is_empty = !is_full && !is_shown(Panel::Diagnosis) && !is_shown(Panel::Stress);
+            self.keep_heights(ui.available_height(), is_empty);
+        }
+        for wanted in std::mem::take(&mut model.requests.panels) {
+            self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(panel) if *panel == wanted));
+        }
+        let mut behavior = Panes { panels, model, actions, edited: false, theme: theme::of(ui) };
+        self.tree.ui(&mut behavior, ui);
+        self.arranged_by_user |= behavior.edited;
+    }
+
+    fn keep_widths(&mut self, width: f32) {
+        let most = width * SIDE_SHARE;
+        let sides = [LEFT_WIDTH.min(most), RIGHT_WIDTH.min(most)];
+        if let Some(Tile::Container(Container::Linear(row))) = self.tree.tiles.get_mut(self.row) {
+            row.shares.set_share(self.left, sides[0]);
+            row.shares.set_share(self.right, sides[1]);
+            row.shares.set_share(self.middle, (width - sides[0] - sides[1]).max(1.0));
+        }
+    }
+
+    fn keep_heights(&mut self, height: f32, report_is_empty: bool) {
+        let wished = if report_is_empty { EMPTY_REPORT_HEIGHT } else { REPORT_HEIGHT };
+        let report = wished.min(height * REPORT_SHARE);
+        if let Some(Tile::Container(Container::Linear(column))) = self.tree.tiles.get_mut(self.middle) {
+            column.shares.set_share(self.report, report);
+            column.shares.set_share(self.picture, (height - report).max(1.0));
+        }
+    }
+}
+
+/// Gathers the panels below a tile; false where a tile is missing or stands twice.
+fn visit(tiles: &Tiles<Panel>, tile: TileId, seen: &mut BTreeSet<u64>, panels: &mut Vec<Panel>) -> bool {
+    if !seen.insert(tile.0) {
+        return false;
+    }
+    match tiles.get(tile) {
+        None => false,
+        Some(Tile::Pane(panel)) => {
+            panels.push(*panel);
+            true
+        }
+        Some(Tile::Container(container)) => container.children().all(|child| visit(tiles, *child, seen, panels)),
+    }
+}
+
+struct Panes<'a> {
+    panels: &'a mut Panels,
+    model: &'a mut Model,
+    actions: &'a mut Vec<Action>,
+    edited: bool,
+    theme: &'static theme::Theme,
+}
+
+impl Behavior<Panel> for Panes<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, panel: &mut Panel) -> UiResponse {
+        let frame = match panel {
+            Panel::Picture | Panel::Scene | Panel::ShadowMap => egui::Frame::new().fill(theme::of(ui).panel),
+            _ => theme::panel_frame(ui),
+        };
+        frame.show(ui, |ui| {
+            ui.set_min_size(ui.available_size());
+            self.panels.ui(*panel, ui, self.model, self.actions);
+        });
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, panel: &Panel) -> WidgetText {
+        panel.title().into()
+    }
+
+    fn tab_ui(&mut self, tiles: &mut Tiles<Panel>, ui: &mut Ui, id: Id, tile_id: TileId, tab: &TabState) -> Response {
+        let color = if tab.active { theme::of(ui).text } else { theme::of(ui).dim };
+        let text = self.tab_title_for_tile(tiles, tile_id);
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let galley = text.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, font);
+        let (_, rect) = ui.allocate_space(vec2(galley.size().x + 24.0, ui.available_height()));
+        let response = ui.interact(rect, id, Sense::click_and_drag());
+        let name = galley.text().to_owned();
+        response.widget_info(|| WidgetInfo::selected(Role::Tab, true, tab.active, &name));
+        if ui.is_rect_visible(rect) && !tab.is_being_dragged {
+            if tab.active {
+                ui.painter().rect_filled(rect, CornerRadius::ZERO, theme::of(ui).panel);
+                ui.painter().hline(rect.x_range(), rect.top() + 1.0, Stroke::new(2.0, theme::of(ui).selected));
+            }
+            if response.has_focus() {
+                let outline = Stroke::new(1.0, theme::of(ui).focus);
+                ui.painter().rect_stroke(rect.shrink(2.0), CornerRadius::same(2), outline, egui::StrokeKind::Inside);
+            }
+            ui.painter().galley(rect.center() - galley.size() / 2.0, galley, color);
+        }
+        self.on_tab_button(tiles, tile_id, response)
+    }
+
+    fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
+        28.0
+    }
+
+    fn tab_bar_color(&self, visuals: &egui::Visuals) -> Color32 {
+        theme::in_visuals(visuals).background
+    }
+
+    fn tab_bar_hline_stroke(&self, _visuals: &egui::Visuals) -> Stroke {
+        Stroke::NONE
+    }
+
+    fn resize_stroke(&self, _style: &egui::Style, state: egui_tiles::ResizeState) -> Stroke {
+        let color = if state == egui_tiles::ResizeState::Idle { self.theme.line } else { self.theme.selected };
+        Stroke::new(1.0, color)
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+
+    fn on_edit(&mut self, action: EditAction) {
+        self.edited |= action != EditAction::TabSelected;
+    }
+}

@@ -1,0 +1,230 @@
+//! Export: the shown picture, its data, the capture, the scene, or the report, into a file.
+//!
+//! The panel asks for a place; the app writes. A place that is taken is asked about once more.
+
+use crate::ask::{ReportOf, RunRequest};
+use crate::capture::{Capture, Image};
+use crate::inspector::action::{Action, Dialog, ExportKind};
+use crate::inspector::look::coloring::Coloring;
+use crate::inspector::look::texture;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::inspector::model::looking::{Phase, has_phases};
+use crate::inspector::panels::picture::as_shown::{self, Drawing};
+use crate::inspector::panels::picture::{self, PicturePanel};
+use crate::picture::Picture;
+use crate::report::Report;
+use egui::{Context, Id, Key, RichText, Ui};
+use std::sync::Arc;
+
+/// Asks where to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ExportDialog {
+    /// What is exported.
+    pub kind: ExportKind,
+    /// The path field.
+    pub path: String,
+    /// The path that was found taken: pressing again replaces it.
+    pub taken: Option<String>,
+    /// Why the last try failed, with the mend.
+    pub error: Option<String>,
+}
+
+impl ExportDialog {
+    /// With a name that says what it is; none where there is nothing of this kind.
+    #[must_use]
+    pub fn new(kind: ExportKind, model: &Model) -> Option<ExportDialog> {
+        let name = match kind {
+            ExportKind::Report => format!("{}-report.csv", measured(model)?.rows.first()?.scene),
+            kind => ExportDialog::name_of_shown(kind, model)?,
+        };
+        let plain = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-' | '_') { c } else { '-' };
+        let path = name.chars().map(plain).collect();
+        Some(ExportDialog { kind, path, taken: None, error: None })
+    }
+
+    /// What is made of the capture or the open scene.
+    fn name_of_shown(kind: ExportKind, model: &Model) -> Option<String> {
+        let capture = model.frame.capture.as_ref()?;
+        let title = || {
+            let shown = model.shown(capture)?;
+            let is_change = model.modes.phase == Phase::Diff && has_phases(shown.kind);
+            Some(if is_change { format!("{}-change", shown.title) } else { shown.title })
+        };
+        let stem = format!("{}-{}", capture.scene, capture.technique);
+        Some(match kind {
+            ExportKind::Picture => format!("{stem}-{}.png", title()?),
+            // Nothing lies over layers side by side.
+            ExportKind::AsShown if model.shown(capture)?.images.len() > 1 => return None,
+            ExportKind::AsShown => format!("{stem}-{}-as-shown.png", title()?),
+            ExportKind::Data => format!("{stem}-{}.npy", model.shown(capture)?.title),
+            ExportKind::Capture => format!("{stem}-capture"),
+            ExportKind::Scene => format!("{}.toml", model.scene.as_ref()?.name),
+            ExportKind::Report => return None,
+        })
+    }
+}
+
+/// What is to be written.
+#[derive(Debug, Clone)]
+pub enum ExportData {
+    /// Pixels.
+    Picture(Picture),
+    /// Pixels, once it is finished.
+    AsShown(Box<Drawing>),
+    /// One picture, or all layers of a map.
+    Data(Vec<Arc<Image>>),
+    /// All of it.
+    Capture(Arc<Capture>),
+    /// The scene as this runs it.
+    Scene(Box<RunRequest>),
+    /// What was measured.
+    Report(Box<Report>),
+}
+
+/// What `kind` means now; none where there is nothing of it.
+#[must_use]
+pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Option<ExportData> {
+    if kind == ExportKind::Report {
+        return measured(model).cloned().map(|report| ExportData::Report(Box::new(report)));
+    }
+    let capture = model.frame.capture.clone()?;
+    match kind {
+        ExportKind::Capture => return Some(ExportData::Capture(capture)),
+        ExportKind::Scene => return Some(ExportData::Scene(Box::new(model.scene.as_ref()?.draft.clone()))),
+        ExportKind::Picture | ExportKind::AsShown | ExportKind::Data | ExportKind::Report => {}
+    }
+    let shown = model.shown(&capture)?;
+    if kind == ExportKind::Data {
+        return Some(ExportData::Data(shown.images));
+    }
+    let coloring = model.shown_coloring(&shown);
+    if kind == ExportKind::AsShown {
+        let is_one = shown.images.len() == 1;
+        return is_one
+            .then(|| ExportData::AsShown(Box::new(as_shown::drawing(own, model, &capture, &shown, coloring))));
+    }
+    if let Some((ground, change)) = picture::change_of(own, model, &capture, &shown) {
+        let mut picture = texture::picture(&ground, Coloring::Srgb);
+        texture::lay_over(&mut picture, &change.image, Coloring::of_change(change.kind), 0..ground.size()[0]);
+        return Some(ExportData::Picture(picture));
+    }
+    let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, coloring.0)).collect();
+    Some(ExportData::Picture(side_by_side(&images)))
+}
+
+/// What was measured; `None` while that is nothing, or not yet all.
+fn measured(model: &Model) -> Option<&Report> {
+    let (_, measured) = model.answers.last::<ReportOf>().filter(|_| model.answers.asked::<ReportOf>().is_none())?;
+    Some(&measured.report).filter(|report| !report.rows.is_empty())
+}
+
+/// Pictures in a row, their tops level.
+fn side_by_side(pictures: &[Picture]) -> Picture {
+    let width = pictures.iter().map(|picture| picture.size()[0]).sum();
+    let height = pictures.iter().map(|picture| picture.size()[1]).max().unwrap_or(0);
+    let mut all = Picture::filled([width, height], [0; 3]);
+    let mut left = 0;
+    for picture in pictures {
+        all.paste(picture, [left, 0]);
+        left += picture.size()[0];
+    }
+    all
+}
+
+/// The menu's entries.
+pub fn menu(ui: &mut Ui, model: &mut Model) {
+    for kind in ExportKind::ALL {
+        let dialog = ExportDialog::new(kind, model);
+        let button = ui.add_enabled(dialog.is_some(), egui::Button::new(kind.name()));
+        let button = button.on_hover_text(kind.explanation());
+        let nothing = match kind {
+            ExportKind::AsShown => "Overlays lie over one picture: show one, and not all layers of a light's map",
+            ExportKind::Report => "Nothing is measured yet, or not all: press Measure in the Report tab",
+            _ => "There is nothing of this kind to export now",
+        };
+        if button.on_disabled_hover_text(nothing).clicked() {
+            model.dialog = dialog.map(|dialog| Dialog::Export(dialog.kind));
+            ui.close();
+        }
+    }
+}
+
+/// Draws the dialog while it is open; `own` is what is typed into it.
+pub fn ui(ctx: &Context, own: &mut Option<ExportDialog>, model: &mut Model, actions: &mut Vec<Action>) {
+    let Some(Dialog::Export(kind)) = model.dialog else {
+        *own = None;
+        return;
+    };
+    // What is not there can't be exported.
+    let Some(mut dialog) = own.take().or_else(|| ExportDialog::new(kind, model)) else {
+        model.dialog = None;
+        return;
+    };
+    let modal = egui::Modal::new(Id::unique("export dialog")).frame(theme::dialog(ctx));
+    let answer = modal.show(ctx, |ui| {
+        ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
+        contents(ui, &mut dialog)
+    });
+    match answer.inner {
+        Answer::Waiting if !answer.should_close() => {}
+        Answer::Waiting | Answer::Cancel => {
+            model.dialog = None;
+            return;
+        }
+        Answer::Browse => actions.push(Action::BrowseExport { path: dialog.path.clone() }),
+        Answer::Write => {
+            let path = dialog.path.trim().to_owned();
+            let replace = dialog.taken.as_ref() == Some(&path);
+            dialog.error = None;
+            actions.push(Action::Export { kind: dialog.kind, path, replace });
+        }
+    }
+    *own = Some(dialog);
+}
+
+enum Answer {
+    Waiting,
+    Cancel,
+    Browse,
+    Write,
+}
+
+fn contents(ui: &mut Ui, dialog: &mut ExportDialog) -> Answer {
+    theme::heading(ui, &format!("Export: {}", dialog.kind.name().trim_end_matches('…')));
+    ui.label(theme::note(dialog.kind.explanation()));
+    ui.add_space(8.0);
+    let what = if dialog.kind == ExportKind::Capture { "To this folder" } else { "To this file" };
+    let label = ui.label(theme::note(what));
+    let field = egui::TextEdit::singleline(&mut dialog.path).desired_width(f32::INFINITY);
+    let field = ui.add(field.align(egui::Align2::LEFT_CENTER)).labelled_by(label.id);
+    let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    if ui.memory(|memory| memory.focused().is_none()) {
+        field.request_focus();
+    }
+    let path = dialog.path.trim().to_owned();
+    let is_taken = dialog.taken.as_ref() == Some(&path);
+    if is_taken {
+        let text = RichText::new("× Something of this name is there already.").color(theme::of(ui).error);
+        ui.add(egui::Label::new(text).wrap());
+    }
+    if let Some(error) = &dialog.error {
+        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
+    }
+    ui.add_space(8.0);
+    let mut answer = Answer::Waiting;
+    ui.horizontal(|ui| {
+        let word = if is_taken { "Replace it" } else { "Save" };
+        let save = ui.add_enabled(!path.is_empty(), egui::Button::new(word));
+        if !path.is_empty() && (save.clicked() || (is_entered && !is_taken)) {
+            answer = Answer::Write;
+        }
+        if ui.button("Browse…").on_hover_text("Choose the place with the system's dialog").clicked() {
+            answer = Answer::Browse;
+        }
+        if ui.button("Cancel").clicked() {
+            answer = Answer::Cancel;
+        }
+    });
+    answer
+}

@@ -1,0 +1,66 @@
+//! The help window: every key and what it does, from the one table of keys.
+
+use crate::inspector::action::Dialog;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::inspector::shell::keys::{BINDINGS, PICTURE, Scope};
+use crate::inspector::shell::walk;
+use egui::{Context, Id, Ui};
+
+/// Width of the column of keys, points.
+const KEYS_WIDTH: f32 = 168.0;
+
+/// Draws the window while it is open.
+pub fn ui(ctx: &Context, model: &mut Model) {
+    if model.dialog != Some(Dialog::Help) {
+        return;
+    }
+    let modal = egui::Modal::new(Id::unique("help")).frame(theme::dialog(ctx));
+    let answer = modal.show(ctx, |ui| {
+        ui.set_width(520.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
+        let scroll = egui::ScrollArea::vertical().max_height((ctx.content_rect().height() - 140.0).max(80.0));
+        scroll.show(ui, contents);
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            let closes = ui.button("Close help").on_hover_text("Escape").clicked();
+            let resets = ui.button("Reset layout").on_hover_text("Every panel to its first place and size").clicked();
+            model.requests.first_layout |= resets;
+            closes || resets
+        })
+        .inner
+    });
+    if answer.inner || answer.should_close() {
+        model.dialog = None;
+    }
+}
+
+fn contents(ui: &mut Ui) {
+    theme::heading(ui, "Keys");
+    section(ui, "Anywhere", of_scope(Scope::Anywhere));
+    section(ui, "While the passes, or nothing, have the focus", of_scope(Scope::Passes));
+    section(ui, "How the picture is looked at", of_scope(Scope::Picture));
+    section(ui, "On the picture", PICTURE.into_iter());
+    section(ui, "While walking (Tab over the picture, or Walk)", walk::KEYS.iter().map(|key| (key.keys, key.does)));
+}
+
+fn of_scope(scope: Scope) -> impl Iterator<Item = (&'static str, &'static str)> {
+    BINDINGS.iter().filter(move |binding| binding.scope == scope).map(|binding| (binding.keys, binding.does))
+}
+
+fn section(ui: &mut Ui, title: &str, rows: impl Iterator<Item = (&'static str, &'static str)>) {
+    ui.add_space(8.0);
+    ui.label(theme::note(title));
+    let grid = egui::Grid::new(title).num_columns(2).spacing([16.0, 2.0]).min_row_height(theme::ROW_HEIGHT - 4.0);
+    grid.show(ui, |ui| {
+        ui.spacing_mut().interact_size.y = theme::ROW_HEIGHT - 4.0;
+        for (keys, does) in rows {
+            ui.horizontal(|ui| {
+                // The columns of all sections are in line.
+                ui.set_min_width(KEYS_WIDTH);
+                ui.label(theme::number(keys).color(theme::of(ui).text));
+            });
+            ui.label(does);
+            ui.end_row();
+        }
+    });
+}

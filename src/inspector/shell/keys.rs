@@ -1,0 +1,220 @@
+//! The keys: one table, that handling and help both read.
+//!
+//! Commands act anywhere, or only while nothing or a widget of the pass tree has the focus; a text
+//! field or the picture keeps its keys. Keys are consumed before widgets see them. The keys of the
+//! picture and of walking are handled where they act; their words are here, so that the help window
+//! lists all.
+
+use crate::inspector::action::{Action, Dialog, ExportKind};
+use crate::inspector::model::looking::Phase;
+use crate::inspector::model::{Model, StepSearch};
+use egui::{Context, Key, Modifiers};
+
+/// What a key does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Command {
+    /// One pass back.
+    PreviousPass,
+    /// One pass on.
+    NextPass,
+    /// One draw back.
+    PreviousDraw,
+    /// One draw on.
+    NextDraw,
+    /// To the first pass.
+    FirstPass,
+    /// To the last pass.
+    LastPass,
+    /// Steps through the frame, or stops.
+    Play,
+    /// Asks for a step's number.
+    GoTo,
+    /// Looks for a pass.
+    Find,
+    /// Opens the dialog that opens scenes.
+    Open,
+    /// Takes the last change back.
+    Undo,
+    /// Makes it again.
+    Redo,
+    /// Opens the dialog that saves the shown picture.
+    Export,
+    /// The list of keys.
+    Help,
+    /// Runs the scene's animation, or stops it.
+    Animate,
+    /// The animation, one step on.
+    AnimateStep,
+    /// Dark or light.
+    Theme,
+    /// Before the step, or after it.
+    Before,
+    /// What the step changed, or what it left.
+    Diff,
+    /// Opens the menu of overlays.
+    Overlays,
+    /// Swaps the sides of a comparison.
+    Flip,
+}
+
+/// Where a key acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scope {
+    /// Wherever the focus is, but for a text field.
+    Anywhere,
+    /// While nothing or the tree of passes has the focus.
+    Passes,
+    /// Wherever the focus is, but for a text field and an open menu.
+    Picture,
+}
+
+/// A key and what it does.
+#[derive(Debug, Clone, Copy)]
+pub struct Binding {
+    /// Held with it.
+    pub modifiers: Modifiers,
+    /// The key.
+    pub key: Key,
+    /// Where it acts.
+    pub scope: Scope,
+    /// What it does.
+    pub command: Command,
+    /// The key in words.
+    pub keys: &'static str,
+    /// What it does, in words.
+    pub does: &'static str,
+}
+
+const fn binding(
+    modifiers: Modifiers,
+    key: Key,
+    scope: Scope,
+    command: Command,
+    keys: &'static str,
+    does: &'static str,
+) -> Binding {
+    Binding { modifiers, key, scope, command, keys, does }
+}
+
+const REDO: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// All of them. Of two with the same key the one with more modifiers stands first.
+pub const BINDINGS: [Binding; 24] = [
+    binding(Modifiers::NONE, Key::ArrowLeft, Scope::Passes, Command::PreviousPass, "Left", "the pass before"),
+    binding(Modifiers::NONE, Key::ArrowRight, Scope::Passes, Command::NextPass, "Right", "the next pass"),
+    binding(Modifiers::NONE, Key::ArrowUp, Scope::Passes, Command::PreviousDraw, "Up", "the draw before"),
+    binding(Modifiers::NONE, Key::ArrowDown, Scope::Passes, Command::NextDraw, "Down", "the next draw"),
+    binding(Modifiers::NONE, Key::Home, Scope::Passes, Command::FirstPass, "Home", "the first pass"),
+    binding(Modifiers::NONE, Key::End, Scope::Passes, Command::LastPass, "End", "the last pass"),
+    binding(Modifiers::NONE, Key::Space, Scope::Passes, Command::Play, "Space", "play through the frame, or stop"),
+    binding(Modifiers::COMMAND, Key::G, Scope::Anywhere, Command::GoTo, "Ctrl-G", "go to a step by its number"),
+    binding(Modifiers::COMMAND, Key::F, Scope::Anywhere, Command::Find, "Ctrl-F", "find a pass"),
+    binding(Modifiers::COMMAND, Key::O, Scope::Anywhere, Command::Open, "Ctrl-O", "open a scene, a model or a capture"),
+    binding(REDO, Key::Z, Scope::Anywhere, Command::Redo, "Ctrl-Shift-Z", "redo"),
+    binding(Modifiers::COMMAND, Key::Y, Scope::Anywhere, Command::Redo, "Ctrl-Y", "redo"),
+    binding(
+        Modifiers::COMMAND,
+        Key::Z,
+        Scope::Anywhere,
+        Command::Undo,
+        "Ctrl-Z",
+        "undo a change of scene or technique",
+    ),
+    binding(Modifiers::COMMAND, Key::S, Scope::Anywhere, Command::Export, "Ctrl-S", "export the shown picture"),
+    binding(Modifiers::NONE, Key::T, Scope::Passes, Command::Animate, "T", "run the scene's animation, or stop it"),
+    binding(Modifiers::NONE, Key::Period, Scope::Passes, Command::AnimateStep, ".", "the animation, a frame on"),
+    binding(Modifiers::COMMAND, Key::L, Scope::Anywhere, Command::Theme, "Ctrl-L", "light or dark theme"),
+    binding(Modifiers::NONE, Key::B, Scope::Picture, Command::Before, "B", "the picture before the step, or after it"),
+    binding(Modifiers::NONE, Key::D, Scope::Picture, Command::Diff, "D", "what the step changed"),
+    binding(Modifiers::NONE, Key::O, Scope::Picture, Command::Overlays, "O", "the menu of overlays"),
+    binding(Modifiers::NONE, Key::X, Scope::Picture, Command::Flip, "X", "swap the sides of a comparison"),
+    binding(Modifiers::NONE, Key::F1, Scope::Anywhere, Command::Help, "F1", "this help"),
+    binding(Modifiers::NONE, Key::H, Scope::Passes, Command::Help, "H", "this help"),
+    binding(Modifiers::NONE, Key::Questionmark, Scope::Passes, Command::Help, "?", "this help"),
+];
+
+/// Keys of the picture while it has the focus, and what the mouse does on it: key, what it does.
+pub const PICTURE: [(&str, &str); 6] = [
+    ("Right click, right drag", "pick a pixel: its history is told beside"),
+    ("Wheel", "zoom at the pointer"),
+    ("Left drag", "move the picture"),
+    ("Arrow keys", "move the pick by a pixel"),
+    ("Double click on an event", "go to the step that made it"),
+    ("Tab, Shift-Tab", "from widget to widget; Enter or Space presses it"),
+];
+
+/// Acts on the keys of this frame. `tree_widgets` are those of the passes, which leave the stepping keys alone.
+pub fn handle(ctx: &Context, model: &mut Model, tree_widgets: &[egui::Id], actions: &mut Vec<Action>) {
+    if matches!(model.dialog, Some(Dialog::Open | Dialog::Export(_))) {
+        return;
+    }
+    let focus = ctx.memory(egui::Memory::focused);
+    let is_elsewhere = focus.is_some_and(|id| !tree_widgets.contains(&id)) || egui::Popup::is_any_open(ctx);
+    let is_typing = ctx.text_edit_focused();
+    for binding in &BINDINGS {
+        let acts = match binding.scope {
+            Scope::Anywhere => !is_typing || binding.modifiers == Modifiers::NONE || !edits_text(binding.command),
+            Scope::Passes => !is_elsewhere,
+            Scope::Picture => !is_typing && !egui::Popup::is_any_open(ctx),
+        };
+        if !acts {
+            continue;
+        }
+        // Several presses may come in one frame.
+        let presses = ctx.input_mut(|input| input.count_and_consume_key(binding.modifiers, binding.key));
+        if presses > 0 {
+            act(ctx, model, binding.command, presses, actions);
+        }
+    }
+}
+
+/// A text field has these keys for its own text.
+fn edits_text(command: Command) -> bool {
+    matches!(command, Command::Undo | Command::Redo)
+}
+
+/// Does what a key says.
+pub fn act(ctx: &Context, model: &mut Model, command: Command, presses: usize, actions: &mut Vec<Action>) {
+    let by = presses as isize;
+    match command {
+        Command::PreviousPass => model.step_by(-by),
+        Command::NextPass => model.step_by(by),
+        Command::PreviousDraw => model.draw_by(-by),
+        Command::NextDraw => model.draw_by(by),
+        Command::FirstPass => model.select_step(0),
+        Command::LastPass => model.select_step(usize::MAX),
+        Command::Play => model.toggle_play(ctx.input(|input| input.time)),
+        Command::GoTo => open_search(model, StepSearch::GoTo(String::new())),
+        Command::Find => open_search(model, StepSearch::Find(String::new())),
+        Command::Open => model.dialog = Some(Dialog::Open),
+        Command::Undo => model.take_back(actions),
+        Command::Redo => model.make_again(actions),
+        Command::Export => model.dialog = Some(Dialog::Export(ExportKind::Picture)),
+        Command::Help => {
+            let is_open = model.dialog == Some(Dialog::Help);
+            model.dialog = (!is_open).then_some(Dialog::Help);
+        }
+        Command::Animate => model.animation.toggle(),
+        Command::AnimateStep => model.step_animation(actions),
+        Command::Theme => model.theme = model.theme.other(),
+        Command::Before => toggle_phase(model, Phase::Before),
+        Command::Diff => toggle_phase(model, Phase::Diff),
+        Command::Overlays => model.requests.overlay_menu = true,
+        Command::Flip => {
+            if let Some(compare) = &mut model.modes.compare {
+                compare.flipped = !compare.flipped;
+            }
+        }
+    }
+}
+
+/// There and back between a phase and after.
+fn toggle_phase(model: &mut Model, phase: Phase) {
+    model.modes.phase = if model.modes.phase == phase { Phase::After } else { phase };
+}
+
+fn open_search(model: &mut Model, search: StepSearch) {
+    if model.steps() > 0 {
+        model.requests.search = Some(search);
+    }
+}

@@ -1,0 +1,74 @@
+//! Errors as bars under the top bar: text with its mend, until dismissed.
+
+use crate::inspector::action::Action;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use egui::{CornerRadius, Margin, RichText, Stroke, Ui};
+
+/// Errors take so much of the window's height at most; more are scrolled to.
+const MOST_HEIGHT: f32 = 0.25;
+
+/// Draws the offer to load a changed file again, and a bar for each error.
+pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+    if let Some(file) = model.activity.changed_file.clone() {
+        reload(ui, model, &file, actions);
+    }
+    if model.activity.errors.is_empty() {
+        return;
+    }
+    let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 4));
+    egui::Panel::top("messages").frame(frame).show(ui, |ui| {
+        if model.activity.errors.len() > 1 && ui.button("Dismiss all").on_hover_text("Hide all messages").clicked() {
+            model.activity.errors.clear();
+        }
+        let most = ui.ctx().content_rect().height() * MOST_HEIGHT;
+        let mut dismissed = None;
+        egui::ScrollArea::vertical().max_height(most).auto_shrink([false, true]).show(ui, |ui| {
+            // The last one first: it is of what was done just now.
+            for (index, error) in model.activity.errors.iter().enumerate().rev() {
+                if bar(ui, error) {
+                    dismissed = Some(index);
+                }
+            }
+        });
+        if let Some(index) = dismissed {
+            model.activity.errors.remove(index);
+        }
+    });
+}
+
+fn reload(ui: &mut Ui, model: &mut Model, file: &str, actions: &mut Vec<Action>) {
+    let frame = egui::Frame::new().fill(theme::of(ui).panel).inner_margin(Margin::symmetric(8, 4));
+    egui::Panel::top("reload").frame(frame).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.label(format!("{file} changed on disk."));
+            if ui.button("Load it again").on_hover_text("Technique, camera and lights stay as they are").clicked() {
+                actions.push(Action::Reload);
+                model.activity.changed_file = None;
+            }
+            if ui.button("Not now").on_hover_text("Go on with the scene as it is").clicked() {
+                model.activity.changed_file = None;
+            }
+        });
+    });
+}
+
+/// One error; true when it is dismissed.
+fn bar(ui: &mut Ui, error: &str) -> bool {
+    let frame = egui::Frame::new()
+        .stroke(Stroke::new(1.0, theme::of(ui).error))
+        .corner_radius(CornerRadius::same(4))
+        .inner_margin(Margin::symmetric(8, 4));
+    let contents = |ui: &mut Ui| {
+        let dismiss = ui.button("Dismiss").on_hover_text("Hide this message");
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.label(RichText::new("× Error").color(theme::of(ui).error));
+            ui.add(egui::Label::new(error).wrap());
+        });
+        dismiss.clicked()
+    };
+    let layout = egui::Layout::right_to_left(egui::Align::Center);
+    frame
+        .show(ui, |ui| ui.allocate_ui_with_layout(egui::vec2(ui.available_width(), 24.0), layout, contents).inner)
+        .inner
+}

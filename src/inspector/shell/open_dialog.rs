@@ -1,0 +1,115 @@
+//! The dialog that opens a scene: built-in ones with their lessons, or a path.
+
+use crate::inspector::action::{Action, Dialog};
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use egui::{Context, Id, Key, RichText, Ui, vec2};
+
+/// A built-in scene in the dialog.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SceneEntry {
+    /// What opens it.
+    pub name: String,
+    /// What it shows, in a sentence.
+    pub lesson: String,
+}
+
+/// What the dialog offers, and the path that is typed into it.
+#[derive(Debug, Default)]
+pub struct OpenDialog {
+    /// Built-in ones.
+    scenes: Vec<SceneEntry>,
+    path: String,
+}
+
+impl OpenDialog {
+    /// Offers these.
+    #[must_use]
+    pub fn new(scenes: Vec<SceneEntry>) -> OpenDialog {
+        OpenDialog { scenes, path: String::new() }
+    }
+}
+
+/// Draws the dialog while it is open.
+pub fn ui(ctx: &Context, own: &mut OpenDialog, model: &mut Model, actions: &mut Vec<Action>) {
+    if model.dialog != Some(Dialog::Open) {
+        own.path.clear();
+        return;
+    }
+    let modal = egui::Modal::new(Id::unique("open dialog")).frame(theme::dialog(ctx));
+    let answer = modal.show(ctx, |ui| {
+        ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
+        contents(ui, own)
+    });
+    match answer.inner {
+        Answer::Waiting if !answer.should_close() => return,
+        Answer::Waiting | Answer::Cancel => {}
+        Answer::Open(what) => actions.push(Action::Open(what)),
+        Answer::Browse => actions.push(Action::Browse),
+        Answer::BrowseFolder => actions.push(Action::BrowseFolder),
+    }
+    model.dialog = None;
+}
+
+enum Answer {
+    Waiting,
+    Cancel,
+    Browse,
+    BrowseFolder,
+    Open(String),
+}
+
+fn contents(ui: &mut Ui, dialog: &mut OpenDialog) -> Answer {
+    let mut answer = Answer::Waiting;
+    theme::heading(ui, "Open");
+    if !dialog.scenes.is_empty() {
+        ui.label(theme::note("A built-in scene"));
+        let scroll = egui::ScrollArea::vertical().max_height(300.0).auto_shrink([false, true]);
+        scroll.show(ui, |ui| {
+            for scene in &dialog.scenes {
+                if scene_row(ui, &scene.name, &scene.lesson) {
+                    answer = Answer::Open(scene.name.clone());
+                }
+            }
+        });
+        ui.add_space(8.0);
+    }
+    let label = ui.label(theme::note("A scene file (.toml), a model (.obj) or a capture folder"));
+    let field = egui::TextEdit::singleline(&mut dialog.path).hint_text("path").desired_width(f32::INFINITY);
+    let field = field.align(egui::Align2::LEFT_CENTER);
+    let field = ui.add(field).labelled_by(label.id);
+    let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    if ui.memory(|memory| memory.focused().is_none()) {
+        field.request_focus();
+    }
+    ui.add_space(8.0);
+    let path = dialog.path.trim();
+    ui.horizontal(|ui| {
+        let open = ui.add_enabled(!path.is_empty(), egui::Button::new("Open this"));
+        if !path.is_empty() && (open.clicked() || entered) {
+            answer = Answer::Open(path.to_owned());
+        }
+        if ui.button("Browse…").on_hover_text("Choose a scene or model with the system's dialog").clicked() {
+            answer = Answer::Browse;
+        }
+        if ui.button("Browse captures…").on_hover_text("Choose a capture folder with the system's dialog").clicked() {
+            answer = Answer::BrowseFolder;
+        }
+        if ui.button("Cancel").clicked() {
+            answer = Answer::Cancel;
+        }
+    });
+    answer
+}
+
+/// A scene's name and lesson; true when it is chosen.
+fn scene_row(ui: &mut Ui, name: &str, lesson: &str) -> bool {
+    let text = RichText::new(name).color(theme::of(ui).text);
+    ui.horizontal(|ui| {
+        let button = egui::Button::new(text).truncate();
+        let clicked = ui.add_sized(vec2(112.0, theme::ROW_HEIGHT), button).clicked();
+        ui.add(egui::Label::new(theme::note(lesson)).wrap());
+        clicked
+    })
+    .inner
+}

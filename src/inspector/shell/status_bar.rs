@@ -1,0 +1,110 @@
+//! The bar at the bottom: the picture's facts, what the pointer is over, what a frame costs.
+
+use crate::ask::TimingOf;
+use crate::capture::Capture;
+use crate::inspector::look::coloring::{self, Coloring};
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::counts;
+use crate::reading::format;
+use crate::reading::shown::Shown;
+use egui::{Margin, Ui};
+use std::sync::Arc;
+
+/// Draws the bar.
+pub fn ui(ui: &mut Ui, model: &Model) {
+    let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 2));
+    egui::Panel::bottom("status bar").frame(frame).exact_size(26.0).show(ui, |ui| {
+        ui.horizontal_centered(|ui| {
+            let shown = |capture: &Arc<Capture>| Some((Arc::clone(capture), model.shown(capture)?));
+            if let Some((capture, shown)) = model.frame.capture.as_ref().and_then(shown) {
+                picture(ui, model, &capture, &shown);
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| costs(ui, model));
+        });
+    });
+}
+
+fn picture(ui: &mut Ui, model: &Model, capture: &Capture, shown: &Shown) {
+    let [width, height] = shown.images.first().map_or([0, 0], |image| image.size());
+    ui.label(theme::note(format!("{} · {width}×{height} · {}", shown.title, shown.format)));
+    let Some(hover) = model.selection.hover else { return };
+    let [x, y] = hover.at;
+    ui.add_space(4.0);
+    match Coloring::of_shown(shown, model.view.depth_range.unwrap_or([0.0, 1.0])) {
+        Coloring::Depth(scale) if shown.kind == crate::inspector::PictureKind::Map => {
+            let depth = shown.images.get(hover.image).and_then(|image| image.depth_at(hover.at));
+            let value = depth.map_or_else(String::new, format::depth);
+            let metres = depth.and_then(|depth| scale.measure.value(depth)).map_or_else(String::new, format::digits);
+            ui.label(theme::number(format!("texel {x}, {y}   depth {value}   {metres}")));
+        }
+        Coloring::Linear => {
+            let layer = shown.layers.get(hover.image).filter(|_| shown.layers.len() > 1);
+            if let Some(layer) = layer {
+                ui.label(theme::note(layer.name.as_str()));
+            }
+            if let Some(texel) = shown.images.get(hover.image).and_then(|image| image.rgba_at(hover.at)) {
+                theme::swatch(ui, coloring::linear(texel));
+                ui.label(theme::number(format!("texel {x}, {y}   lets through {}", format::shares(texel))));
+            }
+        }
+        _ => frame_values(ui, capture, model, hover.at),
+    }
+}
+
+fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
+    let [x, y] = at;
+    let Some(frame) = model.moment().frame(capture) else { return };
+    if let Some([red, green, blue, _]) = frame.color.image.rgba_at(at) {
+        theme::swatch(ui, egui::Color32::from_rgb(red, green, blue));
+        ui.label(theme::number(format!("{x}, {y}   colour {red} {green} {blue}")));
+    }
+    if let Some(depth) = frame.depth.image.depth_at(at) {
+        ui.label(theme::number(format!("depth {}", format::depth(depth))));
+    }
+    if let Some(stencil) = frame.stencil.as_ref().and_then(|stencil| stencil.image.byte_at(at)) {
+        ui.label(theme::number(format!("stencil {}", crate::numbers::signed(stencil))));
+    }
+    if let Some(count) = model.counts_to_show(capture).and_then(|(_, image)| image.count_at(at)) {
+        ui.label(theme::number(format!("count {}", counts::text(count))));
+    }
+}
+
+/// Right to left: adapter, frame time, bytes, and what is being done.
+fn costs(ui: &mut Ui, model: &Model) {
+    if let Some(capture) = &model.frame.capture {
+        let adapter = &capture.adapter;
+        let short_name = adapter.name.split(" (").next().unwrap_or_default();
+        ui.label(theme::note(format!("{short_name}, {}", adapter.driver))).on_hover_text(&adapter.name);
+        if capture.timing.frame_ms.is_none() {
+            model.answers.want(TimingOf {});
+        }
+        if let Some(frame) = capture.timing.frame_ms {
+            ui.label(theme::note(format!("frame {}", format::milliseconds(Some(frame)))))
+                .on_hover_text("Median time of a frame without snapshots");
+        }
+        ui.label(theme::note(format!("capture {}", format::bytes(model.frame.bytes))))
+            .on_hover_text("Memory of all pictures of this capture");
+    }
+    if let Some(job) = &model.activity.job {
+        ui.label(theme::note(job.clone()));
+        spinner(ui);
+    } else if let Some(done) = &model.activity.exported {
+        ui.label(theme::note(done.as_str())).on_hover_text("The last export");
+    }
+}
+
+/// A turning arc. It moves a few times a second only: on a software GPU every frame that is
+/// drawn here is taken from the work that it stands for.
+fn spinner(ui: &mut Ui) {
+    const TURN_SECONDS: f64 = 1.2;
+    const FRAMES: f64 = 12.0;
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 14.0), egui::Sense::hover());
+    let turn = (ui.input(|input| input.time) / TURN_SECONDS * FRAMES).floor() / FRAMES;
+    let points = (0..=9).map(|step| {
+        let angle = ((turn + f64::from(step) / 12.0) * std::f64::consts::TAU) as f32;
+        rect.center() + egui::Vec2::angled(angle) * 5.0
+    });
+    ui.painter().line(points.collect(), egui::Stroke::new(1.5, theme::of(ui).dim));
+    ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(TURN_SECONDS / FRAMES));
+}

@@ -1,0 +1,111 @@
+//! The bar at the top: what is open, and the technique.
+
+use crate::inspector::action::{Action, Dialog};
+use crate::inspector::look::theme;
+use crate::inspector::look::widgets::segments;
+use crate::inspector::model::Model;
+use crate::inspector::model::memory::ThemeChoice;
+use crate::inspector::shell::export;
+use crate::technique::Technique;
+use egui::{Margin, RichText, Ui};
+
+/// Room for a button a technique, and the tools to their right, points.
+const WIDE: f32 = 960.0;
+
+/// Draws the bar.
+pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+    let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 4));
+    egui::Panel::top("top bar").frame(frame).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            theme::heading(ui, "stencilscope");
+            ui.separator();
+            if ui.button("Open…").on_hover_text("Open a scene, a model or a capture folder (Ctrl-O)").clicked() {
+                model.dialog = Some(Dialog::Open);
+            }
+            recent(ui, model, actions);
+            ui.add_space(8.0);
+            techniques(ui, model, actions);
+            let right = egui::Layout::right_to_left(egui::Align::Center);
+            ui.with_layout(right, |ui| tools(ui, model, actions));
+        });
+    });
+}
+
+/// What is open, and what was: a menu.
+fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
+    let Some(name) = open_name(model) else { return };
+    let menu = ui.menu_button(RichText::new(&name).color(theme::of(ui).text), |ui| {
+        ui.label(theme::note("Opened before"));
+        if model.recent.is_empty() {
+            ui.label("nothing yet");
+        }
+        for source in &model.recent {
+            if ui.button(source).clicked() {
+                actions.push(Action::Open(source.clone()));
+                ui.close();
+            }
+        }
+    });
+    menu.response.accessible_name(format!("What is open: {name}")).on_hover_text("What is open, and what was");
+}
+
+/// Right to left: help, theme, export, redo, undo.
+fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+    if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
+        model.dialog = Some(Dialog::Help);
+    }
+    let other = match model.theme.other() {
+        ThemeChoice::Dark => "Dark",
+        ThemeChoice::Light => "Light",
+    };
+    let theme = ui.button(other).on_hover_text(format!("Change to the {} theme (Ctrl-L)", other.to_lowercase()));
+    if theme.clicked() {
+        model.theme = model.theme.other();
+    }
+    let menu = ui.menu_button("Export", |ui| export::menu(ui, model));
+    menu.response.on_hover_text("Save the picture, its values, the capture or the scene (Ctrl-S)");
+    let redo = ui.add_enabled(model.undo.can_redo(), egui::Button::new("Redo"));
+    if redo.on_hover_text("Make the change again (Ctrl-Shift-Z)").clicked() {
+        model.make_again(actions);
+    }
+    let undo = ui.add_enabled(model.undo.can_undo(), egui::Button::new("Undo"));
+    if undo.on_hover_text("Take the last change of scene or technique back (Ctrl-Z)").clicked() {
+        model.take_back(actions);
+    }
+}
+
+fn open_name(model: &Model) -> Option<String> {
+    let of_scene = model.scene.as_ref().map(|scene| scene.name.clone());
+    of_scene.or_else(|| model.frame.capture.as_ref().map(|capture| format!("{} (capture)", capture.scene)))
+}
+
+/// A button a technique, joined into one.
+fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
+    let Some(scene) = &model.scene else {
+        // A capture folder: its technique is a fact, not a choice.
+        if let Some(capture) = &model.frame.capture {
+            ui.label(theme::note(format!("technique {}", capture.technique)));
+        }
+        return;
+    };
+    let current = scene.draft.choice.technique();
+    let labels = Technique::ALL.map(|technique| (technique.name(), technique.summary()));
+    let chosen = Technique::ALL.iter().position(|technique| *technique == current);
+    let picked = if ui.available_width() < WIDE {
+        let mut picked = None;
+        let combo = egui::ComboBox::from_id_salt("technique").selected_text(current.name()).show_ui(ui, |ui| {
+            for (index, (name, summary)) in labels.iter().enumerate() {
+                if ui.selectable_label(chosen == Some(index), *name).on_hover_text(*summary).clicked() {
+                    picked = Some(index);
+                }
+            }
+        });
+        combo.response.accessible_name("Technique");
+        picked.filter(|index| chosen != Some(*index))
+    } else {
+        segments(ui, &labels, chosen)
+    };
+    if let Some(index) = picked {
+        model.choose_technique(Technique::ALL[index], actions);
+    }
+}

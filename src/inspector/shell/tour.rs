@@ -1,0 +1,284 @@
+//! Guided tours: stops that drive the panels and say what is seen.
+//!
+//! A stop first asks for its technique or scene, and waits for the capture; then it goes to its step,
+//! picture, pixel and tab. Between stops the user may do what they like: the next stop finds its place
+//! again. A stop whose frame can't be made says why, and offers to try again or to go on without it. The
+//! stops are in `tours.rs`.
+
+use crate::accuracy::Finding;
+use crate::capture::Capture;
+use crate::inspector::action::Action;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::inspector::tours::{Go, TOURS, Tour};
+use crate::technique::Technique;
+use egui::{Label, Margin, RichText, Ui};
+
+/// Labels of a light that tours look for.
+const LIT: u8 = 0;
+const SHADOW: u8 = 1;
+
+/// The tour that one is on, if any.
+#[derive(Debug, Default)]
+pub struct Tours {
+    at: Option<TourState>,
+}
+
+/// Where one is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TourState {
+    tour: usize,
+    stop: usize,
+    /// What the stop wants is not done yet.
+    is_pending: bool,
+    /// What failed while the stop's frame was waited for, with the mend.
+    error: Option<String>,
+}
+
+impl Tours {
+    /// Begins a tour.
+    fn start(&mut self, model: &mut Model, tour: usize, actions: &mut Vec<Action>) {
+        self.go_to_stop(model, tour, 0, actions);
+    }
+
+    /// Goes to a stop of the tour of a technique.
+    pub fn go_to_stop_of(&mut self, model: &mut Model, technique: Technique, stop: usize, actions: &mut Vec<Action>) {
+        if let Some(tour) = TOURS.iter().position(|tour| tour.technique == technique) {
+            self.go_to_stop(model, tour, stop, actions);
+        }
+    }
+
+    fn go_to_stop(&mut self, model: &mut Model, tour: usize, stop: usize, actions: &mut Vec<Action>) {
+        let Some(found) = TOURS.get(tour).filter(|found| stop < found.stops.len()) else {
+            self.at = None;
+            return;
+        };
+        self.at = Some(TourState { tour, stop, is_pending: true, error: None });
+        model.animation.is_running = false;
+        if let Some(scene) = scene_to_open(model, found, stop) {
+            model.stop_restoring();
+            model.activity.is_waiting = true;
+            actions.push(Action::Open(scene.to_owned()));
+            return;
+        }
+        run_technique(model, found.stops[stop].technique(found), actions);
+    }
+
+    /// Something failed: the stop that waits tells it.
+    pub fn note_error(&mut self, error: &str) {
+        if let Some(tour) = self.at.as_mut().filter(|tour| tour.is_pending) {
+            tour.error = Some(error.to_owned());
+        }
+    }
+
+    /// Why the stop has no frame, and will get none by itself; `None` while one may come.
+    fn trouble(&self, model: &Model) -> Option<String> {
+        let at = self
+            .at
+            .as_ref()
+            .filter(|tour| tour.is_pending && !model.activity.is_waiting && model.activity.job.is_none())?;
+        let problem = model.scene.as_ref().and_then(|scene| scene.problem.clone());
+        Some(at.error.clone().or(problem).unwrap_or_else(|| "the run ended without a picture".to_owned()))
+    }
+
+    /// Does what the stop wants, as soon as its capture is there.
+    pub fn go_on(&mut self, model: &mut Model, actions: &mut Vec<Action>) {
+        let Some(at) = self.at.clone().filter(|tour| tour.is_pending && !model.activity.is_waiting) else { return };
+        let Some(tour) = TOURS.get(at.tour) else { return };
+        let Some(capture) = model.frame.capture.clone() else { return };
+        let stop = &tour.stops[at.stop];
+        let technique = stop.technique(tour);
+        let Some(scene) = &model.scene else {
+            // A capture folder: there is nothing to run. The stop is told all the same, unless its scene failed.
+            if at.error.is_none() {
+                self.at = Some(TourState { is_pending: false, ..at });
+            }
+            return;
+        };
+        // Where the scene or its frame could not be made, the stop says why.
+        let is_other = scene.draft.choice.technique() != technique;
+        if scene_to_open(model, tour, at.stop).is_some() || (is_other && at.error.is_some()) {
+            return;
+        }
+        if is_other {
+            return model.choose_technique(technique, actions);
+        }
+        if capture.technique != technique.name() || capture.scene != scene.name {
+            return;
+        }
+        self.at = Some(TourState { is_pending: false, ..at });
+        model.modes.overlays.clear();
+        for go in stop.go {
+            do_stop(model, *go, &capture);
+        }
+    }
+}
+
+/// The scene that a stop is about, where another one is open.
+fn scene_to_open(model: &Model, tour: &Tour, stop: usize) -> Option<&'static str> {
+    let scene = tour.stops[..=stop].iter().rev().find_map(|stop| scene_of(stop.go))?;
+    let is_open = model.scene.as_ref().is_some_and(|open| open.name == scene);
+    (!is_open).then_some(scene)
+}
+
+/// Chooses a technique; one that is chosen already, and has no frame, is tried again.
+fn run_technique(model: &mut Model, technique: Technique, actions: &mut Vec<Action>) {
+    let is_chosen = model.scene.as_ref().is_some_and(|scene| scene.draft.choice.technique() == technique);
+    let is_of = |capture: &Capture| {
+        capture.technique == technique.name() && model.scene.as_ref().is_some_and(|scene| scene.name == capture.scene)
+    };
+    let is_shown = model.frame.capture.as_ref().is_some_and(|capture| is_of(capture));
+    if is_chosen && !is_shown && !model.activity.is_waiting {
+        model.run_draft(actions);
+    } else {
+        model.choose_technique(technique, actions);
+    }
+}
+
+fn do_stop(model: &mut Model, go: Go, capture: &Capture) {
+    let with = |word: &str| capture.steps.iter().position(|step| step.name.contains(word));
+    match go {
+        Go::Scene(_) | Go::Technique(_) => {}
+        Go::First => model.select_step(0),
+        Go::Last => model.select_step(usize::MAX),
+        Go::Step(word) => {
+            if let Some(step) = with(word) {
+                model.select_step(step);
+            }
+        }
+        Go::Picture(kind) => model.choose_picture(kind),
+        Go::Panel(panel) => model.requests.panels.push(panel),
+        Go::Over(overlay) => {
+            model.modes.overlays.insert(overlay);
+        }
+        Go::PickShadow => model.selection.pick = pixel_with(capture, SHADOW).or(model.selection.pick),
+        Go::PickLit => model.selection.pick = pixel_with(capture, LIT).or(model.selection.pick),
+        Go::PickWrong => {
+            model.selection.pick = wrong_pixel(capture).or_else(|| pixel_with(capture, SHADOW)).or(model.selection.pick)
+        }
+    }
+}
+
+/// How many stops the tour of a technique has.
+#[must_use]
+pub fn stops_of(technique: Technique) -> usize {
+    TOURS.iter().find(|tour| tour.technique == technique).map_or(0, |tour| tour.stops.len())
+}
+
+fn scene_of(go: &[Go]) -> Option<&'static str> {
+    go.iter().find_map(|go| if let Go::Scene(name) = go { Some(*name) } else { None })
+}
+
+/// The pixel nearest to the middle that has this label under the first light.
+fn pixel_with(capture: &Capture, label: u8) -> Option<[u32; 2]> {
+    let image = capture.lights.iter().find_map(|light| light.shadow.as_ref())?;
+    nearest_to_middle(image, |value| value == label)
+}
+
+/// The wrong pixel nearest to the middle, where the truth is known.
+fn wrong_pixel(capture: &Capture) -> Option<[u32; 2]> {
+    let truth = capture.lights.iter().find_map(|light| light.truth.as_ref())?;
+    nearest_to_middle(&truth.findings, |value| Finding::from_byte(value).is_some_and(Finding::is_wrong))
+}
+
+fn nearest_to_middle(image: &crate::capture::Image, is_it: impl Fn(u8) -> bool) -> Option<[u32; 2]> {
+    let [width, height] = image.size().map(i64::from);
+    let far = |x: i64, y: i64| (2 * x - width).pow(2) + (2 * y - height).pow(2);
+    let found = image.rows().enumerate().flat_map(|(y, row)| {
+        row.iter().enumerate().filter(|(_, value)| is_it(**value)).map(move |(x, _)| (x as i64, y as i64))
+    });
+    found.min_by_key(|(x, y)| far(*x, *y)).map(|(x, y)| [x as u32, y as u32])
+}
+
+/// The stop, over the status bar, while one is on a tour.
+pub fn ui(ui: &mut Ui, own: &mut Tours, model: &mut Model, actions: &mut Vec<Action>) {
+    if let Some(tour) = model.requests.tour.take() {
+        own.start(model, tour, actions);
+    }
+    own.go_on(model, actions);
+    let Some(at) = own.at.clone() else { return };
+    let Some(tour) = TOURS.get(at.tour) else { return };
+    let trouble = own.trouble(model);
+    let frame = egui::Frame::new().fill(theme::of(ui).raised).inner_margin(Margin::symmetric(12, 8));
+    let mut to = None;
+    egui::Panel::bottom("tour").frame(frame).show(ui, |ui| {
+        to = stop(ui, tour, &at, trouble.as_deref());
+    });
+    match to {
+        None => {}
+        Some(None) => own.at = None,
+        Some(Some(stop)) => {
+            own.go_to_stop(model, at.tour, stop, actions);
+            own.go_on(model, actions);
+        }
+    }
+}
+
+/// Text and buttons; where to go, `Some(None)` to end.
+fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Option<Option<usize>> {
+    let stop = &tour.stops[at.stop];
+    let count = tour.stops.len();
+    let mut to = None;
+    ui.horizontal(|ui| {
+        theme::heading(ui, stop.title);
+        ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if ui.button("End tour").on_hover_text("Leave the panels as they are").clicked() {
+                to = Some(None);
+            }
+            let is_last = at.stop + 1 == count;
+            if ui.add_enabled(!is_last, egui::Button::new("Next stop")).clicked() {
+                to = Some(Some(at.stop + 1));
+            }
+            if ui.add_enabled(at.stop > 0, egui::Button::new("Stop before")).clicked() {
+                to = Some(at.stop.checked_sub(1));
+            }
+        });
+    });
+    if let Some(reason) = trouble {
+        let text = RichText::new(format!("× This stop's frame can't be made: {reason}"));
+        ui.add(Label::new(text.color(theme::of(ui).error)).wrap());
+        ui.horizontal(|ui| {
+            if ui.button("Try this stop again").clicked() {
+                to = Some(Some(at.stop));
+            }
+            let is_last = at.stop + 1 == count;
+            let skip = if is_last { "Skip it and end the tour" } else { "Skip this stop" };
+            if ui.button(skip).clicked() {
+                to = Some((!is_last).then_some(at.stop + 1));
+            }
+            ui.label(theme::note("What it would show:"));
+        });
+    }
+    let is_awaited = at.is_pending && trouble.is_none();
+    let text = if is_awaited { "The frame is being made …" } else { stop.text };
+    let ink = if trouble.is_some() { theme::of(ui).dim } else { theme::of(ui).text };
+    ui.add(Label::new(RichText::new(text).color(ink)).wrap());
+    to
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin::Builtin;
+
+    #[test]
+    fn every_technique_has_a_tour_whose_scenes_exist() {
+        for technique in Technique::ALL {
+            assert!(TOURS.iter().any(|tour| tour.technique == technique), "{}", technique.name());
+        }
+        for tour in &TOURS {
+            assert!(tour.stops.len() >= 3, "{}", tour.technique.name());
+            for scene in tour.stops.iter().filter_map(|stop| scene_of(stop.go)) {
+                assert!(Builtin::named(scene).is_some(), "{scene}");
+            }
+        }
+    }
+
+    #[test]
+    fn texts_have_only_letters_that_the_face_has() {
+        for stop in TOURS.iter().flat_map(|tour| tour.stops) {
+            assert!(!stop.text.contains('→') && !stop.text.is_empty(), "{}", stop.title);
+        }
+    }
+}

@@ -1,0 +1,300 @@
+//! Walking: the mouse looks, W S A D move, and other keys change what is seen, until Escape.
+//!
+//! Only while one walks these keys act, and no others do. The pointer is hidden and held in the window.
+//! A new frame is asked for when the last one is shown, so nothing queues up: a slow technique moves in
+//! larger steps, not later. Walls are asked for whenever objects are switched off, move or are loaded anew;
+//! until they come the walls before count.
+
+use crate::ask::WallsOf;
+use crate::inspector::action::{Action, Overlay};
+use crate::inspector::canvas;
+use crate::inspector::model::Model;
+use crate::reading::shown::PictureKind;
+use crate::scene::{Camera, Walls};
+use crate::technique::Technique;
+use egui::{Context, Event, FocusDirection, Key, Vec2};
+use glam::{DQuat, DVec3};
+use std::sync::Arc;
+
+/// Degrees that a point of mouse movement turns.
+const TURN: f64 = 0.12;
+/// One looks up and down so far at most, degrees.
+const MOST_PITCH: f64 = 88.0;
+/// What a press of < or > makes of the speed, and its limits, metres a second.
+const FASTER: f64 = 1.5;
+const SPEED_LIMITS: [f64; 2] = [0.02, 500.0];
+/// A pause in drawing is no jump: a step lasts so long at most, seconds.
+const LONGEST: f64 = 0.25;
+/// Half the width of who walks, metres, and what of the near plane's distance it is at least.
+const RADIUS: f64 = 0.25;
+const RADIUS_OF_NEAR: f64 = 1.5;
+/// Sizes of shadow maps.
+const SIZES: [u32; 5] = [256, 512, 1024, 2048, 4096];
+/// What P goes through.
+const TECHNIQUES: [Technique; 5] =
+    [Technique::None, Technique::Planar, Technique::Projective, Technique::ZFail, Technique::ShadowMap];
+
+/// What a key does while one walks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WalkCommand {
+    /// While it is held, one walks this way: ahead, and to the right.
+    Go(i8, i8),
+    /// The next technique.
+    Technique,
+    /// Walls stop, or do not.
+    Collision,
+    /// Slower.
+    Slower,
+    /// Faster.
+    Faster,
+    /// The next thing over the picture that makes shadows.
+    Overlay,
+    /// The next size of the shadow map.
+    MapSize,
+    /// The lamp swings, or stops.
+    Swing,
+    /// Ends it.
+    Leave,
+}
+
+/// A key, and what it does while one walks.
+#[derive(Debug, Clone, Copy)]
+pub struct WalkKey {
+    /// The key.
+    pub key: Key,
+    /// In words.
+    pub keys: &'static str,
+    /// What it does.
+    pub command: WalkCommand,
+    /// In words.
+    pub does: &'static str,
+}
+
+const fn key(key: Key, keys: &'static str, command: WalkCommand, does: &'static str) -> WalkKey {
+    WalkKey { key, keys, command, does }
+}
+
+/// All of them: handling and help both read this.
+pub const KEYS: [WalkKey; 12] = [
+    key(Key::W, "W", WalkCommand::Go(1, 0), "walk ahead"),
+    key(Key::S, "S", WalkCommand::Go(-1, 0), "walk back"),
+    key(Key::A, "A", WalkCommand::Go(0, -1), "walk to the left"),
+    key(Key::D, "D", WalkCommand::Go(0, 1), "walk to the right"),
+    key(Key::P, "P", WalkCommand::Technique, "no shadow, planar, projective, volume, shadow map"),
+    key(Key::C, "C", WalkCommand::Collision, "walls stop, or do not"),
+    key(Key::Comma, "<", WalkCommand::Slower, "slower"),
+    key(Key::Period, ">", WalkCommand::Faster, "faster"),
+    key(Key::V, "V", WalkCommand::Overlay, "silhouettes, volumes, shadow, or nothing over the picture"),
+    key(Key::I, "I", WalkCommand::MapSize, "the shadow map's size"),
+    key(Key::L, "L", WalkCommand::Swing, "the lamp swings, or stops"),
+    key(Key::Escape, "Esc", WalkCommand::Leave, "stop walking, free the pointer"),
+];
+
+/// Acts on keys and mouse of this frame while one walks; true then, and no other keys are to act.
+pub fn handle(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) -> bool {
+    if !model.walk.is_on() {
+        return begins(ctx, model);
+    }
+    let asks_for_help = ctx.input(|input| input.key_pressed(Key::F1) || input.key_pressed(Key::H));
+    let is_elsewhere =
+        asks_for_help || model.scene.is_none() || model.dialog.is_some() || !ctx.input(|input| input.focused);
+    if is_elsewhere {
+        model.stop_walking(ctx);
+        return false;
+    }
+    let typed = |text: &str| ctx.input(|input| input.events.contains(&Event::Text(text.to_owned())));
+    for walk_key in &KEYS {
+        let presses = ctx.input_mut(|input| input.count_and_consume_key(egui::Modifiers::NONE, walk_key.key));
+        // Where < and > have a key of their own, or are typed with other ones.
+        let is_typed = match walk_key.command {
+            WalkCommand::Slower | WalkCommand::Faster => typed(walk_key.keys),
+            _ => false,
+        };
+        for _ in 0..presses.max(usize::from(is_typed)) {
+            act(ctx, model, walk_key.command, actions);
+        }
+    }
+    if !model.walk.is_on() {
+        return true;
+    }
+    step(ctx, model, actions);
+    true
+}
+
+/// Tab while the pointer is over the picture; else it goes from widget to widget, on from the picture too,
+/// so that who has no pointer does not get stuck there.
+fn begins(ctx: &Context, model: &mut Model) -> bool {
+    let is_free = model.dialog.is_none() && !ctx.text_edit_focused() && !egui::Popup::is_any_open(ctx);
+    let focus = ctx.memory(egui::Memory::focused);
+    let is_picture = model.selection.hover.is_some() && (focus.is_none() || focus == Some(canvas::picture_id()));
+    let is_shifted = ctx.input(|input| input.modifiers.any());
+    if !(is_free && is_picture && !is_shifted && model.scene.is_some()) {
+        return false;
+    }
+    let is_pressed = ctx.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Tab));
+    if is_pressed {
+        ctx.memory_mut(|memory| memory.move_focus(FocusDirection::None));
+        model.start_walking(ctx);
+    }
+    is_pressed
+}
+
+fn act(ctx: &Context, model: &mut Model, command: WalkCommand, actions: &mut Vec<Action>) {
+    let [slowest, fastest] = SPEED_LIMITS;
+    match command {
+        // As long as it is held: see `step`.
+        WalkCommand::Go(..) => {}
+        WalkCommand::Technique => {
+            let now = model.scene.as_ref().map(|scene| scene.draft.choice.technique());
+            let place = TECHNIQUES.iter().position(|one| Some(*one) == now);
+            let next = TECHNIQUES[place.map_or(0, |place| (place + 1) % TECHNIQUES.len())];
+            model.choose_technique(next, actions);
+        }
+        WalkCommand::Collision => model.walk.collides = !model.walk.collides,
+        WalkCommand::Slower => model.walk.speed = (model.walk.speed / FASTER).max(slowest),
+        WalkCommand::Faster => model.walk.speed = (model.walk.speed * FASTER).min(fastest),
+        WalkCommand::Overlay => next_overlay(model),
+        WalkCommand::MapSize => next_size(model, actions),
+        WalkCommand::Swing => model.animation.toggle(),
+        WalkCommand::Leave => model.stop_walking(ctx),
+    }
+}
+
+/// Over the picture: silhouettes, then volumes, then the shadow alone, then nothing.
+fn next_overlay(model: &mut Model) {
+    let on = &mut model.modes.overlays;
+    let has = |overlay| on.contains(&overlay);
+    let (lines, kind) = match (has(Overlay::Silhouettes), has(Overlay::Volumes), model.view.kind) {
+        (true, _, _) => (Some(Overlay::Volumes), PictureKind::Color),
+        (_, true, _) => (None, PictureKind::Mask),
+        (_, _, PictureKind::Mask) => (None, PictureKind::Color),
+        _ => (Some(Overlay::Silhouettes), PictureKind::Color),
+    };
+    on.remove(&Overlay::Silhouettes);
+    on.remove(&Overlay::Volumes);
+    on.extend(lines);
+    model.choose_picture(kind);
+}
+
+fn next_size(model: &mut Model, actions: &mut Vec<Action>) {
+    let Some(scene) = &mut model.scene else { return };
+    let now = scene.draft.choice.texels();
+    let Some(now) = now else { return };
+    let next = SIZES.into_iter().find(|size| *size > now).unwrap_or(SIZES[0]);
+    match scene.draft.choice.set("size", &next.to_string()) {
+        Ok(()) => model.run_draft(actions),
+        Err(error) => scene.problem = Some(error.to_string()),
+    }
+}
+
+/// Turns and moves the camera by what was asked since the last step, once that one is shown.
+fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
+    let held = |key| ctx.input(|input| input.key_down(key));
+    let goes: DVec3 = KEYS.iter().filter(|key| held(key.key)).map(|key| way(key.command)).sum();
+    model.walk.turned += ctx.input(|input| input.pointer.motion()).unwrap_or(Vec2::ZERO);
+    let now = ctx.input(|input| input.time);
+    if goes == DVec3::ZERO {
+        model.walk.last = None;
+    } else {
+        ctx.request_repaint();
+    }
+    let walls = walls(model);
+    let has_walls = !model.walk.collides || walls.is_some();
+    if model.activity.is_waiting || !has_walls || (goes == DVec3::ZERO && model.walk.turned == Vec2::ZERO) {
+        return;
+    }
+    let passed = model.walk.last.map_or(1.0 / 60.0, |last| (now - last).clamp(0.0, LONGEST));
+    model.walk.last = Some(now).filter(|_| goes != DVec3::ZERO);
+    let turned = std::mem::take(&mut model.walk.turned);
+    let Some(scene) = &mut model.scene else { return };
+    let before = scene.draft.camera;
+    turn(&mut scene.draft.camera, turned);
+    let by = direction(&scene.draft.camera, goes, !model.walk.collides) * (model.walk.speed * passed);
+    let radius = RADIUS.max(before.near * RADIUS_OF_NEAR);
+    let walls = walls.filter(|_| model.walk.collides);
+    let eye = walls.map_or(before.eye + by, |walls| walls.walk(before.eye, by, radius));
+    scene.draft.camera.target += eye - before.eye;
+    scene.draft.camera.eye = eye;
+    // A running animation asks for the frame with its own moment.
+    if scene.draft.camera != before && !model.animation.is_running {
+        model.run_draft(actions);
+    }
+}
+
+/// The walls of what is to be run; until they are known, those before.
+fn walls(model: &Model) -> Option<Arc<Walls>> {
+    let scene = model.scene.as_ref().filter(|_| model.walk.collides)?;
+    let time = if scene.animated { scene.draft.time } else { 0.0 };
+    model.answers.want(WallsOf { off: scene.draft.off.clone(), time }).latest().cloned()
+}
+
+fn way(command: WalkCommand) -> DVec3 {
+    match command {
+        WalkCommand::Go(ahead, right) => DVec3::new(f64::from(right), 0.0, -f64::from(ahead)),
+        _ => DVec3::ZERO,
+    }
+}
+
+/// Turns a camera about its eye; up is the world's.
+fn turn(camera: &mut Camera, by: Vec2) {
+    let ahead = camera.target - camera.eye;
+    let Some(direction) = ahead.try_normalize() else { return };
+    let pitch = direction.y.clamp(-1.0, 1.0).asin();
+    let most = MOST_PITCH.to_radians();
+    let wished = (pitch - f64::from(by.y) * TURN.to_radians()).clamp(-most.max(pitch.abs()), most.max(pitch.abs()));
+    let side = direction.cross(DVec3::Y).normalize_or(DVec3::X);
+    let turned = DQuat::from_rotation_y(-f64::from(by.x) * TURN.to_radians())
+        * DQuat::from_axis_angle(side, wished - pitch)
+        * ahead;
+    camera.target = camera.eye + turned;
+}
+
+/// A way of the keys in the world, of length 1: over the ground, or along the view where one flies.
+fn direction(camera: &Camera, goes: DVec3, flies: bool) -> DVec3 {
+    let ahead = (camera.target - camera.eye).normalize_or_zero();
+    let flat = DVec3::new(ahead.x, 0.0, ahead.z).normalize_or(DVec3::NEG_Z);
+    let right = flat.cross(DVec3::Y);
+    let ahead = if flies { ahead } else { flat };
+    (right * goes.x - ahead * goes.z).normalize_or_zero()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::vec2;
+
+    fn camera() -> Camera {
+        Camera {
+            eye: DVec3::Y,
+            target: DVec3::new(0.0, 1.0, -4.0),
+            up: DVec3::Y,
+            fov_y_degrees: 60.0,
+            near: 0.1,
+            far: None,
+        }
+    }
+
+    #[test]
+    fn the_mouse_turns_to_the_right_and_down_and_never_over_the_head() {
+        let mut right = camera();
+        turn(&mut right, vec2((90.0 / TURN) as f32, 0.0));
+        assert!((right.target - DVec3::new(4.0, 1.0, 0.0)).length() < 1e-3, "{}", right.target);
+        let mut down = camera();
+        turn(&mut down, vec2(0.0, 1e5));
+        let ahead = (down.target - down.eye).normalize();
+        assert!(ahead.y < -0.99 && ahead.z < 0.0, "{ahead}");
+        assert!(down.check().is_ok());
+    }
+
+    #[test]
+    fn one_walks_over_the_ground_and_flies_where_one_looks() {
+        let mut camera = camera();
+        turn(&mut camera, vec2(0.0, (45.0 / TURN) as f32));
+        let ahead = way(WalkCommand::Go(1, 0));
+        assert!((direction(&camera, ahead, false) - DVec3::NEG_Z).length() < 1e-6);
+        assert!(direction(&camera, ahead, true).y < -0.7);
+        let both = ahead + way(WalkCommand::Go(0, 1));
+        assert!((direction(&camera, both, false).length() - 1.0).abs() < 1e-12, "not faster across");
+        assert!(direction(&camera, both, false).x > 0.7);
+    }
+}

@@ -1,0 +1,91 @@
+//! Counts of shadow volumes that are kept in floats: signed, and without eight bits' limits.
+
+use crate::capture::{Capture, FrameTarget, Image, Snapshot};
+use crate::reading::format;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// How many texels have each count, rounded.
+pub type Tally = BTreeMap<i64, u64>;
+
+/// Would eight bits take it for zero, though it is not?
+#[must_use]
+pub fn reads_zero_in_eight_bits(count: f32) -> bool {
+    count != 0.0 && (count.round() as i64).rem_euclid(256) == 0
+}
+
+/// What eight bits would hold of it.
+#[must_use]
+pub fn in_eight_bits(count: f32) -> u8 {
+    (count.round() as i64).rem_euclid(256) as u8
+}
+
+/// A count with its sign; digits after the point only where it has some.
+#[must_use]
+pub fn text(count: f32) -> String {
+    if count.fract() != 0.0 || !count.is_finite() {
+        return count.to_string().replace('-', "−");
+    }
+    let sign = if count < 0.0 { "−" } else { "" };
+    format!("{sign}{}", format::count(count.abs() as u64))
+}
+
+/// How many texels have each count.
+#[must_use]
+pub fn tally(image: &Image) -> Tally {
+    let mut tally = Tally::new();
+    // Neighbours mostly agree: a run is looked up once.
+    let (mut run, mut length) = (0, 0);
+    for texel in image.rows().flat_map(|row| row.chunks_exact(4)) {
+        let count = bytemuck::pod_read_unaligned::<f32>(texel).round() as i64;
+        if count != run {
+            *tally.entry(run).or_default() += length;
+            (run, length) = (count, 0);
+        }
+        length += 1;
+    }
+    *tally.entry(run).or_default() += length;
+    tally.retain(|_, texels| *texels > 0);
+    tally
+}
+
+/// The light whose counts a step leaves finished, with those: the last of its passes that count. What
+/// earlier ones left is not kept.
+#[must_use]
+pub fn finished_by(capture: &Capture, index: usize) -> Option<(usize, &Arc<Image>)> {
+    let light = capture.steps.get(index).filter(|step| counts(step))?.light?;
+    let is_last = !capture.steps[index + 1..].iter().any(|step| counts(step) && step.light == Some(light));
+    capture.lights.get(light)?.count.as_ref().filter(|_| is_last).map(|count| (light, count))
+}
+
+fn counts(step: &crate::capture::Step) -> bool {
+    matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Count)
+}
+
+/// The counts that are known after a step: of the light that was finished last.
+#[must_use]
+pub fn known_after(capture: &Capture, index: usize) -> Option<(usize, &Arc<Image>)> {
+    (0..=index).rev().find_map(|earlier| finished_by(capture, earlier))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_have_a_sign_and_thousands() {
+        assert_eq!(text(0.0), "0");
+        assert_eq!(text(-1.0), "−1");
+        assert_eq!(text(1234.0), "1\u{2009}234");
+        assert_eq!(text(-0.5), "−0.5");
+    }
+
+    #[test]
+    fn what_eight_bits_take_for_zero_stands_out() {
+        for count in [256.0, 512.0, -256.0, 25_600.0] {
+            assert!(reads_zero_in_eight_bits(count));
+        }
+        assert!(![0.0, 1.0, 255.0, -128.0].into_iter().any(reads_zero_in_eight_bits));
+        assert_eq!((in_eight_bits(257.0), in_eight_bits(-1.0)), (1, 255));
+    }
+}

@@ -1,0 +1,261 @@
+//! What a step does as a formula, and the same with this scene's own numbers put in.
+//!
+//! A step is known by what it draws: surfaces in ambient light, volumes, what a light sees, flattened
+//! casters, light, or labels. Where a pixel is picked the numbers are that pixel's, else the picture's.
+
+use crate::capture::{Capture, FrameTarget, Snapshot, Step};
+use crate::history::{EventKind, PixelHistory};
+use crate::plan::{Part, Side};
+use crate::reading::depth::DepthMeasure;
+use crate::reading::format;
+use crate::scene::Light;
+
+/// A rule, and what it comes to here.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fact {
+    /// The rule.
+    pub formula: String,
+    /// With numbers.
+    pub here: Vec<String>,
+}
+
+/// What is known of the shown frame.
+#[derive(Debug, Clone, Copy)]
+pub struct Known<'a> {
+    /// The frame.
+    pub capture: &'a Capture,
+    /// Index of the step.
+    pub step: usize,
+    /// The scene's lights; empty for a capture folder.
+    pub lights: &'a [Light],
+    /// The picked pixel.
+    pub pick: Option<[u32; 2]>,
+    /// What happened to it.
+    pub history: Option<&'a PixelHistory>,
+}
+
+/// The facts of a step, the most important first.
+#[must_use]
+pub fn facts(known: &Known) -> Vec<Fact> {
+    let Some(step) = known.capture.steps.get(known.step) else { return Vec::new() };
+    let has = |part: Part| step.draws.iter().any(|draw| draw.part == part);
+    if matches!(step.snapshot, Snapshot::Map { .. }) {
+        return vec![map(known, step)];
+    }
+    if step.draws.iter().any(|draw| draw.part.is_of_volume()) {
+        return vec![volumes(known), triangles(step)];
+    }
+    if has(Part::PlanarShadow) {
+        return vec![flattened(known, step)];
+    }
+    if has(Part::Receiver) {
+        return vec![receivers(known)];
+    }
+    match &step.snapshot {
+        Snapshot::Frame(frame) if frame.target == FrameTarget::Labels => vec![labels(known, step)],
+        Snapshot::Frame(_) if step.light.is_some() => vec![light(known, step)],
+        _ => vec![depth(known)],
+    }
+}
+
+fn fact(formula: &str, here: Vec<String>) -> Fact {
+    Fact { formula: formula.to_owned(), here }
+}
+
+/// `stored depth = offset + scale / distance`.
+fn depth(known: &Known) -> Fact {
+    let curve = known.capture.depth;
+    let (offset, scale) = (format::digits(curve.offset), format::digits(curve.scale));
+    let mut here = vec![format!("{}: {offset} + {scale} / distance", curve.mapping.name())];
+    let stored = known.pick.and_then(|at| known.capture.frame_at(known.step)?.depth.image.depth_at(at));
+    if let (Some([x, y]), Some(stored)) = (known.pick, stored) {
+        let measure = DepthMeasure::of_camera(known.capture);
+        match measure.value(stored) {
+            None => {
+                here.push(format!("pixel {x}, {y}: no surface is there, and depth stays {}", format::depth(stored)))
+            }
+            Some(distance) => {
+                let metres = format::metres(distance);
+                here.push(format!("pixel {x}, {y}: {offset} + {scale} / {metres} = {}", format::depth(stored)));
+                here.extend(
+                    measure
+                        .step_at(stored)
+                        .map(|step| format!("the next depth that can be stored is {} further", format::metres(step))),
+                );
+            }
+        }
+    } else {
+        here.push("Pick a pixel (right click) to see its own numbers.".to_owned());
+    }
+    fact("stored depth = offset + scale / distance along the view", here)
+}
+
+/// By the side of the surface on which the light's volumes count.
+fn volumes(known: &Known) -> Fact {
+    let light = known.capture.steps.get(known.step).and_then(|step| step.light);
+    let side = light.and_then(|light| known.capture.decided_by(light).counted_side());
+    let formula = match side {
+        Some(Side::InFront) => "count = front faces before the surface − back faces before it, seen from the eye",
+        Some(Side::Behind) => "count = back faces behind the surface − front faces behind it, seen from the eye",
+        Some(Side::AsNeeded) | None => {
+            "count = volumes that contain the surface: each face the ray crosses adds or takes 1"
+        }
+    };
+    let mut here = Vec::new();
+    match (known.pick, known.history) {
+        (Some([x, y]), Some(history)) => {
+            let (mut up, mut down, mut idle) = (0_u32, 0_u32, 0_u32);
+            let mut last = None;
+            for event in history.events.iter().filter(|event| event.pass == known.step) {
+                let EventKind::Triangle(triangle) = &event.kind else { continue };
+                if !triangle.part.is_of_volume() {
+                    continue;
+                }
+                let (before, after) = (
+                    f32::from(event.before.stencil) + event.before.count,
+                    f32::from(event.after.stencil) + event.after.count,
+                );
+                last = Some(after);
+                // Eight bits go round: a step from 0 to 255 is one down.
+                match (after - before) as i32 {
+                    0 => idle += 1,
+                    1 | -255 => up += 1,
+                    _ => down += 1,
+                }
+            }
+            here.push(format!(
+                "pixel {x}, {y}: {up} faces add 1, {down} take 1 away, {idle} do not count here: {up} − {down} = {}",
+                i64::from(up) - i64::from(down)
+            ));
+            here.extend(last.map(|count| {
+                format!(
+                    "the stored count is {count} then, and the pixel is {}",
+                    if count == 0.0 { "lit" } else { "in shadow" }
+                )
+            }));
+        }
+        _ => {
+            if let Some(stencil) = known.capture.frame_at(known.step).and_then(|frame| frame.stencil.as_ref()) {
+                let counts = stencil.image.histogram();
+                let all: u64 = counts.iter().sum();
+                let marked = all - counts[0];
+                here.push(format!(
+                    "{} of {} pixels have a count other than 0",
+                    format::count(marked),
+                    format::count(all)
+                ));
+                let most = counts[..128].iter().rposition(|count| *count > 0).unwrap_or(0);
+                here.push(format!("the deepest lies in {most} volumes at once"));
+            }
+            here.push("Pick a pixel (right click) to see the faces that made its count.".to_owned());
+        }
+    }
+    fact(formula, here)
+}
+
+fn triangles(step: &Step) -> Fact {
+    let of = |part: Part| step.draws.iter().filter(|draw| draw.part == part).map(|draw| draw.triangles).sum::<u64>();
+    let [sides, light, dark] = [Part::Side, Part::LightCap, Part::DarkCap].map(of);
+    let here = vec![
+        format!("sides, two triangles a silhouette edge: {}", format::count(sides)),
+        format!("light caps, the triangles that face the light: {}", format::count(light)),
+        format!("dark caps, the same carried to infinity: {}", format::count(dark)),
+    ];
+    fact("a closed volume = sides + light cap + dark cap", here)
+}
+
+fn light(known: &Known, step: &Step) -> Fact {
+    let index = step.light.unwrap_or(0);
+    let mut here = Vec::new();
+    if let Some(light) = known.lights.get(index) {
+        let [red, green, blue] = light.color.map(|share| format::digits(f64::from(share * light.intensity)));
+        here.push(format!("{} adds ({red}, {green}, {blue}) × material × cosine of its angle", format::light(index)));
+    }
+    let before = known.step.checked_sub(1).and_then(|before| known.capture.frame_at(before));
+    let stencil = before.and_then(|frame| frame.stencil.as_ref());
+    if let Some(stencil) = stencil {
+        let counts = stencil.image.histogram();
+        let all: u64 = counts.iter().sum();
+        here.push(format!(
+            "{} of {} pixels have the count 0 and are lit",
+            format::count(counts[0]),
+            format::count(all)
+        ));
+        if let Some((at, count)) = known.pick.and_then(|at| Some((at, stencil.image.byte_at(at)?))) {
+            let does = if count == 0 { "light is added" } else { "the stencil test keeps light away" };
+            here.push(format!("pixel {}, {}: its count is {count}, so {does}", at[0], at[1]));
+        }
+        return fact("light is added where count = 0", here);
+    }
+    fact("light is added where the technique lets it through", here)
+}
+
+fn labels(known: &Known, step: &Step) -> Fact {
+    let index = step.light.unwrap_or(0);
+    let mut here = Vec::new();
+    if let Some(light) = known.capture.lights.get(index) {
+        if let Some(shadow) = &light.shadow {
+            let counts = shadow.histogram();
+            let words = ["lit", "in shadow", "background", "out of the light's reach"];
+            let told = words.iter().zip(counts).map(|(word, count)| format!("{} {word}", format::count(count)));
+            here.push(told.collect::<Vec<_>>().join(", "));
+        }
+        match &light.truth {
+            Some(truth) => {
+                let error = &truth.error;
+                here.push(format!(
+                    "{} of {} compared pixels differ from the truth that rays tell",
+                    format::count(error.wrong()),
+                    format::count(error.compared)
+                ));
+            }
+            None => here.push("Choose the picture Truth or Error to hold it against rays.".to_owned()),
+        }
+    }
+    fact("label = 0 lit, 1 shadow, 2 background, 3 out of reach: the technique's answer, pixel by pixel", here)
+}
+
+fn map(known: &Known, step: &Step) -> Fact {
+    let Snapshot::Map { light, face } = step.snapshot else { return fact("", Vec::new()) };
+    let mut here = Vec::new();
+    let map = known.capture.lights.get(light).and_then(|light| light.map.as_ref());
+    if let Some((map, image)) = map.and_then(|map| Some((map, map.faces.get(face)?))) {
+        let [width, height] = image.size();
+        here.push(format!("layer {} of {}: {width}×{height} texels", face + 1, map.faces.len()));
+        if map.faces.len() == 6 {
+            // A cube's face spans a right angle: at distance d it is 2 d wide.
+            let side = 2.0 / f64::from(width.max(1));
+            here.push(format!(
+                "1 m from the light a texel is {} wide, 10 m away {}",
+                format::metres(side),
+                format::metres(side * 10.0)
+            ));
+        }
+    }
+    fact("a texel keeps the depth nearest to the light; a point is in shadow where it is deeper than its texel", here)
+}
+
+fn flattened(known: &Known, step: &Step) -> Fact {
+    let index = step.light.unwrap_or(0);
+    let mut here = Vec::new();
+    if let Some(light) = known.lights.get(index) {
+        let [x, y, z, w] = light.position.to_array().map(format::digits);
+        here.push(format!(
+            "L = ({x}, {y}, {z}, {w}){}",
+            if light.is_directional() { ": a direction, as w = 0" } else { "" }
+        ));
+    }
+    let casters = step.draws.iter().filter(|draw| draw.part == Part::PlanarShadow).count();
+    here.push(format!("{} flattened onto the receiver's plane", format::counted(casters as u64, "caster")));
+    fact("shadow matrix = (P·L) I − L Pt, with the plane P = (n, d) and the light L = (x, y, z, w)", here)
+}
+
+fn receivers(known: &Known) -> Fact {
+    let mut here = Vec::new();
+    if let Some(stencil) = known.capture.frame_at(known.step).and_then(|frame| frame.stencil.as_ref()) {
+        let counts = stencil.image.histogram();
+        let marked: u64 = counts[1..].iter().sum();
+        here.push(format!("{} pixels are marked", format::count(marked)));
+    }
+    fact("shadow may fall only where the receiver itself is seen: it is marked in the stencil first", here)
+}

@@ -1,0 +1,263 @@
+//! What the fragment shader is given at each pixel: the point of the surface, the normal that it is shaded
+//! with, the plane of its triangle.
+//!
+//! The plan's surfaces are drawn on the CPU, nearest first, once for a frame. A capture folder has no plan:
+//! there, and where depths tell of another surface, the plane goes through the points of neighbouring pixels.
+
+use crate::capture::{Capture, Image};
+use crate::math::projection;
+use crate::plan::{DrawMesh, FramePlan, LightId, Program, ViewId, Visibility};
+use crate::reading::depth::DepthMeasure;
+use crate::reading::object_ids::fill;
+use crate::reading::projected::Projector;
+use glam::{DVec3, DVec4};
+use std::sync::Arc;
+
+/// The camera's view.
+const CAMERA: ViewId = ViewId(0);
+/// Of a triangle's sides: the eye sees its back.
+const SEES_BACK: u32 = 1 << 31;
+/// A drawn point that is farther than this from what the depth tells is of another surface, in parts of its
+/// distance.
+const SAME_SURFACE: f64 = 0.01;
+
+/// What the shader is given at a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fragment {
+    /// World space.
+    pub world: DVec3,
+    /// What it is shaded with: of unit length, to the side that the eye sees.
+    pub normal: DVec3,
+    /// Of its triangle's plane, of unit length.
+    pub plane: DVec3,
+    /// It looks the light's map up.
+    pub reads: bool,
+}
+
+/// The fragments of a picture's surfaces.
+#[derive(Debug)]
+pub struct Fragments {
+    surface: Surface,
+    depth: Arc<Image>,
+    drawn: Option<Drawn>,
+}
+
+impl Fragments {
+    /// Of the picture after a frame, with those that look the map of `light` up; `None` where nothing is drawn.
+    #[must_use]
+    pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<Fragments> {
+        let depth = capture.frame_at(capture.steps.len().checked_sub(1)?)?.depth.image.clone();
+        let drawn = plan.filter(|plan| plan.size == capture.size).map(|plan| Drawn::new(capture, plan, light));
+        Some(Fragments { surface: Surface::new(capture), depth, drawn })
+    }
+
+    /// Are planes and normals those of the triangles that were drawn?
+    #[must_use]
+    pub fn are_drawn(&self) -> bool {
+        self.drawn.is_some()
+    }
+
+    /// The one at a pixel; `None` where no surface is.
+    #[must_use]
+    pub fn at(&self, at: [u32; 2]) -> Option<Fragment> {
+        let world = self.surface.at(at, self.depth.depth_at(at)?)?;
+        let most = SAME_SURFACE * world.distance(self.surface.eye);
+        let drawn = self.drawn.as_ref().and_then(|drawn| drawn.at(at, &self.surface));
+        let drawn = drawn.filter(|fragment| fragment.world.distance(world) <= most);
+        Some(drawn.unwrap_or_else(|| {
+            let plane = self.guessed(at, world);
+            Fragment { world, normal: plane, plane, reads: true }
+        }))
+    }
+
+    /// Where the surface of a pixel is, without its normal, and whether it looks the light's map up; `None` where no
+    /// surface is.
+    #[must_use]
+    pub fn place(&self, at: [u32; 2]) -> Option<(DVec3, bool)> {
+        let world = self.surface.at(at, self.depth.depth_at(at)?)?;
+        Some((world, self.drawn.as_ref().and_then(|drawn| drawn.place(at)).is_none_or(|place| place.reads)))
+    }
+
+    /// Where the corners of a pixel lie on a plane, in order round it; `None` where one sees nothing of it.
+    #[must_use]
+    pub fn corners(&self, [x, y]: [u32; 2], fragment: &Fragment) -> Option<[DVec3; 4]> {
+        let eye = self.surface.eye;
+        let height = fragment.plane.dot(fragment.world - eye);
+        let corner = |right: f64, down: f64| {
+            let ray = self.surface.ray([f64::from(x) + right, f64::from(y) + down]);
+            let along = height / fragment.plane.dot(ray);
+            (along.is_finite() && along > 0.0).then(|| eye + ray * along)
+        };
+        Some([corner(0.0, 0.0)?, corner(1.0, 0.0)?, corner(1.0, 1.0)?, corner(0.0, 1.0)?])
+    }
+
+    /// The normal of the plane through a pixel's point and those of its neighbours: of two on opposite sides the
+    /// nearer, as the other may be beyond an edge. Towards the eye where there is none.
+    fn guessed(&self, [x, y]: [u32; 2], world: DVec3) -> DVec3 {
+        let point = |x: Option<u32>, y: Option<u32>| {
+            let at = [x?, y?];
+            self.surface.at(at, self.depth.depth_at(at)?)
+        };
+        let along = |[before, after]: [Option<DVec3>; 2]| {
+            let ways = [before.map(|before| world - before), after.map(|after| after - world)];
+            ways.into_iter().flatten().min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+        };
+        let across = along([point(x.checked_sub(1), Some(y)), point(x.checked_add(1), Some(y))]);
+        let down = along([point(Some(x), y.checked_sub(1)), point(Some(x), y.checked_add(1))]);
+        let to_eye = (self.surface.eye - world).normalize_or(DVec3::Y);
+        let normal = across.zip(down).and_then(|(across, down)| across.cross(down).try_normalize());
+        normal.map_or(to_eye, |normal| if normal.dot(to_eye) < 0.0 { -normal } else { normal })
+    }
+}
+
+/// Which triangle of a plan is seen at each pixel.
+#[derive(Debug)]
+struct Drawn {
+    plan: Arc<FramePlan>,
+    /// Of each pixel the index of its place and one more; 0 where there is none.
+    ids: Vec<u32>,
+    places: Vec<Place>,
+}
+
+/// A triangle of a plan.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    mesh: u32,
+    triangle: u32,
+    reads: bool,
+}
+
+impl Drawn {
+    fn new(capture: &Capture, plan: &Arc<FramePlan>, light: usize) -> Drawn {
+        let places = places(plan, light);
+        let size = capture.size.map(|side| side as usize);
+        let projector = Projector::new(capture);
+        let mut ids = vec![0_u32; size[0] * size[1]];
+        let mut nearness = vec![0.0_f64; ids.len()];
+        for (index, place) in places.iter().enumerate() {
+            let Some((_, corners)) = triangle(plan, *place) else { continue };
+            let polygon = projector.polygon(corners.map(|corner| (capture.camera.eye + corner).extend(1.0)));
+            for last in 2..polygon.len() {
+                fill([polygon[0], polygon[last - 1], polygon[last]], size, |at, near| {
+                    if near > nearness[at] {
+                        nearness[at] = near;
+                        ids[at] = index as u32 + 1;
+                    }
+                });
+            }
+        }
+        Drawn { plan: plan.clone(), ids, places }
+    }
+
+    fn place(&self, [x, y]: [u32; 2]) -> Option<Place> {
+        let index = (y as usize).checked_mul(self.plan.size[0] as usize)? + x as usize;
+        self.places.get((*self.ids.get(index)? as usize).checked_sub(1)?).copied()
+    }
+
+    fn at(&self, [x, y]: [u32; 2], surface: &Surface) -> Option<Fragment> {
+        let place = self.place([x, y])?;
+        let (mesh, [a, b, c]) = triangle(&self.plan, place)?;
+        let ray = surface.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]);
+        let across = (b - a).cross(c - a);
+        let relative = ray * (across.dot(a) / across.dot(ray));
+        let area = across.length_squared();
+        let shares = [(b, c), (c, a), (a, b)].map(|(from, to)| across.dot((to - from).cross(relative - from)) / area);
+        let data = mesh.surface.as_ref()?;
+        let first = place.triangle as usize * 3;
+        let normals = data.normals.data().get(first..first + 3)?;
+        let normal: DVec3 = normals.iter().zip(shares).map(|(normal, share)| xyz(*normal).truncate() * share).sum();
+        let sees_back = data.sides.data().get(place.triangle as usize)? & SEES_BACK != 0;
+        let fragment = Fragment {
+            world: surface.eye + relative,
+            normal: if sees_back { -normal } else { normal }.try_normalize()?,
+            plane: across.try_normalize()?,
+            reads: place.reads,
+        };
+        fragment.world.is_finite().then_some(fragment)
+    }
+}
+
+/// The triangles that the camera's passes draw with normals, each once.
+fn places(plan: &FramePlan, light: usize) -> Vec<Place> {
+    const DRAWN: u8 = 1;
+    const READS: u8 = 2;
+    let mut found: Vec<Vec<u8>> = vec![Vec::new(); plan.meshes.len()];
+    for pass in plan.passes.iter().filter(|pass| pass.view == CAMERA) {
+        let is_of_light = pass.light == Some(LightId(light));
+        for draw in &pass.draws {
+            let how = match draw.program {
+                Program::Light(Visibility::Map) | Program::Label(Visibility::Map) if is_of_light => DRAWN | READS,
+                Program::Light(_) | Program::Label(_) | Program::Ambient { .. } => DRAWN,
+                _ => continue,
+            };
+            let Some(mesh) = plan.meshes.get(draw.mesh.0).filter(|mesh| mesh.surface.is_some()) else { continue };
+            let of_mesh = &mut found[draw.mesh.0];
+            of_mesh.resize(mesh.indices.data().len() / 3, 0);
+            let range = draw.triangles.start as usize..draw.triangles.end as usize;
+            of_mesh.get_mut(range).into_iter().flatten().for_each(|triangle| *triangle |= how);
+        }
+    }
+    let places = found.iter().enumerate().flat_map(|(mesh, triangles)| {
+        let drawn = triangles.iter().enumerate().filter(|(_, how)| **how != 0);
+        drawn.map(move |(triangle, how)| Place {
+            mesh: mesh as u32,
+            triangle: triangle as u32,
+            reads: how & READS != 0,
+        })
+    });
+    places.collect()
+}
+
+/// Corners relative to the eye.
+fn triangle(plan: &FramePlan, place: Place) -> Option<(&DrawMesh, [DVec3; 3])> {
+    let mesh = plan.meshes.get(place.mesh as usize)?;
+    let first = place.triangle as usize * 3;
+    let indices = mesh.indices.data().get(first..first + 3)?;
+    let corner = |index: usize| Some(xyz(*mesh.vertices.data().get(indices[index] as usize)?).truncate());
+    Some((mesh, [corner(0)?, corner(1)?, corner(2)?]))
+}
+
+fn xyz(value: [f32; 4]) -> DVec4 {
+    DVec4::from_array(value.map(f64::from))
+}
+
+/// From a pixel and its depth to the world.
+#[derive(Debug)]
+pub struct Surface {
+    measure: DepthMeasure,
+    world_from_view: glam::DMat3,
+    /// World space.
+    pub eye: DVec3,
+    up: f64,
+    size: [f64; 2],
+}
+
+impl Surface {
+    /// Of the camera of a capture.
+    #[must_use]
+    pub fn new(capture: &Capture) -> Surface {
+        let camera = &capture.camera;
+        Surface {
+            measure: DepthMeasure::of_camera(capture),
+            world_from_view: projection::view_from_world_rotation(camera.target - camera.eye, camera.up).transpose(),
+            eye: camera.eye,
+            up: (camera.fov_y_degrees.to_radians() / 2.0).tan(),
+            size: capture.size.map(f64::from),
+        }
+    }
+
+    /// World position of the surface at the middle of a pixel; `None` where there is none.
+    #[must_use]
+    pub fn at(&self, [x, y]: [u32; 2], depth: f32) -> Option<DVec3> {
+        let distance = self.measure.value(depth).filter(|distance| distance.is_finite())?;
+        Some(self.eye + self.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]) * distance)
+    }
+
+    /// From the eye through a texel position, world space; its part along the view is 1.
+    fn ray(&self, [x, y]: [f64; 2]) -> DVec3 {
+        let [width, height] = self.size;
+        let across = (2.0 * x / width - 1.0) * self.up * width / height;
+        let up = (1.0 - 2.0 * y / height) * self.up;
+        self.world_from_view * DVec3::new(across, up, -1.0)
+    }
+}

@@ -1,0 +1,119 @@
+//! What a light sees, in layers: the faces of its shadow map, the textures of receivers, or the
+//! silhouettes of casters; what each is called, and the picture of one or all.
+
+use crate::capture::{Capture, Snapshot};
+use crate::plan::DecidedBy;
+
+/// Names of a cube map's faces in wgpu's order.
+pub const CUBE_FACES: [&str; 6] = ["+x", "−x", "+y", "−y", "+z", "−z"];
+
+/// What the layers of a light's map hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapContent {
+    /// How far the casters are, seen from the light.
+    Depth,
+    /// For each flat receiver, what arrives on it.
+    Textures,
+    /// For each caster, what it lets through.
+    Silhouettes,
+}
+
+/// One layer of a light's map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Layer {
+    /// Short: `−x`, `floor, flat piece 1`.
+    pub name: String,
+    /// In full: `face −x`, `texture of floor, flat piece 1`.
+    pub full_name: String,
+    /// What to say of a layer that no pass drew; `None` where one did.
+    pub note: Option<&'static str>,
+}
+
+impl MapContent {
+    /// Of a light's map; `None` where there is none.
+    #[must_use]
+    pub fn of(capture: &Capture, light: usize) -> Option<MapContent> {
+        let light = capture.lights.get(light)?;
+        let map = light.map.as_ref()?;
+        Some(match light.decided_by {
+            DecidedBy::Silhouettes => MapContent::Silhouettes,
+            _ if map.holds_colors() => MapContent::Textures,
+            _ => MapContent::Depth,
+        })
+    }
+
+    /// Of the first light that has a map.
+    #[must_use]
+    pub fn of_capture(capture: &Capture) -> Option<MapContent> {
+        (0..capture.lights.len()).find_map(|light| MapContent::of(capture, light))
+    }
+
+    /// On the button of [`PictureKind::Map`].
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            MapContent::Depth => "Shadow map",
+            MapContent::Textures => "Textures",
+            MapContent::Silhouettes => "Silhouettes",
+        }
+    }
+
+    /// What one sees in it.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        match self {
+            MapContent::Depth => "Depth as the light sees it",
+            MapContent::Textures => "How much of the light arrives on each flat receiver",
+            MapContent::Silhouettes => "How much of the light each caster lets through",
+        }
+    }
+
+    /// What a layer is called in the Pixel panel.
+    #[must_use]
+    pub fn one(self) -> &'static str {
+        match self {
+            MapContent::Depth => "map",
+            MapContent::Textures => "texture",
+            MapContent::Silhouettes => "silhouette",
+        }
+    }
+
+    pub(super) fn in_titles(self) -> &'static str {
+        match self {
+            MapContent::Depth => "shadow map",
+            MapContent::Textures => "textures",
+            MapContent::Silhouettes => "silhouettes",
+        }
+    }
+}
+
+/// The layers of a light's map, in order; empty where there is none.
+#[must_use]
+pub fn layers(capture: &Capture, light: usize) -> Vec<Layer> {
+    let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
+    let count = map.map_or(0, |map| map.faces.len());
+    let Some(content) = MapContent::of(capture, light) else { return Vec::new() };
+    (0..count).map(|index| layer(capture, light, content, index, count)).collect()
+}
+
+fn layer(capture: &Capture, light: usize, content: MapContent, index: usize, count: usize) -> Layer {
+    if content == MapContent::Depth {
+        let name = match (count, CUBE_FACES.get(index)) {
+            (6, Some(name)) => (*name).to_owned(),
+            _ => (index + 1).to_string(),
+        };
+        return Layer { full_name: format!("face {name}"), name, note: None };
+    }
+    let drew = Snapshot::Map { light, face: index };
+    match capture.steps.iter().find(|step| step.snapshot == drew) {
+        Some(step) => {
+            let map = capture.lights.get(light).and_then(|light| light.map.as_ref());
+            let name = map.and_then(|map| map.layer_names.get(index)).unwrap_or(&step.name);
+            Layer { name: name.clone(), full_name: step.name.clone(), note: None }
+        }
+        None => {
+            let name = format!("layer {}", index + 1);
+            Layer { full_name: name.clone(), name, note: Some("not drawn: all light arrives") }
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Which texel of a light's shadow map each pixel of the picture reads: the pixel's surface carried into
+//! the map as `arriving_by_map.wgsl` does, moved along its normal first, made once for a frame and light.
+
+use crate::capture::{Capture, CapturedMap};
+use crate::plan::FramePlan;
+use crate::reading::fragments::{Fragment, Fragments};
+use crate::technique::MapSettings;
+use glam::{DMat4, DVec2, DVec3, DVec4};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Points on the border between two faces belong to both, as in `arriving_by_map.wgsl`.
+const BORDER: f64 = 1.0001;
+
+/// A texel of a map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MapTexel {
+    /// Index of the face.
+    pub face: usize,
+    /// Column and row.
+    pub at: [u32; 2],
+}
+
+/// Which texel each pixel reads.
+#[derive(Debug)]
+pub struct MapReaders {
+    size: [u32; 2],
+    lookup: Lookup,
+    fragments: Fragments,
+    /// Of each pixel the first texel that it reads: face, column, row.
+    first: Vec<Option<[i16; 3]>>,
+}
+
+impl MapReaders {
+    /// Of the picture after the frame of `plan`; `None` where the light has no shadow map, or nothing is drawn.
+    #[must_use]
+    pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapReaders> {
+        let lookup = Lookup::new(capture, plan, light)?;
+        let fragments = Fragments::new(capture, plan, light)?;
+        let of_pixel = |at: [u32; 2]| match lookup.bias_normal == 0.0 {
+            // Normals take time, and change nothing.
+            true => fragments.place(at).filter(|(_, reads)| *reads).and_then(|(world, _)| lookup.first_of(world)),
+            false => fragments.at(at).filter(|fragment| fragment.reads).and_then(|fragment| lookup.first(&fragment)),
+        };
+        let [width, height] = capture.size.map(|side| side as usize);
+        let place = |index: usize| [(index % width) as u32, (index / width) as u32];
+        let first = (0..width * height).into_par_iter().map(|index| of_pixel(place(index))).collect();
+        Some(MapReaders { size: capture.size, lookup, fragments, first })
+    }
+
+    /// Are normals those that the shader had? Else they are guessed from depths.
+    #[must_use]
+    pub fn knows_normals(&self) -> bool {
+        self.fragments.are_drawn()
+    }
+
+    /// The texel that a pixel reads, the middle one of several; `None` where it reads none.
+    #[must_use]
+    pub fn texel_of(&self, [x, y]: [u32; 2]) -> Option<MapTexel> {
+        let index = (y as usize).checked_mul(self.size[0] as usize)? + x as usize;
+        let [face, column, row] = (*self.first.get(index).filter(|_| x < self.size[0])?)?;
+        let middle = (self.lookup.filter / 2) as i16;
+        let at = [0, 1].map(|axis| {
+            let first = [column, row][axis].saturating_add(middle).max(0) as u32;
+            first.min(self.lookup.size[axis].saturating_sub(1))
+        });
+        Some(MapTexel { face: face as usize, at })
+    }
+
+    /// The pixels that read a texel.
+    #[must_use]
+    pub fn of_texel(&self, texel: MapTexel) -> Vec<[u32; 2]> {
+        let reads = |first: [i16; 3]| {
+            let is_in = |first: i16, at: u32, side: u32| {
+                let last = i32::from(first) + self.lookup.filter as i32 - 1;
+                let [from, to] = [i32::from(first), last].map(|place| place.clamp(0, (side as i32 - 1).max(0)));
+                (from..=to).contains(&(at as i32))
+            };
+            first[0] as usize == texel.face
+                && is_in(first[1], texel.at[0], self.lookup.size[0])
+                && is_in(first[2], texel.at[1], self.lookup.size[1])
+        };
+        let width = self.size[0].max(1) as usize;
+        let place = |index: usize| [(index % width) as u32, (index / width) as u32];
+        let found = self.first.iter().enumerate().filter(|(_, first)| first.is_some_and(reads));
+        found.map(|(index, _)| place(index)).collect()
+    }
+
+    /// The depth that the map's texels are compared with at a pixel; `None` where it reads none.
+    #[must_use]
+    pub fn depth_of(&self, pixel: [u32; 2]) -> Option<f64> {
+        let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
+        let (_, clip) = self.lookup.place(&fragment)?;
+        Some(clip.z / clip.w)
+    }
+
+    /// What a pixel covers of the map: its four corners on the plane of its surface, carried into the face that it
+    /// reads, in texels and in order round it. `None` where it reads none, or a corner has no place there.
+    #[must_use]
+    pub fn footprint(&self, pixel: [u32; 2]) -> Option<(usize, [DVec2; 4])> {
+        let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
+        let (face, _) = self.lookup.place(&fragment)?;
+        let pushed = self.lookup.push(face, &fragment)?;
+        let corners = self.fragments.corners(pixel, &fragment)?;
+        let place = |corner: DVec3| {
+            let clip = self.lookup.matrices[face] * (corner + pushed).extend(1.0);
+            (clip.w > 0.0).then(|| self.lookup.texel(clip))
+        };
+        let [a, b, c, d] = corners.map(place);
+        Some((face, [a?, b?, c?, d?]))
+    }
+
+    /// Where a texel lies on the plane of the surface that a pixel shows: its four corners, world space, in order
+    /// round it. `None` where the pixel reads none, or the plane is edge-on to the light.
+    #[must_use]
+    pub fn texel_on_surface(&self, texel: MapTexel, pixel: [u32; 2]) -> Option<[DVec3; 4]> {
+        let fragment = self.fragments.at(pixel).filter(|fragment| fragment.reads)?;
+        let pushed = self.lookup.push(texel.face, &fragment)?;
+        let world_from_clip = self.lookup.matrices.get(texel.face)?.inverse();
+        // What is moved onto this plane is looked up there.
+        let plane = fragment.plane.extend(-fragment.plane.dot(fragment.world + pushed));
+        let corner = |right: u32, down: u32| {
+            let place = DVec2::new(f64::from(texel.at[0] + right), f64::from(texel.at[1] + down));
+            let size = DVec2::new(f64::from(self.lookup.size[0]), f64::from(self.lookup.size[1]));
+            let device = (place / size * 2.0 - 1.0) * DVec2::new(1.0, -1.0);
+            // All points that the light sees there: one, and as much of the other as there is depth.
+            let at = world_from_clip * device.extend(0.0).extend(1.0);
+            let along = world_from_clip * DVec4::Z;
+            let point = at - along * (plane.dot(at) / plane.dot(along));
+            let point = point.truncate() / point.w;
+            point.is_finite().then(|| point - pushed)
+        };
+        Some([corner(0, 0)?, corner(1, 0)?, corner(1, 1)?, corner(0, 1)?])
+    }
+
+    /// How wide a texel of a face is at a pixel's surface, metres; `None` where the face does not see it.
+    #[must_use]
+    pub fn texel_width(&self, face: usize, pixel: [u32; 2]) -> Option<f64> {
+        self.lookup.width(face, self.fragments.at(pixel)?.world)
+    }
+}
+
+/// How points are carried into a light's map.
+#[derive(Debug)]
+struct Lookup {
+    /// Clip space of each face from world space.
+    matrices: Vec<DMat4>,
+    /// Of each face: no pass draws it. Empty where that is not known, as of a folder.
+    left_out: Vec<bool>,
+    /// Texels along each side.
+    size: [u32; 2],
+    /// Homogeneous.
+    light: DVec4,
+    /// Texels that are compared along each side.
+    filter: u32,
+    /// How far points are moved along their normals, texels.
+    bias_normal: f64,
+}
+
+impl Lookup {
+    /// `None` where the light has no shadow map.
+    fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<Lookup> {
+        let of = capture.lights.get(light)?;
+        let map: &CapturedMap = of.map.as_ref().filter(|map| !map.holds_colors())?;
+        let settings = MapSettings::read(&capture.settings);
+        Some(Lookup {
+            left_out: plan
+                .and_then(|plan| plan.lights.get(light)?.map.as_ref())
+                .map_or_else(Vec::new, |map| map.faces.iter().map(Option::is_none).collect()),
+            matrices: map.clip_from_light.iter().map(|clip| *clip * map.light_from_world).collect(),
+            size: map.faces.first()?.size(),
+            light: of.position,
+            filter: settings.filter_width,
+            bias_normal: settings.bias_normal,
+        })
+    }
+
+    /// The face that sees a point, and where it is in its clip space.
+    fn seen(&self, world: DVec3) -> Option<(usize, DVec4)> {
+        let is_in = |clip: &DVec4| clip.w > 0.0 && clip.x.abs().max(clip.y.abs()) <= clip.w * BORDER;
+        let clips = || self.matrices.iter().map(|matrix| *matrix * world.extend(1.0)).enumerate();
+        // On a border between two, the shader finds the one that is drawn: it has no other.
+        let is_drawn = |face: usize| !self.left_out.get(face).copied().unwrap_or(false);
+        let drawn = clips().find(|(face, clip)| is_drawn(*face) && is_in(clip));
+        drawn.or_else(|| clips().find(|(_, clip)| is_in(clip)))
+    }
+
+    /// The face that a fragment reads, and where it is looked up in its clip space. The face is chosen before the
+    /// point is moved.
+    fn place(&self, fragment: &Fragment) -> Option<(usize, DVec4)> {
+        let (face, _) = self.seen(fragment.world)?;
+        Some((face, self.matrices[face] * (fragment.world + self.push(face, fragment)?).extend(1.0)))
+    }
+
+    /// How far a fragment is moved off its surface before it is looked up in a face, metres: some texels along its
+    /// normal, more where light grazes it.
+    fn push(&self, face: usize, fragment: &Fragment) -> Option<DVec3> {
+        if self.bias_normal == 0.0 {
+            return Some(DVec3::ZERO);
+        }
+        let to_light = (self.light.truncate() - fragment.world * self.light.w).normalize_or_zero();
+        let cosine = fragment.normal.dot(to_light);
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        Some(fragment.normal * (self.bias_normal * self.width(face, fragment.world)? * sine))
+    }
+
+    /// How wide a texel is at a world position, metres.
+    fn width(&self, face: usize, world: DVec3) -> Option<f64> {
+        let matrix = self.matrices.get(face)?;
+        let distance = (*matrix * world.extend(1.0)).w;
+        let focal = matrix.row(0).truncate().length();
+        (distance > 0.0 && focal > 0.0).then(|| 2.0 * distance / (focal * f64::from(self.size[0])))
+    }
+
+    /// Place in a face, texels.
+    fn texel(&self, clip: DVec4) -> DVec2 {
+        let size = DVec2::new(f64::from(self.size[0]), f64::from(self.size[1]));
+        (DVec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size
+    }
+
+    /// Face and first texel that a fragment reads.
+    fn first(&self, fragment: &Fragment) -> Option<[i16; 3]> {
+        let (face, clip) = self.place(fragment)?;
+        Some(self.first_at(face, clip))
+    }
+
+    /// The same of a point that is not moved.
+    fn first_of(&self, world: DVec3) -> Option<[i16; 3]> {
+        self.seen(world).map(|(face, clip)| self.first_at(face, clip))
+    }
+
+    fn first_at(&self, face: usize, clip: DVec4) -> [i16; 3] {
+        let first = (self.texel(clip) - 0.5 * f64::from(self.filter - 1)).floor();
+        [face as i16, first.x as i16, first.y as i16]
+    }
+}

@@ -1,0 +1,88 @@
+//! How each object's mesh hangs together, in a line, and what that does to which technique.
+
+use crate::geometry::Topology;
+use crate::reading::format;
+use std::sync::Arc;
+
+/// An object of the open scene, and how its mesh hangs together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectMesh {
+    /// Its name.
+    pub object: String,
+    /// Of its mesh.
+    pub topology: Arc<Topology>,
+}
+
+/// Is there nothing to tell of it but that it is closed?
+#[must_use]
+pub fn is_whole(topology: &Topology) -> bool {
+    findings(topology).is_empty()
+}
+
+/// `closed`, or all that is found.
+#[must_use]
+pub fn line(topology: &Topology) -> String {
+    let mut parts: Vec<String> = findings(topology).into_iter().map(|(text, _)| text).collect();
+    if topology.is_closed() {
+        parts.insert(0, "closed".to_owned());
+    }
+    parts.join(", ")
+}
+
+/// What the findings do to which technique, a paragraph each.
+#[must_use]
+pub fn effects(topology: &Topology) -> String {
+    let mut paragraphs: Vec<&str> = findings(topology).into_iter().map(|(_, effect)| effect).collect();
+    if topology.is_closed() && topology.is_oriented() {
+        paragraphs.insert(
+            0,
+            "Closed and consistently wound: under casters = by-topology the triangles that face the light may do for \
+             the whole volume, and a shadow map may cull either side.",
+        );
+    }
+    paragraphs.join("\n\n")
+}
+
+/// Each thing that was found, in words with its count, and what it does.
+fn findings(topology: &Topology) -> Vec<(String, &'static str)> {
+    let edges = |count: usize, kind: &str| format::counted(count as u64, &format!("{kind} edge"));
+    let all = [
+        (
+            topology.open_edges.count,
+            edges(topology.open_edges.count, "open"),
+            "Open edges end the surface. Volumes under casters = all are right all the same, and by-topology falls back \
+             on them. Under light-facing, triangles that face away and have nothing before them cast nothing; under \
+             light-back-facing, those that face the light. A shadow map that culls loses them likewise.",
+        ),
+        (
+            topology.non_manifold_edges.count,
+            edges(topology.non_manifold_edges.count, "non-manifold"),
+            "Non-manifold edges join more than two triangles. Volumes count each edge as often as its triangles \
+             demand, so casters = all is right, and by-topology falls back on it. Under light-facing what lies \
+             double counts double.",
+        ),
+        (
+            topology.inconsistent_edges.count,
+            edges(topology.inconsistent_edges.count, "inconsistently wound"),
+            "Neighbours disagree on which side is out. Volumes under casters = all do not care. Under light-facing, or \
+             in a shadow map that culls, the turned triangles are taken for the other side and go missing.",
+        ),
+        (
+            topology.split_vertices.count,
+            format::counted(topology.split_vertices.count as u64, "split vertex pair"),
+            "Vertices that nearly coincide leave slits: the edges between them are open, though nobody sees it. No \
+             technique mends that; by-topology takes the mesh for open.",
+        ),
+        (
+            topology.flat_triangles.count,
+            format::counted(topology.flat_triangles.count as u64, "flat triangle"),
+            "Triangles without area cast nothing and are seen by nobody.",
+        ),
+        (
+            topology.dropped_triangles,
+            format!("{} left out", format::counted(topology.dropped_triangles as u64, "triangle")),
+            "Triangles with two equal corners were left out when the mesh was loaded.",
+        ),
+    ];
+    all.into_iter().filter(|(count, ..)| *count > 0).map(|(_, text, effect)| (text, effect)).collect()
+}

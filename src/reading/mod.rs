@@ -1,0 +1,33 @@
+//! What a frame says, as data: which picture stands for a moment, what a value in it means, why a pixel is dark, which
+//! texel it read. Whoever shows a frame, the window or a page, takes it from here: nothing knows a widget.
+//!
+//! ```text
+//! moment.rs    after a step, or after a draw     shown.rs     the picture of it        layers.rs   maps, textures
+//! depth.rs     what a stored depth means         counts.rs    counts beyond eight bits change.rs   what a step changed
+//! verdict.rs   why a pixel is dark, a sentence   explain_facts.rs a step as a formula  meshes.rs   how meshes hang together
+//! history_row.rs, ladder_layout.rs  a pixel's events in rows, and along its view ray
+//! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
+//! ```
+
+pub mod change;
+pub mod counts;
+pub mod depth;
+pub mod explain_facts;
+pub mod format;
+pub mod fragments;
+pub mod history_row;
+pub mod ladder_layout;
+pub mod layers;
+pub mod map_readers;
+pub mod meshes;
+pub mod moment;
+pub mod object_ids;
+pub mod pick_ray;
+pub mod projected;
+pub mod shown;
+pub mod tests;
+pub mod verdict;
+
+pub use map_readers::{MapReaders, MapTexel};
+pub use meshes::ObjectMesh;
+pub use tests::TestOutcomes;

@@ -1,0 +1,211 @@
+//! World positions in the picture, clipped before they are projected.
+//!
+//! A face of a shadow volume reaches behind the eye and to infinity. So it is clipped at the near plane, and a little
+//! outside of the picture's four edges, where what is left has a place on the screen (Sutherland and Hodgman 1974, in
+//! homogeneous coordinates).
+
+use crate::capture::Capture;
+use crate::math::projection;
+use glam::{DMat4, DVec2, DVec4};
+
+/// How far outside the picture's edges lines are cut, where the picture ends at 1.
+const GUARD: f64 = 1.2;
+/// The same of a triangle that is outlined: its own edges are not to be seen where it is cut.
+const OUTLINE_GUARD: f64 = 1.5;
+
+/// From the world to the texels of a capture's picture.
+#[derive(Debug, Clone)]
+pub struct Projector {
+    clip_from_world: DMat4,
+    planes: [DVec4; 5],
+    half: DVec2,
+}
+
+impl Projector {
+    /// Of the camera of a capture.
+    #[must_use]
+    pub fn new(capture: &Capture) -> Projector {
+        Projector::guarded(capture, GUARD)
+    }
+
+    fn guarded(capture: &Capture, guard: f64) -> Projector {
+        let [width, height] = capture.size.map(f64::from);
+        let camera = &capture.camera;
+        let clip_from_view = projection::perspective(camera.fov_y_degrees, width / height, &capture.depth);
+        let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
+        let clip_from_world = clip_from_view * DMat4::from_mat3(rotation) * DMat4::from_translation(-camera.eye);
+        let [x, y] = [DVec4::X, DVec4::Y];
+        let sides = [x, -x, y, -y].map(|side| side + DVec4::W * guard);
+        let near = near_plane(capture);
+        Projector {
+            clip_from_world,
+            planes: [near, sides[0], sides[1], sides[2], sides[3]],
+            half: DVec2::new(width, height) / 2.0,
+        }
+    }
+
+    /// What is seen of a segment between homogeneous positions, in texels.
+    #[must_use]
+    pub fn segment(&self, ends: [DVec4; 2]) -> Option<[DVec2; 2]> {
+        let [mut from, mut to] = ends.map(|end| self.clip_from_world * end);
+        for plane in self.planes {
+            let [a, b] = [plane.dot(from), plane.dot(to)];
+            if a < 0.0 && b < 0.0 {
+                return None;
+            }
+            if a < 0.0 {
+                from = from.lerp(to, a / (a - b));
+            } else if b < 0.0 {
+                to = from.lerp(to, a / (a - b));
+            }
+        }
+        let is_before = from.w > 0.0 && to.w > 0.0;
+        is_before.then(|| [from, to].map(|end| self.place(end)))
+    }
+
+    /// What is seen of a triangle: a convex polygon in texels, with 1 over the distance along the view
+    /// at each corner. Empty where nothing is.
+    #[must_use]
+    pub fn polygon(&self, corners: [DVec4; 3]) -> Vec<(DVec2, f64)> {
+        let corners = corners.map(|corner| self.clip_from_world * corner);
+        let is_beyond = |plane: &DVec4, corner: &DVec4| plane.dot(*corner) < 0.0;
+        // Most triangles are seen whole or not at all.
+        if self.planes.iter().any(|plane| corners.iter().all(|corner| is_beyond(plane, corner))) {
+            return Vec::new();
+        }
+        let crossed = self.planes.into_iter().filter(|plane| corners.iter().any(|corner| is_beyond(plane, corner)));
+        let clipped = crossed.fold(corners.to_vec(), |polygon, plane| clip(&polygon, plane));
+        clipped.into_iter().filter(|corner| corner.w > 0.0).map(|corner| (self.place(corner), 1.0 / corner.w)).collect()
+    }
+
+    fn place(&self, clip: DVec4) -> DVec2 {
+        DVec2::new(clip.x / clip.w + 1.0, 1.0 - clip.y / clip.w) * self.half
+    }
+}
+
+/// Corners of what is seen of a triangle, in texels of the capture's picture. `corners` are
+/// homogeneous and relative to the eye. Empty where nothing of it is before the eye.
+#[must_use]
+pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
+    let world = |corner: [f32; 4]| {
+        let relative = DVec4::from_array(corner.map(f64::from));
+        relative + (capture.camera.eye * relative.w).extend(0.0)
+    };
+    let seen = Projector::guarded(capture, OUTLINE_GUARD).polygon(corners.map(world));
+    seen.into_iter().map(|(at, _)| at).collect()
+}
+
+/// What lies before the near plane, in clip space: near is where depth is 1, or 0; depth that is clamped has
+/// no such end.
+#[must_use]
+pub fn near_plane(capture: &Capture) -> DVec4 {
+    match (capture.depth.mapping.clamps(), capture.depth.mapping.is_reversed()) {
+        (true, _) => DVec4::W,
+        (false, true) => DVec4::W - DVec4::Z,
+        (false, false) => DVec4::Z,
+    }
+}
+
+/// The part of a polygon on one side of a plane through the origin.
+#[must_use]
+pub fn clip(polygon: &[DVec4], plane: DVec4) -> Vec<DVec4> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (index, &corner) in polygon.iter().enumerate() {
+        let next = polygon[(index + 1) % polygon.len()];
+        let [here, there] = [plane.dot(corner), plane.dot(next)];
+        if here >= 0.0 {
+            kept.push(corner);
+        }
+        if (here < 0.0) != (there < 0.0) {
+            kept.push(corner.lerp(next, here / (here - there)));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capture::{AdapterInfo, Timing};
+    use crate::math::depth::DepthMapping;
+    use crate::scene::Camera;
+    use glam::DVec3;
+    use std::collections::BTreeMap;
+
+    /// An eye that looks down −z, a quarter turn wide each way, over a picture of 200 × 200.
+    fn capture(mapping: DepthMapping) -> Capture {
+        let camera = Camera {
+            eye: DVec3::ONE,
+            target: DVec3::new(1.0, 1.0, 0.0),
+            up: DVec3::Y,
+            fov_y_degrees: 90.0,
+            near: 0.5,
+            far: None,
+        };
+        Capture {
+            scene: String::new(),
+            technique: String::new(),
+            settings: BTreeMap::new(),
+            size: [200, 200],
+            adapter: AdapterInfo { name: String::new(), driver: String::new(), kind: String::new() },
+            camera,
+            depth: mapping.curve(0.5, 100.0, 0.0),
+            steps: Vec::new(),
+            lights: Vec::new(),
+            left_out: Vec::new(),
+            timing: Timing::default(),
+            plan_text: String::new(),
+        }
+    }
+
+    fn is_near(found: &[DVec2], expected: &[[f64; 2]]) -> bool {
+        let is_one = |at: &&[f64; 2]| found.iter().any(|one| one.distance(DVec2::from_array(**at)) < 1e-6);
+        found.len() == expected.len() && expected.iter().filter(is_one).count() == expected.len()
+    }
+
+    #[test]
+    fn a_triangle_before_the_eye_keeps_its_corners() {
+        for mapping in DepthMapping::ALL {
+            let corners = [[0.0, 0.0, -2.0, 1.0], [1.0, 0.0, -2.0, 1.0], [0.0, 1.0, -2.0, 1.0]];
+            let found = outline(&capture(mapping), corners);
+            assert!(is_near(&found, &[[100.0, 100.0], [150.0, 100.0], [100.0, 50.0]]), "{mapping:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_corner_at_infinity_is_where_its_direction_points() {
+        let corners = [[0.0, 0.0, -2.0, 1.0], [0.5, 0.0, -1.0, 0.0], [0.0, 1.0, -2.0, 1.0]];
+        let found = outline(&capture(DepthMapping::ReversedInfinite), corners);
+        assert!(is_near(&found, &[[100.0, 100.0], [150.0, 100.0], [100.0, 50.0]]), "{found:?}");
+    }
+
+    #[test]
+    fn what_reaches_behind_the_eye_is_cut_at_the_near_plane_and_outside_the_picture() {
+        // In the plane y = 0.1, from 1 ahead to 1 behind: 0.1 above the middle at distance 1, and
+        // 0.2 at the near plane.
+        let corners = [[-0.5, 0.1, -1.0, 1.0], [0.5, 0.1, -1.0, 1.0], [0.0, 0.1, 1.0, 1.0]];
+        let found = outline(&capture(DepthMapping::ReversedInfinite), corners);
+        assert_eq!(found.len(), 4, "{found:?}");
+        let lowest = found.iter().map(|at| at.y).fold(f64::INFINITY, f64::min);
+        assert!((lowest - 80.0).abs() < 1e-6, "{found:?}");
+        let limit = 100.0 * OUTLINE_GUARD + 1e-6;
+        assert!(found.iter().all(|at| (*at - 100.0).abs().max_element() <= limit), "{found:?}");
+    }
+
+    #[test]
+    fn nothing_is_left_of_what_lies_behind_the_eye_or_far_beside_the_picture() {
+        for mapping in DepthMapping::ALL {
+            let behind = [[0.0, 0.0, 2.0, 1.0], [1.0, 0.0, 2.0, 1.0], [0.0, 1.0, 2.0, 1.0]];
+            assert!(outline(&capture(mapping), behind).is_empty(), "{mapping:?}");
+            let beside = [[9.0, 0.0, -2.0, 1.0], [8.0, 0.0, -2.0, 1.0], [9.0, 1.0, -2.0, 1.0]];
+            assert!(outline(&capture(mapping), beside).is_empty(), "{mapping:?}");
+        }
+    }
+
+    #[test]
+    fn a_direction_across_the_view_is_cut_at_the_guard() {
+        let corners = [[0.0, 0.0, -2.0, 1.0], [1.0, 0.0, 0.0, 0.0], [0.0, 1.0, -2.0, 1.0]];
+        let found = outline(&capture(DepthMapping::ReversedInfinite), corners);
+        assert!(!found.is_empty() && found.iter().all(|at| at.is_finite()), "{found:?}");
+    }
+}

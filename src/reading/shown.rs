@@ -1,0 +1,407 @@
+//! Which picture is shown and how: its kind, what a texel's value means, zoom and place.
+//!
+//! A capture holds up to eight kinds of picture. [`PictureView::shown`] finds the one wished for
+//! at a step, or what is shown while there is none. Truth and error may be wished for before they
+//! are there: until then those of the frame before stay, or else the picture before them.
+
+use crate::capture::{Capture, CapturedLight, CapturedTruth, FrameTruth, Image, PixelFormat, Snapshot, StepTests};
+use crate::reading::depth::DepthMeasure;
+use crate::reading::format;
+use crate::reading::layers::{self, Layer, MapContent};
+use crate::reading::moment::Moment;
+use std::sync::Arc;
+
+/// A kind of picture that a capture may hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum PictureKind {
+    /// What is seen.
+    Color,
+    /// Counts and marks.
+    Stencil,
+    /// A light's signed counts, where they are not in the stencil.
+    Count,
+    /// How far the surfaces are.
+    Depth,
+    /// A technique's answer for one light.
+    Mask,
+    /// The answer that rays give for one light.
+    Truth,
+    /// Where the two differ.
+    Error,
+    /// How many fragments of the step reached each pixel.
+    Overdraw,
+    /// What a light sees: depth, or what casters let through.
+    Map,
+}
+
+impl PictureKind {
+    /// All, in the order of their buttons.
+    pub const ALL: [PictureKind; 9] = [
+        PictureKind::Color,
+        PictureKind::Stencil,
+        PictureKind::Count,
+        PictureKind::Depth,
+        PictureKind::Mask,
+        PictureKind::Truth,
+        PictureKind::Error,
+        PictureKind::Overdraw,
+        PictureKind::Map,
+    ];
+
+    /// On its button over a capture.
+    #[must_use]
+    pub fn name(self, capture: &Capture) -> &'static str {
+        match self {
+            PictureKind::Color => "Colour",
+            PictureKind::Stencil => "Stencil",
+            PictureKind::Count => "Count",
+            PictureKind::Depth => "Depth",
+            PictureKind::Mask => "Mask",
+            PictureKind::Truth => "Truth",
+            PictureKind::Error => "Error",
+            PictureKind::Overdraw => "Overdraw",
+            PictureKind::Map => MapContent::of_capture(capture).unwrap_or(MapContent::Depth).name(),
+        }
+    }
+
+    /// What one sees in it.
+    #[must_use]
+    pub fn meaning(self, capture: &Capture) -> &'static str {
+        match self {
+            PictureKind::Color => "The picture so far",
+            PictureKind::Stencil => "The stencil count of every pixel",
+            PictureKind::Count => "How many shadow volumes of a light contain the surface at every pixel",
+            PictureKind::Depth => "How far the surface at every pixel is",
+            PictureKind::Mask => "Where the technique says that a light is blocked",
+            PictureKind::Truth => "Where rays say that a light is blocked",
+            PictureKind::Error => "Where the technique and the truth differ",
+            PictureKind::Overdraw => "How many fragments of the selected step reached every pixel",
+            PictureKind::Map => MapContent::of_capture(capture).unwrap_or(MapContent::Depth).meaning(),
+        }
+    }
+
+    /// Can it be shown only once the truth is known?
+    #[must_use]
+    pub fn needs_truth(self) -> bool {
+        matches!(self, PictureKind::Truth | PictureKind::Error)
+    }
+}
+
+/// Which layer of a light's map is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FaceChoice {
+    /// All, small.
+    #[default]
+    Grid,
+    /// One.
+    One(usize),
+}
+
+/// How large a texel is on the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Zoom {
+    /// The whole picture fills its panel.
+    #[default]
+    Fit,
+    /// Screen pixels a texel.
+    Pixels(f32),
+}
+
+/// How depth is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DepthMode {
+    /// As a distance in metres.
+    #[default]
+    Linear,
+    /// As stored.
+    Raw,
+}
+
+/// Everything about the picture panel that the user can change.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PictureView {
+    /// The kind wished for.
+    pub kind: PictureKind,
+    /// Whose mask or map.
+    pub light: usize,
+    /// Which layer of a map.
+    pub face: FaceChoice,
+    /// Size of a texel.
+    pub zoom: Zoom,
+    /// The texel position in the middle of the panel, unless it fits.
+    pub center: [f64; 2],
+    /// Distance or stored value.
+    pub depth_mode: DepthMode,
+    /// The grey ramp's ends as set by hand; `None`: those of the picture.
+    pub depth_range: Option<[f64; 2]>,
+    /// How the fragments of a step fared, of which the overdraw is shown.
+    pub tests: Option<Arc<StepTests>>,
+    /// The kind to go back to when a map pass is left.
+    kind_before_map: Option<PictureKind>,
+    /// The kind that is shown until the truth is known.
+    kind_before_truth: Option<PictureKind>,
+    /// The truth of the frame before, shown until that of the frame is known.
+    pub older_truth: Option<Arc<FrameTruth>>,
+}
+
+impl Default for PictureView {
+    fn default() -> PictureView {
+        PictureView {
+            kind: PictureKind::Color,
+            light: 0,
+            face: FaceChoice::Grid,
+            zoom: Zoom::Fit,
+            center: [0.0; 2],
+            depth_mode: DepthMode::Linear,
+            depth_range: None,
+            tests: None,
+            kind_before_map: None,
+            kind_before_truth: None,
+            older_truth: None,
+        }
+    }
+}
+
+/// A picture of the capture, ready to be drawn.
+#[derive(Debug, Clone)]
+pub struct Shown {
+    /// Its kind: the one wished for, or what exists instead.
+    pub kind: PictureKind,
+    /// One, or all layers of a light's map.
+    pub images: Vec<Arc<Image>>,
+    /// What each image is, where they are layers of a light's map.
+    pub layers: Vec<Layer>,
+    /// How depths are measured; [`DepthMeasure::Raw`] for other kinds.
+    pub measure: DepthMeasure,
+    /// For the status bar: `stencil after step 4`.
+    pub title: String,
+    /// The GPU's format.
+    pub format: &'static str,
+    /// It is of the frame before.
+    pub is_older: bool,
+}
+
+impl PictureView {
+    /// The user wishes to see `kind`.
+    pub fn choose(&mut self, kind: PictureKind) {
+        if kind.needs_truth() && !self.kind.needs_truth() {
+            self.kind_before_truth = Some(self.kind);
+        }
+        if !kind.needs_truth() {
+            self.older_truth = None;
+        }
+        self.kind_before_map = None;
+        self.switch(kind);
+    }
+
+    fn switch(&mut self, kind: PictureKind) {
+        if (kind == PictureKind::Depth) != (self.kind == PictureKind::Depth) {
+            self.depth_range = None;
+        }
+        self.kind = kind;
+    }
+
+    /// Follows to a step: a map pass shows its map, and the step after it what was shown before.
+    pub fn follow(&mut self, capture: &Capture, step: usize) {
+        match capture.steps.get(step).map(|step| &step.snapshot) {
+            Some(Snapshot::Map { light, face }) => {
+                if self.kind != PictureKind::Map {
+                    let before = self.kind;
+                    self.switch(PictureKind::Map);
+                    self.kind_before_map = Some(before);
+                }
+                self.light = *light;
+                let map = capture.lights.get(*light).and_then(|light| light.map.as_ref());
+                if map.is_some_and(|map| map.faces.len() > 1) {
+                    self.face = FaceChoice::One(*face);
+                }
+            }
+            _ => {
+                if let Some(before) = self.kind_before_map.take() {
+                    self.switch(before);
+                    self.face = FaceChoice::Grid;
+                }
+                if let Some(light) = capture.steps.get(step).and_then(|step| step.light) {
+                    self.light = light;
+                }
+            }
+        }
+    }
+
+    /// The picture to show at a moment: the kind wished for, or what stands in for it.
+    #[must_use]
+    pub fn shown(&self, capture: &Capture, at: impl Into<Moment>) -> Option<Shown> {
+        let at = at.into();
+        let kinds = available(capture, at);
+        let wished = if self.kind.needs_truth() && self.truth_to_show(capture).is_none() {
+            self.kind_before_truth.unwrap_or(PictureKind::Color)
+        } else {
+            self.kind
+        };
+        let twin = match wished {
+            PictureKind::Stencil => PictureKind::Count,
+            PictureKind::Count => PictureKind::Stencil,
+            other => other,
+        };
+        let can_show = |kind: &PictureKind| *kind != PictureKind::Overdraw || self.tests_of(at).is_some();
+        let wished = [wished, twin].into_iter().find(|kind| kinds.contains(kind)).filter(can_show);
+        let kind = wished.or_else(|| kinds.iter().copied().find(|kind| !kind.needs_truth()))?;
+        let frame = at.frame(capture);
+        let after = |what: &str| format!("{what} after {}", at.words());
+        let depth_format = if has_stencil(capture) { "Depth32FloatStencil8" } else { "Depth32Float" };
+        let raw = DepthMeasure::Raw;
+        let camera = || self.measure_or_raw(Some(DepthMeasure::of_camera(capture)));
+        let (image, measure, title, format) = match kind {
+            PictureKind::Color => (frame?.color.image.clone(), raw, after("colour"), "Rgba8UnormSrgb"),
+            PictureKind::Stencil => (frame?.stencil.as_ref()?.image.clone(), raw, after("stencil"), depth_format),
+            PictureKind::Depth => (frame?.depth.image.clone(), camera(), after("depth"), depth_format),
+            PictureKind::Count => {
+                let light = self.light_with(capture, |light| light.count.is_some())?;
+                let title = format!("count of {}", format::light(light));
+                match at.count(capture).filter(|(of, _)| *of == light) {
+                    Some((_, image)) => (image.clone(), raw, after(&title), "R32Float"),
+                    None => (capture.lights.get(light)?.count.clone()?, raw, title, "R32Float"),
+                }
+            }
+            PictureKind::Mask => {
+                let light = self.light_with(capture, |light| light.shadow.is_some())?;
+                let title = format!("mask of {}", format::light(light));
+                match at.labels(capture).filter(|(of, _)| *of == light) {
+                    Some((_, image)) => (image.clone(), raw, after(&title), "R8Uint"),
+                    None => (capture.lights.get(light)?.shadow.clone()?, raw, title, "R8Uint"),
+                }
+            }
+            PictureKind::Overdraw => (self.tests_of(at)?.fragments.clone(), raw, after("overdraw"), "R8Uint"),
+            PictureKind::Truth | PictureKind::Error => return self.shown_truth(capture, kind),
+            PictureKind::Map => return self.shown_map(capture, at),
+        };
+        Some(Shown { kind, images: vec![image], layers: Vec::new(), measure, title, format, is_older: false })
+    }
+
+    fn tests_of(&self, at: Moment) -> Option<&Arc<StepTests>> {
+        self.tests.as_ref().filter(|tests| Moment { step: tests.step, draw: tests.draw } == at)
+    }
+
+    fn shown_truth(&self, capture: &Capture, kind: PictureKind) -> Option<Shown> {
+        let (light, truth) = self.truth_to_show(capture)?;
+        let (image, word) =
+            if kind == PictureKind::Truth { (&truth.labels, "truth") } else { (&truth.findings, "error") };
+        Some(Shown {
+            kind,
+            images: vec![image.clone()],
+            layers: Vec::new(),
+            measure: DepthMeasure::Raw,
+            title: format!("{word} of {}", format::light(light)),
+            format: "R8Uint",
+            is_older: !has_truth(capture),
+        })
+    }
+
+    /// The light whose truth is shown, and that truth: of the frame, or of the one before.
+    #[must_use]
+    pub fn truth_to_show<'a>(&'a self, capture: &'a Capture) -> Option<(usize, &'a CapturedTruth)> {
+        if has_truth(capture) {
+            let light = self.light_with(capture, |light| light.truth.is_some())?;
+            return Some((light, capture.lights.get(light)?.truth.as_ref()?));
+        }
+        let lights = &self.older_truth.as_ref()?.lights;
+        let older = |index: usize| Some((index, lights.get(index)?.as_ref()?));
+        older(self.light).or_else(|| (0..lights.len()).find_map(older))
+    }
+
+    fn measure_or_raw(&self, linear: Option<DepthMeasure>) -> DepthMeasure {
+        linear.filter(|_| self.depth_mode == DepthMode::Linear).unwrap_or(DepthMeasure::Raw)
+    }
+
+    /// The chosen light if `has` holds for it, else the first for which it does.
+    pub fn light_with(&self, capture: &Capture, has: impl Fn(&CapturedLight) -> bool) -> Option<usize> {
+        let chosen = capture.lights.get(self.light).filter(|light| has(light));
+        chosen.map_or_else(|| capture.lights.iter().position(&has), |_| Some(self.light))
+    }
+}
+
+impl PictureView {
+    /// The chosen layer of a light's map, or all.
+    fn shown_map(&self, capture: &Capture, at: Moment) -> Option<Shown> {
+        let light = self.light_with(capture, |light| light.map.is_some())?;
+        let map = capture.lights.get(light)?.map.as_ref()?;
+        let content = MapContent::of(capture, light)?;
+        let mut layers = layers::layers(capture, light);
+        let mut images = map.faces.clone();
+        let drawn = at.layer(capture).filter(|(of, layer, _)| *of == light && *layer < images.len());
+        if let Some((_, layer, image)) = drawn {
+            images[layer] = image.clone();
+        }
+        let mut title = format!("{} of {}", content.in_titles(), format::light(light));
+        let has_many = images.len() > 1;
+        let chosen = match self.face {
+            FaceChoice::One(layer) if layer < images.len() => Some(layer),
+            _ => None,
+        };
+        if let Some(chosen) = chosen.filter(|_| has_many) {
+            images = vec![images[chosen].clone()];
+            layers = vec![layers[chosen].clone()];
+        }
+        if let ([one], true) = (&layers[..], has_many || content != MapContent::Depth) {
+            title += &match content {
+                MapContent::Depth => format!(", {}", one.full_name),
+                _ => format!(": {}", one.name),
+            };
+        }
+        if drawn.is_some_and(|(_, layer, _)| chosen.is_none_or(|chosen| chosen == layer)) {
+            title += &format!(" after {}", at.words());
+        }
+        let (measure, format) = match content {
+            MapContent::Depth => {
+                let linear = DepthMeasure::of_map(capture, light, chosen.unwrap_or(0));
+                (self.measure_or_raw(linear), "Depth32Float")
+            }
+            _ => (DepthMeasure::Raw, "Rgba8Unorm"),
+        };
+        Some(Shown { kind: PictureKind::Map, images, layers, measure, title, format, is_older: false })
+    }
+}
+
+impl Shown {
+    /// Does it show colours that a light's map lets through?
+    #[must_use]
+    pub fn is_let_through(&self) -> bool {
+        self.kind == PictureKind::Map && self.images.first().is_some_and(|image| image.format() == PixelFormat::Rgba8)
+    }
+}
+
+/// Is the truth of this frame known?
+#[must_use]
+pub fn has_truth(capture: &Capture) -> bool {
+    capture.lights.iter().any(|light| light.truth.is_some())
+}
+
+/// The kinds of picture that exist at a moment, or can be asked for, in the order of their buttons.
+#[must_use]
+pub fn available(capture: &Capture, at: impl Into<Moment>) -> Vec<PictureKind> {
+    let at = at.into();
+    let frame = at.frame(capture);
+    let exists = |kind: &PictureKind| match kind {
+        PictureKind::Color | PictureKind::Depth => frame.is_some(),
+        PictureKind::Stencil => frame.is_some_and(|frame| frame.stencil.is_some()),
+        PictureKind::Count => capture.lights.iter().any(|light| light.count.is_some()),
+        PictureKind::Mask => capture.lights.iter().any(|light| light.shadow.is_some()),
+        PictureKind::Truth | PictureKind::Error => {
+            capture.lights.iter().any(|light| light.shadow.is_some() || light.truth.is_some())
+        }
+        PictureKind::Overdraw => draws_into_picture(capture, at.step),
+        PictureKind::Map => capture.lights.iter().any(|light| light.map.is_some()),
+    };
+    PictureKind::ALL.into_iter().filter(exists).collect()
+}
+
+/// Does a step draw triangles that the picture's depth test sees?
+fn draws_into_picture(capture: &Capture, step: usize) -> bool {
+    let draws = |step: &crate::capture::Step| !step.draws.is_empty() && matches!(step.snapshot, Snapshot::Frame(_));
+    capture.steps.get(step).is_some_and(draws)
+}
+
+fn has_stencil(capture: &Capture) -> bool {
+    let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));
+    last.is_some_and(|frame| frame.stencil.is_some())
+}

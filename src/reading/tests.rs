@@ -1,0 +1,36 @@
+//! How the fragments of a step fared in its tests, with what follows for the whole picture.
+
+use crate::capture::{Image, StepTests, TestCounts};
+use std::sync::Arc;
+
+/// Tests, and the outcomes of every pixel.
+#[derive(Debug, Clone)]
+pub struct TestOutcomes {
+    /// As counted.
+    pub tests: Arc<StepTests>,
+    /// [`TestCounts::outcomes`] of every pixel.
+    pub outcomes: Arc<Image>,
+    /// How many pixels have each combination of outcomes.
+    pub pixels: [u64; 16],
+}
+
+impl TestOutcomes {
+    /// Of a step's tests.
+    #[must_use]
+    pub fn new(tests: StepTests) -> TestOutcomes {
+        let outcomes = Arc::new(tests.outcomes());
+        let histogram = outcomes.histogram();
+        let pixels = std::array::from_fn(|outcome| histogram[outcome]);
+        TestOutcomes { tests: Arc::new(tests), outcomes, pixels }
+    }
+}
+
+/// The combinations that can occur, with their names and what they mean.
+pub const OUTCOMES: [(u8, &str, &str); 6] = [
+    (TestCounts::PASSED, "passed", "Every fragment here passed both tests"),
+    (TestCounts::DEPTH_FAILED, "depth failed", "Every fragment here failed the depth test: hits of z-fail"),
+    (TestCounts::PASSED | TestCounts::DEPTH_FAILED, "mixed", "Some passed both tests, some failed the depth test"),
+    (TestCounts::STENCIL_FAILED, "stencil failed", "The stencil test let no fragment through"),
+    (TestCounts::UNKNOWN, "? not known", "The step writes what it tests, and several fragments came here"),
+    (0, "no fragment", "The step drew nothing here"),
+];

@@ -1,0 +1,214 @@
+//! One sentence about the picked pixel, from what the capture holds and no more.
+//!
+//! It tells what a light's label is and why, as far as labels, stencil and technique say so; it
+//! claims nothing about geometry, which the capture does not know.
+
+use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot};
+use crate::history::PixelHistory;
+use crate::plan::{DecidedBy, Side};
+use crate::reading::counts;
+use crate::reading::format;
+
+/// A sentence with what stands behind it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Verdict {
+    /// The answer.
+    pub title: String,
+    /// Where it comes from.
+    pub reason: String,
+    /// What the reason that a history gives does to this one.
+    by_history: ByHistory,
+}
+
+/// A history knows the faces themselves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ByHistory {
+    /// It says the same, with numbers.
+    Replaced,
+    /// It says what comes before.
+    Preceded,
+    /// It is about something else.
+    Kept,
+}
+
+/// The same, with the reason that the pixel's history gives.
+#[must_use]
+pub fn explained(verdict: Verdict, history: &PixelHistory, light: usize) -> Verdict {
+    let why = match history.why(light) {
+        Some(why) => format!("{}.", capitalized(&why.to_string())),
+        None => return verdict,
+    };
+    let reason = match verdict.by_history {
+        ByHistory::Replaced => why,
+        ByHistory::Preceded => format!("{why} {}", verdict.reason),
+        ByHistory::Kept => return verdict,
+    };
+    Verdict { reason, ..verdict }
+}
+
+/// What happened at pixel `at` under `light`.
+#[must_use]
+pub fn verdict(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
+    let label = capture.lights.get(light).and_then(|light| light.shadow.as_ref()?.byte_at(at));
+    let name = format::light(light);
+    match label {
+        None => Verdict {
+            title: "No light was asked about this pixel.".to_owned(),
+            reason: "The capture holds no mask, so only the values below are known.".to_owned(),
+            by_history: ByHistory::Kept,
+        },
+        Some(2) => Verdict {
+            title: "Background: no surface is at this pixel.".to_owned(),
+            reason: "Nothing was drawn here, so there is nothing that a shadow could fall on.".to_owned(),
+            by_history: ByHistory::Kept,
+        },
+        Some(3) => Verdict {
+            title: format!("Turned away from {name}."),
+            reason: format!(
+                "{} shines on the other side of this surface, so shading alone leaves it dark.{}",
+                capitalized(&name),
+                count_note(capture, light, at)
+            ),
+            by_history: ByHistory::Kept,
+        },
+        Some(label) => decided(capture, light, at, label != 0),
+    }
+}
+
+fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verdict {
+    let name = format::light(light);
+    let title = if is_dark { format!("Dark under {name}") } else { format!("Lit by {name}") };
+    let reason = match (capture.decided_by(light), is_dark) {
+        (DecidedBy::StencilCount { side } | DecidedBy::FloatCount { side }, _) => {
+            return counted(capture, light, at, (is_dark, side), &title);
+        }
+        (DecidedBy::Map, true) => {
+            "The light's map holds something nearer to the light here, so the light pass adds nothing."
+        }
+        (DecidedBy::Map, false) => "The light's map holds nothing nearer to the light here, so the light pass adds it.",
+        (DecidedBy::Flattened, true) => "A caster, flattened onto this flat receiver from the light, covers the pixel.",
+        (DecidedBy::Flattened, false) => {
+            "No flattened caster covers the pixel. Planar shadows fall on flat receivers only, so nothing else is asked."
+        }
+        (DecidedBy::ReceiverTextures, true) => {
+            "The texture of this flat receiver lets less than half of the light through here: a caster between it and \
+             the light was drawn there."
+        }
+        (DecidedBy::ReceiverTextures, false) => {
+            "No caster was drawn here into this receiver's texture. Surfaces that are not flat have none, and are lit."
+        }
+        (DecidedBy::Silhouettes, true) => {
+            "The silhouette of another object falls here. Nobody asks whether that object is nearer to the light, and \
+             translucent ones count as opaque for the mask."
+        }
+        (DecidedBy::Silhouettes, false) => {
+            "No silhouette of another object falls here; an object's own is never asked."
+        }
+        (DecidedBy::Nothing, false) => {
+            "No shadow of this light is made in this frame: it reaches every surface that faces it."
+        }
+        (DecidedBy::Labels | DecidedBy::Nothing, true) => {
+            "The technique's mask says that something lies between the surface and the light."
+        }
+        (DecidedBy::Labels, false) => "The technique's mask says that nothing lies between the surface and the light.",
+    };
+    Verdict { title: format!("{title}."), reason: reason.to_owned(), by_history: ByHistory::Replaced }
+}
+
+/// Shadow volumes: the count that the light pass tested.
+fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool, Side), title: &str) -> Verdict {
+    let in_float = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at));
+    let decides = capture.decided_by(light).counts_in_floats();
+    if let Some(count) = in_float.filter(|_| decides) {
+        return counted_in_float(count, is_dark, side.preposition(), title);
+    }
+    let Some(count) = tested_count(capture, light, at) else {
+        return Verdict {
+            title: format!("{title}."),
+            reason: "The count that decided it was not captured.".to_owned(),
+            by_history: ByHistory::Replaced,
+        };
+    };
+    let shown = crate::numbers::signed(count);
+    let title = format!("{title}: its stencil count is {shown}.");
+    let side = side.preposition();
+    let reason = match (is_dark, count) {
+        (true, 1..=127) => {
+            format!("The volume faces {side} the surface leave {shown}, not 0, so the light pass skips this pixel.")
+        }
+        (true, 128..) => format!(
+            "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it skips \
+             this pixel."
+        ),
+        (false, 0) if in_float.is_some_and(|count| count != 0.0) => {
+            let count = in_float.unwrap_or_default();
+            format!("{count} volumes contain the surface, which eight bits read as 0: the light pass adds the light.")
+        }
+        (false, 0) => format!("The volume faces {side} the surface cancel out, so the light pass adds the light."),
+        // Label and count disagree: say so, and do not explain it away.
+        (_, count) => format!("The mask does not match the count {count} that the light pass tested."),
+    };
+    let by_history = match (is_dark, count) {
+        (true, 1..=127) => ByHistory::Replaced,
+        (false, 0) if in_float.is_none_or(|count| count == 0.0) => ByHistory::Replaced,
+        (true, 128..) | (false, 0) => ByHistory::Preceded,
+        _ => ByHistory::Kept,
+    };
+    Verdict { title, reason, by_history }
+}
+
+/// A count that is kept in a float has a sign, and no limits.
+fn counted_in_float(count: f32, is_dark: bool, side: &str, title: &str) -> Verdict {
+    let shown = counts::text(count);
+    let title = format!("{title}: its count is {shown}.");
+    let reason = match is_dark {
+        true if counts::reads_zero_in_eight_bits(count) => format!(
+            "The volume faces {side} the surface leave {shown}, so the light pass adds nothing. Eight bits would read 0 \
+             and light this pixel."
+        ),
+        true if count > 0.0 => {
+            format!("The volume faces {side} the surface leave {shown}, not 0, so the light pass adds nothing.")
+        }
+        true if count < 0.0 => format!(
+            "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it adds \
+             nothing."
+        ),
+        false if count == 0.0 => {
+            format!("The volume faces {side} the surface cancel out, so the light pass adds the light.")
+        }
+        // Label and count disagree: say so, and do not explain it away.
+        _ => format!("The mask does not match the count {shown} that the light pass read."),
+    };
+    let by_history = match is_dark {
+        true if counts::reads_zero_in_eight_bits(count) || count < 0.0 => ByHistory::Preceded,
+        _ if is_dark == (count != 0.0) => ByHistory::Replaced,
+        _ => ByHistory::Kept,
+    };
+    Verdict { title, reason, by_history }
+}
+
+fn count_note(capture: &Capture, light: usize, at: [u32; 2]) -> String {
+    if !capture.decided_by(light).counts_volumes() {
+        return String::new();
+    }
+    let in_float = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at)).map(counts::text);
+    let count = in_float.or_else(|| tested_count(capture, light, at).map(crate::numbers::signed));
+    count.map_or_else(String::new, |count| format!(" Its count is {count}."))
+}
+
+/// The stencil value at `at` when the labels of `light` were decided.
+#[must_use]
+pub fn tested_count(capture: &Capture, light: usize, at: [u32; 2]) -> Option<u8> {
+    let is_mask = |step: &&crate::capture::Step| {
+        step.light == Some(light)
+            && matches!(&step.snapshot, Snapshot::Frame(frame) if frame.target == FrameTarget::Labels)
+    };
+    let mask = capture.steps.iter().find(is_mask)?;
+    let Snapshot::Frame(FrameSnapshot { stencil: Some(stencil), .. }) = &mask.snapshot else { return None };
+    stencil.image.byte_at(at)
+}
+
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

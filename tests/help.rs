@@ -1,0 +1,230 @@
+//! `help` from outside: what it explains is held against the program itself, so that no page goes stale.
+
+use crate::commands::{assert_fails, folder, run, text};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::Path;
+use stencilscope::scene::{SceneError, file};
+
+/// The text of a key.
+fn help(key: &str) -> String {
+    let folder = folder();
+    let output = run(folder.path(), &["help", key]);
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()), "{key}");
+    text(&output.stdout)
+}
+
+/// The part of a page under a heading, up to the next.
+fn section(page: &str, heading: &str) -> String {
+    let (_, after) = page.split_once(&format!("\n## {heading}\n")).unwrap_or_else(|| panic!("no heading {heading}"));
+    after.split("\n## ").next().unwrap_or(after).to_owned()
+}
+
+/// Asserts that a page explains a key: it stands there as code.
+#[track_caller]
+fn assert_explained(section: &str, key: &str, whose: &str) {
+    assert!(section.contains(&format!("`{key}`")), "`{key}` of {whose} is not explained");
+}
+
+/// Every key of a document, wherever it stands; what is in `settings` is a setting's name and no key.
+fn keys_of(value: &Value, keys: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                keys.insert(key.clone());
+                if key != "settings" {
+                    keys_of(value, keys);
+                }
+            }
+        }
+        Value::Array(values) => values.iter().for_each(|value| keys_of(value, keys)),
+        _ => {}
+    }
+}
+
+/// Asserts that `help json` explains every key of what a command has written.
+#[track_caller]
+pub fn assert_json_is_explained(command: &str, document: &Value) {
+    let explained = section(&help("json"), command);
+    let mut keys = BTreeSet::new();
+    keys_of(document, &mut keys);
+    assert!(!keys.is_empty(), "{command} has written nothing");
+    keys.iter().for_each(|key| assert_explained(&explained, key, command));
+}
+
+/// The keys that a table of a scene file knows, as the error for an unknown one lists them; `None` where the key
+/// `at` holds no table.
+fn known_keys(folder: &Path, at: &[String]) -> Option<Vec<String>> {
+    const UNKNOWN: &str = "zzzz";
+    let tables = ["lights", "objects"];
+    let inner = format!("{{ {UNKNOWN} = 1 }}");
+    let nested = at.iter().rev().fold(inner, |inner, key| {
+        let table = if tables.contains(&key.as_str()) && inner.starts_with('{') { format!("[{inner}]") } else { inner };
+        format!("{{ {key} = {table} }}")
+    });
+    // The outermost table is the file.
+    let text = nested.strip_prefix("{ ").and_then(|text| text.strip_suffix(" }")).expect("a table");
+    let path = folder.join("asked.toml");
+    std::fs::write(&path, text).expect("written");
+    let Err(SceneError::Line { reason, .. }) = file::load(&path) else { panic!("{text} was taken") };
+    let (_, list) = reason.split_once(&format!("unknown key `{UNKNOWN}`: choose one of "))?;
+    Some(list.split(", ").map(str::to_owned).collect())
+}
+
+#[test]
+fn every_key_that_a_scene_file_knows_is_explained() {
+    let page = help("scene-file");
+    let folder = folder();
+    let mut open = vec![Vec::new()];
+    let mut tables = 0;
+    while let Some(at) = open.pop() {
+        let Some(keys) = known_keys(folder.path(), &at) else { continue };
+        tables += 1;
+        let heading = at.last().map_or("The file", String::as_str);
+        let explained = section(&page, heading);
+        for key in keys {
+            assert_explained(&explained, &key, heading);
+            open.push([&at[..], &[key]].concat());
+        }
+    }
+    // The file, camera, lights, objects, the orbit and swing of both, material, mesh and technique.
+    assert_eq!(tables, 11);
+}
+
+#[test]
+fn the_scene_file_that_the_page_shows_opens() {
+    let page = help("scene-file");
+    let toml = page.split("```toml\n").nth(1).and_then(|after| after.split("```").next()).expect("a scene file");
+    let folder = folder();
+    let path = folder.path().join("shown.toml");
+    std::fs::write(&path, toml).expect("written");
+    let scene = file::load(&path).expect("a scene");
+    assert_eq!(scene.objects.iter().map(|object| object.name.as_str()).collect::<Vec<_>>(), ["ring", "floor"]);
+    assert!(scene.objects[0].motion.spin_degrees_per_second.y > 0.0);
+}
+
+#[test]
+fn every_key_of_a_manifest_and_every_file_is_explained() {
+    let page = help("capture-folder");
+    let folder = folder();
+    let captures: [&[&str]; 4] = [
+        &["-t", "z-fail", "--set", "counter=float", "--every", "draw"],
+        &["-t", "auto", "--set", "depth=standard-finite"],
+        &["-t", "shadow-map", "--set", "size=16", "--every", "draw"],
+        &["-t", "planar-texture", "--set", "size=16"],
+    ];
+    let mut sections = [("manifest.json", BTreeSet::new()), ("A pass", BTreeSet::new()), ("A light", BTreeSet::new())];
+    for options in captures {
+        let capture = ["capture", "two-lights", "--size", "32x24", "--truth", "-o", "out", "--overwrite"];
+        let output = run(folder.path(), &[&capture[..], options].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let bytes = std::fs::read(folder.path().join("out/manifest.json")).expect("a manifest");
+        let Value::Object(mut manifest) = serde_json::from_slice(&bytes).expect("JSON") else { panic!("no object") };
+        for (key, (_, keys)) in ["", "passes", "lights"].into_iter().zip(&mut sections) {
+            let of_section = if key.is_empty() {
+                let mut rest = manifest.clone();
+                ["passes", "lights"].iter().for_each(|list| rest[*list] = Value::Null);
+                Value::Object(rest)
+            } else {
+                manifest.remove(key).expect("a list")
+            };
+            keys_of(&of_section, keys);
+        }
+        for file in crate::common::names(&folder.path().join("out")) {
+            let ending = file.split_once('.').map_or("", |(_, ending)| ending);
+            let ending =
+                if ending.starts_with("draw") { ending.split_once('.').map_or("", |parts| parts.1) } else { ending };
+            // Maps and labels after single draws are named as those of lights.
+            assert!(section(&page, "Files").contains(&format!(".{ending}`")), "{file}");
+        }
+    }
+    for (heading, keys) in sections {
+        assert!(keys.len() > 10, "{heading}: {keys:?}");
+        let explained = section(&page, heading);
+        keys.iter().for_each(|key| assert_explained(&explained, key, heading));
+    }
+}
+
+/// Names of fields that are written only at times: the declarations have them all.
+fn declared_fields(source: &str) -> Vec<String> {
+    let code = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    let lines: Vec<&str> = code.lines().map(str::trim).filter(|line| !line.starts_with("//")).collect();
+    let (mut fields, mut is_written, mut renamed) = (Vec::new(), false, None);
+    for line in lines {
+        match line {
+            _ if line.starts_with("#[derive(") => is_written = line.contains("Serialize"),
+            _ if line.starts_with("#[serde(rename") => renamed = line.split('"').nth(1).map(str::to_owned),
+            "}" => is_written = false,
+            _ if is_written && line.ends_with(',') && line.contains(": ") => {
+                let name = line.split(':').next().unwrap_or_default().split(' ').next_back().unwrap_or_default();
+                fields.push(renamed.take().unwrap_or_else(|| name.to_owned()));
+            }
+            _ => {}
+        }
+        // Keys of `json!`, which are followed by their value.
+        let pieces: Vec<&str> = line.split('"').collect();
+        let keys = pieces.windows(2).skip(1).step_by(2).filter(|pair| pair[1].starts_with(": "));
+        fields.extend(keys.map(|pair| pair[0].to_owned()));
+    }
+    fields
+}
+
+#[test]
+fn fields_that_are_written_only_at_times_are_explained_too() {
+    let page = help("json");
+    let source = |file: &str| {
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(file)).expect("a source file")
+    };
+    for (command, files) in [
+        ("pixel", &["history/json.rs"][..]),
+        ("report", &["report/mod.rs"]),
+        ("stress", &["stress/json.rs"]),
+        ("diagnose", &["diagnosis/json.rs"]),
+        ("diff", &["difference/json.rs"]),
+    ] {
+        let fields: Vec<String> = files.iter().flat_map(|file| declared_fields(&source(file))).collect();
+        assert!(fields.len() > 8, "{command}: {fields:?}");
+        let explained = section(&page, command);
+        fields.iter().for_each(|field| assert_explained(&explained, field, command));
+    }
+    let sample = "#[derive(Debug, Serialize)]\nstruct A {\n    pub a: u8,\n    #[serde(rename = \"c\")]\n    b: u8,\n}\njson!({\"d\": x, \"e\": [1]})";
+    assert_eq!(declared_fields(sample), ["a", "c", "d", "e"]);
+}
+
+#[test]
+fn the_list_of_scenes_is_explained() {
+    let folder = folder();
+    let output = run(folder.path(), &["scenes", "--json"]);
+    assert_json_is_explained("scenes", &serde_json::from_slice(&output.stdout).expect("JSON"));
+}
+
+#[test]
+fn a_setting_is_explained_with_its_values_and_a_technique_with_its_settings() {
+    let size = help("size");
+    for words in ["shadow-map: texels", "`1024` unless set", "planar-texture: texels", "from 1 to 4096", "stairs"] {
+        assert!(size.contains(words), "`{words}` is not in\n{size}");
+    }
+    let z_fail = help("z-fail");
+    for words in ["# z-fail", "closed by caps", "- `faces`: ", "two-sided, two-pass", "`two-sided` unless set"] {
+        assert!(z_fail.contains(words), "`{words}` is not in\n{z_fail}");
+    }
+    let decisions = help("leave-out");
+    for decision in stencilscope::plan::Decision::NAMES {
+        assert_explained(section_of_decisions(&decisions), decision, "leave-out");
+    }
+    assert!(help("causes").contains("- `eye-in-volume`: "));
+    assert!(help("capture").contains("--overwrite"), "commands have help too");
+}
+
+/// The table below the list of values, which names every decision as well.
+fn section_of_decisions(page: &str) -> &str {
+    page.split_once("| decision |").expect("a table").1
+}
+
+#[test]
+fn what_is_not_known_is_refused_with_the_nearest_name() {
+    assert_fails(&["help", "z-fial"], 2, &["nothing is called `z-fial`", "did you mean `z-fail`?"]);
+    assert_fails(&["help", "scene-fil"], 2, &["did you mean `scene-file`?"]);
+    assert_fails(&["help", "capure"], 2, &["did you mean `capture`?"]);
+    assert_fails(&["help", "zzzz"], 2, &["`stencilscope help` lists what there is"]);
+}
