@@ -13,52 +13,29 @@ const LABEL_REACH: f64 = 1.0 / 8.0;
 /// The same for another visible triangle.
 const SURFACE_REACH: f64 = 1.0 / 256.0;
 
-/// What a pixel of the error picture says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[repr(u8)]
-pub enum Finding {
-    /// Truth and technique agree.
-    Agrees = 0,
-    /// Truth: lit. Technique: in shadow.
-    FalseShadow = 1,
-    /// Truth: in shadow. Technique: lit.
-    MissingShadow = 2,
-    /// The technique shows another surface, one that faces away, or none.
-    WrongSurface = 3,
-    /// They differ where the truth itself changes: excused.
-    EdgeBand = 4,
-    /// The truth is background or faces away.
-    NotCompared = 5,
+named_enum! {
+    /// What a pixel of the error picture says.
+    pub enum Finding {
+        /// Truth and technique agree.
+        Agrees = "agrees",
+        /// Truth: lit. Technique: in shadow.
+        FalseShadow = "false_shadow",
+        /// Truth: in shadow. Technique: lit.
+        MissingShadow = "missing_shadow",
+        /// The technique shows another surface, one that faces away, or none.
+        WrongSurface = "wrong_surface",
+        /// They differ where the truth itself changes: excused.
+        EdgeBand = "edge_band",
+        /// The truth is background or faces away.
+        NotCompared = "not_compared",
+    }
 }
 
 impl Finding {
-    /// In the order of their numbers.
-    pub const ALL: [Finding; 6] = [
-        Finding::Agrees,
-        Finding::FalseShadow,
-        Finding::MissingShadow,
-        Finding::WrongSurface,
-        Finding::EdgeBand,
-        Finding::NotCompared,
-    ];
-
     /// The finding of that number, as in an error picture.
     #[must_use]
     pub fn from_byte(byte: u8) -> Option<Finding> {
         Finding::ALL.get(usize::from(byte)).copied()
-    }
-
-    /// The name in JSON.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Finding::Agrees => "agrees",
-            Finding::FalseShadow => "false_shadow",
-            Finding::MissingShadow => "missing_shadow",
-            Finding::WrongSurface => "wrong_surface",
-            Finding::EdgeBand => "edge_band",
-            Finding::NotCompared => "not_compared",
-        }
     }
 
     /// Counts as wrong.

@@ -40,9 +40,12 @@ const MAY_USE: [(&str, &[&str]); 29] = [
         ],
     ),
     ("anatomy", &["math", "scene", "geometry", "plan", "technique"]),
-    ("report", &["capture", "numbers"]),
+    ("report", &["technique", "capture", "numbers"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
-    ("reading", &["anatomy", "capture", "difference", "geometry", "history", "math", "numbers", "plan", "scene", "technique"]),
+    (
+        "reading",
+        &["anatomy", "capture", "difference", "geometry", "history", "math", "numbers", "plan", "scene", "technique"],
+    ),
     (
         "ask",
         &[

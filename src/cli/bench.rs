@@ -150,8 +150,7 @@ fn history(arguments: &BenchArguments) -> Result<(), CliError> {
 fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
     let built_in = || builtin::ALL.iter().map(|of| Ok(of.scene()?)).collect();
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
-    let is_rival = |technique: &Technique| !matches!(technique, Technique::None | Technique::RayTraced);
-    let choices: Vec<Choice> = Technique::ALL.into_iter().filter(is_rival).map(Choice::new).collect();
+    let choices: Vec<Choice> = Technique::rivals().into_iter().map(Choice::new).collect();
     let size = arguments.frame.size;
     let everyone = Measurement { choices, size, runs: 1 };
     for scene in scenes(arguments, built_in)? {

@@ -2,166 +2,82 @@
 
 use std::fmt;
 
-/// Why pixels are wrong. In the order of families: volumes, meshes, counts, planes, maps, silhouettes,
-/// numbers, flags.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Cause {
-    /// Z-pass starts to count inside a volume.
-    EyeInVolume,
-    /// Z-pass starts to count on a near plane that cuts volumes open.
-    NearPlaneCut,
-    /// Z-pass-plus cuts a caster twice at the near plane, and the cuts round apart.
-    NearPlaneCrack,
-    /// A volume is open at its far end.
-    MissingDarkCap,
-    /// A volume is open at its caster.
-    MissingLightCap,
-    /// Volumes or surfaces are cut at a far plane.
-    FarClip,
-    /// Volumes end before the receiver.
-    FiniteExtrusion,
-    /// A caster's mesh has edges of one triangle, and only its light-facing triangles cast.
-    OpenMesh,
-    /// A caster's mesh has edges of more than two triangles, and only light-facing triangles cast.
-    NonManifold,
-    /// Neighbouring triangles of a caster disagree on which side is out, or all face inwards.
-    InconsistentWinding,
-    /// Vertices at bit-equal positions are told apart.
-    SplitVertices,
-    /// Vertices lie within a millionth of the size of each other.
-    NearVertices,
-    /// The light is inside a caster whose light-facing triangles alone cast.
-    LightInside,
-    /// A count stops at 255.
-    Clamped,
-    /// A count of a multiple of 256 reads as none.
-    Wrap256,
-    /// A count stops at 0, as what takes away came before what adds.
-    OperationOrder,
-    /// A light cap's depths are not those of the surface that it lies on.
-    CapFighting,
-    /// A flattened shadow darkens the same pixel more than once.
-    DoubleBlend,
-    /// A flattened shadow and its receiver have the same depths, but for rounding.
-    ZFighting,
-    /// A flattened shadow is drawn beyond its receiver.
-    OffReceiver,
-    /// What lies beyond the light is flattened onto the receiver.
-    AntiShadow,
-    /// What lies under the receiver's plane is flattened onto it.
-    FalseShadow,
-    /// A receiver is no plane that shadows are flattened onto.
-    NotPlanar,
-    /// A surface shadows itself, as texels of the map are coarser than its slope.
-    Acne,
-    /// The bias is larger than the gap between caster and receiver.
-    PeterPanning,
-    /// Texels are coarser than the shadow's outline.
-    Aliasing,
-    /// Surfaces lie outside what the map shows.
-    OutsideMap,
-    /// A silhouette is projected behind the light too.
-    ReverseProjection,
-    /// A silhouette falls on what lies between the light and its caster.
-    Between,
-    /// A silhouette is not projected onto its own caster.
-    SelfShadow,
-    /// Single precision cannot tell the two sides apart.
-    F32Limit,
-    /// The scene says that an object receives no shadows.
-    NotReceiving,
-    /// The scene says that an object casts no shadow.
-    NotCasting,
-    /// The scene says that an object is not drawn.
-    Undrawn,
+named_enum! {
+    /// Why pixels are wrong. In the order of families: volumes, meshes, counts, planes, maps, silhouettes,
+    /// numbers, flags.
+    pub enum Cause {
+        /// Z-pass starts to count inside a volume.
+        EyeInVolume = "eye-in-volume",
+        /// Z-pass starts to count on a near plane that cuts volumes open.
+        NearPlaneCut = "near-plane-cut",
+        /// Z-pass-plus cuts a caster twice at the near plane, and the cuts round apart.
+        NearPlaneCrack = "near-plane-crack",
+        /// A volume is open at its far end.
+        MissingDarkCap = "missing-dark-cap",
+        /// A volume is open at its caster.
+        MissingLightCap = "missing-light-cap",
+        /// Volumes or surfaces are cut at a far plane.
+        FarClip = "far-clip",
+        /// Volumes end before the receiver.
+        FiniteExtrusion = "finite-extrusion",
+        /// A caster's mesh has edges of one triangle, and only its light-facing triangles cast.
+        OpenMesh = "open-mesh",
+        /// A caster's mesh has edges of more than two triangles, and only light-facing triangles cast.
+        NonManifold = "non-manifold",
+        /// Neighbouring triangles of a caster disagree on which side is out, or all face inwards.
+        InconsistentWinding = "inconsistent-winding",
+        /// Vertices at bit-equal positions are told apart.
+        SplitVertices = "split-vertices",
+        /// Vertices lie within a millionth of the size of each other.
+        NearVertices = "near-vertices",
+        /// The light is inside a caster whose light-facing triangles alone cast.
+        LightInside = "light-inside",
+        /// A count stops at 255.
+        Clamped = "clamped",
+        /// A count of a multiple of 256 reads as none.
+        Wrap256 = "wrap-256",
+        /// A count stops at 0, as what takes away came before what adds.
+        OperationOrder = "operation-order",
+        /// A light cap's depths are not those of the surface that it lies on.
+        CapFighting = "cap-fighting",
+        /// A flattened shadow darkens the same pixel more than once.
+        DoubleBlend = "double-blend",
+        /// A flattened shadow and its receiver have the same depths, but for rounding.
+        ZFighting = "z-fighting",
+        /// A flattened shadow is drawn beyond its receiver.
+        OffReceiver = "off-receiver",
+        /// What lies beyond the light is flattened onto the receiver.
+        AntiShadow = "anti-shadow",
+        /// What lies under the receiver's plane is flattened onto it.
+        FalseShadow = "false-shadow",
+        /// A receiver is no plane that shadows are flattened onto.
+        NotPlanar = "not-planar",
+        /// A surface shadows itself, as texels of the map are coarser than its slope.
+        Acne = "acne",
+        /// The bias is larger than the gap between caster and receiver.
+        PeterPanning = "peter-panning",
+        /// Texels are coarser than the shadow's outline.
+        Aliasing = "aliasing",
+        /// Surfaces lie outside what the map shows.
+        OutsideMap = "outside-map",
+        /// A silhouette is projected behind the light too.
+        ReverseProjection = "reverse-projection",
+        /// A silhouette falls on what lies between the light and its caster.
+        Between = "between",
+        /// A silhouette is not projected onto its own caster.
+        SelfShadow = "self-shadow",
+        /// Single precision cannot tell the two sides apart.
+        F32Limit = "f32-limit",
+        /// The scene says that an object receives no shadows.
+        NotReceiving = "not-receiving",
+        /// The scene says that an object casts no shadow.
+        NotCasting = "not-casting",
+        /// The scene says that an object is not drawn.
+        Undrawn = "undrawn",
+    }
 }
 
 impl Cause {
-    /// Every one, in order.
-    pub const ALL: [Cause; 34] = [
-        Cause::EyeInVolume,
-        Cause::NearPlaneCut,
-        Cause::NearPlaneCrack,
-        Cause::MissingDarkCap,
-        Cause::MissingLightCap,
-        Cause::FarClip,
-        Cause::FiniteExtrusion,
-        Cause::OpenMesh,
-        Cause::NonManifold,
-        Cause::InconsistentWinding,
-        Cause::SplitVertices,
-        Cause::NearVertices,
-        Cause::LightInside,
-        Cause::Clamped,
-        Cause::Wrap256,
-        Cause::OperationOrder,
-        Cause::CapFighting,
-        Cause::DoubleBlend,
-        Cause::ZFighting,
-        Cause::OffReceiver,
-        Cause::AntiShadow,
-        Cause::FalseShadow,
-        Cause::NotPlanar,
-        Cause::Acne,
-        Cause::PeterPanning,
-        Cause::Aliasing,
-        Cause::OutsideMap,
-        Cause::ReverseProjection,
-        Cause::Between,
-        Cause::SelfShadow,
-        Cause::F32Limit,
-        Cause::NotReceiving,
-        Cause::NotCasting,
-        Cause::Undrawn,
-    ];
-
-    /// The name in JSON and text.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Cause::EyeInVolume => "eye-in-volume",
-            Cause::NearPlaneCut => "near-plane-cut",
-            Cause::NearPlaneCrack => "near-plane-crack",
-            Cause::MissingDarkCap => "missing-dark-cap",
-            Cause::MissingLightCap => "missing-light-cap",
-            Cause::FarClip => "far-clip",
-            Cause::FiniteExtrusion => "finite-extrusion",
-            Cause::OpenMesh => "open-mesh",
-            Cause::NonManifold => "non-manifold",
-            Cause::InconsistentWinding => "inconsistent-winding",
-            Cause::SplitVertices => "split-vertices",
-            Cause::NearVertices => "near-vertices",
-            Cause::LightInside => "light-inside",
-            Cause::Clamped => "clamped",
-            Cause::Wrap256 => "wrap-256",
-            Cause::OperationOrder => "operation-order",
-            Cause::CapFighting => "cap-fighting",
-            Cause::DoubleBlend => "double-blend",
-            Cause::ZFighting => "z-fighting",
-            Cause::OffReceiver => "off-receiver",
-            Cause::AntiShadow => "anti-shadow",
-            Cause::FalseShadow => "false-shadow",
-            Cause::NotPlanar => "not-planar",
-            Cause::Acne => "acne",
-            Cause::PeterPanning => "peter-panning",
-            Cause::Aliasing => "aliasing",
-            Cause::OutsideMap => "outside-map",
-            Cause::ReverseProjection => "reverse-projection",
-            Cause::Between => "between",
-            Cause::SelfShadow => "self-shadow",
-            Cause::F32Limit => "f32-limit",
-            Cause::NotReceiving => "not-receiving",
-            Cause::NotCasting => "not-casting",
-            Cause::Undrawn => "undrawn",
-        }
-    }
-
-    /// The cause of that name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Cause> {
-        Cause::ALL.into_iter().find(|cause| cause.name() == name)
-    }
-
     /// What it is and what to do, for someone who meets it for the first time.
     #[must_use]
     pub fn meaning(self) -> &'static str {

@@ -55,30 +55,32 @@ pub struct SceneEdit {
     pub change: ObjectChange,
 }
 
-/// What is changed in an object.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum ObjectChange {
-    /// Vertices at bit-equal positions become one.
-    Weld,
-    /// `receives = true`.
-    Receives,
-    /// `casts = true`.
-    Casts,
-    /// `visible = true`.
-    Visible,
+named_enum! {
+    /// What is changed in an object.
+    pub enum ObjectChange {
+        /// Vertices at bit-equal positions become one.
+        Weld = "weld",
+        /// `receives = true`.
+        Receives = "receives",
+        /// `casts = true`.
+        Casts = "casts",
+        /// `visible = true`.
+        Visible = "visible",
+    }
 }
 
-/// A change of a plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum PlanEdit {
-    /// Draws the light caps that are missing.
-    DrawLightCaps,
-    /// Draws the dark caps that are missing.
-    DrawDarkCaps,
-    /// Draws light caps in the vertex order of the surface.
-    SurfaceOrder,
-    /// Fits the views of maps and textures to the scene again.
-    Refit,
+named_enum! {
+    /// A change of a plan.
+    pub enum PlanEdit {
+        /// Draws the light caps that are missing.
+        DrawLightCaps = "draw-light-caps",
+        /// Draws the dark caps that are missing.
+        DrawDarkCaps = "draw-dark-caps",
+        /// Draws light caps in the vertex order of the surface.
+        SurfaceOrder = "surface-order",
+        /// Fits the views of maps and textures to the scene again.
+        Refit = "refit",
+    }
 }
 
 impl PlanEdit {
@@ -89,30 +91,6 @@ impl PlanEdit {
             PlanEdit::DrawLightCaps | PlanEdit::SurfaceOrder => Some(Part::LightCap),
             PlanEdit::DrawDarkCaps => Some(Part::DarkCap),
             PlanEdit::Refit => None,
-        }
-    }
-
-    /// The name in JSON.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            PlanEdit::DrawLightCaps => "draw-light-caps",
-            PlanEdit::DrawDarkCaps => "draw-dark-caps",
-            PlanEdit::SurfaceOrder => "surface-order",
-            PlanEdit::Refit => "refit",
-        }
-    }
-}
-
-impl ObjectChange {
-    /// The name in JSON.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            ObjectChange::Weld => "weld",
-            ObjectChange::Receives => "receives",
-            ObjectChange::Casts => "casts",
-            ObjectChange::Visible => "visible",
         }
     }
 }

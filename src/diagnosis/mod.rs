@@ -146,29 +146,17 @@ pub struct CauseFound {
     pub together_with: Vec<Cause>,
 }
 
-/// What a mend's run has shown of a cause.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Proof {
-    /// No pixel of the region is wrong any more.
-    Proven,
-    /// Some are right now.
-    Part,
-    /// None is right now.
-    NotIt,
-    /// There is nothing to run.
-    NotRun,
-}
-
-impl Proof {
-    /// The name in JSON and text.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Proof::Proven => "proven",
-            Proof::Part => "part",
-            Proof::NotIt => "not it",
-            Proof::NotRun => "not run",
-        }
+named_enum! {
+    /// What a mend's run has shown of a cause.
+    pub enum Proof {
+        /// No pixel of the region is wrong any more.
+        Proven = "proven",
+        /// Some are right now.
+        Part = "part",
+        /// None is right now.
+        NotIt = "not it",
+        /// There is nothing to run.
+        NotRun = "not run",
     }
 }
 

@@ -19,8 +19,7 @@ impl Suited {
     /// volumes that count in floats.
     #[must_use]
     pub fn candidates() -> Vec<Choice> {
-        let makes_shadows = |technique: &Technique| !matches!(technique, Technique::None | Technique::RayTraced);
-        let plain = Technique::ALL.into_iter().filter(makes_shadows).map(Choice::new);
+        let plain = Technique::rivals().into_iter().map(Choice::new);
         plain.chain(Choice::new(Technique::ZFail).counting_in_floats()).collect()
     }
 

@@ -7,23 +7,24 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-/// How distance becomes depth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DepthMapping {
-    /// 1 at the near plane, 0 at infinity: nothing is clipped at far, and `f32` is finest where it
-    /// is needed (Reed 2015, "Depth Precision Visualized").
-    #[default]
-    ReversedInfinite,
-    /// 0 at the near plane, 1 at infinity (Everitt and Kilgard 2002).
-    StandardInfinite,
-    /// The same, with infinity pulled in by epsilon so that rounding can't clip what is there
-    /// (Lengyel 2002).
-    StandardInfiniteEpsilon,
-    /// 0 at the near plane, 1 at the far plane: what reaches beyond is clipped.
-    StandardFinite,
-    /// The same without clipping: what lies beyond is stored as 1.
-    StandardFiniteClamp,
+named_enum! {
+    /// How distance becomes depth.
+    #[derive(Default)]
+    pub enum DepthMapping {
+        /// 1 at the near plane, 0 at infinity: nothing is clipped at far, and `f32` is finest where it
+        /// is needed (Reed 2015, "Depth Precision Visualized").
+        #[default]
+        ReversedInfinite = "reversed-infinite",
+        /// 0 at the near plane, 1 at infinity (Everitt and Kilgard 2002).
+        StandardInfinite = "standard-infinite",
+        /// The same, with infinity pulled in by epsilon so that rounding can't clip what is there
+        /// (Lengyel 2002).
+        StandardInfiniteEpsilon = "standard-infinite-epsilon",
+        /// 0 at the near plane, 1 at the far plane: what reaches beyond is clipped.
+        StandardFinite = "standard-finite",
+        /// The same without clipping: what lies beyond is stored as 1.
+        StandardFiniteClamp = "standard-finite-clamp",
+    }
 }
 
 /// A mapping with its numbers: `depth = offset + scale / distance`.
@@ -40,33 +41,6 @@ pub struct DepthCurve {
 }
 
 impl DepthMapping {
-    /// All, the best first.
-    pub const ALL: [DepthMapping; 5] = [
-        DepthMapping::ReversedInfinite,
-        DepthMapping::StandardInfinite,
-        DepthMapping::StandardInfiniteEpsilon,
-        DepthMapping::StandardFinite,
-        DepthMapping::StandardFiniteClamp,
-    ];
-
-    /// The name in `--set depth=NAME`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            DepthMapping::ReversedInfinite => "reversed-infinite",
-            DepthMapping::StandardInfinite => "standard-infinite",
-            DepthMapping::StandardInfiniteEpsilon => "standard-infinite-epsilon",
-            DepthMapping::StandardFinite => "standard-finite",
-            DepthMapping::StandardFiniteClamp => "standard-finite-clamp",
-        }
-    }
-
-    /// The mapping of that name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<DepthMapping> {
-        DepthMapping::ALL.into_iter().find(|mapping| mapping.name() == name)
-    }
-
     /// Is greater nearer?
     #[must_use]
     pub fn is_reversed(self) -> bool {

@@ -7,30 +7,17 @@
 use super::{ColorWrite, Pass, RasterState, StencilFace};
 use wgpu::{CompareFunction, StencilOperation};
 
-/// Whose words.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Api {
-    /// As a WebGPU pipeline is described.
-    #[default]
-    WebGpu,
-    /// OpenGL 4.5 calls.
-    OpenGl,
-    /// Direct3D 12 descriptions.
-    Direct3D,
-}
-
-impl Api {
-    /// All.
-    pub const ALL: [Api; 3] = [Api::WebGpu, Api::OpenGl, Api::Direct3D];
-
-    /// On its button.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Api::WebGpu => "WebGPU",
-            Api::OpenGl => "OpenGL",
-            Api::Direct3D => "Direct3D 12",
-        }
+named_enum! {
+    /// Whose words.
+    #[derive(Default)]
+    pub enum Api {
+        /// As a WebGPU pipeline is described.
+        #[default]
+        WebGpu = "WebGPU",
+        /// OpenGL 4.5 calls.
+        OpenGl = "OpenGL",
+        /// Direct3D 12 descriptions.
+        Direct3D = "Direct3D 12",
     }
 }
 

@@ -4,7 +4,7 @@
 //! is the reason. Beyond these the technique must be right, so a known failure excuses nothing else.
 
 use super::{Entrant, Row};
-use crate::technique::Technique;
+use crate::technique::{Standing, Technique};
 use std::fmt;
 
 /// The edge band may excuse so large a share of what is compared; more of it hides an error.
@@ -62,15 +62,16 @@ pub enum Expected {
     MayFail(Symptom),
 }
 
-/// What came of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Verdict {
-    /// Nothing is wrong.
-    Holds,
-    /// What is wrong was known to be.
-    FailsAsKnown,
-    /// Nobody expected this.
-    Unexpected,
+named_enum! {
+    /// What came of it.
+    pub enum Verdict {
+        /// Nothing is wrong.
+        Holds = "holds",
+        /// What is wrong was known to be.
+        FailsAsKnown = "fails as known",
+        /// Nobody expected this.
+        Unexpected = "unexpected",
+    }
 }
 
 /// Why a row is not what was expected.
@@ -155,17 +156,9 @@ impl Failure {
 
 /// What texels do along a shadow's edge, for techniques that are never promised to be right.
 #[must_use]
-pub const fn texels(technique: Technique) -> Option<(Symptom, &'static str)> {
-    let (most, because) = match technique {
-        Technique::ShadowMap => (0.002, "1024 texels hold all that casts: where the light spreads them, each shows"),
-        Technique::PlanarTexture => {
-            (0.005, "a receiver of several metres has 256 texels a side: each is larger than a pixel")
-        }
-        Technique::Projective => {
-            (0.002, "512 texels hold the whole silhouette: where the light spreads it, each shows")
-        }
-        _ => return None,
-    };
+pub fn texels(technique: Technique) -> Option<(Symptom, &'static str)> {
+    let Standing::Rival { texels, .. } = technique.description().standing else { return None };
+    let (most, because) = texels?;
     Some((Symptom { name: "aliasing", kind: Kind::Either, most }, because))
 }
 
@@ -237,18 +230,6 @@ impl Row {
             (Some(_), ..) => Verdict::Unexpected,
             (None, Expected::Fails(_), _) | (None, _, 1..) => Verdict::FailsAsKnown,
             _ => Verdict::Holds,
-        }
-    }
-}
-
-impl Verdict {
-    /// In JSON and tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Verdict::Holds => "holds",
-            Verdict::FailsAsKnown => "fails as known",
-            Verdict::Unexpected => "unexpected",
         }
     }
 }

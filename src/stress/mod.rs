@@ -25,7 +25,7 @@ pub use table::value_text;
 pub use trend::{Course, Trend};
 
 use crate::scene::{MeshError, Scene};
-use crate::technique::{Choice, ChoiceError, Technique};
+use crate::technique::{Choice, ChoiceError, Standing, Technique};
 use std::fmt;
 
 /// Width and height of the pictures at which expectations were measured: at another size a failure of
@@ -122,35 +122,12 @@ impl fmt::Display for Entrant {
     }
 }
 
-/// Techniques that run in every case unless it says otherwise. The ray-traced one is right by
-/// definition, and none asks nothing.
-pub const USUAL: [Technique; 8] = [
-    Technique::Auto,
-    Technique::ZFail,
-    Technique::ZPass,
-    Technique::ZPassPlus,
-    Technique::ShadowMap,
-    Technique::Planar,
-    Technique::PlanarTexture,
-    Technique::Projective,
-];
-
 /// Why a technique is expected to be right where no failure of it is known.
 #[must_use]
-pub const fn right_because(technique: Technique) -> &'static str {
-    match technique {
-        Technique::ZFail => "volumes are closed and counted from infinity, so neither eye nor near plane matters",
-        Technique::ZPass => "the near plane cuts no volume, and the eye is in none",
-        Technique::ZPassPlus => "what the near plane begins with is counted too, so the eye may be in a volume",
-        Technique::ShadowMap => "its texels are finer than pixels, and its bias is enough",
-        Technique::Planar => "all that is darkened is flat, and casters are clipped to what lies between",
-        Technique::PlanarTexture => "all that is darkened is flat, and no edge of a shadow is blurred by texels",
-        Technique::Projective => "nothing darkens itself here, or stands between light and caster",
-        Technique::Auto => {
-            "it counts like z-fail, leaves out what nothing needs, and beyond eight bits counts in a float"
-        }
-        Technique::RayTraced => "it is the truth",
-        Technique::None => "there is nothing to darken",
+pub fn right_because(technique: Technique) -> &'static str {
+    match technique.description().standing {
+        Standing::Rival { right_because, .. } => right_because,
+        Standing::Apart { because } => because,
     }
 }
 
@@ -177,7 +154,7 @@ impl Case {
     #[must_use]
     pub fn entrants(&self) -> Vec<Entrant> {
         let is_left_out = |technique: &Technique| self.without.iter().any(|(without, _)| without == technique);
-        let usual = USUAL.into_iter().filter(|technique| !is_left_out(technique)).map(Entrant::of);
+        let usual = Technique::rivals().into_iter().filter(|technique| !is_left_out(technique)).map(Entrant::of);
         usual.chain(self.also.iter().copied()).collect()
     }
 

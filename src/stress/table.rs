@@ -1,7 +1,8 @@
 //! The table for people, a line a case and technique; and one in Markdown, a row a case.
 
-use super::{Case, Course, MEASURED_AT, Stress, Summary, USUAL, Verdict};
+use super::{Case, Course, MEASURED_AT, Stress, Summary, Verdict};
 use crate::numbers;
+use crate::technique::Technique;
 use std::fmt;
 
 impl Stress {
@@ -40,14 +41,15 @@ impl Stress {
         let summaries = self.summary();
         let mut names: Vec<&str> = summaries.iter().map(|summary| summary.case).collect();
         names.dedup();
+        let rivals = Technique::rivals();
         let mut text = "| case | parameter |".to_owned();
-        USUAL.iter().for_each(|technique| text.push_str(&format!(" {} |", technique.name())));
+        rivals.iter().for_each(|technique| text.push_str(&format!(" {} |", technique.name())));
         text.push_str(" other forms |\n|---|---|");
-        USUAL.iter().for_each(|_| text.push_str("---|"));
+        rivals.iter().for_each(|_| text.push_str("---|"));
         text.push_str("---|\n");
         for name in names {
             let of_case = || summaries.iter().filter(|summary| summary.case == name);
-            let cells = USUAL.iter().map(|technique| {
+            let cells = rivals.iter().map(|technique| {
                 let usual = of_case().find(|s| s.entrant.technique == *technique && s.entrant.settings.is_empty());
                 usual.map_or(String::new(), cell)
             });

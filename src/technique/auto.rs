@@ -17,9 +17,11 @@
 //! would have left out is drawn, and nothing must change.
 
 use super::casters::{self, Darkened};
+use super::description::{Description, Standing};
 use super::frame::{Frame, Job};
+use super::settings::COMMON;
 use super::volume::{Counting, Form};
-use super::{PlanError, ReportRows, volume};
+use super::{PlanError, volume};
 use crate::geometry::umbra::{self, Occluder};
 use crate::geometry::{NearClipVolume, Outside, ViewVolume, layers};
 use crate::math::AxisBox;
@@ -27,9 +29,20 @@ use crate::numbers;
 use crate::plan::{Decision, FramePlan, LeftOut, LightId};
 use glam::{DVec3, DVec4};
 
-/// With all that may be left out, without what a look at the frame shows to be hidden, and with nothing
-/// left out.
-pub(super) const REPORT_ROWS: ReportRows = &[&[], &[("occlusion", "queries")], &[("leave-out", "none")]];
+/// What is said of it.
+pub(super) const DESCRIPTION: Description = Description {
+    summary: "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs.",
+    plan,
+    settings: &COMMON,
+    // With all that may be left out, without what a look at the frame shows to be hidden, and with nothing
+    // left out.
+    report_rows: &[&[], &[("occlusion", "queries")], &[("leave-out", "none")]],
+    standing: Standing::Rival {
+        place: 0,
+        right_because: "it counts like z-fail, leaves out what nothing needs, and beyond eight bits counts in a float",
+        texels: None,
+    },
+};
 
 /// What eight bits hold.
 const MOST_IN_STENCIL: usize = 255;

@@ -1,8 +1,9 @@
 //! The techniques: each a pure function from a scene to a [`FramePlan`].
 //!
-//! A technique is one file with one function `(Job) → FramePlan`, a variant of [`Technique`] with its
-//! name and summary, a line in [`plan`], and its settings as data (`settings.rs`). What they share is
-//! [`Frame`]: the camera, surfaces, and the ambient, light and mask passes.
+//! A technique is one file with a function `(Job) → FramePlan`, its settings as constants, and a [`Description`] with
+//! all else that is said of it; and a variant of [`Technique`] with its name. The compiler names the few places that
+//! ask for more, such as its mark in plots. What techniques share is [`Frame`]: the camera, surfaces, and the
+//! ambient, light and mask passes.
 //!
 //! # A technique of your own
 //!
@@ -78,6 +79,7 @@
 
 mod auto;
 mod casters;
+mod description;
 mod frame;
 mod maps;
 mod none;
@@ -93,9 +95,10 @@ mod silhouettes;
 mod surfaces;
 mod volume;
 
+pub use description::{Description, ReportRows, Standing};
 pub use frame::{Drawn, Frame, Job, MOST_LIGHTS, Piece, Placed, StencilUse};
 pub use planar::PlanarSettings;
-pub use settings::{Choice, ChoiceError, CommonSettings, ReportRows, SettingSpec, SettingValues, Values};
+pub use settings::{Choice, ChoiceError, CommonSettings, SettingSpec, SettingValues, Values};
 pub use shadow_map::MapSettings;
 pub use volume::{VolumeSettings, WhoCasts, casting};
 
@@ -106,16 +109,7 @@ use crate::plan::FramePlan;
 /// # Errors
 /// A camera or light that can't be used, or too many lights.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    match job.choice.technique() {
-        Technique::None => none::plan(job),
-        Technique::Planar => planar::plan(job),
-        Technique::PlanarTexture => planar_texture::plan(job),
-        Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => volume::plan(job),
-        Technique::Auto => auto::plan(job),
-        Technique::ShadowMap => shadow_map::plan(job),
-        Technique::Projective => projective::plan(job),
-        Technique::RayTraced => ray_traced::plan(job),
-    }
+    (job.choice.technique().description().plan)(job)
 }
 
 /// Why a scene can't be planned.
@@ -135,99 +129,28 @@ pub enum PlanError {
     },
 }
 
-/// A way to make shadows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Technique {
-    /// No shadows at all.
-    None,
-    /// Casters flattened onto planes.
-    Planar,
-    /// Casters drawn into a texture of every flat receiver.
-    PlanarTexture,
-    /// Shadow volumes counted in front of the surface.
-    ZPass,
-    /// Shadow volumes counted behind the surface.
-    ZFail,
-    /// Shadow volumes counted in front of the surface, from the near plane's own count on.
-    ZPassPlus,
-    /// Shadow volumes, each counted as is cheapest while right, and only those that matter.
-    Auto,
-    /// Depth from the light, compared at every pixel.
-    ShadowMap,
-    /// Casters' silhouettes projected over the scene.
-    Projective,
-    /// Rays from eye and light: the ground truth.
-    RayTraced,
-}
-
-impl Technique {
-    /// All that exist, in teaching order.
-    pub const ALL: [Technique; 10] = [
-        Technique::None,
-        Technique::Planar,
-        Technique::PlanarTexture,
-        Technique::ZPass,
-        Technique::ZFail,
-        Technique::ZPassPlus,
-        Technique::Auto,
-        Technique::ShadowMap,
-        Technique::Projective,
-        Technique::RayTraced,
-    ];
-
-    /// The name on the command line, in scene files and manifests.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Technique::None => "none",
-            Technique::Planar => "planar",
-            Technique::PlanarTexture => "planar-texture",
-            Technique::ZPass => "z-pass",
-            Technique::ZFail => "z-fail",
-            Technique::ZPassPlus => "z-pass-plus",
-            Technique::Auto => "auto",
-            Technique::ShadowMap => "shadow-map",
-            Technique::Projective => "projective",
-            Technique::RayTraced => "ray-traced",
-        }
-    }
-
-    /// What it does, in one sentence.
-    #[must_use]
-    pub fn summary(self) -> &'static str {
-        match self {
-            Technique::None => "Every light reaches every surface that faces it: the picture to compare others with.",
-            Technique::Planar => {
-                "Casters are flattened onto every flat receiver, and the stencil keeps their shadow on it."
-            }
-            Technique::PlanarTexture => {
-                "Draws the casters into a texture of every flat receiver, through the box that the light's pyramid becomes."
-            }
-            Technique::ZPass => {
-                "Counts the shadow volumes that the view ray is inside of when it reaches the surface, from the eye on."
-            }
-            Technique::ZFail => {
-                "Counts the same volumes from infinity back to the surface, so the eye may be inside one."
-            }
-            Technique::ZPassPlus => {
-                "Counts the near plane's volumes from the light first, then as z-pass: the eye may be inside one."
-            }
-            Technique::Auto => {
-                "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs."
-            }
-            Technique::ShadowMap => "Stores the depth of what the light sees, and darkens what lies behind it.",
-            Technique::Projective => {
-                "Throws a picture of each caster's silhouette over the scene like a slide: no depths are compared."
-            }
-            Technique::RayTraced => {
-                "Follows rays from the eye and the light on the CPU: what the other techniques are measured against."
-            }
-        }
-    }
-
-    /// The technique of that name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Technique> {
-        Technique::ALL.into_iter().find(|technique| technique.name() == name)
+named_enum! {
+    /// A way to make shadows, in teaching order.
+    pub enum Technique {
+        /// No shadows at all.
+        None = "none",
+        /// Casters flattened onto planes.
+        Planar = "planar",
+        /// Casters drawn into a texture of every flat receiver.
+        PlanarTexture = "planar-texture",
+        /// Shadow volumes counted in front of the surface.
+        ZPass = "z-pass",
+        /// Shadow volumes counted behind the surface.
+        ZFail = "z-fail",
+        /// Shadow volumes counted in front of the surface, from the near plane's own count on.
+        ZPassPlus = "z-pass-plus",
+        /// Shadow volumes, each counted as is cheapest while right, and only those that matter.
+        Auto = "auto",
+        /// Depth from the light, compared at every pixel.
+        ShadowMap = "shadow-map",
+        /// Casters' silhouettes projected over the scene.
+        Projective = "projective",
+        /// Rays from eye and light: the ground truth.
+        RayTraced = "ray-traced",
     }
 }

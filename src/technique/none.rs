@@ -1,12 +1,19 @@
 //! No shadows: every light reaches every surface that faces it.
 
+use super::PlanError;
+use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
-use super::settings::ONE_ROW;
-use super::{PlanError, ReportRows};
+use super::settings::COMMON;
 use crate::plan::FramePlan;
 
-/// What a report compares: the defaults.
-pub(super) const REPORT_ROWS: ReportRows = ONE_ROW;
+/// What is said of it.
+pub(super) const DESCRIPTION: Description = Description {
+    summary: "Every light reaches every surface that faces it: the picture to compare others with.",
+    plan,
+    settings: &COMMON,
+    report_rows: ONE_ROW,
+    standing: Standing::Apart { because: "there is nothing to darken" },
+};
 
 /// Plans a frame without shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

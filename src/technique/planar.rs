@@ -8,10 +8,11 @@
 //! With the stencil off, or with shadows blended twice, the older way is shown: the scene is lit
 //! first, and the flattened casters darken it.
 
+use super::PlanError;
+use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
 use super::settings::{SettingSpec, Values, Words, with_own, words};
-use super::{PlanError, ReportRows};
 use crate::geometry::planar::{Clip, Flattened, Flattener};
 use crate::geometry::relative;
 use crate::plan::{
@@ -28,8 +29,19 @@ const NO_OFFSET: DepthBiasState = DepthBiasState { constant: 0, slope_scale: 0.0
 /// projected apart from the surface that lies in it.
 const OFFSET: DepthBiasState = DepthBiasState { constant: 64, slope_scale: 2.0, clamp: 0.0 };
 
-/// What a report compares: the defaults, and shadows that fight with their plane.
-pub(super) const REPORT_ROWS: ReportRows = &[&[], &[("z-fighting", "none")]];
+/// What is said of it.
+pub(super) const DESCRIPTION: Description = Description {
+    summary: "Casters are flattened onto every flat receiver, and the stencil keeps their shadow on it.",
+    plan,
+    settings: &SETTINGS,
+    // The defaults, and shadows that fight with their plane.
+    report_rows: &[&[], &[("z-fighting", "none")]],
+    standing: Standing::Rival {
+        place: 5,
+        right_because: "all that is darkened is flat, and casters are clipped to what lies between",
+        texels: None,
+    },
+};
 
 const STENCIL: Words<bool> = words("stencil", &["on", "off"], &[true, false], "keeps shadows on their receiver");
 const BLEND: Words<bool> =

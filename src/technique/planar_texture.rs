@@ -6,13 +6,14 @@
 //! reads the texture. Ambient light has a pass of its own. Surfaces that are not flat get no
 //! shadow, and edges are as coarse as the texture.
 
+use super::PlanError;
+use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, Piece, StencilUse};
 use super::maps::{self, REDRAW};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
 use super::settings::{Number, SettingSpec, with_own};
 use super::silhouettes::{self, LayerPass};
 use super::surfaces;
-use super::{PlanError, ReportRows};
 use crate::geometry::Parallelogram;
 use crate::math::Plane;
 use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, Visibility};
@@ -24,9 +25,24 @@ const SIZE: Number = maps::size("256", 4096, "texels along each side of a receiv
 /// In the order in which they are shown.
 pub(super) const SETTINGS: [SettingSpec; 7] = with_own([SIZE.spec, REDRAW.spec]);
 
-/// Sizes of textures.
-pub(super) const REPORT_ROWS: ReportRows =
-    &[&[("size", "64")], &[("size", "256")], &[("size", "256"), ("redraw", "changed")], &[("size", "1024")]];
+/// What is said of it.
+pub(super) const DESCRIPTION: Description = Description {
+    summary: "Draws the casters into a texture of every flat receiver, through the box that the light's pyramid becomes.",
+    plan,
+    settings: &SETTINGS,
+    // Sizes of textures.
+    report_rows: &[
+        &[("size", "64")],
+        &[("size", "256")],
+        &[("size", "256"), ("redraw", "changed")],
+        &[("size", "1024")],
+    ],
+    standing: Standing::Rival {
+        place: 6,
+        right_because: "all that is darkened is flat, and no edge of a shadow is blurred by texels",
+        texels: Some((0.005, "a receiver of several metres has 256 texels a side: each is larger than a pixel")),
+    },
+};
 
 /// Plans receiver textures.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

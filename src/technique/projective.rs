@@ -5,12 +5,13 @@
 //! between light and caster is darkened like what lies behind it, and a caster can't darken itself.
 //! Casters may be translucent.
 
+use super::PlanError;
 use super::casters::{self, Darkened};
+use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::maps::{self, REDRAW};
 use super::settings::{Number, SettingSpec, Words, with_own, words};
 use super::silhouettes::{self, LayerPass};
-use super::{PlanError, ReportRows};
 use crate::geometry::light_frame;
 use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, PlanMap, Visibility};
 use glam::DMat4;
@@ -28,8 +29,19 @@ const REVERSE: Words<bool> =
 /// In the order in which they are shown.
 pub(super) const SETTINGS: [SettingSpec; 9] = with_own([SIZE.spec, PASSES.spec, REVERSE.spec, REDRAW.spec]);
 
-/// Sizes of pictures.
-pub(super) const REPORT_ROWS: ReportRows = &[&[("size", "128")], &[("size", "512")], &[("size", "2048")]];
+/// What is said of it.
+pub(super) const DESCRIPTION: Description = Description {
+    summary: "Throws a picture of each caster's silhouette over the scene like a slide: no depths are compared.",
+    plan,
+    settings: &SETTINGS,
+    // Sizes of pictures.
+    report_rows: &[&[("size", "128")], &[("size", "512")], &[("size", "2048")]],
+    standing: Standing::Rival {
+        place: 7,
+        right_because: "nothing darkens itself here, or stands between light and caster",
+        texels: Some((0.002, "512 texels hold the whole silhouette: where the light spreads it, each shows")),
+    },
+};
 
 /// Plans projective shadow textures.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

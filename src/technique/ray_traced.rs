@@ -4,9 +4,10 @@
 //! [`Tracer`], and the light pass adds light where they say so. Sorting the scene for
 //! the rays is set-up, as edge lists are; following them is part of the frame.
 
+use super::PlanError;
+use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Frame, Job, StencilUse};
-use super::settings::ONE_ROW;
-use super::{PlanError, ReportRows};
+use super::settings::COMMON;
 use crate::plan::{ColorTarget, CpuImage, DecidedBy, FramePlan, LightId, MakeImage, Pass, ViewId, Visibility};
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -28,8 +29,14 @@ impl MakeImage for LightRays {
     }
 }
 
-/// What a report compares: the defaults.
-pub(super) const REPORT_ROWS: ReportRows = ONE_ROW;
+/// What is said of it.
+pub(super) const DESCRIPTION: Description = Description {
+    summary: "Follows rays from the eye and the light on the CPU: what the other techniques are measured against.",
+    plan,
+    settings: &COMMON,
+    report_rows: ONE_ROW,
+    standing: Standing::Apart { because: "it is the truth" },
+};
 
 /// Plans a frame with traced shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

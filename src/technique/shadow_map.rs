@@ -5,11 +5,12 @@
 //! where the map holds something nearer to the light. Casters behind which nothing lies that
 //! could be darkened are left out: a floor under everything would only widen the map.
 
+use super::PlanError;
 use super::casters::{self, Darkened};
+use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::maps::{self, REDRAW};
 use super::settings::{Number, NumberOr, SettingSpec, Values, Words, number, number_or, whole, with_own, words};
-use super::{PlanError, ReportRows};
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
@@ -115,25 +116,36 @@ struct MapTarget {
     raster: RasterState,
 }
 
-/// Sizes with the default bias, and with so little that surfaces darken themselves; other ways to
-/// keep them from it; and a soft edge.
-pub(super) const REPORT_ROWS: ReportRows = &[
-    &[("size", "256")],
-    &[("size", "512")],
-    &[("size", "1024")],
-    &[("size", "2048")],
-    &[("size", "4096")],
-    &[("size", "256"), ("bias-slope", "0")],
-    &[("size", "512"), ("bias-slope", "0")],
-    &[("size", "1024"), ("bias-slope", "0")],
-    &[("size", "2048"), ("bias-slope", "0")],
-    &[("size", "4096"), ("bias-slope", "0")],
-    &[("bias-slope", "0"), ("cull", "front")],
-    &[("bias-slope", "0"), ("bias-normal", "1.5")],
-    &[("bias-slope", "1"), ("bias-receiver-plane", "on"), ("bias-constant", "64")],
-    &[("filter", "pcf:3")],
-    &[("redraw", "changed")],
-];
+/// What is said of it.
+pub(super) const DESCRIPTION: Description = Description {
+    summary: "Stores the depth of what the light sees, and darkens what lies behind it.",
+    plan,
+    settings: &SETTINGS,
+    // Sizes with the default bias, and with so little that surfaces darken themselves; other ways to
+    // keep them from it; and a soft edge.
+    report_rows: &[
+        &[("size", "256")],
+        &[("size", "512")],
+        &[("size", "1024")],
+        &[("size", "2048")],
+        &[("size", "4096")],
+        &[("size", "256"), ("bias-slope", "0")],
+        &[("size", "512"), ("bias-slope", "0")],
+        &[("size", "1024"), ("bias-slope", "0")],
+        &[("size", "2048"), ("bias-slope", "0")],
+        &[("size", "4096"), ("bias-slope", "0")],
+        &[("bias-slope", "0"), ("cull", "front")],
+        &[("bias-slope", "0"), ("bias-normal", "1.5")],
+        &[("bias-slope", "1"), ("bias-receiver-plane", "on"), ("bias-constant", "64")],
+        &[("filter", "pcf:3")],
+        &[("redraw", "changed")],
+    ],
+    standing: Standing::Rival {
+        place: 4,
+        right_because: "its texels are finer than pixels, and its bias is enough",
+        texels: Some((0.002, "1024 texels hold all that casts: where the light spreads them, each shows")),
+    },
+};
 
 /// Plans a frame with shadow maps.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {

@@ -18,9 +18,9 @@ mod settings;
 
 use super::auto::Questions;
 use super::casters::{self, Darkened};
+use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
-use super::settings::ONE_ROW;
-use super::{Choice, PlanError, ReportRows, Technique, shown};
+use super::{Choice, PlanError, Technique, shown};
 use crate::geometry::{
     Caster, Casters, DarkCap, Extruder, Extrusion, Fan, GeometryCache, SilhouetteBy, VolumeOf, VolumeParts, relative,
 };
@@ -35,20 +35,49 @@ use glam::{DVec3, DVec4};
 pub use settings::{SETTINGS, VolumeSettings, WhoCasts};
 use std::ops::Range;
 
-/// What a report compares of z-pass and z-pass-plus: the defaults.
-pub(super) const REPORT_ROWS: ReportRows = ONE_ROW;
-
-/// Of z-fail also each way to count, cast and store depth that costs or saves something.
-pub(super) const Z_FAIL_REPORT_ROWS: ReportRows = &[
-    &[],
-    &[("casters", "light-facing")],
-    &[("casters", "by-topology")],
-    &[("faces", "two-pass")],
-    &[("counter", "float")],
-    &[("extrusion", "finite:100")],
-    &[("depth", "standard-infinite")],
-    &[("depth", "standard-finite")],
-];
+/// What is said of z-pass.
+pub(super) const Z_PASS: Description = Description {
+    summary: "Counts the shadow volumes that the view ray is inside of when it reaches the surface, from the eye on.",
+    plan,
+    settings: &SETTINGS,
+    report_rows: ONE_ROW,
+    standing: Standing::Rival {
+        place: 2,
+        right_because: "the near plane cuts no volume, and the eye is in none",
+        texels: None,
+    },
+};
+/// What is said of z-fail.
+pub(super) const Z_FAIL: Description = Description {
+    summary: "Counts the same volumes from infinity back to the surface, so the eye may be inside one.",
+    // Also each way to count, cast and store depth that costs or saves something.
+    report_rows: &[
+        &[],
+        &[("casters", "light-facing")],
+        &[("casters", "by-topology")],
+        &[("faces", "two-pass")],
+        &[("counter", "float")],
+        &[("extrusion", "finite:100")],
+        &[("depth", "standard-infinite")],
+        &[("depth", "standard-finite")],
+    ],
+    standing: Standing::Rival {
+        place: 1,
+        right_because: "volumes are closed and counted from infinity, so neither eye nor near plane matters",
+        texels: None,
+    },
+    ..Z_PASS
+};
+/// What is said of z-pass-plus.
+pub(super) const Z_PASS_PLUS: Description = Description {
+    summary: "Counts the near plane's volumes from the light first, then as z-pass: the eye may be inside one.",
+    standing: Standing::Rival {
+        place: 3,
+        right_because: "what the near plane begins with is counted too, so the eye may be in a volume",
+        texels: None,
+    },
+    ..Z_PASS
+};
 
 /// How a volume is counted, and which caps that takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

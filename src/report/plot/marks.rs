@@ -4,6 +4,8 @@
 //! words in them pass a contrast of 4.5 : 1. No two techniques share a shape, so a grey print
 //! tells them apart too.
 
+use crate::technique::Technique;
+
 /// The shape of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mark {
@@ -49,18 +51,31 @@ const fn style(technique: &'static str, mark: Mark, paper: [u8; 3], screen: [u8;
 }
 
 /// Techniques in teaching order.
-pub static STYLES: [Style; 10] = [
-    style("none", Mark::Cross, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]),
-    style("planar", Mark::Square, [0x1b, 0x74, 0xa8], [0x56, 0xb4, 0xe9]),
-    style("planar-texture", Mark::TriangleRight, [0x00, 0x55, 0xa0], [0x8f, 0xb8, 0xe8]),
-    style("z-pass", Mark::TriangleUp, [0x7d, 0x72, 0x00], [0xf0, 0xe4, 0x42]),
-    style("z-pass-plus", Mark::Plus, [0x94, 0x63, 0x00], [0xe6, 0x9f, 0x00]),
-    style("z-fail", Mark::TriangleDown, [0x00, 0x7d, 0x5b], [0x2f, 0xb5, 0x8a]),
-    style("auto", Mark::Star, [0xa8, 0x4c, 0x80], [0xcc, 0x79, 0xa7]),
-    style("shadow-map", Mark::Diamond, [0xb8, 0x4f, 0x00], [0xe8, 0x7f, 0x3a]),
-    style("projective", Mark::TriangleLeft, [0x6c, 0x4b, 0xb8], [0xa8, 0x8e, 0xe6]),
-    style("ray-traced", Mark::Circle, [0x1b, 0x1e, 0x25], [0xd9, 0xdc, 0xe3]),
-];
+pub static STYLES: [Style; Technique::ALL.len()] = {
+    let mut styles = [const { style("", Mark::Hexagon, [0; 3], [0; 3]) }; Technique::ALL.len()];
+    let mut index = 0;
+    while index < styles.len() {
+        styles[index] = look(Technique::ALL[index]);
+        index += 1;
+    }
+    styles
+};
+
+const fn look(technique: Technique) -> Style {
+    let (mark, paper, screen) = match technique {
+        Technique::None => (Mark::Cross, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]),
+        Technique::Planar => (Mark::Square, [0x1b, 0x74, 0xa8], [0x56, 0xb4, 0xe9]),
+        Technique::PlanarTexture => (Mark::TriangleRight, [0x00, 0x55, 0xa0], [0x8f, 0xb8, 0xe8]),
+        Technique::ZPass => (Mark::TriangleUp, [0x7d, 0x72, 0x00], [0xf0, 0xe4, 0x42]),
+        Technique::ZPassPlus => (Mark::Plus, [0x94, 0x63, 0x00], [0xe6, 0x9f, 0x00]),
+        Technique::ZFail => (Mark::TriangleDown, [0x00, 0x7d, 0x5b], [0x2f, 0xb5, 0x8a]),
+        Technique::Auto => (Mark::Star, [0xa8, 0x4c, 0x80], [0xcc, 0x79, 0xa7]),
+        Technique::ShadowMap => (Mark::Diamond, [0xb8, 0x4f, 0x00], [0xe8, 0x7f, 0x3a]),
+        Technique::Projective => (Mark::TriangleLeft, [0x6c, 0x4b, 0xb8], [0xa8, 0x8e, 0xe6]),
+        Technique::RayTraced => (Mark::Circle, [0x1b, 0x1e, 0x25], [0xd9, 0xdc, 0xe3]),
+    };
+    style(technique.name(), mark, paper, screen)
+}
 
 /// How a technique looks that is not in the table.
 pub static UNKNOWN: Style = style("", Mark::Hexagon, [0x5d, 0x64, 0x73], [0xa3, 0xa9, 0xb6]);

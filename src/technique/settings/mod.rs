@@ -14,7 +14,7 @@ pub use face::{SettingSpec, SettingValues, Values};
 
 use super::planar::PlanarSettings;
 use super::volume::VolumeSettings;
-use super::{Technique, auto, maps, none, planar, planar_texture, projective, ray_traced, shadow_map, volume};
+use super::{Technique, maps};
 use crate::scene::{TechniqueRequest, suggestion};
 
 /// Why a request for a technique can't be met.
@@ -60,47 +60,7 @@ pub struct Choice {
 }
 
 /// The settings of a technique that has none of its own.
-const COMMON: [SettingSpec; 5] = with_own([]);
-
-impl Technique {
-    /// Its settings, in the order in which they are shown.
-    #[must_use]
-    pub fn settings(self) -> &'static [SettingSpec] {
-        match self {
-            Technique::None | Technique::RayTraced | Technique::Auto => &COMMON,
-            Technique::Planar => &planar::SETTINGS,
-            Technique::PlanarTexture => &planar_texture::SETTINGS,
-            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => &volume::SETTINGS,
-            Technique::ShadowMap => &shadow_map::SETTINGS,
-            Technique::Projective => &projective::SETTINGS,
-        }
-    }
-}
-
-/// Rows of a technique in a report: the settings that each changes.
-pub type ReportRows = &'static [&'static [(&'static str, &'static str)]];
-
-/// One row with the defaults.
-pub(super) const ONE_ROW: ReportRows = &[&[]];
-
-impl Technique {
-    /// The settings that a report compares by default; each technique declares its own beside
-    /// its plan.
-    #[must_use]
-    pub fn report_rows(self) -> ReportRows {
-        match self {
-            Technique::None => none::REPORT_ROWS,
-            Technique::Planar => planar::REPORT_ROWS,
-            Technique::PlanarTexture => planar_texture::REPORT_ROWS,
-            Technique::ZPass | Technique::ZPassPlus => volume::REPORT_ROWS,
-            Technique::ZFail => volume::Z_FAIL_REPORT_ROWS,
-            Technique::Auto => auto::REPORT_ROWS,
-            Technique::ShadowMap => shadow_map::REPORT_ROWS,
-            Technique::Projective => projective::REPORT_ROWS,
-            Technique::RayTraced => ray_traced::REPORT_ROWS,
-        }
-    }
-}
+pub(super) const COMMON: [SettingSpec; 5] = with_own([]);
 
 impl Choice {
     /// As a scene file names it: the technique, and the settings that are not as they are by default.
@@ -120,7 +80,7 @@ impl Choice {
     pub fn report_grid() -> Result<Vec<Choice>, ChoiceError> {
         let mut grid = Vec::new();
         for technique in Technique::ALL {
-            for row in technique.report_rows() {
+            for row in technique.description().report_rows {
                 let mut choice = Choice::new(technique);
                 row.iter().try_for_each(|(key, value)| choice.set(key, value))?;
                 grid.push(choice);
