@@ -137,7 +137,7 @@ fn maps_are_told_how_to_stay_maps() {
     };
     let is_of_map = |settings: &&serde_json::Value| settings.as_object().is_some_and(|some| !some.is_empty());
     for cause in ["aliasing", "peter-panning"] {
-        assert!(mends_of(cause).iter().any(|settings| is_of_map(settings)), "{cause}: {found}");
+        assert!(mends_of(cause).iter().any(is_of_map), "{cause}: {found}");
     }
 }
 

@@ -407,7 +407,7 @@ fn circles(arrows: &BTreeMap<ModulePath, BTreeSet<ModulePath>>) -> BTreeSet<BTre
     let circle = |from: &&ModulePath| -> BTreeSet<&ModulePath> {
         all[*from].iter().copied().filter(|to| all.get(*to).is_some_and(|back| back.contains(*from))).collect()
     };
-    all.keys().map(|from| circle(from)).filter(|circle| circle.len() > 1).collect()
+    all.keys().map(circle).filter(|circle| circle.len() > 1).collect()
 }
 
 #[test]

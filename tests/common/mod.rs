@@ -77,6 +77,5 @@ pub fn names(folder: &Path) -> Vec<String> {
 /// A capture held against the ground truth.
 pub fn judged(session: &mut Session, scene: &Scene, technique: Technique, size: [u32; 2]) -> Capture {
     let capture = session.capture(scene, &request(technique, size)).expect("a capture");
-    let capture = session.judged(scene, &capture, &Progress::default()).expect("a truth");
-    capture
+    session.judged(scene, &capture, &Progress::default()).expect("a truth")
 }
