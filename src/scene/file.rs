@@ -26,8 +26,8 @@ mod tables;
 pub use save::{SaveError, SavedScene, save};
 pub use store::{StoreError, store};
 
-use super::open::stem;
 use super::read_text::read_text;
+use super::read_text::stem;
 use super::{Scene, SceneError};
 use problem::Problem;
 use std::path::{Path, PathBuf};

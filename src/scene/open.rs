@@ -1,6 +1,7 @@
 //! A scene by whatever names it: a built-in name, a scene file or a model.
 
 use super::builtin::{self, Builtin};
+use super::read_text::stem;
 use super::suggestion::nearest;
 use super::{Scene, SceneError, file, model_scene, obj};
 use std::path::{Path, PathBuf};
@@ -50,11 +51,6 @@ pub fn open(spec: &OpenSpec) -> Result<Scene, SceneError> {
         Some("obj") => model_scene(&stem(path), obj::load(path)?, spec.floor).map_err(|error| error.in_file(path)),
         _ => Err(unknown(&spec.name)),
     }
-}
-
-/// The file's name without folder and ending.
-pub(super) fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
 }
 
 fn unknown(name: &str) -> SceneError {

@@ -36,3 +36,8 @@ pub fn quoted(word: &str) -> String {
     let rest = if word.chars().nth(MOST).is_some() { "…" } else { "" };
     format!("`{shown}{rest}`")
 }
+
+/// The file's name without folder and ending.
+pub(super) fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+}

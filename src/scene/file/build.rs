@@ -10,7 +10,7 @@ use crate::scene::placement::Surroundings;
 use crate::scene::suggestion;
 use crate::scene::{
     Camera, Light, Material, Mesh, Motion, Object, Orbit, Pose, Scene, Shading, Swing, TechniqueRequest, obj,
-    open::stem,
+    read_text::stem,
 };
 use glam::DVec3;
 use std::collections::BTreeMap;
