@@ -27,6 +27,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Where things are
+//!
+//! - **A technique**: one file in [`technique`]. z-fail is `technique/volume.rs`, whose `plan` adds the pass
+//!   `volumes`, with two-sided stencil operations from `technique/volume/counting.rs`. The module's page writes one
+//!   from outside the crate.
+//! - **A frame**: [`plan`] is what a GPU is told, `gpu/executor.rs` tells it, [`capture`] is what it left behind. The
+//!   capture never changes: what is learned later is the answer to a question ([`ask`]).
+//! - **A question**: an entry in the table of `ask/mod.rs`, an arm of [`Session::answer`](session::Session::answer), and
+//!   the panel that wants it.
+//! - **A dragged light**: a handle (`inspector/canvas/handles.rs`) changes the draft of the next run,
+//!   `Model::run_draft` (`inspector/model/scene.rs`) asks for it, `app/controller.rs` hands the order to the queue
+//!   (`app/queue.rs`, where of waiting runs only the newest counts), `app/worker.rs` runs it, and
+//!   `Model::set_capture` (`inspector/model/frame.rs`) shows it; older answers make way.
+//! - **A panel**: a file in `inspector/panels/`, a field and an arm in `inspector/panels/mod.rs`, a name in
+//!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. What it says of a frame comes from [`reading`].
+//!
 //! World space is right-handed with Y up, in `f64`; positions go to the GPU relative to the eye.
 //! Depth is reversed and infinite unless set otherwise: 1 at the near plane, 0 at infinity. Front faces are
 //! counter-clockwise. Row 0 of a picture is at the top. See [`math`] for the names of transforms.
@@ -37,7 +53,7 @@ mod named;
 pub mod accuracy;
 pub mod anatomy;
 #[cfg(feature = "inspector")]
-pub mod app;
+mod app;
 pub mod ask;
 pub mod capture;
 pub mod cli;
@@ -45,12 +61,12 @@ pub mod diagnosis;
 pub mod difference;
 mod files;
 pub mod geometry;
-pub mod gpu;
+mod gpu;
 pub mod history;
 #[cfg(feature = "inspector")]
 pub mod inspector;
 pub mod math;
-pub mod numbers;
+mod numbers;
 pub mod picture;
 pub mod plan;
 pub mod progress;
@@ -63,3 +79,6 @@ pub mod stress;
 pub mod technique;
 pub mod testing;
 pub mod truth;
+
+/// The vectors and matrices, and the raster states, that this crate's types are made of.
+pub use {glam, wgpu};

@@ -21,8 +21,7 @@ fn named(name: &str) -> Scene {
 
 fn judged(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> Capture {
     let capture = session.capture(scene, request).expect("a capture");
-    let capture = session.judged(scene, &capture, &Progress::default()).expect("a truth");
-    capture
+    session.judged(scene, &capture, &Progress::default()).expect("a truth")
 }
 
 /// The knot, torn: triangles are missing, some are turned round and some are there twice.
@@ -161,8 +160,7 @@ fn a_truth_without_one_triangle_is_caught() {
     let triangles = mesh.triangles()[1..].to_vec();
     let builder = MeshBuilder { positions: mesh.positions().to_vec(), triangles, ..MeshBuilder::default() };
     without.objects[1].mesh = Arc::new(builder.build().expect("a mesh"));
-    let judged = capture;
-    let judged = session.judged(&without, &judged, &Progress::default()).expect("a truth");
+    let judged = session.judged(&without, &capture, &Progress::default()).expect("a truth");
     let truth = judged.lights[0].truth.as_ref().expect("judged");
     assert!(truth.error.false_shadow > 50, "{:?}", truth.error);
     let worst = truth.worst.expect("a region");

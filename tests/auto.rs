@@ -12,8 +12,8 @@ use stencilscope::accuracy::ErrorCounts;
 use stencilscope::capture::{Capture, CapturedLight, FrameTarget, Snapshot, Step};
 use stencilscope::plan::Decision;
 use stencilscope::progress::Progress;
-use stencilscope::scene::builtin::{self, shapes};
 use stencilscope::scene::{Camera, Light, Material, Object, Scene};
+use stencilscope::scene::{builtin, shapes};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::Technique;
 

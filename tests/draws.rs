@@ -57,6 +57,8 @@ fn passes_are_those_of_a_capture_without_draws_and_end_as_their_last_draw() {
         let whole = session.capture(&scene, &request(technique, SIZE)).expect("a capture");
         let split = session.capture(&scene, &by_draw(technique)).expect("a capture");
         assert!(without_draws(split.clone()) == without_draws(whole), "{technique:?}");
+        let with_draws = split.steps.iter().filter(|step| !step.draws.is_empty()).count();
+        assert!(with_draws >= 2, "{technique:?}: surfaces are drawn more than once");
         for (index, step) in split.steps.iter().enumerate() {
             assert!(split.holds_draws(index), "{technique:?} {}", step.name);
             let Some(last) = step.draws.len().checked_sub(1).map(|last| state(&split, index, last)) else { continue };
@@ -248,6 +250,7 @@ fn a_folder_with_draws_has_all_files_of_one_without_and_those_of_draws_beside_th
     for name in plain_names.iter().filter(|name| name.as_str() != "manifest.json") {
         assert_eq!(fs::read(plain.join(name)).expect("a file"), fs::read(split_folder.join(name)).expect("a file"));
     }
+    assert!(split_names.len() > plain_names.len());
     assert!(split_names.difference(&plain_names).all(|name| name.contains(".draw0")), "{split_names:?}");
     let passes = manifest(&split_folder)["passes"].clone();
     let volumes = passes.as_array().expect("passes").iter().find(|pass| pass["name"] == "volumes").expect("volumes");

@@ -1,11 +1,11 @@
 //! Dependencies between modules point one way, and only `gpu` and `app` hold a device.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 27] = [
+const MAY_USE: [(&str, &[&str]); 29] = [
     ("named", &[]),
     ("math", &[]),
     ("progress", &[]),
@@ -43,6 +43,26 @@ const MAY_USE: [(&str, &[&str]); 27] = [
     ("report", &["technique", "capture", "numbers"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
+        "reading",
+        &["anatomy", "capture", "difference", "geometry", "history", "math", "numbers", "plan", "scene", "technique"],
+    ),
+    (
+        "ask",
+        &[
+            "anatomy",
+            "capture",
+            "diagnosis",
+            "history",
+            "plan",
+            "progress",
+            "reading",
+            "report",
+            "scene",
+            "stress",
+            "technique",
+        ],
+    ),
+    (
         "session",
         &[
             "numbers",
@@ -62,28 +82,27 @@ const MAY_USE: [(&str, &[&str]); 27] = [
             "stencil_machine",
             "diagnosis",
             "stress",
+            "ask",
+            "reading",
         ],
     ),
     (
         "inspector",
         &[
-            "math",
             "scene",
-            "geometry",
             "plan",
             "technique",
             "anatomy",
             "capture",
-            "difference",
             "diagnosis",
             "picture",
-            "stencil_machine",
             "accuracy",
             "report",
             "numbers",
             "history",
-            "diagnosis",
             "stress",
+            "ask",
+            "reading",
         ],
     ),
     (
@@ -93,25 +112,23 @@ const MAY_USE: [(&str, &[&str]); 27] = [
             "scene",
             "plan",
             "technique",
-            "anatomy",
             "capture",
-            "diagnosis",
             "session",
             "inspector",
             "progress",
             "report",
-            "history",
             "picture",
             "stress",
+            "ask",
+            "reading",
         ],
     ),
-    ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers"]),
+    ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers", "math"]),
     (
         "cli",
         &[
             "files",
             "numbers",
-            "math",
             "scene",
             "picture",
             "plan",
@@ -126,6 +143,8 @@ const MAY_USE: [(&str, &[&str]); 27] = [
             "progress",
             "report",
             "stress",
+            "ask",
+            "reading",
         ],
     ),
     ("main", &["cli"]),
@@ -233,4 +252,212 @@ fn an_arrow_that_runs_the_other_way_is_found() {
     assert!(violations("session", "use wgpu::Device as D;").len() == 1);
     assert!(violations("gpu", "use crate::plan::Pass; // crate::technique is not needed").is_empty());
     assert!(violations("newcomer", "").len() == 1);
+}
+
+/// Folders of the inspector, each with those that it may use.
+const INSPECTOR_MAY_USE: [(&str, &[&str]); 8] = [
+    ("action", &[]),
+    ("look", &[]),
+    ("tours", &["action"]),
+    ("model", &["action", "look"]),
+    ("canvas", &["look", "model"]),
+    ("panels", &["action", "look", "tours", "model", "canvas"]),
+    ("shell", &["action", "look", "tours", "model", "canvas", "panels"]),
+    ("mod", &["action", "look", "model", "panels", "shell"]),
+];
+
+/// A module's path below the crate: `inspector`, `panels`.
+type ModulePath = Vec<String>;
+
+/// What a source file says of others.
+#[derive(Default)]
+struct Source {
+    /// What is imported or named in full.
+    uses: Vec<ModulePath>,
+    /// Names that it hands on, with where they come from.
+    hands_on: BTreeMap<String, ModulePath>,
+}
+
+/// The paths of a tree of imports: `a::{b, c::d}` are two.
+fn expanded(tree: &str, prefix: &[String], found: &mut Vec<ModulePath>) {
+    let (head, group) = match tree.split_once('{') {
+        Some((head, rest)) => (head, rest.rsplit_once('}').map(|(group, _)| group)),
+        None => (tree, None),
+    };
+    let head = head.split(" as ").next().unwrap_or_default();
+    let parts = head.split("::").map(str::trim).filter(|part| !part.is_empty()).map(ToOwned::to_owned);
+    let path: ModulePath = prefix.iter().cloned().chain(parts).collect();
+    let Some(group) = group else { return found.push(path) };
+    let (mut depth, mut start) = (0, 0);
+    for (at, c) in group.char_indices().chain([(group.len(), ',')]) {
+        match c {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                let part = group[start..at].trim();
+                if !part.is_empty() {
+                    expanded(part, &path, found);
+                }
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Words of code with `::` between them.
+fn named_paths(code: &str) -> Vec<ModulePath> {
+    let is_of_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    let paths = code.split(|c: char| !is_of_path(c)).filter(|path| path.contains("::"));
+    paths.map(|path| path.split("::").filter(|part| !part.is_empty()).map(ToOwned::to_owned).collect()).collect()
+}
+
+/// From the crate's root: a path as a module at `at` writes it; `None` where it is of another crate.
+fn absolute(path: &[String], at: &[String], modules: &BTreeMap<ModulePath, PathBuf>) -> Option<ModulePath> {
+    let first = path.first()?.as_str();
+    let supers = path.iter().take_while(|part| *part == "super").count();
+    let is_child = || modules.contains_key(&at.iter().chain([&path[0]]).cloned().collect::<ModulePath>());
+    match first {
+        "crate" => Some(path[1..].to_vec()),
+        "self" => Some(at.iter().chain(&path[1..]).cloned().collect()),
+        "super" => Some(at[..at.len().checked_sub(supers)?].iter().chain(&path[supers..]).cloned().collect()),
+        _ => is_child().then(|| at.iter().chain(path).cloned().collect()),
+    }
+}
+
+/// A file without its own tests.
+fn without_tests(text: &str) -> &str {
+    let tests =
+        text.find("#[cfg(test)]\nmod ").filter(|at| text[*at..].lines().nth(1).is_some_and(|l| l.ends_with('{')));
+    tests.map_or(text, |at| &text[..at])
+}
+
+fn source_of(text: &str, at: &[String], modules: &BTreeMap<ModulePath, PathBuf>) -> Source {
+    let code = code_of(without_tests(text));
+    let (mut source, mut rest) = (Source::default(), String::new());
+    for statement in code.split(';') {
+        let place =
+            statement.rfind("use ").filter(|at| statement[..*at].chars().next_back().is_none_or(char::is_whitespace));
+        let Some(place) = place else {
+            rest.push_str(statement);
+            rest.push(';');
+            continue;
+        };
+        let mut paths = Vec::new();
+        expanded(&statement[place + 4..], &[], &mut paths);
+        let before = statement[..place].trim_end();
+        let hands_on = before.ends_with("pub") || (before.ends_with(')') && before.contains("pub("));
+        rest.push_str(before);
+        for path in paths.iter().filter_map(|path| absolute(path, at, modules)) {
+            match (hands_on, path.last()) {
+                (true, Some(name)) => drop(source.hands_on.insert(name.clone(), path.clone())),
+                _ => source.uses.push(path),
+            }
+        }
+    }
+    source.uses.extend(named_paths(&rest).iter().filter_map(|path| absolute(path, at, modules)));
+    source
+}
+
+/// The module in which what a path names is written: where it is handed on, further down.
+fn home(path: &[String], sources: &BTreeMap<ModulePath, Source>, turns: usize) -> Option<ModulePath> {
+    let module = (0..=path.len()).rev().map(|end| &path[..end]).find(|prefix| sources.contains_key(*prefix))?;
+    let handed_on = path.get(module.len()).and_then(|name| sources[module].hands_on.get(name));
+    match handed_on.filter(|_| turns > 0) {
+        Some(from) => home(from, sources, turns - 1),
+        None => Some(module.to_vec()),
+    }
+}
+
+/// Every module with those whose files it takes anything from.
+fn arrows() -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let module = |file: &PathBuf| -> ModulePath {
+        let path = file.strip_prefix(&root).expect("below src").with_extension("");
+        let parts: ModulePath = path.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
+        parts.into_iter().filter(|part| part != "mod" && part != "lib").collect()
+    };
+    let is_product = |file: &PathBuf| !file.ends_with("tests.rs") && !file.ends_with("main.rs");
+    let files = rust_files(&root).into_iter().filter(is_product);
+    let modules: BTreeMap<ModulePath, PathBuf> = files.map(|file| (module(&file), file)).collect();
+    let text = |file: &PathBuf| fs::read_to_string(file).expect("a source file");
+    let sources: BTreeMap<ModulePath, Source> =
+        modules.iter().map(|(at, file)| (at.clone(), source_of(&text(file), at, &modules))).collect();
+    let used = |(at, source): (&ModulePath, &Source)| {
+        let homes = source.uses.iter().filter_map(|path| home(path, &sources, 8));
+        (at.clone(), homes.filter(|home| home != at && !home.is_empty()).collect())
+    };
+    sources.iter().map(used).collect()
+}
+
+/// Modules that lead back to themselves, with all on the way, each circle once.
+fn circles(arrows: &BTreeMap<ModulePath, BTreeSet<ModulePath>>) -> BTreeSet<BTreeSet<&ModulePath>> {
+    let reached = |from: &ModulePath| {
+        let (mut seen, mut left) = (BTreeSet::new(), vec![from]);
+        while let Some(next) = left.pop() {
+            for to in arrows.get_key_value(next).iter().flat_map(|(_, to)| to.iter()) {
+                if seen.insert(to) {
+                    left.push(to);
+                }
+            }
+        }
+        seen
+    };
+    let all: BTreeMap<&ModulePath, BTreeSet<&ModulePath>> = arrows.keys().map(|from| (from, reached(from))).collect();
+    let circle = |from: &&ModulePath| -> BTreeSet<&ModulePath> {
+        all[*from].iter().copied().filter(|to| all.get(*to).is_some_and(|back| back.contains(*from))).collect()
+    };
+    all.keys().map(circle).filter(|circle| circle.len() > 1).collect()
+}
+
+#[test]
+fn no_circle_has_more_than_two_files_and_the_inspector_has_none() {
+    let arrows = arrows();
+    assert!(arrows.len() > 300, "{} files are read", arrows.len());
+    let name = |circle: &BTreeSet<&ModulePath>| circle.iter().map(|path| path.join("/")).collect::<Vec<_>>().join(", ");
+    let circles = circles(&arrows);
+    let is_wrong = |circle: &&BTreeSet<&ModulePath>| {
+        circle.len() > 2 || circle.iter().any(|path| path.first().is_some_and(|first| first == "inspector"))
+    };
+    let wrong: Vec<String> = circles.iter().filter(is_wrong).map(name).collect();
+    assert!(wrong.is_empty(), "circles of files:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn folders_of_the_inspector_use_those_below_them() {
+    let may_use: BTreeMap<&str, &[&str]> = INSPECTOR_MAY_USE.into_iter().collect();
+    let mut found = Vec::new();
+    for (from, to) in arrows() {
+        if from.first().is_none_or(|first| first != "inspector") {
+            continue;
+        }
+        let folder = |path: &ModulePath| path.get(1).map_or("mod", String::as_str).to_owned();
+        let allowed = may_use.get(folder(&from).as_str()).copied().unwrap_or_default();
+        let inside = to.iter().filter(|to| to[0] == "inspector" && folder(to) != folder(&from));
+        let wrong = inside.filter(|to| !allowed.contains(&folder(to).as_str()));
+        found.extend(wrong.map(|to| format!("{} uses {}", from.join("/"), to.join("/"))));
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+#[test]
+fn a_circle_of_three_is_found_and_what_is_handed_on_is_no_arrow() {
+    let path = |text: &str| -> ModulePath { text.split('/').map(ToOwned::to_owned).collect() };
+    let modules: BTreeMap<ModulePath, PathBuf> =
+        ["a", "a/b", "a/c", "d"].map(|name| (path(name), PathBuf::new())).into_iter().collect();
+    let texts = [
+        ("a", "mod b;\npub use b::{One, Two};\nuse c::Three;"),
+        ("a/b", "use crate::d::{self, Four};"),
+        ("a/c", "use super::One;\n#[cfg(test)]\nmod tests {\n    use crate::a::Three;\n}"),
+        ("d", "fn f() { crate::a::c::Three::new() }"),
+    ];
+    let sources: BTreeMap<ModulePath, Source> =
+        texts.iter().map(|(at, text)| (path(at), source_of(text, &path(at), &modules))).collect();
+    assert_eq!(home(&path("a/One"), &sources, 8), Some(path("a/b")));
+    let arrows: BTreeMap<ModulePath, BTreeSet<ModulePath>> = sources
+        .iter()
+        .map(|(at, source)| (at.clone(), source.uses.iter().filter_map(|to| home(to, &sources, 8)).collect()))
+        .collect();
+    let all = ["a/b", "a/c", "d"].map(path);
+    assert_eq!(circles(&arrows), BTreeSet::from([all.iter().collect()]));
 }

@@ -5,7 +5,7 @@ mod motion;
 
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
-use stencilscope::scene::builtin::shapes;
+use stencilscope::scene::shapes;
 use stencilscope::scene::{Camera, Light, Mesh, MeshBuilder, Object, OpenSpec, Scene, model_scene, open};
 
 /// How often each directed edge is used, less how often its reverse is: all zero when closed.

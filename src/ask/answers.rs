@@ -308,30 +308,31 @@ impl Answers {
         }
     }
 
-    /// Another frame is shown: answers that hold for a frame are older ones now.
+    /// Another frame is shown: answers that hold for a frame are older ones now, or go.
     pub fn new_frame(&mut self) {
         self.has_frame = true;
-        self.replace(Holds::Frame, |slot| {
-            slot.known.iter_mut().for_each(|known| known.is_current = false);
+        self.replace(Holds::Frame, |kind, slot| match &mut slot.known {
+            Some(known) if kind.outlives_frame() => known.is_current = false,
+            known => *known = None,
         });
     }
 
     /// Another scene is open, or (`has_scene` false) a folder, which can't be run.
     pub fn new_scene(&mut self, has_scene: bool) {
         self.has_scene = has_scene;
-        self.replace(Holds::Frame, |slot| slot.known = None);
-        self.replace(Holds::Scene, |slot| slot.known = None);
+        self.replace(Holds::Frame, |_, slot| slot.known = None);
+        self.replace(Holds::Scene, |_, slot| slot.known = None);
     }
 
     /// Drops what is asked and what was given up of answers that hold so long. What was started by hand goes on, or
     /// says why it does not: who works on it tells.
-    fn replace(&mut self, holds: Holds, change: impl Fn(&mut Slot)) {
+    fn replace(&mut self, holds: Holds, change: impl Fn(Kind, &mut Slot)) {
         for kind in Kind::ALL.iter().copied().filter(|kind| kind.holds() == holds) {
             if !kind.is_started_by_hand() {
                 self.pause(kind);
                 self.slot_mut(kind).given_up = None;
             }
-            change(self.slot_mut(kind));
+            change(kind, self.slot_mut(kind));
         }
     }
 

@@ -162,7 +162,7 @@ impl ReportOf {
 /// For how long an answer holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Holds {
-    /// While its frame is shown; until that of the next is known it stays as the older one.
+    /// While its frame is shown.
     Frame,
     /// While its scene is open.
     Scene,
@@ -179,6 +179,13 @@ impl Kind {
             Kind::ReportOf | Kind::StressOf => Holds::Always,
             _ => Holds::Frame,
         }
+    }
+
+    /// Is the answer of the frame before shown until that of the next is known? Others go with their frame, and give
+    /// their memory back.
+    #[must_use]
+    pub fn outlives_frame(self) -> bool {
+        matches!(self, Kind::HistoryOf | Kind::AnatomyOf)
     }
 
     /// Is it asked by a press of a button only, as it takes long?

@@ -327,7 +327,7 @@ impl Capture {
         self.with_draws_in(draws, MOST_DRAWS_BYTES)
     }
 
-    fn with_draws_in(&self, draws: &StepDraws, most: u64) -> Capture {
+    pub(crate) fn with_draws_in(&self, draws: &StepDraws, most: u64) -> Capture {
         let mut capture = self.clone();
         let of_step = capture.steps.get_mut(draws.step).into_iter().flat_map(|step| &mut step.draws);
         for (draw, state) in of_step.zip(&draws.states) {
@@ -390,29 +390,5 @@ impl Step {
     pub fn caster(&self) -> Option<&str> {
         let first = self.draws.first()?.caster.as_deref()?;
         self.draws.iter().all(|draw| draw.caster.as_deref() == Some(first)).then_some(first)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::OpenSpec;
-    use crate::session::{CaptureRequest, Every, Session};
-    use crate::technique::{Choice, Technique};
-
-    #[test]
-    fn draws_of_other_passes_go_only_where_there_is_no_room_for_all() {
-        let scene = crate::scene::open(&OpenSpec::new("tetrahedron")).expect("a built-in scene");
-        let request = CaptureRequest::new(Choice::new(Technique::ZFail), [32, 24]);
-        let request = CaptureRequest { every: Every::Draw, ..request };
-        let capture = Session::new(None).and_then(|mut session| session.capture(&scene, &request)).expect("draws");
-        let states = capture.steps[1].draws.iter().map(|draw| draw.after.clone()).collect();
-        let draws = StepDraws { step: 1, states };
-        assert_eq!(capture.with_draws_in(&draws, capture.bytes()), capture);
-        let less = capture.with_draws_in(&draws, capture.bytes() - 1);
-        for (index, step) in less.steps.iter().enumerate() {
-            assert_eq!(less.holds_draws(index), index == 1 || step.draws.is_empty(), "{}", step.name);
-        }
-        assert_eq!(less.steps[1], capture.steps[1]);
     }
 }

@@ -3,8 +3,8 @@
 use super::options::{FrameOptions, SceneOptions};
 use super::{CliError, output};
 use crate::progress::Progress;
-use crate::scene::builtin::{self, shapes};
 use crate::scene::{Mesh, MeshBuilder, Scene, SceneError, model_scene};
+use crate::scene::{builtin, shapes};
 use crate::session::{
     CaptureCost, Measured, Measurement, Session, TruthCost, VolumeCost, median_ms, truth_cost, volume_cost,
 };

@@ -151,7 +151,8 @@ mod tests {
         assert_eq!(headings(OF_TECHNIQUES), Technique::ALL.map(Technique::name));
         let mut taught = headings(OF_SETTINGS);
         let mut keys = settings();
-        (taught.sort_unstable(), keys.sort_unstable());
+        taught.sort_unstable();
+        keys.sort_unstable();
         assert_eq!(taught, keys);
         for (text, name) in
             keys.iter().map(|key| (OF_SETTINGS, *key)).chain(Technique::ALL.map(|of| (OF_TECHNIQUES, of.name())))

@@ -100,7 +100,7 @@ impl Cell {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::builtin::shapes;
+    use crate::scene::shapes;
 
     fn stack(count: usize) -> Vec<[DVec3; 3]> {
         let pane = |height: f64| [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, z]| DVec3::new(x, height, z));

@@ -143,7 +143,7 @@ mod tests {
     use super::super::EdgeList;
     use super::*;
     use crate::scene::Mesh;
-    use crate::scene::builtin::shapes;
+    use crate::scene::shapes;
 
     fn checked(mesh: &Mesh, place: impl Fn(DVec3) -> DVec3) -> Result<(), NotSolid> {
         let world: Vec<DVec3> = mesh.positions().iter().map(|p| place(*p)).collect();

@@ -180,7 +180,7 @@ fn plane_of(world: &[DVec3], corners: [u32; 3], size: f64) -> Option<Plane> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::builtin::shapes;
+    use crate::scene::shapes;
 
     fn occluder(mesh: &crate::scene::Mesh, offset: DVec3) -> Option<Occluder> {
         let world: Vec<DVec3> = mesh.positions().iter().map(|point| *point + offset).collect();

@@ -29,8 +29,9 @@ mod shaders;
 mod uniforms;
 
 pub use collect::{Memory, Output};
-pub use context::{Context, MEMORY_HINTS};
+pub use context::Context;
+#[cfg(feature = "inspector")]
+pub use context::MEMORY_HINTS;
 pub use error::GpuError;
 pub use executor::Executor;
 pub use prepared::Prepared;
-pub use shaders::shader_sources;

@@ -60,9 +60,18 @@ pub(super) fn fragment_log() -> String {
     [file!("shared.wgsl"), file!("fragment_log.wgsl")].join("\n")
 }
 
-/// Name and WGSL text of every program, to be validated without a GPU.
-#[must_use]
-pub fn shader_sources() -> Vec<(String, String)> {
-    let programs = Program::all().into_iter().map(|program| (format!("{program:?}"), source_of(program).source));
-    programs.chain([("FragmentLog".to_owned(), fragment_log())]).collect()
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shader_is_valid() {
+        let programs = Program::all().into_iter().map(|program| (format!("{program:?}"), source_of(program).source));
+        for (name, source) in programs.chain([("FragmentLog".to_owned(), fragment_log())]) {
+            let module = naga::front::wgsl::parse_str(&source).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let flags = naga::valid::ValidationFlags::all();
+            let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty());
+            validator.validate(&module).unwrap_or_else(|error| panic!("{name}: {error:?}"));
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! The inspector: egui panels that show a frame and say what the user wishes.
 //!
-//! Panels are a function of the [`Model`](model::Model): they read it, change what is selected in it, and return
+//! Panels are a function of the model (`model/mod.rs`): they read it, change what is selected in it, and return
 //! [`Action`]s. They open no file, run nothing and know no GPU; what has to be found out they want of the model's
 //! [`Answers`], and whoever draws the inspector answers. So they can be driven and tested without a window.
 //!

@@ -59,6 +59,18 @@ pub struct DrawMesh {
 }
 
 impl DrawMesh {
+    /// A mesh that is drawn by position only; see [`relative`](crate::geometry::relative) for its vertices.
+    #[must_use]
+    pub fn of_positions(name: impl Into<String>, vertices: Vec<[f32; 4]>, indices: Vec<u32>) -> DrawMesh {
+        DrawMesh { name: name.into(), vertices: Blob::new(vertices), indices: Blob::new(indices), surface: None }
+    }
+
+    /// How many triangles it has.
+    #[must_use]
+    pub fn triangles(&self) -> u32 {
+        (self.indices.data().len() / 3) as u32
+    }
+
     /// Hash and bytes of all its data.
     pub(super) fn blobs(&self) -> Vec<(u64, u64)> {
         fn entry<T: bytemuck::Pod>(blob: &Blob<T>) -> (u64, u64) {

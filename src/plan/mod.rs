@@ -291,6 +291,31 @@ pub struct Draw {
     pub constants: DrawConstants,
 }
 
+impl Draw {
+    /// A draw of a whole mesh by position only, as into the stencil.
+    #[must_use]
+    pub fn of_positions(
+        name: impl Into<String>,
+        part: Part,
+        mesh: MeshId,
+        triangles: u32,
+        raster: RasterState,
+    ) -> Draw {
+        Draw {
+            name: name.into(),
+            caster: None,
+            part,
+            program: Program::Position,
+            raster,
+            mesh,
+            triangles: 0..triangles,
+            base_vertex: 0,
+            faces_inwards: false,
+            constants: DrawConstants::default(),
+        }
+    }
+}
+
 named_enum! {
     /// Which part of a frame's geometry a draw is.
     pub enum Part {

@@ -48,7 +48,7 @@ impl MapContent {
         (0..capture.lights.len()).find_map(|light| MapContent::of(capture, light))
     }
 
-    /// On the button of [`PictureKind::Map`].
+    /// On the button of [`PictureKind::Map`](super::shown::PictureKind::Map).
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -20,6 +20,16 @@ pub struct Camera {
 }
 
 impl Camera {
+    /// An eye that looks at a target with a field of view of 45 degrees, its near plane 5 cm away and no far
+    /// plane. Y is up, or −z where it looks straight down or up.
+    #[must_use]
+    pub fn looking(eye: impl Into<DVec3>, target: impl Into<DVec3>) -> Camera {
+        let (eye, target) = (eye.into(), target.into());
+        let ahead = (target - eye).normalize_or_zero();
+        let up = if ahead.y.abs() > 0.99 { DVec3::NEG_Z } else { DVec3::Y };
+        Camera { eye, target, up, fov_y_degrees: 45.0, near: 0.05, far: None }
+    }
+
     /// Names what makes this camera unusable, in a few words for an error line.
     ///
     /// # Errors

@@ -22,14 +22,14 @@ pub struct Light {
 impl Light {
     /// A white point light at `position`.
     #[must_use]
-    pub fn point(position: DVec3) -> Light {
-        Light::white(position.extend(1.0))
+    pub fn point(position: impl Into<DVec3>) -> Light {
+        Light::white(position.into().extend(1.0))
     }
 
     /// A white directional light that shines from the direction `towards`.
     #[must_use]
-    pub fn directional(towards: DVec3) -> Light {
-        Light::white(towards.extend(0.0))
+    pub fn directional(towards: impl Into<DVec3>) -> Light {
+        Light::white(towards.into().extend(0.0))
     }
 
     fn white(position: DVec4) -> Light {

@@ -28,6 +28,20 @@ pub struct Material {
     pub opacity: f32,
 }
 
+impl Material {
+    /// A dull surface with one normal a triangle.
+    #[must_use]
+    pub fn matte(color: [f32; 3]) -> Material {
+        Material { color, ..Material::default() }
+    }
+
+    /// A smooth surface with a highlight.
+    #[must_use]
+    pub fn glossy(color: [f32; 3]) -> Material {
+        Material { color, specular: 0.25, shininess: 40.0, shading: Shading::Phong, opacity: 1.0 }
+    }
+}
+
 impl Default for Material {
     fn default() -> Material {
         Material { color: [0.75; 3], specular: 0.0, shininess: 16.0, shading: Shading::Flat, opacity: 1.0 }

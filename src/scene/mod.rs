@@ -1,9 +1,10 @@
 //! What is to be rendered: objects, lights, a camera. Plain data in world space (`f64`), no GPU.
 //!
 //! A scene comes from a scene file ([`mod@file`]), a model ([`obj`], completed by [`model_scene`]) or
-//! code ([`builtin`]); [`open`] takes any of the three names. Everything that moves is put where
+//! code ([`SceneBuilder`] and [`shapes`], as for [`builtin`]); [`open`] takes any of the three names. Everything that moves is put where
 //! it is at a moment by [`Scene::at`], so nothing downstream knows about time.
 
+mod builder;
 pub mod builtin;
 mod camera;
 mod collision;
@@ -22,6 +23,7 @@ pub mod shapes;
 mod suggestion;
 mod wall_tree;
 
+pub use builder::SceneBuilder;
 pub use camera::Camera;
 pub use collision::{WallCache, Walls};
 pub use error::SceneError;

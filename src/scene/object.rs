@@ -43,6 +43,39 @@ impl Object {
         }
     }
 
+    /// As [`Object::new`], of the default material.
+    #[must_use]
+    pub fn of(name: impl Into<String>, mesh: impl Into<Arc<Mesh>>) -> Object {
+        Object::new(name, mesh.into(), Material::default())
+    }
+
+    /// The object elsewhere.
+    #[must_use]
+    pub fn at(mut self, translate: impl Into<DVec3>) -> Object {
+        self.pose.translate = translate.into();
+        self
+    }
+
+    /// The object turned about the fixed x, then y, then z axis.
+    #[must_use]
+    pub fn turned(mut self, rotate_degrees: impl Into<DVec3>) -> Object {
+        self.pose.rotate_degrees = rotate_degrees.into();
+        self
+    }
+
+    /// The object stretched; negative factors mirror, and none may be zero.
+    #[must_use]
+    pub fn scaled(mut self, scale: impl Into<DVec3>) -> Object {
+        self.pose.scale = scale.into();
+        self
+    }
+
+    /// The object as one that casts without being drawn, so that its whole shadow shows.
+    #[must_use]
+    pub fn unseen(self) -> Object {
+        Object { visible: false, ..self }
+    }
+
     /// The welded vertices in world space. Every user of a vertex reads this one rounding.
     #[must_use]
     pub fn world_positions(&self) -> Vec<DVec3> {

@@ -29,6 +29,13 @@ pub struct Surroundings {
     high: DVec3,
 }
 
+/// A unit cube around the origin.
+impl Default for Surroundings {
+    fn default() -> Surroundings {
+        Surroundings { low: DVec3::splat(-0.5), high: DVec3::splat(0.5) }
+    }
+}
+
 impl Surroundings {
     /// Of these points; `None` where there are none, or where their extents can't be measured.
     #[must_use]

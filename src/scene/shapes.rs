@@ -15,7 +15,7 @@ use std::f64::consts::{PI, TAU};
 /// As [`MeshBuilder::build`], for sizes that are not finite; so for all shapes.
 pub fn quad(size: [f64; 2]) -> Result<Mesh, MeshError> {
     let [x, z] = size.map(|n| n / 2.0);
-    triangles(vec![[-x, 0.0, z], [x, 0.0, z], [x, 0.0, -z], [-x, 0.0, -z]], vec![[0, 1, 2], [0, 2, 3]])
+    triangles(&[[-x, 0.0, z], [x, 0.0, z], [x, 0.0, -z], [-x, 0.0, -z]], &[[0, 1, 2], [0, 2, 3]])
 }
 
 /// A closed box around the origin.
@@ -73,7 +73,7 @@ pub fn tetrahedron(radius: f64) -> Result<Mesh, MeshError> {
     });
     let mut positions: Vec<[f64; 3]> = base.collect();
     positions.push([0.0, radius, 0.0]);
-    triangles(positions, vec![[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]])
+    triangles(&positions, &[[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]])
 }
 
 /// A closed upright cylinder around the origin.
@@ -226,9 +226,9 @@ pub fn joined<'a>(parts: impl IntoIterator<Item = (&'a Mesh, DVec3)>) -> Result<
 ///
 /// # Errors
 /// As [`MeshBuilder::build`].
-pub fn triangles(points: Vec<[f64; 3]>, indices: Vec<[u32; 3]>) -> Result<Mesh, MeshError> {
-    let positions = points.into_iter().map(DVec3::from_array).collect();
-    MeshBuilder { positions, triangles: indices, ..MeshBuilder::default() }.build()
+pub fn triangles(points: &[[f64; 3]], indices: &[[u32; 3]]) -> Result<Mesh, MeshError> {
+    let positions = points.iter().map(|point| DVec3::from_array(*point)).collect();
+    MeshBuilder { positions, triangles: indices.to_vec(), ..MeshBuilder::default() }.build()
 }
 
 /// Corners counter-clockwise; equal ones are welded when the mesh is built.

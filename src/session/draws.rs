@@ -219,3 +219,27 @@ fn join(plan: &FramePlan, is_split: impl Fn(usize) -> bool, output: Output) -> O
     }
     joined
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::OpenSpec;
+    use crate::session::CaptureRequest;
+    use crate::technique::{Choice, Technique};
+
+    #[test]
+    fn draws_of_other_passes_go_only_where_there_is_no_room_for_all() {
+        let scene = crate::scene::open(&OpenSpec::new("tetrahedron")).expect("a built-in scene");
+        let request = CaptureRequest::new(Choice::new(Technique::ZFail), [32, 24]);
+        let request = CaptureRequest { every: Every::Draw, ..request };
+        let capture = Session::new(None).and_then(|mut session| session.capture(&scene, &request)).expect("draws");
+        let states = capture.steps[1].draws.iter().map(|draw| draw.after.clone()).collect();
+        let draws = StepDraws { step: 1, states };
+        assert_eq!(capture.with_draws_in(&draws, capture.bytes()), capture);
+        let less = capture.with_draws_in(&draws, capture.bytes() - 1);
+        for (index, step) in less.steps.iter().enumerate() {
+            assert_eq!(less.holds_draws(index), index == 1 || step.draws.is_empty(), "{}", step.name);
+        }
+        assert_eq!(less.steps[1], capture.steps[1]);
+    }
+}

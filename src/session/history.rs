@@ -99,3 +99,32 @@ fn spread(index: usize, size: [u32; 2]) -> [u32; 2] {
     let at = |step: f64, pixels: u32| (((0.5 + step * index as f64).fract()) * f64::from(pixels)) as u32;
     [at(0.754_877_666_246_692_8, size[0]), at(0.569_840_290_998_053_2, size[1])]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Light, Object, SceneBuilder, shapes};
+    use crate::technique::{Choice, Technique};
+
+    /// A log that is too small counts on, and is made again with room for all.
+    #[test]
+    fn a_full_log_grows() {
+        let slab =
+            |up: f64| Object::of("slab", shapes::cuboid([1.0, 0.1, 1.0]).expect("a box")).at([0.0, up, 0.0]).unseen();
+        let scene = SceneBuilder::new("three slabs")
+            .object(Object::of("floor", shapes::quad([20.0; 2]).expect("a floor")))
+            .objects([1.0, 1.5, 2.0].map(slab))
+            .light(Light::point([0.0, 4.0, 0.0]))
+            .seen_from([0.0, 10.0, 0.0], [0.0; 3])
+            .build();
+        let mut session = Session::new(None).expect("the reference adapter");
+        let request = CaptureRequest::new(Choice::new(Technique::ZFail), [65, 65]);
+        let plan = session.plan(&scene, &request).expect("a plan");
+        let covering = plan.covering([32, 32]);
+        let mut log = |room: u32| session.executor.log_fragments(&plan, [32, 32], &covering, room).expect("a log");
+        let whole = log(covering.len() as u32);
+        assert_eq!(whole.counted as usize, whole.fragments.len());
+        assert!(whole.fragments.len() > 6, "{whole:?}");
+        assert_eq!(log(1), whole);
+    }
+}

@@ -19,7 +19,9 @@ mod trials;
 mod truth;
 mod volumes;
 
-pub use crate::gpu::MEMORY_HINTS;
+pub use crate::gpu::GpuError;
+#[cfg(feature = "inspector")]
+pub(crate) use crate::gpu::MEMORY_HINTS;
 pub use answer::RunFrame;
 pub use draws::Every;
 pub use history::HistoryCost;
@@ -32,7 +34,7 @@ pub use volumes::{VolumeCost, volume_cost};
 
 use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::{GeometryCache, Topology};
-use crate::gpu::{Context, Executor, GpuError, Memory, Output, Prepared};
+use crate::gpu::{Context, Executor, Memory, Output, Prepared};
 use crate::plan::{FramePlan, LeftOut};
 use crate::scene::{Object, Scene, WallCache};
 use crate::technique::{self, Choice, ChoiceError, Job, PlanError};

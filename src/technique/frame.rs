@@ -35,7 +35,9 @@ pub struct Job<'a> {
 }
 
 /// An object with its vertices in world space and its drawn surface.
+#[derive(Debug)]
 pub struct Placed<'a> {
+    /// As the scene has it.
     pub object: &'a Object,
     /// Welded, world space.
     pub world: Vec<DVec3>,
@@ -46,26 +48,34 @@ pub struct Placed<'a> {
 /// A part of a visible surface that is drawn by itself: one group of an object, or less.
 #[derive(Debug, Clone)]
 pub struct Piece {
+    /// For people: the object, and which of its groups.
     pub name: String,
     /// Index into [`Frame::placed`].
     pub object: usize,
+    /// Of its surface.
     pub material: Material,
+    /// The mesh that it is a part of.
     pub mesh: MeshId,
+    /// Which triangles of the mesh's index list.
     pub triangles: Range<u32>,
     /// The layer of each light's map that is its own.
     pub layer: Option<u32>,
 }
 
-/// A plan in the making.
+/// A plan in the making: objects and lights are placed, and passes are added in the order in which they run.
+#[derive(Debug)]
 pub struct Frame<'a> {
+    /// What is asked for.
     pub job: Job<'a>,
     /// The job's settings that every technique has.
     pub common: CommonSettings,
+    /// Parallel to the scene's objects.
     pub placed: Vec<Placed<'a>>,
     /// All visible surfaces, in the order in which they are drawn.
     pub pieces: Vec<Piece>,
     /// Those that the next light's pass draws, where they are not all.
     pub lit: Option<Vec<Piece>>,
+    /// What there is of the plan; passes of other kinds than the methods make are pushed here.
     pub plan: FramePlan,
     /// Clamped depth clips volumes at the near plane all the same: what counts in front of surfaces
     /// must not begin before them.
@@ -90,6 +100,9 @@ pub enum StencilUse {
 
 impl<'a> Frame<'a> {
     /// Places objects and lights, and makes the attachments.
+    ///
+    /// # Errors
+    /// A camera, light or object that can't be drawn, or too many lights.
     pub fn new(job: Job<'a>, stencil: StencilUse) -> Result<Frame<'a>, PlanError> {
         let scene = job.scene;
         job.cache.next_plan();

@@ -8,13 +8,12 @@ pub mod ray_cast;
 pub mod report;
 
 pub use apart::apart;
-use glam::DVec3;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use stencilscope::capture::Capture;
 use stencilscope::progress::Progress;
-use stencilscope::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene};
+use stencilscope::scene::{Camera, Light, Mesh, Object, Scene, SceneBuilder, shapes};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::{Choice, Technique};
 
@@ -30,16 +29,13 @@ pub fn request(technique: Technique, size: [u32; 2]) -> CaptureRequest {
 
 /// A mesh from points and triangles.
 pub fn mesh(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Arc<Mesh> {
-    let positions = positions.iter().map(|p| DVec3::from_array(*p)).collect();
-    Arc::new(
-        MeshBuilder { positions, triangles: triangles.to_vec(), ..MeshBuilder::default() }.build().expect("a mesh"),
-    )
+    Arc::new(shapes::triangles(positions, triangles).expect("a mesh"))
 }
 
 /// A level square of half-width `half` at height `y`, seen from above in front.
 pub fn square(name: &str, y: f64, half: f64) -> Object {
     let corners = [[-half, y, -half], [-half, y, half], [half, y, half], [half, y, -half]];
-    Object::new(name, mesh(&corners, &[[0, 1, 2], [0, 2, 3]]), Material::default())
+    Object::of(name, mesh(&corners, &[[0, 1, 2], [0, 2, 3]]))
 }
 
 /// A closed box between two corners.
@@ -48,29 +44,19 @@ pub fn cuboid(name: &str, low: [f64; 3], high: [f64; 3]) -> Object {
     let corners: Vec<[f64; 3]> = (0..8).map(|i| [at(i, 0), at(i, 1), at(i, 2)]).collect();
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let triangles: Vec<[u32; 3]> = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    Object::new(name, mesh(&corners, &triangles), Material::default())
+    Object::of(name, mesh(&corners, &triangles))
 }
 
 /// Objects over a large floor at y = 0, a point light 4 above the origin, and an eye that looks
 /// straight down from 10 above: pixels are squares of the floor.
 pub fn from_above(objects: Vec<Object>) -> Scene {
-    let mut all = vec![square("floor", 0.0, 50.0)];
-    all.extend(objects);
-    Scene {
-        name: "test".to_owned(),
-        ambient: [0.1; 3],
-        camera: Camera {
-            eye: DVec3::new(0.0, 10.0, 0.0),
-            target: DVec3::ZERO,
-            up: DVec3::NEG_Z,
-            fov_y_degrees: 90.0,
-            near: 0.1,
-            far: None,
-        },
-        lights: vec![Light::point(DVec3::new(0.0, 4.0, 0.0))],
-        objects: all,
-        technique: None,
-    }
+    SceneBuilder::new("test")
+        .ambient([0.1; 3])
+        .camera(Camera { fov_y_degrees: 90.0, near: 0.1, ..Camera::looking([0.0, 10.0, 0.0], [0.0; 3]) })
+        .light(Light::point([0.0, 4.0, 0.0]))
+        .object(square("floor", 0.0, 50.0))
+        .objects(objects)
+        .build()
 }
 
 /// How many pixels of light 0 have each label.
@@ -91,6 +77,5 @@ pub fn names(folder: &Path) -> Vec<String> {
 /// A capture held against the ground truth.
 pub fn judged(session: &mut Session, scene: &Scene, technique: Technique, size: [u32; 2]) -> Capture {
     let capture = session.capture(scene, &request(technique, size)).expect("a capture");
-    let capture = session.judged(scene, &capture, &Progress::default()).expect("a truth");
-    capture
+    session.judged(scene, &capture, &Progress::default()).expect("a truth")
 }

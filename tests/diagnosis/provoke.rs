@@ -6,8 +6,7 @@ use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::diagnosis::Cause;
 use stencilscope::plan::{FramePlan, Part};
-use stencilscope::scene::builtin::{self, shapes};
-use stencilscope::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Pose, Scene};
+use stencilscope::scene::{Light, Mesh, MeshBuilder, Object, Scene, SceneBuilder, builtin, shapes};
 use stencilscope::technique::{Choice, Technique};
 use stencilscope::truth::Tracer;
 
@@ -39,44 +38,16 @@ pub fn set(technique: Technique, settings: &[(&str, &str)]) -> Choice {
     choice
 }
 
-pub fn object(name: &str, mesh: Mesh, at: [f64; 3]) -> Object {
-    let pose = Pose { translate: DVec3::from_array(at), ..Pose::default() };
-    Object { pose, ..Object::new(name, Arc::new(mesh), Material::default()) }
-}
-
 pub fn cuboid(name: &str, at: [f64; 3], size: [f64; 3]) -> Object {
-    object(name, shapes::cuboid(size).expect("a box"), at)
+    Object::of(name, shapes::cuboid(size).expect("a box")).at(at)
 }
 
 pub fn floor() -> Object {
-    object("floor", shapes::quad([6.0; 2]).expect("a floor"), [0.0; 3])
-}
-
-pub fn turned(mut object: Object, degrees: [f64; 3]) -> Object {
-    object.pose.rotate_degrees = DVec3::from_array(degrees);
-    object
+    Object::of("floor", shapes::quad([6.0; 2]).expect("a floor"))
 }
 
 pub fn scene(eye: [f64; 3], target: [f64; 3], light: Light, objects: Vec<Object>) -> Scene {
-    Scene {
-        name: "provoked".to_owned(),
-        ambient: [0.15; 3],
-        camera: Camera {
-            eye: DVec3::from_array(eye),
-            target: DVec3::from_array(target),
-            up: DVec3::Y,
-            fov_y_degrees: 45.0,
-            near: 0.05,
-            far: None,
-        },
-        lights: vec![light],
-        objects,
-        technique: None,
-    }
-}
-
-pub fn lamp(x: f64, y: f64, z: f64) -> Light {
-    Light::point(DVec3::new(x, y, z))
+    SceneBuilder::new("provoked").light(light).objects(objects).seen_from(eye, target).build()
 }
 
 struct Dice(Random);
@@ -92,7 +63,7 @@ impl Dice {
     }
 
     fn lamp(&mut self) -> Light {
-        lamp(self.between(-1.2, 1.2), self.between(3.0, 4.5), self.between(-0.5, 1.5))
+        Light::point([self.between(-1.2, 1.2), self.between(3.0, 4.5), self.between(-0.5, 1.5)])
     }
 
     fn eye(&mut self) -> [f64; 3] {
@@ -122,7 +93,7 @@ impl Dice {
 
     /// A mesh over the floor, under a lamp.
     fn with(&mut self, mesh: Mesh) -> Scene {
-        let caster = turned(object("caster", mesh, self.place()), self.degrees());
+        let caster = Object::of("caster", mesh).at(self.place()).turned(self.degrees());
         scene(self.eye(), [0.0, 0.3, 0.0], self.lamp(), vec![floor(), caster])
     }
 
@@ -260,7 +231,7 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
 fn eye_in_shadow(dice: &mut Dice) -> Scene {
     let mut scene = dice.still_life();
     let place = DVec3::new(dice.between(-0.3, 0.3), 1.5, dice.between(-0.3, 0.3));
-    scene.objects[1] = object("caster", shapes::cuboid([1.0, 0.2, 1.0]).expect("a box"), place.to_array());
+    scene.objects[1] = Object::of("caster", shapes::cuboid([1.0, 0.2, 1.0]).expect("a box")).at(place.to_array());
     let light = scene.lights[0].position.truncate();
     scene.camera.eye = light + (place - light) * ((light.y - dice.between(0.5, 0.9)) / (light.y - place.y));
     if dice.one_of(2) == 1 {
@@ -275,7 +246,7 @@ fn eye_in_shadow(dice: &mut Dice) -> Scene {
 fn near_in_shadow(dice: &mut Dice) -> Scene {
     let mut scene = dice.still_life();
     let place = DVec3::new(0.0, 1.6, 0.0);
-    scene.objects[1] = object("caster", shapes::cuboid([0.8, 0.2, 0.8]).expect("a box"), place.to_array());
+    scene.objects[1] = Object::of("caster", shapes::cuboid([0.8, 0.2, 0.8]).expect("a box")).at(place.to_array());
     scene.camera.near = dice.between(0.3, 0.5);
     if dice.one_of(2) == 1 {
         scene.lights = vec![Light::directional(scene.lights[0].position.truncate())];
@@ -305,8 +276,8 @@ fn near_through_roof(dice: &mut Dice) -> Scene {
     let quads =
         (0..steps).flat_map(|step| [[2 * step, 2 * step + 1, 2 * step + 3], [2 * step, 2 * step + 3, 2 * step + 2]]);
     let roof = rebuilt(points.into_iter().map(DVec3::from_array).collect(), quads.collect());
-    let roof = Object { visible: false, ..object("roof", roof, [0.0, 1.0, 1.2]) };
-    let light = lamp(dice.between(-0.4, 0.4), dice.between(2.4, 2.9), dice.between(2.0, 2.4));
+    let roof = Object::of("roof", roof).at([0.0, 1.0, 1.2]).unseen();
+    let light = Light::point([dice.between(-0.4, 0.4), dice.between(2.4, 2.9), dice.between(2.0, 2.4)]);
     let mut scene = scene([dice.between(-0.2, 0.2), 1.2, 3.0], [0.0, 0.6, 0.0], light, vec![floor(), roof]);
     scene.camera.near = dice.between(1.55, 2.0);
     scene
@@ -367,7 +338,7 @@ fn panes(light: DVec3, onto: DVec3, half: f64, count: u32) -> impl Iterator<Item
         let up = (0.5 + f64::from(index) * 0.002) / light.y;
         let pane = shapes::quad([2.0 * half * (1.0 - up); 2]).expect("a pane");
         let at = onto + (light - onto) * up;
-        Object { visible: false, ..object(&format!("pane {}", index + 1), pane, at.to_array()) }
+        Object { visible: false, ..Object::of(format!("pane {}", index + 1), pane).at(at.to_array()) }
     })
 }
 
@@ -392,21 +363,21 @@ fn before_many(dice: &mut Dice) -> Scene {
 
 /// Nothing but what is flat.
 fn flat_scene(dice: &mut Dice) -> Scene {
-    let caster = turned(cuboid("box", dice.place(), [dice.between(0.4, 0.9), 0.4, 0.6]), dice.degrees());
+    let caster = cuboid("box", dice.place(), [dice.between(0.4, 0.9), 0.4, 0.6]).turned(dice.degrees());
     scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), caster])
 }
 
 fn over_a_table(dice: &mut Dice) -> Scene {
     let top = cuboid("table", [0.0, 0.6, 0.0], [1.2, 0.08, 1.0]);
-    let ball = object(
-        "ball",
-        shapes::sphere(0.25, 12, 6).expect("a ball"),
-        [dice.between(0.3, 0.5), dice.between(1.0, 1.3), 0.0],
-    );
+    let ball = Object::of("ball", shapes::sphere(0.25, 12, 6).expect("a ball")).at([
+        dice.between(0.3, 0.5),
+        dice.between(1.0, 1.3),
+        0.0,
+    ]);
     scene(
         dice.eye(),
         [0.0, 0.3, 0.0],
-        lamp(dice.between(-1.5, -0.5), 3.0, dice.between(-0.5, 0.8)),
+        Light::point([dice.between(-1.5, -0.5), 3.0, dice.between(-0.5, 0.8)]),
         vec![floor(), top, ball],
     )
 }
@@ -416,53 +387,57 @@ fn beyond_the_lamp(dice: &mut Dice) -> Scene {
     let above =
         [light[0] + dice.between(-0.2, 0.2), light[1] + dice.between(0.5, 0.9), light[2] + dice.between(-0.2, 0.2)];
     let caster = cuboid("box", above, [0.3; 3]);
-    scene(dice.eye(), [0.0, 0.3, 0.0], lamp(light[0], light[1], light[2]), vec![floor(), caster])
+    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point([light[0], light[1], light[2]]), vec![floor(), caster])
 }
 
 fn through_the_floor(dice: &mut Dice) -> Scene {
     let post = cuboid("post", [dice.between(-0.3, 0.3), -0.4, dice.between(-0.3, 0.3)], [0.5, 1.5, 0.5]);
-    let light = lamp(dice.between(1.2, 1.8), dice.between(1.3, 1.8), dice.between(0.2, 0.8));
+    let light = Light::point([dice.between(1.2, 1.8), dice.between(1.3, 1.8), dice.between(0.2, 0.8)]);
     scene(dice.eye(), [0.0, 0.3, 0.0], light, vec![floor(), post])
 }
 
 fn round_receiver(dice: &mut Dice) -> Scene {
-    let ring = object("ring", shapes::torus(0.6, 0.25, 32, 16).expect("a ring"), [dice.between(-0.2, 0.2), 0.5, 0.0]);
-    let board = object(
-        "board",
-        shapes::quad([0.5, 0.9]).expect("a board"),
-        [0.4, dice.between(1.5, 1.8), dice.between(-0.2, 0.2)],
-    );
-    scene(dice.eye(), [0.0, 0.3, 0.0], lamp(dice.between(1.0, 2.0), 3.5, 0.5), vec![floor(), ring, board])
+    let ring =
+        Object::of("ring", shapes::torus(0.6, 0.25, 32, 16).expect("a ring")).at([dice.between(-0.2, 0.2), 0.5, 0.0]);
+    let board = Object::of("board", shapes::quad([0.5, 0.9]).expect("a board")).at([
+        0.4,
+        dice.between(1.5, 1.8),
+        dice.between(-0.2, 0.2),
+    ]);
+    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point([dice.between(1.0, 2.0), 3.5, 0.5]), vec![floor(), ring, board])
 }
 
 fn lone_sphere(dice: &mut Dice) -> Scene {
-    let flat = Object { receives: false, ..object("board", shapes::quad([0.8, 0.5]).expect("a board"), dice.place()) };
-    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), turned(flat, dice.degrees())])
+    let flat =
+        Object { receives: false, ..Object::of("board", shapes::quad([0.8, 0.5]).expect("a board")).at(dice.place()) };
+    scene(dice.eye(), [0.0, 0.3, 0.0], dice.lamp(), vec![floor(), flat.turned(dice.degrees())])
 }
 
 fn wall_behind_lamp(dice: &mut Dice) -> Scene {
-    let wall = turned(object("wall", shapes::quad([6.0, 3.0]).expect("a wall"), [0.0, 1.5, -2.0]), [90.0, 0.0, 0.0]);
+    let wall =
+        Object::of("wall", shapes::quad([6.0, 3.0]).expect("a wall")).at([0.0, 1.5, -2.0]).turned([90.0, 0.0, 0.0]);
     let board = [dice.between(0.0, 0.2), dice.between(1.2, 1.4), 1.5];
-    let board = turned(object("board", shapes::quad([0.5; 2]).expect("a board"), board), [90.0, 0.0, 0.0]);
+    let board = Object::of("board", shapes::quad([0.5; 2]).expect("a board")).at(board).turned([90.0, 0.0, 0.0]);
     let eye = [dice.between(0.6, 1.4), 3.0, 4.5];
-    scene(eye, [0.0, 0.8, -1.0], lamp(0.0, 1.2, dice.between(0.3, 0.6)), vec![floor(), wall, board])
+    scene(eye, [0.0, 0.8, -1.0], Light::point([0.0, 1.2, dice.between(0.3, 0.6)]), vec![floor(), wall, board])
 }
 
 fn shelf_between(dice: &mut Dice) -> Scene {
-    let shelf = object("shelf", shapes::quad([1.2; 2]).expect("a shelf"), [0.0, dice.between(1.3, 1.6), 0.0]);
+    let shelf = Object::of("shelf", shapes::quad([1.2; 2]).expect("a shelf")).at([0.0, dice.between(1.3, 1.6), 0.0]);
     let small = cuboid("box", [dice.between(-0.1, 0.1), 0.6, dice.between(-0.1, 0.1)], [0.5; 3]);
-    scene(dice.eye(), [0.0, 0.3, 0.0], lamp(dice.between(0.2, 0.5), 4.0, 0.6), vec![floor(), shelf, small])
+    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point([dice.between(0.2, 0.5), 4.0, 0.6]), vec![floor(), shelf, small])
 }
 
 fn ring_alone(dice: &mut Dice) -> Scene {
-    let ring = turned(
-        object("ring", shapes::torus(0.8, 0.3, 32, 16).expect("a ring"), [0.0, 1.0, 0.0]),
-        [dice.between(60.0, 100.0), dice.between(0.0, 60.0), 0.0],
-    );
+    let ring = Object::of("ring", shapes::torus(0.8, 0.3, 32, 16).expect("a ring")).at([0.0, 1.0, 0.0]).turned([
+        dice.between(60.0, 100.0),
+        dice.between(0.0, 60.0),
+        0.0,
+    ]);
     scene(
         dice.eye(),
         [0.0, 0.8, 0.0],
-        lamp(dice.between(1.5, 2.5), dice.between(2.0, 3.0), dice.between(0.5, 1.5)),
+        Light::point([dice.between(1.5, 2.5), dice.between(2.0, 3.0), dice.between(0.5, 1.5)]),
         vec![floor(), ring],
     )
 }
@@ -470,8 +445,8 @@ fn ring_alone(dice: &mut Dice) -> Scene {
 /// A sun so low that single precision loses the shadow's edge.
 fn low_sun(dice: &mut Dice) -> Scene {
     let slope = dice.between(5e-5, 2e-4_f64).to_radians().tan();
-    let board = object("board", shapes::quad([2.0, 1.0]).expect("a board"), [0.0, 2.0 * slope, 1.5]);
+    let board = Object::of("board", shapes::quad([2.0, 1.0]).expect("a board")).at([0.0, 2.0 * slope, 1.5]);
     let sun = Light::directional(DVec3::new(dice.between(-0.1, 0.1), slope, 1.0));
-    let objects = vec![floor(), Object { visible: false, ..board }];
+    let objects = vec![floor(), board.unseen()];
     scene([dice.between(-0.3, 0.3), 2.0, 4.0], [0.0; 3], sun, objects)
 }

@@ -1,13 +1,12 @@
 //! What the events make against what the GPU stored, and tampered histories.
 
-use super::{SIZE, builtin, choice, frame, nested_boxes};
+use super::{SIZE, builtin, frame, nested_boxes};
 use crate::common::random::Random;
 use crate::common::session;
-use stencilscope::gpu::{Context, Executor};
 use stencilscope::history::{PixelHistory, TriangleEvent};
 use stencilscope::plan::Part;
 use stencilscope::scene::Scene;
-use stencilscope::session::{CaptureRequest, Session};
+use stencilscope::session::Session;
 use stencilscope::technique::Technique;
 
 /// Histories of random pixels, every one of which must agree with the GPU; how many of them have
@@ -123,18 +122,4 @@ fn a_value_that_the_gpu_did_not_store_is_found_out() {
     let mut stencil = whole.clone();
     stencil.captured_after[1].stored.stencil ^= 1;
     assert!(!stencil.agrees(), "a stencil in the middle of the frame");
-}
-
-/// A log that is too small counts on, and is made again with room for all.
-#[test]
-fn a_full_log_grows() {
-    let mut session = session();
-    let scene = nested_boxes();
-    let plan = session.plan(&scene, &CaptureRequest::new(choice(Technique::ZFail, &[]), SIZE)).expect("a plan");
-    let mut executor = Executor::new(Context::new(None).expect("an adapter"));
-    let covering = plan.covering([103, 95]);
-    let log = executor.log_fragments(&plan, [103, 95], &covering, covering.len() as u32).expect("a log");
-    assert_eq!((log.counted, log.fragments.len()), (16, 16));
-    let grown = executor.log_fragments(&plan, [103, 95], &covering, 1).expect("a log");
-    assert_eq!(log, grown);
 }

@@ -211,7 +211,7 @@ impl Monkey {
                 // Of any question that was ever asked, right or late.
                 let asked: Vec<u64> = seen.actions.iter().filter_map(ticket).collect();
                 let ticket = asked.get(self.below(asked.len().max(1))).copied().unwrap_or_default();
-                inspector.answer(ticket, Err(bad()), pixel[0] % 2 == 0);
+                inspector.answer(ticket, Err(bad()), pixel[0].is_multiple_of(2));
                 inspector.make_way();
             }
             _ => harness.input_mut().dropped_files.push(Arc::new(Dropped(PathBuf::from("broken.obj")))),

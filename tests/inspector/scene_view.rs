@@ -14,7 +14,7 @@ use stencilscope::anatomy::{Anatomy, anatomy};
 use stencilscope::ask::{AnatomyOf, HistoryOf, RunRequest};
 use stencilscope::geometry::GeometryCache;
 use stencilscope::inspector::Inspector;
-use stencilscope::scene::builtin::shapes;
+use stencilscope::scene::shapes;
 use stencilscope::scene::{Camera, Material, Object, OpenSpec, Scene, open};
 use stencilscope::technique::{Choice, Job, Technique, plan};
 

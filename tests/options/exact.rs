@@ -5,7 +5,7 @@ use super::{capture, over_floor, shadow_pixels, unseen};
 use crate::common::{cuboid, mesh, session};
 use glam::DVec3;
 use std::sync::Arc;
-use stencilscope::scene::builtin::shapes;
+use stencilscope::scene::shapes;
 use stencilscope::scene::{Light, Material, Object, Scene};
 use stencilscope::technique::Technique;
 

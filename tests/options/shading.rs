@@ -4,7 +4,7 @@ use super::{as_bright_as, brightness, capture};
 use crate::common::{from_above, session};
 use glam::DVec3;
 use std::collections::BTreeSet;
-use stencilscope::scene::builtin::shapes;
+use stencilscope::scene::shapes;
 use stencilscope::scene::{Light, Material, Object, Scene, Shading};
 use stencilscope::technique::Technique;
 

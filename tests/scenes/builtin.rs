@@ -71,7 +71,7 @@ fn builtin_scenes_are_well_formed() {
         names.sort_unstable();
         names.dedup();
         assert_eq!(names.len(), count, "{}: names are unique", scene.name);
-        assert!(scene.lights.iter().all(|light| light.check().is_ok()), "{}", scene.name);
+        assert!(!scene.lights.is_empty() && scene.lights.iter().all(|light| light.check().is_ok()), "{}", scene.name);
         let open = OPEN.iter().find(|(name, _)| *name == scene.name).map_or(&[][..], |(_, objects)| *objects);
         scene
             .objects

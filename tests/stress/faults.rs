@@ -10,7 +10,10 @@ fn assert_found(session: &mut Session, (name, values): (&str, &[f64]), entrant: 
     let mut run = |fault| {
         let rows = session.stress_faulty(case(name), &[entrant], values, SMALL, fault, &Progress::default());
         let rows = rows.expect("rows");
-        assert!(rows.iter().all(|row| row.expected == case(name).expected_at(&entrant, row.parameter.1)));
+        assert!(
+            !rows.is_empty()
+                && rows.iter().all(|row| row.expected == case(name).expected_at(&entrant, row.parameter.1))
+        );
         Stress { adapter: adapter.clone(), size: SMALL, rows }
     };
     let good = run(Fault::None);

@@ -112,7 +112,7 @@ fn random_pairs_agree_with_points_sampled_on_them() {
 
 #[test]
 fn a_closed_surface_does_not_meet_itself_until_it_is_bent_through() {
-    use crate::scene::builtin::shapes;
+    use crate::scene::shapes;
     let torus = shapes::torus(1.0, 0.4, 40, 20).expect("a torus");
     assert_eq!(self_meeting(torus.positions(), torus.triangles()), None);
     let mut bent = torus.positions().to_vec();

@@ -37,14 +37,23 @@ pub struct ShadowMapPanel {
     pick: Option<[u32; 2]>,
     /// Whose map.
     light: usize,
-    /// The marked texel, with the pixels that read it, of these readers.
-    marked: Option<(MapTexel, Weak<MapReaders>, Arc<Vec<[u32; 2]>>)>,
+    marked: Option<Marked>,
     /// What the pointer is over in the small picture.
     over_pixel: Option<[u32; 2]>,
     /// Nobody has chosen the face that is shown.
     is_any_face: bool,
     /// The frame that the pointer was over.
     frame: u64,
+}
+
+/// The marked texel.
+#[derive(Debug)]
+struct Marked {
+    texel: MapTexel,
+    /// Whose pixels they are.
+    of: Weak<MapReaders>,
+    /// Those that read it.
+    pixels: Arc<Vec<[u32; 2]>>,
 }
 
 impl ShadowMapPanel {
@@ -56,14 +65,12 @@ impl ShadowMapPanel {
 
     /// The pixels that read a texel, found once.
     fn pixels(&mut self, readers: &Arc<MapReaders>, texel: MapTexel) -> Arc<Vec<[u32; 2]>> {
-        if let Some((of, from, pixels)) = &self.marked
-            && *of == texel
-            && std::ptr::eq(from.as_ptr(), Arc::as_ptr(readers))
-        {
-            return pixels.clone();
+        let is_it = |marked: &&Marked| marked.texel == texel && std::ptr::eq(marked.of.as_ptr(), Arc::as_ptr(readers));
+        if let Some(marked) = self.marked.as_ref().filter(is_it) {
+            return Arc::clone(&marked.pixels);
         }
         let pixels = Arc::new(readers.of_texel(texel));
-        self.marked = Some((texel, Arc::downgrade(readers), pixels.clone()));
+        self.marked = Some(Marked { texel, of: Arc::downgrade(readers), pixels: Arc::clone(&pixels) });
         pixels
     }
 

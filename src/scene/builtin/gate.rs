@@ -6,8 +6,7 @@
 //! the 125th, the 128th and the last box, so that counts of 250, 256 and 300 are all wide enough to
 //! be seen.
 
-use super::{camera, matte, shapes};
-use crate::scene::{Light, Mesh, MeshError, Object, Pose, Scene};
+use crate::scene::{Camera, Light, Material, Mesh, MeshError, Object, Pose, Scene, SceneBuilder, shapes};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -24,23 +23,21 @@ const GROUPS: [(u32, f64, f64); 3] = [(125, 1.0, 0.85), (3, 0.8, 0.79), (22, 0.6
 pub fn build() -> Result<Scene, MeshError> {
     let floor = shapes::quad([14.0, 10.0])?;
     let wall = shapes::parallelogram(DVec3::new(-7.0, 0.0, -1.6), [DVec3::X * 14.0, DVec3::Y * 5.0])?;
-    let boxes = Object::new("nested boxes", Arc::new(nested_boxes()?), matte(GATE));
+    let boxes = Object::new("nested boxes", Arc::new(nested_boxes()?), Material::matte(GATE));
     let upright = Pose { translate: DVec3::new(-0.9, 1.34, 0.5), ..Pose::default() };
-    Ok(Scene {
-        name: "gate".to_owned(),
-        ambient: [0.15, 0.15, 0.16],
-        camera: camera([1.9, 2.0, 6.6], [0.3, 1.25, -0.6], 38.0),
-        lights: vec![Light { color: [1.0, 0.95, 0.87], ..Light::point(DVec3::new(-3.6, 2.9, 3.8)) }],
-        objects: vec![
+    Ok(SceneBuilder::new("gate")
+        .ambient([0.15, 0.15, 0.16])
+        .camera(Camera { fov_y_degrees: 38.0, ..Camera::looking([1.9, 2.0, 6.6], [0.3, 1.25, -0.6]) })
+        .light(Light { color: [1.0, 0.95, 0.87], ..Light::point(DVec3::new(-3.6, 2.9, 3.8)) })
+        .objects([
             Object {
                 pose: Pose { translate: DVec3::new(0.0, 0.0, 3.4), ..Pose::default() },
-                ..Object::new("floor", Arc::new(floor), matte(FLOOR))
+                ..Object::new("floor", Arc::new(floor), Material::matte(FLOOR))
             },
-            Object::new("wall", Arc::new(wall), matte(WALL)),
+            Object::new("wall", Arc::new(wall), Material::matte(WALL)),
             Object { pose: upright, ..boxes },
-        ],
-        technique: None,
-    })
+        ])
+        .build())
 }
 
 /// One mesh, the outermost box first: one caster of 150 closed shells.

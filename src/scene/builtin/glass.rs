@@ -4,8 +4,7 @@
 //! panes' colours, overlaps included. Every technique that only asks whether something stands
 //! between takes a pane for solid.
 
-use super::{camera, glossy, matte, placed, shapes};
-use crate::scene::{Light, Material, MeshError, Object, Scene};
+use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -32,26 +31,24 @@ pub fn build() -> Result<Scene, MeshError> {
     let ball = Arc::new(shapes::sphere(0.32, 48, 24)?);
     let stand = Arc::new(shapes::cylinder(0.3, 0.5, 48)?);
     let mut objects = vec![
-        placed("floor", &floor, matte(FLOOR), DVec3::new(0.0, 0.0, 1.2)),
-        Object::new("wall", wall, matte(WALL)),
-        placed("stand", &stand, matte(WOOD), DVec3::new(1.6, 0.25, -0.2)),
-        placed("ball", &ball, glossy(BALL), DVec3::new(1.6, 0.81, -0.2)),
+        Object::new("floor", floor.clone(), Material::matte(FLOOR)).at(DVec3::new(0.0, 0.0, 1.2)),
+        Object::new("wall", wall, Material::matte(WALL)),
+        Object::new("stand", stand.clone(), Material::matte(WOOD)).at(DVec3::new(1.6, 0.25, -0.2)),
+        Object::new("ball", ball.clone(), Material::glossy(BALL)).at(DVec3::new(1.6, 0.81, -0.2)),
     ];
     let pane = Arc::new(shapes::cuboid(PANE_SIZE)?);
     objects.extend(PANES.iter().map(|(name, color, [x, z], degrees)| {
         let glass =
             Material { color: *color, specular: 0.4, shininess: 60.0, opacity: PANE_OPACITY, ..Material::default() };
         // A hair above the floor, whose plane stays the floor's alone.
-        let mut object = placed(name, &pane, glass, DVec3::new(*x, PANE_SIZE[1] / 2.0 + 0.005, *z));
+        let mut object = Object::new(*name, pane.clone(), glass).at(DVec3::new(*x, PANE_SIZE[1] / 2.0 + 0.005, *z));
         object.pose.rotate_degrees.y = *degrees;
         object
     }));
-    Ok(Scene {
-        name: "glass".to_owned(),
-        ambient: [0.15, 0.15, 0.16],
-        camera: camera([2.7, 2.9, 4.8], [0.4, 0.72, -0.6], 39.0),
-        lights: vec![Light { color: [1.0, 0.96, 0.9], ..Light::point(DVec3::new(-2.1, 2.0, 3.2)) }],
-        objects,
-        technique: None,
-    })
+    Ok(SceneBuilder::new("glass")
+        .ambient([0.15, 0.15, 0.16])
+        .camera(Camera { fov_y_degrees: 39.0, ..Camera::looking([2.7, 2.9, 4.8], [0.4, 0.72, -0.6]) })
+        .light(Light { color: [1.0, 0.96, 0.9], ..Light::point(DVec3::new(-2.1, 2.0, 3.2)) })
+        .objects(objects)
+        .build())
 }

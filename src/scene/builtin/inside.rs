@@ -4,8 +4,7 @@
 //! both neighbours: z-pass begins to count too late in different ways across the picture. Z-fail
 //! counts from the other end and does not care where the eye is.
 
-use super::{camera, glossy, matte, placed, shapes};
-use crate::scene::{Camera, Light, MeshError, Scene};
+use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -34,32 +33,42 @@ pub fn build() -> Result<Scene, MeshError> {
     let bush = Arc::new(shapes::sphere(0.55, 48, 24)?);
     let pot = Arc::new(shapes::cylinder(0.38, 0.5, 48)?);
     let ring = Arc::new(shapes::torus(0.55, 0.2, 64, 28)?);
-    let mut objects = vec![placed("ground", &ground, matte(GRAVEL), DVec3::ZERO)];
+    let mut objects = vec![Object::new("ground", ground.clone(), Material::matte(GRAVEL))];
     objects.extend((0..SLATS).map(|index| {
         let x = f64::from(index - SLATS / 2) * SLAT_SPACING;
-        placed(&format!("slat {}", index + 1), &slat, matte(WOOD), DVec3::new(x, SLAT_HEIGHT, 1.5))
+        Object::new(format!("slat {}", index + 1), slat.clone(), Material::matte(WOOD)).at(DVec3::new(
+            x,
+            SLAT_HEIGHT,
+            1.5,
+        ))
     }));
     for (name, z) in [("far", -2.4), ("near", 5.4)] {
-        objects.push(placed(&format!("{name} beam"), &beam, matte(WOOD), DVec3::new(0.0, 2.42, z)));
+        objects.push(
+            Object::new(format!("{name} beam"), beam.clone(), Material::matte(WOOD)).at(DVec3::new(0.0, 2.42, z)),
+        );
         for (side, x) in [("left", -2.6), ("right", 2.6)] {
-            objects.push(placed(&format!("{name} {side} post"), &post, matte(WOOD), DVec3::new(x, 1.16, z)));
+            objects.push(
+                Object::new(format!("{name} {side} post"), post.clone(), Material::matte(WOOD))
+                    .at(DVec3::new(x, 1.16, z)),
+            );
         }
     }
-    objects.push(placed("wall", &wall, matte(STONE), DVec3::new(0.0, 0.5, -6.0)));
+    objects.push(Object::new("wall", wall.clone(), Material::matte(STONE)).at(DVec3::new(0.0, 0.5, -6.0)));
     for (side, x) in [("left", -1.7), ("right", 1.6)] {
-        objects.push(placed(&format!("{side} pot"), &pot, matte(CLAY), DVec3::new(x, 0.26, -1.3)));
-        objects.push(placed(&format!("{side} bush"), &bush, glossy(LEAVES), DVec3::new(x, 0.9, -1.3)));
+        objects
+            .push(Object::new(format!("{side} pot"), pot.clone(), Material::matte(CLAY)).at(DVec3::new(x, 0.26, -1.3)));
+        objects.push(
+            Object::new(format!("{side} bush"), bush.clone(), Material::glossy(LEAVES)).at(DVec3::new(x, 0.9, -1.3)),
+        );
     }
-    objects.push(placed("ring", &ring, glossy(GLAZE), DVec3::new(0.1, 0.76, -0.4)));
+    objects.push(Object::new("ring", ring.clone(), Material::glossy(GLAZE)).at(DVec3::new(0.1, 0.76, -0.4)));
     if let Some(ring) = objects.last_mut() {
         ring.pose.rotate_degrees = DVec3::new(90.0, 20.0, 0.0);
     }
-    Ok(Scene {
-        name: "inside".to_owned(),
-        ambient: [0.16, 0.17, 0.20],
-        camera: Camera { near: 0.8, ..camera(EYE, [0.1, 0.95, -2.0], 60.0) },
-        lights: vec![Light { color: [1.0, 0.93, 0.80], ..Light::directional(SUN) }],
-        objects,
-        technique: None,
-    })
+    Ok(SceneBuilder::new("inside")
+        .ambient([0.16, 0.17, 0.20])
+        .camera(Camera { near: 0.8, fov_y_degrees: 60.0, ..Camera::looking(EYE, [0.1, 0.95, -2.0]) })
+        .light(Light { color: [1.0, 0.93, 0.80], ..Light::directional(SUN) })
+        .objects(objects)
+        .build())
 }

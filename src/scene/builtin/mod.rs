@@ -5,7 +5,6 @@ mod glass;
 mod inside;
 mod panels;
 mod rings;
-pub use super::shapes;
 mod steps;
 mod table;
 mod teapot_like;
@@ -14,9 +13,7 @@ mod tiger_cage;
 mod tori;
 mod two_lights;
 
-use super::{Camera, Material, Mesh, MeshError, Motion, Object, Pose, Scene, SceneError, Shading};
-use glam::DVec3;
-use std::sync::Arc;
+use super::{MeshError, Scene, SceneError};
 
 /// A scene made by code.
 #[derive(Debug, Clone, Copy)]
@@ -106,26 +103,4 @@ impl Builtin {
     pub fn scene(&self) -> Result<Scene, SceneError> {
         (self.build)().map_err(|source| SceneError::Mesh { name: self.name.to_owned(), source })
     }
-}
-
-/// An object at `translate`.
-fn placed(name: &str, mesh: &Arc<Mesh>, material: Material, translate: DVec3) -> Object {
-    let pose = Pose { translate, ..Pose::default() };
-    Object { pose, motion: Motion::default(), ..Object::new(name, Arc::clone(mesh), material) }
-}
-
-/// A dull surface with one normal a triangle.
-fn matte(color: [f32; 3]) -> Material {
-    Material { color, ..Material::default() }
-}
-
-/// A smooth surface with a highlight.
-fn glossy(color: [f32; 3]) -> Material {
-    Material { color, specular: 0.25, shininess: 40.0, shading: Shading::Phong, opacity: 1.0 }
-}
-
-/// An eye that looks at a target, up being up, with a vertical field of view in degrees.
-fn camera(eye: [f64; 3], target: [f64; 3], fov_y_degrees: f64) -> Camera {
-    let [eye, target] = [eye, target].map(DVec3::from_array);
-    Camera { eye, target, up: DVec3::Y, fov_y_degrees, near: 0.05, far: None }
 }

@@ -3,8 +3,7 @@
 //! Its five walls and the panels are nine parallelograms, each an object of its own: the receivers
 //! that textures of Heckbert and Herf (1997) are made for. The light is in the plane of the opening.
 
-use super::{camera, matte, shapes};
-use crate::scene::{Camera, Light, MeshError, Object, Scene};
+use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -45,20 +44,18 @@ const PARALLELOGRAMS: [Parallelogram; 9] = [
 
 /// Figures of room and light from the source that founded the scene.
 pub fn build() -> Result<Scene, MeshError> {
-    let objects = PARALLELOGRAMS.iter().map(Parallelogram::object).collect::<Result<_, _>>()?;
-    Ok(Scene {
-        name: "panels".to_owned(),
-        ambient: [0.12, 0.12, 0.13],
-        camera: Camera { near: 5.0, ..camera([0.0, 4.0, -250.0], [0.0, -6.0, -420.0], 62.0) },
-        lights: vec![Light { color: [1.0, 0.95, 0.87], ..Light::point(DVec3::new(70.0, 70.0, -320.0)) }],
-        objects,
-        technique: None,
-    })
+    let objects = PARALLELOGRAMS.iter().map(Parallelogram::object).collect::<Result<Vec<Object>, _>>()?;
+    Ok(SceneBuilder::new("panels")
+        .ambient([0.12, 0.12, 0.13])
+        .camera(Camera { near: 5.0, fov_y_degrees: 62.0, ..Camera::looking([0.0, 4.0, -250.0], [0.0, -6.0, -420.0]) })
+        .light(Light { color: [1.0, 0.95, 0.87], ..Light::point(DVec3::new(70.0, 70.0, -320.0)) })
+        .objects(objects)
+        .build())
 }
 
 impl Parallelogram {
     fn object(&self) -> Result<Object, MeshError> {
         let mesh = shapes::parallelogram(DVec3::from_array(self.corner), self.edges.map(DVec3::from_array))?;
-        Ok(Object { casts: self.casts, ..Object::new(self.name, Arc::new(mesh), matte(self.color)) })
+        Ok(Object { casts: self.casts, ..Object::new(self.name, Arc::new(mesh), Material::matte(self.color)) })
     }
 }

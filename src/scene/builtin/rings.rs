@@ -3,8 +3,7 @@
 //! Flattened onto the plane without clipping, the torus beyond the light gives an anti-shadow and
 //! the one under the plane a false shadow: neither is there in truth.
 
-use super::{camera, glossy, matte, placed, shapes};
-use crate::scene::{Light, MeshError, Scene};
+use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -17,17 +16,17 @@ const PURPLE: [f32; 3] = [0.60, 0.19, 0.38];
 pub fn build() -> Result<Scene, MeshError> {
     let torus = Arc::new(shapes::torus(0.5, 0.2, 64, 32)?);
     let plane = Arc::new(shapes::quad([8.0, 8.0])?);
-    Ok(Scene {
-        name: "rings".to_owned(),
-        ambient: [0.14, 0.14, 0.15],
-        camera: camera([-4.0, 6.0, -4.0], [0.0; 3], 50.0),
-        lights: vec![Light::point(DVec3::new(1.0, 2.0, -1.0))],
-        objects: vec![
-            placed("plane", &plane, matte(PLANE), DVec3::ZERO),
-            placed("torus on the plane", &torus, glossy(BLUE), DVec3::new(0.0, 0.5, 0.0)),
-            placed("torus beyond the light", &torus, glossy(ORANGE), DVec3::new(1.0, 3.0, -1.0)),
-            placed("torus under the plane", &torus, glossy(PURPLE), DVec3::new(0.0, -4.0, 0.0)),
-        ],
-        technique: None,
-    })
+    Ok(SceneBuilder::new("rings")
+        .ambient([0.14, 0.14, 0.15])
+        .camera(Camera { fov_y_degrees: 50.0, ..Camera::looking([-4.0, 6.0, -4.0], [0.0; 3]) })
+        .light(Light::point(DVec3::new(1.0, 2.0, -1.0)))
+        .objects([
+            Object::new("plane", plane.clone(), Material::matte(PLANE)),
+            Object::new("torus on the plane", torus.clone(), Material::glossy(BLUE)).at(DVec3::new(0.0, 0.5, 0.0)),
+            Object::new("torus beyond the light", torus.clone(), Material::glossy(ORANGE))
+                .at(DVec3::new(1.0, 3.0, -1.0)),
+            Object::new("torus under the plane", torus.clone(), Material::glossy(PURPLE))
+                .at(DVec3::new(0.0, -4.0, 0.0)),
+        ])
+        .build())
 }

@@ -3,8 +3,7 @@
 //! Every step is a flat receiver, the balls have none: flattening casters onto planes takes a pass
 //! over all of them for each step, and leaves the balls without shadows.
 
-use super::{camera, glossy, matte, placed, shapes};
-use crate::scene::{Light, MeshError, Scene};
+use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -29,23 +28,22 @@ pub fn build() -> Result<Scene, MeshError> {
     let small_flight = Arc::new(shapes::stairs(5, 0.22, 0.2, 0.8)?);
     let wall = Arc::new(shapes::cuboid([0.3, 2.9, 5.4])?);
     let ball = Arc::new(shapes::sphere(BALL_RADIUS, 48, 24)?);
-    let mut small = placed("small flight", &small_flight, matte(STONE), DVec3::new(-1.75, 0.0, -1.35));
+    let mut small =
+        Object::new("small flight", small_flight.clone(), Material::matte(STONE)).at(DVec3::new(-1.75, 0.0, -1.35));
     small.pose.rotate_degrees.y = -18.0;
     let mut objects = vec![
-        placed("floor", &floor, matte(FLOOR), DVec3::ZERO),
-        placed("flight", &flight, matte(STONE), DVec3::ZERO),
+        Object::new("floor", floor.clone(), Material::matte(FLOOR)),
+        Object::new("flight", flight.clone(), Material::matte(STONE)),
         small,
-        placed("wall", &wall, matte(BRICK), DVec3::new(2.76, 1.4, 0.0)),
+        Object::new("wall", wall.clone(), Material::matte(BRICK)).at(DVec3::new(2.76, 1.4, 0.0)),
     ];
-    objects.extend(
-        BALLS.iter().map(|(name, color, place)| placed(name, &ball, glossy(*color), DVec3::from_array(*place))),
-    );
-    Ok(Scene {
-        name: "steps".to_owned(),
-        ambient: [0.14, 0.14, 0.15],
-        camera: camera([-4.0, 3.3, 4.5], [0.55, 0.62, -0.05], 38.0),
-        lights: vec![Light { color: [1.0, 0.95, 0.86], ..Light::point(DVec3::new(-3.4, 3.8, -2.6)) }],
-        objects,
-        technique: None,
-    })
+    objects.extend(BALLS.iter().map(|(name, color, place)| {
+        Object::new(*name, ball.clone(), Material::glossy(*color)).at(DVec3::from_array(*place))
+    }));
+    Ok(SceneBuilder::new("steps")
+        .ambient([0.14, 0.14, 0.15])
+        .camera(Camera { fov_y_degrees: 38.0, ..Camera::looking([-4.0, 3.3, 4.5], [0.55, 0.62, -0.05]) })
+        .light(Light { color: [1.0, 0.95, 0.86], ..Light::point(DVec3::new(-3.4, 3.8, -2.6)) })
+        .objects(objects)
+        .build())
 }

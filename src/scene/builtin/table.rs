@@ -1,7 +1,6 @@
 //! `table`: a torus and four spheres over a slab, where shadow maps show their faults.
 
-use super::{placed, shapes};
-use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, Shading};
+use crate::scene::{Camera, Light, Material, MeshError, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -15,29 +14,26 @@ pub fn build() -> Result<Scene, MeshError> {
     let slab = Arc::new(shapes::cuboid([3.0, 0.15, 3.0])?);
     let torus = Arc::new(shapes::torus(0.5, 0.2, 64, 32)?);
     let sphere = Arc::new(shapes::sphere(0.2, 32, 16)?);
-    let flat = |color| Material { color, ..Material::default() };
-    let glossy = |color| Material { color, specular: 0.25, shininess: 40.0, shading: Shading::Phong, opacity: 1.0 };
     let mut objects = vec![
-        placed("slab", &slab, flat(SLAB), DVec3::ZERO),
-        placed("torus", &torus, glossy(TORUS), DVec3::new(0.0, 0.5, 0.0)),
+        Object::new("slab", slab.clone(), Material::matte(SLAB)),
+        Object::new("torus", torus.clone(), Material::glossy(TORUS)).at(DVec3::new(0.0, 0.5, 0.0)),
     ];
     let corners = [(-0.45, -0.45), (0.45, -0.45), (0.45, 0.45), (-0.45, 0.45)];
     objects.extend(corners.iter().enumerate().map(|(index, (x, z))| -> Object {
-        placed(&format!("sphere {}", index + 1), &sphere, glossy(SPHERE), DVec3::new(*x, 1.0, *z))
+        Object::new(format!("sphere {}", index + 1), sphere.clone(), Material::glossy(SPHERE))
+            .at(DVec3::new(*x, 1.0, *z))
     }));
-    Ok(Scene {
-        name: "table".to_owned(),
-        ambient: [0.14, 0.14, 0.15],
-        camera: Camera {
+    Ok(SceneBuilder::new("table")
+        .ambient([0.14, 0.14, 0.15])
+        .camera(Camera {
             eye: DVec3::new(-2.5, 3.5, -2.5),
             target: DVec3::new(-0.1, 0.0, -0.1),
             up: DVec3::Y,
             fov_y_degrees: 45.0,
             near: 0.05,
             far: None,
-        },
-        lights: vec![Light::point(DVec3::new(2.0, 3.0, -2.0))],
-        objects,
-        technique: None,
-    })
+        })
+        .light(Light::point(DVec3::new(2.0, 3.0, -2.0)))
+        .objects(objects)
+        .build())
 }

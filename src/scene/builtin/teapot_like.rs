@@ -5,8 +5,7 @@
 //! here. Multiplicities of all triangles, turned towards the light, are not: an edge of the sheet's
 //! border counts once, one inside the sheet twice or not at all.
 
-use super::{camera, matte, placed, shapes};
-use crate::scene::{Light, Material, Mesh, MeshError, Motion, Scene, Shading};
+use crate::scene::{Camera, Light, Material, Mesh, MeshError, Motion, Object, Scene, SceneBuilder, Shading, shapes};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -21,22 +20,20 @@ const AROUND: u32 = 56;
 pub fn build() -> Result<Scene, MeshError> {
     let table = Arc::new(shapes::cylinder(3.4, 0.16, 96)?);
     let glazed = |color| Material { color, specular: 0.35, shininess: 50.0, shading: Shading::Phong, opacity: 1.0 };
-    let mut pot = placed("pot", &Arc::new(pot()?), glazed(GLAZE), DVec3::new(0.0, 0.02, 0.0));
+    let mut pot = Object::new("pot", Arc::new(pot()?), glazed(GLAZE)).at(DVec3::new(0.0, 0.02, 0.0));
     pot.pose.rotate_degrees.y = 24.0;
     pot.motion = Motion { spin_degrees_per_second: DVec3::new(0.0, 20.0, 0.0), ..Motion::default() };
     let cup = shapes::revolve(&curve([[0.34, 0.0], [0.62, 0.18], [0.55, 0.42], [0.62, 0.62]], 10), false, AROUND)?;
-    Ok(Scene {
-        name: "teapot-like".to_owned(),
-        ambient: [0.14, 0.14, 0.15],
-        camera: camera([0.9, 3.0, 4.9], [0.1, 0.55, 0.0], 40.0),
-        lights: vec![Light { color: [1.0, 0.95, 0.86], ..Light::point(DVec3::new(-2.9, 4.2, 1.6)) }],
-        objects: vec![
-            placed("table", &table, matte(TABLE), DVec3::new(0.0, -0.08, 0.0)),
+    Ok(SceneBuilder::new("teapot-like")
+        .ambient([0.14, 0.14, 0.15])
+        .camera(Camera { fov_y_degrees: 40.0, ..Camera::looking([0.9, 3.0, 4.9], [0.1, 0.55, 0.0]) })
+        .light(Light { color: [1.0, 0.95, 0.86], ..Light::point(DVec3::new(-2.9, 4.2, 1.6)) })
+        .objects([
+            Object::new("table", table.clone(), Material::matte(TABLE)).at(DVec3::new(0.0, -0.08, 0.0)),
             pot,
-            placed("cup", &Arc::new(cup), glazed(CUP), DVec3::new(1.75, 0.02, 1.25)),
-        ],
-        technique: None,
-    })
+            Object::new("cup", Arc::new(cup), glazed(CUP)).at(DVec3::new(1.75, 0.02, 1.25)),
+        ])
+        .build())
 }
 
 /// All parts in one mesh: one caster.

@@ -3,8 +3,7 @@
 //! Four triangles and six edges: its silhouette has three or four of them, so that every side and
 //! cap of its shadow volume can be told apart in the pictures and named in the plan.
 
-use super::{camera, matte, placed, shapes};
-use crate::scene::{Light, MeshError, Motion, Object, Scene};
+use crate::scene::{Camera, Light, Material, MeshError, Motion, Object, Scene, SceneBuilder, shapes};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -14,18 +13,16 @@ const ORANGE: [f32; 3] = [0.78, 0.35, 0.02];
 /// Figures from the source that founded the scene: a unit tetrahedron (its corners are 1 from its
 /// middle) at (0, 0, −6) in the box ±2, ±2, ±10, a light at (1, 1, −4).
 pub fn build() -> Result<Scene, MeshError> {
-    let shaft = placed("shaft", &Arc::new(shapes::room([4.0, 4.0, 20.0])?), matte(SHAFT), DVec3::ZERO);
+    let shaft = Object::new("shaft", Arc::new(shapes::room([4.0, 4.0, 20.0])?), Material::matte(SHAFT));
     let tetrahedron = Arc::new(shapes::tetrahedron(1.0)?);
-    let mut turning = placed("tetrahedron", &tetrahedron, matte(ORANGE), DVec3::new(0.0, 0.0, -6.0));
+    let mut turning =
+        Object::new("tetrahedron", tetrahedron.clone(), Material::matte(ORANGE)).at(DVec3::new(0.0, 0.0, -6.0));
     turning.pose.rotate_degrees = DVec3::new(14.0, 25.0, -9.0);
     turning.motion = Motion { spin_degrees_per_second: DVec3::new(0.0, 30.0, 0.0), ..Motion::default() };
-    Ok(Scene {
-        name: "tetrahedron".to_owned(),
-        ambient: [0.11, 0.11, 0.125],
-        camera: camera([0.9, 0.5, -2.4], [-0.35, -0.3, -6.5], 52.0),
-        lights: vec![Light { color: [1.0, 0.95, 0.87], ..Light::point(DVec3::new(1.0, 1.0, -4.0)) }],
-        // Nothing is behind the shaft's walls: as a caster it could only shadow itself.
-        objects: vec![Object { casts: false, ..shaft }, turning],
-        technique: None,
-    })
+    Ok(SceneBuilder::new("tetrahedron")
+        .ambient([0.11, 0.11, 0.125])
+        .camera(Camera { fov_y_degrees: 52.0, ..Camera::looking([0.9, 0.5, -2.4], [-0.35, -0.3, -6.5]) })
+        .light(Light { color: [1.0, 0.95, 0.87], ..Light::point(DVec3::new(1.0, 1.0, -4.0)) })
+        .objects([Object { casts: false, ..shaft }, turning])
+        .build())
 }

@@ -7,8 +7,7 @@
 //! The light hangs below a shade, so bars throw their stripes into the cells, rails and planks
 //! theirs into the corridor, and all of them move when the lamp does.
 
-use super::{camera, matte, placed, shapes};
-use crate::scene::{Camera, Light, Material, Mesh, MeshError, Motion, Object, Scene, Swing};
+use crate::scene::{Camera, Light, Material, Mesh, MeshError, Motion, Object, Scene, SceneBuilder, Swing, shapes};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -58,14 +57,12 @@ pub fn build() -> Result<Scene, MeshError> {
         ..Light::point(PIVOT - DVec3::Y * (CORD + 0.17))
     };
     objects.push(lamp);
-    Ok(Scene {
-        name: "tiger-cage".to_owned(),
-        ambient: [0.13, 0.135, 0.15],
-        camera: Camera { near: 0.1, ..camera([0.65, 1.6, 3.6], [-1.2, 1.35, 0.4], 66.0) },
-        lights: vec![bulb],
-        objects,
-        technique: None,
-    })
+    Ok(SceneBuilder::new("tiger-cage")
+        .ambient([0.13, 0.135, 0.15])
+        .camera(Camera { near: 0.1, fov_y_degrees: 66.0, ..Camera::looking([0.65, 1.6, 3.6], [-1.2, 1.35, 0.4]) })
+        .light(bulb)
+        .objects(objects)
+        .build())
 }
 
 /// Floor, roof and outer walls. The floor is one sheet; walls stand through it.
@@ -84,12 +81,12 @@ fn hall() -> Result<Vec<Object>, MeshError> {
     let [far, near] = [-HALF_LENGTH - WALL / 2.0, HALF_LENGTH + LANDING + WALL / 2.0];
     let at = DVec3::new;
     Ok(vec![
-        placed("floor", &floor, matte(CONCRETE), at(0.0, 0.0, middle)),
-        placed("roof", &roof, matte(OUTER), at(0.0, ROOF + WALL / 2.0, middle)),
-        placed("left outer wall", &side, matte(OUTER), at(-side_x, wall_middle, middle)),
-        placed("right outer wall", &side, matte(OUTER), at(side_x, wall_middle, middle)),
-        placed("far outer wall", &end, matte(OUTER), at(0.0, wall_middle, far)),
-        placed("near outer wall", &end, matte(OUTER), at(0.0, wall_middle, near)),
+        Object::new("floor", floor.clone(), Material::matte(CONCRETE)).at(at(0.0, 0.0, middle)),
+        Object::new("roof", roof.clone(), Material::matte(OUTER)).at(at(0.0, ROOF + WALL / 2.0, middle)),
+        Object::new("left outer wall", side.clone(), Material::matte(OUTER)).at(at(-side_x, wall_middle, middle)),
+        Object::new("right outer wall", side.clone(), Material::matte(OUTER)).at(at(side_x, wall_middle, middle)),
+        Object::new("far outer wall", end.clone(), Material::matte(OUTER)).at(at(0.0, wall_middle, far)),
+        Object::new("near outer wall", end.clone(), Material::matte(OUTER)).at(at(0.0, wall_middle, near)),
     ])
 }
 
@@ -99,15 +96,11 @@ fn cells() -> Result<Vec<Object>, MeshError> {
     let partition = Arc::new(shapes::cuboid([CELL_DEPTH - WALL, CELL_HEIGHT + SUNK, WALL])?);
     let bed = Arc::new(shapes::cuboid([0.7, 0.45, CELL_PITCH - WALL])?);
     let bars = Arc::new(bars()?);
-    let iron = Material { specular: 0.2, shininess: 20.0, ..matte(IRON) };
+    let iron = Material { specular: 0.2, shininess: 20.0, ..Material::matte(IRON) };
     let mut objects = Vec::new();
     for (row, side) in [("left", -1.0), ("right", 1.0)] {
-        let mut fronts = placed(
-            &format!("{row} cell fronts"),
-            &front,
-            matte(PLASTER),
-            DVec3::new(side * (CORRIDOR_HALF + WALL / 2.0), 0.0, 0.0),
-        );
+        let mut fronts = Object::new(format!("{row} cell fronts"), front.clone(), Material::matte(PLASTER))
+            .at(DVec3::new(side * (CORRIDOR_HALF + WALL / 2.0), 0.0, 0.0));
         fronts.pose.rotate_degrees.y = 90.0;
         objects.push(fronts);
         let middle_x = side * (CORRIDOR_HALF + WALL + (CELL_DEPTH - WALL) / 2.0);
@@ -116,10 +109,16 @@ fn cells() -> Result<Vec<Object>, MeshError> {
             let of_cell = |what: &str| format!("{what} {row} {}", cell + 1);
             let wall_z = z + CELL_PITCH / 2.0;
             let wall_place = DVec3::new(middle_x, (CELL_HEIGHT - SUNK) / 2.0, wall_z);
-            objects.push(placed(&of_cell("partition"), &partition, matte(PLASTER), wall_place));
+            objects.push(Object::new(of_cell("partition"), partition.clone(), Material::matte(PLASTER)).at(wall_place));
             let bed_x = side * (CORRIDOR_HALF + CELL_DEPTH - 0.35);
-            objects.push(placed(&of_cell("bed"), &bed, matte(CONCRETE), DVec3::new(bed_x, 0.225, z)));
-            objects.push(placed(&of_cell("bars"), &bars, iron, DVec3::new(middle_x, CELL_HEIGHT - 0.06, z)));
+            objects.push(
+                Object::new(of_cell("bed"), bed.clone(), Material::matte(CONCRETE)).at(DVec3::new(bed_x, 0.225, z)),
+            );
+            objects.push(Object::new(of_cell("bars"), bars.clone(), iron).at(DVec3::new(
+                middle_x,
+                CELL_HEIGHT - 0.06,
+                z,
+            )));
         }
     }
     Ok(objects)
@@ -170,17 +169,21 @@ fn walkway() -> Result<Vec<Object>, MeshError> {
     )?;
     let railing = Arc::new(railing);
     let rail_height = DECK + 0.44;
-    let iron = Material { specular: 0.2, shininess: 20.0, ..matte(IRON) };
+    let iron = Material { specular: 0.2, shininess: 20.0, ..Material::matte(IRON) };
     // 12 steps up to the deck, the last one its height below it.
     let rise = DECK / 13.0;
     let flight = Arc::new(shapes::stairs(12, rise, LANDING / 14.0, 1.1)?);
-    let mut stairs = placed("stairs", &flight, matte(CONCRETE), DVec3::new(0.0, 0.0, near + 12.0 * LANDING / 14.0));
+    let mut stairs = Object::new("stairs", flight.clone(), Material::matte(CONCRETE)).at(DVec3::new(
+        0.0,
+        0.0,
+        near + 12.0 * LANDING / 14.0,
+    ));
     stairs.pose.rotate_degrees.y = 90.0;
     Ok(vec![
-        placed("walkway", &Arc::new(deck), matte(WOOD), DVec3::new(0.0, DECK - 0.03, 0.0)),
-        placed("beams", &Arc::new(beams), matte(WOOD), DVec3::new(0.0, DECK - 0.14, 0.0)),
-        placed("left railing", &railing, iron, DVec3::new(-DECK_HALF + 0.04, rail_height, 0.0)),
-        placed("right railing", &railing, iron, DVec3::new(DECK_HALF - 0.04, rail_height, 0.0)),
+        Object::new("walkway", Arc::new(deck), Material::matte(WOOD)).at(DVec3::new(0.0, DECK - 0.03, 0.0)),
+        Object::new("beams", Arc::new(beams), Material::matte(WOOD)).at(DVec3::new(0.0, DECK - 0.14, 0.0)),
+        Object::new("left railing", railing.clone(), iron).at(DVec3::new(-DECK_HALF + 0.04, rail_height, 0.0)),
+        Object::new("right railing", railing.clone(), iron).at(DVec3::new(DECK_HALF - 0.04, rail_height, 0.0)),
         stairs,
     ])
 }
@@ -191,8 +194,8 @@ fn lamp() -> Result<Object, MeshError> {
     let cord = shapes::cylinder(0.012, CORD, 6)?;
     let shade = shapes::revolve(&[DVec2::new(0.30, -0.12), DVec2::new(0.05, 0.05), DVec2::new(0.0, 0.06)], false, 32)?;
     let mesh = shapes::joined([(&cord, DVec3::Y * (-CORD / 2.0)), (&shade, DVec3::Y * -(CORD + 0.02))])?;
-    let enamel = Material { specular: 0.3, shininess: 30.0, ..matte(ENAMEL) };
-    let mut lamp = placed("lamp", &Arc::new(mesh), enamel, PIVOT);
+    let enamel = Material { specular: 0.3, shininess: 30.0, ..Material::matte(ENAMEL) };
+    let mut lamp = Object::new("lamp", Arc::new(mesh), enamel).at(PIVOT);
     lamp.motion = Motion { swing: Some(SWING), ..Motion::default() };
     Ok(lamp)
 }

@@ -3,8 +3,9 @@
 //! Two tori circle near the light and two further out, so that the inner ones' shadows cross the
 //! outer ones. The eye is in a corner of the room, where at the start no shadow reaches.
 
-use super::{placed, shapes};
-use crate::scene::{Camera, Light, Material, Mesh, MeshError, Motion, Object, Orbit, Scene, Shading};
+use crate::scene::{
+    Camera, Light, Material, Mesh, MeshError, Motion, Object, Orbit, Scene, SceneBuilder, Shading, shapes,
+};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -74,25 +75,23 @@ const TORI: [Orbiting; 4] = [
 pub fn build() -> Result<Scene, MeshError> {
     let torus = Arc::new(shapes::torus(0.66, 0.22, 64, 28)?);
     let plaster = Material { color: PLASTER, ..Material::default() };
-    let room = placed("room", &Arc::new(shapes::room(ROOM)?), plaster, DVec3::ZERO);
+    let room = Object::new("room", Arc::new(shapes::room(ROOM)?), plaster);
     // Nothing is behind its walls: as a caster it could only shadow itself.
     let mut objects = vec![Object { casts: false, ..room }];
     objects.extend(TORI.iter().map(|orbiting| orbiting.object(&torus)));
-    Ok(Scene {
-        name: "tori".to_owned(),
-        ambient: [0.10, 0.10, 0.115],
-        camera: Camera {
+    Ok(SceneBuilder::new("tori")
+        .ambient([0.10, 0.10, 0.115])
+        .camera(Camera {
             eye: DVec3::new(4.0, 1.9, 4.4),
             target: DVec3::new(-0.3, -0.45, -0.3),
             up: DVec3::Y,
             fov_y_degrees: 52.0,
             near: 0.05,
             far: None,
-        },
-        lights: vec![Light { color: [1.0, 0.94, 0.84], intensity: 1.15, ..Light::point(LIGHT) }],
-        objects,
-        technique: None,
-    })
+        })
+        .light(Light { color: [1.0, 0.94, 0.84], intensity: 1.15, ..Light::point(LIGHT) })
+        .objects(objects)
+        .build())
 }
 
 impl Orbiting {
@@ -101,7 +100,7 @@ impl Orbiting {
         let start = LIGHT + DVec3::new(self.radius * sin, self.height, self.radius * cos);
         let material =
             Material { color: self.color, specular: 0.3, shininess: 32.0, shading: Shading::Phong, opacity: 1.0 };
-        let mut object = placed(self.name, mesh, material, start);
+        let mut object = Object::new(self.name, mesh.clone(), material).at(start);
         object.pose.rotate_degrees = self.rotate_degrees;
         let orbit = Orbit { center: LIGHT, axis: DVec3::Y, degrees_per_second: self.degrees_per_second };
         object.motion =

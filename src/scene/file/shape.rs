@@ -2,7 +2,7 @@
 
 use super::problem::Problem;
 use super::tables::{Number, Segments, ShapeTable};
-use crate::scene::builtin::shapes;
+use crate::scene::shapes;
 use crate::scene::suggestion;
 use crate::scene::{Mesh, MeshError};
 use glam::DVec2;
@@ -78,7 +78,7 @@ fn revolve(table: &ShapeTable) -> Result<Mesh, Problem> {
 fn triangles(table: &ShapeTable) -> Result<Mesh, Problem> {
     let points = table.points.as_ref().ok_or_else(|| missing(table, "points"))?;
     let indices = table.indices.as_ref().ok_or_else(|| missing(table, "indices"))?;
-    let made = shapes::triangles(points.get_ref().clone(), indices.get_ref().clone());
+    let made = shapes::triangles(points.get_ref(), indices.get_ref());
     let mesh = made.map_err(|error| match error {
         MeshError::NotFinite { .. } | MeshError::TooLarge { .. } => broken(points, &error),
         MeshError::IndexOutOfRange { .. } => broken(indices, &error),

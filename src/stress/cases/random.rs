@@ -1,10 +1,8 @@
 //! A thousand random scenes: soups of up to two hundred triangles, closed and open, under random
 //! eyes, lights and near planes. The value of the case is the seed, so any of them can be looked at.
 
-use super::stage::{mesh, object};
 use super::who::PLAIN;
-use crate::scene::builtin::shapes;
-use crate::scene::{Camera, Light, Mesh, MeshError, Object, Scene};
+use crate::scene::{Camera, Light, Mesh, MeshError, Object, Scene, shapes};
 use crate::stress::{Case, Drives, Least};
 use crate::technique::Technique;
 use glam::DVec3;
@@ -61,12 +59,12 @@ impl Random {
 
 fn scene(seed: f64) -> Result<Scene, MeshError> {
     let mut random = Random((seed as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    let caster = object("soup", soup(&mut random, seed as u32 % 4)?);
+    let caster = Object::of("soup", soup(&mut random, seed as u32 % 4)?);
     let visible = random.unit() < 0.8;
     let mut objects = vec![Object { visible, ..caster }];
     if random.unit() < 0.6 || !visible {
-        let ground = object("ground", shapes::quad([8.0; 2])?);
-        objects.push(super::stage::moved(ground, [0.0, -1.2, 0.0]));
+        let ground = Object::of("ground", shapes::quad([8.0; 2])?);
+        objects.push(ground.at([0.0, -1.2, 0.0]));
     }
     let eye = random.within(2.5);
     let light = match random.below(3) {
@@ -123,5 +121,5 @@ fn soup(random: &mut Random, kind: u32) -> Result<Mesh, MeshError> {
             triangles.extend(ball.triangles());
         }
     }
-    mesh(&points, &triangles)
+    shapes::triangles(&points, &triangles)
 }

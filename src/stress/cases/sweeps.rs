@@ -3,10 +3,9 @@
 mod grazing;
 mod near;
 
-use super::stage::{carried, enlarged, floor, lamp, mesh, moved, object, scene, still_life, unseen};
+use super::stage::{carried, enlarged, floor, scene, still_life};
 use super::who::*;
-use crate::scene::builtin::shapes;
-use crate::scene::{Light, MeshError, Object};
+use crate::scene::{Light, MeshError, Object, shapes};
 use crate::stress::{Case, Drives, Failure, Kind, Least, Symptom, Trend};
 use crate::technique::Technique;
 use glam::DVec3;
@@ -113,7 +112,7 @@ const LIGHT_CLOSE: Case = Case {
     values: &[1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7],
     drives: Drives::Scene(|distance| {
         let mut scene = still_life()?;
-        scene.lights = vec![lamp(0.1, 1.1 + 0.8 * distance, 0.15)];
+        scene.lights = vec![Light::point([0.1, 1.1 + 0.8 * distance, 0.15])];
         Ok(scene)
     }),
     also: &[FINITE],
@@ -172,8 +171,8 @@ const SLIVER: Case = Case {
     parameter: "aspect ratio",
     values: &[1.0, 1e1, 1e2, 1e4, 1e6, 1e8],
     drives: Drives::Scene(|aspect| {
-        let caster = moved(object("sliver", mesh(&sliver(aspect), &[[0, 1, 2]])?), [0.0, 1.0, 0.0]);
-        Ok(scene([0.5, 3.5, 4.5], [0.0, 0.3, 0.0], lamp(0.3, 4.0, 0.8), vec![floor(3.0)?, caster]))
+        let caster = Object::of("sliver", shapes::triangles(&sliver(aspect), &[[0, 1, 2]])?).at([0.0, 1.0, 0.0]);
+        Ok(scene([0.5, 3.5, 4.5], [0.0, 0.3, 0.0], Light::point([0.3, 4.0, 0.8]), vec![floor(3.0)?, caster]))
     }),
     failures: &[fails(
         SILHOUETTE,
@@ -210,8 +209,8 @@ const NESTED: Case = Case {
         let panes = (0..count as u32).map(|index| {
             let height = 0.5 + f64::from(index) * 0.002;
             let up = height / light.y;
-            let pane = object(&format!("pane {}", index + 1), shapes::quad([0.86 * (1.0 - up); 2])?);
-            Ok(unseen(moved(pane, [light.x * up, height, light.z * up])))
+            let pane = Object::of(format!("pane {}", index + 1), shapes::quad([0.86 * (1.0 - up); 2])?);
+            Ok(pane.at([light.x * up, height, light.z * up]).unseen())
         });
         let mut objects = vec![floor(3.0)?];
         objects.extend(panes.collect::<Result<Vec<Object>, MeshError>>()?);
@@ -240,9 +239,10 @@ const THIN_GAP: Case = Case {
     parameter: "width in metres",
     values: &[1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6],
     drives: Drives::Scene(|width| {
-        let halves = unseen(moved(object("halves", mesh(&slit(width), &SLIT_TRIANGLES)?), [0.0, 1.0, 0.0]));
+        let halves =
+            Object::of("halves", shapes::triangles(&slit(width), &SLIT_TRIANGLES)?).at([0.0, 1.0, 0.0]).unseen();
         // From ten widths above, the slit's image on the floor stays a tenth of a metre wide.
-        let light = lamp(0.0, 1.0 + 10.0 * width, 0.0);
+        let light = Light::point([0.0, 1.0 + 10.0 * width, 0.0]);
         Ok(scene([0.013, 3.0, 4.0], [0.013, 0.0, 0.0], light, vec![floor(3.0)?, halves]))
     }),
     failures: &[
@@ -302,8 +302,8 @@ const FINE_GRID: Case = Case {
             }
             triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
         }
-        let grid = unseen(moved(object("grid", mesh(&points, &triangles)?), [0.0, 1.0, 0.0]));
-        Ok(scene([0.0, 4.0, 3.0], [0.0, 0.0, 0.0], lamp(0.2, 5.0, 0.4), vec![floor(2.5)?, grid]))
+        let grid = Object::of("grid", shapes::triangles(&points, &triangles)?).at([0.0, 1.0, 0.0]).unseen();
+        Ok(scene([0.0, 4.0, 3.0], [0.0, 0.0, 0.0], Light::point([0.2, 5.0, 0.4]), vec![floor(2.5)?, grid]))
     }),
     also: &[COARSE],
     failures: &[
@@ -325,8 +325,8 @@ const TRIANGLE_COUNT: Case = Case {
     values: &[1e2, 1e3, 1e4, 1e5, 3e5, 1e6],
     drives: Drives::Scene(|triangles| {
         let rings = (triangles / 4.0).sqrt().round() as u32;
-        let ball = moved(object("ball", shapes::sphere(0.6, 2 * rings, rings)?), [0.0, 1.0, 0.0]);
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.0, 4.0, 1.5), vec![floor(3.0)?, ball]))
+        let ball = Object::of("ball", shapes::sphere(0.6, 2 * rings, rings)?).at([0.0, 1.0, 0.0]);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.0, 4.0, 1.5]), vec![floor(3.0)?, ball]))
     }),
     timed: true,
     also: &[EDGE_LIST],
@@ -352,10 +352,10 @@ const MAP_SIZE: Case = Case {
     values: &[64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0, 4096.0],
     drives: Drives::Setting("size", || {
         // A ring near a low lamp: the shadow's edge is long, and its texels are spread.
-        let ring = moved(object("ring", shapes::torus(0.35, 0.12, 32, 16)?), [0.0, 0.8, 0.0]);
+        let ring = Object::of("ring", shapes::torus(0.35, 0.12, 32, 16)?).at([0.0, 0.8, 0.0]);
         // Only the flat floor is asked.
         let ring = Object { receives: false, ..ring };
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.3, 1.8, 0.2), vec![floor(3.0)?, ring]))
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.3, 1.8, 0.2]), vec![floor(3.0)?, ring]))
     }),
     without: &[
         (Technique::Auto, "it has no map"),
@@ -387,8 +387,8 @@ const LIGHT_ORBIT: Case = Case {
     values: &ORBIT_STEPS,
     drives: Drives::Motion(|degrees| {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        let torus = moved(object("torus", shapes::torus(0.5, 0.2, 24, 12)?), [0.0, 0.9, 0.0]);
-        let light = lamp(1.5 * cos, 3.5, 1.5 * sin);
+        let torus = Object::of("torus", shapes::torus(0.5, 0.2, 24, 12)?).at([0.0, 0.9, 0.0]);
+        let light = Light::point([1.5 * cos, 3.5, 1.5 * sin]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, torus]))
     }),
     without: &[

@@ -5,6 +5,7 @@ use crate::truth::{LIT, SHADOW};
 use wgpu::{CompareFunction, StencilOperation};
 
 /// How surfaces are drawn in a pass.
+#[derive(Debug, Clone)]
 pub struct Drawn {
     pub(super) program: Program,
     pub(super) raster: RasterState,

@@ -1,7 +1,7 @@
 //! The legend of the error picture: how much is wrong and what the hatching means in two rows, so that little
 //! of the picture is hidden; a switch adds the sentence and the counts.
 
-use super::legend;
+use super::legend_entry;
 use crate::accuracy::{ErrorCounts, Finding};
 use crate::inspector::look::findings::{self, Pattern, Style};
 use crate::inspector::look::theme;
@@ -33,7 +33,7 @@ pub fn ui(ui: &mut Ui, counts: &mut bool, model: &mut Model, shown: &Shown) {
     let truth = model.frame.capture.as_ref().and_then(|capture| model.view.truth_to_show(capture));
     let found = truth.map(|(_, truth)| (truth.error, truth.worst));
     ui.horizontal(|ui| {
-        theme::heading(ui, &legend::title(shown));
+        theme::heading(ui, &legend_entry::title(shown));
         if let Some((error, _)) = &found {
             ui.label(theme::note(share(error)));
         }

@@ -2,6 +2,7 @@
 //! range of depths.
 
 use super::error_legend;
+use super::legend_entry::{bar, entry, entry_with, title};
 use super::modes_legend;
 use crate::inspector::look::palette;
 use crate::inspector::look::texture::Shares;
@@ -85,7 +86,7 @@ fn stencil(ui: &mut Ui, model: &mut Model, shown: &Shown) {
     let most = listed.iter().map(|(_, pixels)| *pixels).max().unwrap_or(0);
     for (value, pixels) in listed {
         entry(ui, palette::stencil(value), &crate::numbers::signed(value), pixels);
-        modes_legend::bar(ui, pixels, most);
+        bar(ui, pixels, most);
     }
     more_values(ui, &rest);
 }
@@ -182,35 +183,6 @@ fn labels(ui: &mut Ui, model: &mut Model, shown: &Shown) {
     if others > 0 {
         ui.label(theme::note(format!("other values · {}", format::count(others))));
     }
-}
-
-/// `Mask, light 1`.
-#[must_use]
-pub fn title(shown: &Shown) -> String {
-    let of = shown.title.split_once(" of ").map_or(shown.title.as_str(), |(_, of)| of);
-    let kind = match shown.kind {
-        PictureKind::Count => "Count",
-        PictureKind::Mask => "Mask",
-        PictureKind::Truth => "Truth",
-        _ => "Error",
-    };
-    format!("{kind}, {of}")
-}
-
-/// A line of the legend: colour, value, how many.
-pub fn entry(ui: &mut Ui, color: Color32, name: &str, pixels: u64) -> egui::Response {
-    entry_with(ui, name, pixels, |ui| theme::swatch(ui, color))
-}
-
-fn entry_with(ui: &mut Ui, name: &str, pixels: u64, swatch: impl FnOnce(&mut Ui)) -> egui::Response {
-    let line = ui.horizontal(|ui| {
-        swatch(ui);
-        ui.label(theme::number(name).color(theme::of(ui).text));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(theme::number(format::count(pixels)).color(theme::of(ui).dim));
-        });
-    });
-    line.response
 }
 
 /// The grey ramp with its ends and handles.

@@ -5,6 +5,7 @@ pub mod error_legend;
 pub mod face_grid;
 pub mod gizmos;
 pub mod legend;
+pub mod legend_entry;
 pub mod modes_bar;
 pub mod modes_legend;
 pub mod outline;

@@ -1,6 +1,6 @@
 //! Legends of what changed and of one bit, and the bars beside the others.
 
-use super::legend::entry;
+use super::legend_entry::{bar, entry};
 use crate::inspector::look::texture::DEPTH_BARS;
 use crate::inspector::look::theme;
 use crate::inspector::look::{coloring, palette};
@@ -84,19 +84,6 @@ pub fn overdraw(ui: &mut Ui, model: &mut Model, shown: &Shown) {
         entry(ui, palette::overdraw(count), &name, pixels);
         bar(ui, pixels.min(most), most);
     }
-}
-
-/// A bar under a line of the legend: its share of the largest.
-pub fn bar(ui: &mut Ui, texels: u64, most: u64) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 3.0), Sense::hover());
-    let share = texels as f32 / most.max(1) as f32;
-    let width = (rect.width() * share).max(1.0);
-    ui.painter().rect_filled(rect, CornerRadius::same(1), theme::of(ui).line);
-    ui.painter().rect_filled(
-        Rect::from_min_size(rect.min, vec2(width, rect.height())),
-        CornerRadius::same(1),
-        theme::of(ui).dim,
-    );
 }
 
 /// How often each depth of `full` occurs; what the grey ramp covers is lighter.

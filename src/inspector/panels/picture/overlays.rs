@@ -138,11 +138,12 @@ pub fn sheets(own: &mut Overlays, model: &Model, capture: &Capture, shown: &Show
             }
         }
     }
-    if model.modes.overlays.contains(&Overlay::Tests) && model.scene.is_some() {
-        if let Some(known) = model.want_tests().ready {
-            let image = known.outcomes.clone();
-            sheets.push(Sheet { image, coloring: Coloring::Outcomes, part: rect, has_numbers: false });
-        }
+    if model.modes.overlays.contains(&Overlay::Tests)
+        && model.scene.is_some()
+        && let Some(known) = model.want_tests().ready
+    {
+        let image = known.outcomes.clone();
+        sheets.push(Sheet { image, coloring: Coloring::Outcomes, part: rect, has_numbers: false });
     }
     sheets
 }
@@ -298,7 +299,7 @@ fn tests(ui: &mut Ui, model: &Model) {
     for (outcome, name, hover) in OUTCOMES {
         let pixels = known.pixels[usize::from(outcome)];
         if pixels > 0 {
-            super::legend::entry(ui, palette::outcome(outcome), name, pixels).on_hover_text(hover);
+            super::legend_entry::entry(ui, palette::outcome(outcome), name, pixels).on_hover_text(hover);
         }
     }
 }

@@ -1,9 +1,8 @@
 //! Extremes of where the eye and the near plane are.
 
 use super::ulps;
-use crate::scene::builtin::shapes;
-use crate::scene::{Light, MeshError, Scene};
-use crate::stress::cases::stage::{cuboid, floor, lamp, moved, object, scene, still_life, turned};
+use crate::scene::{Light, MeshError, Object, Scene, shapes};
+use crate::stress::cases::stage::{cuboid, floor, scene, still_life};
 use crate::stress::cases::who::*;
 use crate::stress::{Case, Drives, Least};
 use glam::DVec3;
@@ -22,9 +21,9 @@ const EYE_IN_VOLUME: Case = Case {
 
 /// A box on a floor, and a roof whose shadow the eye is in.
 pub fn under_a_roof() -> Result<Scene, MeshError> {
-    let roof = moved(object("roof", shapes::quad([2.5; 2])?), [1.3, 4.0, 3.2]);
+    let roof = Object::of("roof", shapes::quad([2.5; 2])?).at([1.3, 4.0, 3.2]);
     let objects = vec![floor(3.0)?, roof, cuboid("box", [0.0, 0.5, 0.0], [0.6; 3])?];
-    Ok(scene([1.5, 2.0, 3.5], [0.0, 0.3, 0.0], lamp(1.2, 6.0, 3.0), objects))
+    Ok(scene([1.5, 2.0, 3.5], [0.0, 0.3, 0.0], Light::point([1.2, 6.0, 3.0]), objects))
 }
 
 const EYE_ON_SIDE_PLANE: Case = Case {
@@ -34,9 +33,9 @@ const EYE_ON_SIDE_PLANE: Case = Case {
     values: &[-1.0, 0.0, 1.0],
     drives: Drives::Scene(|steps| {
         // The light at height 4 carries the edge at x = 1, height 2, to x = 1.5 at the eye's height.
-        let board = moved(object("board", shapes::quad([1.0, 2.0])?), [0.5, 2.0, 0.0]);
+        let board = Object::of("board", shapes::quad([1.0, 2.0])?).at([0.5, 2.0, 0.0]);
         let eye = [ulps(1.5, steps), 1.0, 1.0];
-        Ok(scene(eye, [-0.5, 0.0, -1.0], lamp(0.0, 4.0, 0.0), vec![floor(3.0)?, board]))
+        Ok(scene(eye, [-0.5, 0.0, -1.0], Light::point([0.0, 4.0, 0.0]), vec![floor(3.0)?, board]))
     }),
     failures: &[CUT_BY_NEAR.is_mixed().at_most(0.999)],
     ..PLAIN
@@ -46,9 +45,10 @@ const LIGHT_BEHIND_EYE: Case = Case {
     name: "light-behind-eye",
     lesson: "the light is behind the eye, and a caster between eye and near plane: it is not drawn, but casts",
     drives: Drives::Scene(|_| {
-        let board = moved(turned(object("board", shapes::quad([0.3; 2])?), [90.0, 0.0, 0.0]), [0.1, 1.1, 3.5]);
-        let wall = moved(turned(object("wall", shapes::quad([6.0, 4.0])?), [90.0, 0.0, 0.0]), [0.0, 1.0, -2.0]);
-        let mut scene = scene([0.0, 1.0, 4.0], [0.0, 1.0, 0.0], lamp(0.2, 1.4, 8.0), vec![floor(3.0)?, wall, board]);
+        let board = Object::of("board", shapes::quad([0.3; 2])?).turned([90.0, 0.0, 0.0]).at([0.1, 1.1, 3.5]);
+        let wall = Object::of("wall", shapes::quad([6.0, 4.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.0, -2.0]);
+        let mut scene =
+            scene([0.0, 1.0, 4.0], [0.0, 1.0, 0.0], Light::point([0.2, 1.4, 8.0]), vec![floor(3.0)?, wall, board]);
         scene.camera.near = 1.0;
         Ok(scene)
     }),

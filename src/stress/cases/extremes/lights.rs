@@ -1,9 +1,8 @@
 //! Extremes of where the light is, and of how many there are.
 
 use super::ulps;
-use crate::scene::builtin::shapes;
-use crate::scene::{Light, MeshError, Scene};
-use crate::stress::cases::stage::{cuboid, floor, lamp, moved, object, scene, still_life, turned};
+use crate::scene::{Light, MeshError, Object, Scene, shapes};
+use crate::stress::cases::stage::{cuboid, floor, scene, still_life};
 use crate::stress::cases::who::*;
 use crate::stress::{Case, Drives, Failure, Least};
 use glam::{DMat3, DVec3};
@@ -33,8 +32,8 @@ const LIGHT_AT_SHEET: Case = Case {
     parameter: "distance in caster's sizes",
     values: &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7],
     drives: Drives::Scene(|distance| {
-        let sheet = moved(object("sheet", shapes::quad([0.8; 2])?), [0.0, 1.0, 0.0]);
-        let light = lamp(0.1, 1.0 + 0.8 * distance, 0.15);
+        let sheet = Object::of("sheet", shapes::quad([0.8; 2])?).at([0.0, 1.0, 0.0]);
+        let light = Light::point([0.1, 1.0 + 0.8 * distance, 0.15]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, sheet]))
     }),
     least: |_| Least { lit: 0.005, because: "only the sheet's top is lit", ..Least::USUAL },
@@ -70,7 +69,7 @@ const TURNED_SHEET: Case = Case {
     name: "turned-sheet",
     lesson: "the same with the sheet turned: no coordinate of its corners or of the light is alike",
     drives: Drives::Scene(|distance| {
-        let sheet = moved(turned(object("sheet", shapes::quad([0.8; 2])?), [30.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
+        let sheet = Object::of("sheet", shapes::quad([0.8; 2])?).turned([30.0, 0.0, 0.0]).at([0.0, 1.0, 0.0]);
         let over = DMat3::from_rotation_x(30.0_f64.to_radians()) * DVec3::new(0.1, 0.8 * distance, 0.15);
         let light = Light::point(DVec3::Y + over);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, sheet]))
@@ -98,8 +97,8 @@ const LAMP_AT_CEILING: Case = Case {
     values: LIGHT_AT_SHEET.values,
     drives: Drives::Scene(|distance| {
         let room = cuboid("room", [0.0, 1.5, 0.0], [6.0, 3.0, 6.0])?;
-        let ring = moved(object("ring", shapes::torus(0.6, 0.25, 32, 16)?), [0.0, 1.0, 0.0]);
-        Ok(scene([1.5, 2.0, 2.8], [0.0, 0.6, 0.0], lamp(0.3, 3.0 - distance, 0.2), vec![room, ring]))
+        let ring = Object::of("ring", shapes::torus(0.6, 0.25, 32, 16)?).at([0.0, 1.0, 0.0]);
+        Ok(scene([1.5, 2.0, 2.8], [0.0, 0.6, 0.0], Light::point([0.3, 3.0 - distance, 0.2]), vec![room, ring]))
     }),
     ..PLAIN
 };
@@ -111,8 +110,8 @@ const LIGHT_IN_NEAR_PLANE: Case = Case {
     values: &[-1.0, 0.0, 1.0],
     drives: Drives::Scene(|steps| {
         // The eye at z = 4 has its near plane at z = 3; a board between it and the light crosses it.
-        let board = moved(object("board", shapes::quad([0.6; 2])?), [0.5, 2.0, 3.0]);
-        let light = lamp(1.0, 3.0, ulps(3.0, steps));
+        let board = Object::of("board", shapes::quad([0.6; 2])?).at([0.5, 2.0, 3.0]);
+        let light = Light::point([1.0, 3.0, ulps(3.0, steps)]);
         let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.4, 0.0], [0.8; 3])?, board];
         let mut scene = scene([0.0, 1.0, 4.0], [0.0, 1.0, 0.0], light, objects);
         scene.camera.near = 1.0;
@@ -136,7 +135,7 @@ const LIGHT_INSIDE_MESH: Case = Case {
     lesson: "the light is inside a closed mesh: all outside is dark, though no outer face is turned to the light",
     drives: Drives::Scene(|_| {
         let mut scene = still_life()?;
-        scene.lights = vec![lamp(0.1, 0.85, 0.05)];
+        scene.lights = vec![Light::point([0.1, 0.85, 0.05])];
         Ok(scene)
     }),
     also: &[LIGHT_FACING, BY_TOPOLOGY],
@@ -155,8 +154,8 @@ const LIGHT_IN_TORUS_HOLE: Case = Case {
     name: "light-in-torus-hole",
     lesson: "the light is in a ring's hole: outside the mesh, with the mesh all around",
     drives: Drives::Scene(|_| {
-        let ring = moved(object("ring", shapes::torus(0.7, 0.2, 24, 12)?), [0.0, 0.8, 0.0]);
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.05, 0.85, 0.0), vec![floor(3.0)?, ring]))
+        let ring = Object::of("ring", shapes::torus(0.7, 0.2, 24, 12)?).at([0.0, 0.8, 0.0]);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.05, 0.85, 0.0]), vec![floor(3.0)?, ring]))
     }),
     also: &[LIGHT_FACING],
     failures: &[NO_FIT],
@@ -170,7 +169,7 @@ const LIGHT_IN_FACE_PLANE: Case = Case {
     values: &[-1.0, 0.0, 1.0],
     drives: Drives::Scene(|steps| {
         let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.75, 0.0], [0.5; 3])?];
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.5, ulps(1.0, steps), 0.25), objects))
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.5, ulps(1.0, steps), 0.25]), objects))
     }),
     also: &[LIGHT_FACING],
     ..PLAIN
@@ -181,7 +180,7 @@ const LIGHT_ON_VERTEX: Case = Case {
     lesson: "the light is on a corner of the box: the three faces there are edge-on and cast nothing, the others do",
     drives: Drives::Scene(|_| {
         let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.75, 0.0], [0.5; 3])?];
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.25, 1.0, 0.25), objects))
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.25, 1.0, 0.25]), objects))
     }),
     failures: &[NO_FIT],
     ..PLAIN
@@ -198,8 +197,8 @@ const CASTER_AROUND_LIGHT: Case = Case {
             let b = (a + 1) % 24;
             [[a, a + 24, b + 24], [a, b + 24, b]]
         });
-        let shade = object("shade", shapes::triangles(points, sides.collect())?);
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.05, 0.95, 0.0), vec![floor(3.0)?, shade]))
+        let shade = Object::of("shade", shapes::triangles(&points, &sides.collect::<Vec<_>>())?);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.05, 0.95, 0.0]), vec![floor(3.0)?, shade]))
     }),
     also: &[LIGHT_FACING],
     failures: &[
@@ -219,7 +218,7 @@ const SUN_ALONG_RECEIVER: Case = Case {
     name: "sun-along-receiver",
     lesson: "the sun shines level: the floor is edge-on and in no light, the wall behind the box has its shadow",
     drives: Drives::Scene(|_| {
-        let wall = moved(turned(object("wall", shapes::quad([6.0, 3.0])?), [90.0, 0.0, 0.0]), [0.0, 1.5, -2.0]);
+        let wall = Object::of("wall", shapes::quad([6.0, 3.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.5, -2.0]);
         let objects = vec![floor(3.0)?, wall, cuboid("box", [0.0, 0.8, 0.0], [0.8, 0.6, 0.8])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::directional(DVec3::new(0.2, 0.0, 1.0)), objects))
     }),
@@ -244,7 +243,7 @@ fn ring_of_lights(count: f64) -> Result<Scene, MeshError> {
         if index % 4 == 3 {
             Light::directional(DVec3::new(cos, 1.5, sin))
         } else {
-            lamp(2.0 * cos, 3.0 + 0.1 * f64::from(index), 2.0 * sin)
+            Light::point([2.0 * cos, 3.0 + 0.1 * f64::from(index), 2.0 * sin])
         }
     };
     scene.lights = (0..count as u32).map(place).collect();

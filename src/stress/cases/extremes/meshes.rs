@@ -1,8 +1,7 @@
 //! Extremes of how a mesh hangs together.
 
-use crate::scene::builtin::shapes;
-use crate::scene::{MeshError, Object, Scene};
-use crate::stress::cases::stage::{cuboid, floor, lamp, mesh, moved, object, scaled, scene, turned};
+use crate::scene::{Light, MeshError, Object, Scene, shapes};
+use crate::stress::cases::stage::{cuboid, floor, scene};
 use crate::stress::cases::who::*;
 use crate::stress::{Case, Drives, Least};
 use glam::DVec3;
@@ -28,7 +27,7 @@ pub const ALL: &[Case] = &[
 fn over_floor(casters: Vec<Object>) -> Result<Scene, MeshError> {
     let mut objects = vec![floor(3.0)?];
     objects.extend(casters);
-    Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.0, 4.0, 1.5), objects))
+    Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.0, 4.0, 1.5]), objects))
 }
 
 const BOTH_SIDES: Case = Case {
@@ -37,7 +36,7 @@ const BOTH_SIDES: Case = Case {
     parameter: "eye turned",
     values: &[0.0, 180.0],
     drives: Drives::Scene(|degrees| {
-        let sheet = moved(turned(object("sheet", shapes::quad([1.0; 2])?), [70.0, 30.0, 0.0]), [0.0, 0.8, 0.0]);
+        let sheet = Object::of("sheet", shapes::quad([1.0; 2])?).turned([70.0, 30.0, 0.0]).at([0.0, 0.8, 0.0]);
         let mut scene = over_floor(vec![sheet])?;
         let (sin, cos) = degrees.to_radians().sin_cos();
         scene.camera.eye = DVec3::new(1.5 * cos + 5.0 * sin, 3.0, 5.0 * cos - 1.5 * sin);
@@ -54,7 +53,7 @@ const OPEN_MESH: Case = Case {
         let points: Vec<[f64; 3]> = closed.positions().iter().map(|point| point.to_array()).collect();
         let is_top = |corners: &&[u32; 3]| corners.iter().all(|vertex| points[*vertex as usize][1] > 0.0);
         let open: Vec<[u32; 3]> = closed.triangles().iter().filter(|corners| !is_top(corners)).copied().collect();
-        over_floor(vec![moved(object("open box", mesh(&points, &open)?), [0.0, 0.8, 0.0])])
+        over_floor(vec![Object::of("open box", shapes::triangles(&points, &open)?).at([0.0, 0.8, 0.0])])
     }),
     also: &[LIGHT_FACING, BY_TOPOLOGY],
     failures: &[fails(
@@ -85,8 +84,8 @@ const MOBIUS: Case = Case {
             let (c, d) = if step + 1 < steps { (a + 2, a + 3) } else { (1, 0) };
             [[a, c, d], [a, d, b]]
         });
-        let strip = object("strip", mesh(&points, &quads.collect::<Vec<_>>())?);
-        over_floor(vec![moved(turned(strip, [20.0, 0.0, 0.0]), [0.0, 1.0, 0.0])])
+        let strip = Object::of("strip", shapes::triangles(&points, &quads.collect::<Vec<_>>())?);
+        over_floor(vec![strip.turned([20.0, 0.0, 0.0]).at([0.0, 1.0, 0.0])])
     }),
     failures: &[NO_SELF_SHADOW.at_most(0.0006)],
     ..PLAIN
@@ -106,7 +105,9 @@ const FINS: Case = Case {
             let (top, bottom) = (2 + 2 * index, 3 + 2 * index);
             [[0, 1, bottom], [0, bottom, top]]
         });
-        over_floor(vec![moved(object("fins", mesh(&points, &quads.collect::<Vec<_>>())?), [0.0, 0.8, 0.0])])
+        over_floor(vec![
+            Object::of("fins", shapes::triangles(&points, &quads.collect::<Vec<_>>())?).at([0.0, 0.8, 0.0]),
+        ])
     }),
     also: &[LIGHT_FACING],
     failures: &[fails(LIGHT_FACING, "light-facing-open", "fins that show the light their other side do not cast")
@@ -121,7 +122,7 @@ const SHARED_EDGE: Case = Case {
     drives: Drives::Scene(|_| {
         let cube = shapes::cuboid([0.5; 3])?;
         let pair = shapes::joined([(&cube, DVec3::ZERO), (&cube, DVec3::new(0.5, 0.5, 0.0))])?;
-        over_floor(vec![moved(object("cubes", pair), [-0.25, 0.5, 0.0])])
+        over_floor(vec![Object::of("cubes", pair).at([-0.25, 0.5, 0.0])])
     }),
     also: &[LIGHT_FACING],
     failures: &[NO_SELF_SHADOW],
@@ -136,7 +137,7 @@ const SPLIT_VERTICES: Case = Case {
         let corner = |vertex: &u32| cube.positions()[*vertex as usize].to_array();
         let points: Vec<[f64; 3]> = cube.triangles().as_flattened().iter().map(corner).collect();
         let triangles: Vec<[u32; 3]> = (0..points.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        over_floor(vec![moved(object("cube", mesh(&points, &triangles)?), [0.0, 0.8, 0.0])])
+        over_floor(vec![Object::of("cube", shapes::triangles(&points, &triangles)?).at([0.0, 0.8, 0.0])])
     }),
     also: &[LIGHT_FACING],
     ..PLAIN
@@ -157,7 +158,9 @@ const T_JUNCTION: Case = Case {
             [0.6, 0.4, 0.0],
         ];
         let triangles = [[0, 1, 2], [0, 2, 3], [1, 5, 6], [1, 6, 4], [4, 6, 7], [4, 7, 2]];
-        over_floor(vec![moved(turned(object("wall", mesh(&points, &triangles)?), [-20.0, 0.0, 0.0]), [0.0, 0.8, 0.0])])
+        over_floor(vec![
+            Object::of("wall", shapes::triangles(&points, &triangles)?).turned([-20.0, 0.0, 0.0]).at([0.0, 0.8, 0.0]),
+        ])
     }),
     ..PLAIN
 };
@@ -170,7 +173,7 @@ const COINCIDENT: Case = Case {
     drives: Drives::Scene(|turned| {
         let points = [[-0.6, 0.0, 0.4], [0.6, 0.0, 0.4], [0.0, 0.3, -0.6]];
         let second = if turned == 0.0 { [0, 1, 2] } else { [0, 2, 1] };
-        over_floor(vec![moved(object("pair", mesh(&points, &[[0, 1, 2], second])?), [0.0, 0.8, 0.0])])
+        over_floor(vec![Object::of("pair", shapes::triangles(&points, &[[0, 1, 2], second])?).at([0.0, 0.8, 0.0])])
     }),
     ..PLAIN
 };
@@ -181,7 +184,7 @@ const INSTANCES: Case = Case {
     drives: Drives::Scene(|_| {
         let place = |at: [f64; 3], scale: [f64; 3]| -> Result<Object, MeshError> {
             let name = format!("cylinder at {}", at[0]);
-            Ok(scaled(moved(object(&name, shapes::cylinder(0.3, 0.8, 16)?), at), scale))
+            Ok(Object::of(&name, shapes::cylinder(0.3, 0.8, 16)?).at(at).scaled(scale))
         };
         let casters = [
             place([-1.2, 0.8, 0.0], [-1.0, 1.0, 1.0])?,
@@ -221,7 +224,7 @@ fn line(alike: f64) -> Result<Object, MeshError> {
         2 => [0, 1, 1],
         _ => [1, 1, 1],
     };
-    Ok(moved(object("line", mesh(&points, &[triangle])?), [0.0, 0.8, 0.0]))
+    Ok(Object::of("line", shapes::triangles(&points, &[triangle])?).at([0.0, 0.8, 0.0]))
 }
 
 const UNDRAWN: Case = Case {
@@ -229,7 +232,7 @@ const UNDRAWN: Case = Case {
     lesson: "a caster that is not drawn: its light cap lies on no surface, so it must be tested like any other face",
     drives: Drives::Scene(|_| {
         let hidden = cuboid("box", [0.0, 0.8, 0.0], [0.8, 0.6, 0.8])?;
-        over_floor(vec![Object { visible: false, ..hidden }])
+        over_floor(vec![hidden.unseen()])
     }),
     also: &[CAPS_NEVER],
     failures: &[fails(

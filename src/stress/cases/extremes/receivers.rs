@@ -1,8 +1,7 @@
 //! Extremes of what is darkened: where it lies, and whether there is any.
 
-use crate::scene::Object;
-use crate::scene::builtin::shapes;
-use crate::stress::cases::stage::{cuboid, floor, lamp, moved, object, scene, still_life, turned};
+use crate::scene::{Light, Object, shapes};
+use crate::stress::cases::stage::{cuboid, floor, scene, still_life};
 use crate::stress::cases::who::*;
 use crate::stress::{Case, Drives, Least};
 
@@ -14,9 +13,9 @@ const COPLANAR: Case = Case {
     name: "coplanar",
     lesson: "a tile lies in the floor's plane, to the last bit: it darkens nothing, and does not fight",
     drives: Drives::Scene(|_| {
-        let tile = moved(object("tile", shapes::quad([1.3; 2])?), [0.2, 0.0, 0.3]);
+        let tile = Object::of("tile", shapes::quad([1.3; 2])?).at([0.2, 0.0, 0.3]);
         let objects = vec![floor(3.0)?, tile, cuboid("box", [0.0, 1.0, 0.0], [0.5; 3])?];
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.0, 4.0, 1.5), objects))
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.0, 4.0, 1.5]), objects))
     }),
     ..PLAIN
 };
@@ -25,8 +24,8 @@ const ACROSS_LIGHT: Case = Case {
     name: "across-light",
     lesson: "a wall reaches from below the light to above it: what is above must not be thrown on the floor",
     drives: Drives::Scene(|_| {
-        let wall = moved(turned(object("wall", shapes::quad([1.0, 2.0])?), [90.0, 0.0, 0.0]), [0.0, 1.5, -0.3]);
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.3, 1.7, 0.8), vec![floor(3.0)?, wall]))
+        let wall = Object::of("wall", shapes::quad([1.0, 2.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.5, -0.3]);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.3, 1.7, 0.8]), vec![floor(3.0)?, wall]))
     }),
     also: &[UNCLIPPED],
     failures: &[fails(UNCLIPPED, "anti-shadow", "what is above the light is thrown through it, upside down")
@@ -40,7 +39,7 @@ const THROUGH_FLOOR: Case = Case {
     lesson: "a box stands in the floor, half of it below: what is below must not be thrown up on it",
     drives: Drives::Scene(|_| {
         let objects = vec![floor(3.0)?, cuboid("box", [0.0, -0.4, 0.0], [0.6, 1.6, 0.6])?];
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(1.6, 1.5, 0.6), objects))
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.6, 1.5, 0.6]), objects))
     }),
     also: &[UNCLIPPED],
     failures: &[
@@ -54,9 +53,9 @@ const BEHIND_PROJECTOR: Case = Case {
     name: "behind-projector",
     lesson: "a wall behind the light: a slide's picture has a mirror image there unless q ≤ 0 is left out",
     drives: Drives::Scene(|_| {
-        let wall = moved(turned(object("wall", shapes::quad([6.0, 3.0])?), [90.0, 0.0, 0.0]), [0.0, 1.5, -2.0]);
-        let board = moved(turned(object("board", shapes::quad([0.5; 2])?), [90.0, 0.0, 0.0]), [0.1, 1.3, 1.5]);
-        Ok(scene([1.0, 3.0, 4.5], [0.0, 0.8, -1.0], lamp(0.0, 1.2, 0.5), vec![floor(3.0)?, wall, board]))
+        let wall = Object::of("wall", shapes::quad([6.0, 3.0])?).turned([90.0, 0.0, 0.0]).at([0.0, 1.5, -2.0]);
+        let board = Object::of("board", shapes::quad([0.5; 2])?).turned([90.0, 0.0, 0.0]).at([0.1, 1.3, 1.5]);
+        Ok(scene([1.0, 3.0, 4.5], [0.0, 0.8, -1.0], Light::point([0.0, 1.2, 0.5]), vec![floor(3.0)?, wall, board]))
     }),
     also: &[REVERSED],
     least: |_| Least::all_lit("the slide's shadow falls beyond the floor"),
@@ -70,9 +69,9 @@ const SHELF_BETWEEN: Case = Case {
     name: "shelf-between",
     lesson: "a shelf stands between the light and a caster that is smaller: who compares no depth darkens the shelf",
     drives: Drives::Scene(|_| {
-        let shelf = moved(object("shelf", shapes::quad([1.2; 2])?), [0.0, 1.4, 0.0]);
+        let shelf = Object::of("shelf", shapes::quad([1.2; 2])?).at([0.0, 1.4, 0.0]);
         let objects = vec![floor(3.0)?, shelf, cuboid("box", [0.1, 0.6, 0.1], [0.4; 3])?];
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(0.4, 4.0, 0.6), objects))
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([0.4, 4.0, 0.6]), objects))
     }),
     failures: &[BETWEEN.at_most(0.005)],
     ..PLAIN
@@ -82,9 +81,9 @@ const ROUND_RECEIVER: Case = Case {
     name: "round-receiver",
     lesson: "a ring under a board: it is not flat, and it darkens itself",
     drives: Drives::Scene(|_| {
-        let ring = moved(object("ring", shapes::torus(0.6, 0.25, 32, 16)?), [0.0, 0.5, 0.0]);
-        let board = moved(object("board", shapes::quad([0.5, 0.9])?), [0.4, 1.6, 0.0]);
-        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], lamp(2.5, 3.0, 0.5), vec![floor(3.0)?, ring, board]))
+        let ring = Object::of("ring", shapes::torus(0.6, 0.25, 32, 16)?).at([0.0, 0.5, 0.0]);
+        let board = Object::of("board", shapes::quad([0.5, 0.9])?).at([0.4, 1.6, 0.0]);
+        Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([2.5, 3.0, 0.5]), vec![floor(3.0)?, ring, board]))
     }),
     also: &[LIGHT_FACING, BY_TOPOLOGY],
     failures: &[NOT_PLANAR, NOT_PLANAR_TEXTURE, BETWEEN.at_most(0.003)],

@@ -1,8 +1,7 @@
 //! Light that grazes what it falls on.
 
-use crate::scene::builtin::shapes;
-use crate::scene::{Light, MeshError, Object, Scene};
-use crate::stress::cases::stage::{floor, moved, object, scene, still_life, unseen};
+use crate::scene::{Light, MeshError, Object, Scene, shapes};
+use crate::stress::cases::stage::{floor, scene, still_life};
 use crate::stress::cases::who::*;
 use crate::stress::{Case, Drives, Failure};
 use glam::DVec3;
@@ -46,7 +45,7 @@ pub const GRAZING_EDGE: Case = Case {
     lesson: "the sun sinks towards a floor with a board just over it: the shadow's edge falls where light grazes",
     parameter: "degrees above the floor",
     values: &[10.0, 1.0, 1e-1, 3e-2, 1e-2, 1e-3, 3e-4, 1e-4],
-    drives: Drives::Scene(|degrees| beside_a_board(degrees, unseen)),
+    drives: Drives::Scene(|degrees| beside_a_board(degrees, Object::unseen)),
     failures: &of_volumes::<4, 19>(
         [
             SUNK.at(|degrees| degrees < 2e-4).at_most(0.043),
@@ -62,7 +61,7 @@ pub const GRAZING_EDGE: Case = Case {
 /// A board two metres from its shadow at any height of the sun.
 fn beside_a_board(degrees: f64, form: fn(Object) -> Object) -> Result<Scene, MeshError> {
     let slope = degrees.to_radians().tan();
-    let board = form(moved(object("board", shapes::quad([2.0, 1.0])?), [0.0, 2.0 * slope, 1.5]));
+    let board = form(Object::of("board", shapes::quad([2.0, 1.0])?).at([0.0, 2.0 * slope, 1.5]));
     let sun = Light::directional(DVec3::new(0.0, slope, 1.0));
     Ok(scene([0.3, 2.0, 4.0], [0.0; 3], sun, vec![floor(3.0)?, board]))
 }

@@ -1,8 +1,8 @@
 //! The near plane through casters and volumes.
 
-use crate::scene::{Mesh, MeshError};
+use crate::scene::{Light, Mesh, MeshError, Object, shapes};
 use crate::stress::cases::extremes::under_a_roof;
-use crate::stress::cases::stage::{floor, lamp, mesh, moved, object, scene, unseen};
+use crate::stress::cases::stage::{floor, scene};
 use crate::stress::cases::who::*;
 use crate::stress::{Case, Drives, Failure};
 use crate::technique::Technique;
@@ -24,8 +24,8 @@ pub const NEAR_PLANE: Case = Case {
     parameter: "near in metres",
     values: &NEAR_STEPS,
     drives: Drives::Motion(|near| {
-        let roof = unseen(moved(object("roof", corrugated()?), [0.0, 1.0, 1.2]));
-        let mut scene = scene([0.0, 1.2, 3.0], [0.0, 0.6, 0.0], lamp(0.2, 2.6, 2.2), vec![floor(3.0)?, roof]);
+        let roof = Object::of("roof", corrugated()?).at([0.0, 1.0, 1.2]).unseen();
+        let mut scene = scene([0.0, 1.2, 3.0], [0.0, 0.6, 0.0], Light::point([0.2, 2.6, 2.2]), vec![floor(3.0)?, roof]);
         scene.camera.near = near;
         Ok(scene)
     }),
@@ -70,7 +70,7 @@ fn corrugated() -> Result<Mesh, MeshError> {
         let b = a + parts + 1;
         [[a, b, b + 1], [a, b + 1, a + 1]]
     });
-    mesh(&points, &triangles.collect::<Vec<_>>())
+    shapes::triangles(&points, &triangles.collect::<Vec<_>>())
 }
 
 pub const NEAR_IN_VOLUME: Case = Case {

@@ -1,0 +1,49 @@
+//! What legends are made of: their title, lines and bars.
+
+use crate::inspector::look::theme;
+use crate::reading::format;
+use crate::reading::shown::{PictureKind, Shown};
+use egui::{Color32, CornerRadius, Rect, Sense, Ui, vec2};
+
+/// `Mask, light 1`.
+#[must_use]
+pub fn title(shown: &Shown) -> String {
+    let of = shown.title.split_once(" of ").map_or(shown.title.as_str(), |(_, of)| of);
+    let kind = match shown.kind {
+        PictureKind::Count => "Count",
+        PictureKind::Mask => "Mask",
+        PictureKind::Truth => "Truth",
+        _ => "Error",
+    };
+    format!("{kind}, {of}")
+}
+
+/// A line of the legend: colour, value, how many.
+pub fn entry(ui: &mut Ui, color: Color32, name: &str, pixels: u64) -> egui::Response {
+    entry_with(ui, name, pixels, |ui| theme::swatch(ui, color))
+}
+
+/// A line of a legend with its own swatch.
+pub fn entry_with(ui: &mut Ui, name: &str, pixels: u64, swatch: impl FnOnce(&mut Ui)) -> egui::Response {
+    let line = ui.horizontal(|ui| {
+        swatch(ui);
+        ui.label(theme::number(name).color(theme::of(ui).text));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(theme::number(format::count(pixels)).color(theme::of(ui).dim));
+        });
+    });
+    line.response
+}
+
+/// A bar under a line of the legend: its share of the largest.
+pub fn bar(ui: &mut Ui, texels: u64, most: u64) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 3.0), Sense::hover());
+    let share = texels as f32 / most.max(1) as f32;
+    let width = (rect.width() * share).max(1.0);
+    ui.painter().rect_filled(rect, CornerRadius::same(1), theme::of(ui).line);
+    ui.painter().rect_filled(
+        Rect::from_min_size(rect.min, vec2(width, rect.height())),
+        CornerRadius::same(1),
+        theme::of(ui).dim,
+    );
+}
