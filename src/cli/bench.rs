@@ -35,14 +35,14 @@ pub struct BenchArguments {
     names: Vec<String>,
     /// A scene in place of the benchmark's own; repeatable
     #[arg(long, value_name = "SCENE")]
-    pub(super) scene: Vec<String>,
+    scene: Vec<String>,
     /// `auto`: from how many places each scene is seen
     #[arg(long, value_name = "N", default_value_t = 20)]
     cameras: u64,
     #[command(flatten)]
-    pub(super) scene_options: SceneOptions,
+    scene_options: SceneOptions,
     #[command(flatten)]
-    pub(super) frame: FrameOptions,
+    frame: FrameOptions,
 }
 
 /// Runs the named benchmarks.
@@ -59,7 +59,7 @@ pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
             "volumes" => volumes(arguments)?,
             "history" => history(arguments)?,
             "auto" => auto(arguments)?,
-            "panels" => super::bench_panels::run(arguments)?,
+            "panels" => super::bench_panels::run(&arguments.scene, &arguments.scene_options, &arguments.frame)?,
             _ => capture(arguments)?,
         }
     }

@@ -1,6 +1,6 @@
 //! `stencilscope bench panels`: what the inspector's own frames cost, and how soon a change is seen.
 
-use super::bench::BenchArguments;
+use super::options::{FrameOptions, SceneOptions};
 use super::{CliError, output};
 
 /// Frames of each tab that are timed.
@@ -24,7 +24,7 @@ const LIMIT_LIGHT_MS: f64 = 150.0;
 /// # Errors
 /// Always.
 #[cfg(not(feature = "inspector"))]
-pub fn run(_: &BenchArguments) -> Result<(), CliError> {
+pub fn run(_: &[String], _: &SceneOptions, _: &FrameOptions) -> Result<(), CliError> {
     let _ = output::note;
     Err(CliError::Window("this build has no panels to measure".to_owned()))
 }
@@ -34,11 +34,11 @@ pub fn run(_: &BenchArguments) -> Result<(), CliError> {
 /// # Errors
 /// A scene that can't be opened; no GPU.
 #[cfg(feature = "inspector")]
-pub fn run(arguments: &BenchArguments) -> Result<(), CliError> {
+pub fn run(scenes: &[String], scene_options: &SceneOptions, frame: &FrameOptions) -> Result<(), CliError> {
     use crate::app::headless::Headless;
-    let names = if arguments.scene.is_empty() { vec!["tori".to_owned()] } else { arguments.scene.clone() };
-    for name in &names {
-        let request = super::view::window::scene_request(name, &arguments.scene_options, &arguments.frame)?;
+    let usual = ["tori".to_owned()];
+    for name in if scenes.is_empty() { &usual[..] } else { scenes } {
+        let request = super::view::window::scene_request(name, scene_options, frame)?;
         let [width, height] = request.capture.size;
         let mut panels = Headless::new(request, WINDOW, 1.0)?;
         panels.settle()?;

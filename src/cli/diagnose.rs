@@ -5,7 +5,7 @@ use super::options::{FrameOptions, SceneOptions};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::{CaptureError, disk};
-use crate::diagnosis::{Cause, Diagnosis, Mend, Proof, Suited, wrong_pixels};
+use crate::diagnosis::{Cause, Diagnosis, Mend, Proof, wrong_pixels};
 use crate::picture::Picture;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -162,17 +162,4 @@ fn write_folder(folder: &Path, files: &Files) -> Result<String, CliError> {
 
 fn broken(source: std::io::Error) -> CliError {
     CliError::Output { path: "the diagnosis".to_owned(), source }
-}
-
-/// The choice that a fix writes, where any is better than what was asked for: what is advised, or the fastest
-/// technique without a wrong pixel.
-pub fn mend_for(diagnosis: &Diagnosis, suited: &[Suited]) -> Option<Mend> {
-    let best = || {
-        let choice = &Suited::best(suited)?.choice;
-        // All of them: what was set for another technique is to be kept in none.
-        let settings = choice.settings().clone();
-        Some(Mend { technique: Some(choice.technique()), settings, ..Mend::default() })
-    };
-    let advised = diagnosis.advice.as_ref().map(|advice| advice.mend.clone());
-    if diagnosis.is_mended() { advised } else { best().or(advised) }
 }

@@ -1,6 +1,5 @@
 //! `diagnose --fix`: the scene as a scene file, mended; then opened again and held against the truth.
 
-use super::diagnose::mend_for;
 use super::{CliError, output};
 use crate::diagnosis::{Diagnosis, Mend, Suited};
 use crate::numbers;
@@ -56,7 +55,7 @@ impl<'a> Fix<'a> {
         if !diagnosis.is_bad() {
             return Ok(format!("{}: not written, as nothing is wrong\n", self.file));
         }
-        let Some(mend) = mend_for(diagnosis, suited) else {
+        let Some(mend) = diagnosis.mend_to_write(suited) else {
             return Ok(format!("{}: not written, as nothing that was tried helps\n", self.file));
         };
         let scene = mended(loaded, request.choice.clone(), &mend)?;

@@ -71,7 +71,7 @@ pub(crate) type Rule = fn(&Facts, &Case) -> Option<Suspicion>;
 impl<'a> Facts<'a> {
     /// What a technique that counts volumes was told; `None` of another.
     pub fn volumes(&self) -> Option<VolumeSettings> {
-        VolumeSettings::of(self.choice)
+        self.choice.volumes()
     }
 
     /// What shadow maps were told: their defaults for another technique.

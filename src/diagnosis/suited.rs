@@ -1,6 +1,6 @@
 //! Which techniques are right for a scene, as measured on it.
 
-use super::Diagnosis;
+use super::{Diagnosis, Mend};
 use crate::technique::{Choice, Technique};
 
 /// How a technique did on a scene.
@@ -44,6 +44,20 @@ impl Suited {
 }
 
 impl Diagnosis {
+    /// What mends the scene for good, where anything is better than what was asked for: what is advised, or the fastest
+    /// technique without a wrong pixel.
+    #[must_use]
+    pub fn mend_to_write(&self, suited: &[Suited]) -> Option<Mend> {
+        let best = || {
+            let choice = &Suited::best(suited)?.choice;
+            // All of them: what was set for another technique is to be kept in none.
+            let settings = choice.settings().clone();
+            Some(Mend { technique: Some(choice.technique()), settings, ..Mend::default() })
+        };
+        let advised = self.advice.as_ref().map(|advice| advice.mend.clone());
+        if self.is_mended() { advised } else { best().or(advised) }
+    }
+
     /// Does what it advises leave nothing wrong?
     #[must_use]
     pub fn is_mended(&self) -> bool {

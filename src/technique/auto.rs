@@ -18,12 +18,13 @@
 
 use super::casters::{self, Darkened};
 use super::description::{Description, Standing};
-use super::frame::{Frame, Job};
-use super::settings::COMMON;
-use super::volume::{Counting, Form};
-use super::{PlanError, volume};
+use super::frame::{Frame, Job, StencilUse};
+use super::outside::{self, VIEW_PLANES, beyond};
+use super::settings::VolumeSettings;
+use super::volume::{Counting, Decides, Form};
+use super::{PlanError, shown, volume};
 use crate::geometry::umbra::{self, Occluder};
-use crate::geometry::{NearClipVolume, Outside, ViewVolume, layers};
+use crate::geometry::{NearClipVolume, ViewVolume, layers};
 use crate::math::AxisBox;
 use crate::numbers;
 use crate::plan::{Decision, FramePlan, LeftOut, LightId};
@@ -33,7 +34,6 @@ use glam::{DVec3, DVec4};
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs.",
     plan,
-    settings: &COMMON,
     // With all that may be left out, without what a look at the frame shows to be hidden, and with nothing
     // left out.
     report_rows: &[&[], &[("occlusion", "queries")], &[("leave-out", "none")]],
@@ -46,16 +46,25 @@ pub(super) const DESCRIPTION: Description = Description {
 
 /// What eight bits hold.
 const MOST_IN_STENCIL: usize = 255;
-/// Casters of more vertices are asked about by the corners of their boxes.
-const MOST_VERTICES_TO_LOOK_AT: usize = 4096;
 
 /// Plans a frame of volumes that each have the form they need.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    volume::plan(job)
+    let settings = VolumeSettings::of_auto(&job.choice.common());
+    let mut frame = Frame::new(job, StencilUse::Always)?;
+    shown::leave_out_hidden(&mut frame);
+    let begin = |frame: &mut Frame, light| {
+        let lit = shown::lit_by(frame, light);
+        if lit.is_empty() && frame.common.allows(Decision::Light) {
+            return Err("every surface in view faces away from it or lies beyond its range");
+        }
+        frame.lit = Some(lit);
+        Ok(Questions::new(frame, light))
+    };
+    Ok(volume::finish(frame, &settings, begin))
 }
 
 /// What a light's volumes are asked about.
-pub struct Questions {
+struct Questions {
     light: LightId,
     position: DVec4,
     view: ViewVolume,
@@ -65,8 +74,7 @@ pub struct Questions {
 }
 
 impl Questions {
-    /// Of one light.
-    pub fn new(frame: &mut Frame, light: LightId) -> Questions {
+    fn new(frame: &mut Frame, light: LightId) -> Questions {
         let position = frame.light_position(light);
         let [width, height] = frame.job.size.map(f64::from);
         let view = ViewVolume::new(&frame.job.scene.camera, width / height);
@@ -83,11 +91,27 @@ impl Questions {
         Questions { light, position, view, near_clip, occluders }
     }
 
-    /// How a caster's volume must be counted.
-    ///
-    /// # Errors
-    /// Why it needs none.
-    pub fn form(&self, frame: &mut Frame, index: usize) -> Result<Form, LeftOut> {
+    /// A caster whose umbra holds all of another.
+    fn holder(&self, frame: &Frame, index: usize) -> Option<usize> {
+        let world = &frame.placed[index].world;
+        let corners = AxisBox::around(world.iter().copied()).corners();
+        let holds = |occluder: &Option<Occluder>| {
+            occluder.as_ref().is_some_and(|occluder| occluder.darkens_all(&corners, self.position))
+        };
+        (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
+    }
+}
+
+impl Decides for Questions {
+    fn usual(&self) -> Counting {
+        Counting::Behind
+    }
+
+    fn keeps_empty_pass(&self) -> bool {
+        false
+    }
+
+    fn form(&self, frame: &mut Frame, index: usize) -> Result<Form, LeftOut> {
         let object = frame.placed[index].object;
         let common = frame.common;
         let allowed = |decision: Decision| common.allows(decision);
@@ -109,7 +133,8 @@ impl Questions {
             );
         }
         let eye = frame.eye();
-        let near: Vec<DVec4> = outline(&frame.placed[index].world).map(|point| (point - eye).extend(1.0)).collect();
+        let near: Vec<DVec4> =
+            outside::outline(&frame.placed[index].world).map(|point| (point - eye).extend(1.0)).collect();
         let light = relative(self.position, eye);
         let carried = |point: &DVec4| (point.truncate() * light.w - light.truncate()).extend(0.0);
         let far: Vec<DVec4> = near.iter().map(carried).collect();
@@ -148,18 +173,7 @@ impl Questions {
         Ok(form)
     }
 
-    /// A caster whose umbra holds all of another.
-    fn holder(&self, frame: &Frame, index: usize) -> Option<usize> {
-        let world = &frame.placed[index].world;
-        let corners = AxisBox::around(world.iter().copied()).corners();
-        let holds = |occluder: &Option<Occluder>| {
-            occluder.as_ref().is_some_and(|occluder| occluder.darkens_all(&corners, self.position))
-        };
-        (0..self.occluders.len()).find(|other| *other != index && holds(&self.occluders[*other]))
-    }
-
-    /// Of each triangle of a caster: another part of the caster holds its part in the umbra. Empty: none.
-    pub fn held_by_parts(&self, frame: &mut Frame, index: usize) -> Vec<bool> {
+    fn held_by_parts(&self, frame: &mut Frame, index: usize) -> Vec<bool> {
         if !frame.common.allows(Decision::Umbra) {
             return Vec::new();
         }
@@ -175,37 +189,11 @@ impl Questions {
         held
     }
 
-    /// Could a count of these casting triangles, world space, reach 256?
-    pub fn may_overflow(&self, casting: &[[DVec3; 3]]) -> bool {
-        layers::may_exceed(casting, self.position, MOST_IN_STENCIL)
-    }
-}
-
-/// In the order of [`ViewVolume`]'s planes.
-pub const VIEW_PLANES: [&str; 5] = [
-    "the view's near plane",
-    "the view's left side",
-    "the view's right side",
-    "the view's lower side",
-    "the view's upper side",
-];
-
-/// `0.8 m outside the view's left side`.
-pub fn beyond(outside: Outside, plane: &str) -> String {
-    match outside.distance.is_finite() {
-        true => format!("{} outside {plane}", numbers::metres(outside.distance)),
-        false => format!("outside {plane}"),
+    fn may_overflow(&self, casting: &mut dyn Iterator<Item = [DVec3; 3]>) -> bool {
+        layers::may_exceed(&casting.collect::<Vec<_>>(), self.position, MOST_IN_STENCIL)
     }
 }
 
 fn relative(position: DVec4, eye: DVec3) -> DVec4 {
     (position.truncate() - eye * position.w).extend(position.w)
-}
-
-/// Points whose hull holds a caster.
-pub fn outline(world: &[DVec3]) -> Box<dyn Iterator<Item = DVec3> + '_> {
-    if world.len() <= MOST_VERTICES_TO_LOOK_AT {
-        return Box::new(world.iter().copied());
-    }
-    Box::new(AxisBox::around(world.iter().copied()).corners().into_iter())
 }

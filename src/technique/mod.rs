@@ -79,10 +79,12 @@
 
 mod auto;
 mod casters;
+mod choice;
 mod description;
 mod frame;
-mod maps;
+mod named;
 mod none;
+mod outside;
 mod planar;
 mod planar_texture;
 mod projective;
@@ -95,12 +97,15 @@ mod silhouettes;
 mod surfaces;
 mod volume;
 
+pub use choice::{Choice, ChoiceError};
 pub use description::{Description, ReportRows, Standing};
 pub use frame::{Drawn, Frame, Job, MOST_LIGHTS, Piece, Placed, StencilUse};
-pub use planar::PlanarSettings;
-pub use settings::{Choice, ChoiceError, CommonSettings, SettingSpec, SettingValues, Values};
-pub use shadow_map::MapSettings;
-pub use volume::{VolumeSettings, WhoCasts, casting};
+pub use named::Technique;
+pub use settings::{
+    CommonSettings, MapSettings, PlanarSettings, SettingSpec, SettingValues, TextureSettings, Values, VolumeSettings,
+    WhoCasts,
+};
+pub use volume::casting;
 
 use crate::plan::FramePlan;
 
@@ -129,28 +134,57 @@ pub enum PlanError {
     },
 }
 
-named_enum! {
-    /// A way to make shadows, in teaching order.
-    pub enum Technique {
-        /// No shadows at all.
-        None = "none",
-        /// Casters flattened onto planes.
-        Planar = "planar",
-        /// Casters drawn into a texture of every flat receiver.
-        PlanarTexture = "planar-texture",
-        /// Shadow volumes counted in front of the surface.
-        ZPass = "z-pass",
-        /// Shadow volumes counted behind the surface.
-        ZFail = "z-fail",
-        /// Shadow volumes counted in front of the surface, from the near plane's own count on.
-        ZPassPlus = "z-pass-plus",
-        /// Shadow volumes, each counted as is cheapest while right, and only those that matter.
-        Auto = "auto",
-        /// Depth from the light, compared at every pixel.
-        ShadowMap = "shadow-map",
-        /// Casters' silhouettes projected over the scene.
-        Projective = "projective",
-        /// Rays from eye and light: the ground truth.
-        RayTraced = "ray-traced",
+impl Technique {
+    /// All that is said of it.
+    #[must_use]
+    pub const fn description(self) -> &'static Description {
+        match self {
+            Technique::None => &none::DESCRIPTION,
+            Technique::Planar => &planar::DESCRIPTION,
+            Technique::PlanarTexture => &planar_texture::DESCRIPTION,
+            Technique::ZPass => &volume::Z_PASS,
+            Technique::ZFail => &volume::Z_FAIL,
+            Technique::ZPassPlus => &volume::Z_PASS_PLUS,
+            Technique::Auto => &auto::DESCRIPTION,
+            Technique::ShadowMap => &shadow_map::DESCRIPTION,
+            Technique::Projective => &projective::DESCRIPTION,
+            Technique::RayTraced => &ray_traced::DESCRIPTION,
+        }
+    }
+
+    /// What it does, in one sentence.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        self.description().summary
+    }
+
+    /// Those that make shadows on the GPU, in the order of stress tables.
+    #[must_use]
+    pub fn rivals() -> Vec<Technique> {
+        let place = |technique: Technique| match technique.description().standing {
+            Standing::Rival { place, .. } => Some((place, technique)),
+            Standing::Apart { .. } => None,
+        };
+        let mut rivals: Vec<_> = Technique::ALL.into_iter().filter_map(place).collect();
+        rivals.sort_unstable();
+        rivals.into_iter().map(|(_, technique)| technique).collect()
+    }
+}
+
+impl Choice {
+    /// What a report compares by default: every row of every technique.
+    ///
+    /// # Errors
+    /// A row that a technique's settings refuse: a bug, which a test finds.
+    pub fn report_grid() -> Result<Vec<Choice>, ChoiceError> {
+        let mut grid = Vec::new();
+        for technique in Technique::ALL {
+            for row in technique.description().report_rows {
+                let mut choice = Choice::new(technique);
+                row.iter().try_for_each(|(key, value)| choice.set(key, value))?;
+                grid.push(choice);
+            }
+        }
+        Ok(grid)
     }
 }

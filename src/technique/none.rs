@@ -3,14 +3,12 @@
 use super::PlanError;
 use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
-use super::settings::COMMON;
 use crate::plan::FramePlan;
 
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Every light reaches every surface that faces it: the picture to compare others with.",
     plan,
-    settings: &COMMON,
     report_rows: ONE_ROW,
     standing: Standing::Apart { because: "there is nothing to darken" },
 };

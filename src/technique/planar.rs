@@ -12,28 +12,23 @@ use super::PlanError;
 use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
-use super::settings::{SettingSpec, Values, Words, with_own, words};
-use crate::geometry::planar::{Clip, Flattened, Flattener};
+use super::settings::PlanarSettings;
+use crate::geometry::planar::{Flattened, Flattener};
 use crate::geometry::relative;
 use crate::plan::{
     Blob, ColorWrite, DecidedBy, Decision, Draw, DrawConstants, DrawMesh, FramePlan, LeftOut, LightId, Part, Program,
     RasterState, StencilFace,
 };
 use std::sync::Arc;
-use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
+use wgpu::{CompareFunction, StencilOperation};
 
 /// What is left of the light behind a shadow that is blended over it.
 const BLENDED: f32 = 0.4;
-const NO_OFFSET: DepthBiasState = DepthBiasState { constant: 0, slope_scale: 0.0, clamp: 0.0 };
-/// Towards the eye, in steps of depth and in depth slopes a pixel: enough for a plane that is
-/// projected apart from the surface that lies in it.
-const OFFSET: DepthBiasState = DepthBiasState { constant: 64, slope_scale: 2.0, clamp: 0.0 };
 
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Casters are flattened onto every flat receiver, and the stencil keeps their shadow on it.",
     plan,
-    settings: &SETTINGS,
     // The defaults, and shadows that fight with their plane.
     report_rows: &[&[], &[("z-fighting", "none")]],
     standing: Standing::Rival {
@@ -42,49 +37,6 @@ pub(super) const DESCRIPTION: Description = Description {
         texels: None,
     },
 };
-
-const STENCIL: Words<bool> = words("stencil", &["on", "off"], &[true, false], "keeps shadows on their receiver");
-const BLEND: Words<bool> =
-    words("blend", &["once", "twice"], &[true, false], "how often overlapping triangles darken a pixel");
-const CLIP: Words<Clip> = words(
-    "clip",
-    &["on", "off"],
-    &[Clip::BetweenPlaneAndLight, Clip::Off],
-    "drops what is beyond the light or below the receiver",
-);
-const Z_FIGHTING: Words<(CompareFunction, DepthBiasState)> = words(
-    "z-fighting",
-    &["depth-off", "polygon-offset", "none"],
-    &[
-        (CompareFunction::Always, NO_OFFSET),
-        (CompareFunction::GreaterEqual, OFFSET),
-        (CompareFunction::GreaterEqual, NO_OFFSET),
-    ],
-    "how a shadow wins over the surface it lies on",
-);
-const CACHE: Words<bool> =
-    words("cache", &["on", "off"], &[true, false], "keeps flattened casters until plane, caster or light change");
-
-/// In the order in which they are shown.
-pub(super) const SETTINGS: [SettingSpec; 10] =
-    with_own([STENCIL.spec, BLEND.spec, CLIP.spec, Z_FIGHTING.spec, CACHE.spec]);
-
-/// What planar shadows are told, as types.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanarSettings {
-    /// Receivers are marked first.
-    pub marks: bool,
-    /// The stencil keeps pixels from being darkened twice.
-    pub blends_once: bool,
-    /// What is kept of a caster.
-    pub clip: Clip,
-    /// By which test a shadow wins over the surface it lies on.
-    pub depth_compare: CompareFunction,
-    /// And by how much.
-    pub depth_bias: DepthBiasState,
-    /// Flattened casters are kept between plans.
-    pub keeps: bool,
-}
 
 /// A receiver that can show shadows, and its mark.
 struct Marked {
@@ -111,32 +63,10 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     Ok(frame.finish())
 }
 
-impl PlanarSettings {
-    /// As they are set.
-    #[must_use]
-    pub fn read(values: &Values) -> PlanarSettings {
-        let (depth_compare, depth_bias) = Z_FIGHTING.read(values);
-        PlanarSettings {
-            marks: STENCIL.read(values),
-            blends_once: BLEND.read(values),
-            clip: CLIP.read(values),
-            depth_compare,
-            depth_bias,
-            keeps: CACHE.read(values),
-        }
-    }
-
-    /// Why a setting does nothing as the others are.
-    pub(super) fn without_effect(&self, key: &str) -> Option<&'static str> {
-        let is_off = key == BLEND.spec.key && !self.marks;
-        is_off.then_some("No effect: without the stencil nothing keeps a pixel from being darkened twice")
-    }
-
-    /// Of a draw of flattened casters, before stencil and colour.
-    fn raster(&self, color: ColorWrite) -> RasterState {
-        let PlanarSettings { depth_compare, depth_bias, .. } = *self;
-        RasterState { depth_compare, depth_bias, depth_write: false, color, ..RasterState::surface() }
-    }
+/// Of a draw of flattened casters, before stencil and colour.
+fn raster_of(options: &PlanarSettings, color: ColorWrite) -> RasterState {
+    let PlanarSettings { depth_compare, depth_bias, .. } = *options;
+    RasterState { depth_compare, depth_bias, depth_write: false, color, ..RasterState::surface() }
 }
 
 /// Shadows counted in the stencil: an odd number is in shadow.
@@ -149,7 +79,7 @@ fn counted_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options
         pass_op: StencilOperation::IncrementClamp,
         ..StencilFace::IGNORE
     };
-    let raster = |mark| options.raster(ColorWrite::None).with_stencil(once, mark);
+    let raster = |mark| raster_of(&options, ColorWrite::None).with_stencil(once, mark);
     let draws = shadow_draws(frame, marked, light, options, &|mark| (Program::Position, raster(mark)));
     if !draws.is_empty() {
         frame.stencil_pass(light, "shadows", purpose, draws);
@@ -173,8 +103,8 @@ fn blended_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options
     }
     let on_mark = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
     let raster = |color, mark| match options.marks {
-        true => options.raster(color).with_stencil(on_mark, mark),
-        false => options.raster(color),
+        true => raster_of(&options, color).with_stencil(on_mark, mark),
+        false => raster_of(&options, color),
     };
     let darken = |mark| (Program::Flat, raster(ColorWrite::Multiply, mark));
     let draws = shadow_draws(frame, marked, light, options, &darken);
@@ -318,7 +248,7 @@ fn shadow_draw(
         caster,
         part: Part::PlanarShadow,
         program: Program::Position,
-        raster: options.raster(ColorWrite::None),
+        raster: raster_of(&options, ColorWrite::None),
         mesh,
         triangles: 0..count,
         base_vertex: 0,

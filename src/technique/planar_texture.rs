@@ -9,9 +9,8 @@
 use super::PlanError;
 use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, Piece, StencilUse};
-use super::maps::{self, REDRAW};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
-use super::settings::{Number, SettingSpec, with_own};
+use super::settings::TextureSettings;
 use super::silhouettes::{self, LayerPass};
 use super::surfaces;
 use crate::geometry::Parallelogram;
@@ -20,16 +19,10 @@ use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, Visibility};
 use glam::{DMat4, DVec4};
 use std::collections::HashSet;
 
-const SIZE: Number = maps::size("256", 4096, "texels along each side of a receiver's texture");
-
-/// In the order in which they are shown.
-pub(super) const SETTINGS: [SettingSpec; 7] = with_own([SIZE.spec, REDRAW.spec]);
-
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Draws the casters into a texture of every flat receiver, through the box that the light's pyramid becomes.",
     plan,
-    settings: &SETTINGS,
     // Sizes of textures.
     report_rows: &[
         &[("size", "64")],
@@ -128,10 +121,10 @@ fn add_textures(frame: &mut Frame, receivers: &[FlatReceiver], light: LightId) {
     }
     let purpose = "Draws the casters between this receiver and the light through the box that the light's pyramid \
                    over the receiver becomes: their picture is the shadow on it.";
-    let size = SIZE.read(frame.job.choice.settings()) as u32;
+    let settings = TextureSettings::of_receivers(frame.job.choice.settings());
     let shapes = shapes.into_iter().map(|shape| shape.unwrap_or(DMat4::IDENTITY)).collect();
     let names = receivers.iter().map(|receiver| receiver.name.clone()).collect();
-    silhouettes::add_map(frame, light, size, (names, shapes), passes, purpose);
+    silhouettes::add_map(frame, light, &settings, (names, shapes), passes, purpose);
     frame.plan.lights[light.0].decided_by = DecidedBy::ReceiverTextures;
 }
 

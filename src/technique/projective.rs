@@ -9,31 +9,16 @@ use super::PlanError;
 use super::casters::{self, Darkened};
 use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
-use super::maps::{self, REDRAW};
-use super::settings::{Number, SettingSpec, Words, with_own, words};
+use super::settings::TextureSettings;
 use super::silhouettes::{self, LayerPass};
 use crate::geometry::light_frame;
 use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, PlanMap, Visibility};
 use glam::DMat4;
 
-const SIZE: Number = maps::size("512", 4096, "texels along each side of a silhouette's picture");
-const PASSES: Words<bool> = words(
-    "passes",
-    &["single", "multi"],
-    &[true, false],
-    "silhouettes are read while lighting, or darken the lit picture one by one",
-);
-const REVERSE: Words<bool> =
-    words("reverse", &["off", "on"], &[false, true], "silhouettes also fall on what is behind the light");
-
-/// In the order in which they are shown.
-pub(super) const SETTINGS: [SettingSpec; 9] = with_own([SIZE.spec, PASSES.spec, REVERSE.spec, REDRAW.spec]);
-
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Throws a picture of each caster's silhouette over the scene like a slide: no depths are compared.",
     plan,
-    settings: &SETTINGS,
     // Sizes of pictures.
     report_rows: &[&[("size", "128")], &[("size", "512")], &[("size", "2048")]],
     standing: Standing::Rival {
@@ -45,14 +30,14 @@ pub(super) const DESCRIPTION: Description = Description {
 
 /// Plans projective shadow textures.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
-    let is_single = PASSES.read(job.choice.settings());
+    let settings = TextureSettings::of_silhouettes(job.choice.settings());
     let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
     let layers = casting_objects(&mut frame);
     for piece in &mut frame.pieces {
         piece.layer = layers.iter().position(|object| *object == piece.object).map(|layer| layer as u32);
     }
     for light in frame.light_ids() {
-        add_silhouettes(&mut frame, light, &layers);
+        add_silhouettes(&mut frame, light, &layers, &settings);
     }
     frame.ambient_pass();
     for light in frame.light_ids() {
@@ -61,7 +46,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
             None => Vec::new(),
         };
         let how = if drawn_layers.is_empty() { Visibility::Everywhere } else { Visibility::Projected };
-        if is_single || drawn_layers.is_empty() {
+        if settings.is_single_pass || drawn_layers.is_empty() {
             frame.mask_pass(light, &[Drawn::lit_by(how)]);
             let purpose = "Adds the light, as far as the silhouettes on its way let it through.";
             frame.light_pass(light, purpose, &frame.light_by(how));
@@ -106,7 +91,7 @@ fn casting_objects(frame: &mut Frame) -> Vec<usize> {
     objects
 }
 
-fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize]) {
+fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize], settings: &TextureSettings) {
     let mut matrices = vec![DMat4::IDENTITY; layers.len()];
     let mut passes = Vec::new();
     for (layer, object) in layers.iter().enumerate() {
@@ -133,12 +118,7 @@ fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize]) {
     }
     let purpose = "Draws the caster as the light sees it, in a frame that fits it: not how far it is, but how much \
                    light it lets through.";
-    let size = SIZE.read(frame.job.choice.settings()) as u32;
     let names = layers.iter().map(|object| frame.placed[*object].object.name.clone()).collect();
-    silhouettes::add_map(frame, light, size, (names, matrices), passes, purpose);
+    silhouettes::add_map(frame, light, settings, (names, matrices), passes, purpose);
     frame.plan.lights[light.0].decided_by = DecidedBy::Silhouettes;
-    let reverses = REVERSE.read(frame.job.choice.settings());
-    if let Some(map) = &mut frame.plan.lights[light.0].map {
-        map.projects_backwards = reverses;
-    }
 }

@@ -7,7 +7,6 @@
 use super::PlanError;
 use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Frame, Job, StencilUse};
-use super::settings::COMMON;
 use crate::plan::{ColorTarget, CpuImage, DecidedBy, FramePlan, LightId, MakeImage, Pass, ViewId, Visibility};
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -33,7 +32,6 @@ impl MakeImage for LightRays {
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Follows rays from the eye and the light on the CPU: what the other techniques are measured against.",
     plan,
-    settings: &COMMON,
     report_rows: ONE_ROW,
     standing: Standing::Apart { because: "it is the truth" },
 };

@@ -9,8 +9,7 @@ use super::PlanError;
 use super::casters::{self, Darkened};
 use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
-use super::maps::{self, REDRAW};
-use super::settings::{Number, NumberOr, SettingSpec, Values, Words, number, number_or, whole, with_own, words};
+use super::settings::MapSettings;
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
@@ -19,88 +18,7 @@ use crate::plan::{
     RasterState, ViewId, Visibility,
 };
 use glam::{DMat4, DVec3};
-use wgpu::{DepthBiasState, Face, TextureFormat};
-
-const SIZE: Number = maps::size("1024", 8192, "texels along each side of the map");
-// Rounding of positions to f32 differs by a few steps between the camera's and the light's view.
-const CONSTANT: Number = whole(
-    "bias-constant",
-    [-1_000_000, 1_000_000],
-    "16",
-    "steps of depth by which the map is pushed away from the light",
-);
-const SLOPE: Number =
-    number("bias-slope", [-1000.0, 1000.0], "2.0", "the same in units of a triangle's depth slope across one texel");
-const NORMAL: Number =
-    number("bias-normal", [-100.0, 100.0], "0", "texels by which a lookup is moved along the surface's normal");
-const RECEIVER_PLANE: Words<bool> = words(
-    "bias-receiver-plane",
-    &["off", "on"],
-    &[false, true],
-    "compares each texel with the surface's own plane there",
-);
-const CULL: Words<Option<Face>> = words(
-    "cull",
-    &["none", "back", "front"],
-    &[None, Some(Face::Back), Some(Face::Front)],
-    "which faces the map leaves out",
-);
-const FILTER: NumberOr = number_or(
-    "filter",
-    &["none"],
-    ("pcf:", [1.0, 15.0], true),
-    "how many texels along each side are compared and averaged",
-);
-
-/// In the order in which they are shown.
-pub(super) const SETTINGS: [SettingSpec; 13] = with_own([
-    SIZE.spec,
-    CONSTANT.spec,
-    SLOPE.spec,
-    NORMAL.spec,
-    RECEIVER_PLANE.spec,
-    CULL.spec,
-    FILTER.spec,
-    REDRAW.spec,
-]);
-
-/// What shadow maps are told, as types.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MapSettings {
-    /// Texels along each side.
-    pub size: u32,
-    /// Steps of depth by which the map is pushed away from the light.
-    pub bias_constant: i32,
-    /// The same in units of a triangle's depth slope across one texel.
-    pub bias_slope: f64,
-    /// Texels by which a lookup is moved along the surface's normal.
-    pub bias_normal: f64,
-    /// Each texel is compared with the surface's own plane there.
-    pub bias_receiver_plane: bool,
-    /// Which faces the map leaves out.
-    pub cull: Option<Face>,
-    /// Texels that are compared and averaged along each side.
-    pub filter_width: u32,
-    /// Maps stay from frame to frame while nothing that makes them changes.
-    pub keeps: bool,
-}
-
-impl MapSettings {
-    /// As they are set: of a choice, or in a capture.
-    #[must_use]
-    pub fn read(values: &Values) -> MapSettings {
-        MapSettings {
-            size: SIZE.read(values) as u32,
-            bias_constant: CONSTANT.read(values) as i32,
-            bias_slope: SLOPE.read(values),
-            bias_normal: NORMAL.read(values),
-            bias_receiver_plane: RECEIVER_PLANE.read(values),
-            cull: CULL.read(values),
-            filter_width: FILTER.read(values).map_or(1, |width| width as u32),
-            keeps: REDRAW.read(values),
-        }
-    }
-}
+use wgpu::{DepthBiasState, TextureFormat};
 
 /// A caster in a light's map.
 struct MapCaster {
@@ -120,7 +38,6 @@ struct MapTarget {
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Stores the depth of what the light sees, and darkens what lies behind it.",
     plan,
-    settings: &SETTINGS,
     // Sizes with the default bias, and with so little that surfaces darken themselves; other ways to
     // keep them from it; and a soft edge.
     report_rows: &[

@@ -4,8 +4,8 @@
 //! face away from the eye are hidden by others; and a triangle that faces away from a light gets nothing
 //! from it, so the light pass needs only the rest.
 
-use super::frame::{Frame, Piece};
-use super::{auto, surfaces};
+use super::frame::{Frame, Piece, coincide};
+use super::{outside, surfaces};
 use crate::geometry::{Caster, ViewVolume};
 use crate::plan::{Decision, DrawMesh, LeftOut, LightId};
 use glam::{DVec3, DVec4};
@@ -45,11 +45,11 @@ fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
     let eye = frame.eye();
     let placed = &frame.placed[index];
     let (object, world) = (placed.object, &placed.world);
-    let relative: Vec<DVec4> = auto::outline(world).map(|point| (point - eye).extend(1.0)).collect();
+    let relative: Vec<DVec4> = outside::outline(world).map(|point| (point - eye).extend(1.0)).collect();
     if frame.common.allows(Decision::Surfaces)
-        && let Some(outside) = view.outside(&relative)
+        && let Some(far) = view.outside(&relative)
     {
-        let because = auto::beyond(outside, auto::VIEW_PLANES[outside.plane]);
+        let because = outside::beyond(far, outside::VIEW_PLANES[far.plane]);
         frame.leave_out(Decision::Surfaces, &object.name, format!("it lies {because}"));
         return Shown::Nothing;
     }
@@ -98,7 +98,7 @@ fn subset(frame: &mut Frame, piece: Piece, shows: impl Fn(u32) -> bool) -> Optio
 /// where of surfaces that coincide only the first may be lit.
 pub fn lit_by(frame: &mut Frame, light: LightId) -> Vec<Piece> {
     let pieces = frame.pieces.clone();
-    if !frame.common.allows(Decision::UnlitTriangles) || frame.plan.wraps_diffuse || surfaces::coincide(&frame.placed) {
+    if !frame.common.allows(Decision::UnlitTriangles) || frame.plan.wraps_diffuse || coincide(&frame.placed) {
         return pieces;
     }
     let total = |pieces: &[Piece]| pieces.iter().map(|piece| piece.triangles.len() as u64).sum::<u64>();

@@ -1,7 +1,7 @@
 //! Pictures of what casters let through, one layer a receiver or a caster of a light.
 
 use super::frame::Frame;
-use super::maps::REDRAW;
+use super::settings::TextureSettings;
 use crate::geometry::relative;
 use crate::plan::{
     Attachment, AttachmentRole, Blob, ColorTarget, ColorWrite, Draw, DrawConstants, DrawMesh, LightId, Part, Pass,
@@ -26,7 +26,7 @@ pub struct LayerPass {
 pub fn add_map(
     frame: &mut Frame,
     light: LightId,
-    size: u32,
+    settings: &TextureSettings,
     (layer_names, clip_from_world): (Vec<String>, Vec<DMat4>),
     passes: Vec<LayerPass>,
     purpose: &str,
@@ -35,7 +35,7 @@ pub fn add_map(
         name: format!("{} textures", light.name()),
         role: AttachmentRole::Map(light),
         format: TextureFormat::Rgba8Unorm,
-        size: [size; 2],
+        size: [settings.size; 2],
         layers: clip_from_world.len() as u32,
     });
     let world_from_relative = DMat4::from_translation(frame.eye());
@@ -71,8 +71,8 @@ pub fn add_map(
         clip_from_relative,
         layer_names,
         lookup: None,
-        projects_backwards: false,
-        is_kept: REDRAW.read(frame.job.choice.settings()),
+        projects_backwards: settings.projects_backwards,
+        is_kept: settings.keeps,
     });
 }
 

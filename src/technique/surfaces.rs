@@ -1,12 +1,10 @@
 //! Drawn surfaces as data for the GPU: positions, normals, and which triangles face away.
 
-use super::frame::Placed;
 use crate::geometry::relative;
 use crate::math::{Sign, side_of_triangle};
 use crate::plan::{Blob, DrawMesh, SurfaceData};
 use crate::scene::{Light, Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec3};
-use std::collections::HashSet;
 
 /// The surface of `object`, relative to the eye.
 pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene) -> DrawMesh {
@@ -18,19 +16,6 @@ pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene) -> DrawMesh {
         indices: Blob::new(object.mesh.triangles().as_flattened().to_vec()),
         surface: Some(SurfaceData { normals: Blob::new(normals), sides: Blob::new(sides(object, world, scene)) }),
     }
-}
-
-/// Do any two drawn triangles have the same three corners? Then both are visible at one depth.
-pub fn coincide(placed: &[Placed]) -> bool {
-    let mut seen = HashSet::new();
-    let drawn = placed.iter().filter(|placed| placed.surface.is_some());
-    drawn.flat_map(|placed| placed.object.mesh.triangles().iter().map(move |corners| (placed, corners))).any(
-        |(placed, corners)| {
-            let mut key = corners.map(|vertex| placed.world[vertex as usize].to_array().map(f64::to_bits));
-            key.sort_unstable();
-            !seen.insert(key)
-        },
-    )
 }
 
 /// [`SurfaceData::sides`].

@@ -58,7 +58,7 @@ pub struct CommonSettings {
 }
 
 impl CommonSettings {
-    pub(super) fn read(values: &Values) -> CommonSettings {
+    pub(in crate::technique) fn read(values: &Values) -> CommonSettings {
         let allowed = match LEAVE_OUT.of(values) {
             "none" => [false; Decision::NAMES.len()],
             "all" => [true; Decision::NAMES.len()],
@@ -73,6 +73,12 @@ impl CommonSettings {
         }
     }
 
+    /// Why a setting does nothing as the others are; `None` where it does something.
+    pub(in crate::technique) fn without_effect(values: &Values, key: &str) -> Option<&'static str> {
+        let is_off = key == EPSILON.spec.key && DEPTH.read(values) != DepthMapping::StandardInfiniteEpsilon;
+        is_off.then_some("No effect: only depth = standard-infinite-epsilon pulls infinity in")
+    }
+
     /// May it be left out? Depth that is not reversed and infinite cuts volumes off, or lets surfaces tie that
     /// are apart: what hides nothing elsewhere may decide a pixel there.
     #[must_use]
@@ -82,10 +88,4 @@ impl CommonSettings {
         let is_safe = asks_no_depth || self.depth == DepthMapping::ReversedInfinite;
         is_safe && self.allowed.get(decision as usize).is_none_or(|allowed| *allowed)
     }
-}
-
-/// Why a setting does nothing as the others are; `None` where it does something.
-pub(super) fn without_effect(values: &Values, key: &str) -> Option<&'static str> {
-    let is_off = key == EPSILON.spec.key && DEPTH.read(values) != DepthMapping::StandardInfiniteEpsilon;
-    is_off.then_some("No effect: only depth = standard-infinite-epsilon pulls infinity in")
 }

@@ -49,7 +49,7 @@ pub enum SettingValues {
 
 impl SettingSpec {
     /// What is set, or the default: also where what is set is not offered, as a folder may tell anything.
-    pub(super) fn of(self, values: &Values) -> &str {
+    pub(in crate::technique) fn of(self, values: &Values) -> &str {
         let set = values.get(self.key).map(String::as_str);
         set.filter(|value| self.values.check(value).is_ok()).unwrap_or(self.default)
     }
@@ -143,7 +143,7 @@ impl NumberOr {
 }
 
 impl SettingValues {
-    pub(super) fn check(self, value: &str) -> Result<(), String> {
+    pub(in crate::technique) fn check(self, value: &str) -> Result<(), String> {
         let in_range = match self {
             SettingValues::OneOf(words) => words.contains(&value),
             SettingValues::SomeOf(words) => {

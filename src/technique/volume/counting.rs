@@ -1,8 +1,9 @@
 //! Where volume faces count, and the raster state that makes them.
 
-use super::{NeededPart, Part, RasterState, VolumeSettings};
-use crate::plan::{ColorWrite, LightId, Side, StencilFace};
+use crate::plan::{ColorWrite, LightId, Part, RasterState, Side, StencilFace};
 use crate::technique::Technique;
+use crate::technique::settings::VolumeSettings;
+use std::ops::Range;
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
 /// How far sides that hug a drawn surface are drawn behind their place, in steps of depth. Depths of a
@@ -15,6 +16,24 @@ use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 /// No other side has it: a bias moves the edge of a shadow on whatever the light grazes, by so many
 /// steps over the tangent of the light's height.
 const HUGGING_BIAS: i32 = -4;
+
+/// A run of a volume's triangles that counts.
+pub struct NeededPart {
+    pub part: Part,
+    /// Its triangles face inwards: operations are swapped.
+    pub turned: bool,
+    /// Sides that the surface they are thrown by is too near to.
+    pub hugs: bool,
+    /// What is added to its indices.
+    pub base_vertex: u32,
+    pub triangles: Range<usize>,
+}
+
+impl NeededPart {
+    pub fn new(part: Part, turned: bool, triangles: &Range<usize>) -> NeededPart {
+        NeededPart { part, turned, hugs: false, base_vertex: 0, triangles: triangles.clone() }
+    }
+}
 
 /// Where a volume face counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,12 +12,13 @@
 //! extrusion is not asked about: a near-plane point beyond a volume's end counts as inside.
 
 use super::counting::operations;
-use super::{Volume, VolumeSettings};
+use super::drawn::Volume;
 use crate::geometry::near_view;
 use crate::plan::{
     ColorWrite, Decision, Draw, DrawConstants, LightId, PlanView, Program, RasterState, StencilFace, ViewId,
 };
 use crate::technique::frame::Frame;
+use crate::technique::settings::VolumeSettings;
 use wgpu::CompareFunction;
 
 /// Adds the light's view and the pass; none where nothing can count.

@@ -1,11 +1,9 @@
 //! The settings of techniques that count shadow volumes.
 
-use super::{Casters, Extrusion, PlanError, SilhouetteBy};
-use crate::geometry::MOST_TO_SEARCH;
+use super::common::{CommonSettings, with_own};
+use super::face::{NumberOr, SettingSpec, Values, Words, number_or, words};
+use crate::geometry::{Casters, Extrusion, SilhouetteBy};
 use crate::plan::Decision;
-use crate::scene::Scene;
-use crate::technique::settings::{NumberOr, SettingSpec, Values, Words, number_or, with_own, words};
-use crate::technique::{Choice, Technique};
 
 const CASTERS: Words<WhoCasts> = words(
     "casters",
@@ -53,7 +51,7 @@ const SILHOUETTE: Words<SilhouetteBy> = words(
 );
 
 /// In the order in which they are shown.
-pub const SETTINGS: [SettingSpec; 12] = with_own([
+pub(super) const VOLUME: [SettingSpec; 12] = with_own([
     CASTERS.spec,
     EXTRUSION.spec,
     FACES.spec,
@@ -103,25 +101,10 @@ impl WhoCasts {
 }
 
 impl VolumeSettings {
-    /// Of a technique that counts volumes; `None` of another.
-    #[must_use]
-    pub fn of(choice: &Choice) -> Option<VolumeSettings> {
-        match choice.technique() {
-            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => Some(VolumeSettings::read(choice.settings())),
-            Technique::Auto => Some(VolumeSettings::of_auto(choice)),
-            Technique::None
-            | Technique::Planar
-            | Technique::PlanarTexture
-            | Technique::ShadowMap
-            | Technique::Projective
-            | Technique::RayTraced => None,
-        }
-    }
-
     /// What `auto` decides itself: it has no such settings, and triangles cast by topology unless that is forbidden.
     #[must_use]
-    pub fn of_auto(choice: &Choice) -> VolumeSettings {
-        let by_topology = choice.common().allows(Decision::AwayTriangles);
+    pub fn of_auto(common: &CommonSettings) -> VolumeSettings {
+        let by_topology = common.allows(Decision::AwayTriangles);
         let casters = if by_topology { WhoCasts::ByTopology } else { WhoCasts::Always(Casters::All) };
         VolumeSettings { casters, ..VolumeSettings::read(&Values::new()) }
     }
@@ -150,26 +133,8 @@ impl VolumeSettings {
         }
     }
 
-    /// The same choice with its counts in floats; `None` where they are, or where nothing says so.
-    pub(in crate::technique) fn in_floats(choice: &Choice) -> Option<Choice> {
-        let mut in_floats = choice.clone();
-        let counts_in_eight_bits = VolumeSettings::of(choice).is_some_and(|settings| !settings.counts_in_float);
-        (counts_in_eight_bits && in_floats.set(COUNTER.spec.key, COUNTER.word(true)).is_ok()).then_some(in_floats)
-    }
-
-    /// Refuses what would take minutes.
-    pub(super) fn check(&self, scene: &Scene) -> Result<(), PlanError> {
-        let too_large = |triangles: usize| self.silhouette == SilhouetteBy::Search && triangles > MOST_TO_SEARCH;
-        let casting = scene.objects.iter().filter(|object| object.casts);
-        match casting.map(|object| (object, object.mesh.triangles().len())).find(|(_, count)| too_large(*count)) {
-            None => Ok(()),
-            Some((object, count)) => Err(PlanError::Unusable {
-                problem: format!(
-                    "silhouette = edge-list searches all edges for each one, and {} has {count} triangles: choose \
-                     silhouette = adjacency, or a caster of at most {MOST_TO_SEARCH}",
-                    object.name
-                ),
-            }),
-        }
+    /// Key and value that count in floats.
+    pub(in crate::technique) fn in_floats() -> [&'static str; 2] {
+        [COUNTER.spec.key, COUNTER.word(true)]
     }
 }

@@ -1,20 +1,7 @@
-//! Settings as data: keys, values and defaults of every technique, and the check of a request.
-//!
-//! The command line, scene files and the inspector read and write words, which are checked here and become a typed
-//! struct for each family of techniques ([`CommonSettings`], and one beside each technique): no word is compared
-//! anywhere else. Only what works is listed: a value that is not there yet is refused, not ignored.
+//! A technique with its settings, checked.
 
-mod common;
-mod face;
-
-pub use common::CommonSettings;
-pub(super) use common::with_own;
-pub(super) use face::{Number, NumberOr, Words, number, number_or, whole, words};
-pub use face::{SettingSpec, SettingValues, Values};
-
-use super::planar::PlanarSettings;
-use super::volume::VolumeSettings;
-use super::{Technique, maps};
+use super::named::Technique;
+use super::settings::{self, CommonSettings, PlanarSettings, Values, VolumeSettings};
 use crate::scene::{TechniqueRequest, suggestion};
 
 /// Why a request for a technique can't be met.
@@ -59,9 +46,6 @@ pub struct Choice {
     settings: Values,
 }
 
-/// The settings of a technique that has none of its own.
-pub(super) const COMMON: [SettingSpec; 5] = with_own([]);
-
 impl Choice {
     /// As a scene file names it: the technique, and the settings that are not as they are by default.
     #[must_use]
@@ -71,22 +55,6 @@ impl Choice {
             (value != spec.default).then(|| (spec.key.to_owned(), value.clone()))
         });
         TechniqueRequest { name: self.technique().name().to_owned(), settings: changed.collect() }
-    }
-
-    /// What a report compares by default: every row of every technique.
-    ///
-    /// # Errors
-    /// A row that a technique's settings refuse: a bug, which a test finds.
-    pub fn report_grid() -> Result<Vec<Choice>, ChoiceError> {
-        let mut grid = Vec::new();
-        for technique in Technique::ALL {
-            for row in technique.description().report_rows {
-                let mut choice = Choice::new(technique);
-                row.iter().try_for_each(|(key, value)| choice.set(key, value))?;
-                grid.push(choice);
-            }
-        }
-        Ok(grid)
     }
 
     /// `technique` with its defaults.
@@ -151,10 +119,25 @@ impl Choice {
         CommonSettings::read(&self.settings)
     }
 
+    /// The settings of a technique that counts volumes, as types; `None` of another.
+    #[must_use]
+    pub fn volumes(&self) -> Option<VolumeSettings> {
+        match self.technique {
+            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => Some(VolumeSettings::read(&self.settings)),
+            Technique::Auto => Some(VolumeSettings::of_auto(&self.common())),
+            Technique::None
+            | Technique::Planar
+            | Technique::PlanarTexture
+            | Technique::ShadowMap
+            | Technique::Projective
+            | Technique::RayTraced => None,
+        }
+    }
+
     /// Texels along each side of maps, textures or silhouettes; `None` where the technique has none.
     #[must_use]
     pub fn texels(&self) -> Option<u32> {
-        let spec = self.technique.settings().iter().find(|spec| spec.key == maps::SIZE)?;
+        let spec = self.technique.settings().iter().find(|spec| spec.key == settings::SIZE)?;
         spec.of(&self.settings).parse().ok()
     }
 
@@ -169,16 +152,19 @@ impl Choice {
     /// technique has no such setting.
     #[must_use]
     pub fn counting_in_floats(&self) -> Option<Choice> {
-        VolumeSettings::in_floats(self)
+        let mut in_floats = self.clone();
+        let [key, value] = VolumeSettings::in_floats();
+        let is_in_eight_bits = self.volumes().is_some_and(|settings| !settings.counts_in_float);
+        (is_in_eight_bits && in_floats.set(key, value).is_ok()).then_some(in_floats)
     }
 
     /// Why a setting does nothing as the others are; `None` where it does something.
     #[must_use]
     pub fn without_effect(&self, key: &str) -> Option<&'static str> {
         let of_planar = || (self.technique == Technique::Planar).then(|| PlanarSettings::read(&self.settings));
-        common::without_effect(&self.settings, key)
+        CommonSettings::without_effect(&self.settings, key)
             .or_else(|| of_planar()?.without_effect(key))
-            .or_else(|| VolumeSettings::of(self)?.without_effect(key))
+            .or_else(|| self.volumes()?.without_effect(key))
     }
 }
 
@@ -197,7 +183,7 @@ mod tests {
 
     #[test]
     fn words_become_what_they_stand_for() {
-        let volumes = |changes: &[(&str, &str)]| VolumeSettings::of(&with(Technique::ZFail, changes)).expect("volumes");
+        let volumes = |changes: &[(&str, &str)]| with(Technique::ZFail, changes).volumes().expect("volumes");
         assert_eq!(volumes(&[]), VolumeSettings::read(&Values::new()));
         let changed = volumes(&[("casters", "light-facing"), ("extrusion", "finite:2.5"), ("counter", "float")]);
         assert_eq!(changed.casters, WhoCasts::Always(Casters::LightFacing));
@@ -205,7 +191,7 @@ mod tests {
         let some = with(Technique::Auto, &[("leave-out", "caps, umbra")]).common();
         let allowed = [Decision::Caps, Decision::Umbra, Decision::View, Decision::Light].map(|one| some.allows(one));
         assert_eq!(allowed, [true, true, false, false]);
-        assert_eq!(VolumeSettings::of(&with(Technique::ShadowMap, &[])), None);
+        assert_eq!(with(Technique::ShadowMap, &[]).volumes(), None);
     }
 
     #[test]
@@ -232,7 +218,7 @@ mod tests {
     #[test]
     fn a_choice_counts_in_floats_where_a_setting_says_so() {
         let in_floats = Choice::new(Technique::ZPass).counting_in_floats().expect("a setting");
-        assert!(VolumeSettings::of(&in_floats).is_some_and(|settings| settings.counts_in_float));
+        assert!(in_floats.volumes().is_some_and(|settings| settings.counts_in_float));
         let others = [in_floats, Choice::new(Technique::Auto), Choice::new(Technique::Planar)];
         assert!(others.iter().all(|choice| choice.counting_in_floats().is_none()));
     }

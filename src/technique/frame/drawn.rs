@@ -1,0 +1,58 @@
+//! How surfaces are drawn: a shader and its raster state.
+
+use crate::plan::{ColorWrite, Program, RasterState, StencilFace, Visibility};
+use crate::truth::{LIT, SHADOW};
+use wgpu::{CompareFunction, StencilOperation};
+
+/// How surfaces are drawn in a pass.
+#[derive(Debug, Clone)]
+pub struct Drawn {
+    pub(super) program: Program,
+    pub(super) raster: RasterState,
+    /// What a label program writes.
+    pub(super) label: u32,
+}
+
+impl Drawn {
+    /// Writes "lit" everywhere, or what a later layer says.
+    pub fn lit() -> Drawn {
+        Drawn::label(LIT.into())
+    }
+
+    /// Writes "in shadow" everywhere.
+    pub fn shadow() -> Drawn {
+        Drawn::label(SHADOW.into())
+    }
+
+    /// Writes "in shadow" where less than half of the light arrives.
+    pub fn lit_by(how: Visibility) -> Drawn {
+        Drawn { program: Program::Label(how), ..Drawn::label(LIT.into()) }
+    }
+
+    fn label(label: u32) -> Drawn {
+        let raster = RasterState::visible_surface(ColorWrite::Replace);
+        Drawn { program: Program::Label(Visibility::Everywhere), raster, label }
+    }
+
+    /// Only where the masked stencil equals `reference`.
+    pub fn where_stencil(mut self, read_mask: u32, reference: u8) -> Drawn {
+        let equal = StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE };
+        self.raster = self.raster.with_stencil(equal, reference);
+        self.raster.stencil.read_mask = read_mask;
+        self.raster.stencil.write_mask = 0;
+        self
+    }
+
+    /// Adds light where the masked stencil is zero, and raises it there, so that of surfaces at one
+    /// depth only the first is lit.
+    pub fn light_once_where_zero(read_mask: u32) -> Drawn {
+        let once = StencilFace {
+            compare: CompareFunction::Equal,
+            pass_op: StencilOperation::IncrementClamp,
+            ..StencilFace::IGNORE
+        };
+        let mut raster = RasterState::visible_surface(ColorWrite::Add).with_stencil(once, 0);
+        raster.stencil.read_mask = read_mask;
+        Drawn { program: Program::Light(Visibility::Everywhere), raster, label: LIT.into() }
+    }
+}

@@ -1,0 +1,255 @@
+//! The passes that techniques share: ambient, light and mask, and what techniques add between them.
+
+use super::{Drawn, Frame, Piece};
+use crate::geometry::{self, RangeInView};
+use crate::numbers;
+use crate::plan::{
+    Attachment, AttachmentRole, ColorTarget, ColorWrite, Decision, DepthStencilTarget, Draw, DrawConstants, LightId,
+    Part, Pass, Program, RasterState, ViewId, Visibility,
+};
+use crate::scene::Object;
+use crate::truth::{BACKGROUND as BACKGROUND_LABEL, LIT};
+use wgpu::TextureFormat;
+
+/// Linear colour of pixels that show no surface.
+const BACKGROUND: [f64; 4] = [0.007, 0.008, 0.012, 1.0];
+
+impl Frame<'_> {
+    /// Light added everywhere, or only once to each pixel where surfaces coincide.
+    pub fn light_everywhere(&self) -> Drawn {
+        let once = Drawn::light_once_where_zero(0xff);
+        if self.has_stencil { once } else { Drawn { raster: RasterState::visible_surface(ColorWrite::Add), ..once } }
+    }
+
+    /// The same, as far as it arrives.
+    pub fn light_by(&self, how: Visibility) -> Drawn {
+        Drawn { program: Program::Light(how), ..self.light_everywhere() }
+    }
+
+    /// Darkens what is visible by one layer of a light's map.
+    pub fn darken_through(&self) -> Drawn {
+        let raster = RasterState::visible_surface(ColorWrite::Multiply);
+        Drawn { program: Program::Through, raster, label: LIT.into() }
+    }
+
+    /// A pass of a light into stencil alone, over the camera's depth. The first one of a light
+    /// clears what the light before has left.
+    pub fn stencil_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
+        let is_untouched = self.stencil_of.is_none();
+        let is_left_out = is_untouched && self.common.allows(Decision::Clear);
+        if is_left_out {
+            self.leave_out(Decision::Clear, light.name(), "nothing has written the stencil before");
+        }
+        self.push_pass(light, name, purpose, None, draws);
+        let target = self.plan.passes.last_mut().and_then(|pass| pass.depth_stencil.as_mut());
+        if let Some(target) = target.filter(|_| is_untouched && !is_left_out) {
+            target.clear_stencil = Some(0);
+        }
+    }
+
+    /// A timed pass of a light, seen by the camera. The first one of a light clears what another has left
+    /// in the stencil.
+    fn push_pass(&mut self, light: LightId, name: &str, purpose: &str, color: Option<ColorTarget>, draws: Vec<Draw>) {
+        let depth_stencil = self.depth_stencil_of(light);
+        self.stencil_of = Some(light);
+        self.plan.passes.push(Pass {
+            name: name.to_owned(),
+            image: None,
+            scissor: self.scissors.get(light.0).copied().flatten(),
+            purpose: purpose.to_owned(),
+            light: Some(light),
+            timed: true,
+            view: ViewId(0),
+            color,
+            depth_stencil: Some(depth_stencil),
+            draws,
+        });
+    }
+
+    /// The picture, as it is.
+    fn kept_color(&self) -> ColorTarget {
+        ColorTarget { attachment: self.color, layer: 0, clear: None }
+    }
+
+    /// Gives a light a float target to count its volumes in.
+    pub fn add_count(&mut self, light: LightId) {
+        let count = self.add_attachment(Attachment {
+            name: format!("{} count", light.name()),
+            role: AttachmentRole::Count(light),
+            format: TextureFormat::R32Float,
+            size: self.job.size,
+            layers: 1,
+        });
+        self.plan.lights[light.0].count = Some(count);
+    }
+
+    /// A pass of a light that adds to its count, over the camera's depth. The first clears it.
+    pub fn count_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
+        let Some(attachment) = self.plan.lights[light.0].count else { return };
+        let is_same = |pass: &Pass| pass.color.as_ref().is_some_and(|target| target.attachment == attachment);
+        let is_first = !self.plan.passes.iter().any(is_same);
+        let target = ColorTarget { attachment, layer: 0, clear: is_first.then_some([0.0; 4]) };
+        self.push_pass(light, name, purpose, Some(target), draws);
+    }
+
+    /// Depth of all surfaces, and their colour under ambient light.
+    pub fn ambient_pass(&mut self) {
+        // Depth that is clamped lets through what lies between eye and near plane.
+        let from_near = self.common.depth.clamps();
+        let drawn =
+            Drawn { program: Program::Ambient { from_near }, raster: RasterState::surface(), label: LIT.into() };
+        let draws = self.surface_draws(|_| Some(&drawn));
+        let purpose = "Draws every surface in ambient light only, and leaves in the depth buffer how far the nearest \
+                       one is: all later passes ask about that surface.";
+        self.plan.passes.push(Pass {
+            name: "ambient".to_owned(),
+            image: None,
+            scissor: None,
+            purpose: purpose.to_owned(),
+            light: None,
+            timed: true,
+            view: ViewId(0),
+            color: Some(ColorTarget { attachment: self.color, layer: 0, clear: Some(BACKGROUND) }),
+            depth_stencil: Some(DepthStencilTarget {
+                attachment: self.depth_stencil,
+                layer: 0,
+                clear_depth: Some(0.0),
+                clear_stencil: self.has_stencil.then_some(0),
+            }),
+            draws,
+        });
+    }
+
+    /// Adds a light's diffuse and highlight to the surfaces already visible; `shadowed` says how on
+    /// objects that receive shadows. The others are lit as if nothing stood between.
+    pub fn light_pass(&mut self, light: LightId, purpose: &str, shadowed: &Drawn) {
+        let unshadowed = Drawn {
+            program: Program::Light(Visibility::Everywhere),
+            raster: RasterState::visible_surface(ColorWrite::Add),
+            label: LIT.into(),
+        };
+        let look = |object: &Object| Some(if object.receives { shadowed } else { &unshadowed });
+        let draws = match &self.lit {
+            Some(lit) => self.draws_of(lit, look),
+            None => self.surface_draws(look),
+        };
+        self.push_pass(light, "light", purpose, Some(self.kept_color()), draws);
+    }
+
+    /// Blends draws over the picture, and tests depth and stencil without changing them.
+    pub fn blend_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
+        self.push_pass(light, name, purpose, Some(self.kept_color()), draws);
+    }
+
+    /// Writes the light's labels, later layers over earlier ones. Triangles and draws run in
+    /// reverse, so that of surfaces at one depth the first drawn decides here too.
+    pub fn mask_pass(&mut self, light: LightId, layers: &[Drawn]) {
+        self.mask_pass_with(light, layers, Vec::new());
+    }
+
+    /// The same, and after the surfaces `over` them.
+    pub fn mask_pass_with(&mut self, light: LightId, layers: &[Drawn], over: Vec<Draw>) {
+        let mut draws = Vec::new();
+        let unshadowed = Drawn::lit();
+        for (index, layer) in layers.iter().enumerate() {
+            let mut of_layer = self.surface_draws(|object| match (object.receives, index) {
+                (true, _) => Some(layer),
+                (false, 0) => Some(&unshadowed),
+                (false, _) => None,
+            });
+            of_layer.reverse();
+            draws.extend(of_layer);
+        }
+        draws.extend(over);
+        let purpose = "Writes what this technique says of the light at every pixel: lit, in shadow, or facing away. \
+                       It is not part of the frame; it is how techniques are compared.";
+        self.plan.passes.push(Pass {
+            name: "mask".to_owned(),
+            image: None,
+            scissor: None,
+            purpose: purpose.to_owned(),
+            light: Some(light),
+            timed: false,
+            view: ViewId(0),
+            color: Some(ColorTarget {
+                attachment: self.plan.lights[light.0].labels,
+                layer: 0,
+                clear: Some([BACKGROUND_LABEL.into(), 0.0, 0.0, 0.0]),
+            }),
+            depth_stencil: Some(self.depth_stencil_of(light)),
+            draws,
+        });
+    }
+
+    /// What is visible and receives, darkened by one layer of the light's map; but the layer's own pieces.
+    pub fn draws_through(&self, layer: usize) -> Vec<Draw> {
+        let drawn = self.darken_through();
+        let mut draws = self.surface_draws(|object| object.receives.then_some(&drawn));
+        draws.retain(|draw| draw.constants.layer != Some(layer as u32));
+        draws.iter_mut().for_each(|draw| draw.constants.layer = Some(layer as u32));
+        draws
+    }
+
+    /// One draw a piece of every visible object, as `look` says for the object.
+    fn surface_draws<'d>(&self, look: impl Fn(&Object) -> Option<&'d Drawn>) -> Vec<Draw> {
+        self.draws_of(&self.pieces, look)
+    }
+
+    fn draws_of<'d>(&self, pieces: &[Piece], look: impl Fn(&Object) -> Option<&'d Drawn>) -> Vec<Draw> {
+        let draw = |piece: &Piece| {
+            let object = self.placed[piece.object].object;
+            let drawn = look(object)?;
+            let (material, layer) = (piece.material, piece.layer);
+            Some(Draw {
+                name: piece.name.clone(),
+                caster: Some(object.name.clone()),
+                part: Part::Surface,
+                program: drawn.program,
+                raster: drawn.raster.clone(),
+                mesh: piece.mesh,
+                triangles: piece.triangles.clone(),
+                base_vertex: 0,
+                faces_inwards: false,
+                constants: DrawConstants { material, label: drawn.label, layer, ..DrawConstants::default() },
+            })
+        };
+        pieces.iter().filter_map(draw).collect()
+    }
+
+    /// The picture's depth-stencil target for a pass of `light`: what another light has left in the
+    /// stencil is cleared.
+    fn depth_stencil_of(&self, light: LightId) -> DepthStencilTarget {
+        let is_of_another = self.stencil_of.is_some_and(|other| other != light);
+        let clear_stencil = (self.has_stencil && is_of_another).then_some(0);
+        DepthStencilTarget { attachment: self.depth_stencil, layer: 0, clear_depth: None, clear_stencil }
+    }
+
+    /// From here on, passes of a lamp whose light ends somewhere are cut to the pixels that it can reach.
+    /// `true` for the lights that reach none.
+    pub fn cut_to_ranges(&mut self) -> Vec<bool> {
+        let scene = self.job.scene;
+        let mut misses = vec![false; scene.lights.len()];
+        self.scissors = vec![None; scene.lights.len()];
+        for id in self.light_ids() {
+            let light = &scene.lights[id.0];
+            let Some(range) = light.range.filter(|_| !light.is_directional()) else { continue };
+            if !self.common.allows(Decision::Scissor) {
+                continue;
+            }
+            match geometry::range_in_view(&scene.camera, self.job.size, light.position.truncate(), range) {
+                RangeInView::All => {}
+                RangeInView::Nothing => misses[id.0] = true,
+                RangeInView::Pixels(pixels) => {
+                    let [_, _, columns, rows] = pixels;
+                    let because = format!(
+                        "its light ends {} from it, which is within {columns}x{rows} pixels",
+                        numbers::metres(range)
+                    );
+                    self.leave_out(Decision::Scissor, id.name(), because);
+                    self.scissors[id.0] = Some(pixels);
+                }
+            }
+        }
+        misses
+    }
+}

@@ -1,0 +1,134 @@
+//! Places a frame: objects in world space, lights, the camera, and the pictures that passes draw into.
+
+use super::{Frame, Piece, Placed};
+use crate::geometry::relative;
+use crate::math::depth::DepthCurve;
+use crate::math::projection;
+use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, MeshId, PlanLight, PlanView};
+use crate::scene::{Object, Scene};
+use crate::technique::{PlanError, surfaces};
+use glam::{DMat4, DVec3};
+use std::collections::HashSet;
+use wgpu::TextureFormat;
+
+/// Beyond it, products of single-precision coordinates overflow.
+const MOST_DISTANCE: f64 = 1e18;
+/// Room behind the farthest surface for a far plane that the scene does not give.
+const FAR_MARGIN: f64 = 1.01;
+
+impl Frame<'_> {
+    pub(super) fn add_attachments(&mut self) {
+        let size = self.job.size;
+        self.color = self.add_attachment(Attachment {
+            name: "color".to_owned(),
+            role: AttachmentRole::Color,
+            format: TextureFormat::Rgba8UnormSrgb,
+            size,
+            layers: 1,
+        });
+        let (name, format) = match self.has_stencil {
+            true => ("depth and stencil", TextureFormat::Depth32FloatStencil8),
+            false => ("depth", TextureFormat::Depth32Float),
+        };
+        if !self.has_stencil {
+            let because = "this technique counts and marks nothing, and no two triangles coincide";
+            self.leave_out(Decision::Stencil, "the frame", because);
+        }
+        let role = AttachmentRole::DepthStencil;
+        self.depth_stencil = self.add_attachment(Attachment { name: name.to_owned(), role, format, size, layers: 1 });
+    }
+
+    pub(super) fn add_lights(&mut self) -> Result<(), PlanError> {
+        for (light, id) in self.job.scene.lights.iter().zip(self.light_ids()) {
+            light.check().map_err(|problem| PlanError::Unusable { problem: problem.to_owned() })?;
+            let labels = self.add_attachment(Attachment {
+                name: format!("{} labels", id.name()),
+                role: AttachmentRole::Labels(id),
+                format: TextureFormat::R8Uint,
+                size: self.job.size,
+                layers: 1,
+            });
+            let relative_position = relative::homogeneous(light.homogeneous(), self.eye());
+            if !relative_position.iter().all(|component| component.is_finite()) {
+                let problem = format!("{} is too far from the eye for single precision", id.name());
+                return Err(PlanError::Unusable { problem });
+            }
+            let color = light.color.map(|channel| channel * light.intensity);
+            let range = light.range.map(|range| range as f32);
+            self.plan.lights.push(PlanLight {
+                relative_position,
+                color,
+                range,
+                decided_by: DecidedBy::Nothing,
+                map: None,
+                count: None,
+                labels,
+            });
+        }
+        Ok(())
+    }
+
+    pub(super) fn place_objects(&mut self) -> Result<(), PlanError> {
+        for object in &self.job.scene.objects {
+            let world = object.world_positions();
+            let is_usable = |position: &DVec3| (*position - self.eye()).abs().max_element() <= MOST_DISTANCE;
+            if !world.iter().all(is_usable) {
+                let problem = format!("{} is too large or too far from the eye for single precision", object.name);
+                return Err(PlanError::Unusable { problem });
+            }
+            let drawn = object.visible && !object.mesh.triangles().is_empty();
+            let surface = drawn.then(|| self.add_mesh(surfaces::draw_mesh(object, &world, self.job.scene)));
+            self.pieces.extend(surface.into_iter().flat_map(|mesh| pieces_of(object, self.placed.len(), mesh)));
+            self.placed.push(Placed { object, world, surface });
+        }
+        Ok(())
+    }
+
+    /// How depth is stored, as the settings say. Without a far plane of its own, the camera's is put
+    /// behind the farthest surface.
+    pub(super) fn depth_curve(&self) -> DepthCurve {
+        let camera = &self.job.scene.camera;
+        let ahead = (camera.target - camera.eye).normalize_or_zero();
+        let drawn = self.placed.iter().filter(|placed| placed.surface.is_some()).flat_map(|placed| &placed.world);
+        let farthest = drawn.map(|position| (*position - camera.eye).dot(ahead)).fold(camera.near * 2.0, f64::max);
+        let far = camera.far.unwrap_or(farthest * FAR_MARGIN);
+        self.common.depth.curve(camera.near, far, self.common.epsilon)
+    }
+}
+
+/// One piece a group.
+fn pieces_of(object: &Object, index: usize, mesh: MeshId) -> impl Iterator<Item = Piece> {
+    object.mesh.groups().iter().map(move |group| Piece {
+        name: match group.name.as_str() {
+            "" => object.name.clone(),
+            group => format!("{} · {group}", object.name),
+        },
+        object: index,
+        material: group.material.unwrap_or(object.material),
+        mesh,
+        triangles: group.triangles.start as u32..group.triangles.end as u32,
+        layer: None,
+    })
+}
+
+pub(super) fn camera_view(scene: &Scene, size: [u32; 2], depth: &DepthCurve) -> PlanView {
+    let camera = &scene.camera;
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let clip_from_view = projection::perspective(camera.fov_y_degrees, aspect, depth);
+    let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
+    let clip_from_relative = (clip_from_view * DMat4::from_mat3(rotation)).as_mat4();
+    PlanView { name: "camera".to_owned(), origin: camera.eye, clip_from_relative }
+}
+
+/// Do any two drawn triangles have the same three corners? Then both are visible at one depth.
+pub fn coincide(placed: &[Placed]) -> bool {
+    let mut seen = HashSet::new();
+    let drawn = placed.iter().filter(|placed| placed.surface.is_some());
+    drawn.flat_map(|placed| placed.object.mesh.triangles().iter().map(move |corners| (placed, corners))).any(
+        |(placed, corners)| {
+            let mut key = corners.map(|vertex| placed.world[vertex as usize].to_array().map(f64::to_bits));
+            key.sort_unstable();
+            !seen.insert(key)
+        },
+    )
+}

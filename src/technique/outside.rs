@@ -1,0 +1,34 @@
+//! What lies outside of the view, and how far, in words.
+
+use crate::geometry::Outside;
+use crate::math::AxisBox;
+use crate::numbers;
+use glam::DVec3;
+
+/// Objects of more vertices are asked about by the corners of their boxes.
+const MOST_VERTICES_TO_LOOK_AT: usize = 4096;
+
+/// In the order of [`ViewVolume`]'s planes.
+pub const VIEW_PLANES: [&str; 5] = [
+    "the view's near plane",
+    "the view's left side",
+    "the view's right side",
+    "the view's lower side",
+    "the view's upper side",
+];
+
+/// `0.8 m outside the view's left side`.
+pub fn beyond(outside: Outside, plane: &str) -> String {
+    match outside.distance.is_finite() {
+        true => format!("{} outside {plane}", numbers::metres(outside.distance)),
+        false => format!("outside {plane}"),
+    }
+}
+
+/// Points whose hull holds an object.
+pub fn outline(world: &[DVec3]) -> Box<dyn Iterator<Item = DVec3> + '_> {
+    if world.len() <= MOST_VERTICES_TO_LOOK_AT {
+        return Box::new(world.iter().copied());
+    }
+    Box::new(AxisBox::around(world.iter().copied()).corners().into_iter())
+}

@@ -1,0 +1,38 @@
+//! Settings as data: keys, values and defaults of every technique, and what each value becomes.
+//!
+//! The command line, scene files and the inspector read and write words, which [`Choice`](super::Choice) checks; here
+//! they become a typed struct for each family of techniques: no word is compared anywhere else. Only what works is
+//! listed: a value that is not there yet is refused, not ignored.
+
+mod common;
+mod face;
+mod maps;
+mod planar;
+mod volume;
+
+pub use common::CommonSettings;
+pub use face::{SettingSpec, SettingValues, Values};
+pub(super) use maps::SIZE;
+pub use maps::{MapSettings, TextureSettings};
+pub use planar::PlanarSettings;
+pub use volume::{VolumeSettings, WhoCasts};
+
+use super::named::Technique;
+
+/// The settings of techniques that have none of their own.
+const COMMON: [SettingSpec; 5] = common::with_own([]);
+
+impl Technique {
+    /// Its settings, in the order in which they are shown.
+    #[must_use]
+    pub fn settings(self) -> &'static [SettingSpec] {
+        match self {
+            Technique::None | Technique::RayTraced | Technique::Auto => &COMMON,
+            Technique::Planar => &planar::SETTINGS,
+            Technique::PlanarTexture => &maps::PLANAR_TEXTURE,
+            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => &volume::VOLUME,
+            Technique::ShadowMap => &maps::SHADOW_MAP,
+            Technique::Projective => &maps::PROJECTIVE,
+        }
+    }
+}

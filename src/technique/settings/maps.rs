@@ -1,0 +1,154 @@
+//! The settings of techniques that draw maps and textures.
+
+use super::common::with_own;
+use super::face::{Number, NumberOr, SettingSpec, Values, Words, number, number_or, whole, words};
+use wgpu::Face;
+
+/// The key of the texels along each side.
+pub(in crate::technique) const SIZE: &str = "size";
+
+const fn size(default: &'static str, most: i64, meaning: &'static str) -> Number {
+    whole(SIZE, [1, most], default, meaning)
+}
+
+const REDRAW: Words<bool> = words(
+    "redraw",
+    &["always", "changed"],
+    &[false, true],
+    "maps and textures are drawn in every frame, or only where what makes them has changed",
+);
+const MAP_SIZE: Number = size("1024", 8192, "texels along each side of the map");
+// Rounding of positions to f32 differs by a few steps between the camera's and the light's view.
+const CONSTANT: Number = whole(
+    "bias-constant",
+    [-1_000_000, 1_000_000],
+    "16",
+    "steps of depth by which the map is pushed away from the light",
+);
+const SLOPE: Number =
+    number("bias-slope", [-1000.0, 1000.0], "2.0", "the same in units of a triangle's depth slope across one texel");
+const NORMAL: Number =
+    number("bias-normal", [-100.0, 100.0], "0", "texels by which a lookup is moved along the surface's normal");
+const RECEIVER_PLANE: Words<bool> = words(
+    "bias-receiver-plane",
+    &["off", "on"],
+    &[false, true],
+    "compares each texel with the surface's own plane there",
+);
+const CULL: Words<Option<Face>> = words(
+    "cull",
+    &["none", "back", "front"],
+    &[None, Some(Face::Back), Some(Face::Front)],
+    "which faces the map leaves out",
+);
+const FILTER: NumberOr = number_or(
+    "filter",
+    &["none"],
+    ("pcf:", [1.0, 15.0], true),
+    "how many texels along each side are compared and averaged",
+);
+
+/// In the order in which they are shown.
+pub(super) const SHADOW_MAP: [SettingSpec; 13] = with_own([
+    MAP_SIZE.spec,
+    CONSTANT.spec,
+    SLOPE.spec,
+    NORMAL.spec,
+    RECEIVER_PLANE.spec,
+    CULL.spec,
+    FILTER.spec,
+    REDRAW.spec,
+]);
+
+/// What shadow maps are told, as types.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapSettings {
+    /// Texels along each side.
+    pub size: u32,
+    /// Steps of depth by which the map is pushed away from the light.
+    pub bias_constant: i32,
+    /// The same in units of a triangle's depth slope across one texel.
+    pub bias_slope: f64,
+    /// Texels by which a lookup is moved along the surface's normal.
+    pub bias_normal: f64,
+    /// Each texel is compared with the surface's own plane there.
+    pub bias_receiver_plane: bool,
+    /// Which faces the map leaves out.
+    pub cull: Option<Face>,
+    /// Texels that are compared and averaged along each side.
+    pub filter_width: u32,
+    /// Maps stay from frame to frame while nothing that makes them changes.
+    pub keeps: bool,
+}
+
+impl MapSettings {
+    /// As they are set: of a choice, or in a capture.
+    #[must_use]
+    pub fn read(values: &Values) -> MapSettings {
+        MapSettings {
+            size: MAP_SIZE.read(values) as u32,
+            bias_constant: CONSTANT.read(values) as i32,
+            bias_slope: SLOPE.read(values),
+            bias_normal: NORMAL.read(values),
+            bias_receiver_plane: RECEIVER_PLANE.read(values),
+            cull: CULL.read(values),
+            filter_width: FILTER.read(values).map_or(1, |width| width as u32),
+            keeps: REDRAW.read(values),
+        }
+    }
+}
+
+const TEXTURE_SIZE: Number = size("256", 4096, "texels along each side of a receiver's texture");
+const SILHOUETTE_SIZE: Number = size("512", 4096, "texels along each side of a silhouette's picture");
+const PASSES: Words<bool> = words(
+    "passes",
+    &["single", "multi"],
+    &[true, false],
+    "silhouettes are read while lighting, or darken the lit picture one by one",
+);
+const REVERSE: Words<bool> =
+    words("reverse", &["off", "on"], &[false, true], "silhouettes also fall on what is behind the light");
+
+/// In the order in which they are shown.
+pub(super) const PLANAR_TEXTURE: [SettingSpec; 7] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
+/// In the order in which they are shown.
+pub(super) const PROJECTIVE: [SettingSpec; 9] =
+    with_own([SILHOUETTE_SIZE.spec, PASSES.spec, REVERSE.spec, REDRAW.spec]);
+
+/// What techniques are told that keep what light passes, as types.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TextureSettings {
+    /// Texels along each side.
+    pub size: u32,
+    /// Textures stay from frame to frame while nothing that makes them changes.
+    pub keeps: bool,
+    /// Silhouettes are read while lighting, and do not darken the lit picture one by one.
+    pub is_single_pass: bool,
+    /// Silhouettes also fall on what is behind the light.
+    pub projects_backwards: bool,
+}
+
+impl TextureSettings {
+    /// Of receivers' textures.
+    #[must_use]
+    pub fn of_receivers(values: &Values) -> TextureSettings {
+        let (is_single_pass, projects_backwards) = (true, false);
+        TextureSettings {
+            size: TEXTURE_SIZE.read(values) as u32,
+            keeps: REDRAW.read(values),
+            is_single_pass,
+            projects_backwards,
+        }
+    }
+
+    /// Of casters' silhouettes.
+    #[must_use]
+    pub fn of_silhouettes(values: &Values) -> TextureSettings {
+        TextureSettings {
+            size: SILHOUETTE_SIZE.read(values) as u32,
+            keeps: REDRAW.read(values),
+            is_single_pass: PASSES.read(values),
+            projects_backwards: REVERSE.read(values),
+        }
+    }
+}

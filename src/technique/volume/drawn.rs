@@ -1,0 +1,142 @@
+//! A caster's volume as a mesh and draws: sides, light cap and dark cap, each triangle run with its own operations.
+
+use super::Form;
+use super::counting::{Counting, NeededPart, Step};
+use crate::geometry::{Caster, Casters, DarkCap, Extruder, Fan, VolumeOf, VolumeParts, relative};
+use crate::plan::{
+    Blob, Decision, Draw, DrawConstants, DrawMesh, LeftOut, LightId, MeshId, Part, Program, RasterState,
+};
+use crate::scene::Object;
+use crate::technique::frame::Frame;
+use crate::technique::settings::VolumeSettings;
+use glam::DVec3;
+
+/// A caster's volume, ready to be drawn.
+pub struct Volume {
+    pub caster: String,
+    pub counting: Counting,
+    pub mesh: MeshId,
+    pub parts: VolumeParts,
+    /// Which of its parts count in the volume pass.
+    pub needed: Vec<NeededPart>,
+}
+
+impl Volume {
+    /// The casting triangles themselves.
+    pub fn casting(&self) -> impl Iterator<Item = NeededPart> {
+        let runs = [(false, &self.parts.light_cap), (true, &self.parts.light_cap_turned)];
+        let parts = runs.map(|(turned, triangles)| NeededPart::new(Part::LightCap, turned, triangles));
+        parts.into_iter().filter(|part| !part.triangles.is_empty())
+    }
+
+    /// The casting triangles in world space: `object` is the caster's index.
+    pub fn casting_triangles(&self, frame: &Frame, object: usize) -> impl Iterator<Item = [DVec3; 3]> {
+        let world = &frame.placed[object].world;
+        let corners = frame.plan.meshes[self.mesh.0].indices.data();
+        let casting = self.parts.light_cap.start * 3..self.parts.light_cap_turned.end * 3;
+        corners[casting].chunks_exact(3).map(|corners| [0, 1, 2].map(|corner| world[corners[corner] as usize]))
+    }
+
+    pub fn draws(&self, options: &VolumeSettings, step: Step) -> Vec<Draw> {
+        self.needed.iter().map(|part| self.draw(part, self.counting.raster(part, options, step))).collect()
+    }
+
+    pub fn float_draws(&self, options: &VolumeSettings) -> Vec<Draw> {
+        let draw = |part: &NeededPart| {
+            let (raster, count) = self.counting.float_raster(part, options);
+            let constants = DrawConstants { count, ..DrawConstants::default() };
+            Draw { program: Program::Count, constants, ..self.draw(part, raster) }
+        };
+        self.needed.iter().map(draw).collect()
+    }
+
+    pub fn draw(&self, part: &NeededPart, raster: RasterState) -> Draw {
+        let what = match (part.part, part.turned) {
+            (Part::Side, _) if part.hugs => "hugging sides",
+            (Part::Side, _) => "sides",
+            (Part::LightCap, false) => "light cap",
+            (Part::LightCap, true) => "turned light cap",
+            // What faces the light faces inwards at the far end.
+            (_, false) if part.base_vertex != 0 => "turned dark cap",
+            (_, _) => "dark cap",
+        };
+        Draw {
+            name: format!("{what} of {}", self.caster),
+            caster: Some(self.caster.clone()),
+            part: part.part,
+            program: Program::Position,
+            raster,
+            mesh: self.mesh,
+            triangles: part.triangles.start as u32..part.triangles.end as u32,
+            base_vertex: part.base_vertex,
+            faces_inwards: part.turned,
+            constants: DrawConstants::default(),
+        }
+    }
+}
+
+/// The mesh of a volume, and which of its triangles are what.
+pub fn make(
+    frame: &mut Frame,
+    light: LightId,
+    index: usize,
+    (casters, held): (Casters, &[bool]),
+    options: &VolumeSettings,
+) -> (DrawMesh, VolumeParts) {
+    let (position, eye) = (frame.light_position(light), frame.eye());
+    let placed = &frame.placed[index];
+    let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
+    let extruder = Extruder::new(&placed.world, position, options.extrusion);
+    let mut indices = Vec::new();
+    let (is_drawn, by) = (placed.object.visible, options.silhouette);
+    let volume = VolumeOf { caster, is_drawn, light: position, casters, held, by, extruder: &extruder };
+    let parts = frame.job.cache.volume_indices(&volume, &mut indices);
+    let fan = if let DarkCap::Fan(_, fan) = parts.dark_cap { Some(fan) } else { None };
+    let vertices = extruder.vertices(&placed.world).chain(fan.iter().flat_map(Fan::vertices));
+    let vertices = vertices.map(|vertex| relative::homogeneous(vertex, eye)).collect();
+    let mesh = DrawMesh {
+        name: format!("volume of {}", placed.object.name),
+        vertices: Blob::new(vertices),
+        indices: Blob::new(indices),
+        surface: None,
+    };
+    (mesh, parts)
+}
+
+/// The parts that count in a form; what is left out is said.
+pub fn needed_parts(frame: &mut Frame, form: Form, parts: &VolumeParts, caster: &Object) -> Vec<NeededPart> {
+    let run = NeededPart::new;
+    let hugging = NeededPart { hugs: true, ..run(Part::Side, false, &parts.hugging_sides) };
+    let mut needed = vec![run(Part::Side, false, &parts.sides), hugging];
+    if form.light_cap {
+        needed.push(run(Part::LightCap, false, &parts.light_cap));
+        needed.push(run(Part::LightCap, true, &parts.light_cap_turned));
+    }
+    if !form.dark_cap {
+        return needed;
+    }
+    match &parts.dark_cap {
+        DarkCap::None => {
+            let because = "a directional light's volume closes in one point at infinity";
+            frame.leave_out(Decision::DarkCap, &caster.name, because);
+        }
+        DarkCap::Fan(triangles, _) => {
+            needed.push(run(Part::DarkCap, false, triangles));
+            let cap = parts.light_cap.len() + parts.light_cap_turned.len();
+            if triangles.len() < cap {
+                let because = format!(
+                    "at infinity only its outline matters: {} triangles close what {cap} would",
+                    triangles.len()
+                );
+                let inner = (cap - triangles.len()) as u64;
+                frame.plan.left_out.push(LeftOut::counted(Decision::InnerDarkCap, inner, &caster.name, because));
+            }
+        }
+        DarkCap::Carried(base) => {
+            let carried = |part: NeededPart| NeededPart { base_vertex: *base, ..part };
+            needed.push(carried(run(Part::DarkCap, true, &parts.light_cap)));
+            needed.push(carried(run(Part::DarkCap, false, &parts.light_cap_turned)));
+        }
+    }
+    needed
+}
