@@ -90,6 +90,7 @@ fn what_was_not_asked_for_or_not_drawn_is_told_as_such() {
     let folder = crate::commands::folder();
     let (code, told, _) = diagnose(folder.path(), &["tori", "-t", "none", "--no-techniques"]);
     assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("   no shadows were asked for: the technique is none\n"), "{told}");
     let (_, found) = document(folder.path(), &["tori", "-t", "none"]);
     assert_ne!(found["advice"]["mend"]["technique"], serde_json::Value::Null);
     let clamped = ["tori", "-t", "z-fail", "--set", "depth=standard-finite-clamp", "--far", "3"];
@@ -135,10 +136,19 @@ fn maps_are_told_how_to_stay_maps() {
     let mends_of = |name: &str| -> Vec<&serde_json::Value> {
         causes.iter().filter(|cause| cause["cause"] == name).map(|cause| &cause["mend"]["settings"]).collect()
     };
-    let is_of_map = |settings: &&serde_json::Value| settings.as_object().is_some_and(|some| !some.is_empty());
     for cause in ["aliasing", "peter-panning"] {
-        assert!(mends_of(cause).iter().any(is_of_map), "{cause}: {found}");
+        let sets_something = |settings: &serde_json::Value| settings.as_object().is_some_and(|some| !some.is_empty());
+        assert!(mends_of(cause).into_iter().any(sets_something), "{cause}: {found}");
     }
+    // What a bias is blamed for holds in its own numbers.
+    let metres = |words: &str| -> Option<f64> { words.split(' ').next()?.parse().ok() };
+    let evidence = causes.iter().filter_map(|cause| cause["evidence"].as_str());
+    let blamed = evidence.filter_map(|words| words.split_once("the bias moves the caster "));
+    let numbers: Vec<(f64, f64)> = blamed
+        .filter_map(|(_, words)| Some((metres(words)?, metres(words.split_once("surface is only ")?.1)?)))
+        .collect();
+    assert!(!numbers.is_empty(), "{found}");
+    assert!(numbers.iter().all(|(bias, gap)| bias >= gap && *gap > 1e-9), "{numbers:?}");
 }
 
 /// The names that scripts rely on.

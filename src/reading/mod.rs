@@ -22,12 +22,12 @@ pub mod map_readers;
 pub mod meshes;
 pub mod moment;
 pub mod object_ids;
+pub mod outcomes;
 pub mod pick_ray;
 pub mod projected;
 pub mod shown;
-pub mod tests;
 pub mod verdict;
 
 pub use map_readers::{MapReaders, MapTexel};
 pub use meshes::ObjectMesh;
-pub use tests::TestOutcomes;
+pub use outcomes::TestOutcomes;

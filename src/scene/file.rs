@@ -26,8 +26,7 @@ mod tables;
 pub use save::{SaveError, SavedScene, save};
 pub use store::{StoreError, store};
 
-use super::read_text::read_text;
-use super::read_text::stem;
+use super::read_text::{read_text, stem};
 use super::{Scene, SceneError};
 use problem::Problem;
 use std::path::{Path, PathBuf};

@@ -37,7 +37,7 @@ pub fn quoted(word: &str) -> String {
     format!("`{shown}{rest}`")
 }
 
-/// The file's name without folder and ending.
-pub(super) fn stem(path: &Path) -> String {
+/// A file's name without folder and ending.
+pub(in crate::scene) fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
 }

@@ -7,7 +7,7 @@ use crate::picture::colors::{self, Rgb};
 use crate::reading::counts;
 use egui::Color32;
 
-/// Labels of `techniques.md` section 2, by value.
+/// Labels of a light, by value.
 pub const LABELS: [Label; 4] = [
     Label { name: "lit", meaning: "the light reaches the surface", color: opaque(colors::LABELS[0]) },
     Label { name: "shadow", meaning: "something lies between", color: opaque(colors::LABELS[1]) },

@@ -2,6 +2,7 @@
 
 use super::save::{SaveError, SavedScene, save};
 use crate::files::{from_beside, write_whole};
+use crate::scene::read_text::stem;
 use crate::scene::{Scene, obj};
 use std::collections::BTreeMap;
 use std::io;
@@ -46,7 +47,7 @@ pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), St
     {
         known.insert(original.content_hash(), from_beside(file, path));
     }
-    let stem = file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let stem = stem(file);
     write_files(&save(scene, &stem, &known)?, file)
 }
 
