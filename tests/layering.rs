@@ -18,11 +18,11 @@ const MAY_USE: [(&str, &[&str]); 29] = [
     ("geometry", &["math", "scene"]),
     ("plan", &["math", "scene", "geometry", "numbers"]),
     ("technique", &["math", "scene", "geometry", "plan", "truth", "progress", "numbers"]),
-    ("capture", &["math", "scene", "plan", "accuracy"]),
+    ("capture", &["math", "scene", "plan", "accuracy", "truth"]),
     ("stencil_machine", &["plan"]),
     ("gpu", &["math", "scene", "plan", "capture"]),
     ("history", &["math", "numbers", "plan", "capture", "stencil_machine", "truth"]),
-    ("difference", &["capture", "accuracy", "numbers", "picture"]),
+    ("difference", &["capture", "accuracy", "numbers", "picture", "truth"]),
     (
         "diagnosis",
         &[
@@ -44,7 +44,19 @@ const MAY_USE: [(&str, &[&str]); 29] = [
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
         "reading",
-        &["anatomy", "capture", "difference", "geometry", "history", "math", "numbers", "plan", "scene", "technique"],
+        &[
+            "anatomy",
+            "capture",
+            "difference",
+            "geometry",
+            "history",
+            "math",
+            "numbers",
+            "plan",
+            "scene",
+            "technique",
+            "truth",
+        ],
     ),
     (
         "ask",

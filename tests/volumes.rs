@@ -308,7 +308,7 @@ fn a_closed_volume_counts_to_zero_when_nothing_hides_it() {
 
 fn always(mut plan: FramePlan) -> FramePlan {
     let draws = plan.passes.iter_mut().filter(|pass| pass.name == "volumes").flat_map(|pass| &mut pass.draws);
-    for draw in draws.filter(|draw| matches!(draw.part, Part::Side | Part::LightCap | Part::DarkCap)) {
+    for draw in draws.filter(|draw| draw.part.is_of_volume()) {
         draw.raster.depth_compare = CompareFunction::Always;
         let pass = |face: &StencilFace| StencilFace {
             pass_op: face.depth_fail_op,

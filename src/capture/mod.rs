@@ -17,11 +17,9 @@ pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
 
 use crate::accuracy::{ErrorCounts, Region};
 use crate::plan::{DecidedBy, LeftOut, Part};
+use crate::truth::{LIT, SHADOW};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// The label of pixels that show no surface; beyond it, of those that face away.
-const BACKGROUND: u8 = 2;
 
 /// A frame with a snapshot after every pass.
 #[derive(Debug, Clone, PartialEq)]
@@ -187,7 +185,7 @@ impl CapturedLight {
     pub fn wrapped_pixels(&self) -> Option<u64> {
         let (count, labels) = (self.count.as_ref()?, self.shadow.as_ref()?);
         let counts = count.rows().flat_map(|row| row.chunks_exact(4)).map(bytemuck::pod_read_unaligned::<f32>);
-        let faces_light = labels.rows().flatten().map(|label| *label < BACKGROUND);
+        let faces_light = labels.rows().flatten().map(|label| [LIT, SHADOW].contains(label));
         let wraps = |(count, faces_light): &(f32, bool)| *faces_light && *count != 0.0 && count % 256.0 == 0.0;
         Some(counts.zip(faces_light).filter(wraps).count() as u64)
     }

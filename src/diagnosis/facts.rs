@@ -137,11 +137,6 @@ impl<'a> Facts<'a> {
         }
     }
 
-    /// `light 1`.
-    pub fn light_name(light: usize) -> String {
-        format!("light {}", light + 1)
-    }
-
     /// Metres that a pixel is wide at a distance along the view's axis.
     pub fn pixel_width(&self, depth: f64) -> f64 {
         let half = (self.scene.camera.fov_y_degrees.to_radians() / 2.0).tan();

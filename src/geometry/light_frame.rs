@@ -183,6 +183,22 @@ pub fn may_show(clip_from_light: DMat4, light_from_relative: DMat4, corners: [DV
     sides.iter().all(|side| clip.iter().any(|corner| side(*corner) > 0.0))
 }
 
+/// Objects of more triangles are taken to darken something without looking: the look is triangles times vertices, and
+/// what it finds (floors, walls, rooms) is small.
+const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
+
+/// Can an object darken any of `receivers`? Not where none of its triangles can; of many that is not asked.
+#[must_use]
+pub fn object_can_darken<R: Iterator<Item = DVec3>>(
+    world: &[DVec3],
+    triangles: &[[u32; 3]],
+    light: DVec4,
+    receivers: impl Fn() -> R,
+) -> bool {
+    let on_any = |corners: &[u32; 3]| can_darken(corners.map(|corner| world[corner as usize]), light, receivers());
+    triangles.len() > MOST_TRIANGLES_TO_LOOK_AT || triangles.iter().any(on_any)
+}
+
 /// Can a triangle darken any of `receivers`? No, where all of them lie on the light's side of its
 /// plane or on it (exact signs), or where the light lies in its plane.
 #[must_use]

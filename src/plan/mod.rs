@@ -56,7 +56,7 @@ impl LightId {
     /// For people, counted from 1: `light 1`.
     #[must_use]
     pub fn name(self) -> String {
-        format!("light {}", self.0 + 1)
+        crate::numbers::light(self.0)
     }
 }
 

@@ -9,6 +9,7 @@ use crate::plan::{Part, Side};
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::scene::Light;
+use crate::truth::LABEL_NAMES;
 
 /// A rule, and what it comes to here.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -196,8 +197,7 @@ fn labels(known: &Known, step: &Step) -> Fact {
     if let Some(light) = known.capture.lights.get(index) {
         if let Some(shadow) = &light.shadow {
             let counts = shadow.histogram();
-            let words = ["lit", "in shadow", "background", "out of the light's reach"];
-            let told = words.iter().zip(counts).map(|(word, count)| format!("{} {word}", format::count(count)));
+            let told = LABEL_NAMES.iter().zip(counts).map(|(word, count)| format!("{} {word}", format::count(count)));
             here.push(told.collect::<Vec<_>>().join(", "));
         }
         match &light.truth {

@@ -8,6 +8,7 @@ use crate::history::PixelHistory;
 use crate::plan::{DecidedBy, Side};
 use crate::reading::counts;
 use crate::reading::format;
+use crate::truth::{BACKGROUND, FACES_AWAY, LIT};
 
 /// A sentence with what stands behind it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -57,12 +58,12 @@ pub fn verdict(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
             reason: "The capture holds no mask, so only the values below are known.".to_owned(),
             by_history: ByHistory::Kept,
         },
-        Some(2) => Verdict {
+        Some(BACKGROUND) => Verdict {
             title: "Background: no surface is at this pixel.".to_owned(),
             reason: "Nothing was drawn here, so there is nothing that a shadow could fall on.".to_owned(),
             by_history: ByHistory::Kept,
         },
-        Some(3) => Verdict {
+        Some(FACES_AWAY) => Verdict {
             title: format!("Turned away from {name}."),
             reason: format!(
                 "{} shines on the other side of this surface, so shading alone leaves it dark.{}",
@@ -71,7 +72,7 @@ pub fn verdict(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
             ),
             by_history: ByHistory::Kept,
         },
-        Some(label) => decided(capture, light, at, label != 0),
+        Some(label) => decided(capture, light, at, label != LIT),
     }
 }
 

@@ -24,8 +24,6 @@ use std::collections::BTreeSet;
 const SAMPLES: usize = 3;
 /// Objects whose flags are asked about; each costs a truth.
 const MOST_FLAGS: usize = 8;
-/// Objects of more triangles are taken to darken something without looking, as floors are small.
-const MOST_TRIANGLES_TO_LOOK_AT: usize = 256;
 
 /// A frame that was run.
 struct Run {
@@ -177,11 +175,8 @@ fn darkening(scene: &Scene, lights: &[DVec4]) -> Vec<bool> {
     };
     let darkens = |(object, places): (&Object, &Vec<DVec3>)| {
         let triangles = object.mesh.triangles();
-        let on_any = |corners: &[u32; 3]| {
-            let corners = corners.map(|corner| places[corner as usize]);
-            lights.iter().any(|light| light_frame::can_darken(corners, *light, receiving()))
-        };
-        object.casts && (triangles.len() > MOST_TRIANGLES_TO_LOOK_AT || triangles.iter().any(on_any))
+        let under = |light: &DVec4| light_frame::object_can_darken(places, triangles, *light, receiving);
+        object.casts && lights.iter().any(under)
     };
     scene.objects.iter().zip(&places).map(darkens).collect()
 }

@@ -45,6 +45,8 @@ pub const BACKGROUND: u8 = 2;
 /// The light adds nothing: it and the eye are on different sides of the surface's plane, or the point is
 /// not within the light's range.
 pub const FACES_AWAY: u8 = 3;
+/// The labels in words, by value.
+pub const LABEL_NAMES: [&str; 4] = ["lit", "in shadow", "background", "faces away"];
 
 /// Pixels along each side of the tiles whose rays are followed together.
 const TILE: usize = 4;

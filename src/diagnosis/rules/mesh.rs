@@ -5,6 +5,7 @@ use crate::diagnosis::facts::{Case, Facts, Rule, Suspicion, amount};
 use crate::diagnosis::mend::{Mend, ObjectChange};
 use crate::diagnosis::mesh_facts::MeshFacts;
 use crate::geometry::Casters;
+use crate::numbers;
 use crate::technique::WhoCasts;
 
 pub(crate) const RULES: &[Rule] =
@@ -92,7 +93,7 @@ fn light_inside(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = facts.tracer.light_position(case.light());
     rule(facts, case, Cause::LightInside, |mesh| {
         let winding = mesh.winding_around(light)?;
-        Some((format!("winds around {} {winding} times", Facts::light_name(case.light())), usize::MAX))
+        Some((format!("winds around {} {winding} times", numbers::light(case.light())), usize::MAX))
     })
 }
 

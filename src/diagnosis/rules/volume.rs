@@ -49,7 +49,7 @@ fn eye_in_volume(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let evidence = format!(
         "the eye is inside {} of {} ({}), which z-pass does not count",
         amount(volumes, "shadow volume"),
-        Facts::light_name(light),
+        numbers::light(light),
         listed(&eye_in)
     );
     Suspicion::new(Cause::EyeInVolume, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
