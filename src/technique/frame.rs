@@ -8,6 +8,7 @@ mod drawn;
 mod passes;
 mod places;
 
+use super::error::MOST_LIGHTS;
 use super::{Choice, CommonSettings, PlanError};
 use crate::geometry::{self, GeometryCache};
 use crate::math::depth::DepthMapping;
@@ -17,9 +18,6 @@ pub use drawn::Drawn;
 use glam::DVec3;
 pub use places::coincide;
 use std::ops::Range;
-
-/// Lights are bits of one word a triangle; the last bit is taken.
-pub const MOST_LIGHTS: usize = 31;
 
 /// What a technique is asked for.
 #[derive(Debug)]

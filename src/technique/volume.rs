@@ -24,8 +24,8 @@ use super::{Choice, PlanError};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
 use crate::plan::{DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Side, Visibility};
 use crate::scene::Scene;
-pub use counting::Counting;
 use counting::Step;
+pub use counting::{Counting, Form};
 use drawn::{Volume, make, needed_parts};
 use glam::{DVec3, DVec4};
 
@@ -71,14 +71,6 @@ pub(super) const Z_PASS_PLUS: Description = Description {
     },
     ..Z_PASS
 };
-
-/// How a volume is counted, and which caps that takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Form {
-    pub counting: Counting,
-    pub light_cap: bool,
-    pub dark_cap: bool,
-}
 
 /// Who decides about the volumes of one light.
 pub trait Decides {

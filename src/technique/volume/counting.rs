@@ -46,6 +46,14 @@ pub enum Counting {
     Behind,
 }
 
+/// How a volume is counted, and which caps that takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Form {
+    pub counting: Counting,
+    pub light_cap: bool,
+    pub dark_cap: bool,
+}
+
 /// Which faces one pass draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {

@@ -1,7 +1,6 @@
 //! A caster's volume as a mesh and draws: sides, light cap and dark cap, each triangle run with its own operations.
 
-use super::Form;
-use super::counting::{Counting, NeededPart, Step};
+use super::counting::{Counting, Form, NeededPart, Step};
 use crate::geometry::{Caster, Casters, DarkCap, Extruder, Fan, VolumeOf, VolumeParts, relative};
 use crate::plan::{
     Blob, Decision, Draw, DrawConstants, DrawMesh, LeftOut, LightId, MeshId, Part, Program, RasterState,

@@ -1,0 +1,21 @@
+//! Why a scene can't be planned.
+
+/// Lights are bits of one word a triangle; the last bit is taken.
+pub const MOST_LIGHTS: usize = 31;
+
+/// Why a scene can't be planned.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// A camera, light or object that no technique can draw.
+    #[error("{problem}")]
+    Unusable {
+        /// What is wrong, and the mend.
+        problem: String,
+    },
+    /// More lights than bits in a word.
+    #[error("{count} lights are too many: leave out {}, at most {MOST_LIGHTS} fit", count - MOST_LIGHTS)]
+    TooManyLights {
+        /// How many the scene has.
+        count: usize,
+    },
+}

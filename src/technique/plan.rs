@@ -1,0 +1,72 @@
+//! Which technique plans a frame, and what is said of each.
+
+use super::choice::{Choice, ChoiceError};
+use super::description::{Description, Standing};
+use super::error::PlanError;
+use super::frame::Job;
+use super::named::Technique;
+use super::{auto, none, planar, planar_texture, projective, ray_traced, shadow_map, volume};
+use crate::plan::FramePlan;
+
+/// Plans one frame.
+///
+/// # Errors
+/// A camera or light that can't be used, or too many lights.
+pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
+    (job.choice.technique().description().plan)(job)
+}
+
+impl Technique {
+    /// All that is said of it.
+    #[must_use]
+    pub const fn description(self) -> &'static Description {
+        match self {
+            Technique::None => &none::DESCRIPTION,
+            Technique::Planar => &planar::DESCRIPTION,
+            Technique::PlanarTexture => &planar_texture::DESCRIPTION,
+            Technique::ZPass => &volume::Z_PASS,
+            Technique::ZFail => &volume::Z_FAIL,
+            Technique::ZPassPlus => &volume::Z_PASS_PLUS,
+            Technique::Auto => &auto::DESCRIPTION,
+            Technique::ShadowMap => &shadow_map::DESCRIPTION,
+            Technique::Projective => &projective::DESCRIPTION,
+            Technique::RayTraced => &ray_traced::DESCRIPTION,
+        }
+    }
+
+    /// What it does, in one sentence.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        self.description().summary
+    }
+
+    /// Those that make shadows on the GPU, in the order of stress tables.
+    #[must_use]
+    pub fn rivals() -> Vec<Technique> {
+        let place = |technique: Technique| match technique.description().standing {
+            Standing::Rival { place, .. } => Some((place, technique)),
+            Standing::Apart { .. } => None,
+        };
+        let mut rivals: Vec<_> = Technique::ALL.into_iter().filter_map(place).collect();
+        rivals.sort_unstable();
+        rivals.into_iter().map(|(_, technique)| technique).collect()
+    }
+}
+
+impl Choice {
+    /// What a report compares by default: every row of every technique.
+    ///
+    /// # Errors
+    /// A row that a technique's settings refuse: a bug, which a test finds.
+    pub fn report_grid() -> Result<Vec<Choice>, ChoiceError> {
+        let mut grid = Vec::new();
+        for technique in Technique::ALL {
+            for row in technique.description().report_rows {
+                let mut choice = Choice::new(technique);
+                row.iter().try_for_each(|(key, value)| choice.set(key, value))?;
+                grid.push(choice);
+            }
+        }
+        Ok(grid)
+    }
+}
