@@ -381,7 +381,8 @@ fn home(path: &[String], sources: &BTreeMap<ModulePath, Source>, turns: usize) -
     }
 }
 
-/// Every module with those whose files it takes anything from.
+/// Every module with those whose files it takes anything from. A folder's `mod.rs` stands for the folder: what the
+/// files in it take of it (`super::Error`) is no arrow, as it leaves nothing.
 fn arrows() -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let module = |file: &PathBuf| -> ModulePath {
@@ -397,7 +398,7 @@ fn arrows() -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
         modules.iter().map(|(at, file)| (at.clone(), source_of(&text(file), at, &modules))).collect();
     let used = |(at, source): (&ModulePath, &Source)| {
         let homes = source.uses.iter().filter_map(|path| home(path, &sources, 8));
-        (at.clone(), homes.filter(|home| home != at && !home.is_empty()).collect())
+        (at.clone(), homes.filter(|home| !at.starts_with(home)).collect())
     };
     sources.iter().map(used).collect()
 }

@@ -13,10 +13,21 @@
 //! value      n·l + d·w                              = (exact determinant) / (s·r), but for rounding
 //! ```
 
-use super::silhouette::Casters;
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
+
+/// Which triangles cast.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Casters {
+    /// Every triangle, turned towards the light: right for any triangle soup.
+    All,
+    /// Those that face the light, as textbooks have it: right only for a closed mesh with its
+    /// outside out and the light outside it.
+    LightFacing,
+    /// Those that face away from the light, turned: right under the same conditions.
+    LightBackFacing,
+}
 
 /// Triangles of a block of planes.
 const LANES: usize = 64;

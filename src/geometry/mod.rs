@@ -26,13 +26,13 @@ mod winding;
 
 pub use cache::{Caster, GeometryCache, SilhouetteBy, VolumeOf};
 pub use edges::{Edge, EdgeList};
-pub use facing::{Facings, Planes};
+pub use facing::{Casters, Facings, Planes};
 pub use far_end::Fan;
 pub use intersection::self_meeting;
 pub use light_range::{RangeInView, beyond_range, range_in_view};
 pub use reach::{NearClipVolume, Outside, ViewVolume};
 pub use receiver_texture::Parallelogram;
-pub use silhouette::{Casters, MOST_TO_SEARCH, SilhouetteEdge, facing, silhouette, silhouette_by_search};
+pub use silhouette::{MOST_TO_SEARCH, SilhouetteEdge, facing, silhouette, silhouette_by_search};
 pub use topology::Topology;
 pub use volume::{DarkCap, Extruder, Extrusion, FarEnd, VolumeParts, write_indices};
 pub use winding::winding_number;

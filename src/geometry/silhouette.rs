@@ -11,18 +11,6 @@ const SHARE: usize = 4 * 1024;
 /// Beyond so many triangles, searching all edges for each one's reverse takes seconds.
 pub const MOST_TO_SEARCH: usize = 20_000;
 
-/// Which triangles cast.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Casters {
-    /// Every triangle, turned towards the light: right for any triangle soup.
-    All,
-    /// Those that face the light, as textbooks have it: right only for a closed mesh with its
-    /// outside out and the light outside it.
-    LightFacing,
-    /// Those that face away from the light, turned: right under the same conditions.
-    LightBackFacing,
-}
-
 /// An edge that bounds a shadow: the turned triangles around it run from low to high
 /// `multiplicity` times more often than back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -7,7 +7,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::counts;
 use crate::reading::format;
-use crate::reading::shown::Shown;
+use crate::reading::shown::{PictureKind, Shown};
 use egui::{Margin, Ui};
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ fn picture(ui: &mut Ui, model: &Model, capture: &Capture, shown: &Shown) {
     let [x, y] = hover.at;
     ui.add_space(4.0);
     match Coloring::of_shown(shown, model.view.depth_range.unwrap_or([0.0, 1.0])) {
-        Coloring::Depth(scale) if shown.kind == crate::inspector::PictureKind::Map => {
+        Coloring::Depth(scale) if shown.kind == PictureKind::Map => {
             let depth = shown.images.get(hover.image).and_then(|image| image.depth_at(hover.at));
             let value = depth.map_or_else(String::new, format::depth);
             let metres = depth.and_then(|depth| scale.measure.value(depth)).map_or_else(String::new, format::digits);
