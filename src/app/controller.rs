@@ -7,7 +7,7 @@ use super::export;
 use super::memory;
 use super::news::{Exported, News, Tell, WindowNews};
 use super::queue::Order;
-use super::reader::{Reader, Reading};
+use super::reader::{Reader, Reading, Unread};
 use super::watch::Watch;
 use super::worker::{Start, Worker};
 use super::{AppError, ViewRequest};
@@ -150,10 +150,11 @@ impl Controller {
         }
     }
 
-    fn say_if_failed(&mut self, begun: std::io::Result<()>) {
-        if let Err(error) = begun {
-            self.inspector
-                .push_error(format!("no pixel can be linked with its texel now: {error}; open the tab again"));
+    fn say_if_failed(&mut self, begun: Result<(), Unread>) {
+        if let Err(Unread { ticket, why }) = begun {
+            let reason = format!("no pixel can be linked with its texel now: {why}; run the frame again");
+            self.inspector.answer(ticket, Err(reason.clone()), true);
+            self.inspector.push_error(reason);
         }
     }
 

@@ -114,8 +114,10 @@ impl Queue {
 
     /// The next that long work lets come between; none while a new picture is waited for.
     pub fn next_short(&mut self) -> Option<Order> {
-        let first = self.0.first_entry()?;
-        matches!(first.key(), Sort::Question(kind) if kind.is_short()).then(|| first.remove())
+        // A scene that is to be saved waits for the end: it holds nothing up that is short.
+        let first = *self.0.keys().find(|sort| **sort != Sort::Save)?;
+        let is_short = matches!(first, Sort::Question(kind) if kind.is_short());
+        is_short.then(|| self.0.remove(&first)).flatten()
     }
 
     /// Does nothing wait?

@@ -17,6 +17,15 @@ pub struct Reading {
     pub plan: Option<Arc<FramePlan>>,
 }
 
+/// A question that nothing answers: the system gives no thread.
+#[derive(Debug)]
+pub struct Unread {
+    /// Whose it is.
+    pub ticket: u64,
+    /// What the system says.
+    pub why: std::io::Error,
+}
+
 /// One question at a time; of those that come meanwhile only the newest counts.
 #[derive(Debug, Default)]
 pub struct Reader {
@@ -29,18 +38,18 @@ impl Reader {
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn read(&mut self, reading: Reading, tell: &Tell) -> std::io::Result<()> {
+    pub fn read(&mut self, reading: Reading, tell: &Tell) -> Result<(), Unread> {
         if self.is_running {
             self.next = Some(reading);
             return Ok(());
         }
-        let tell = Arc::clone(tell);
+        let (tell, ticket) = (Arc::clone(tell), reading.asked.ticket);
         let run = move || {
             let Reading { asked, capture, plan } = reading;
             let result = asked.ask.read_from(&capture, plan.as_ref());
             tell(WindowNews::Read { ticket: asked.ticket, result });
         };
-        std::thread::Builder::new().name("reader".to_owned()).spawn(run)?;
+        std::thread::Builder::new().name("reader".to_owned()).spawn(run).map_err(|why| Unread { ticket, why })?;
         self.is_running = true;
         Ok(())
     }
@@ -49,7 +58,7 @@ impl Reader {
     ///
     /// # Errors
     /// As [`Reader::read`].
-    pub fn go_on(&mut self, tell: &Tell) -> std::io::Result<()> {
+    pub fn go_on(&mut self, tell: &Tell) -> Result<(), Unread> {
         self.is_running = false;
         self.next.take().map_or(Ok(()), |next| self.read(next, tell))
     }

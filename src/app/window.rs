@@ -57,7 +57,7 @@ impl App {
     fn draw(&mut self, event_loop: &ActiveEventLoop) {
         let Some(surface) = &mut self.surface else { return };
         let mut actions = Vec::new();
-        let is_watching = self.controller.is_answering();
+        let is_watching = self.controller.inspector.answers().has_progress();
         surface.draw(event_loop, &self.ctx, |ui| {
             actions.extend(self.controller.inspector.ui(ui));
             if is_watching {

@@ -167,7 +167,10 @@ impl Work {
             match next {
                 Ok(order) => inbox.queue.add(order),
                 Err(RecvTimeoutError::Timeout) => match inbox.queue.next() {
-                    Some(order) => self.obey(order, &mut inbox),
+                    Some(order) => {
+                        is_tidy = false;
+                        self.obey(order, &mut inbox);
+                    }
                     None => {
                         allocator::give_back();
                         is_tidy = true;
@@ -211,45 +214,51 @@ impl Work {
 
     /// Answers a question, if it is about what is shown.
     fn answer(&mut self, of: [u64; 2], asked: &Asked) {
-        let doing = asked.ask.doing();
+        if asked.ask.kind() != Kind::DiagnosisOf && !self.is_meant(of, asked) {
+            return;
+        }
+        let (doing, starts) = (asked.ask.doing(), self.session.is_none());
         if let Some(doing) = &doing {
             (self.tell)(News::Busy(doing.clone()));
         }
-        if let Some(result) = self.found(of, asked) {
-            // Where it was cancelled, the window has asked for it.
-            if !asked.progress.is_cancelled() {
-                (self.tell)(News::Answered { ticket: asked.ticket, result: result.map_err(|error| error.to_string()) });
-            }
+        let result = self.found(of, asked).map_err(|error| error.to_string());
+        // Where it was cancelled, the window has asked for it.
+        if !asked.progress.is_cancelled() {
+            (self.tell)(News::Answered { ticket: asked.ticket, result });
         }
-        if doing.is_some() {
+        if doing.is_some() || starts {
             (self.tell)(News::Idle);
         }
     }
 
-    /// What a question comes to; `None` where nobody waits for it any longer.
-    fn found(&mut self, [scene, frame]: [u64; 2], asked: &Asked) -> Option<Result<crate::ask::Answer, SessionError>> {
-        let kind = asked.ask.kind();
-        let is_meant = match kind.holds() {
+    /// Is it about what is shown now?
+    fn is_meant(&self, [scene, frame]: [u64; 2], asked: &Asked) -> bool {
+        match asked.ask.kind().holds() {
             Holds::Frame => self.last.is_none() || frame == self.frames,
             Holds::Scene => scene == self.scenes,
             Holds::Always => true,
-        };
-        if kind == Kind::DiagnosisOf && (frame != self.frames || !is_meant) {
-            return Some(Err(SessionError::OtherFrame));
         }
-        if !is_meant {
-            return None;
+    }
+
+    /// What a question comes to.
+    fn found(&mut self, of: [u64; 2], asked: &Asked) -> Result<crate::ask::Answer, SessionError> {
+        let kind = asked.ask.kind();
+        if kind == Kind::DiagnosisOf && (of[1] != self.frames || !self.is_meant(of, asked)) {
+            return Err(SessionError::OtherFrame);
+        }
+        if kind.holds() == Holds::Frame && self.last.is_none() {
+            return Err(SessionError::NoFrame);
         }
         if kind.waits_for_quiet() && self.took > LONGEST_TIMED {
             let reason = "the frame takes so long that what is asked next would wait for the clock";
-            return Some(Err(SessionError::Unanswered(reason.to_owned())));
+            return Err(SessionError::Unanswered(reason.to_owned()));
         }
-        let Some(open) = self.open.take() else { return Some(Err(SessionError::NoFrame)) };
+        let Some(open) = self.open.take() else { return Err(SessionError::NoFrame) };
         let last = self.last.take();
         let result =
             self.session().and_then(|session| session.answer(&asked.ask, &open, last.as_ref(), &asked.progress));
         (self.open, self.last) = (Some(open), last);
-        Some(result)
+        result
     }
 
     fn open(&mut self, name: &str) -> Result<(), String> {

@@ -17,7 +17,7 @@ pub struct Asked {
 }
 
 impl PartialEq for Asked {
-    /// The same question, asked at the same time.
+    /// Equal where question and ticket are.
     fn eq(&self, other: &Asked) -> bool {
         self.ticket == other.ticket && self.ask == other.ask
     }
@@ -134,12 +134,13 @@ impl Answers {
         let ready = slot.known.as_ref().filter(is_it).and_then(|known| Q::answer(&known.answer)).cloned();
         let older = slot.known.as_ref().filter(|_| ready.is_none()).and_then(|known| Q::answer(&known.answer)).cloned();
         let asked = slot.asked.as_ref().filter(|asked| asked.ask == *ask);
+        let is_waited_for = ready.is_none() && slot.asked.is_some();
         let given_up = slot.given_up.as_ref().filter(|(of, _)| of == ask).map(|(_, reason)| reason);
         Reply {
             ready,
             older,
             running: asked.map(|asked| asked.progress.clone()),
-            waits_for: if asked.is_some() { self.now - slot.since } else { 0.0 },
+            waits_for: if is_waited_for { self.now - slot.since } else { 0.0 },
             parts: if asked.is_some() { slot.parts } else { 0 },
             failed: given_up.cloned().flatten(),
             is_cancelled: given_up.is_some_and(Option::is_none),
@@ -153,7 +154,7 @@ impl Answers {
         Some((Q::of(&known.ask)?, Q::answer(&known.answer)?))
     }
 
-    /// The same, where it is of what is shown now.
+    /// The last answer of a kind, where it is of what is shown now.
     #[must_use]
     pub fn current<Q: Question>(&self) -> Option<(&Q, &Arc<Q::Answer>)> {
         self.last::<Q>().filter(|_| self.slot(Q::KIND).known.as_ref().is_some_and(|known| known.is_current))
@@ -330,8 +331,9 @@ impl Answers {
         for kind in Kind::ALL.iter().copied().filter(|kind| kind.holds() == holds) {
             if !kind.is_started_by_hand() {
                 self.pause(kind);
-                self.slot_mut(kind).given_up = None;
             }
+            // Why one of the frame before was given up says nothing of this one.
+            self.slot_mut(kind).given_up = None;
             change(kind, self.slot_mut(kind));
         }
     }
@@ -350,6 +352,13 @@ impl Answers {
     #[must_use]
     pub fn is_waiting(&self) -> bool {
         self.slots.iter().any(|slot| slot.asked.is_some())
+    }
+
+    /// Is anything being found out that says how far it is?
+    #[must_use]
+    pub fn has_progress(&self) -> bool {
+        let tells = [Kind::TruthOf, Kind::DiagnosisOf, Kind::ReportOf, Kind::StressOf];
+        tells.iter().any(|kind| self.slot(*kind).asked.is_some())
     }
 
     fn slot(&self, kind: Kind) -> &Slot {

@@ -4,7 +4,9 @@
 //! all; a folder that it replaces is moved aside until then.
 
 use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, StateFiles};
-use super::{Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files};
+use super::{
+    Aspect, Capture, CaptureError, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files,
+};
 use crate::accuracy::Finding;
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,43 +18,11 @@ use std::time::Instant;
 mod draws;
 mod reader;
 
+pub use super::error::CaptureError;
 pub use reader::read;
 
 const MANIFEST: &str = "manifest.json";
 const PLAN: &str = "plan.txt";
-
-/// Why a capture folder can't be written or read.
-#[derive(Debug, thiserror::Error)]
-pub enum CaptureError {
-    /// The folder is there already.
-    #[error("{}: there is a capture already; replace it with --overwrite or choose another folder", folder.display())]
-    Exists {
-        /// Which folder.
-        folder: PathBuf,
-    },
-    /// What is there is no capture folder, so it is never replaced.
-    #[error("{}: it is there already and is no capture folder; choose another name", folder.display())]
-    InTheWay {
-        /// Which file or folder.
-        folder: PathBuf,
-    },
-    /// The folder can't be made, filled or put in its place.
-    #[error("{}: can't be written ({source}); choose a folder that you may write to, with room in it", file.display())]
-    Write {
-        /// Which file or folder.
-        file: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// A file is missing or broken.
-    #[error("{}: {reason}; capture the scene again", file.display())]
-    Read {
-        /// Which file.
-        file: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
-}
 
 /// Is there a capture folder at this path?
 #[must_use]

@@ -6,12 +6,13 @@
 //! Where it was asked for, the draws of a pass have the state after each too ([`DrawState`]).
 
 pub mod disk;
+mod error;
 mod files;
 mod image;
 mod manifest;
 mod step_tests;
 
-pub use disk::CaptureError;
+pub use error::CaptureError;
 pub use image::{Image, PixelFormat};
 pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
 

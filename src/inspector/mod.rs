@@ -179,7 +179,7 @@ impl Inspector {
 
     /// Stops what is being found out of a kind, as its panel does.
     pub fn cancel(&mut self, kind: Kind) {
-        self.model.answers.cancel(kind);
+        self.model.cancel(kind);
     }
 
     /// Another scene is open, to be run as `draft` says.
@@ -190,6 +190,7 @@ impl Inspector {
     /// Another scene is open, to be run as `draft` says; `source` opens it again: a built-in name or a path.
     pub fn open_scene(&mut self, scene: &Scene, draft: RunRequest, source: Option<String>) {
         self.model.set_scene(Some((scene, draft)), source);
+        self.panels.follow(&self.model);
     }
 
     /// How the open scene is to be run now.
@@ -317,11 +318,14 @@ impl Inspector {
             self.model.note_recent(source);
         }
         self.model.set_scene(None, None);
+        self.panels.follow(&self.model);
     }
 
     /// Shows a capture; the selected step and pixel stay where they mean the same.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
         self.model.set_capture(capture);
+        self.panels.follow(&self.model);
+        self.model.textures.forget_unused();
     }
 
     /// Shows the same frame, of which more is known. What is selected stays, and playing goes on.

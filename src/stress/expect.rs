@@ -1,14 +1,11 @@
-//! What is expected of a technique at one value, and whether what came of it is that.
+//! What is expected of a technique at one value.
 //!
 //! A known [`Failure`] says at which values it shows, what its wrong pixels are, and of how many it
 //! is the reason. Beyond these the technique must be right, so a known failure excuses nothing else.
 
-use super::{Entrant, Row};
+use super::Entrant;
 use crate::technique::{Standing, Technique};
 use std::fmt;
-
-/// The edge band may excuse so large a share of what is compared; more of it hides an error.
-const MOST_EXCUSED: f64 = 0.02;
 
 /// A failure that is known.
 #[derive(Debug, Clone, Copy)]
@@ -169,67 +166,10 @@ impl Expected {
         self.symptom().map_or("right", |symptom| symptom.name)
     }
 
-    fn symptom(self) -> Option<Symptom> {
+    pub(super) fn symptom(self) -> Option<Symptom> {
         match self {
             Expected::Right => None,
             Expected::Fails(symptom) | Expected::MayFail(symptom) => Some(symptom),
-        }
-    }
-}
-
-impl Row {
-    /// Do so many pixels differ along edges that excusing them hides an error?
-    #[must_use]
-    pub fn is_blurred(&self) -> bool {
-        self.error.edge_band as f64 > MOST_EXCUSED * self.error.compared as f64
-    }
-
-    /// Why this is not what was expected.
-    #[must_use]
-    pub fn surprise(&self) -> Option<Surprise> {
-        if self.is_little_to_see() {
-            return Some(Surprise::LittleToSee);
-        }
-        let error = &self.error;
-        let is_blurred = self.is_blurred();
-        let shows = error.wrong() > 0 || is_blurred;
-        let Some(Symptom { kind, most, .. }) = self.expected.symptom() else {
-            return match (error.wrong(), self.flips) {
-                (1.., _) => Some(Surprise::Wrong),
-                _ if is_blurred => Some(Surprise::TooManyExcused),
-                (_, Some(1..)) => Some(Surprise::Flickers),
-                _ => None,
-            };
-        };
-        let others = match kind {
-            Kind::False => error.missing_shadow,
-            Kind::Missing => error.false_shadow,
-            Kind::Either | Kind::Mixed | Kind::Any => 0,
-        };
-        let is_one_sided = error.false_shadow == 0 || error.missing_shadow == 0;
-        // Beside what is known of them, texels show in these techniques.
-        let blur = texels(self.entrant.technique).map_or(0.0, |(symptom, _)| symptom.most);
-        if !shows && matches!(self.expected, Expected::Fails(_)) {
-            Some(Surprise::NotShown)
-        } else if (error.wrong_surface > 0 && kind != Kind::Any)
-            || others as f64 > blur * error.compared as f64
-            || kind == Kind::Mixed && is_one_sided && shows
-        {
-            Some(Surprise::OtherKind)
-        } else if error.wrong() as f64 > most * error.compared as f64 {
-            Some(Surprise::TooMany)
-        } else {
-            None
-        }
-    }
-
-    /// What came of it.
-    #[must_use]
-    pub fn verdict(&self) -> Verdict {
-        match (self.surprise(), self.expected, self.error.wrong()) {
-            (Some(_), ..) => Verdict::Unexpected,
-            (None, Expected::Fails(_), _) | (None, _, 1..) => Verdict::FailsAsKnown,
-            _ => Verdict::Holds,
         }
     }
 }

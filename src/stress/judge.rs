@@ -1,84 +1,10 @@
 //! Rows, and what they say of each case and technique.
 
 use super::expect::{Expected, Surprise, Verdict};
+use super::row::Row;
 use super::trend::Course;
 use super::{Case, Entrant};
-use crate::accuracy::ErrorCounts;
 use crate::capture::AdapterInfo;
-use std::collections::BTreeMap;
-
-/// One technique at one value of one case.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Row {
-    /// Name of the case.
-    pub case: &'static str,
-    /// Name and value of its number.
-    pub parameter: (&'static str, f64),
-    /// The technique.
-    pub entrant: Entrant,
-    /// All settings.
-    pub settings: BTreeMap<String, String>,
-    /// Against the truth, summed over lights.
-    pub error: ErrorCounts,
-    /// What there is to compare.
-    pub seen: Seen,
-    /// Pixels that have now changed there and back although the truth did not; `None` where the case is
-    /// no motion, and at its first value.
-    pub flips: Option<u64>,
-    /// Wrong pixels if the truth is that of the scene to which the case converges, where it does.
-    pub off_limit: Option<u64>,
-    /// What is expected of the technique at this value.
-    pub expected: Expected,
-    /// Wall time of a frame, ms.
-    pub frame_ms: f64,
-    /// Planning, geometry, pipelines and uploads, ms.
-    pub setup_ms: f64,
-}
-
-/// What the truth shows, summed over lights.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Seen {
-    /// All pixels.
-    pub pixels: u64,
-    /// Lit ones.
-    pub lit: u64,
-    /// Those in shadow.
-    pub shadow: u64,
-}
-
-/// Shares of all pixels that must be lit and in shadow, or a row says nothing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Least {
-    /// Lit ones.
-    pub lit: f64,
-    /// Those in shadow.
-    pub shadow: f64,
-    /// Why they are fewer than usual.
-    pub because: &'static str,
-}
-
-impl Least {
-    /// Enough for an edge between light and shadow of some length.
-    pub const USUAL: Least = Least { lit: 0.01, shadow: 0.002, because: "" };
-
-    /// Nothing need be lit.
-    #[must_use]
-    pub const fn all_dark(because: &'static str) -> Least {
-        Least { lit: 0.0, because, ..Least::USUAL }
-    }
-
-    /// Nothing need be in shadow.
-    #[must_use]
-    pub const fn all_lit(because: &'static str) -> Least {
-        Least { shadow: 0.0, because, ..Least::USUAL }
-    }
-
-    /// There may be nothing to compare.
-    #[must_use]
-    pub const fn nothing(because: &'static str) -> Least {
-        Least { lit: 0.0, shadow: 0.0, because }
-    }
-}
 
 /// How a technique did in a case.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,19 +55,6 @@ impl Stress {
     #[must_use]
     pub fn is_unexpected(&self) -> bool {
         self.summary().iter().any(|summary| summary.verdict == Verdict::Unexpected)
-    }
-}
-
-impl Row {
-    /// Has the truth too few lit or dark pixels? Then a row can't be wrong, and must not hold.
-    pub(super) fn is_little_to_see(&self) -> bool {
-        let Some(case) = Case::named(self.case) else { return false };
-        let least = (case.least)(self.parameter.1);
-        let pixels = self.seen.pixels as f64;
-        let is_asked = least != Least::nothing(least.because);
-        let is_less = |count: u64, share: f64| (count as f64) < share * pixels;
-        is_asked
-            && (self.seen.pixels == 0 || is_less(self.seen.lit, least.lit) || is_less(self.seen.shadow, least.shadow))
     }
 }
 

@@ -16,12 +16,13 @@ mod json;
 mod judge;
 mod page;
 mod plot;
+mod row;
 mod table;
 mod trend;
 
 pub use expect::{Expected, Failure, Kind, Surprise, Symptom, Verdict};
-pub use judge::{Least, Row, Seen, Stress, StressRows, Summary, summary};
-pub use table::value_text;
+pub use judge::{Stress, StressRows, Summary, summary};
+pub use row::{Least, Row, Seen, value_text};
 pub use trend::{Course, Trend};
 
 use crate::scene::{MeshError, Scene};

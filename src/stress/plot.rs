@@ -5,7 +5,7 @@
 //! lane for each who runs, so that lines without an error do not cover each other. The first wrong
 //! value, where the line leaves the band, has a filled mark.
 
-use super::{Case, Drives, Entrant, Row, Stress, table};
+use super::{Case, Drives, Entrant, Row, Stress, value_text};
 use crate::numbers;
 use crate::report::plot::labels::{self, Obstacles, Wish};
 use crate::report::plot::scale::{self, Log};
@@ -146,7 +146,7 @@ fn share(row: &Row) -> f64 {
 }
 
 fn spot(row: &Row, at: [f64; 2], filled: bool) -> Spot {
-    let value = table::value_text(row.parameter.1);
+    let value = value_text(row.parameter.1);
     let name = format!("{} at {value}: {} wrong", row.entrant, numbers::count(row.error.wrong()));
     let details = format!("{name}\nof {} compared", numbers::count(row.error.compared));
     let style = style_of(row.entrant.technique.name());
@@ -264,7 +264,7 @@ impl Axes {
         texts.extend(levels.chain([none]).map(|(y, text)| small([beside, y], text).anchored(Anchor::End)));
         texts.extend(self.across.ticks().into_iter().map(|tick| {
             let at = [self.across.position(tick), self.band.max[1] + 11.0];
-            small(at, table::value_text(tick)).anchored(Anchor::Middle)
+            small(at, value_text(tick)).anchored(Anchor::Middle)
         }));
         texts
     }

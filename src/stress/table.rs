@@ -1,6 +1,6 @@
 //! The table for people, a line a case and technique; and one in Markdown, a row a case.
 
-use super::{Case, Course, MEASURED_AT, Stress, Summary, Verdict};
+use super::{Case, Course, MEASURED_AT, Stress, Summary, Verdict, value_text};
 use crate::numbers;
 use crate::technique::Technique;
 use std::fmt;
@@ -81,18 +81,6 @@ fn range(case: &str) -> String {
     match case.values {
         [] | [_] => String::new(),
         [first, .., last] => format!("{} {} → {}", case.parameter, value_text(*first), value_text(*last)),
-    }
-}
-
-/// A parameter's value: short, and in powers of ten where it is far from 1.
-#[must_use]
-pub fn value_text(value: f64) -> String {
-    // Steps of a motion are sums of tenths: what is beyond six digits is their rounding.
-    let rounded = if value == 0.0 { 0.0 } else { format!("{value:.5e}").parse().unwrap_or(value) };
-    match rounded {
-        0.0 => "0".to_owned(),
-        far if !(1e-3..1e5).contains(&far.abs()) => format!("{far:e}"),
-        near => near.to_string(),
     }
 }
 

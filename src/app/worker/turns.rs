@@ -114,6 +114,9 @@ impl Work {
             }
             while let Some(order) = inbox.next_short() {
                 let Order::Answer { frame: of, asked, .. } = order else { continue };
+                if asked.progress.is_cancelled() {
+                    continue;
+                }
                 if asked.ask.kind().holds() != Holds::Frame || of == frames {
                     let result = session.answer(&asked.ask, open, Some(frame), &asked.progress);
                     tell(News::Answered { ticket: asked.ticket, result: result.map_err(|error| error.to_string()) });

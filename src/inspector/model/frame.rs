@@ -41,7 +41,6 @@ impl Model {
         self.view.tests = None;
         self.frame.number += 1;
         self.frame.set(capture);
-        self.textures.forget_unused();
     }
 
     /// Shows the same frame, of which more is known.
@@ -63,6 +62,14 @@ impl Model {
                 self.view.older_truth = Some(Arc::new(FrameTruth { size: now.size, lights, counts: Vec::new() }));
             }
             Some(_) => {}
+        }
+    }
+
+    /// Stops what is being found out, for good.
+    pub fn cancel(&mut self, kind: Kind) {
+        self.answers.cancel(kind);
+        if kind == Kind::TruthOf {
+            self.view.older_truth = None;
         }
     }
 

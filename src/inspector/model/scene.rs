@@ -38,6 +38,9 @@ impl Model {
         self.answers.new_scene(scene.is_some());
         self.modes.compare = None;
         self.view.older_truth = None;
+        if scene.is_none() {
+            self.selection.triangle = None;
+        }
         self.scenes_opened += 1;
         self.scene = scene.map(|(scene, draft)| OpenScene {
             name: scene.name.clone(),

@@ -65,13 +65,13 @@ pub struct Explain {
     facts: std::rc::Rc<Vec<crate::reading::explain_facts::Fact>>,
 }
 
-/// Facts change with these: frame, step, pixel, and whether its history is there.
-type Key = (u64, usize, Option<[u32; 2]>, bool, bool);
+/// Facts change with these: frame, step, pixel, of which pixel the history is, and whether there is a truth.
+type Key = (u64, usize, Option<[u32; 2]>, Option<[u32; 2]>, bool);
 
 impl Explain {
     fn of(&mut self, frame: u64, known: &Known) -> std::rc::Rc<Vec<crate::reading::explain_facts::Fact>> {
         let has_truth = known.capture.lights.iter().any(|light| light.truth.is_some());
-        let key = (frame, known.step, known.pick, known.history.is_some(), has_truth);
+        let key = (frame, known.step, known.pick, known.history.map(|history| history.pixel), has_truth);
         if self.of != Some(key) {
             self.of = Some(key);
             self.facts = std::rc::Rc::new(facts(known));

@@ -46,6 +46,12 @@ pub struct Panels {
 }
 
 impl Panels {
+    /// What was made of what is shown no more goes, of hidden tabs too.
+    pub fn follow(&mut self, model: &Model) {
+        self.picture.follow(model.frame.number);
+        self.scene.follow(model.scenes_opened);
+    }
+
     /// Draws a tab.
     pub fn ui(&mut self, panel: Panel, ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         match panel {

@@ -82,6 +82,15 @@ impl ShadowMapPanel {
     }
 }
 
+impl ShadowMapPanel {
+    /// The tab is hidden: pixels stay marked only where a texel is picked.
+    pub fn hide(&self, model: &mut Model) {
+        if self.pick.is_none() {
+            model.selection.readers = Arc::default();
+        }
+    }
+}
+
 /// Draws the tab.
 pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     let rect = ui.available_rect_before_wrap();
@@ -97,6 +106,7 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     };
     let lights = lights(&capture);
     let Some(first) = lights.first() else {
+        model.selection.readers = Arc::default();
         return empty(ui, rect, "This frame has no shadow map. Choose the technique shadow-map above.");
     };
     if !lights.contains(&own.light) {

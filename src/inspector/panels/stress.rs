@@ -79,11 +79,14 @@ fn top_line(
             let share = rows as f32 / all.max(1) as f32;
             let bar = egui::ProgressBar::new(share).desired_width(ui.available_width().min(180.0)).desired_height(8.0);
             ui.add(bar).accessible_name("Running stress cases");
-            let [rows, all] = [rows, all].map(|rows| format::count(rows as u64));
+            let of_rows = match all {
+                0 => String::new(),
+                _ => format!(" · {} of {} rows", format::count(rows as u64), format::count(all as u64)),
+            };
             let cases = model.answers.asked::<StressOf>().map_or(&[][..], |ask| &ask.cases);
             let (done, of) = (reply.parts, cases.len());
             let what = cases.get(done).copied().unwrap_or_default();
-            ui.label(theme::note(format!("{done} of {of} · {what} · {rows} of {all} rows")));
+            ui.label(theme::note(format!("{done} of {of} · {what}{of_rows}")));
         }
         None => {
             let one = ui.button(format!("Run {}", case.name));

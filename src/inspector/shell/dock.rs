@@ -101,6 +101,11 @@ impl Dock {
         for wanted in std::mem::take(&mut model.requests.panels) {
             self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(panel) if *panel == wanted));
         }
+        let shown = self.tree.active_tiles();
+        let has_map = shown.iter().any(|id| matches!(self.tree.tiles.get(*id), Some(Tile::Pane(Panel::ShadowMap))));
+        if !has_map {
+            panels.shadow_map.hide(model);
+        }
         let mut behavior = Panes { panels, model, actions, edited: false, theme: theme::of(ui) };
         self.tree.ui(&mut behavior, ui);
         self.arranged_by_user |= behavior.edited;

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::Diagnosis;
 use crate::technique::Choice;
-use std::sync::{Arc, Weak};
+use std::sync::Arc;
 
 /// A mend that was applied from the tab: how shadows were made before, and are after.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,14 +20,16 @@ pub struct DiagnosisPanel {
     pub selected: usize,
     /// The mend that was applied last.
     pub applied: Option<Applied>,
-    of: Weak<Diagnosis>,
+    of: Option<Arc<Diagnosis>>,
 }
 
 impl DiagnosisPanel {
-    /// Of another diagnosis nothing is selected.
+    /// Of a diagnosis that says something else nothing is selected.
     pub fn follow(&mut self, diagnosis: &Arc<Diagnosis>) {
-        if !std::ptr::eq(self.of.as_ptr(), Arc::as_ptr(diagnosis)) {
-            *self = DiagnosisPanel { of: Arc::downgrade(diagnosis), ..DiagnosisPanel::default() };
+        let is_told = |of: &Arc<Diagnosis>| Arc::ptr_eq(of, diagnosis) || of == diagnosis;
+        if !self.of.as_ref().is_some_and(is_told) {
+            *self = DiagnosisPanel::default();
         }
+        self.of = Some(Arc::clone(diagnosis));
     }
 }

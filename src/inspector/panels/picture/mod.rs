@@ -55,7 +55,8 @@ pub struct PicturePanel {
 
 impl PicturePanel {
     /// What was made of a frame that is shown no more goes.
-    fn follow(&mut self, frame: u64) {
+    /// What was made of the frame before goes with it.
+    pub fn follow(&mut self, frame: u64) {
         if std::mem::replace(&mut self.frame, frame) != frame {
             self.changes.forget();
             self.overlays = Overlays::default();

@@ -53,8 +53,7 @@ fn tracing(ui: &mut Ui, model: &mut Model, shown: &Shown, share: f32) {
     theme::heading(ui, &format!("The truth is being traced … {:.0} %", share * 100.0));
     ui.horizontal(|ui| {
         if ui.button("Cancel").on_hover_text("Stop tracing the truth").clicked() {
-            model.answers.cancel(Kind::TruthOf);
-            model.view.older_truth = None;
+            model.cancel(Kind::TruthOf);
         }
         let bar = egui::ProgressBar::new(share).desired_width(ui.available_width()).desired_height(8.0);
         ui.add(bar).accessible_name("Tracing");

@@ -17,6 +17,9 @@ pub struct Pixel {
     pub unfolded: BTreeMap<usize, Vec<Range<usize>>>,
     /// The history that was told last.
     told: Weak<PixelHistory>,
+    /// The history that was checked last, and where it contradicts the GPU, in words.
+    checked: Weak<PixelHistory>,
+    wrong: Vec<String>,
     /// The row of the selected event has to be scrolled to.
     pub scrolls_to_selected: bool,
     /// The sentence on top as it was last said with a history.
@@ -50,11 +53,16 @@ impl Pixel {
             self.unfolded.clear();
             self.scrolls_to_selected = true;
         }
-        let disagreements = history.iter().flat_map(|history| history.disagreements());
+        if let Some(history) = &history
+            && !std::ptr::eq(self.checked.as_ptr(), Arc::as_ptr(history))
+        {
+            self.checked = Arc::downgrade(history);
+            self.wrong = history.disagreements().into_iter().map(|one| one.to_string()).collect();
+        }
         Told {
             is_of_pick: reply.ready.is_some(),
             is_late: is_late(&reply),
-            wrong: disagreements.map(|one| one.to_string()).collect(),
+            wrong: history.as_ref().map(|_| self.wrong.clone()).unwrap_or_default(),
             failed: reply.failed,
             history,
         }

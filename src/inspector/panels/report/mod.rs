@@ -106,6 +106,9 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
             let what = progress.item().and_then(|item| choices.get(item));
             let what = what.map_or_else(|| "the truth".to_owned(), Choice::short_name);
             let (done, of) = progress.steps();
+            // Before the first step it is known all the same: each is measured so often, and warmed up once.
+            let to_do = model.answers.asked::<ReportOf>().map_or(0, |ask| ask.choices.len() * (ask.runs + 1));
+            let of = if of == 0 { to_do } else { of };
             let share = done as f32 / of.max(1) as f32;
             let width = ui.available_width().min(180.0);
             let bar = egui::ProgressBar::new(share).desired_width(width).desired_height(8.0);

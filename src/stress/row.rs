@@ -1,0 +1,162 @@
+//! One technique at one value of one case: what was seen, and whether that is what was expected.
+
+use super::expect::{Expected, Kind, Surprise, Symptom, Verdict, texels};
+use super::{Case, Entrant};
+use crate::accuracy::ErrorCounts;
+use std::collections::BTreeMap;
+
+/// The edge band may excuse so large a share of what is compared; more of it hides an error.
+const MOST_EXCUSED: f64 = 0.02;
+
+/// One technique at one value of one case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Name of the case.
+    pub case: &'static str,
+    /// Name and value of its number.
+    pub parameter: (&'static str, f64),
+    /// The technique.
+    pub entrant: Entrant,
+    /// All settings.
+    pub settings: BTreeMap<String, String>,
+    /// Against the truth, summed over lights.
+    pub error: ErrorCounts,
+    /// What there is to compare.
+    pub seen: Seen,
+    /// Pixels that have now changed there and back although the truth did not; `None` where the case is
+    /// no motion, and at its first value.
+    pub flips: Option<u64>,
+    /// Wrong pixels if the truth is that of the scene to which the case converges, where it does.
+    pub off_limit: Option<u64>,
+    /// What is expected of the technique at this value.
+    pub expected: Expected,
+    /// Wall time of a frame, ms.
+    pub frame_ms: f64,
+    /// Planning, geometry, pipelines and uploads, ms.
+    pub setup_ms: f64,
+}
+
+/// What the truth shows, summed over lights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Seen {
+    /// All pixels.
+    pub pixels: u64,
+    /// Lit ones.
+    pub lit: u64,
+    /// Those in shadow.
+    pub shadow: u64,
+}
+
+/// Shares of all pixels that must be lit and in shadow, or a row says nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Least {
+    /// Lit ones.
+    pub lit: f64,
+    /// Those in shadow.
+    pub shadow: f64,
+    /// Why they are fewer than usual.
+    pub because: &'static str,
+}
+
+impl Least {
+    /// Enough for an edge between light and shadow of some length.
+    pub const USUAL: Least = Least { lit: 0.01, shadow: 0.002, because: "" };
+
+    /// Nothing need be lit.
+    #[must_use]
+    pub const fn all_dark(because: &'static str) -> Least {
+        Least { lit: 0.0, because, ..Least::USUAL }
+    }
+
+    /// Nothing need be in shadow.
+    #[must_use]
+    pub const fn all_lit(because: &'static str) -> Least {
+        Least { shadow: 0.0, because, ..Least::USUAL }
+    }
+
+    /// There may be nothing to compare.
+    #[must_use]
+    pub const fn nothing(because: &'static str) -> Least {
+        Least { lit: 0.0, shadow: 0.0, because }
+    }
+}
+
+impl Row {
+    /// Do so many pixels differ along edges that excusing them hides an error?
+    #[must_use]
+    pub fn is_blurred(&self) -> bool {
+        self.error.edge_band as f64 > MOST_EXCUSED * self.error.compared as f64
+    }
+
+    /// Why this is not what was expected.
+    #[must_use]
+    pub fn surprise(&self) -> Option<Surprise> {
+        if self.is_little_to_see() {
+            return Some(Surprise::LittleToSee);
+        }
+        let error = &self.error;
+        let is_blurred = self.is_blurred();
+        let shows = error.wrong() > 0 || is_blurred;
+        let Some(Symptom { kind, most, .. }) = self.expected.symptom() else {
+            return match (error.wrong(), self.flips) {
+                (1.., _) => Some(Surprise::Wrong),
+                _ if is_blurred => Some(Surprise::TooManyExcused),
+                (_, Some(1..)) => Some(Surprise::Flickers),
+                _ => None,
+            };
+        };
+        let others = match kind {
+            Kind::False => error.missing_shadow,
+            Kind::Missing => error.false_shadow,
+            Kind::Either | Kind::Mixed | Kind::Any => 0,
+        };
+        let is_one_sided = error.false_shadow == 0 || error.missing_shadow == 0;
+        // Beside what is known of them, texels show in these techniques.
+        let blur = texels(self.entrant.technique).map_or(0.0, |(symptom, _)| symptom.most);
+        if !shows && matches!(self.expected, Expected::Fails(_)) {
+            Some(Surprise::NotShown)
+        } else if (error.wrong_surface > 0 && kind != Kind::Any)
+            || others as f64 > blur * error.compared as f64
+            || kind == Kind::Mixed && is_one_sided && shows
+        {
+            Some(Surprise::OtherKind)
+        } else if error.wrong() as f64 > most * error.compared as f64 {
+            Some(Surprise::TooMany)
+        } else {
+            None
+        }
+    }
+
+    /// What came of it.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        match (self.surprise(), self.expected, self.error.wrong()) {
+            (Some(_), ..) => Verdict::Unexpected,
+            (None, Expected::Fails(_), _) | (None, _, 1..) => Verdict::FailsAsKnown,
+            _ => Verdict::Holds,
+        }
+    }
+
+    /// Has the truth too few lit or dark pixels? Then a row can't be wrong, and must not hold.
+    fn is_little_to_see(&self) -> bool {
+        let Some(case) = Case::named(self.case) else { return false };
+        let least = (case.least)(self.parameter.1);
+        let pixels = self.seen.pixels as f64;
+        let is_asked = least != Least::nothing(least.because);
+        let is_less = |count: u64, share: f64| (count as f64) < share * pixels;
+        is_asked
+            && (self.seen.pixels == 0 || is_less(self.seen.lit, least.lit) || is_less(self.seen.shadow, least.shadow))
+    }
+}
+
+/// A parameter's value: short, and in powers of ten where it is far from 1.
+#[must_use]
+pub fn value_text(value: f64) -> String {
+    // Steps of a motion are sums of tenths: what is beyond six digits is their rounding.
+    let rounded = if value == 0.0 { 0.0 } else { format!("{value:.5e}").parse().unwrap_or(value) };
+    match rounded {
+        0.0 => "0".to_owned(),
+        far if !(1e-3..1e5).contains(&far.abs()) => format!("{far:e}"),
+        near => near.to_string(),
+    }
+}
