@@ -4,9 +4,7 @@
 //! all; a folder that it replaces is moved aside until then.
 
 use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, StateFiles};
-use super::{
-    Aspect, Capture, CaptureError, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files,
-};
+use super::{Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files};
 use crate::accuracy::Finding;
 use std::collections::BTreeMap;
 use std::fs;
