@@ -182,7 +182,7 @@ pub enum ExportKind {
     /// The shown picture in its colours, or what the step changed, a pixel a texel: PNG. What lies over it
     /// and what it is compared with is left out.
     Picture,
-    /// The same with overlays and the compared half, at the same resolution: PNG.
+    /// The shown picture with overlays and the compared half, at the capture's resolution: PNG.
     AsShown,
     /// The shown picture's values: NumPy.
     Data,

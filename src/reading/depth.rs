@@ -101,7 +101,7 @@ impl DepthMeasure {
         self.between(f64::from(depth), f64::from(depth.next_up()), depth)
     }
 
-    /// The same for a fixed-point buffer of [`FIXED_BITS`] bits, which stores `floor((2^k − 1) · depth)`.
+    /// One step of a fixed-point buffer of [`FIXED_BITS`] bits, which stores `floor((2^k − 1) · depth)`.
     #[must_use]
     pub fn fixed_step_at(self, depth: f32) -> Option<f64> {
         let steps = f64::from((1_u32 << FIXED_BITS) - 1);

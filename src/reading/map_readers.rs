@@ -224,7 +224,7 @@ impl Lookup {
         Some(self.first_at(face, clip))
     }
 
-    /// The same of a point that is not moved.
+    /// Face and first texel that a point reads which is not moved.
     fn first_of(&self, world: DVec3) -> Option<[i16; 3]> {
         self.seen(world).map(|(face, clip)| self.first_at(face, clip))
     }

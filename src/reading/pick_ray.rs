@@ -10,7 +10,7 @@ pub fn ray(capture: &Capture, at: [u32; 2]) -> DVec3 {
     ray_at(capture, at.map(|texel| f64::from(texel) + 0.5))
 }
 
-/// The same through any texel position.
+/// The ray through any position in texels.
 #[must_use]
 pub fn ray_at(capture: &Capture, at: [f64; 2]) -> DVec3 {
     let camera = &capture.camera;

@@ -10,7 +10,7 @@ use glam::{DMat4, DVec2, DVec4};
 
 /// How far outside the picture's edges lines are cut, where the picture ends at 1.
 const GUARD: f64 = 1.2;
-/// The same of a triangle that is outlined: its own edges are not to be seen where it is cut.
+/// How far outside a triangle that is outlined is cut: where it is, none of its edges may be seen.
 const OUTLINE_GUARD: f64 = 1.5;
 
 /// From the world to the texels of a capture's picture.

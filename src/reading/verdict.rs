@@ -32,7 +32,7 @@ enum ByHistory {
     Kept,
 }
 
-/// The same, with the reason that the pixel's history gives.
+/// The verdict with the reason that the pixel's history gives.
 #[must_use]
 pub fn explained(verdict: Verdict, history: &PixelHistory, light: usize) -> Verdict {
     let why = match history.why(light) {

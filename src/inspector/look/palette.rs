@@ -26,7 +26,7 @@ pub struct Label {
     pub color: Color32,
 }
 
-/// The same colour for the window.
+/// A colour of the palette for the window, opaque.
 pub(super) const fn opaque([red, green, blue]: Rgb) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }

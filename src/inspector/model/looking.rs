@@ -216,6 +216,7 @@ impl Model {
         let is_like = found.images.first().map(|image| image.size()) == shown.images.first().map(|image| image.size());
         if is_like { Ok(found) } else { Err(format!("{what} of this size.")) }
     }
+
     /// Wants to know how the fragments of the selected step or draw fared in the tests.
     pub fn want_tests(&self) -> Reply<TestOutcomes> {
         let Moment { step, draw } = self.selected();

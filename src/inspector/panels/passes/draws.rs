@@ -174,8 +174,7 @@ pub fn left_out(ui: &mut Ui, left_out: &[LeftOut]) {
     ui.add_space(8.0);
     ui.label(theme::note("Left out"));
     ui.add_space(2.0);
-    // The same is decided again for every light, and for many objects with one reason: once is
-    // enough to read.
+    // One thing is decided again for every light, and for many objects with one reason: once is enough to read.
     let mut reasons: Vec<(&str, Vec<(String, u32)>)> = Vec::new();
     for entry in left_out {
         let title = entry.to_string();

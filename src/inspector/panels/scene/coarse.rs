@@ -169,8 +169,8 @@ impl Coarse {
         moved.filter(|[a, b, c]| a != b && b != c && c != a).collect()
     }
 
-    /// The same for triangles between the mesh's vertices and, after them, the same vertices carried away from the
-    /// light; `None` where they have others.
+    /// Fewer triangles in place of those between the mesh's vertices and, after them, these vertices carried away from
+    /// the light; `None` where they have others.
     fn moved(&self, triangles: &[[u32; 3]]) -> Option<Triangles> {
         let count = self.stays.len() as u32;
         let near = |corners: &[u32; 3]| corners.iter().all(|corner| *corner < count);
