@@ -1,4 +1,4 @@
-//! The techniques: each a pure function from a scene to a [`FramePlan`].
+//! The techniques: each a pure function from a scene to a [`FramePlan`](crate::plan::FramePlan).
 //!
 //! A technique is one file with a function `(Job) → FramePlan`, its settings as constants, and a [`Description`] with
 //! all else that is said of it; and a variant of [`Technique`] with its name. The compiler names the few places that
