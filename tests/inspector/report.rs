@@ -58,7 +58,9 @@ fn while_it_measures_it_says_how_far_it_is_and_shows_the_rows_so_far() {
     let mut harness = showing(|inspector| tell(inspector, report));
     click_button(&mut harness, "Measure again");
     let asked = last_asked::<ReportOf>(&harness);
-    harness.get_by_label("0 of 0 · the truth");
+    // The worker has told no step yet; how many there will be is known.
+    let steps = asks::<ReportOf>(&harness).iter().map(|ask| ask.choices.len() * (ask.runs + 1)).sum::<usize>();
+    harness.get_by_label(&format!("0 of {steps} · the truth"));
     let is_z_fail = |choice: &Choice| choice.technique() == Technique::ZFail;
     asked.progress.start(15);
     (0..3).for_each(|_| asked.progress.advance());
