@@ -28,3 +28,4 @@ mod stress;
 mod techniques;
 mod truth;
 mod volumes;
+mod whole_folder;

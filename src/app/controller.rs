@@ -16,6 +16,7 @@ use crate::capture::Capture;
 use crate::inspector::{Action, ExportData, Inspector, Remembered, SceneEntry};
 use crate::reading::shown::PictureKind;
 use crate::scene::{TechniqueRequest, builtin};
+use crate::session::RunFrame;
 use crate::stress::Case;
 use crate::technique::Choice;
 use std::pin::Pin;
@@ -40,6 +41,8 @@ pub struct Controller {
     scene: u64,
     /// Of the frame that is shown.
     frame: u64,
+    /// That frame; `None` for a folder that holds a capture alone.
+    run: Option<RunFrame>,
     reader: Reader,
     /// Files of the open scene; `None` where nothing is remembered or watched.
     watch: Option<Watch>,
@@ -84,6 +87,7 @@ impl Controller {
             tell,
             scene: 0,
             frame: 0,
+            run: None,
             reader: Reader::default(),
             watch,
             first_step: request.step,
@@ -134,13 +138,15 @@ impl Controller {
                     watch.look_at(Vec::new());
                 }
                 self.inspector.set_job(None);
+                self.run = None;
                 self.inspector.open_folder(Some(&source));
                 self.show(capture);
             }
-            News::Captured { frame, capture, plan } => {
+            News::Captured { frame, run } => {
                 self.frame = frame;
-                self.show(capture);
-                self.inspector.set_plan(plan);
+                self.show(Arc::clone(&run.capture));
+                self.inspector.set_plan(Arc::clone(&run.plan));
+                self.run = Some(run);
             }
             News::Answered { ticket, result } => self.inspector.answer(ticket, result, true),
             News::AnsweredPart { ticket, answer } => self.inspector.answer(ticket, Ok(answer), false),
@@ -195,6 +201,13 @@ impl Controller {
             Action::Export { kind, path, replace } => match self.inspector.export(kind) {
                 Some(ExportData::Scene(request)) => Order::SaveScene { scene: self.scene, request, path, replace },
                 Some(data) => {
+                    let data = match (data, &self.run) {
+                        // With all that is known of it by now.
+                        (ExportData::Capture(capture), Some(run)) => {
+                            export::Data::Frame(Box::new(RunFrame { capture, ..run.clone() }))
+                        }
+                        (data, _) => export::Data::Panels(data),
+                    };
                     if let Err(error) = export::start(data, path, replace, Arc::clone(&self.tell)) {
                         self.inspector.end_export(Err(format!("nothing can be written now: {error}; try again")));
                     }

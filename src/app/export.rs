@@ -1,16 +1,26 @@
 //! Writes what the panels export, on a thread of its own: a large capture takes a while.
 
 use super::news::{Exported, Tell, WindowNews};
-use crate::capture::disk;
+use crate::capture::disk::{self, Contents};
 use crate::files::write_whole;
 use crate::inspector::ExportData;
 use crate::picture::Picture;
 use crate::report::Report;
+use crate::session::RunFrame;
 use std::path::{Path, PathBuf};
+
+/// What is to be written.
+#[derive(Debug, Clone)]
+pub enum Data {
+    /// A frame with what it was made from.
+    Frame(Box<RunFrame>),
+    /// What the panels know.
+    Panels(ExportData),
+}
 
 /// Writes `data` to `path`, and tells the window how that ended. What is there is replaced only where `replace`
 /// says so. Scenes are the worker's to write.
-pub fn start(data: ExportData, path: String, replace: bool, tell: Tell) -> std::io::Result<()> {
+pub fn start(data: Data, path: String, replace: bool, tell: Tell) -> std::io::Result<()> {
     let run = move || {
         let news = write(&data, &path, replace);
         tell(WindowNews::Exported(news));
@@ -26,17 +36,27 @@ pub fn check(path: &Path, replace: bool) -> Option<Exported> {
     (path.exists() && !replace).then(|| Exported::Taken(path.display().to_string()))
 }
 
-fn write(data: &ExportData, path: &str, replace: bool) -> Exported {
-    let file = PathBuf::from(path);
-    if let ExportData::Capture(capture) = data {
-        if !replace && disk::is_capture(&file) {
-            return Exported::Taken(path.to_owned());
-        }
-        return match disk::write(capture, &file, replace) {
-            Ok(_) => Exported::Done(format!("wrote the capture to {path}")),
-            Err(error) => Exported::Failed(error.to_string()),
-        };
+fn write(data: &Data, path: &str, replace: bool) -> Exported {
+    match data {
+        Data::Frame(run) => write_folder(run.contents(), path, replace),
+        Data::Panels(ExportData::Capture(capture)) => write_folder(capture.as_ref().into(), path, replace),
+        Data::Panels(data) => write_file(data, path, replace),
     }
+}
+
+fn write_folder(contents: Contents, path: &str, replace: bool) -> Exported {
+    let folder = PathBuf::from(path);
+    if !replace && disk::is_capture(&folder) {
+        return Exported::Taken(path.to_owned());
+    }
+    match disk::write(contents, &folder, replace) {
+        Ok(_) => Exported::Done(format!("wrote the capture to {path}")),
+        Err(error) => Exported::Failed(error.to_string()),
+    }
+}
+
+fn write_file(data: &ExportData, path: &str, replace: bool) -> Exported {
+    let file = PathBuf::from(path);
     if let Some(problem) = check(&file, replace) {
         return problem;
     }
@@ -88,7 +108,7 @@ mod tests {
     fn a_taken_place_is_asked_about_and_replaced_only_where_that_is_wished() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.png").display().to_string();
-        let data = ExportData::Picture(Picture::filled([3, 2], [1, 2, 3]));
+        let data = Data::Panels(ExportData::Picture(Picture::filled([3, 2], [1, 2, 3])));
         assert!(matches!(write(&data, &path, false), Exported::Done(_)));
         assert!(matches!(write(&data, &path, false), Exported::Taken(_)));
         assert!(matches!(write(&data, &path, true), Exported::Done(_)));
@@ -101,14 +121,14 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy").display().to_string();
         let image = Arc::new(Image::uniform(PixelFormat::U8, [3, 2], &[7]));
-        assert!(matches!(write(&ExportData::Data(vec![image]), &path, false), Exported::Done(_)));
+        assert!(matches!(write(&Data::Panels(ExportData::Data(vec![image])), &path, false), Exported::Done(_)));
         let bytes = std::fs::read(&path).expect("a file");
         assert!(bytes.starts_with(b"\x93NUMPY") && bytes.ends_with(&[7; 6]));
     }
 
     #[test]
     fn a_place_that_can_not_be_written_to_is_told_with_the_mend() {
-        let data = ExportData::Picture(Picture::filled([1, 1], [0; 3]));
+        let data = Data::Panels(ExportData::Picture(Picture::filled([1, 1], [0; 3])));
         let answer = write(&data, "/no such folder/a.png", false);
         assert!(matches!(answer, Exported::Failed(reason) if reason.contains("choose another place")));
     }
@@ -119,7 +139,7 @@ mod tests {
         let report = Report::new(adapter(), vec![row("tori", "z-fail", "", 3, 9.5)]);
         let written = |name: &str| {
             let path = folder.path().join(name).display().to_string();
-            let data = ExportData::Report(Box::new(report.clone()));
+            let data = Data::Panels(ExportData::Report(Box::new(report.clone())));
             (write(&data, &path, false), std::fs::read(&path).unwrap_or_default())
         };
         let starts: [(&str, &[u8]); 5] = [

@@ -22,7 +22,7 @@ mod watch;
 mod window;
 mod worker;
 
-use crate::capture::Capture;
+use crate::capture::disk::WholeFrame;
 use crate::scene::{OpenSpec, Scene};
 use crate::session::CaptureRequest;
 
@@ -52,8 +52,8 @@ pub struct ViewRequest {
 pub enum ViewSource {
     /// A scene, as loaded: at time 0.
     Scene(Box<Scene>),
-    /// A capture from a folder, to be looked at without a GPU run.
-    Capture(Box<Capture>),
+    /// What a capture folder holds, to be looked at without a GPU run.
+    Folder(Box<WholeFrame>),
 }
 
 /// Why there is no window.

@@ -2,8 +2,8 @@
 
 use crate::ask::{Answer, RunRequest};
 use crate::capture::Capture;
-use crate::plan::FramePlan;
 use crate::scene::Scene;
+use crate::session::RunFrame;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -39,10 +39,8 @@ pub enum News {
     Captured {
         /// Tells it from those before.
         frame: u64,
-        /// What was seen.
-        capture: Arc<Capture>,
-        /// What was run.
-        plan: Arc<FramePlan>,
+        /// What was run, and what was seen.
+        run: RunFrame,
     },
     /// The answer to a question, or why there is none, with the mend; not told of what was cancelled.
     Answered {

@@ -16,7 +16,7 @@ use super::news::{Exported, News};
 use super::queue::{Inbox, Order, Queue};
 use super::{AppError, ViewSource, allocator};
 use crate::ask::{Ask, Asked, Holds, Kind, RunRequest};
-use crate::capture::disk;
+use crate::capture::disk::{self, WholeFrame};
 use crate::scene::file::store;
 use crate::scene::{OpenSpec, Scene};
 use crate::session::{CaptureRequest, Every, RunFrame, Session, SessionError};
@@ -138,8 +138,9 @@ impl Work {
     /// The first thing to show.
     fn begin(&mut self, source: ViewSource, name: OpenSpec, time: f64) {
         match source {
-            ViewSource::Capture(capture) => {
-                (self.tell)(News::OpenedFolder { capture: Arc::new(*capture), source: name.name })
+            ViewSource::Folder(whole) => {
+                self.show_folder(*whole, &name.name);
+                self.finish(Ok(()));
             }
             ViewSource::Scene(scene) => {
                 self.spec = Some(name);
@@ -265,12 +266,7 @@ impl Work {
         (self.tell)(News::Busy(format!("opening {name}")));
         let path = Path::new(name);
         if path.is_dir() {
-            let capture = disk::read(path).map_err(|error| error.to_string())?;
-            self.open = None;
-            self.last = None;
-            self.scenes += 1;
-            self.spec = None;
-            (self.tell)(News::OpenedFolder { capture: Arc::new(capture), source: name.to_owned() });
+            self.show_folder(disk::read_whole(path).map_err(|error| error.to_string())?, name);
             return Ok(());
         }
         let spec = OpenSpec::new(name);
@@ -280,6 +276,37 @@ impl Work {
         }
         self.spec = Some(spec);
         self.show_scene(Box::new(scene), 0.0, Brought::default())
+    }
+
+    /// What a capture folder holds: a frame that was run, or a capture alone.
+    fn show_folder(&mut self, whole: WholeFrame, folder: &str) {
+        self.scenes += 1;
+        let name = folder.to_owned();
+        let frame = match RunFrame::from_folder(whole) {
+            Ok(frame) => frame,
+            Err(whole) => {
+                (self.open, self.last, self.spec) = (None, None, None);
+                return (self.tell)(News::OpenedFolder { capture: Arc::new(whole.capture), source: name });
+            }
+        };
+        let Some(source) = &frame.source else { return };
+        let spec = OpenSpec::new(disk::scene_file(Path::new(folder)).display().to_string());
+        let scene = Box::new(source.scene.clone());
+        let request = Box::new(RunRequest::of(&scene, source.request.choice.clone(), source.request.size));
+        self.brought = Brought::default();
+        self.take_over(&request);
+        let (scene_number, files) = (self.scenes, crate::scene::files_of(&spec));
+        (self.open, self.spec) = (Some(scene.clone()), Some(spec));
+        (self.tell)(News::Opened { scene_number, scene, source: Some(name), files, request });
+        self.show(frame, Duration::ZERO);
+    }
+
+    /// Tells of a frame that was run.
+    fn show(&mut self, frame: RunFrame, took: Duration) {
+        self.took = took;
+        self.frames += 1;
+        (self.tell)(News::Captured { frame: self.frames, run: frame.clone() });
+        self.last = Some(frame);
     }
 
     /// The open scene from its file again: its objects and lights are the file's, camera and technique stay.
@@ -383,12 +410,8 @@ impl Work {
         self.session()?;
         (self.tell)(News::Busy(format!("capturing {}", request.choice.technique().name())));
         let start = Instant::now();
-        let (capture, plan) = self.session()?.capture_with_plan(&scene, &request)?;
-        let (capture, plan) = (Arc::new(capture), Arc::new(plan));
-        self.took = start.elapsed();
-        self.frames += 1;
-        (self.tell)(News::Captured { frame: self.frames, capture: Arc::clone(&capture), plan: Arc::clone(&plan) });
-        self.last = Some(RunFrame { scene, request, capture, plan });
+        let frame = self.session()?.render(scene, request)?;
+        self.show(frame, start.elapsed());
         Ok(())
     }
 

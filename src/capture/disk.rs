@@ -6,6 +6,8 @@
 use super::manifest::{self, LightEntry, Manifest, Matrices, PassEntry, StateFiles};
 use super::{Aspect, Capture, CapturedLight, CapturedMap, FrameSnapshot, FrameTarget, Image, Snapshot, Step, files};
 use crate::accuracy::Finding;
+use crate::plan::FramePlan;
+use crate::scene::{self, Scene, TechniqueRequest};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
@@ -14,18 +16,54 @@ use std::sync::Arc;
 use std::time::Instant;
 
 mod draws;
+mod frame;
 mod reader;
 
 pub use super::error::CaptureError;
-pub use reader::read;
+pub use reader::{read, read_whole};
 
 const MANIFEST: &str = "manifest.json";
 const PLAN: &str = "plan.txt";
+const SCENE: &str = "scene.toml";
+
+/// What a capture folder is written from.
+#[derive(Debug, Clone, Copy)]
+pub struct Contents<'a> {
+    /// What the frame left.
+    pub capture: &'a Capture,
+    /// The frame, by which it can be run and asked about again.
+    pub plan: Option<&'a FramePlan>,
+    /// What it is of, at the moment that was captured.
+    pub scene: Option<&'a Scene>,
+}
+
+impl<'a> From<&'a Capture> for Contents<'a> {
+    fn from(capture: &'a Capture) -> Contents<'a> {
+        Contents { capture, plan: None, scene: None }
+    }
+}
+
+/// All that a capture folder holds.
+#[derive(Debug, Clone)]
+pub struct WholeFrame {
+    /// What the frame left.
+    pub capture: Capture,
+    /// The frame; `None` in folders of schema 1.
+    pub plan: Option<FramePlan>,
+    /// What it is of; `None` in folders of schema 1, and of frames that another program drew.
+    pub scene: Option<Scene>,
+}
 
 /// Is there a capture folder at this path?
 #[must_use]
 pub fn is_capture(folder: &Path) -> bool {
     folder.join(MANIFEST).is_file()
+}
+
+/// Where a capture folder holds its scene, if it does.
+#[must_use]
+pub fn scene_file(folder: &Path) -> PathBuf {
+    folder.join(SCENE)
 }
 
 /// Checks that [`write()`] may put a capture at this path, before any work is done for it.
@@ -49,14 +87,15 @@ pub fn check_target(folder: &Path, overwrite: bool) -> Result<(), CaptureError> 
     }
 }
 
-/// Writes `capture` to `folder`, whole or not at all, and returns how many milliseconds its
-/// pictures took (also in the manifest).
+/// Writes a capture, with its frame and scene where they are given, to `folder`, whole or not at all, and returns how
+/// many milliseconds its pictures took (also in the manifest).
 ///
 /// # Errors
 /// A folder that is there already and may not be replaced, or a place that can't be written to.
-pub fn write(capture: &Capture, folder: &Path, overwrite: bool) -> Result<f64, CaptureError> {
+pub fn write<'a>(contents: impl Into<Contents<'a>>, folder: &Path, overwrite: bool) -> Result<f64, CaptureError> {
     check_target(folder, overwrite)?;
-    put_folder(folder, |new| write_files(capture, new))
+    let contents = contents.into();
+    put_folder(folder, |new| write_files(contents, new))
 }
 
 /// Writes a picture's values as a NumPy array, or those of all layers of a map; colours as numbers too.
@@ -124,7 +163,12 @@ fn put_in_place(folder: &Path, new: &Path, old: &Path) -> Result<(), CaptureErro
     Ok(())
 }
 
-fn write_files(capture: &Capture, folder: &Path) -> Result<f64, CaptureError> {
+/// A name without a path, and not hidden: what a folder names lies in it.
+fn is_plain(file: &str) -> bool {
+    !file.contains(['/', '\\']) && !file.starts_with('.')
+}
+
+fn write_files(Contents { capture, plan, scene }: Contents, folder: &Path) -> Result<f64, CaptureError> {
     let start = Instant::now();
     fs::create_dir_all(folder).map_err(|source| CaptureError::Write { file: folder.to_owned(), source })?;
     let mut manifest = Manifest::new(capture);
@@ -138,6 +182,14 @@ fn write_files(capture: &Capture, folder: &Path) -> Result<f64, CaptureError> {
     }
     if !capture.plan_text.is_empty() {
         files::write(&folder.join(PLAN), |out| out.write_all(capture.plan_text.as_bytes()))?;
+    }
+    if let Some(plan) = plan {
+        frame::write(plan, folder)?;
+    }
+    if let Some(scene) = scene {
+        let settings = capture.settings.clone();
+        let technique = Some(TechniqueRequest { name: capture.technique.clone(), settings });
+        scene::file::store(&Scene { technique, ..scene.clone() }, None, &folder.join(SCENE))?;
     }
     let write_ms = start.elapsed().as_secs_f64() * 1e3;
     manifest.timing.write_ms = Some(write_ms);

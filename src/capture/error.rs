@@ -25,6 +25,12 @@ pub enum CaptureError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// The scene can't be put beside the frame.
+    #[error(transparent)]
+    Store(#[from] crate::scene::file::StoreError),
+    /// The scene in the folder is broken.
+    #[error(transparent)]
+    Scene(#[from] crate::scene::SceneError),
     /// A file is missing or broken.
     #[error("{}: {reason}; capture the scene again", file.display())]
     Read {

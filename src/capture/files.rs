@@ -39,6 +39,35 @@ pub(super) fn write_array(path: &Path, image: &Image) -> Result<(), CaptureError
     write(path, |out| write_arrays(out, &[], [image], image))
 }
 
+/// Values as an array of rows of `columns`, or of one dimension where that is 1.
+pub(super) fn write_values<T: npyz::AutoSerialize + Copy>(
+    path: &Path,
+    values: &[T],
+    columns: u64,
+) -> Result<(), CaptureError> {
+    let shape = [values.len() as u64 / columns, columns];
+    let shape = if columns == 1 { &shape[..1] } else { &shape[..] };
+    write(path, |out| {
+        let mut array = npyz::WriteOptions::new().default_dtype().shape(shape).writer(out).begin_nd()?;
+        array.extend(values.iter().copied())?;
+        array.finish()
+    })
+}
+
+/// What [`write_values`] wrote.
+pub(super) fn read_values<T: npyz::Deserialize>(path: &Path, columns: u64) -> Result<Vec<T>, CaptureError> {
+    let read = || {
+        let array = open(path)?;
+        let shape = checked_shape(path, &array, size_of::<T>() as u64)?;
+        let is_expected = if columns == 1 { shape.len() == 1 } else { shape.len() == 2 && shape[1] == columns };
+        if !is_expected {
+            return Err(format!("its rows have not {columns} values"));
+        }
+        array.into_vec::<T>().map_err(|error| format!("it is cut off ({error})"))
+    };
+    read().map_err(|reason| broken(path, reason))
+}
+
 /// Pictures of one size and format as one array with a dimension more.
 pub(super) fn write_layers(path: &Path, layers: &[Arc<Image>]) -> Result<(), CaptureError> {
     write(path, |out| {

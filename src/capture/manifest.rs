@@ -11,8 +11,10 @@ use glam::{DMat4, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The version of the folder's layout.
-pub(super) const SCHEMA: u32 = 1;
+/// The version of the folder's layout: 2 has the frame and the scene.
+const SCHEMA: u32 = 2;
+/// Those that can be read.
+pub(super) const SCHEMAS: std::ops::RangeInclusive<u32> = 1..=SCHEMA;
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Manifest {

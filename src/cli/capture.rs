@@ -3,7 +3,8 @@
 use super::options::{FrameOptions, SceneOptions};
 use super::progress::with_bar;
 use super::{CliError, output};
-use crate::capture::{Capture, disk};
+use crate::capture::Capture;
+use crate::capture::disk::{self, Contents};
 use crate::plan::DecidedBy;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -85,7 +86,7 @@ impl<'a> Job<'a> {
     pub fn run(self) -> Result<(), CliError> {
         let mut session = Session::new(self.adapter)?;
         let before = self.started.elapsed().as_secs_f64() * 1e3;
-        let mut capture = session.capture(&self.scene, &self.request)?;
+        let (mut capture, plan) = session.capture_with_plan(&self.scene, &self.request)?;
         let Writing { folder, overwrite, truth } = self.writing;
         if truth {
             capture = with_bar("ground truth", &Progress::default(), |progress| {
@@ -94,7 +95,7 @@ impl<'a> Job<'a> {
         }
         // Loading the scene and opening the GPU come before the first frame too.
         capture.timing.setup_ms = capture.timing.setup_ms.map(|setup| setup + before);
-        disk::write(&capture, folder, overwrite)?;
+        disk::write(Contents { capture: &capture, plan: Some(&plan), scene: Some(&self.scene) }, folder, overwrite)?;
         output::print(&summary(&capture, folder))
     }
 }

@@ -1,7 +1,7 @@
 //! `stencilscope diagnose`: where shadows are wrong, why, what mends it, and the proof.
 
 use super::fix::Fix;
-use super::options::{FrameOptions, SceneOptions};
+use super::options::{FrameOptions, SceneOptions, Subject};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::{CaptureError, disk};
@@ -49,12 +49,9 @@ pub struct DiagnoseArguments {
 /// A scene, option or place that can't be used; no GPU; [`CliError::Wrong`] where pixels are wrong.
 pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     let DiagnoseArguments { scene_options, frame, output: folder, .. } = arguments;
-    let loaded = scene_options.load(&arguments.scene)?;
-    let scene = loaded.at(scene_options.time);
-    let mut request = frame.request(&scene)?;
     frame.refuse_draws("a diagnosis looks at draws by itself")?;
     frame.refuse_external_capture("a diagnosis runs many frames")?;
-    request.timing_runs = 0;
+    let Subject { loaded, scene, request, .. } = Subject::new(&arguments.scene, scene_options, frame)?;
     let json = arguments.json.as_ref().and_then(Option::as_deref);
     json.map_or(Ok(()), output::check_target)?;
     folder.as_deref().map_or(Ok(()), |folder| check_folder(folder, arguments.overwrite))?;

@@ -1,12 +1,14 @@
 //! Options that commands share, and how their values are read.
 
 use super::CliError;
+use crate::capture::disk;
 use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, open};
-use crate::session::{CaptureRequest, Every};
+use crate::session::{CaptureRequest, Every, FrameSource, RunFrame, Session};
 use crate::technique::{Choice, ChoiceError, Technique};
 use clap::Args;
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// The largest picture along a side.
 const LARGEST: u32 = 16_384;
@@ -79,6 +81,14 @@ impl SceneOptions {
         OpenSpec { name: name.to_owned(), floor: !self.no_floor }
     }
 
+    /// Is the scene to be taken as it is?
+    fn is_untouched(&self) -> bool {
+        let SceneOptions { no_floor, eye, target, up, fov, near, far, light, sun, time } = self;
+        let points = [eye, target, up].iter().all(|point| point.is_none());
+        let numbers = [fov, near, far].iter().all(|number| number.is_none());
+        !no_floor && points && numbers && light.is_empty() && sun.is_empty() && *time == 0.0
+    }
+
     /// Opens the scene and applies these options; the result stands still at `--time`.
     ///
     /// # Errors
@@ -119,6 +129,54 @@ impl SceneOptions {
             scene.lights = lights;
         }
         Ok(())
+    }
+}
+
+/// What a command asks about: a scene that is to be drawn, or the frame of a capture folder.
+pub struct Subject {
+    /// Still at time 0, with all motions.
+    pub loaded: Scene,
+    /// As it stands at the moment that is asked about.
+    pub scene: Scene,
+    /// How it is drawn, untimed.
+    pub request: CaptureRequest,
+    stored: Option<RunFrame>,
+}
+
+impl Subject {
+    /// Opens a scene, or a folder.
+    ///
+    /// # Errors
+    /// A scene, option or folder that can't be used; a folder that holds pictures alone; options that would make another
+    /// frame of it.
+    pub fn new(name: &str, scene: &SceneOptions, frame: &FrameOptions) -> Result<Subject, CliError> {
+        let folder = Path::new(name);
+        if !disk::is_capture(folder) {
+            let loaded = scene.load(name)?;
+            let at = loaded.at(scene.time);
+            let request = CaptureRequest { timing_runs: 0, ..frame.request(&at)? };
+            return Ok(Subject { loaded, scene: at, request, stored: None });
+        }
+        if !scene.is_untouched() || frame.technique.is_some() || !frame.set.is_empty() {
+            let mend = "leave its options out, or name its scene.toml in place of the folder";
+            return Err(CliError::Usage(format!("`{name}` is a frame that was captured already: {mend}")));
+        }
+        let alone = "it holds pictures alone, as of an older version: capture the scene again";
+        let whole = RunFrame::from_folder(disk::read_whole(folder)?);
+        let stored = whole.map_err(|_| CliError::Usage(format!("`{name}`: {alone}")))?;
+        let FrameSource { scene, request } = stored.source()?.clone();
+        Ok(Subject { loaded: scene.clone(), scene, request, stored: Some(stored) })
+    }
+
+    /// The frame: as it was stored, or run now.
+    ///
+    /// # Errors
+    /// A scene that can't be drawn; a lost GPU.
+    pub fn frame(self, session: &mut Session) -> Result<RunFrame, CliError> {
+        match self.stored {
+            Some(stored) => Ok(stored),
+            None => Ok(session.render(self.scene, self.request)?),
+        }
     }
 }
 

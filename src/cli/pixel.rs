@@ -1,15 +1,15 @@
 //! `stencilscope pixel`: what happened to a pixel, fragment by fragment.
 
-use super::options::{FrameOptions, SceneOptions, pixel};
+use super::options::{FrameOptions, SceneOptions, Subject, pixel};
 use super::{CliError, output};
 use crate::history::PixelDocument;
-use crate::session::{Session, SessionError};
+use crate::session::{RunFrame, Session, SessionError};
 use clap::Args;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub struct PixelArguments {
-    /// A built-in scene, a scene file (.toml) or a model (.obj)
+    /// A built-in scene, a scene file (.toml), a model (.obj) or a capture folder
     scene: String,
     /// Column and row from the top left; repeatable
     #[arg(long, value_name = "X,Y", value_parser = pixel, required = true)]
@@ -23,25 +23,23 @@ pub struct PixelArguments {
     json: Option<Option<String>>,
 }
 
-/// Renders the scene once and tells the history of each pixel.
+/// Renders the scene once, or takes the frame of a folder, and tells the history of each pixel.
 ///
 /// # Errors
 /// A scene, option or pixel that can't be used; no GPU; a file that can't be written;
 /// [`CliError::WrongHistory`].
 pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
-    let scene = arguments.scene_options.open(&arguments.scene)?;
-    let mut request = arguments.frame.request(&scene)?;
     arguments.frame.refuse_draws("a history always goes fragment by fragment")?;
-    request.timing_runs = 0;
-    let size = request.size;
+    let subject = Subject::new(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
+    let size = subject.request.size;
     if let Some(pixel) = arguments.at.iter().find(|[x, y]| *x >= size[0] || *y >= size[1]) {
         return Err(SessionError::NoSuchPixel { pixel: *pixel, size }.into());
     }
     let file = arguments.json.as_ref().and_then(Option::as_deref);
     file.map_or(Ok(()), output::check_target)?;
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
-    let (capture, plan) = session.capture_with_plan(&scene, &request)?;
-    let mut stories = vec![format!("{}, {}, {}x{}\n", scene.name, capture.technique, size[0], size[1])];
+    let RunFrame { capture, plan, .. } = subject.frame(&mut session)?;
+    let mut stories = vec![format!("{}, {}, {}x{}\n", capture.scene, capture.technique, size[0], size[1])];
     let mut documents = Vec::with_capacity(arguments.at.len());
     let mut wrong = 0;
     for pixel in &arguments.at {

@@ -88,11 +88,11 @@ pub mod window {
             let request = scene_request(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
             return Ok(ViewRequest { step: arguments.pass, pick: arguments.at, truth: arguments.truth, ..request });
         }
-        let capture = disk::read(folder)?;
+        let whole = disk::read_whole(folder)?;
         // How a scene would be rendered that is opened from the window later.
-        let request = CaptureRequest::new(Choice::new(Technique::ZFail), capture.size);
+        let request = CaptureRequest::new(Choice::new(Technique::ZFail), whole.capture.size);
         Ok(ViewRequest {
-            source: ViewSource::Capture(Box::new(capture)),
+            source: ViewSource::Folder(Box::new(whole)),
             name: arguments.scene_options.spec(&arguments.scene),
             capture: request,
             time: 0.0,

@@ -37,19 +37,20 @@ pub use raster::{ColorWrite, RasterState, StencilFace};
 
 use crate::math::depth::DepthCurve;
 use glam::{DMat4, DVec3, Mat4};
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Index into [`FramePlan::attachments`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct AttachmentId(pub usize);
 
 /// Index into [`FramePlan::views`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ViewId(pub usize);
 
 /// Index of a light, in the scene and in [`FramePlan::lights`] alike.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct LightId(pub usize);
 
 impl LightId {
@@ -61,11 +62,11 @@ impl LightId {
 }
 
 /// Index into [`FramePlan::meshes`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct MeshId(pub usize);
 
 /// One frame, ready to be run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FramePlan {
     /// Name of the technique that made it.
     pub technique: String,
@@ -85,7 +86,8 @@ pub struct FramePlan {
     pub lights: Vec<PlanLight>,
     /// Linear RGB light that reaches every surface.
     pub ambient: [f32; 3],
-    /// Vertices and indices of the draws.
+    /// Vertices and indices of the draws. Capture folders hold them as arrays.
+    #[serde(skip)]
     pub meshes: Vec<DrawMesh>,
     /// In the order in which they run.
     pub passes: Vec<Pass>,
@@ -94,7 +96,7 @@ pub struct FramePlan {
 }
 
 /// A picture that passes draw into.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Attachment {
     /// For people: `color`, `depth and stencil`, `light 0 map`, `light 0 labels`.
     pub name: String,
@@ -109,7 +111,7 @@ pub struct Attachment {
 }
 
 /// What an attachment is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum AttachmentRole {
     /// The picture.
     Color,
@@ -125,7 +127,7 @@ pub enum AttachmentRole {
 }
 
 /// Where a pass is seen from.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanView {
     /// For people: `camera`, `light 0 face +x`.
     pub name: String,
@@ -136,7 +138,7 @@ pub struct PlanView {
 }
 
 /// What shaders know of a light.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanLight {
     /// Homogeneous, relative to the eye: `(L.xyz − L.w·eye, L.w)`.
     pub relative_position: [f32; 4],
@@ -156,7 +158,7 @@ pub struct PlanLight {
 
 /// What a light sees, in layers: the face of a shadow map or the six of a cube in wgpu's order
 /// (+x −x +y −y +z −z), the texture of each receiver, or the silhouette of each caster.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanMap {
     /// Its texture.
     pub attachment: AttachmentId,
@@ -186,7 +188,7 @@ impl PlanMap {
 }
 
 /// How a shadow map is looked up.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MapLookup {
     /// What texels hold that no caster covers; 0 where depth is reversed.
     pub clear_depth: f32,
@@ -199,7 +201,7 @@ pub struct MapLookup {
 }
 
 /// One render pass.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Pass {
     /// Short, lower case: `ambient`, `volumes`, `light`.
     pub name: String,
@@ -219,7 +221,8 @@ pub struct Pass {
     pub scissor: Option<[u32; 4]>,
     /// In order.
     pub draws: Vec<Draw>,
-    /// What it leaves in its colour target where no draw makes it.
+    /// What it leaves in its colour target where no draw makes it. Capture folders hold it as an array.
+    #[serde(skip)]
     pub image: Option<CpuImage>,
 }
 
@@ -241,7 +244,7 @@ impl Pass {
 }
 
 /// The colour target of a pass.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ColorTarget {
     /// Which picture.
     pub attachment: AttachmentId,
@@ -253,7 +256,7 @@ pub struct ColorTarget {
 }
 
 /// The depth-stencil target of a pass.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DepthStencilTarget {
     /// Which picture.
     pub attachment: AttachmentId,
@@ -266,7 +269,7 @@ pub struct DepthStencilTarget {
 }
 
 /// One draw call.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Draw {
     /// Short: `sides of bunny`.
     pub name: String,
@@ -345,7 +348,7 @@ impl Part {
 }
 
 /// Which shader a draw runs. All share one vertex transformation, so depths are bit-equal.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Program {
     /// Positions only: volumes, caps, planar shadows, shadow maps, receiver marks.
     Position,
@@ -371,7 +374,7 @@ pub enum Program {
 }
 
 /// Whom a shader asks how much of a light arrives at a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Visibility {
     /// Nothing: all that the depth and stencil tests let through is lit.
     Everywhere,
@@ -444,7 +447,7 @@ impl Program {
 }
 
 /// Values that one draw hands to its shader.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct DrawConstants {
     /// Of the surface.
     pub material: crate::scene::Material,

@@ -1,12 +1,13 @@
 //! The fixed-function state of a draw, hashable, built of wgpu's plain value types.
 
+use serde::{Deserialize, Serialize};
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
 /// Tests of one face of the stencil buffer.
 pub type StencilFace = wgpu::StencilFaceState;
 
 /// The whole raster state of a draw. Surfaces are never culled unless it says so.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct RasterState {
     /// A fragment passes when `compare(fragment depth, stored depth)` holds.
     pub depth_compare: CompareFunction,
@@ -28,7 +29,7 @@ pub struct RasterState {
 }
 
 /// What passing fragments do to the colour target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ColorWrite {
     /// Nothing.
     None,

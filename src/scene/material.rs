@@ -1,7 +1,9 @@
 //! How a surface answers light.
 
+use serde::{Deserialize, Serialize};
+
 /// Where lighting is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum Shading {
     /// One normal a triangle.
     #[default]
@@ -13,7 +15,7 @@ pub enum Shading {
 }
 
 /// Colour and gloss of a surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Linear RGB reflectance, each in [0, 1].
     pub color: [f32; 3],

@@ -2,11 +2,13 @@
 
 use super::{CaptureRequest, Fault, Session, SessionError, median_ms};
 use crate::ask::{Answer, Ask, CaptureOf, DrawsOf, HistoryOf, TestsOf, WallsOf, without};
+use crate::capture::disk::{Contents, WholeFrame};
 use crate::capture::{Capture, Timing};
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::reading::{ObjectMesh, TestOutcomes};
-use crate::scene::Scene;
+use crate::scene::{Scene, TechniqueRequest};
+use crate::technique::Choice;
 use std::sync::Arc;
 
 /// Frames that are timed, each with and without snapshots.
@@ -20,14 +22,55 @@ const MOST_OF_A_TRIAL: u64 = 128 << 20;
 /// A frame that was run. It never changes.
 #[derive(Debug, Clone)]
 pub struct RunFrame {
-    /// The scene at the moment that was captured.
-    pub scene: Scene,
-    /// How it was captured.
-    pub request: CaptureRequest,
     /// What was seen.
     pub capture: Arc<Capture>,
     /// What was run.
     pub plan: Arc<FramePlan>,
+    /// What it was made from; `None`: another program drew it.
+    pub source: Option<Arc<FrameSource>>,
+}
+
+/// What a frame was made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameSource {
+    /// The scene at the moment that was captured.
+    pub scene: Scene,
+    /// How it was captured.
+    pub request: CaptureRequest,
+}
+
+impl RunFrame {
+    /// The frame of a capture folder that holds all of it.
+    ///
+    /// # Errors
+    /// What the folder holds, where that is the capture alone, or the technique is not known here.
+    pub fn from_folder(whole: WholeFrame) -> Result<RunFrame, Box<WholeFrame>> {
+        let Capture { technique, settings, size, .. } = &whole.capture;
+        let choice = Choice::parse(&TechniqueRequest { name: technique.clone(), settings: settings.clone() });
+        let request = choice.map(|choice| CaptureRequest::new(choice, *size));
+        match (whole, request) {
+            (WholeFrame { capture, plan: Some(plan), scene: Some(scene) }, Ok(request)) => {
+                let source = Some(Arc::new(FrameSource { scene, request }));
+                Ok(RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source })
+            }
+            (whole, _) => Err(Box::new(whole)),
+        }
+    }
+
+    /// What it was made from.
+    ///
+    /// # Errors
+    /// Another program drew it.
+    pub fn source(&self) -> Result<&FrameSource, SessionError> {
+        self.source.as_deref().ok_or(SessionError::NoScene)
+    }
+
+    /// What a capture folder of it holds.
+    #[must_use]
+    pub fn contents(&self) -> Contents<'_> {
+        let scene = self.source.as_ref().map(|source| &source.scene);
+        Contents { capture: &self.capture, plan: Some(&self.plan), scene }
+    }
 }
 
 impl Session {
@@ -66,27 +109,30 @@ impl Session {
                 Answer::HistoryOf(Arc::new(self.history(plan, capture, *at)?))
             }
             Ask::AnatomyOf(_) => {
-                let RunFrame { scene, request, plan, .. } = of_frame()?;
-                Answer::AnatomyOf(Arc::new(self.anatomy(scene, &request.choice, plan)))
+                let frame = of_frame()?;
+                let FrameSource { scene, request } = frame.source()?;
+                Answer::AnatomyOf(Arc::new(self.anatomy(scene, &request.choice, &frame.plan)))
             }
             Ask::TestsOf(TestsOf { step, draw }) => {
                 let tests = self.step_tests(&of_frame()?.plan, *step, *draw)?;
                 Answer::TestsOf(Arc::new(TestOutcomes::new(tests)))
             }
             Ask::TruthOf(_) => {
-                let RunFrame { scene, capture, .. } = of_frame()?;
-                Answer::TruthOf(Arc::new(self.truth(scene, capture, progress)?))
+                let frame = of_frame()?;
+                Answer::TruthOf(Arc::new(self.truth(&frame.source()?.scene, &frame.capture, progress)?))
             }
             Ask::DiagnosisOf(_) => {
                 let frame = of_frame()?;
                 self.make_room(&frame.plan);
-                Answer::DiagnosisOf(Arc::new(self.diagnose(&frame.scene, &frame.request, Fault::None, progress)?))
+                let FrameSource { scene, request } = frame.source()?;
+                Answer::DiagnosisOf(Arc::new(self.diagnose(scene, request, Fault::None, progress)?))
             }
             Ask::TimingOf(_) => {
-                let RunFrame { scene, request, capture, .. } = of_frame()?;
+                let frame = of_frame()?;
+                let FrameSource { scene, request } = frame.source()?;
                 let cost = self.capture_cost(scene, request, TIMED_FRAMES)?;
                 let (frame_ms, captured_ms) = (median_ms(&cost.frames), median_ms(&cost.captured));
-                Answer::TimingOf(Arc::new(Timing { frame_ms, captured_ms, ..capture.timing }))
+                Answer::TimingOf(Arc::new(Timing { frame_ms, captured_ms, ..frame.capture.timing }))
             }
             Ask::ReadersOf(_) => {
                 let RunFrame { capture, plan, .. } = of_frame()?;

@@ -22,7 +22,7 @@ mod volumes;
 pub use crate::gpu::GpuError;
 #[cfg(feature = "inspector")]
 pub(crate) use crate::gpu::MEMORY_HINTS;
-pub use answer::RunFrame;
+pub use answer::{FrameSource, RunFrame};
 pub use draws::Every;
 pub use history::HistoryCost;
 pub use measure::{Measured, Measurement};
@@ -109,6 +109,9 @@ pub enum SessionError {
     /// There is nothing to ask about.
     #[error("the open scene was not rendered: mend what the error says, then ask again")]
     NoFrame,
+    /// What only scenes have.
+    #[error("another program drew this frame, and there is no scene that it could be drawn from anew")]
+    NoScene,
     /// No fragments of a step can be counted.
     #[error("step {} draws no triangles into the picture: select one that does", step + 1)]
     NoTests {
@@ -242,6 +245,16 @@ impl Session {
     /// A scene that the technique can't draw, a picture larger than the adapter allows, a lost GPU.
     pub fn capture(&mut self, scene: &Scene, request: &CaptureRequest) -> Result<Capture, SessionError> {
         Ok(self.capture_with_plan(scene, request)?.0)
+    }
+
+    /// Renders a scene, and keeps all that can be asked about.
+    ///
+    /// # Errors
+    /// As [`Session::capture`].
+    pub fn render(&mut self, scene: Scene, request: CaptureRequest) -> Result<RunFrame, SessionError> {
+        let (capture, plan) = self.capture_with_plan(&scene, &request)?;
+        let source = Some(Arc::new(FrameSource { scene, request }));
+        Ok(RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source })
     }
 
     /// The same, with the plan that it ran: what [`Session::history`] asks about.

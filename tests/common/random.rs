@@ -15,6 +15,11 @@ impl Random {
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
+    /// From 0 up to and without `end`.
+    pub fn below(&mut self, end: u32) -> u32 {
+        (self.unit() * f64::from(end)) as u32
+    }
+
     pub fn within(&mut self, reach: f64) -> DVec3 {
         let mut one = || (self.unit() * 2.0 - 1.0) * reach;
         DVec3::new(one(), one(), one())

@@ -13,7 +13,7 @@ use stencilscope::inspector::{Action, Inspector};
 use stencilscope::plan::FramePlan;
 use stencilscope::reading::shown::PictureKind;
 use stencilscope::scene::{OpenSpec, Scene, open};
-use stencilscope::session::{CaptureRequest, RunFrame, Session};
+use stencilscope::session::{CaptureRequest, FrameSource, RunFrame, Session};
 use stencilscope::technique::{Choice, Technique};
 
 type View = fn(&mut Harness<Seen>);
@@ -80,7 +80,11 @@ fn answer(inspector: &mut Inspector, asked: &[Action], session: &mut Session, sc
     let mut choice = Choice::new(Technique::from_name(&capture.technique).expect("a technique"));
     capture.settings.iter().for_each(|(key, value)| drop(choice.set(key, value)));
     let request = CaptureRequest::new(choice, capture.size);
-    let frame = RunFrame { scene: scene.clone(), request, capture, plan: Arc::new(plan.clone()) };
+    let frame = RunFrame {
+        capture,
+        plan: Arc::new(plan.clone()),
+        source: Some(Arc::new(FrameSource { scene: scene.clone(), request })),
+    };
     for action in asked {
         let Action::Ask(asked) = action else { continue };
         let result = session.answer(&asked.ask, scene, Some(&frame), &asked.progress);

@@ -72,7 +72,7 @@ fn wait_until_busy(news: &Receiver<News>, with: &str) {
 
 /// Technique, settings and size of the next frame.
 fn captured(news: &Receiver<News>) -> (String, std::collections::BTreeMap<String, String>, [u32; 2]) {
-    let capture = wait(news, |news| if let News::Captured { capture, .. } = news { Some(capture) } else { None });
+    let capture = wait(news, |news| if let News::Captured { run, .. } = news { Some(run.capture) } else { None });
     (capture.technique.clone(), capture.settings.clone(), capture.size)
 }
 
@@ -354,7 +354,7 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
     };
     assert!(worker.order(Order::Run { scene: 1, request: Box::new(request) }));
     let plan = wait(&news, |news| match news {
-        News::Captured { plan, .. } if plan.technique == "z-fail" => Some(plan),
+        News::Captured { run, .. } if run.plan.technique == "z-fail" => Some(run.plan),
         _ => None,
     });
     let names: std::collections::BTreeSet<&str> =

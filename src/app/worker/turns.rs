@@ -99,12 +99,15 @@ impl Work {
         asked: &Asked,
         inbox: &mut Inbox,
     ) -> Result<MeasuredReport, SessionError> {
+        // A folder's frame was shown without it.
+        self.session()?;
         let (Some(session), Some(frame), Some(open)) = (&mut self.session, &self.last, &self.open) else {
             return Err(SessionError::NoFrame);
         };
         let (tell, frames) = (&self.tell, self.frames);
         session.make_room(&frame.plan);
-        let what = Measurement { choices: question.choices.clone(), size: frame.request.size, runs: question.runs };
+        let scene = &frame.source()?.scene;
+        let what = Measurement { choices: question.choices.clone(), size: frame.plan.size, runs: question.runs };
         let mut given_back = Instant::now();
         let mut between = |session: &mut Session| {
             // What one row leaves behind, the next does not fill.
@@ -123,10 +126,10 @@ impl Work {
                 }
             }
         };
-        let measured = session.measure_between(&frame.scene, &what, &asked.progress, &mut between)?;
+        let measured = session.measure_between(scene, &what, &asked.progress, &mut between)?;
         let is_left_out = |choice: &&crate::technique::Choice| measured.iter().all(|row| row.choice != **choice);
         let left_out: BTreeSet<String> = what.choices.iter().filter(is_left_out).map(|one| one.short_name()).collect();
-        let rows = report_rows(&frame.scene.name, what.size, &measured);
+        let rows = report_rows(&scene.name, what.size, &measured);
         let report = Report::new(session.adapter().clone(), rows);
         Ok(MeasuredReport { report, left_out: left_out.into_iter().collect() })
     }

@@ -129,7 +129,10 @@ impl Reader<'_> {
                 };
                 let target = target.and_then(|(name, file, format)| Some((name, file.as_ref()?, format)));
                 let target = target.map(|(name, file, format)| {
-                    Ok(Aspect { image: self.image(file, format)?, unchanged: is_unchanged(files, name) })
+                    Ok::<_, CaptureError>(Aspect {
+                        image: self.image(file, format)?,
+                        unchanged: is_unchanged(files, name),
+                    })
                 });
                 (Snapshot::Frame(frame), target.transpose()?)
             }

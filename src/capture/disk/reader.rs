@@ -5,14 +5,27 @@ use super::super::{
     Aspect, Capture, CapturedLight, CapturedMap, CapturedTruth, DrawSummary, FrameSnapshot, FrameTarget, Image,
     PixelFormat, Snapshot, Step, files,
 };
-use super::{CaptureError, MANIFEST, PLAN};
+use super::{CaptureError, MANIFEST, PLAN, SCENE, WholeFrame, frame};
 use crate::math::depth::DepthMapping;
+use crate::scene;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads a capture folder.
+/// Reads a capture folder with the frame that it is of.
+///
+/// # Errors
+/// As [`read`]; a frame or a scene that is broken.
+pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
+    let capture = read(folder)?;
+    let plan = frame::read(folder, &capture)?;
+    let file = folder.join(SCENE);
+    let scene = if file.exists() { Some(scene::file::load(&file)?) } else { None };
+    Ok(WholeFrame { capture, plan, scene })
+}
+
+/// Reads a capture folder, but for the frame that it is of.
 ///
 /// # Errors
 /// A file that is missing, broken or of another size than the manifest says.
@@ -21,8 +34,8 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
     let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
     let manifest: Manifest = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    if manifest.schema != manifest::SCHEMA {
-        return Err(wrong(format!("its schema is {}, not {}", manifest.schema, manifest::SCHEMA)));
+    if !manifest::SCHEMAS.contains(&manifest.schema) {
+        return Err(wrong(format!("its schema is {}, of which this version knows nothing", manifest.schema)));
     }
     if !manifest.size.iter().all(|pixels| (1..=files::LARGEST).contains(pixels)) {
         return Err(wrong(format!("its picture is {}x{}", manifest.size[0], manifest.size[1])));
@@ -130,7 +143,7 @@ impl Reader<'_> {
 
     /// Only plain names: a manifest can't point out of its folder.
     fn path(&self, file: &str) -> Result<PathBuf, CaptureError> {
-        if file.contains(['/', '\\']) || file.starts_with('.') {
+        if !super::is_plain(file) {
             return Err(self.wrong(MANIFEST, "it names a file outside its folder"));
         }
         Ok(self.folder.join(file))
@@ -167,7 +180,7 @@ impl Reader<'_> {
             let file =
                 file.as_ref().ok_or_else(|| self.wrong(MANIFEST, &format!("a pass or draw lacks its {name}")))?;
             let unchanged = unchanged.iter().any(|aspect| aspect == name);
-            Ok(Aspect { image: self.image(file, format)?, unchanged })
+            Ok::<_, CaptureError>(Aspect { image: self.image(file, format)?, unchanged })
         };
         let color = aspect("color", &files.color, PixelFormat::Rgba8Srgb)?;
         let depth = aspect("depth", &files.depth, PixelFormat::Depth32F)?;

@@ -1,0 +1,249 @@
+//! The frame as data: `frame.json` is the plan, but for meshes and pictures from the CPU, which are arrays beside it.
+//!
+//! What is read is not trusted: indexes, sizes and lengths are checked before anything runs it.
+
+use super::super::files;
+use super::{Capture, CaptureError};
+use crate::plan::{
+    Attachment, AttachmentId, AttachmentRole, Blob, CpuImage, DrawMesh, FramePlan, LightId, MakeImage, PlanLight,
+    SurfaceData, lint,
+};
+use foldhash::quality::FixedState;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::hash::BuildHasher;
+use std::path::Path;
+use std::sync::Arc;
+
+pub(super) const FRAME: &str = "frame.json";
+
+/// Layers of the largest attachment that is read.
+const MOST_LAYERS: u32 = 2048;
+
+#[derive(Serialize, Deserialize)]
+struct FrameEntry<P> {
+    plan: P,
+    meshes: Vec<MeshEntry>,
+    /// Of passes whose picture comes from the CPU.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    images: Vec<ImageEntry>,
+}
+
+/// A mesh and the files of its arrays. What two meshes share is one file.
+#[derive(Serialize, Deserialize)]
+struct MeshEntry {
+    name: String,
+    /// Homogeneous: (vertices, 4), `<f4`.
+    vertices: String,
+    /// (triangles, 3), `<u4`.
+    indices: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    surface: Option<SurfaceEntry>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct SurfaceEntry {
+    /// Of each corner of each triangle: (3 · triangles, 4), `<f4`.
+    normals: String,
+    /// A word a triangle, `<u4`.
+    sides: String,
+}
+
+#[derive(Serialize, Deserialize)]
+struct ImageEntry {
+    pass: usize,
+    name: String,
+    /// The texels as bytes.
+    file: String,
+}
+
+/// Writes a plan.
+pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError> {
+    let mut written = BTreeMap::new();
+    let mut entry = FrameEntry { plan, meshes: Vec::with_capacity(plan.meshes.len()), images: Vec::new() };
+    for (index, mesh) in plan.meshes.iter().enumerate() {
+        let mut put = Put { folder, stem: format!("mesh{index:03}"), written: &mut written };
+        let DrawMesh { name, vertices, indices, surface } = mesh;
+        entry.meshes.push(MeshEntry {
+            name: name.clone(),
+            vertices: put.blob("vertices", vertices, |values| (values.as_flattened(), 4))?,
+            indices: put.blob("indices", indices, |values| (values, 3))?,
+            surface: match surface {
+                None => None,
+                Some(SurfaceData { normals, sides }) => Some(SurfaceEntry {
+                    normals: put.blob("normals", normals, |values| (values.as_flattened(), 4))?,
+                    sides: put.blob("sides", sides, |values| (values, 1))?,
+                }),
+            },
+        });
+    }
+    for (pass, image) in plan.passes.iter().enumerate().filter_map(|(pass, of)| Some((pass, of.image.as_ref()?))) {
+        let file = format!("pass{pass:03}.image.npy");
+        files::write_values(&folder.join(&file), &image.source.make(), 1)?;
+        entry.images.push(ImageEntry { pass, name: image.name.clone(), file });
+    }
+    files::write(&folder.join(FRAME), |out| Ok(serde_json::to_writer(out, &entry)?))
+}
+
+/// Writes each array once.
+struct Put<'a> {
+    folder: &'a Path,
+    stem: String,
+    /// By its kind, its hash and its length.
+    written: &'a mut BTreeMap<(&'static str, u64, usize), String>,
+}
+
+impl Put<'_> {
+    fn blob<T: bytemuck::Pod, V: npyz::AutoSerialize + Copy>(
+        &mut self,
+        kind: &'static str,
+        blob: &Blob<T>,
+        flat: impl FnOnce(&[T]) -> (&[V], u64),
+    ) -> Result<String, CaptureError> {
+        let key = (kind, blob.hash(), blob.data().len());
+        if let Some(file) = self.written.get(&key) {
+            return Ok(file.clone());
+        }
+        let file = format!("{}.{kind}.npy", self.stem);
+        let (values, columns) = flat(blob.data());
+        files::write_values(&self.folder.join(&file), values, columns)?;
+        self.written.insert(key, file.clone());
+        Ok(file)
+    }
+}
+
+/// The plan of a folder; `None` where it has none, as of schema 1.
+pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>, CaptureError> {
+    let file = folder.join(FRAME);
+    if !file.exists() {
+        return Ok(None);
+    }
+    let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
+    let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
+    let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    let mut plan = entry.plan;
+    let mut get = Get { folder, floats: BTreeMap::new(), words: BTreeMap::new() };
+    for MeshEntry { name, vertices, indices, surface } in entry.meshes {
+        let surface = match surface {
+            None => None,
+            Some(SurfaceEntry { normals, sides }) => {
+                Some(SurfaceData { normals: get.rows(&normals)?, sides: get.words(&sides, 1)? })
+            }
+        };
+        let (vertices, indices) = (get.rows(&vertices)?, get.words(&indices, 3)?);
+        plan.meshes.push(DrawMesh { name, vertices, indices, surface });
+    }
+    for ImageEntry { pass, name, file } in entry.images {
+        let texels: Vec<u8> = files::read_values(&plain(folder, &file)?, 1)?;
+        let pass = plan.passes.get_mut(pass).ok_or_else(|| wrong("it names a pass that is not there".to_owned()))?;
+        let content = FixedState::default().hash_one(&texels);
+        pass.image = Some(CpuImage { name, content, source: Arc::new(StoredImage { texels }) });
+    }
+    match inconsistency(&plan, capture) {
+        Some(reason) => Err(wrong(reason)),
+        None => Ok(Some(plan)),
+    }
+}
+
+/// Only plain names: a frame can't point out of its folder.
+fn plain(folder: &Path, file: &str) -> Result<std::path::PathBuf, CaptureError> {
+    match super::is_plain(file) {
+        true => Ok(folder.join(file)),
+        false => {
+            let reason = "it names a file outside its folder".to_owned();
+            Err(CaptureError::Read { file: folder.join(FRAME), reason })
+        }
+    }
+}
+
+/// Reads each array once.
+struct Get<'a> {
+    folder: &'a Path,
+    floats: BTreeMap<String, Blob<[f32; 4]>>,
+    words: BTreeMap<String, Blob<u32>>,
+}
+
+impl Get<'_> {
+    fn rows(&mut self, file: &str) -> Result<Blob<[f32; 4]>, CaptureError> {
+        if let Some(known) = self.floats.get(file) {
+            return Ok(known.clone());
+        }
+        let values: Vec<f32> = files::read_values(&plain(self.folder, file)?, 4)?;
+        let blob = Blob::new(values.as_chunks().0.to_vec());
+        self.floats.insert(file.to_owned(), blob.clone());
+        Ok(blob)
+    }
+
+    fn words(&mut self, file: &str, columns: u64) -> Result<Blob<u32>, CaptureError> {
+        if let Some(known) = self.words.get(file) {
+            return Ok(known.clone());
+        }
+        let blob = Blob::new(files::read_values(&plain(self.folder, file)?, columns)?);
+        self.words.insert(file.to_owned(), blob.clone());
+        Ok(blob)
+    }
+}
+
+/// A picture that was made before.
+#[derive(Debug)]
+struct StoredImage {
+    texels: Vec<u8>,
+}
+
+impl MakeImage for StoredImage {
+    fn make(&self) -> Vec<u8> {
+        self.texels.clone()
+    }
+}
+
+/// What a plan may say that can't be run, or is not the capture's.
+fn inconsistency(plan: &FramePlan, capture: &Capture) -> Option<String> {
+    let has_light = |light: LightId| light.0 < plan.lights.len();
+    let has_attachment = |id: AttachmentId| id.0 < plan.attachments.len();
+    let is_light_whole = |light: &PlanLight| {
+        let map = light.map.as_ref().is_none_or(|map| {
+            let faces = [map.clip_from_light.len(), map.clip_from_relative.len()];
+            has_attachment(map.attachment)
+                && faces.iter().all(|count| *count == map.faces.len())
+                && map.faces.len() <= plan.attachments[map.attachment.0].layers as usize
+                && map.faces.iter().flatten().all(|view| view.0 < plan.views.len())
+        });
+        map && has_attachment(light.labels) && light.count.is_none_or(has_attachment)
+    };
+    let is_sized = |attachment: &Attachment| {
+        let is_side = |side: &u32| (1..=files::LARGEST).contains(side);
+        let is_shown = matches!(attachment.role, AttachmentRole::Map(_)) || attachment.size == plan.size;
+        attachment.size.iter().all(is_side) && (1..=MOST_LAYERS).contains(&attachment.layers) && is_shown
+    };
+    let of_light = |role: AttachmentRole| match role {
+        AttachmentRole::Color | AttachmentRole::DepthStencil => None,
+        AttachmentRole::Map(light) | AttachmentRole::Count(light) | AttachmentRole::Labels(light) => Some(light),
+    };
+    let steps = (plan.passes.len(), plan.lights.len(), plan.size);
+    let texels = |pass: &crate::plan::Pass| {
+        let target = pass.color.as_ref().and_then(|target| plan.attachments.get(target.attachment.0));
+        target.map_or(0, |target| {
+            u64::from(target.size[0])
+                * u64::from(target.size[1])
+                * u64::from(target.format.block_copy_size(None).unwrap_or(1))
+        })
+    };
+    let is_picture = |pass: &crate::plan::Pass| {
+        pass.image.as_ref().is_none_or(|image| image.source.make().len() as u64 == texels(pass))
+    };
+    if steps != (capture.steps.len(), capture.lights.len(), capture.size) {
+        Some("it is not the frame of the manifest".to_owned())
+    } else if !plan.attachments.iter().all(is_sized) {
+        Some("an attachment has a size that it can't have".to_owned())
+    } else if !plan.attachments.iter().filter_map(|one| of_light(one.role)).all(has_light)
+        || !plan.lights.iter().all(is_light_whole)
+        || !plan.passes.iter().filter_map(|pass| pass.light).all(has_light)
+    {
+        Some("it names a light, an attachment or a view that is not there".to_owned())
+    } else if !plan.passes.iter().all(is_picture) {
+        Some("a picture has not its target's size".to_owned())
+    } else {
+        lint::check(plan).first().map(ToString::to_string)
+    }
+}
