@@ -31,6 +31,12 @@ fn vs_log(corner: Corner) -> Placed {
     return Placed(clip_position(corner.relative), corner.triangle);
 }
 
+// Another program's corners are in clip space already.
+@vertex
+fn vs_log_clip(corner: Corner) -> Placed {
+    return Placed(corner.relative, corner.triangle);
+}
+
 @fragment
 fn fs_log(placed: Placed, @builtin(front_facing) is_front: bool) {
     let slot = atomicAdd(&kept.count, 1u);

@@ -6,7 +6,7 @@
 //! read mask)`, operations change only the bits of the write mask (WebGPU, section 23.2.7,
 //! "Fragment processing"; OpenGL and Direct3D agree). A test holds it against the GPU.
 
-use crate::plan::RasterState;
+use crate::plan::{FaceMasks, RasterState};
 use wgpu::{CompareFunction, StencilOperation};
 
 /// What a pixel holds.
@@ -52,18 +52,16 @@ impl Outcome {
 /// no fragments.
 #[must_use]
 pub fn test(state: &RasterState, fragment: Fragment, stored: Stored) -> Outcome {
-    let face = if fragment.front_facing { &state.stencil.front } else { &state.stencil.back };
-    let masked = |value: u8| u32::from(value) & state.stencil.read_mask;
-    let stencil_passed = compare(face.compare, masked(state.stencil_reference), masked(stored.stencil));
+    let (face, FaceMasks { reference, read, write }) = state.face(fragment.front_facing);
+    let stencil_passed = compare(face.compare, reference & read, stored.stencil & read);
     let depth_passed = stencil_passed.then(|| compare(state.depth_compare, fragment.depth, stored.depth));
     let operation = match depth_passed {
         None => face.fail_op,
         Some(false) => face.depth_fail_op,
         Some(true) => face.pass_op,
     };
-    let written = operate(operation, stored.stencil, state.stencil_reference);
-    let mask = state.stencil.write_mask as u8;
-    let stencil = (stored.stencil & !mask) | (written & mask);
+    let written = operate(operation, stored.stencil, reference);
+    let stencil = (stored.stencil & !write) | (written & write);
     let writes_depth = depth_passed == Some(true) && state.depth_write;
     let depth = if writes_depth { fragment.depth } else { stored.depth };
     Outcome { stencil_passed, depth_passed, operation, after: Stored { depth, stencil } }

@@ -125,6 +125,7 @@ fn pass(name: &str, clear: bool, draws: Vec<Draw>) -> Pass {
     Pass {
         name: name.to_owned(),
         image: None,
+        recorded: None,
         scissor: None,
         purpose: String::new(),
         light: None,

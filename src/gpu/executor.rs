@@ -9,9 +9,9 @@ use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
 use super::queries::{Notes, Samples, Timestamps};
 use super::readback::{StagedPass, Staging, color_change};
-use super::{Context, GpuError, features};
+use super::{Context, GpuError, features, start};
 use crate::capture::{Image, PixelFormat};
-use crate::plan::{AttachmentRole, Draw, FramePlan, LightId, Pass, lint};
+use crate::plan::{AttachmentRole, Draw, FramePlan, LightId, Pass, Viewport, lint};
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -318,6 +318,9 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes, passes: Range<usize>) 
             continue;
         }
         if !prepared.is_kept(pass) {
+            if let Some(content) = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()) {
+                start::record(&mut encoder, prepared, index, content);
+            }
             record_pass(&mut encoder, prepared, index, notes);
         }
         if mode.copies(prepared.plan, pass) {
@@ -360,6 +363,11 @@ fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, 
         occlusion_query_set: notes.samples.as_ref().map(Samples::set),
         ..wgpu::RenderPassDescriptor::default()
     });
+    if let Some(Viewport { area: [left, top, width, height], depth: [near, far] }) =
+        pass.recorded.as_ref().map(|recorded| recorded.viewport)
+    {
+        render_pass.set_viewport(left, top, width, height, near, far);
+    }
     if let Some([left, top, columns, rows]) = pass.scissor {
         render_pass.set_scissor_rect(left, top, columns, rows);
     }
@@ -374,8 +382,6 @@ fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, 
 }
 
 fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &PreparedDraw, light_offset: u32) {
-    pass.set_pipeline(&ready.pipeline);
-    pass.set_stencil_reference(u32::from(draw.raster.stencil_reference));
     if draw.program.group_count() > 1 {
         pass.set_bind_group(1, &prepared.draw_group, &[prepared.draws.offset(ready.index)]);
     }
@@ -383,10 +389,16 @@ fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &
     if let Some((surface, light)) = &ready.shading {
         pass.set_bind_group(2, surface, &[]);
         pass.set_bind_group(3, light, &[light_offset]);
-        pass.draw(corners, 0..1);
     } else {
         pass.set_vertex_buffer(0, ready.vertices.slice(..));
         pass.set_index_buffer(ready.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(corners, draw.base_vertex as i32, 0..1);
+    }
+    for (pipeline, reference) in &ready.pipelines {
+        pass.set_pipeline(pipeline);
+        pass.set_stencil_reference(u32::from(*reference));
+        match ready.shading {
+            Some(_) => pass.draw(corners.clone(), 0..1),
+            None => pass.draw_indexed(corners.clone(), draw.base_vertex as i32, 0..1),
+        }
     }
 }

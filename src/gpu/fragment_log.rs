@@ -15,7 +15,7 @@
 use super::prepared::layer_view;
 use super::readback::mapped_bytes;
 use super::{Executor, GpuError, shaders, uniforms};
-use crate::plan::{Covering, FragmentLog, FramePlan, LoggedFragment, Pass, RasterState};
+use crate::plan::{Covering, Draw, FragmentLog, FramePlan, LoggedFragment, Pass, Viewport};
 use bytemuck::{Pod, Zeroable};
 use std::collections::HashMap;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -30,6 +30,9 @@ struct LogKey {
     unclipped_depth: bool,
     bias: wgpu::DepthBiasState,
     cull: Option<wgpu::Face>,
+    front_face: wgpu::FrontFace,
+    /// Corners are in clip space.
+    is_recorded: bool,
     depth_format: TextureFormat,
 }
 
@@ -141,6 +144,8 @@ impl Executor {
                 for run in of_format {
                     pass.set_pipeline(&log.pipeline(device, &pipelines.layouts.view, &run.key));
                     pass.set_bind_group(0, &view_group, &[views.offset(run.view)]);
+                    let Viewport { area: [left, top, width, height], depth: [near, far] } = run.viewport;
+                    pass.set_viewport(left, top, width, height, near, far);
                     pass.draw(run.triangles.start as u32 * 3..run.triangles.end as u32 * 3, 0..1);
                 }
             }
@@ -160,6 +165,7 @@ impl Executor {
 struct Run {
     key: LogKey,
     view: usize,
+    viewport: Viewport,
     triangles: std::ops::Range<usize>,
 }
 
@@ -167,22 +173,26 @@ fn runs(plan: &FramePlan, covering: &[Covering]) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (index, one) in covering.iter().enumerate() {
         let pass = &plan.passes[one.pass];
-        let (key, view) = (key_of(plan, pass, &pass.draws[one.draw].raster), pass.view.0);
-        match runs.last_mut().filter(|run| run.key == key && run.view == view) {
+        let (key, view) = (key_of(plan, pass, &pass.draws[one.draw]), pass.view.0);
+        let viewport = pass.viewport(plan.size);
+        match runs.last_mut().filter(|run| run.key == key && run.view == view && run.viewport == viewport) {
             Some(run) => run.triangles.end = index + 1,
-            None => runs.push(Run { key, view, triangles: index..index + 1 }),
+            None => runs.push(Run { key, view, viewport, triangles: index..index + 1 }),
         }
     }
     runs
 }
 
-fn key_of(plan: &FramePlan, pass: &Pass, raster: &RasterState) -> LogKey {
-    let target = pass.depth_stencil.as_ref();
+fn key_of(plan: &FramePlan, pass: &Pass, draw: &Draw) -> LogKey {
+    let (raster, target) = (&draw.raster, pass.depth_stencil.as_ref());
     LogKey {
         unclipped_depth: raster.unclipped_depth,
         bias: raster.depth_bias,
         cull: raster.cull,
-        depth_format: target.map_or(TextureFormat::Depth32Float, |target| plan.attachment(target.attachment).format),
+        front_face: raster.front_face,
+        is_recorded: draw.program.is_recorded(),
+        depth_format: target
+            .map_or(TextureFormat::Depth32Float, |target| plan.attachment(target.attachment).held_format()),
     }
 }
 
@@ -271,7 +281,7 @@ impl LogKeeper {
             layout: Some(&layout),
             vertex: wgpu::VertexState {
                 module,
-                entry_point: Some("vs_log"),
+                entry_point: Some(if key.is_recorded { "vs_log_clip" } else { "vs_log" }),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &[Some(wgpu::VertexBufferLayout {
                     array_stride: size_of::<Corner>() as u64,
@@ -281,6 +291,7 @@ impl LogKeeper {
             },
             primitive: wgpu::PrimitiveState {
                 cull_mode: key.cull,
+                front_face: key.front_face,
                 unclipped_depth: key.unclipped_depth,
                 ..wgpu::PrimitiveState::default()
             },

@@ -9,6 +9,7 @@
 //! Executor     a plan → prepared textures, bind groups and draws → one command buffer, or more
 //! fragment_log every fragment of one pixel, tests or no tests
 //! queries      times of passes, samples of draws
+//! start        what depth and stencil hold as a pass begins
 //! readback     snapshots: copies recorded between passes, mapped
 //! collect      mapped copies → steps, with what did not change shared
 //! ```
@@ -26,6 +27,7 @@ mod prepared;
 mod queries;
 mod readback;
 mod shaders;
+mod start;
 mod uniforms;
 
 pub use collect::{Memory, Output};

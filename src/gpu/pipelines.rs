@@ -21,6 +21,8 @@ pub(super) struct PipelineKey {
     pub raster: RasterState,
     pub color_format: Option<TextureFormat>,
     pub depth_format: Option<TextureFormat>,
+    /// The largest depth as an integer, where another program's target stores depths as integers.
+    pub depth_steps: Option<u32>,
 }
 
 /// Layouts of the bind groups.
@@ -95,6 +97,11 @@ impl Pipelines {
         });
         let color_target = key.color_format.map(|format| color_target(format, key.raster.color));
         let compilation_options = wgpu::PipelineCompilationOptions::default();
+        let is_recorded = key.program.is_recorded();
+        let constants = key.depth_steps.map(|steps| ("steps", f64::from(steps)));
+        let constants = constants.as_slice();
+        // Floats are stored as they are.
+        let fragment = source.fragment.filter(|_| !is_recorded || key.depth_steps.is_some());
         device.create_render_pipeline(&RenderPipelineDescriptor {
             label: Some(source.vertex),
             layout: Some(&layout),
@@ -106,16 +113,17 @@ impl Pipelines {
             },
             primitive: wgpu::PrimitiveState {
                 cull_mode: key.raster.cull,
+                front_face: key.raster.front_face,
                 unclipped_depth: key.raster.unclipped_depth,
                 ..wgpu::PrimitiveState::default()
             },
             depth_stencil: key.depth_format.map(|format| depth_stencil(format, &key.raster)),
             multisample: wgpu::MultisampleState::default(),
-            fragment: source.fragment.map(|entry_point| FragmentState {
+            fragment: fragment.map(|entry_point| FragmentState {
                 module,
                 entry_point: Some(entry_point),
-                compilation_options,
-                targets: std::slice::from_ref(&color_target),
+                compilation_options: wgpu::PipelineCompilationOptions { constants, ..compilation_options },
+                targets: if is_recorded { &[] } else { std::slice::from_ref(&color_target) },
             }),
             multiview_mask: None,
             cache: None,
@@ -132,7 +140,7 @@ impl Program {
     /// How many bind groups it uses, from group 0 on.
     pub(super) fn group_count(self) -> usize {
         match self {
-            Program::Position => 1,
+            Program::Position | Program::Recorded { .. } => 1,
             Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
             Program::Light(_) | Program::Label(_) | Program::Through => 4,
         }
@@ -147,7 +155,7 @@ fn color_target(format: TextureFormat, write: ColorWrite) -> ColorTargetState {
     ColorTargetState {
         format,
         blend: match write {
-            ColorWrite::None | ColorWrite::Replace => None,
+            ColorWrite::None | ColorWrite::Replace | ColorWrite::Blend => None,
             ColorWrite::Add => blend(BlendFactor::One, BlendFactor::One, BlendOperation::Add),
             ColorWrite::Multiply => blend(BlendFactor::Dst, BlendFactor::Zero, BlendOperation::Add),
             ColorWrite::Minimum => blend(BlendFactor::One, BlendFactor::One, BlendOperation::Min),

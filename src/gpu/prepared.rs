@@ -7,7 +7,9 @@ use super::pipelines::{PipelineKey, Pipelines};
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError};
-use crate::plan::{AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility};
+use crate::plan::{
+    Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, Program, RasterState, Visibility,
+};
 use std::cell::OnceCell;
 use std::sync::Arc;
 use wgpu::{
@@ -46,7 +48,8 @@ pub(super) struct PreparedPass {
 
 #[derive(Debug)]
 pub(super) struct PreparedDraw {
-    pub pipeline: RenderPipeline,
+    /// With the stencil reference of each: one, or two where front and back faces have masks of their own.
+    pub pipelines: Vec<(RenderPipeline, u8)>,
     /// Index among all draws of the plan.
     pub index: usize,
     pub vertices: Buffer,
@@ -83,7 +86,12 @@ impl<'a> Prepared<'a> {
         for pass in &plan.passes {
             let mut prepared = prepared_targets(plan, pass, &textures);
             for (draw, index) in pass.draws.iter().zip(&mut next_draw) {
-                let pipeline = pipelines.get(device, &key_of(plan, pass, draw));
+                let states = draw.raster.by_face();
+                let of_state = |raster: &RasterState| {
+                    let reference = raster.stencil_reference;
+                    (pipelines.get(device, &key_of(plan, pass, draw.program, raster)), reference)
+                };
+                let states = states.iter().map(of_state).collect();
                 let mesh = &plan.meshes[draw.mesh.0];
                 let vertices = buffers.get(device, &mesh.vertices)?;
                 let indices = buffers.get(device, &mesh.indices)?;
@@ -97,7 +105,7 @@ impl<'a> Prepared<'a> {
                     }
                     _ => None,
                 };
-                prepared.draws.push(PreparedDraw { pipeline, index, vertices, indices, shading });
+                prepared.draws.push(PreparedDraw { pipelines: states, index, vertices, indices, shading });
             }
             passes.push(prepared);
         }
@@ -122,6 +130,16 @@ impl<'a> Prepared<'a> {
     /// All passes have run.
     pub(super) fn set_drawn(&self) {
         self.kept.iter().flatten().for_each(|map| map.set_drawn());
+    }
+
+    /// The texture of an attachment.
+    pub(super) fn texture(&self, id: AttachmentId) -> &Texture {
+        &self.textures[id.0]
+    }
+
+    /// Where a layer that is drawn lies in its texture.
+    pub(super) fn layer(&self, id: AttachmentId, layer: u32) -> u32 {
+        held_layer(self.plan, id, layer)
     }
 
     /// Where the copies of a pass go: made when they are first wanted.
@@ -183,6 +201,11 @@ fn create(device: &Device, plan: &FramePlan, id: AttachmentId) -> Texture {
         AttachmentRole::Labels(_) => TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
         AttachmentRole::Color | AttachmentRole::DepthStencil => TextureUsages::empty(),
     };
+    let is_started = |pass: &Pass| {
+        let has_start = pass.recorded.as_ref().is_some_and(|recorded| recorded.start.is_some());
+        has_start && pass.targets().any(|target| target == id)
+    };
+    let started = if plan.passes.iter().any(is_started) { TextureUsages::COPY_DST } else { TextureUsages::empty() };
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some(&attachment.name),
         size: wgpu::Extent3d {
@@ -193,8 +216,8 @@ fn create(device: &Device, plan: &FramePlan, id: AttachmentId) -> Texture {
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: attachment.format,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC | other,
+        format: attachment.held_format(),
+        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC | other | started,
         view_formats: &[],
     })
 }
@@ -225,13 +248,14 @@ fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Prep
     }
 }
 
-fn key_of(plan: &FramePlan, pass: &Pass, draw: &Draw) -> PipelineKey {
-    let format = |id| plan.attachment(id).format;
+fn key_of(plan: &FramePlan, pass: &Pass, program: Program, raster: &RasterState) -> PipelineKey {
+    let depth_stencil = pass.depth_stencil.as_ref().map(|target| plan.attachment(target.attachment));
     PipelineKey {
-        program: draw.program,
-        raster: RasterState { stencil_reference: 0, ..draw.raster.clone() },
-        color_format: pass.color.as_ref().map(|target| format(target.attachment)),
-        depth_format: pass.depth_stencil.as_ref().map(|target| format(target.attachment)),
+        program,
+        raster: RasterState { stencil_reference: 0, ..raster.clone() },
+        color_format: pass.color.as_ref().map(|target| plan.attachment(target.attachment).format),
+        depth_format: depth_stencil.map(Attachment::held_format),
+        depth_steps: depth_stencil.and_then(Attachment::depth_steps).filter(|_| program.is_recorded()),
     }
 }
 

@@ -7,7 +7,7 @@
 
 use super::{Context, GpuError};
 use crate::capture::{Image, PixelFormat};
-use crate::plan::{AttachmentRole, ColorWrite, FramePlan, Pass};
+use crate::plan::{AttachmentRole, ColorWrite, FramePlan, Pass, StartContent};
 use bytes::Bytes;
 use std::sync::Arc;
 use wgpu::{Buffer, BufferUsages, BufferView, CommandEncoder, Device, MapMode, Texture, TextureAspect};
@@ -40,6 +40,7 @@ pub(super) fn color_change(plan: &FramePlan, pass: &Pass) -> Change {
 pub(super) fn depth_change(pass: &Pass) -> Change {
     let clear = pass.depth_stencil.as_ref().and_then(|target| target.clear_depth);
     let is_drawn = pass.draws.iter().any(|draw| draw.raster.depth_write);
+    let is_drawn = is_drawn || start(pass).is_some_and(|start| start.depth.is_some());
     change(is_drawn, clear.map(|depth| depth.to_le_bytes().to_vec()))
 }
 
@@ -47,7 +48,12 @@ pub(super) fn depth_change(pass: &Pass) -> Change {
 pub(super) fn stencil_change(pass: &Pass) -> Change {
     let clear = pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil);
     let is_drawn = pass.draws.iter().any(|draw| draw.raster.writes_stencil());
+    let is_drawn = is_drawn || start(pass).is_some_and(|start| start.stencil.is_some());
     change(is_drawn, clear.map(|stencil| vec![stencil]))
+}
+
+fn start(pass: &Pass) -> Option<&StartContent> {
+    pass.recorded.as_ref()?.start.as_ref()
 }
 
 fn change(is_drawn: bool, clear: Option<Vec<u8>>) -> Change {

@@ -35,6 +35,7 @@ pub(super) fn source_of(program: Program) -> ProgramSource {
             (vec![file!("draw.wgsl"), file!("ambient.wgsl")], "vs_ambient", Some(fragment))
         }
         Program::Light(visibility) => (surface_files(file!("light.wgsl"), visibility), "vs_surface", Some("fs_light")),
+        Program::Recorded { .. } => (vec![file!("recorded.wgsl")], "vs_recorded", Some("fs_recorded")),
         Program::Through => {
             (surface_files(file!("through.wgsl"), Visibility::Projected), "vs_surface", Some("fs_through"))
         }
@@ -55,6 +56,9 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
     vec![file!("draw.wgsl"), file!("surface.wgsl"), arriving, own]
 }
 
+/// What puts depths into a target.
+pub(super) const START: &str = file!("start.wgsl");
+
 /// The log of a pixel's fragments.
 pub(super) fn fragment_log() -> String {
     [file!("shared.wgsl"), file!("fragment_log.wgsl")].join("\n")
@@ -67,7 +71,9 @@ mod tests {
     #[test]
     fn every_shader_is_valid() {
         let programs = Program::all().into_iter().map(|program| (format!("{program:?}"), source_of(program).source));
-        for (name, source) in programs.chain([("FragmentLog".to_owned(), fragment_log())]) {
+        for (name, source) in
+            programs.chain([("FragmentLog".to_owned(), fragment_log()), ("Start".to_owned(), START.to_owned())])
+        {
             let module = naga::front::wgsl::parse_str(&source).unwrap_or_else(|error| panic!("{name}: {error}"));
             let flags = naga::valid::ValidationFlags::all();
             let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty());

@@ -105,9 +105,11 @@ impl Replay<'_> {
             return;
         }
         let depth = if draw.raster.unclipped_depth { depth.clamp(0.0, 1.0) } else { depth };
+        let target = pass.depth_stencil.as_ref().map(|target| self.plan.attachment(target.attachment));
+        let depth = target.map_or(depth, |target| target.stored_depth(depth));
         let outcome =
             stencil_machine::test(&draw.raster, Fragment { depth, front_facing: is_front }, self.held.stored());
-        let side = if is_front { &draw.raster.stencil.front } else { &draw.raster.stencil.back };
+        let (side, _) = draw.raster.face(is_front);
         let has_test = draw.raster.stencil.is_enabled();
         let fate = Fate::Tested {
             stencil: test_of(Some(outcome.stencil_passed), side.compare),

@@ -10,7 +10,7 @@
 //! tells what it must be asked about, what it must say yes to, and what it never sees: triangles
 //! that are culled, or clipped away at the near or far plane.
 
-use super::{Draw, FramePlan, MeshId, Pass, Program, ViewId};
+use super::{Draw, FramePlan, MeshId, Pass, Program, ViewId, Viewport};
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec4};
 use std::collections::BTreeMap;
 
@@ -117,8 +117,9 @@ impl FramePlan {
         let mut covering = Vec::new();
         let passes = self.passes.iter().enumerate();
         for (pass_index, pass) in passes.filter(|(_, pass)| self.is_of_picture(pass) && pass.reaches(pixel)) {
+            let viewport = pass.viewport(self.size);
             for (draw_index, draw) in pass.draws.iter().enumerate() {
-                search.add(pass_index, pass.view, draw_index, draw, &mut covering);
+                search.add((pass_index, pass.view, &viewport), draw_index, draw, &mut covering);
             }
         }
         covering
@@ -126,34 +127,42 @@ impl FramePlan {
 }
 
 /// Triangles of a mesh are looked through once, however many draws show them.
-type Searched = (MeshId, ViewId, u32, u32, u32);
+type Searched = (MeshId, ViewId, [u32; 4], [u32; 3]);
 
 struct Search<'a> {
     plan: &'a FramePlan,
     pixel: [u32; 2],
     /// For each vertex of the last mesh, which of the four planes it is outside of.
     sieve: Vec<u8>,
-    sieve_of: Option<(MeshId, ViewId)>,
+    sieve_of: Option<(MeshId, ViewId, Viewport)>,
     found: BTreeMap<Searched, Vec<u32>>,
 }
 
 impl Search<'_> {
-    fn add(&mut self, pass: usize, view: ViewId, draw_index: usize, draw: &Draw, covering: &mut Vec<Covering>) {
+    fn add(
+        &mut self,
+        (pass, view, viewport): (usize, ViewId, &Viewport),
+        draw_index: usize,
+        draw: &Draw,
+        covering: &mut Vec<Covering>,
+    ) {
         let mesh = &self.plan.meshes[draw.mesh.0];
         let (vertices, indices) = (mesh.vertices.data(), mesh.indices.data());
-        let matrix = self.plan.views[view.0].clip_from_relative;
-        let square = Square::new(self.pixel, self.plan.size);
+        // Another program's vertices are in clip space.
+        let matrix = (!draw.program.is_recorded()).then(|| self.plan.views[view.0].clip_from_relative);
+        let square = Square::new(self.pixel, viewport);
         let base = draw.base_vertex as usize;
         let corners_of = |triangle: u32| {
             let corners = indices.get(triangle as usize * 3..)?.get(..3)?;
             Some([corners[0] as usize + base, corners[1] as usize + base, corners[2] as usize + base])
         };
         let range = draw.triangles.clone();
-        let searched = (draw.mesh, view, range.start, range.end, draw.base_vertex);
+        let area = viewport.area.map(f32::to_bits);
+        let searched = (draw.mesh, view, area, [range.start, range.end, draw.base_vertex]);
         if !self.found.contains_key(&searched) {
-            if self.sieve_of != Some((draw.mesh, view)) {
-                square.sieve(matrix, vertices, &mut self.sieve);
-                self.sieve_of = Some((draw.mesh, view));
+            if self.sieve_of != Some((draw.mesh, view, *viewport)) {
+                square.sieve(matrix.unwrap_or(Mat4::IDENTITY), vertices, &mut self.sieve);
+                self.sieve_of = Some((draw.mesh, view, *viewport));
             }
             let outside = |corner: usize| self.sieve.get(corner).copied().unwrap_or(u8::MAX);
             let is_near = |triangle: &u32| {
@@ -167,7 +176,7 @@ impl Search<'_> {
             let corners = corners_of(triangle).map(|corners| corners.map(|corner| vertices[corner]));
             let found = corners.and_then(|corners| Some((corners, square.look(matrix, corners)?)));
             let Some((corners, seen)) = found else { return };
-            let coverage = self.plan.coverage(draw, seen);
+            let coverage = self.plan.coverage(draw, viewport, seen);
             covering.push(Covering { pass, draw: draw_index, primitive, triangle, corners, coverage });
         };
         if matches!(draw.program, Program::Label(_)) {
@@ -180,8 +189,10 @@ impl Search<'_> {
 }
 
 impl FramePlan {
-    fn coverage(&self, draw: &Draw, seen: Seen) -> Coverage {
-        let Seen::Inside { face, depth, is_safe } = seen else { return Coverage::Doubtful };
+    fn coverage(&self, draw: &Draw, viewport: &Viewport, seen: Seen) -> Coverage {
+        let Seen::Inside { runs_counterclockwise, depth, is_safe } = seen else { return Coverage::Doubtful };
+        let is_front = runs_counterclockwise == (draw.raster.front_face == wgpu::FrontFace::Ccw);
+        let face = Face { is_front, depth: viewport.stored(depth) as f32 };
         let is_culled = match draw.raster.cull {
             Some(wgpu::Face::Front) => face.is_front,
             Some(wgpu::Face::Back) => !face.is_front,
@@ -210,14 +221,20 @@ struct Square {
 
 /// How a triangle lies to the centre.
 enum Seen {
-    Inside { face: Face, depth: f64, is_safe: bool },
+    /// Its depth is that of clip space.
+    Inside {
+        runs_counterclockwise: bool,
+        depth: f64,
+        is_safe: bool,
+    },
     Near,
 }
 
 impl Square {
-    fn new(pixel: [u32; 2], size: [u32; 2]) -> Square {
-        let size = DVec2::new(f64::from(size[0]), f64::from(size[1]));
-        let center = (DVec2::new(f64::from(pixel[0]), f64::from(pixel[1])) + 0.5) / size;
+    fn new(pixel: [u32; 2], viewport: &Viewport) -> Square {
+        let [left, top, width, height] = viewport.area.map(f64::from);
+        let size = DVec2::new(width, height);
+        let center = (DVec2::new(f64::from(pixel[0]), f64::from(pixel[1])) + 0.5 - DVec2::new(left, top)) / size;
         Square { center: DVec2::new(center.x * 2.0 - 1.0, 1.0 - center.y * 2.0), half_pixel: 1.0 / size }
     }
 
@@ -246,9 +263,9 @@ impl Square {
     }
 
     /// `None` where the triangle is farther from the centre than doubt reaches.
-    fn look(&self, clip_from_relative: Mat4, corners: [[f32; 4]; 3]) -> Option<Seen> {
-        let matrix = clip_from_relative.as_dmat4();
-        let clip = corners.map(|corner| matrix * DVec4::from_array(corner.map(f64::from)));
+    fn look(&self, clip_from_relative: Option<Mat4>, corners: [[f32; 4]; 3]) -> Option<Seen> {
+        let corners = corners.map(|corner| DVec4::from_array(corner.map(f64::from)));
+        let clip = clip_from_relative.map_or(corners, |matrix| corners.map(|corner| matrix.as_dmat4() * corner));
         // The centre becomes the axis: a corner on the ray through it has x = y = 0.
         let seen = clip.map(|corner| {
             let offset = (corner.truncate().truncate() - self.center * corner.w) / (2.0 * self.half_pixel);
@@ -274,6 +291,6 @@ impl Square {
         }
         let depth = interpolated(clip.map(|corner| corner.z)) / w;
         let is_safe = least > SAFE || most < -SAFE;
-        Some(Seen::Inside { face: Face { is_front: sum > 0.0, depth: depth as f32 }, depth, is_safe })
+        Some(Seen::Inside { runs_counterclockwise: sum > 0.0, depth, is_safe })
     }
 }

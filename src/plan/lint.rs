@@ -1,6 +1,9 @@
 //! Checks a plan without a GPU: what would be a driver error, or silently wrong, is named here.
 
-use super::{AttachmentId, AttachmentRole, Draw, DrawMesh, FramePlan, Pass, PlanMap, Program, Visibility};
+use super::{
+    AttachmentId, AttachmentRole, Draw, DrawMesh, FramePlan, Pass, PlanMap, Program, RecordedPass, StartContent,
+    Viewport, Visibility,
+};
 
 /// A rule that a plan breaks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -70,6 +73,9 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<St
     if !pass.scissor.is_none_or(fits) {
         problems.push("its scissor reaches out of a target".to_owned());
     }
+    if let Some(problem) = pass.recorded.as_ref().and_then(|recorded| recorded_problem(plan, pass, recorded)) {
+        problems.push(problem.to_owned());
+    }
     if pass.image.is_some() && (pass.color.is_none() || !pass.draws.is_empty()) {
         problems.push("an image made on the CPU needs a colour target and no draws".to_owned());
     }
@@ -80,6 +86,27 @@ fn check_pass(plan: &FramePlan, pass: &Pass, meshes_in_range: &[bool]) -> Vec<St
         problems.extend(check_draw(plan, pass, draw, has_stencil).into_iter().map(|p| format!("{}: {p}", draw.name)));
     }
     problems
+}
+
+fn recorded_problem(plan: &FramePlan, pass: &Pass, recorded: &RecordedPass) -> Option<&'static str> {
+    let Viewport { area, depth: [near, far] } = recorded.viewport;
+    let is_area =
+        area.iter().all(|value| value.is_finite() && value.abs() <= 32768.0) && area[2] > 0.0 && area[3] > 0.0;
+    let target = pass.depth_stencil.as_ref().and_then(|target| plan.attachments.get(target.attachment.0));
+    let texels = target.map_or(0, |target| target.size[0] as usize * target.size[1] as usize);
+    let fits = |start: &StartContent| {
+        start.depth.as_ref().is_none_or(|depth| depth.data().len() == texels)
+            && start.stencil.as_ref().is_none_or(|stencil| stencil.data().len() == texels)
+    };
+    if !is_area || !(0.0..=1.0).contains(&near) || !(near..=1.0).contains(&far) {
+        Some("its viewport can't be")
+    } else if pass.color.is_some() {
+        Some("another program's colours are not known, so that it has no colour target")
+    } else if !recorded.start.as_ref().is_none_or(fits) {
+        Some("what its target holds at the start has not its size")
+    } else {
+        None
+    }
 }
 
 /// Does the mesh have every vertex that the draw's moved indices ask for?
@@ -105,11 +132,13 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
     demand(base_fits(mesh, draw), "its first vertex puts an index of its mesh out of range");
     demand(has_stencil || !draw.raster.stencil.is_enabled(), "it tests a stencil that its pass does not have");
     let writes_color = draw.raster.color != super::ColorWrite::None;
+    let is_recorded = draw.program.is_recorded();
+    demand(is_recorded == pass.recorded.is_some(), "another program's draw in a pass of ours, or the reverse");
     demand(
-        writes_color != (draw.program == Program::Position),
+        is_recorded || writes_color != (draw.program == Program::Position),
         "a shader with colour and a state without, or the reverse",
     );
-    demand(!writes_color || pass.color.is_some(), "it writes a colour that its pass does not have");
+    demand(is_recorded || !writes_color || pass.color.is_some(), "it writes a colour that its pass does not have");
     let shades = draw.program.visibility().is_some();
     demand(!shades || mesh.surface.is_some(), "it shades a mesh without normals");
     demand(!shades || pass.light.is_some_and(|light| light.0 < plan.lights.len()), "it shades without a light");

@@ -22,6 +22,7 @@ mod kept;
 mod left_out;
 pub mod lint;
 mod raster;
+mod recorded;
 mod split;
 pub mod text;
 mod unseen;
@@ -33,7 +34,8 @@ pub use decided_by::{DecidedBy, Side};
 pub use decision::Decision;
 pub use image::{CpuImage, MakeImage};
 pub use left_out::LeftOut;
-pub use raster::{ColorWrite, RasterState, StencilFace};
+pub use raster::{ColorWrite, FaceMasks, RasterState, StencilFace};
+pub use recorded::{May, RecordedPass, StartContent, Viewport};
 
 use crate::math::depth::DepthCurve;
 use glam::{DMat4, DVec3, Mat4};
@@ -224,6 +226,9 @@ pub struct Pass {
     /// What it leaves in its colour target where no draw makes it. Capture folders hold it as an array.
     #[serde(skip)]
     pub image: Option<CpuImage>,
+    /// What it has beside this where another program made it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<Box<RecordedPass>>,
 }
 
 impl Pass {
@@ -371,6 +376,13 @@ pub enum Program {
     /// the light arrives, else the draw's `label`. Triangles run in reverse order, so that of
     /// surfaces at one depth the first drawn decides, as it did for the picture.
     Label(Visibility),
+    /// Another program's shader: vertices are clip-space positions, and pass through. Its colours are not known.
+    Recorded {
+        /// May it drop fragments?
+        may_discard: May,
+        /// May it make a depth of its own?
+        writes_depth: May,
+    },
 }
 
 /// Whom a shader asks how much of a light arrives at a point.
@@ -415,7 +427,8 @@ impl Program {
         let unlit = [false, true].map(|from_near| Program::Ambient { from_near });
         let flat = [Program::Position, Program::Flat, Program::FlatLabel, Program::Count, Program::Through];
         let lit = Visibility::ALL.into_iter().flat_map(|how| [Program::Light(how), Program::Label(how)]);
-        flat.into_iter().chain(unlit).chain(lit).collect()
+        let recorded = Program::Recorded { may_discard: May::No, writes_depth: May::No };
+        flat.into_iter().chain(unlit).chain(lit).chain([recorded]).collect()
     }
 
     /// Which side of the range of depths a fragment lies on that the shader throws away: where depth
@@ -441,7 +454,12 @@ impl Program {
         match self {
             Program::Light(visibility) | Program::Label(visibility) => Some(visibility),
             Program::Through => Some(Visibility::Projected),
-            Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => None,
+            Program::Position
+            | Program::Flat
+            | Program::FlatLabel
+            | Program::Count
+            | Program::Ambient { .. }
+            | Program::Recorded { .. } => None,
         }
     }
 }

@@ -20,12 +20,29 @@ pub struct RasterState {
     /// Functions and operations of each face and the masks; off where
     /// [`wgpu::StencilState::is_enabled`] says so.
     pub stencil: wgpu::StencilState,
-    /// The reference of both faces.
+    /// The reference of both faces, unless `back` has another.
     pub stencil_reference: u8,
+    /// What back faces have in place of the front's reference and masks, as OpenGL and Vulkan may; WebGPU draws them
+    /// in a draw of their own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub back: Option<FaceMasks>,
+    /// Which way round a triangle's corners run on the screen where its front is seen.
+    pub front_face: wgpu::FrontFace,
     /// Faces that are thrown away.
     pub cull: Option<wgpu::Face>,
     /// What passing fragments do to the colour target.
     pub color: ColorWrite,
+}
+
+/// The reference and the masks of a face's stencil test.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct FaceMasks {
+    /// What stored values are compared with, and replaced by.
+    pub reference: u8,
+    /// Bits that are compared.
+    pub read: u8,
+    /// Bits that may change.
+    pub write: u8,
 }
 
 /// What passing fragments do to the colour target.
@@ -41,6 +58,8 @@ pub enum ColorWrite {
     Multiply,
     /// Keep the smaller of both, channel by channel.
     Minimum,
+    /// Blend with it in another way, of another program.
+    Blend,
 }
 
 impl RasterState {
@@ -54,6 +73,8 @@ impl RasterState {
             depth_bias: DepthBiasState::default(),
             stencil: wgpu::StencilState::default(),
             stencil_reference: 0,
+            back: None,
+            front_face: wgpu::FrontFace::Ccw,
             cull: None,
             color: ColorWrite::Replace,
         }
@@ -95,19 +116,45 @@ impl RasterState {
         self
     }
 
+    /// The tests and operations of a face, and its reference and masks.
+    #[must_use]
+    pub fn face(&self, is_front: bool) -> (&StencilFace, FaceMasks) {
+        let wgpu::StencilState { front, back, read_mask, write_mask } = &self.stencil;
+        let shared = FaceMasks { reference: self.stencil_reference, read: *read_mask as u8, write: *write_mask as u8 };
+        if is_front { (front, shared) } else { (back, self.back.unwrap_or(shared)) }
+    }
+
+    /// As states whose reference and masks hold for both faces: itself, or one of each face.
+    #[must_use]
+    pub fn by_face(&self) -> Vec<RasterState> {
+        let Some(back) = self.back.filter(|_| self.stencil.is_enabled()) else {
+            return vec![RasterState { back: None, ..self.clone() }];
+        };
+        let mut of_back = RasterState { back: None, stencil_reference: back.reference, ..self.clone() };
+        of_back.stencil.read_mask = back.read.into();
+        of_back.stencil.write_mask = back.write.into();
+        let alone = [(wgpu::Face::Front, RasterState { back: None, ..self.clone() }), (wgpu::Face::Back, of_back)];
+        let shown = alone.into_iter().filter(|(face, _)| self.cull != Some(*face));
+        let other = |face| if face == wgpu::Face::Front { wgpu::Face::Back } else { wgpu::Face::Front };
+        shown.map(|(face, state)| RasterState { cull: Some(other(face)), ..state }).collect()
+    }
+
     /// Does a fragment that fails a test leave everything as it was?
     #[must_use]
     pub fn acts_only_where_it_passes(&self) -> bool {
-        let keeps = |face: &StencilFace| [face.fail_op, face.depth_fail_op] == [StencilOperation::Keep; 2];
-        self.stencil.write_mask == 0 || (keeps(&self.stencil.front) && keeps(&self.stencil.back))
+        let keeps = |(face, masks): (&StencilFace, FaceMasks)| {
+            masks.write == 0 || [face.fail_op, face.depth_fail_op] == [StencilOperation::Keep; 2]
+        };
+        keeps(self.face(true)) && keeps(self.face(false))
     }
 
     /// Can a draw with this state change the stored stencil?
     #[must_use]
     pub fn writes_stencil(&self) -> bool {
-        let writes = |face: &StencilFace| {
-            [face.fail_op, face.depth_fail_op, face.pass_op].iter().any(|op| *op != StencilOperation::Keep)
+        let writes = |(face, masks): (&StencilFace, FaceMasks)| {
+            masks.write != 0
+                && [face.fail_op, face.depth_fail_op, face.pass_op].iter().any(|op| *op != StencilOperation::Keep)
         };
-        self.stencil.write_mask != 0 && (writes(&self.stencil.front) || writes(&self.stencil.back))
+        writes(self.face(true)) || writes(self.face(false))
     }
 }

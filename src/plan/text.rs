@@ -4,8 +4,8 @@
 //! in full.
 
 use super::{
-    AttachmentId, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FramePlan, MapLookup, Pass, Program,
-    RasterState, StencilFace, Visibility,
+    AttachmentId, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, MapLookup, Pass, Program,
+    RasterState, StencilFace, Viewport, Visibility,
 };
 use std::fmt::{self, Display, Formatter};
 
@@ -68,6 +68,13 @@ impl FramePlan {
         if let Some([left, top, columns, rows]) = pass.scissor {
             writeln!(f, "  only {columns}x{rows} pixels from {left},{top}")?;
         }
+        if let Some(recorded) = &pass.recorded {
+            let Viewport { area: [left, top, width, height], depth: [near, far] } = recorded.viewport;
+            writeln!(f, "  viewport {width}x{height} from {left},{top}, depths {near} to {far}")?;
+            if !recorded.groups.is_empty() {
+                writeln!(f, "  in {}", recorded.groups.join(" / "))?;
+            }
+        }
         if let Some(image) = &pass.image {
             writeln!(f, "  image made on the CPU: {}", image.name)?;
         }
@@ -92,6 +99,7 @@ impl FramePlan {
             Program::Light(_) => "light",
             Program::Label(_) => "label",
             Program::Through => "darkened",
+            Program::Recorded { .. } => "another program",
         };
         let by = match draw.program.visibility() {
             None | Some(Visibility::Everywhere) => "",
@@ -143,10 +151,16 @@ impl Display for RasterState {
             writeln!(f, "    depth bias {} steps, {} slopes", bias.constant, bias.slope_scale)?;
         }
         if self.stencil.is_enabled() {
-            let masks = (self.stencil.read_mask, self.stencil.write_mask);
-            writeln!(f, "    stencil reference {}, read {:#x}, write {:#x}", self.stencil_reference, masks.0, masks.1)?;
+            let FaceMasks { reference, read, write } = self.face(true).1;
+            writeln!(f, "    stencil reference {reference}, read {read:#x}, write {write:#x}")?;
             fmt_face(f, "front", &self.stencil.front)?;
             fmt_face(f, "back", &self.stencil.back)?;
+            if let Some(FaceMasks { reference, read, write }) = self.back {
+                writeln!(f, "      back: reference {reference}, read {read:#x}, write {write:#x}")?;
+            }
+        }
+        if self.front_face == wgpu::FrontFace::Cw {
+            writeln!(f, "    front faces run clockwise")?;
         }
         if let Some(face) = self.cull {
             writeln!(f, "    {face:?} faces culled")?;
@@ -157,6 +171,7 @@ impl Display for RasterState {
             ColorWrite::Add => writeln!(f, "    color added"),
             ColorWrite::Multiply => writeln!(f, "    color multiplied"),
             ColorWrite::Minimum => writeln!(f, "    the smaller color kept"),
+            ColorWrite::Blend => writeln!(f, "    color blended"),
         }
     }
 }

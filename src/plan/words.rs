@@ -2,9 +2,9 @@
 //!
 //! The three name the same functions; where they differ, the lines say so by being what one would
 //! write there. The stencil's reference and masks hold for both faces in WebGPU; OpenGL and
-//! Direct3D get them for each face, equal.
+//! Direct3D get them for each face, equal unless another program had others.
 
-use super::{ColorWrite, Pass, RasterState, StencilFace};
+use super::{ColorWrite, FaceMasks, Pass, RasterState, StencilFace};
 use wgpu::{CompareFunction, StencilOperation};
 
 named_enum! {
@@ -49,7 +49,7 @@ pub fn sentences(raster: &RasterState, pass: &Pass) -> Vec<String> {
         said.push("There is no depth and no stencil buffer in this pass.".to_owned());
     }
     if raster.stencil.is_enabled() {
-        let (front, back) = (face_sentence(&raster.stencil.front, raster), face_sentence(&raster.stencil.back, raster));
+        let [front, back] = [true, false].map(|is_front| face_sentence(raster.face(is_front)));
         if front == back {
             said.push(format!("Stencil, both faces: {front}."));
         } else {
@@ -64,6 +64,7 @@ pub fn sentences(raster: &RasterState, pass: &Pass) -> Vec<String> {
             ColorWrite::Add => "Its colour is added to what was there.",
             ColorWrite::Multiply => "What was there is multiplied by its colour.",
             ColorWrite::Minimum => "The smaller of both colours stays, channel by channel.",
+            ColorWrite::Blend => "Its colour is blended with what was there.",
         }
         .to_owned(),
     );
@@ -83,17 +84,13 @@ fn relation(compare: CompareFunction) -> &'static str {
     }
 }
 
-fn face_sentence(face: &StencilFace, raster: &RasterState) -> String {
+fn face_sentence((face, masks): (&StencilFace, FaceMasks)) -> String {
     let test = match face.compare {
         CompareFunction::Always => "its test always passes".to_owned(),
         CompareFunction::Never => "its test never passes".to_owned(),
         compare => {
-            let mask = if raster.stencil.read_mask == 0xff {
-                String::new()
-            } else {
-                format!(" (bits {:#04x})", raster.stencil.read_mask)
-            };
-            format!("it passes where {} is {} the stored count{mask}", raster.stencil_reference, relation(compare))
+            let mask = if masks.read == 0xff { String::new() } else { format!(" (bits {:#04x})", masks.read) };
+            format!("it passes where {} is {} the stored count{mask}", masks.reference, relation(compare))
         }
     };
     let acts: Vec<String> = [
@@ -102,8 +99,8 @@ fn face_sentence(face: &StencilFace, raster: &RasterState) -> String {
         ("one that passes both", face.pass_op),
     ]
     .into_iter()
-    .filter(|(_, op)| *op != StencilOperation::Keep && raster.stencil.write_mask != 0)
-    .map(|(who, op)| format!("{who} {}", operation(op, raster.stencil_reference)))
+    .filter(|(_, op)| *op != StencilOperation::Keep && masks.write != 0)
+    .map(|(who, op)| format!("{who} {}", operation(op, masks.reference)))
     .collect();
     if acts.is_empty() { format!("{test}; nothing changes it") } else { format!("{test}; {}", acts.join("; ")) }
 }
@@ -156,7 +153,7 @@ fn web_gpu(raster: &RasterState) -> Vec<String> {
         format!("stencilWriteMask: {:#04x},", stencil.write_mask & 0xff),
         format!("pass.setStencilReference({});", raster.stencil_reference),
         format!("cullMode: \"{}\",", raster.cull.map_or("none".to_owned(), |face| format!("{face:?}").to_lowercase())),
-        "frontFace: \"ccw\",".to_owned(),
+        format!("frontFace: {},", word(format!("{:?}", raster.front_face))),
         format!("unclippedDepth: {},", raster.unclipped_depth),
     ];
     let blend = |src: &str, dst: &str, op: &str| {
@@ -168,6 +165,7 @@ fn web_gpu(raster: &RasterState) -> Vec<String> {
         ColorWrite::Add => blend("one", "one", "add"),
         ColorWrite::Multiply => blend("dst", "zero", "add"),
         ColorWrite::Minimum => blend("one", "one", "min"),
+        ColorWrite::Blend => "blend: another program's,".to_owned(),
     });
     lines
 }
@@ -208,19 +206,24 @@ fn open_gl(raster: &RasterState) -> Vec<String> {
     lines.push(on(raster.unclipped_depth, "GL_DEPTH_CLAMP"));
     lines.push(on(stencil.is_enabled(), "GL_STENCIL_TEST"));
     if stencil.is_enabled() {
-        for (name, face) in [("GL_FRONT", &stencil.front), ("GL_BACK", &stencil.back)] {
-            let (reference, mask) = (raster.stencil_reference, stencil.read_mask & 0xff);
-            lines.push(format!("glStencilFuncSeparate({name}, {}, {reference}, {mask:#04x});", compare(face.compare)));
+        for (name, is_front) in [("GL_FRONT", true), ("GL_BACK", false)] {
+            let (face, FaceMasks { reference, read, write }) = raster.face(is_front);
+            lines.push(format!("glStencilFuncSeparate({name}, {}, {reference}, {read:#04x});", compare(face.compare)));
+            if raster.back.is_some() {
+                lines.push(format!("glStencilMaskSeparate({name}, {write:#04x});"));
+            }
             let ops = [face.fail_op, face.depth_fail_op, face.pass_op].map(operation);
             lines.push(format!("glStencilOpSeparate({name}, {}, {}, {});", ops[0], ops[1], ops[2]));
         }
-        lines.push(format!("glStencilMask({:#04x});", stencil.write_mask & 0xff));
+        if raster.back.is_none() {
+            lines.push(format!("glStencilMask({:#04x});", stencil.write_mask & 0xff));
+        }
     }
     lines.push(on(raster.cull.is_some(), "GL_CULL_FACE"));
     if let Some(face) = raster.cull {
         lines.push(format!("glCullFace(GL_{});", format!("{face:?}").to_uppercase()));
     }
-    lines.push("glFrontFace(GL_CCW);".to_owned());
+    lines.push(format!("glFrontFace(GL_{});", format!("{:?}", raster.front_face).to_uppercase()));
     match raster.color {
         ColorWrite::None => lines.push("glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);".to_owned()),
         ColorWrite::Replace => lines.push("glDisable(GL_BLEND);".to_owned()),
@@ -233,6 +236,7 @@ fn open_gl(raster: &RasterState) -> Vec<String> {
         ColorWrite::Minimum => {
             lines.extend(["glEnable(GL_BLEND);".to_owned(), "glBlendEquation(GL_MIN);".to_owned()]);
         }
+        ColorWrite::Blend => lines.push("glEnable(GL_BLEND);".to_owned()),
     }
     lines
 }
@@ -278,7 +282,7 @@ fn direct3d(raster: &RasterState) -> Vec<String> {
     }
     let cull = raster.cull.map_or("NONE".to_owned(), |face| format!("{face:?}").to_uppercase());
     lines.push(format!("CullMode = D3D12_CULL_MODE_{cull};"));
-    lines.push("FrontCounterClockwise = TRUE;".to_owned());
+    lines.push(format!("FrontCounterClockwise = {};", truth(raster.front_face == wgpu::FrontFace::Ccw)));
     let blend = |src: &str, dst: &str, op: &str| {
         [
             "BlendEnable = TRUE;".to_owned(),
@@ -293,6 +297,7 @@ fn direct3d(raster: &RasterState) -> Vec<String> {
         ColorWrite::Add => lines.extend(blend("ONE", "ONE", "ADD")),
         ColorWrite::Multiply => lines.extend(blend("DEST_COLOR", "ZERO", "ADD")),
         ColorWrite::Minimum => lines.extend(blend("ONE", "ONE", "MIN")),
+        ColorWrite::Blend => lines.push("BlendEnable = TRUE;".to_owned()),
     }
     lines
 }
@@ -344,12 +349,12 @@ mod tests {
 
     #[test]
     fn faces_that_do_the_same_are_told_once() {
-        let face = face_sentence(&z_fail().stencil.back, &z_fail());
+        let face = face_sentence(z_fail().face(false));
         assert_eq!(face, "its test always passes; one that fails the depth test adds 1 (255 becomes 0)");
         let light = RasterState::visible_surface(ColorWrite::Add)
             .with_stencil(StencilFace { compare: CompareFunction::Equal, ..StencilFace::IGNORE }, 0);
         assert_eq!(
-            face_sentence(&light.stencil.front, &light),
+            face_sentence(light.face(true)),
             "it passes where 0 is equal to the stored count; nothing changes it"
         );
     }

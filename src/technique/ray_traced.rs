@@ -68,6 +68,7 @@ fn ray_pass(frame: &mut Frame, light: LightId, rays: LightRays) {
         depth_stencil: None,
         draws: Vec::new(),
         image: Some(CpuImage { name: format!("rays of {}", light.name()), content, source: Arc::new(rays) }),
+        recorded: None,
     });
 }
 

@@ -201,6 +201,7 @@ fn add_face(
                    seen from the light, is in shadow.";
     frame.plan.passes.push(Pass {
         image: None,
+        recorded: None,
         scissor: None,
         name,
         purpose: purpose.to_owned(),

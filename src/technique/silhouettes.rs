@@ -53,6 +53,7 @@ pub fn add_map(
         frame.plan.passes.push(Pass {
             name,
             image: None,
+            recorded: None,
             scissor: None,
             purpose: purpose.to_owned(),
             light: Some(light),

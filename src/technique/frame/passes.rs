@@ -55,6 +55,7 @@ impl Frame<'_> {
         self.plan.passes.push(Pass {
             name: name.to_owned(),
             image: None,
+            recorded: None,
             scissor: self.scissors.get(light.0).copied().flatten(),
             purpose: purpose.to_owned(),
             light: Some(light),
@@ -104,6 +105,7 @@ impl Frame<'_> {
         self.plan.passes.push(Pass {
             name: "ambient".to_owned(),
             image: None,
+            recorded: None,
             scissor: None,
             purpose: purpose.to_owned(),
             light: None,
@@ -166,6 +168,7 @@ impl Frame<'_> {
         self.plan.passes.push(Pass {
             name: "mask".to_owned(),
             image: None,
+            recorded: None,
             scissor: None,
             purpose: purpose.to_owned(),
             light: Some(light),

@@ -1,0 +1,15 @@
+// Puts depths into a target: what another program's frame began with.
+
+@group(0) @binding(0) var<storage, read> depths: array<f32>;
+override width: u32;
+
+@vertex
+fn vs_start(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
+    // A triangle that holds the whole target.
+    return vec4f(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fs_start(@builtin(position) at: vec4f) -> @builtin(frag_depth) f32 {
+    return depths[u32(at.y) * width + u32(at.x)];
+}

@@ -1,0 +1,108 @@
+//! What a pass's depth and stencil hold as it begins, put there from the CPU: depths by a draw, as nothing copies them
+//! into a buffer of floats, the stencil by a copy.
+
+use super::prepared::Prepared;
+use super::shaders;
+use crate::plan::{Blob, StartContent};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use wgpu::{BufferUsages, CommandEncoder, Device, LoadOp, Operations, StoreOp, TextureFormat};
+
+const ROW_ALIGNMENT: usize = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize;
+
+/// Records what brings the content of a pass's targets there.
+pub(super) fn record(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, content: &StartContent) {
+    let Some(target) = &prepared.plan.passes[index].depth_stencil else { return };
+    let texture = prepared.texture(target.attachment);
+    if let Some(stencil) = content.stencil.as_ref().filter(|_| texture.format().has_stencil_aspect()) {
+        let origin = wgpu::Origin3d { z: prepared.layer(target.attachment, target.layer), ..wgpu::Origin3d::ZERO };
+        let aspect = wgpu::TextureAspect::StencilOnly;
+        copy_stencil(
+            encoder,
+            &prepared.context.device,
+            stencil,
+            wgpu::TexelCopyTextureInfo { texture, mip_level: 0, origin, aspect },
+        );
+    }
+    if let (Some(depth), Some(view)) = (&content.depth, &prepared.passes[index].depth_stencil) {
+        draw_depth(encoder, &prepared.context.device, depth, view, (texture.format(), texture.width()));
+    }
+}
+
+fn copy_stencil(encoder: &mut CommandEncoder, device: &Device, stencil: &Blob<u8>, target: wgpu::TexelCopyTextureInfo) {
+    let size = wgpu::Extent3d { depth_or_array_layers: 1, ..target.texture.size() };
+    let stride = (size.width as usize).next_multiple_of(ROW_ALIGNMENT);
+    let mut padded = vec![0; stride * size.height as usize];
+    for (row, padded) in stencil.data().chunks_exact(size.width as usize).zip(padded.chunks_exact_mut(stride)) {
+        padded[..row.len()].copy_from_slice(row);
+    }
+    let contents = &padded;
+    let buffer = device.create_buffer_init(&BufferInitDescriptor {
+        label: Some("start"),
+        contents,
+        usage: BufferUsages::COPY_SRC,
+    });
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride as u32), rows_per_image: None };
+    encoder.copy_buffer_to_texture(wgpu::TexelCopyBufferInfo { buffer: &buffer, layout }, target, size);
+}
+
+fn draw_depth(
+    encoder: &mut CommandEncoder,
+    device: &Device,
+    depth: &Blob<f32>,
+    view: &wgpu::TextureView,
+    (format, width): (TextureFormat, u32),
+) {
+    let source = wgpu::ShaderSource::Wgsl(shaders::START.into());
+    let module = &device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("start"), source });
+    let constants: &[(&str, f64)] = &[("width", f64::from(width))];
+    let compilation_options = wgpu::PipelineCompilationOptions { constants, ..Default::default() };
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("start"),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("vs_start"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("fs_start"),
+            compilation_options,
+            targets: &[],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    let usage = BufferUsages::STORAGE;
+    let contents = depth.bytes();
+    let buffer = device.create_buffer_init(&BufferInitDescriptor { label: Some("start"), contents, usage });
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("start"),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+    });
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("start"),
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view,
+            depth_ops: Some(Operations { load: LoadOp::Load, store: StoreOp::Store }),
+            stencil_ops: format
+                .has_stencil_aspect()
+                .then_some(Operations { load: LoadOp::Load, store: StoreOp::Store }),
+        }),
+        ..wgpu::RenderPassDescriptor::default()
+    });
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.draw(0..3, 0..1);
+}

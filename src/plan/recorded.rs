@@ -1,0 +1,120 @@
+//! What only the frames of other programs need: a viewport, targets that hold something before a pass begins,
+//! depths stored in 16 or 24 bits, shaders of which no more is known than where their vertices land.
+
+use super::{Attachment, Blob, Draw, Pass, Program};
+use serde::{Deserialize, Serialize};
+use wgpu::TextureFormat;
+
+named_enum! {
+    /// May a shader do it?
+    pub enum May {
+        /// It can't.
+        No = "no",
+        /// It may, for some fragments.
+        Yes = "yes",
+        /// It could not be read.
+        Unknown = "unknown",
+    }
+}
+
+/// What a pass of another program's frame has beside what ours have.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RecordedPass {
+    /// Where its draws land.
+    pub viewport: Viewport,
+    /// The program's debug groups that it is in, outermost first.
+    pub groups: Vec<String>,
+    /// What its depth and stencil hold as it begins, where that is not what the pass before left.
+    #[serde(skip)]
+    pub start: Option<StartContent>,
+}
+
+/// Where clip space lands in a target.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Viewport {
+    /// Left, top, width and height in pixels.
+    pub area: [f32; 4],
+    /// The stored depths of clip depth 0 and 1, each in [0, 1], the smaller one first.
+    pub depth: [f32; 2],
+}
+
+impl Viewport {
+    /// All of a target, and all depths.
+    #[must_use]
+    pub fn whole(size: [u32; 2]) -> Viewport {
+        let [width, height] = size.map(|side| side as f32);
+        Viewport { area: [0.0, 0.0, width, height], depth: [0.0, 1.0] }
+    }
+
+    /// The stored depth of a clip depth.
+    #[must_use]
+    pub fn stored(&self, depth: f64) -> f64 {
+        let [near, far] = self.depth.map(f64::from);
+        near + (far - near) * depth
+    }
+}
+
+/// What a depth-stencil target holds, row by row from the top, without padding.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StartContent {
+    /// As stored.
+    pub depth: Option<Blob<f32>>,
+    /// Eight bits.
+    pub stencil: Option<Blob<u8>>,
+}
+
+impl Attachment {
+    /// The largest depth as an integer, where the format stores depths as integers: 2^bits − 1.
+    #[must_use]
+    pub fn depth_steps(&self) -> Option<u32> {
+        match self.format {
+            TextureFormat::Depth16Unorm => Some(0xffff),
+            TextureFormat::Depth24Plus | TextureFormat::Depth24PlusStencil8 => Some(0xff_ffff),
+            _ => None,
+        }
+    }
+
+    /// The format that the GPU is given: depths of 16 and 24 bits can't be copied everywhere, so they are kept as the
+    /// floats next to them, of which each is another.
+    #[must_use]
+    pub fn held_format(&self) -> TextureFormat {
+        match self.format {
+            TextureFormat::Depth16Unorm | TextureFormat::Depth24Plus => TextureFormat::Depth32Float,
+            TextureFormat::Depth24PlusStencil8 => TextureFormat::Depth32FloatStencil8,
+            format => format,
+        }
+    }
+
+    /// A depth as it is stored: the nearest that the format has.
+    #[must_use]
+    pub fn stored_depth(&self, depth: f32) -> f32 {
+        match self.depth_steps() {
+            Some(steps) => (depth * steps as f32).round_ties_even() / steps as f32,
+            None => depth,
+        }
+    }
+}
+
+impl Program {
+    /// Is it another program's shader? Vertices are in clip space then, and go through as they are.
+    #[must_use]
+    pub fn is_recorded(self) -> bool {
+        matches!(self, Program::Recorded { .. })
+    }
+}
+
+impl Pass {
+    /// Where its draws land in a target of that size.
+    #[must_use]
+    pub fn viewport(&self, size: [u32; 2]) -> Viewport {
+        self.recorded.as_ref().map_or_else(|| Viewport::whole(size), |recorded| recorded.viewport)
+    }
+}
+
+impl Draw {
+    /// May its shader drop fragments that it is shown with here?
+    #[must_use]
+    pub fn may_discard(&self) -> bool {
+        matches!(self.program, Program::Recorded { may_discard: May::Yes | May::Unknown, .. })
+    }
+}
