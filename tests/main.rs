@@ -20,6 +20,7 @@ mod options;
 mod plan;
 mod ray_cast;
 mod readme;
+mod recorded;
 mod report;
 mod scenes;
 mod stencil_machine;

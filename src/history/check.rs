@@ -131,7 +131,7 @@ impl PixelHistory {
 
     fn differs(&self, captured: &CapturedAfter) -> Option<Disagreement> {
         let last = self.events.iter().rev().find(|event| event.pass <= captured.pass);
-        let computed = last.map_or(super::replay::NEW, |event| event.after);
+        let computed = last.map_or(self.start, |event| event.after);
         let same_depth = computed.depth.to_bits() == captured.stored.depth.to_bits();
         let same_stencil = !self.has_stencil || computed.stencil == captured.stored.stencil;
         let same_count = captured.count.is_none_or(|count| count == computed.count);

@@ -41,6 +41,8 @@ pub struct PixelHistory {
     pub has_stencil: bool,
     /// Is greater depth nearer?
     pub is_reversed: bool,
+    /// Before the first event: zeros, or what another program's frame began with.
+    pub start: Held,
     /// In the order in which they happened.
     pub events: Vec<Event>,
     /// What the events leave.

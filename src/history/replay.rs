@@ -9,7 +9,7 @@ use crate::stencil_machine::{self, Fragment};
 use wgpu::CompareFunction;
 
 /// wgpu clears new textures to zero.
-pub(super) const NEW: Held = Held { depth: 0.0, stencil: 0, count: 0.0 };
+const NEW: Held = Held { depth: 0.0, stencil: 0, count: 0.0 };
 
 impl PixelHistory {
     /// The history of `pixel` in the frame of `plan`, which left `capture`: `covering` are the
@@ -22,7 +22,8 @@ impl PixelHistory {
         covering: &[Covering],
         log: &FragmentLog,
     ) -> PixelHistory {
-        let mut replay = Replay { plan, held: NEW, events: Vec::new(), contradictions: Vec::new() };
+        let start = start_of(plan, pixel);
+        let mut replay = Replay { plan, held: start, events: Vec::new(), contradictions: Vec::new() };
         let is_hidden = |one: &&Covering| matches!(one.coverage, Coverage::Culled(_) | Coverage::Clipped(..));
         let hidden = covering.iter().filter(is_hidden).count() as u32;
         let mut fragments = log.fragments.iter().peekable();
@@ -45,6 +46,7 @@ impl PixelHistory {
                 attachment.role == AttachmentRole::DepthStencil && attachment.format.has_stencil_aspect()
             }),
             is_reversed: plan.depth.mapping.is_reversed(),
+            start,
             computed: replay.held,
             events: replay.events,
             captured: captured_after.last().map(|captured| captured.stored),
@@ -137,6 +139,16 @@ impl Replay<'_> {
         };
         self.push(one.pass, triangle(draw, one, face, fate), self.held);
     }
+}
+
+/// What a pixel of the picture holds before the frame's first pass.
+fn start_of(plan: &FramePlan, [x, y]: [u32; 2]) -> Held {
+    let first = plan.passes.iter().find(|pass| plan.is_of_picture(pass) && pass.depth_stencil.is_some());
+    let start = first.and_then(|pass| pass.recorded.as_ref()?.start.as_ref());
+    let index = y as usize * plan.size[0] as usize + x as usize;
+    let depth = start.and_then(|start| start.depth.as_ref()?.data().get(index).copied());
+    let stencil = start.and_then(|start| start.stencil.as_ref()?.data().get(index).copied());
+    Held { depth: depth.unwrap_or(NEW.depth), stencil: stencil.unwrap_or(NEW.stencil), ..NEW }
 }
 
 /// What a pass of the picture draws into.

@@ -151,6 +151,10 @@ impl Search<'_> {
         // Another program's vertices are in clip space.
         let matrix = (!draw.program.is_recorded()).then(|| self.plan.views[view.0].clip_from_relative);
         let square = Square::new(self.pixel, viewport);
+        // Nothing is drawn outside of the viewport.
+        if square.inside < -DOUBT {
+            return;
+        }
         let base = draw.base_vertex as usize;
         let corners_of = |triangle: u32| {
             let corners = indices.get(triangle as usize * 3..)?.get(..3)?;
@@ -217,6 +221,8 @@ struct Square {
     center: DVec2,
     /// Half of a pixel's sides.
     half_pixel: DVec2,
+    /// How far the centre lies inside of the viewport, pixels.
+    inside: f64,
 }
 
 /// How a triangle lies to the centre.
@@ -235,7 +241,8 @@ impl Square {
         let [left, top, width, height] = viewport.area.map(f64::from);
         let size = DVec2::new(width, height);
         let center = (DVec2::new(f64::from(pixel[0]), f64::from(pixel[1])) + 0.5 - DVec2::new(left, top)) / size;
-        Square { center: DVec2::new(center.x * 2.0 - 1.0, 1.0 - center.y * 2.0), half_pixel: 1.0 / size }
+        let inside = (center.min(1.0 - center) * size).min_element();
+        Square { center: DVec2::new(center.x * 2.0 - 1.0, 1.0 - center.y * 2.0), half_pixel: 1.0 / size, inside }
     }
 
     /// Four bits for each vertex: right of, left of, above and below the square, as far as `f32` can
@@ -290,7 +297,7 @@ impl Square {
             return Some(Seen::Near);
         }
         let depth = interpolated(clip.map(|corner| corner.z)) / w;
-        let is_safe = least > SAFE || most < -SAFE;
+        let is_safe = (least > SAFE || most < -SAFE) && self.inside > SAFE;
         Some(Seen::Inside { runs_counterclockwise: sum > 0.0, depth, is_safe })
     }
 }

@@ -6,7 +6,7 @@ use super::super::files;
 use super::{Capture, CaptureError};
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, Blob, CpuImage, DrawMesh, FramePlan, LightId, MakeImage, PlanLight,
-    SurfaceData, lint,
+    StartContent, SurfaceData, lint,
 };
 use foldhash::quality::FixedState;
 use serde::{Deserialize, Serialize};
@@ -28,6 +28,9 @@ struct FrameEntry<P> {
     /// Of passes whose picture comes from the CPU.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     images: Vec<ImageEntry>,
+    /// Of passes whose targets hold something before.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    starts: Vec<StartEntry>,
 }
 
 /// A mesh and the files of its arrays. What two meshes share is one file.
@@ -58,10 +61,20 @@ struct ImageEntry {
     file: String,
 }
 
+/// A value a pixel, row by row.
+#[derive(Serialize, Deserialize)]
+struct StartEntry {
+    pass: usize,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    depth: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    stencil: Option<String>,
+}
+
 /// Writes a plan.
 pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError> {
     let mut written = BTreeMap::new();
-    let mut entry = FrameEntry { plan, meshes: Vec::with_capacity(plan.meshes.len()), images: Vec::new() };
+    let mut entry = FrameEntry { plan, meshes: Vec::new(), images: Vec::new(), starts: Vec::new() };
     for (index, mesh) in plan.meshes.iter().enumerate() {
         let mut put = Put { folder, stem: format!("mesh{index:03}"), written: &mut written };
         let DrawMesh { name, vertices, indices, surface } = mesh;
@@ -82,6 +95,14 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
         let file = format!("pass{pass:03}.image.npy");
         files::write_values(&folder.join(&file), &image.source.make(), 1)?;
         entry.images.push(ImageEntry { pass, name: image.name.clone(), file });
+    }
+    for (pass, of) in plan.passes.iter().enumerate() {
+        let Some(start) = of.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()) else { continue };
+        let mut put = Put { folder, stem: format!("pass{pass:03}.start"), written: &mut written };
+        let depth = start.depth.as_ref().map(|depth| put.blob("depth", depth, |values| (values, 1))).transpose()?;
+        let stencil = start.stencil.as_ref();
+        let stencil = stencil.map(|stencil| put.blob("stencil", stencil, |values| (values, 1))).transpose()?;
+        entry.starts.push(StartEntry { pass, depth, stencil });
     }
     files::write(&folder.join(FRAME), |out| Ok(serde_json::to_writer(out, &entry)?))
 }
@@ -139,6 +160,13 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
         let pass = plan.passes.get_mut(pass).ok_or_else(|| wrong("it names a pass that is not there".to_owned()))?;
         let content = FixedState::default().hash_one(&texels);
         pass.image = Some(CpuImage { name, content, source: Arc::new(StoredImage { texels }) });
+    }
+    for StartEntry { pass, depth, stencil } in entry.starts {
+        let recorded = plan.passes.get_mut(pass).and_then(|pass| pass.recorded.as_mut());
+        let recorded = recorded.ok_or_else(|| wrong("it names a pass that is not there".to_owned()))?;
+        let depth = depth.map(|file| files::read_values(&plain(folder, &file)?, 1).map(Blob::new)).transpose()?;
+        let stencil = stencil.map(|file| files::read_values(&plain(folder, &file)?, 1).map(Blob::new)).transpose()?;
+        recorded.start = Some(StartContent { depth, stencil });
     }
     match inconsistency(&plan, capture) {
         Some(reason) => Err(wrong(reason)),
