@@ -4,7 +4,7 @@
 
     --inside        the eye stands in a shadow
     --far D         a far plane at distance D, which cuts the volumes (0: none)
-    --extrusion D   volumes end after D units instead of at infinity
+    --reach D       volumes end at distance D from the light instead of at infinity
     --size WxH      of the window
 
 Debian: python3-ogre-1.12. Every mesh is made here; of OGRE's own files only its shaders are used.
@@ -23,7 +23,7 @@ import Ogre.RTShader
 options = argparse.ArgumentParser()
 options.add_argument("--inside", action="store_true")
 options.add_argument("--far", type=float)
-options.add_argument("--extrusion", type=float)
+options.add_argument("--reach", type=float)
 options.add_argument("--size", default="320x240")
 options = options.parse_args()
 width, height = map(int, options.size.split("x"))
@@ -47,10 +47,8 @@ Ogre.MaterialManager.getSingleton().addListener(listener)
 groups.initialiseAllResourceGroups()
 scene.setAmbientLight(Ogre.ColourValue(0.2, 0.2, 0.2))
 scene.setShadowTechnique(Ogre.SHADOWTYPE_STENCIL_ADDITIVE)
-if options.extrusion is not None:
-    # A volume to infinity needs no distance: without it, OGRE ends volumes here.
+if options.reach is not None:
     scene.setShadowUseInfiniteFarPlane(False)
-    scene.setShadowDirectionalLightExtrusionDistance(options.extrusion)
 
 
 def mesh(name, corners, triangles):
@@ -120,8 +118,9 @@ light.setType(Ogre.Light.LT_POINT)
 node = scene.getRootSceneNode().createChildSceneNode()
 node.attachObject(light)
 node.setPosition(Ogre.Vector3(120, 260, 90))
-if options.extrusion is not None:
-    light.setShadowFarDistance(options.extrusion)
+if options.reach is not None:
+    # Without an infinite far plane, OGRE ends volumes where the light does.
+    light.setAttenuation(options.reach, 1, 0, 0)
 
 view = window.addViewport(camera)
 view.setBackgroundColour(Ogre.ColourValue(0.1, 0.1, 0.3))

@@ -71,13 +71,13 @@ pub enum ImportError {
         api: String,
     },
     /// The process took too long.
-    #[error("RenderDoc had no result after {seconds} s, and was ended; give it more with --seconds")]
+    #[error("RenderDoc had no result after {seconds} s, and was ended; give it more with --replay-seconds")]
     TooLong {
         /// How long it had.
         seconds: u64,
     },
     /// The process took too much memory.
-    #[error("RenderDoc needed more than {gibibytes} GiB of memory, and was ended; record a frame with less in it")]
+    #[error("RenderDoc needed more than {gibibytes} GiB of memory, and was ended; give it more with --memory")]
     TooMuchMemory {
         /// How much it had.
         gibibytes: u64,
