@@ -40,6 +40,8 @@
 //!   `Model::run_draft` (`inspector/model/scene.rs`) asks for it, `app/controller.rs` hands the order to the queue
 //!   (`app/queue.rs`, where of waiting runs only the newest counts), `app/worker.rs` runs it, and
 //!   `Model::set_capture` (`inspector/model/frame.rs`) shows it; older answers make way.
+//! - **A frame of another program**: `import/extract.py` takes it out of a RenderDoc capture, `import/read.rs` reads
+//!   that without trust, and what comes out is [`import::RawFrame`].
 //! - **A panel**: a file in `inspector/panels/`, a field and an arm in `inspector/panels/mod.rs`, a name in
 //!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. What it says of a frame comes from [`reading`].
 //!
@@ -63,6 +65,7 @@ mod files;
 pub mod geometry;
 mod gpu;
 pub mod history;
+pub mod import;
 #[cfg(feature = "inspector")]
 pub mod inspector;
 pub mod math;

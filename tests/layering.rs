@@ -5,13 +5,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 29] = [
+const MAY_USE: [(&str, &[&str]); 30] = [
     ("named", &[]),
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
     ("files", &[]),
     ("picture", &[]),
+    ("import", &["progress"]),
     ("scene", &["math", "files"]),
     ("truth", &["math", "scene", "progress"]),
     ("accuracy", &["truth"]),
@@ -141,6 +142,7 @@ const MAY_USE: [(&str, &[&str]); 29] = [
         &[
             "files",
             "numbers",
+            "import",
             "scene",
             "picture",
             "plan",

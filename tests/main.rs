@@ -11,6 +11,7 @@ mod diff;
 mod draws;
 mod help;
 mod history;
+mod import;
 #[cfg(feature = "inspector")]
 mod inspector;
 mod layering;

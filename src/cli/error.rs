@@ -23,6 +23,9 @@ pub enum CliError {
     /// The frame can't be made.
     #[error(transparent)]
     Session(#[from] SessionError),
+    /// The frame of another program can't be had.
+    #[error(transparent)]
+    Import(#[from] crate::import::ImportError),
     /// The report can't take the form asked for.
     #[error(transparent)]
     Report(#[from] crate::report::ReportError),
@@ -84,12 +87,13 @@ pub enum CliError {
 }
 
 impl CliError {
-    /// 1 where the answer is bad, 2 for bad input or usage, 3 where no GPU can be used, 0 where nobody
-    /// reads the result.
+    /// 1 where the answer is bad, 2 for bad input or usage, 3 where no GPU can be used or RenderDoc is not
+    /// installed, 0 where nobody reads the result.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Session(error) if error.is_missing_adapter() => 3,
+            CliError::Import(error) if error.is_missing_package() => 3,
             CliError::ClosedOutput => 0,
             CliError::WrongHistory { .. }
             | CliError::Unexpected { .. }

@@ -12,11 +12,13 @@ mod diff;
 mod error;
 mod fix;
 mod help;
+mod import;
 mod options;
 mod output;
 mod pictures;
 mod pixel;
 mod progress;
+mod record;
 mod report;
 mod results;
 mod scenes;
@@ -32,8 +34,10 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// The commands that exist.
-const COMMANDS: [&str; 11] =
-    ["view", "capture", "pixel", "diagnose", "diff", "report", "stress", "scenes", "bench", "pictures", "help"];
+const COMMANDS: [&str; 13] = [
+    "view", "capture", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import", "record", "bench",
+    "pictures", "help",
+];
 
 /// An interactive visual debugger for stencil shadows and shadow maps
 #[derive(Debug, Parser)]
@@ -61,6 +65,10 @@ enum Command {
     Stress(Box<stress::StressArguments>),
     /// List the built-in scenes
     Scenes(scenes::ScenesArguments),
+    /// Read a frame of another program out of a RenderDoc capture
+    Import(Box<import::ImportArguments>),
+    /// Run another program under RenderDoc and take one frame of it
+    Record(Box<record::RecordArguments>),
     /// Measure the program's own speed, as ratios
     Bench(Box<bench::BenchArguments>),
     /// Take the README's pictures of the window, without a display
@@ -94,6 +102,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
         Command::Report(arguments) => report::run(&arguments, &spoken),
         Command::Stress(arguments) => stress::run(&arguments, &spoken),
         Command::Scenes(arguments) => scenes::run(&arguments),
+        Command::Import(arguments) => import::run(&arguments),
+        Command::Record(arguments) => record::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Pictures(arguments) => pictures::run(&arguments),
         Command::Help(arguments) => help::run(&arguments),

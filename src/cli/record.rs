@@ -1,0 +1,49 @@
+//! `stencilscope record`: a frame of an unmodified program, through RenderDoc.
+
+use super::import::{FrameTarget, ReaderOptions, with_bar};
+use super::{CliError, output};
+use crate::import::{self, Recording};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+#[command(after_help = "A frame as a capture folder:  stencilscope record -o DIR -- PROGRAM ARGS…\n\
+    With no display:              xvfb-run -a stencilscope record -o DIR -- PROGRAM ARGS…\n\n\
+    The program is not changed, and ended once it has shown the frame. It must draw with Vulkan, OpenGL core or OpenGL \
+    ES, and itself: not by a script that starts it.")]
+pub struct RecordArguments {
+    /// Which frame that the program shows
+    #[arg(long, value_name = "N", default_value = "10")]
+    frame: u32,
+    /// Seconds that the program has until then
+    #[arg(long, value_name = "S", default_value = "60", value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    seconds: u64,
+    /// Also keep the RenderDoc capture
+    #[arg(long, value_name = "FILE.rdc")]
+    keep: Option<PathBuf>,
+    #[command(flatten)]
+    target: FrameTarget,
+    #[command(flatten)]
+    reader: ReaderOptions,
+    /// The program and its arguments
+    #[arg(last = true, required = true, value_name = "PROGRAM")]
+    command: Vec<String>,
+}
+
+/// Runs a program until it has shown the frame, and delivers that.
+///
+/// # Errors
+/// The program can't be run or recorded; no module `renderdoc`; the folder can't be written.
+pub fn run(arguments: &RecordArguments) -> Result<(), CliError> {
+    arguments.target.check()?;
+    arguments.keep.as_ref().map_or(Ok(()), |file| output::check_target(&file.to_string_lossy()))?;
+    let recording = Recording {
+        command: arguments.command.clone(),
+        frame: arguments.frame,
+        seconds: arguments.seconds,
+        keep: arguments.keep.clone(),
+    };
+    let options = arguments.reader.options();
+    let frame = with_bar(|progress| import::record(&recording, &options, progress))?;
+    arguments.target.deliver(frame)
+}

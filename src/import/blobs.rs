@@ -1,0 +1,79 @@
+//! `data.bin`: byte strings, each compressed, each read when it is asked for.
+//!
+//! No length is believed: each is held against the file and against what may be read in all before any memory is
+//! taken for it.
+
+use super::error::ImportError;
+use flate2::read::ZlibDecoder;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+/// Bytes that may be read or made in all.
+pub const MOST_BYTES: u64 = 8 << 30;
+
+/// The file, and where each byte string is in it.
+pub struct Blobs {
+    file: File,
+    table: Vec<[u64; 3]>,
+    left: u64,
+}
+
+impl Blobs {
+    /// Opens the file and looks through the table.
+    ///
+    /// # Errors
+    /// No file; a byte string that lies outside of it.
+    pub fn open(path: &Path, table: Vec<[u64; 3]>) -> Result<Self, ImportError> {
+        let failed = |error: std::io::Error| ImportError::Folder(format!("data.bin: {error}"));
+        let file = File::open(path).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
+        let lies_inside = |[at, packed, _]: &[u64; 3]| at.checked_add(*packed).is_some_and(|end| end <= length);
+        if let Some(at) = table.iter().position(|entry| !lies_inside(entry)) {
+            return Err(ImportError::Folder(format!("data.bin: byte string {at} lies outside of it")));
+        }
+        Ok(Self { file, table, left: MOST_BYTES })
+    }
+
+    /// Takes `bytes` from what may still be made.
+    ///
+    /// # Errors
+    /// There is not so much left.
+    pub fn reserve(&mut self, bytes: u64) -> Result<(), ImportError> {
+        let too_large = || ImportError::TooLarge { what: format!("more than {} GiB", MOST_BYTES >> 30) };
+        self.left = self.left.checked_sub(bytes).ok_or_else(too_large)?;
+        Ok(())
+    }
+
+    /// How long a byte string says that it is.
+    ///
+    /// # Errors
+    /// There is none of that number.
+    pub fn length(&self, index: usize) -> Result<u64, ImportError> {
+        Ok(self.entry(index)?[2])
+    }
+
+    /// A byte string.
+    ///
+    /// # Errors
+    /// There is none of that number, it is not what the table says, or it is too long.
+    pub fn read(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
+        let [at, packed, length] = self.entry(index)?;
+        self.reserve(length)?;
+        let broken =
+            |what: &dyn std::fmt::Display| ImportError::Folder(format!("data.bin: byte string {index}: {what}"));
+        self.file.seek(SeekFrom::Start(at)).map_err(|error| broken(&error))?;
+        // The bytes are what takes memory, not the length that the table has.
+        let mut bytes = Vec::new();
+        let mut unpacked = ZlibDecoder::new((&self.file).take(packed)).take(length.saturating_add(1));
+        unpacked.read_to_end(&mut bytes).map_err(|error| broken(&error))?;
+        if bytes.len() as u64 != length {
+            return Err(broken(&format!("it is not {length} bytes long")));
+        }
+        Ok(bytes)
+    }
+
+    fn entry(&self, index: usize) -> Result<[u64; 3], ImportError> {
+        self.table.get(index).copied().ok_or_else(|| ImportError::Folder(format!("there is no byte string {index}")))
+    }
+}

@@ -1,0 +1,133 @@
+//! `frame.json`, as the script writes it: names and numbers, not yet looked at.
+
+use serde::Deserialize;
+
+/// The format that the script writes.
+pub const FORMAT: u32 = 1;
+
+#[derive(Debug, Deserialize)]
+pub struct Document {
+    pub format: u32,
+    pub recorder: String,
+    pub api: String,
+    pub adapter: String,
+    pub textures: Vec<Texture>,
+    pub before: Vec<Before>,
+    pub events: Vec<Event>,
+    pub limits: Vec<String>,
+    /// Offset in `data.bin`, compressed bytes there, bytes.
+    pub blobs: Vec<[u64; 3]>,
+}
+
+#[derive(Debug, Deserialize)]
+pub struct Texture {
+    pub name: String,
+    pub format: String,
+    pub size: [u32; 2],
+    pub layers: u32,
+    pub mips: u32,
+    pub samples: u32,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+pub struct Target {
+    pub texture: usize,
+    pub mip: u32,
+    pub layer: u32,
+}
+
+#[derive(Debug, Deserialize)]
+pub struct Before {
+    pub target: Target,
+    pub contents: Option<usize>,
+}
+
+#[derive(Debug, Deserialize)]
+pub struct Event {
+    pub id: u32,
+    pub name: String,
+    pub groups: Vec<String>,
+    pub kind: String,
+    pub colors: Vec<Option<Target>>,
+    pub depth: Option<Target>,
+    pub color_after: Option<usize>,
+    pub depth_after: Option<usize>,
+    /// Colour; depth or stencil.
+    pub clears: [bool; 2],
+    pub draw: Option<Draw>,
+}
+
+#[derive(Debug, Deserialize)]
+pub struct Draw {
+    pub stencil_test: bool,
+    pub depth_test: bool,
+    pub depth_write: bool,
+    pub depth_bounds: bool,
+    pub depth_clamp: bool,
+    pub depth_clip: bool,
+    pub bias: [f32; 3],
+    pub alpha_to_coverage: bool,
+    pub discards_all: bool,
+    pub negative_one_to_one: bool,
+    pub origin_lower_left: bool,
+    pub clip_planes: bool,
+    pub front: Face,
+    pub back: Face,
+    pub depth_compare: String,
+    pub cull: String,
+    pub front_ccw: bool,
+    pub fill: String,
+    pub viewport: [f32; 4],
+    pub depth_range: [f32; 2],
+    pub scissor: Option<[i64; 4]>,
+    pub instances: Vec<Instance>,
+    /// Why there are no instances.
+    pub why: String,
+    pub blend: Option<Blend>,
+    pub shader: Option<Shader>,
+}
+
+#[derive(Debug, Deserialize)]
+pub struct Face {
+    pub fail: String,
+    pub depth_fail: String,
+    pub pass: String,
+    pub compare: String,
+    pub reference: u32,
+    pub compare_mask: u32,
+    pub write_mask: u32,
+}
+
+#[derive(Debug, Deserialize)]
+pub struct Instance {
+    pub topology: String,
+    pub count: u64,
+    pub vertices: usize,
+    pub stride: u64,
+    pub indices: Option<usize>,
+    pub index_stride: u64,
+    pub base_vertex: i64,
+    pub restart: Option<u32>,
+}
+
+#[derive(Debug, Deserialize)]
+pub struct Blend {
+    pub enabled: bool,
+    pub color: Equation,
+    pub alpha: Equation,
+    pub write_mask: u32,
+    pub logic: bool,
+}
+
+#[derive(Debug, Deserialize)]
+pub struct Equation {
+    pub source: String,
+    pub target: String,
+    pub operation: String,
+}
+
+#[derive(Debug, Deserialize)]
+pub struct Shader {
+    pub encoding: String,
+    pub bytes: usize,
+}

@@ -1,0 +1,397 @@
+"""Takes one frame out of a RenderDoc capture: `extract.py FOLDER CAPTURE`.
+
+Runs in a process of its own, started by stencilscope, and does as little as it can: for each event the raster
+state, the vertices after the last vertex stage and what the targets hold afterwards, as RenderDoc has them. Units,
+orientation and meaning are the reader's (read.rs).
+
+    FOLDER/frame.json   textures, events and states; a number that stands for bytes is an index of `blobs`
+    FOLDER/data.bin     blobs, each compressed by zlib; `blobs` has [offset, bytes here, bytes] of each
+
+Standard output is for who started us, a line each: `progress DONE OF`, `error KIND WORDS`, `done`. When standard
+input ends, who started us has ended, and so do we.
+"""
+
+import bisect
+import hashlib
+import json
+import os
+import shutil
+import signal
+import sys
+import threading
+import zlib
+
+folder, capture_file = sys.argv[1], sys.argv[2]
+
+# RenderDoc writes to standard output too: what it says goes with the errors.
+speaker = os.fdopen(os.dup(1), "w")
+os.dup2(2, 1)
+
+
+def say(*words):
+    print(*words, file=speaker, flush=True)
+
+
+def fail(kind, words):
+    say("error", kind, " ".join(str(words).split()))
+    speaker.close()
+    os._exit(1)
+
+
+def end_with_parent():
+    os.read(0, 1)
+    shutil.rmtree(folder, ignore_errors=True)
+    os.killpg(0, signal.SIGKILL)
+
+
+threading.Thread(target=end_with_parent, daemon=True).start()
+
+try:
+    import renderdoc as rd
+except ImportError as error:
+    fail("module", error)
+
+
+class Store:
+    """The blobs: each content once."""
+
+    MOST = 4 << 30
+
+    def __init__(self):
+        self.file = open(os.path.join(folder, "data.bin"), "wb")
+        self.known, self.table, self.bytes = {}, [], 0
+
+    def put(self, data):
+        key = (len(data), hashlib.sha256(data).digest())
+        if key not in self.known:
+            self.bytes += len(data)
+            if self.bytes > self.MOST:
+                fail("large", self.MOST >> 30)
+            packed = zlib.compress(data, 1)
+            self.known[key] = len(self.table)
+            self.table.append([self.file.tell(), len(packed), len(data)])
+            self.file.write(packed)
+        return self.known[key]
+
+
+def resource(bound):
+    """The resource of a bound target: newer versions of RenderDoc call it otherwise."""
+    return bound.resourceId if hasattr(bound, "resourceId") else bound.resource
+
+
+def opened():
+    """The file and its replay."""
+    codes = rd.ResultCode if hasattr(rd, "ResultCode") else rd.ReplayStatus
+    kinds = {
+        codes.FileNotFound: "missing",
+        codes.FileIOFailed: "missing",
+        codes.FileCorrupted: "corrupt",
+        codes.FileIncompatibleVersion: "newer",
+        codes.ImageUnsupported: "corrupt",
+        codes.APIIncompatibleVersion: "newer",
+        codes.APIDataCorrupted: "corrupt",
+    }
+
+    def check(result, otherwise):
+        code = result.code if hasattr(result, "code") else result
+        if code != codes.Succeeded:
+            words = result.Message() if hasattr(result, "Message") else result
+            fail(kinds.get(code, otherwise), words)
+
+    rd.InitialiseReplay(rd.GlobalEnvironment(), [])
+    file = rd.OpenCaptureFile()
+    check(file.OpenFile(capture_file, "", None), "corrupt")
+    if file.LocalReplaySupport() != rd.ReplaySupport.Supported:
+        fail("replay", file.DriverName() + " captures are not replayed on this system")
+    result, replay = file.OpenCapture(rd.ReplayOptions(), None)
+    check(result, "replay")
+    return file, replay
+
+
+def leaves(actions, groups):
+    """Actions without children, in order, each with the names of the groups that it is in."""
+    for action in actions:
+        if len(action.children):
+            is_queue = action.flags & rd.ActionFlags.CommandBufferBoundary
+            name = action.GetName(structured)
+            yield from leaves(action.children, groups if is_queue else groups + [name])
+        else:
+            yield action, groups
+
+
+KINDS = [
+    ("draw", rd.ActionFlags.Drawcall),
+    ("begin", rd.ActionFlags.BeginPass),
+    ("end", rd.ActionFlags.EndPass),
+    ("clear", rd.ActionFlags.Clear),
+    ("copy", rd.ActionFlags.Copy | rd.ActionFlags.Resolve | rd.ActionFlags.GenMips),
+    ("compute", rd.ActionFlags.Dispatch),
+    ("present", rd.ActionFlags.Present),
+]
+CLEARS = [rd.ActionFlags.ClearColor, rd.ActionFlags.ClearDepthStencil]
+
+
+def kind_of(action):
+    """What an action does; nothing where it does nothing to a target."""
+    if action.flags & rd.ActionFlags.CommandBufferBoundary:
+        return None
+    return next((kind for kind, flags in KINDS if action.flags & flags), None)
+
+
+def target(resource_id, mip, layer):
+    at = texture_index.get(str(resource_id))
+    return None if at is None else {"texture": at, "mip": mip, "layer": layer}
+
+
+def bound(one):
+    return target(resource(one), one.firstMip, one.firstSlice)
+
+
+def targets(action, kind):
+    """The colour targets and the depth target that an event may change."""
+    if kind == "copy" or (kind == "clear" and not is_gl and action.copyDestination != rd.ResourceId.Null()):
+        at = action.copyDestinationSubresource
+        to = target(action.copyDestination, at.mip, at.slice)
+        if to is None or not is_target[to["texture"]]:
+            return [], None
+        return ([], to) if textures[to["texture"]]["depth"] else ([to], None)
+    state = replay.GetPipelineState()
+    return [bound(one) for one in state.GetOutputTargets()], bound(state.GetDepthTarget())
+
+
+def contents(to):
+    """What a target holds now; nothing where RenderDoc can't tell it pixel by pixel."""
+    if to is None or textures[to["texture"]]["samples"] > 1:
+        return None
+    one, where = texture_ids[to["texture"]], rd.Subresource(to["mip"], to["layer"], 0)
+    data = replay.GetTextureData(one, where)
+    if is_gles and textures[to["texture"]]["depth"] and not any(data):
+        # Some drivers let nobody read a depth texture on OpenGL ES: then it comes as zeros.
+        if replay.GetMinMax(one, where, rd.CompType.Typeless)[1].floatValue[0] > 0:
+            limits.add("this driver does not let depth be read from `%s` on OpenGL ES" % textures[to["texture"]]["name"])
+            return None
+    return store.put(data) if len(data) else None
+
+
+def face(side):
+    return {
+        "fail": side.failOperation.name,
+        "depth_fail": side.depthFailOperation.name,
+        "pass": side.passOperation.name,
+        "compare": side.function.name,
+        "reference": side.reference,
+        "compare_mask": side.compareMask,
+        "write_mask": side.writeMask,
+    }
+
+
+def raster(state):
+    """Fixed-function state, as the API names it."""
+    if is_gl:
+        pipe = replay.GetGLPipelineState()
+        shape, depth, stencil, vertex = pipe.rasterizer.state, pipe.depthState, pipe.stencilState, pipe.vertexProcessing
+        view, scissor = pipe.rasterizer.viewports[0], pipe.rasterizer.scissors[0]
+        own = {
+            "stencil_test": stencil.stencilEnable,
+            "depth_test": depth.depthEnable,
+            "depth_write": depth.depthWrites,
+            "depth_bounds": depth.depthBounds,
+            "depth_clamp": shape.depthClamp,
+            "depth_clip": not shape.depthClamp,
+            "bias": [shape.depthBias, shape.slopeScaledDepthBias, shape.offsetClamp],
+            "alpha_to_coverage": shape.alphaToCoverage,
+            "discards_all": vertex.discard,
+            "negative_one_to_one": vertex.clipNegativeOneToOne,
+            "origin_lower_left": vertex.clipOriginLowerLeft,
+            "clip_planes": any(vertex.clipPlanes),
+        }
+        stages = [pipe.geometryShader.shaderResourceId, pipe.tessEvalShader.shaderResourceId]
+    else:
+        pipe = replay.GetVulkanPipelineState()
+        shape, depth, stages = pipe.rasterizer, pipe.depthStencil, pipe.viewportScissor
+        view, scissor = stages.viewportScissors[0].vp, stages.viewportScissors[0].scissor
+        own = {
+            "stencil_test": depth.stencilTestEnable,
+            "depth_test": depth.depthTestEnable,
+            "depth_write": depth.depthWriteEnable,
+            "depth_bounds": depth.depthBoundsEnable,
+            "depth_clamp": shape.depthClampEnable,
+            "depth_clip": shape.depthClipEnable,
+            "bias": [shape.depthBias, shape.slopeScaledDepthBias, shape.depthBiasClamp]
+            if getattr(shape, "depthBiasEnable", True)
+            else [0, 0, 0],
+            "alpha_to_coverage": pipe.colorBlend.alphaToCoverageEnable,
+            "discards_all": shape.rasterizerDiscardEnable,
+            "negative_one_to_one": stages.depthNegativeOneToOne,
+            "origin_lower_left": False,
+            "clip_planes": False,
+        }
+        stages = [pipe.geometryShader.resourceId, pipe.tessEvalShader.resourceId]
+    front, back = state.GetStencilFaces()
+    own.update(
+        front=face(front),
+        back=face(back),
+        depth_compare=depth.depthFunction.name,
+        cull=shape.cullMode.name,
+        front_ccw=shape.frontCCW,
+        fill=shape.fillMode.name,
+        viewport=[view.x, view.y, view.width, view.height],
+        depth_range=[view.minDepth, view.maxDepth],
+        scissor=[scissor.x, scissor.y, scissor.width, scissor.height] if scissor.enabled else None,
+    )
+    return own, any(stage != rd.ResourceId.Null() for stage in stages)
+
+
+def blend(state):
+    blends = state.GetColorBlends()
+    if not len(blends):
+        return None
+    first = blends[0]
+
+    def equation(one):
+        return {"source": one.source.name, "target": one.destination.name, "operation": one.operation.name}
+
+    return {
+        "enabled": first.enabled,
+        "color": equation(first.colorBlend),
+        "alpha": equation(first.alphaBlend),
+        "write_mask": first.writeMask,
+        "logic": first.logicOperationEnabled,
+    }
+
+
+def geometry(action, stage):
+    """The vertices after the last vertex stage, instance by instance."""
+    instances, whole = [], {}
+
+    def all_of(buffer):
+        if str(buffer) not in whole:
+            whole[str(buffer)] = replay.GetBufferData(buffer, 0, 0)
+        return whole[str(buffer)]
+
+    meshes = [replay.GetPostVSData(at, 0, stage) for at in range(max(1, action.numInstances))]
+    starts = sorted({(str(mesh.vertexResourceId), mesh.vertexByteOffset) for mesh in meshes})
+    for mesh in meshes:
+        if mesh.vertexResourceId == rd.ResourceId.Null():
+            return {"instances": [], "why": mesh.status or "RenderDoc has no vertices"}
+        here = (str(mesh.vertexResourceId), mesh.vertexByteOffset)
+        at = bisect.bisect_right(starts, here)
+        later = starts[at : at + 1]
+        end = later[0][1] if later and later[0][0] == here[0] else None
+        vertices = all_of(mesh.vertexResourceId)[mesh.vertexByteOffset : end]
+        is_indexed = mesh.indexResourceId != rd.ResourceId.Null() and mesh.indexByteStride > 0
+        if is_indexed:
+            start = mesh.indexByteOffset
+            indices = all_of(mesh.indexResourceId)[start : start + mesh.numIndices * mesh.indexByteStride]
+        instances.append(
+            {
+                "topology": mesh.topology.name,
+                "count": mesh.numIndices,
+                "vertices": store.put(vertices),
+                "stride": mesh.vertexByteStride,
+                "indices": store.put(indices) if is_indexed else None,
+                "index_stride": mesh.indexByteStride if is_indexed else 0,
+                "base_vertex": mesh.baseVertex,
+                "restart": mesh.restartIndex if mesh.allowRestart and is_indexed else None,
+            }
+        )
+    return {"instances": instances, "why": ""}
+
+
+def shader(state):
+    """The fragment shader as it was given to the API."""
+    reflection = state.GetShaderReflection(rd.ShaderStage.Fragment)
+    if reflection is None:
+        return None
+    return {"encoding": reflection.encoding.name, "bytes": store.put(bytes(reflection.rawBytes))}
+
+
+def draw(action):
+    state = replay.GetPipelineState()
+    own, has_later_stage = raster(state)
+    stage = rd.MeshDataStage.GSOut if has_later_stage else rd.MeshDataStage.VSOut
+    own.update(geometry(action, stage), blend=blend(state), shader=shader(state))
+    return own
+
+
+try:
+    store = Store()
+    file, replay = opened()
+    is_gl = replay.GetAPIProperties().pipelineType == rd.GraphicsAPI.OpenGL
+    if not is_gl and replay.GetAPIProperties().pipelineType != rd.GraphicsAPI.Vulkan:
+        fail("api", file.DriverName())
+    structured = replay.GetStructuredFile()
+    names = {str(one.resourceId): one.name for one in replay.GetResources()}
+    as_target = rd.TextureCategory.ColorTarget | rd.TextureCategory.DepthTarget | rd.TextureCategory.SwapBuffer
+    texture_ids, textures, texture_index, is_target = [], [], {}, []
+    for one in replay.GetTextures():
+        texture_index[str(one.resourceId)] = len(textures)
+        texture_ids.append(one.resourceId)
+        is_target.append(bool(one.creationFlags & as_target))
+        textures.append(
+            {
+                "name": names.get(str(one.resourceId), ""),
+                "format": one.format.Name(),
+                "size": [one.width, one.height],
+                "layers": max(one.arraysize, one.depth),
+                "mips": one.mips,
+                "samples": max(1, one.msSamp),
+                "depth": bool(one.creationFlags & rd.TextureCategory.DepthTarget),
+            }
+        )
+    actions = [(action, groups) for action, groups in leaves(replay.GetRootActions(), []) if kind_of(action)]
+    say("progress", 0, len(actions))
+    is_gles = is_gl and file.DriverName() == "OpenGLES"
+    events, before, seen, limits = [], [], set(), set()
+    for done, (action, groups) in enumerate(actions):
+        kind = kind_of(action)
+        replay.SetFrameEvent(action.eventId, False)
+        colors, depth = targets(action, kind) if kind not in ("compute", "present") else ([], None)
+        new = [to for to in (colors[:1] + [depth]) if to and json.dumps(to) not in seen]
+        if new:
+            # What it holds before anything is drawn into it.
+            replay.SetFrameEvent(max(0, action.eventId - 1), False)
+            for to in new:
+                seen.add(json.dumps(to))
+                before.append({"target": to, "contents": contents(to)})
+            replay.SetFrameEvent(action.eventId, False)
+        event = {
+            "id": action.eventId,
+            "name": action.GetName(structured),
+            "groups": groups,
+            "kind": kind,
+            "colors": colors,
+            "depth": depth,
+            "color_after": contents(colors[0]) if colors else None,
+            "depth_after": contents(depth),
+            "clears": [bool(action.flags & flag) for flag in CLEARS],
+        }
+        if kind == "draw":
+            event["draw"] = draw(action)
+        events.append(event)
+        say("progress", done + 1, len(actions))
+    gpus = file.GetAvailableGPUs()
+    frame = {
+        "format": 1,
+        "recorder": "RenderDoc " + rd.GetVersionString(),
+        "api": file.DriverName(),
+        "adapter": gpus[0].name if len(gpus) else "",
+        "textures": textures,
+        "before": before,
+        "events": events,
+        "limits": sorted(limits),
+        "blobs": store.table,
+    }
+    store.file.close()
+    with open(os.path.join(folder, "frame.json"), "w") as out:
+        json.dump(frame, out)
+    say("done")
+    # RenderDoc's own end may take long, and nobody waits for it.
+    speaker.close()
+    os._exit(0)
+except MemoryError:
+    fail("memory", "")
+except OSError as error:
+    fail("disk", error)
+except Exception as error:
+    fail("script", "%s: %s" % (type(error).__name__, error))

@@ -1,0 +1,122 @@
+//! The vertices of a draw, instance by instance: positions gathered, indices followed, triangles taken apart.
+
+use super::blobs::Blobs;
+use super::document::Instance;
+use super::error::ImportError;
+use super::raw::RawTopology;
+use super::unroll;
+use std::ops::Range;
+
+/// Bytes of a position.
+const POSITION: usize = 16;
+
+/// What a draw draws.
+#[derive(Debug)]
+pub struct Geometry {
+    pub topology: RawTopology,
+    pub positions: Vec<[f32; 4]>,
+    pub triangles: Vec<[u32; 3]>,
+    /// The triangles of each instance.
+    pub instances: Vec<Range<usize>>,
+    /// Corners of triangles that point to no vertex.
+    pub dropped: usize,
+}
+
+/// Reads all instances.
+///
+/// # Errors
+/// A byte string that is not there, strides that can't be, or more than may be read.
+pub fn read(instances: &[Instance], blobs: &mut Blobs) -> Result<Geometry, ImportError> {
+    let topology = instances.first().map_or(RawTopology::Other, |first| topology(&first.topology));
+    let mut all =
+        Geometry { topology, positions: Vec::new(), triangles: Vec::new(), instances: Vec::new(), dropped: 0 };
+    for instance in instances {
+        let first = u32::try_from(all.positions.len()).map_err(|_| too_many())?;
+        let bytes = blobs.read(instance.vertices)?;
+        let mut positions = positions(&bytes, instance.stride)?;
+        if instance.indices.is_none() {
+            positions.truncate(usize::try_from(instance.count).unwrap_or(usize::MAX));
+        }
+        let count = u32::try_from(positions.len()).ok().filter(|count| first.checked_add(*count).is_some());
+        let count = count.ok_or_else(too_many)?;
+        let corners = corners(instance, count, blobs)?;
+        // A strip makes nearly a triangle a corner.
+        blobs.reserve((positions.len() * POSITION + corners.len() * 20) as u64)?;
+        let start = all.triangles.len();
+        for triangle in unroll::triangles(topology, &corners) {
+            let dropped = triangle.iter().filter(|corner| **corner >= count).count();
+            all.dropped += dropped;
+            if dropped == 0 {
+                all.triangles.push(triangle.map(|corner| first + corner));
+            }
+        }
+        all.positions.append(&mut positions);
+        all.instances.push(start..all.triangles.len());
+    }
+    Ok(all)
+}
+
+fn too_many() -> ImportError {
+    ImportError::TooLarge { what: "more than 4 294 967 295 vertices in a draw".to_owned() }
+}
+
+fn topology(name: &str) -> RawTopology {
+    match name {
+        "PointList" => RawTopology::Points,
+        "LineList" | "LineStrip" | "LineLoop" | "LineList_Adj" | "LineStrip_Adj" => RawTopology::Lines,
+        "TriangleList" => RawTopology::TriangleList,
+        "TriangleStrip" => RawTopology::TriangleStrip,
+        "TriangleFan" => RawTopology::TriangleFan,
+        "TriangleList_Adj" => RawTopology::TriangleListAdjacency,
+        "TriangleStrip_Adj" => RawTopology::TriangleStripAdjacency,
+        _ => RawTopology::Other,
+    }
+}
+
+/// The first four floats of every `stride` bytes.
+fn positions(bytes: &[u8], stride: u64) -> Result<Vec<[f32; 4]>, ImportError> {
+    let stride = usize::try_from(stride).ok().filter(|stride| *stride >= POSITION && stride % 4 == 0);
+    let stride = stride.ok_or_else(|| ImportError::Folder("vertices lie closer than a position is long".to_owned()))?;
+    let position = |vertex: &[u8]| {
+        let mut floats = vertex.as_chunks::<4>().0.iter().map(|float| f32::from_le_bytes(*float));
+        std::array::from_fn(|_| floats.next().unwrap_or(f32::NAN))
+    };
+    // The last vertex need not be whole.
+    Ok(bytes.chunks(stride).filter(|vertex| vertex.len() >= POSITION).map(position).collect())
+}
+
+/// The corners in order, as indices of the instance's vertices; `None` where the primitive starts again. One that
+/// points to no vertex is `u32::MAX`.
+fn corners(instance: &Instance, vertices: u32, blobs: &mut Blobs) -> Result<Vec<Option<u32>>, ImportError> {
+    let Some(indices) = instance.indices else { return Ok((0..vertices).map(Some).collect()) };
+    let bytes = blobs.read(indices)?;
+    blobs.reserve(bytes.len() as u64 * 8)?;
+    let indices: Vec<u32> = match instance.index_stride {
+        1 => bytes.iter().map(|index| u32::from(*index)).collect(),
+        2 => bytes.as_chunks::<2>().0.iter().map(|index| u32::from(u16::from_le_bytes(*index))).collect(),
+        4 => bytes.as_chunks::<4>().0.iter().map(|index| u32::from_le_bytes(*index)).collect(),
+        stride => return Err(ImportError::Folder(format!("indices are {stride} bytes long"))),
+    };
+    // OpenGL's fixed index, like Vulkan's, has all bits of the index.
+    let all_bits = u32::MAX >> (32 - 8 * instance.index_stride);
+    let restart = instance.restart.map(|restart| restart & all_bits);
+    let vertex = |index: u32| u32::try_from(i64::from(index).saturating_add(instance.base_vertex)).unwrap_or(u32::MAX);
+    Ok(indices.into_iter().map(|index| (Some(index) != restart).then(|| vertex(index))).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_are_the_first_four_floats_and_may_be_nan() {
+        let floats = [1.0, 2.0, 3.0, 4.0, 9.0, f32::NAN, f32::INFINITY, 7.0, 8.0];
+        let bytes: Vec<u8> = floats.into_iter().flat_map(f32::to_le_bytes).collect();
+        let found = positions(&bytes, 20).expect("positions");
+        assert_eq!(found[0], [1.0, 2.0, 3.0, 4.0]);
+        assert!(found.len() == 2 && found[1][0].is_nan() && found[1][1].is_infinite());
+        for stride in [0, 3, 12, 17, u64::MAX] {
+            assert!(positions(&bytes, stride).is_err(), "{stride}");
+        }
+    }
+}

@@ -1,0 +1,304 @@
+//! A script of ours in an interpreter, in a process of its own, with limits.
+//!
+//! Script and results are in a temporary folder. The script speaks by lines on its standard output (`progress DONE OF`,
+//! `error KIND WORDS`, `done WORDS`); of what comes on standard error only the last line is kept. The process leads a
+//! group, so that it ends with all that it has started; should we be killed, the script sees its standard input end,
+//! removes the folder and ends its group itself.
+
+use super::error::ImportError;
+use super::{Options, Recording};
+use crate::progress::Progress;
+use std::ffi::OsString;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// Seconds that RenderDoc has to start a program and to write its capture.
+pub const GRACE: u64 = 30;
+/// How often limits are looked at.
+const TURN: Duration = Duration::from_millis(50);
+/// Bytes of a line that are kept.
+const LONGEST_LINE: usize = 2000;
+
+/// What a process may take.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// From its start to its result.
+    pub time: Duration,
+    /// Bytes in memory, of the interpreter itself.
+    pub memory: u64,
+}
+
+/// Why there is no result.
+#[derive(Debug)]
+pub enum Ended {
+    TooLong,
+    TooMuchMemory,
+    Cancelled,
+    /// The script has said so: a kind, words, and the last line on standard error.
+    Said {
+        kind: String,
+        words: String,
+        last: String,
+    },
+    /// It has ended without a word but this last line.
+    Silent {
+        last: String,
+    },
+}
+
+/// A process that runs; it ends, and its folder goes, with this.
+#[derive(Debug)]
+pub struct Run {
+    child: Child,
+    folder: tempfile::TempDir,
+    lines: Receiver<String>,
+    last: Arc<Mutex<String>>,
+    start: Instant,
+    limits: Limits,
+}
+
+impl Run {
+    /// Starts `python SCRIPT FOLDER ARGUMENTS…`.
+    ///
+    /// # Errors
+    /// There is no such interpreter, or no place for the folder.
+    pub fn start(python: &str, script: &str, arguments: &[OsString], limits: Limits) -> Result<Self, ImportError> {
+        let temporary = |source| ImportError::Write { file: std::env::temp_dir(), source };
+        let folder = tempfile::TempDir::with_prefix("stencilscope-").map_err(temporary)?;
+        let file = folder.path().join("script.py");
+        std::fs::write(&file, script).map_err(temporary)?;
+        let mut command = Command::new(python);
+        command.arg(&file).arg(folder.path()).args(arguments);
+        // RenderDoc's log goes with the folder.
+        command.env("RENDERDOC_TEMP", folder.path());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let no_interpreter = |source| ImportError::NoInterpreter { python: python.to_owned(), source };
+        let mut child = command.spawn().map_err(no_interpreter)?;
+        let (send, lines) = sync_channel(64);
+        if let Some(output) = child.stdout.take() {
+            // Nobody listens any more: the process is about to end.
+            std::thread::spawn(move || each_line(output, |line| send.send(line).is_ok()));
+        }
+        let last = Arc::new(Mutex::new(String::new()));
+        if let (Some(errors), last) = (child.stderr.take(), Arc::clone(&last)) {
+            std::thread::spawn(move || each_line(errors, |line| keep(&last, line)));
+        }
+        Ok(Self { child, folder, lines, last, start: Instant::now(), limits })
+    }
+
+    /// Where the script writes.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Waits for the result; the process has then ended, and all that it has started.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn finish(&mut self, progress: &Progress) -> Result<String, Ended> {
+        let result = self.wait(progress);
+        self.end();
+        result
+    }
+
+    fn wait(&self, progress: &Progress) -> Result<String, Ended> {
+        let mut shown = [0; 2];
+        loop {
+            match self.lines.recv_timeout(TURN) {
+                Ok(line) => match line.split_once(' ').unwrap_or((&line, "")) {
+                    ("done", words) => return Ok(words.to_owned()),
+                    ("error", words) => {
+                        let (kind, words) = words.split_once(' ').unwrap_or((words, ""));
+                        return Err(Ended::Said { kind: kind.to_owned(), words: words.to_owned(), last: self.last() });
+                    }
+                    ("progress", numbers) => show(numbers, &mut shown, progress),
+                    _ => {}
+                },
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Err(Ended::Silent { last: self.last() }),
+            }
+            if progress.is_cancelled() {
+                return Err(Ended::Cancelled);
+            } else if self.start.elapsed() > self.limits.time {
+                return Err(Ended::TooLong);
+            } else if memory(self.child.id()).is_some_and(|bytes| bytes > self.limits.memory) {
+                return Err(Ended::TooMuchMemory);
+            }
+        }
+    }
+
+    /// The last line on standard error, once what is under way has come.
+    fn last(&self) -> String {
+        std::thread::sleep(TURN);
+        self.last.lock().map(|last| last.clone()).unwrap_or_default()
+    }
+
+    fn end(&mut self) {
+        // While the child is not waited for, its number is that of its group and of nobody else. What has ended
+        // already needs no more ending: errors say nothing new.
+        #[cfg(unix)]
+        let _ = rustix::process::kill_process_group(
+            rustix::process::Pid::from_child(&self.child),
+            rustix::process::Signal::KILL,
+        );
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Drop for Run {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+/// Calls `take` with each line, cut where it is too long, until it says no.
+fn each_line(mut input: impl Read, mut take: impl FnMut(String) -> bool) {
+    let (mut buffer, mut line) = ([0; 4096], Vec::new());
+    loop {
+        let read = match input.read(&mut buffer) {
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Ok(0) | Err(_) => break,
+            Ok(read) => read,
+        };
+        for &byte in &buffer[..read] {
+            if byte != b'\n' && line.len() < LONGEST_LINE {
+                line.push(byte);
+            } else if byte == b'\n' && !take(String::from_utf8_lossy(&std::mem::take(&mut line)).into_owned()) {
+                return;
+            }
+        }
+    }
+    if !line.is_empty() {
+        take(String::from_utf8_lossy(&line).into_owned());
+    }
+}
+
+fn keep(last: &Mutex<String>, line: String) -> bool {
+    /// Letters of it that an error shows.
+    const SHOWN: usize = 200;
+    let line: String = line.trim().chars().filter(|c| !c.is_control()).take(SHOWN).collect();
+    if let Ok(mut last) = last.lock()
+        && !line.is_empty()
+    {
+        *last = line;
+    }
+    true
+}
+
+/// Steps done, and how many there are.
+fn show(numbers: &str, [shown, of]: &mut [usize; 2], progress: &Progress) {
+    let mut numbers = numbers.split(' ').map(str::parse::<usize>);
+    let (Some(Ok(done)), Some(Ok(all))) = (numbers.next(), numbers.next()) else { return };
+    if all != *of {
+        (*shown, *of) = (0, all);
+        progress.start(all);
+    }
+    while *shown < done.min(all) {
+        *shown += 1;
+        progress.advance();
+    }
+}
+
+/// Bytes that a process has in memory, where the system tells.
+fn memory(process: u32) -> Option<u64> {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
+}
+
+/// What has ended the import of a file.
+pub fn import_error(ended: Ended, file: &Path, options: &Options) -> ImportError {
+    let file = file.to_owned();
+    let Some([kind, words]) = said(&ended) else { return common_error(ended, options) };
+    let reason = words.to_owned();
+    match kind {
+        "missing" => ImportError::NoFile { file, reason },
+        "corrupt" => ImportError::Corrupt { file, reason },
+        "newer" => ImportError::Version { file, reason },
+        "replay" => ImportError::Replay { file, reason, mend: replay_mend() },
+        "api" => ImportError::Api { file, api: reason },
+        "large" => ImportError::TooLarge { what: format!("more than {words} GiB") },
+        _ => common_error(ended, options),
+    }
+}
+
+/// What has ended the recording of a program.
+pub fn record_error(ended: Ended, recording: &Recording, options: &Options) -> ImportError {
+    let Some([kind, words]) = said(&ended) else {
+        return match ended {
+            // The script has a clock of its own, and did not get to look at it.
+            Ended::TooLong => never(recording, "RenderDoc does not answer"),
+            _ => common_error(ended, options),
+        };
+    };
+    let program = recording.program().to_owned();
+    match kind {
+        "program" => ImportError::NoProgram { program, reason: words.to_owned() },
+        "died" => {
+            let Ended::Said { last, .. } = &ended else { return common_error(ended, options) };
+            let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
+            ImportError::Died { program, how: words.to_owned(), frame: recording.frame, and_said, mend: died_mend() }
+        }
+        "never" => never(recording, words),
+        "unsupported" => {
+            let (api, reason) = words.split_once(' ').unwrap_or((words, ""));
+            ImportError::Unsupported { program, api: api.to_owned(), reason: reason.to_owned() }
+        }
+        _ => common_error(ended, options),
+    }
+}
+
+fn said(ended: &Ended) -> Option<[&str; 2]> {
+    match ended {
+        Ended::Said { kind, words, .. } => Some([kind, words]),
+        _ => None,
+    }
+}
+
+fn never(recording: &Recording, seen: &str) -> ImportError {
+    ImportError::NeverPresented {
+        program: recording.program().to_owned(),
+        frame: recording.frame,
+        seconds: recording.seconds,
+        seen: seen.to_owned(),
+        mend: if has_display() { "ask for an earlier --frame or more --seconds" } else { NO_DISPLAY },
+    }
+}
+
+fn common_error(ended: Ended, options: &Options) -> ImportError {
+    let gibibytes = options.most_memory >> 30;
+    match ended {
+        Ended::TooLong => ImportError::TooLong { seconds: options.seconds },
+        Ended::TooMuchMemory => ImportError::TooMuchMemory { gibibytes },
+        Ended::Cancelled => ImportError::Cancelled,
+        Ended::Said { kind, .. } if kind == "memory" => ImportError::TooMuchMemory { gibibytes },
+        Ended::Said { kind, .. } if kind == "module" => ImportError::NoModule { python: options.python.clone() },
+        Ended::Said { kind, words, .. } if kind == "disk" => {
+            ImportError::Write { file: std::env::temp_dir(), source: std::io::Error::other(words) }
+        }
+        Ended::Said { words, .. } => ImportError::Script { last: words },
+        Ended::Silent { last } if last.is_empty() => ImportError::Script { last: "without a word".to_owned() },
+        Ended::Silent { last } => ImportError::Script { last },
+    }
+}
+
+const NO_DISPLAY: &str = "there is no display here: run stencilscope under `xvfb-run -a`";
+
+fn has_display() -> bool {
+    ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
+}
+
+fn replay_mend() -> &'static str {
+    if has_display() { "replay it on the machine that recorded it, or install mesa-vulkan-drivers" } else { NO_DISPLAY }
+}
+
+fn died_mend() -> &'static str {
+    if has_display() { "run it by itself first, or ask for an earlier --frame" } else { NO_DISPLAY }
+}

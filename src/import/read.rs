@@ -1,0 +1,261 @@
+//! The folder that the script has written, as a frame.
+//!
+//! Nothing in it is believed: it comes from a capture that anybody may have made. Numbers are held against what is
+//! there before memory is taken for them, names against those that are known. Positions are taken as they are, NaN
+//! too.
+
+use super::blobs::Blobs;
+use super::document::{self, Document, FORMAT};
+use super::error::ImportError;
+use super::pictures::{self, Layout};
+use super::raw::{
+    Api, RawContents, RawDraw, RawEvent, RawFormat, RawFragment, RawFrame, RawKind, RawMay, RawTarget, RawTexture,
+    RawTopology,
+};
+use super::{geometry, shader, states};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read;
+use std::path::Path;
+
+/// Bytes of `frame.json`.
+const MOST_TEXT: u64 = 256 << 20;
+/// Texels along a side.
+const LARGEST: u32 = 1 << 14;
+/// Events of a frame.
+const MOST_EVENTS: usize = 100_000;
+/// Textures of a frame.
+const MOST_TEXTURES: usize = 100_000;
+
+/// Reads the folder.
+///
+/// # Errors
+/// A file that is missing, broken or larger than what is read.
+pub fn read(folder: &Path) -> Result<RawFrame, ImportError> {
+    let document = document(&folder.join("frame.json"))?;
+    let api = Api::from_name(&document.api).ok_or_else(|| broken(format!("it is of the API `{}`", document.api)))?;
+    let textures = document.textures.iter().map(texture).collect::<Result<_, _>>()?;
+    let limits = document.limits.into_iter().collect();
+    let blobs = Blobs::open(&folder.join("data.bin"), document.blobs)?;
+    let sizes = document.textures.iter().map(|texture| [texture.layers, texture.mips]).collect();
+    let mut reader =
+        Reader { api, textures, sizes, blobs, pictures: BTreeMap::new(), shaders: BTreeMap::new(), limits };
+    let mut before = Vec::new();
+    for one in document.before {
+        let target = reader.target(one.target)?;
+        before.push((target, reader.contents(target, one.contents)?));
+    }
+    let events = document.events.into_iter().map(|event| reader.event(event)).collect::<Result<_, _>>()?;
+    Ok(RawFrame {
+        api,
+        adapter: document.adapter,
+        recorder: document.recorder,
+        program: None,
+        before,
+        events,
+        textures: reader.textures,
+        limits: reader.limits.into_iter().collect(),
+    })
+}
+
+fn broken(what: impl Into<String>) -> ImportError {
+    ImportError::Folder(what.into())
+}
+
+fn document(path: &Path) -> Result<Document, ImportError> {
+    let failed = |error: &dyn std::fmt::Display| broken(format!("frame.json: {error}"));
+    let file = std::fs::File::open(path).map_err(|error| failed(&error))?;
+    let mut text = Vec::new();
+    file.take(MOST_TEXT + 1).read_to_end(&mut text).map_err(|error| failed(&error))?;
+    if text.len() as u64 > MOST_TEXT {
+        return Err(ImportError::TooLarge { what: format!("more than {} MiB of states", MOST_TEXT >> 20) });
+    }
+    let document: Document = serde_json::from_slice(&text).map_err(|error| failed(&error))?;
+    let [events, textures] = [document.events.len(), document.textures.len()];
+    if document.format != FORMAT {
+        Err(failed(&format!("it is of format {}, not {FORMAT}", document.format)))
+    } else if events > MOST_EVENTS {
+        Err(ImportError::TooLarge { what: format!("{events} events, of {MOST_EVENTS}") })
+    } else if textures > MOST_TEXTURES {
+        Err(ImportError::TooLarge { what: format!("{textures} textures, of {MOST_TEXTURES}") })
+    } else {
+        Ok(document)
+    }
+}
+
+fn texture(one: &document::Texture) -> Result<RawTexture, ImportError> {
+    let document::Texture { name, format, size, layers, samples, .. } = one;
+    if size.iter().any(|side| *side > LARGEST) {
+        return Err(ImportError::TooLarge { what: format!("`{name}` has {}x{} texels", size[0], size[1]) });
+    }
+    let format = pictures::format(format);
+    Ok(RawTexture {
+        name: name.clone(),
+        format,
+        size: size.map(|side| side.max(1)),
+        layers: *layers,
+        samples: *samples,
+    })
+}
+
+struct Reader {
+    api: Api,
+    textures: Vec<RawTexture>,
+    /// Layers and levels of each.
+    sizes: Vec<[u32; 2]>,
+    blobs: Blobs,
+    /// Pictures by byte string, format and width: those that are equal are one in memory.
+    pictures: BTreeMap<(usize, usize, u32), RawContents>,
+    shaders: BTreeMap<(String, usize), RawFragment>,
+    limits: BTreeSet<String>,
+}
+
+impl Reader {
+    fn target(&self, one: document::Target) -> Result<RawTarget, ImportError> {
+        let document::Target { texture, mip, layer } = one;
+        let is_there = self.sizes.get(texture).is_some_and(|[layers, mips]| layer < *layers && mip < (*mips).min(32));
+        let missing = || broken(format!("there is no level {mip} of layer {layer} of texture {texture}"));
+        is_there.then_some(RawTarget { texture, mip, layer }).ok_or_else(missing)
+    }
+
+    fn is_gl(&self) -> bool {
+        self.api != Api::Vulkan
+    }
+
+    /// Width and height of a target.
+    fn size(&self, target: RawTarget) -> [u32; 2] {
+        self.textures[target.texture].size.map(|side| (side >> target.mip).max(1))
+    }
+
+    /// The pictures of a target that are in a byte string.
+    fn contents(&mut self, target: RawTarget, blob: Option<usize>) -> Result<RawContents, ImportError> {
+        let texture = &self.textures[target.texture];
+        let name = &texture.name;
+        if texture.samples > 1 {
+            self.limits.insert(format!("`{name}` has {} samples a pixel: its pictures are not read", texture.samples));
+        } else if let RawFormat::Other(format) = &texture.format {
+            self.limits.insert(format!("`{name}` is of the format {format}: its pictures are not read"));
+        }
+        let Some((blob, texel)) = blob.zip(pictures::texel_bytes(&texture.format)) else {
+            return Ok(RawContents::default());
+        };
+        let [width, height] = self.size(target);
+        // A texture of the same format and width, by its first one.
+        let alike = self.textures.iter().position(|other| other.format == texture.format).unwrap_or(target.texture);
+        if let Some(known) = self.pictures.get(&(blob, alike, width)) {
+            return Ok(known.clone());
+        }
+        let [found, expected] = [self.blobs.length(blob)?, u64::from(width) * u64::from(height) * texel as u64];
+        if found != expected {
+            return Err(broken(format!("a picture of `{name}` has {found} bytes, not {expected}")));
+        }
+        let bytes = self.blobs.read(blob)?;
+        // What is made of it is at most as much again, and as much as floats.
+        self.blobs.reserve(found.saturating_mul(3))?;
+        let layout = Layout { bottom_row_first: self.is_gl(), depth_above_stencil: self.is_gl() };
+        let contents = pictures::read(&self.textures[target.texture].format, &bytes, width as usize, layout);
+        self.pictures.insert((blob, alike, width), contents.clone());
+        Ok(contents)
+    }
+
+    fn event(&mut self, event: document::Event) -> Result<RawEvent, ImportError> {
+        let targets = event.colors.iter().copied().flatten().map(|one| self.target(one));
+        let color_targets: Vec<RawTarget> = targets.collect::<Result<_, _>>()?;
+        // What is read after an event is the target of output 0.
+        let first = event.colors.first().copied().flatten().map(|one| self.target(one)).transpose()?;
+        let depth_target = event.depth.map(|one| self.target(one)).transpose()?;
+        let color = first.map(|target| self.contents(target, event.color_after)).transpose()?.unwrap_or_default();
+        let depth = depth_target.map(|target| self.contents(target, event.depth_after)).transpose()?;
+        let after = RawContents { color: color.color, ..depth.unwrap_or_default() };
+        let kind = match (event.kind.as_str(), &event.draw) {
+            ("draw", Some(draw)) => {
+                let draw = self.draw(event.id, draw, color_targets.first().copied(), depth_target)?;
+                RawKind::Draw(Box::new(draw))
+            }
+            ("clear", _) => clear(&event.name, event.clears),
+            ("begin", _) => RawKind::BeginPass,
+            ("end", _) => RawKind::EndPass,
+            ("copy", _) => RawKind::Copy,
+            ("compute", _) => RawKind::Compute,
+            ("present", _) => RawKind::Present,
+            (kind, _) => return Err(broken(format!("event {} is of the kind `{kind}`", event.id))),
+        };
+        if kind == RawKind::Compute {
+            self.limits.insert("what compute work writes is not followed".to_owned());
+        }
+        let document::Event { id, name, groups, .. } = event;
+        Ok(RawEvent { id, name, groups, kind, color_targets, depth_target, after })
+    }
+
+    fn draw(
+        &mut self,
+        event: u32,
+        draw: &document::Draw,
+        color: Option<RawTarget>,
+        depth: Option<RawTarget>,
+    ) -> Result<RawDraw, ImportError> {
+        let of_event = |what: String| broken(format!("event {event}: {what}"));
+        let target = depth.or(color);
+        let [_, height] = target.map_or([LARGEST; 2], |target| self.size(target));
+        let samples = target.map_or(1, |target| self.textures[target.texture].samples);
+        let format = depth.map(|target| self.textures[target.texture].format.clone());
+        let fragment = self.fragment(draw.shader.as_ref(), draw.alpha_to_coverage)?;
+        let states = states::read(draw, self.is_gl(), height, format.as_ref(), color.is_some()).map_err(of_event)?;
+        let geometry = geometry::read(&draw.instances, &mut self.blobs)?;
+        let mut note = |is_so: bool, words: &str| {
+            if is_so {
+                self.limits.insert(format!("event {event}: {words}"));
+            }
+        };
+        let has_triangles = !matches!(geometry.topology, RawTopology::Points | RawTopology::Lines | RawTopology::Other);
+        note(draw.instances.is_empty(), &format!("its vertices are not known ({})", draw.why));
+        note(!draw.instances.is_empty() && !has_triangles, "it draws points, lines or patches, which are not followed");
+        note(geometry.dropped > 0, &format!("{} corners point to no vertex", geometry.dropped));
+        note(draw.clip_planes, "it is cut by planes of its own, which are not followed");
+        note(draw.depth_bounds, "stored depth is held against bounds, which are not followed");
+        note(draw.fill != "Solid", "triangles are drawn as lines or points, which are not followed");
+        note(
+            draw.blend.as_ref().is_some_and(|blend| blend.logic),
+            "colours meet by a logic operation, which is not told",
+        );
+        Ok(RawDraw {
+            topology: geometry.topology,
+            positions: geometry.positions,
+            triangles: geometry.triangles,
+            instances: geometry.instances,
+            view: states.view,
+            shape: states.shape,
+            depth: states.depth,
+            stencil: states.stencil,
+            blend: states.blend,
+            fragment,
+            samples,
+        })
+    }
+
+    /// What the fragment shader may do; without one there is nothing that it could.
+    fn fragment(
+        &mut self,
+        shader: Option<&document::Shader>,
+        alpha_to_coverage: bool,
+    ) -> Result<RawFragment, ImportError> {
+        let none = RawFragment { may_discard: RawMay::No, writes_depth: RawMay::No };
+        let Some(document::Shader { encoding, bytes }) = shader else { return Ok(none) };
+        let key = (encoding.clone(), *bytes);
+        let known = self.shaders.get(&key).copied();
+        let fragment = known.map_or_else(|| Ok(shader::read(encoding, &self.blobs.read(*bytes)?)), Ok)?;
+        self.shaders.insert(key, fragment);
+        let may_discard = if alpha_to_coverage { RawMay::Yes } else { fragment.may_discard };
+        Ok(RawFragment { may_discard, ..fragment })
+    }
+}
+
+/// A call that clears says in its name which of depth and stencil it means, or means both.
+fn clear(name: &str, [color, depth_or_stencil]: [bool; 2]) -> RawKind {
+    let [depth, stencil] = ["Depth", "Stencil"].map(|word| name.contains(word));
+    let means_both = depth == stencil;
+    RawKind::Clear {
+        color,
+        depth: depth_or_stencil && (depth || means_both),
+        stencil: depth_or_stencil && (stencil || means_both),
+    }
+}

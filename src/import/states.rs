@@ -1,0 +1,202 @@
+//! Fixed-function state, the same way round for every API.
+
+use super::document::{Blend, Draw, Equation, Face};
+use super::raw::{
+    RawBlend, RawBlendEquation, RawCompare, RawCull, RawDepth, RawFill, RawFormat, RawShape, RawStencilFace,
+    RawStencilOperation, RawView,
+};
+
+/// The states of a draw.
+#[derive(Debug)]
+pub struct States {
+    pub view: RawView,
+    pub shape: RawShape,
+    pub depth: Option<RawDepth>,
+    pub stencil: Option<[RawStencilFace; 2]>,
+    pub blend: Option<RawBlend>,
+}
+
+/// Reads the states of a draw into a target that is `height` pixels high, with depth and stencil of `format`.
+///
+/// # Errors
+/// A name that is not known, in words.
+pub fn read(
+    draw: &Draw,
+    is_gl: bool,
+    height: u32,
+    format: Option<&RawFormat>,
+    has_color: bool,
+) -> Result<States, String> {
+    let has_depth = format.is_some_and(RawFormat::has_depth);
+    let has_stencil = format.is_some_and(RawFormat::has_stencil);
+    let depth = RawDepth { compare: compare(&draw.depth_compare)?, write: draw.depth_write, bounds: draw.depth_bounds };
+    let stencil = [face(&draw.front)?, face(&draw.back)?];
+    Ok(States {
+        view: view(draw, is_gl, height),
+        shape: shape(draw, is_gl)?,
+        depth: (draw.depth_test && has_depth).then_some(depth),
+        stencil: (draw.stencil_test && has_stencil).then_some(stencil),
+        blend: draw.blend.as_ref().filter(|_| has_color).map(blend),
+    })
+}
+
+/// OpenGL counts rows from the bottom; Vulkan from the top, with y down unless the viewport's height is negative.
+fn view(draw: &Draw, is_gl: bool, height: u32) -> RawView {
+    let [left, y, width, tall] = draw.viewport;
+    let [low, high] = [y.min(y + tall), y.max(y + tall)];
+    let scissor = draw.scissor.map(|[left, y, width, tall]| {
+        let top = if is_gl { i64::from(height).saturating_sub(y.saturating_add(tall)) } else { y };
+        [left, top, width, tall].map(|value| value.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
+    });
+    RawView {
+        viewport: [left, if is_gl { height as f32 - high } else { low }, width, high - low],
+        depth_range: draw.depth_range,
+        scissor,
+        y_up: if is_gl { draw.origin_lower_left } else { tall < 0.0 },
+        z_from_minus_w: draw.negative_one_to_one,
+    }
+}
+
+/// OpenGL tells faces by how they turn in clip space, so that they turn the other way on the picture where its y
+/// points down; Vulkan by how they turn on the picture.
+fn shape(draw: &Draw, is_gl: bool) -> Result<RawShape, String> {
+    let cull = match draw.cull.as_str() {
+        _ if draw.discards_all => RawCull::Both,
+        "NoCull" => RawCull::None,
+        "Front" => RawCull::Front,
+        "Back" => RawCull::Back,
+        "FrontAndBack" => RawCull::Both,
+        other => return Err(unknown("culling", other)),
+    };
+    let fill = match draw.fill.as_str() {
+        "Solid" => RawFill::Solid,
+        "Wireframe" => RawFill::Lines,
+        "Point" => RawFill::Points,
+        other => return Err(unknown("filling", other)),
+    };
+    Ok(RawShape {
+        cull,
+        front_is_counter_clockwise: draw.front_ccw != (is_gl && !draw.origin_lower_left),
+        fill,
+        bias: draw.bias,
+        depth_clamp: draw.depth_clamp,
+        depth_clip: draw.depth_clip,
+        clip_planes: draw.clip_planes,
+    })
+}
+
+fn face(face: &Face) -> Result<RawStencilFace, String> {
+    Ok(RawStencilFace {
+        compare: compare(&face.compare)?,
+        reference: face.reference.min(255) as u8,
+        compare_mask: face.compare_mask as u8,
+        write_mask: face.write_mask as u8,
+        fail: operation(&face.fail)?,
+        depth_fail: operation(&face.depth_fail)?,
+        pass: operation(&face.pass)?,
+    })
+}
+
+fn blend(blend: &Blend) -> RawBlend {
+    let equation = |Equation { source, target, operation }: &Equation| RawBlendEquation {
+        source: source.clone(),
+        target: target.clone(),
+        operation: operation.clone(),
+    };
+    RawBlend {
+        equations: blend.enabled.then(|| [equation(&blend.color), equation(&blend.alpha)]),
+        write: [1, 2, 4, 8].map(|bit| blend.write_mask & bit != 0),
+    }
+}
+
+fn compare(name: &str) -> Result<RawCompare, String> {
+    Ok(match name {
+        "Never" => RawCompare::Never,
+        "Less" => RawCompare::Less,
+        "LessEqual" => RawCompare::LessEqual,
+        "Equal" => RawCompare::Equal,
+        "GreaterEqual" => RawCompare::GreaterEqual,
+        "Greater" => RawCompare::Greater,
+        "NotEqual" => RawCompare::NotEqual,
+        "AlwaysTrue" => RawCompare::Always,
+        other => return Err(unknown("comparison", other)),
+    })
+}
+
+fn operation(name: &str) -> Result<RawStencilOperation, String> {
+    Ok(match name {
+        "Keep" => RawStencilOperation::Keep,
+        "Zero" => RawStencilOperation::Zero,
+        "Replace" => RawStencilOperation::Replace,
+        "IncSat" => RawStencilOperation::IncrementClamp,
+        "DecSat" => RawStencilOperation::DecrementClamp,
+        "Invert" => RawStencilOperation::Invert,
+        "IncWrap" => RawStencilOperation::IncrementWrap,
+        "DecWrap" => RawStencilOperation::DecrementWrap,
+        other => return Err(unknown("stencil operation", other)),
+    })
+}
+
+fn unknown(what: &str, name: &str) -> String {
+    format!("there is no {what} `{name}`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn draw(viewport: [f32; 4], origin_lower_left: bool) -> Draw {
+        let face = r#"{"fail": "Keep", "depth_fail": "DecWrap", "pass": "Keep", "compare": "Less", "reference": 300,
+            "compare_mask": 4294967295, "write_mask": 15}"#;
+        let text = format!(
+            r#"{{"stencil_test": true, "depth_test": true, "depth_write": true, "depth_bounds": false, "depth_clamp": false,
+            "depth_clip": true, "bias": [0, 0, 0], "alpha_to_coverage": false, "discards_all": false,
+            "negative_one_to_one": true, "origin_lower_left": {origin_lower_left}, "clip_planes": false, "front": {face},
+            "back": {face}, "depth_compare": "Less", "cull": "Back", "front_ccw": true, "fill": "Solid",
+            "viewport": {viewport:?}, "depth_range": [0, 1], "scissor": [1, 2, 3, 4], "instances": [], "why": ""}}"#
+        );
+        serde_json::from_str(&text).expect("a draw")
+    }
+
+    #[test]
+    fn rows_count_from_the_top() {
+        let gl = read(&draw([10.0, 20.0, 30.0, 40.0], true), true, 100, None, false).expect("states");
+        assert_eq!(
+            (gl.view.viewport, gl.view.scissor, gl.view.y_up),
+            ([10.0, 40.0, 30.0, 40.0], Some([1, 94, 3, 4]), true)
+        );
+        let vulkan = read(&draw([10.0, 60.0, 30.0, -40.0], false), false, 100, None, false).expect("states");
+        assert_eq!((vulkan.view.viewport, vulkan.view.y_up), ([10.0, 20.0, 30.0, 40.0], true));
+        assert_eq!(vulkan.view.scissor, Some([1, 2, 3, 4]));
+        let down = read(&draw([10.0, 20.0, 30.0, 40.0], false), false, 100, None, false).expect("states");
+        assert_eq!((down.view.viewport, down.view.y_up), ([10.0, 20.0, 30.0, 40.0], false));
+    }
+
+    #[test]
+    fn a_front_face_turns_as_the_picture_shows_it() {
+        let turns = |is_gl, lower| {
+            let states = read(&draw([0.0; 4], lower), is_gl, 1, None, false).expect("states");
+            states.shape.front_is_counter_clockwise
+        };
+        assert_eq!([turns(true, true), turns(true, false), turns(false, false)], [true, false, true]);
+    }
+
+    #[test]
+    fn tests_of_what_is_not_there_are_off_and_values_have_eight_bits() {
+        let draw = draw([0.0; 4], true);
+        let none = read(&draw, true, 1, None, false).expect("states");
+        assert!(none.depth.is_none() && none.stencil.is_none() && none.blend.is_none());
+        let depth_only = read(&draw, true, 1, Some(&RawFormat::D24), false).expect("states");
+        assert!(depth_only.depth.is_some() && depth_only.stencil.is_none());
+        let both = read(&draw, true, 1, Some(&RawFormat::D24S8), false).expect("states");
+        let [front, _] = both.stencil.expect("a stencil test");
+        assert_eq!((front.reference, front.compare_mask, front.write_mask), (255, 255, 15));
+    }
+
+    #[test]
+    fn a_name_that_is_not_known_is_refused() {
+        let mut draw = draw([0.0; 4], true);
+        draw.front.pass = "IncTwice".to_owned();
+        assert_eq!(read(&draw, true, 1, None, false).expect_err("a name"), "there is no stencil operation `IncTwice`");
+    }
+}

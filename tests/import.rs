@@ -1,0 +1,275 @@
+//! Frames of other programs: what comes out of a recording, and what happens to one that lies.
+
+mod machine;
+mod process;
+mod recorded;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use serde_json::{Value, json};
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use stencilscope::import::{self, Api, ImportError, RawDraw, RawFrame, RawKind, RawTopology};
+use tempfile::TempDir;
+
+/// A folder below `assets/recordings`.
+fn recording(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/recordings").join(name)
+}
+
+fn draws<'a>(frame: &'a RawFrame) -> Vec<&'a RawDraw> {
+    let draw = |kind: &'a RawKind| match kind {
+        RawKind::Draw(draw) => Some(draw.as_ref()),
+        _ => None,
+    };
+    frame.events.iter().map(|event| &event.kind).filter_map(draw).collect()
+}
+
+/// Asserts that the positions and states of all draws make what was stored, but for `most` pixels a draw.
+#[track_caller]
+fn assert_makes_what_was_stored(frame: &RawFrame, most: usize) {
+    let compared = machine::compare(frame);
+    assert!(compared.iter().any(|draw| draw.changed > 0), "nothing was compared");
+    for draw in &compared {
+        println!("{draw:?}");
+        assert!(draw.depth <= most && draw.stencil <= most, "{draw:?}");
+        assert!(draw.touched >= draw.changed, "{draw:?}");
+    }
+}
+
+/// Depth ties, where volume and surface share a corner: either rasteriser may be right.
+const TIES: usize = 8;
+
+#[test]
+fn the_stencil_shadows_of_ogre_come_out_whole() {
+    let frame = import::read(&recording("ogre")).expect("a frame");
+    assert_eq!((frame.api, frame.recorder.as_str()), (Api::OpenGl, "RenderDoc 1.24"));
+    assert!(frame.limits.is_empty(), "{:?}", frame.limits);
+    let triangles: Vec<usize> = draws(&frame).iter().map(|draw| draw.triangles.len()).collect();
+    assert_eq!(triangles, [2, 576, 12, 4, 120, 12, 8, 2, 576, 12, 4]);
+    assert_makes_what_was_stored(&frame, TIES);
+}
+
+#[test]
+fn z_fail_and_z_pass_of_one_frame_come_out_whole() {
+    let frame = import::read(&recording("ogre-inside")).expect("a frame");
+    assert_makes_what_was_stored(&frame, TIES);
+}
+
+/// Row 0 is at the top: OGRE's blue background is above the floor.
+#[test]
+fn pictures_and_geometry_are_the_same_way_up() {
+    let frame = import::read(&recording("ogre")).expect("a frame");
+    let color = frame.events.last().and_then(|_| frame.events.iter().rev().find_map(|event| event.after.color.clone()));
+    let color = color.expect("a colour");
+    assert_eq!(color[..4], [26, 26, 76, 255], "background");
+    let floor = draws(&frame)[0];
+    let view = &floor.view;
+    assert!(view.y_up && view.z_from_minus_w && view.viewport == [0.0, 0.0, 320.0, 240.0]);
+    // All that is seen of the floor is lower than its horizon.
+    assert!(floor.positions.iter().all(|[_, y, _, w]| *w < 0.0 || *y < 0.9 * w));
+}
+
+/// What does not change is one picture in memory.
+#[test]
+fn equal_pictures_are_shared() {
+    let frame = import::read(&recording("ogre")).expect("a frame");
+    let colors: Vec<_> = frame.events.iter().filter_map(|event| event.after.color.as_ref()).collect();
+    let volumes = &colors[5..9];
+    assert!(volumes.iter().all(|color| std::sync::Arc::ptr_eq(color, volumes[0])));
+}
+
+#[test]
+fn the_list_names_events_states_and_targets() {
+    let frame = import::read(&recording("ogre")).expect("a frame");
+    let list = import::list(&frame);
+    for words in
+        ["14 events, 11 draws, 1328 triangles", "pass increment-wrap", "320x240 D24S8", "stencil equal 0; blend"]
+    {
+        assert!(list.contains(words), "{words}: {list}");
+    }
+}
+
+/// A folder of two textures of 2x2 texels, and a clear and a draw of one triangle; `change` may lie about it.
+fn made(change: impl FnOnce(&mut Value, &mut Vec<Vec<u8>>)) -> TempDir {
+    let positions = [[0.0_f32, 0.0, 0.0, 1.0], [f32::NAN, 0.0, 0.0, 1.0], [1.0, 1.0, f32::INFINITY, 1.0]];
+    let floats = positions.as_flattened().iter().flat_map(|float| float.to_le_bytes()).collect();
+    let mut blobs: Vec<Vec<u8>> = vec![vec![7; 16], vec![0xff; 16], floats, vec![0, 1, 2], b"void main() {}".to_vec()];
+    let face = json!({"fail": "Keep", "depth_fail": "Keep", "pass": "IncWrap", "compare": "AlwaysTrue", "reference": 0,
+        "compare_mask": 255, "write_mask": 255});
+    let equation = json!({"source": "One", "target": "Zero", "operation": "Add"});
+    let target = |texture: usize| json!({"texture": texture, "mip": 0, "layer": 0});
+    let texture = |name: &str, format: &str| json!({"name": name, "format": format, "size": [2, 2], "layers": 1, "mips": 1, "samples": 1, "depth": false});
+    let event = |id: u32, kind: &str| {
+        json!({"id": id, "name": "glCall(Depth = 1)", "groups": ["a"], "kind": kind, "colors": [target(0), null],
+            "depth": target(1), "color_after": 0, "depth_after": 1, "clears": [true, true]})
+    };
+    let mut draw = event(2, "draw");
+    draw["draw"] = json!({"stencil_test": true, "depth_test": true, "depth_write": true, "depth_bounds": false,
+        "depth_clamp": false, "depth_clip": true, "bias": [0, 0, 0], "alpha_to_coverage": false, "discards_all": false,
+        "negative_one_to_one": true, "origin_lower_left": true, "clip_planes": false, "front": face, "back": face,
+        "depth_compare": "Less", "cull": "NoCull", "front_ccw": true, "fill": "Solid", "viewport": [0, 0, 2, 2],
+        "depth_range": [0, 1], "scissor": null, "why": "",
+        "instances": [{"topology": "TriangleList", "count": 3, "vertices": 2, "stride": 16, "indices": 3,
+            "index_stride": 1, "base_vertex": 0, "restart": null}],
+        "blend": {"enabled": false, "color": equation, "alpha": equation, "write_mask": 15, "logic": false},
+        "shader": {"encoding": "GLSL", "bytes": 4}});
+    let mut document = json!({"format": 1, "recorder": "RenderDoc 1.24", "api": "OpenGL", "adapter": "none",
+        "textures": [texture("color", "R8G8B8A8_UNORM"), texture("depth", "D24S8")],
+        "before": [{"target": target(0), "contents": 0}], "limits": [], "events": [event(1, "clear"), draw]});
+    change(&mut document, &mut blobs);
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut data, mut table) = (Vec::new(), Vec::new());
+    for blob in &blobs {
+        let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
+        packed.write_all(blob).expect("packed");
+        let packed = packed.finish().expect("packed");
+        table.push(json!([data.len(), packed.len(), blob.len()]));
+        data.extend(packed);
+    }
+    if document.get("blobs").is_none() {
+        document["blobs"] = Value::Array(table);
+    }
+    fs::write(folder.path().join("frame.json"), document.to_string()).expect("written");
+    fs::write(folder.path().join("data.bin"), data).expect("written");
+    folder
+}
+
+#[test]
+fn a_folder_made_by_hand_is_read() {
+    let frame = import::read(made(|_, _| {}).path()).expect("a frame");
+    assert_eq!(frame.events[0].kind, RawKind::Clear { color: true, depth: true, stencil: false });
+    let [draw] = draws(&frame)[..] else { panic!("a draw") };
+    assert_eq!((draw.topology, &draw.triangles[..]), (RawTopology::TriangleList, &[[0, 1, 2]][..]));
+    assert!(draw.positions[1][0].is_nan() && draw.positions[2][2].is_infinite());
+    let after = &frame.events[1].after;
+    assert_eq!(after.depth_bits.as_deref(), Some(&[0xff_ffff; 4][..]));
+    assert_eq!((after.stencil.as_deref(), after.depth.as_deref()), (Some(&[255; 4][..]), Some(&[1.0; 4][..])));
+}
+
+#[test]
+fn lies_are_refused_in_words() {
+    type Lie = fn(&mut Value, &mut Vec<Vec<u8>>);
+    let cases: [(&str, Lie); 16] = [
+        ("format 2, not 1", |document, _| document["format"] = json!(2)),
+        ("of the API `D3D11`", |document, _| document["api"] = json!("D3D11")),
+        ("has 70000x2 texels", |document, _| document["textures"][0]["size"][0] = json!(70_000)),
+        ("has 16 bytes, not 64", |document, _| document["textures"][0]["size"] = json!([4, 4])),
+        ("there is no byte string 99", |document, _| document["events"][1]["color_after"] = json!(99)),
+        ("level 0 of layer 3 of texture 0", |document, _| document["before"][0]["target"]["layer"] = json!(3)),
+        ("of texture 8", |document, _| document["events"][0]["depth"]["texture"] = json!(8)),
+        ("of the kind `dance`", |document, _| document["events"][0]["kind"] = json!("dance")),
+        ("no stencil operation `Double`", |document, _| {
+            document["events"][1]["draw"]["front"]["pass"] = json!("Double")
+        }),
+        ("no comparison `Nearly`", |document, _| document["events"][1]["draw"]["depth_compare"] = json!("Nearly")),
+        ("closer than a position", |document, _| document["events"][1]["draw"]["instances"][0]["stride"] = json!(4)),
+        ("indices are 3 bytes long", |document, _| {
+            document["events"][1]["draw"]["instances"][0]["index_stride"] = json!(3);
+        }),
+        ("lies outside", |document, _| document["blobs"] = json!([[0, 1_000_000, 16]])),
+        ("lies outside", |document, _| document["blobs"] = json!([[u64::MAX, 2, 16]])),
+        ("not 48 bytes long", |document, _| document["blobs"] = json!([[0, 11, 16], [0, 11, 16], [0, 11, 48]])),
+        ("frame.json", |document, _| document["events"] = json!("none")),
+    ];
+    for (words, lie) in cases {
+        let error = import::read(made(lie).path()).expect_err(words).to_string();
+        assert!(error.contains(words) && !error.contains('\n'), "{words}: {error}");
+    }
+}
+
+#[test]
+fn a_byte_string_of_any_claimed_length_takes_no_memory() {
+    let folder = made(|document, _| {
+        document["textures"][0]["size"] = json!([16_384, 16_384]);
+        document["blobs"] = json!([[0, 10, 1_u64 << 30], [0, 10, u64::MAX]]);
+    });
+    assert!(matches!(import::read(folder.path()), Err(ImportError::Folder(_))));
+    let folder = made(|document, _| {
+        document["before"] = json!([]);
+        document["events"][1]["draw"]["shader"]["bytes"] = json!(0);
+        document["events"].as_array_mut().expect("events").remove(0);
+        document["blobs"] = json!([[0, 10, u64::MAX]]);
+        document["events"][0]["depth"] = json!(null);
+        document["events"][0]["colors"] = json!([]);
+    });
+    assert!(matches!(import::read(folder.path()), Err(ImportError::TooLarge { .. })));
+}
+
+#[test]
+fn what_can_not_be_followed_is_said() {
+    let frame = import::read(
+        made(|document, blobs| {
+            blobs[3] = vec![0, 1, 200];
+            document["textures"][0]["format"] = json!("R32_UINT");
+            document["events"][1]["draw"]["clip_planes"] = json!(true);
+        })
+        .path(),
+    );
+    let frame = frame.expect("a frame");
+    assert!(draws(&frame)[0].triangles.is_empty() && frame.events[1].after.color.is_none());
+    for words in ["corners point to no vertex", "format R32_UINT", "planes of its own"] {
+        assert!(frame.limits.iter().any(|limit| limit.contains(words)), "{words}: {:?}", frame.limits);
+    }
+}
+
+#[test]
+fn an_index_that_restarts_has_all_bits() {
+    let frame = import::read(
+        made(|document, blobs| {
+            blobs[3] = vec![0, 1, 2, 255, 2, 1, 0];
+            let instance = &mut document["events"][1]["draw"]["instances"][0];
+            (instance["topology"], instance["restart"]) = (json!("TriangleStrip"), json!(u32::MAX));
+        })
+        .path(),
+    );
+    assert_eq!(draws(&frame.expect("a frame"))[0].triangles, [[0, 1, 2], [2, 1, 0]]);
+}
+
+/// A random number from another; good enough to choose what to break.
+fn next(state: &mut u64) -> usize {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (*state >> 11) as usize
+}
+
+/// Breaks bytes here and there, cuts off, or puts another number in place of one.
+fn broken(mut bytes: Vec<u8>, state: &mut u64) -> Vec<u8> {
+    const NUMBERS: [&str; 7] = ["0", "-1", "1", "255", "4294967295", "18446744073709551615", "1e39"];
+    match next(state) % 4 {
+        0 => bytes.truncate(next(state) % bytes.len()),
+        1 => (0..=next(state) % 8).for_each(|_| {
+            let at = next(state) % bytes.len();
+            bytes[at] = next(state) as u8;
+        }),
+        _ => {
+            let is_digit = |at: &usize| bytes[*at].is_ascii_digit();
+            let digits: Vec<usize> = (0..bytes.len()).filter(is_digit).collect();
+            let Some(&at) = digits.get(next(state) % digits.len().max(1)) else { return bytes };
+            let start = (0..at).rev().take_while(|at| bytes[*at].is_ascii_digit()).last().unwrap_or(at);
+            let end = (at..bytes.len()).find(|at| !bytes[*at].is_ascii_digit()).unwrap_or(bytes.len());
+            bytes.splice(start..end, NUMBERS[next(state) % NUMBERS.len()].bytes());
+        }
+    }
+    bytes
+}
+
+#[test]
+fn broken_recordings_make_an_error_or_a_frame() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [states, data] = ["frame.json", "data.bin"].map(|file| {
+        let bytes = fs::read(recording("ogre").join(file)).expect(file);
+        fs::write(folder.path().join(file), &bytes).expect(file);
+        (folder.path().join(file), bytes)
+    });
+    let (mut state, mut frames, mut errors) = (0x9e37_79b9_7f4a_7c15, 0, 0);
+    for turn in 0..300 {
+        let (file, bytes) = if turn % 6 == 0 { &data } else { &states };
+        fs::write(file, broken(bytes.clone(), &mut state)).expect("written");
+        *(if import::read(folder.path()).is_ok() { &mut frames } else { &mut errors }) += 1;
+        fs::write(file, bytes).expect("written");
+    }
+    assert!(frames > 20 && errors > 100, "{frames} frames, {errors} errors");
+}

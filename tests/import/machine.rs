@@ -1,0 +1,206 @@
+//! A rasteriser and stencil machine of its own, in `f64`: what a frame's positions and states make of what was there
+//! before each draw, held against what RenderDoc has stored after it.
+//!
+//! Triangles are taken in homogeneous coordinates (Olano and Greer, 1997), so that none has to be clipped.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use stencilscope::glam::DVec3;
+use stencilscope::import::{
+    RawCompare, RawContents, RawCull, RawDraw, RawFrame, RawKind, RawMay, RawStencilFace, RawStencilOperation,
+    RawTarget,
+};
+
+/// A draw held against what was stored after it.
+#[derive(Debug)]
+pub struct Compared {
+    pub event: u32,
+    pub pixels: usize,
+    /// Pixels that the draw has a fragment on.
+    pub touched: usize,
+    /// Pixels whose stored stencil or depth the draw has changed.
+    pub changed: usize,
+    /// Pixels whose depth is another one.
+    pub depth: usize,
+    /// Pixels whose stencil is another one.
+    pub stencil: usize,
+}
+
+/// Every draw whose depth and stencil are known before and after.
+pub fn compare(frame: &RawFrame) -> Vec<Compared> {
+    let mut held: BTreeMap<RawTarget, RawContents> = frame.before.iter().cloned().collect();
+    let mut found = Vec::new();
+    for event in &frame.events {
+        let Some(target) = event.depth_target else { continue };
+        let before = held.insert(target, event.after.clone());
+        let (RawKind::Draw(draw), Some(before)) = (&event.kind, before) else { continue };
+        let texture = &frame.textures[target.texture];
+        let [width, height] = texture.size.map(|side| (side >> target.mip) as usize);
+        if let Some(mut machine) = Machine::new(&before, [width, height], texture.format.largest_depth()) {
+            machine.draw(draw);
+            found.extend(machine.compare(event.id, &before, &event.after));
+        }
+    }
+    found
+}
+
+struct Machine {
+    size: [usize; 2],
+    /// The largest stored depth, where it is an integer.
+    largest: Option<u32>,
+    depth: Vec<f64>,
+    stencil: Vec<u8>,
+    touched: Vec<bool>,
+}
+
+impl Machine {
+    fn new(before: &RawContents, size: [usize; 2], largest: Option<u32>) -> Option<Self> {
+        let depth: Vec<f64> = before.depth.as_ref()?.iter().map(|depth| f64::from(*depth)).collect();
+        let depth = match (&before.depth_bits, largest) {
+            (Some(bits), Some(largest)) => bits.iter().map(|bits| f64::from(*bits) / f64::from(largest)).collect(),
+            _ => depth,
+        };
+        let stencil = before.stencil.as_ref().map_or_else(|| vec![0; depth.len()], |stencil| stencil.to_vec());
+        Some(Self { size, largest, touched: vec![false; depth.len()], depth, stencil })
+    }
+
+    fn draw(&mut self, draw: &RawDraw) {
+        assert_eq!(draw.fragment.may_discard, RawMay::No, "what is discarded is not known");
+        for triangle in &draw.triangles {
+            self.triangle(draw, triangle.map(|corner| draw.positions[corner as usize].map(f64::from)));
+        }
+    }
+
+    fn triangle(&mut self, draw: &RawDraw, corners: [[f64; 4]; 3]) {
+        let view = &draw.view;
+        let [left, top, width, height] = view.viewport.map(f64::from);
+        let up = if view.y_up { -1.0 } else { 1.0 };
+        // Columns and rows times w; and w.
+        let window = corners
+            .map(|[x, y, _, w]| DVec3::new((x + w) * width / 2.0 + w * left, (up * y + w) * height / 2.0 + w * top, w));
+        let [a, b, c] = window;
+        let turn = a.dot(b.cross(c));
+        if turn == 0.0 || !turn.is_finite() || window.iter().all(|corner| corner.z <= 0.0) {
+            return;
+        }
+        // Rows count downwards: a positive turn is clockwise on the picture.
+        let is_front = (turn < 0.0) == draw.shape.front_is_counter_clockwise;
+        match draw.shape.cull {
+            RawCull::Both => return,
+            RawCull::Front if is_front => return,
+            RawCull::Back if !is_front => return,
+            _ => {}
+        }
+        let edges = [b.cross(c) / turn, c.cross(a) / turn, a.cross(b) / turn];
+        let [columns, rows] = self.bounds(&window, draw);
+        let [near, far] = view.depth_range.map(f64::from);
+        for row in rows {
+            for column in columns.clone() {
+                let at = DVec3::new(column as f64 + 0.5, row as f64 + 0.5, 1.0);
+                let inside = edges.map(|edge| edge.dot(at));
+                let per_w: f64 = inside.iter().sum();
+                if inside.iter().any(|edge| *edge < 0.0) || per_w <= 0.0 {
+                    continue;
+                }
+                let z: f64 = inside.iter().zip(corners).map(|(edge, [_, _, z, _])| edge * z).sum();
+                let depth = near + (far - near) * if view.z_from_minus_w { (z + 1.0) / 2.0 } else { z };
+                let range = [near.min(far), near.max(far)];
+                if draw.shape.depth_clip && !(range[0]..=range[1]).contains(&depth) {
+                    continue;
+                }
+                let depth = if draw.shape.depth_clamp { depth.clamp(range[0], range[1]) } else { depth };
+                self.fragment(draw, is_front, row * self.size[0] + column, depth);
+            }
+        }
+    }
+
+    /// The columns and rows that a triangle may touch.
+    fn bounds(&self, window: &[DVec3; 3], draw: &RawDraw) -> [Range<usize>; 2] {
+        let limit = |value: f64, side: usize| value.clamp(0.0, side as f64) as usize;
+        let [left, top, width, height] = draw.view.viewport.map(f64::from);
+        std::array::from_fn(|axis| {
+            let side = self.size[axis];
+            let [mut low, mut high] = [[left, left + width], [top, top + height]][axis];
+            if let Some(scissor) = draw.view.scissor {
+                low = low.max(f64::from(scissor[axis]));
+                high = high.min(f64::from(scissor[axis]) + f64::from(scissor[axis + 2]));
+            }
+            if window.iter().all(|corner| corner.z > 0.0) {
+                let places = window.map(|corner| corner[axis] / corner.z);
+                low = low.max(places.into_iter().fold(f64::INFINITY, f64::min).floor());
+                high = high.min(places.into_iter().fold(f64::NEG_INFINITY, f64::max).ceil());
+            }
+            limit(low, side)..limit(high, side)
+        })
+    }
+
+    fn fragment(&mut self, draw: &RawDraw, is_front: bool, at: usize, depth: f64) {
+        self.touched[at] = true;
+        let depth = match self.largest.map(f64::from) {
+            Some(largest) => (depth * largest).round() / largest,
+            None => f64::from(depth as f32),
+        };
+        let passes_depth = draw.depth.is_none_or(|test| compares(test.compare, depth, self.depth[at]));
+        let face = draw.stencil.map(|[front, back]| if is_front { front } else { back });
+        let passes_stencil = face.is_none_or(|face| {
+            let [reference, stored] = [face.reference, self.stencil[at]].map(|value| value & face.compare_mask);
+            compares(face.compare, f64::from(reference), f64::from(stored))
+        });
+        if let Some(face) = face {
+            self.stencil[at] = after(&face, self.stencil[at], passes_stencil, passes_depth);
+        }
+        if passes_stencil && passes_depth && draw.depth.is_some_and(|test| test.write) {
+            self.depth[at] = depth;
+        }
+    }
+
+    fn compare(&self, event: u32, before: &RawContents, after: &RawContents) -> Option<Compared> {
+        /// A last place or two of depth: two rasterisers round differently.
+        const NEARLY: f64 = 2e-6;
+        let depth = after.depth.as_ref()?;
+        let differs = |(own, stored): (&f64, &f32)| (own - f64::from(*stored)).abs() > NEARLY;
+        let stencil = after.stencil.as_deref().unwrap_or(&self.stencil);
+        let depths = before.depth.as_ref()?.iter().zip(depth.iter()).map(|(a, b)| a != b);
+        let stencils = before.stencil.as_deref().unwrap_or(stencil).iter().zip(stencil).map(|(a, b)| a != b);
+        Some(Compared {
+            event,
+            pixels: depth.len(),
+            touched: self.touched.iter().filter(|touched| **touched).count(),
+            changed: depths.zip(stencils).filter(|(depth, stencil)| *depth || *stencil).count(),
+            depth: self.depth.iter().zip(depth.iter()).filter(|pair| differs(*pair)).count(),
+            stencil: self.stencil.iter().zip(stencil).filter(|(own, stored)| own != stored).count(),
+        })
+    }
+}
+
+fn after(face: &RawStencilFace, stored: u8, passes_stencil: bool, passes_depth: bool) -> u8 {
+    let operation = match (passes_stencil, passes_depth) {
+        (false, _) => face.fail,
+        (true, false) => face.depth_fail,
+        (true, true) => face.pass,
+    };
+    let new = match operation {
+        RawStencilOperation::Keep => stored,
+        RawStencilOperation::Zero => 0,
+        RawStencilOperation::Replace => face.reference,
+        RawStencilOperation::IncrementClamp => stored.saturating_add(1),
+        RawStencilOperation::DecrementClamp => stored.saturating_sub(1),
+        RawStencilOperation::Invert => !stored,
+        RawStencilOperation::IncrementWrap => stored.wrapping_add(1),
+        RawStencilOperation::DecrementWrap => stored.wrapping_sub(1),
+    };
+    new & face.write_mask | stored & !face.write_mask
+}
+
+fn compares(compare: RawCompare, new: f64, stored: f64) -> bool {
+    match compare {
+        RawCompare::Never => false,
+        RawCompare::Less => new < stored,
+        RawCompare::LessEqual => new <= stored,
+        RawCompare::Equal => new == stored,
+        RawCompare::GreaterEqual => new >= stored,
+        RawCompare::Greater => new > stored,
+        RawCompare::NotEqual => new != stored,
+        RawCompare::Always => true,
+    }
+}

@@ -1,0 +1,117 @@
+//! Real programs under RenderDoc. These need packages that the other tests do not: `.ci/frames` installs them and runs
+//! these.
+
+use super::process::has_ended;
+use super::{assert_makes_what_was_stored, draws, recording};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+use stencilscope::import::{self, Api, ImportError, Options, RawFrame, Recording};
+use stencilscope::progress::Progress;
+
+/// Debian's interpreter, which has the packages' modules.
+const PYTHON: &str = "/usr/bin/python3";
+
+fn options() -> Options {
+    Options { python: PYTHON.to_owned(), ..Options::default() }
+}
+
+fn record(command: &[&str], seconds: u64) -> Result<RawFrame, ImportError> {
+    let command = command.iter().map(|word| (*word).to_owned()).collect();
+    import::record(&Recording { command, frame: 3, seconds, keep: None }, &options(), &Progress::default())
+}
+
+#[test]
+#[ignore = "needs RenderDoc and OGRE: run .ci/frames"]
+fn ogre_is_recorded_with_every_option() {
+    let script = recording("ogre.py").display().to_string();
+    for (more, most) in [(&[][..], 8), (&["--inside"], 8), (&["--far", "450"], 8), (&["--reach", "330"], 8)] {
+        let frame = record(&[&[PYTHON, script.as_str()], more].concat(), 60).expect("a frame");
+        println!("{more:?}");
+        assert_eq!((frame.api, frame.limits.len()), (Api::OpenGl, 0), "{:?}", frame.limits);
+        assert_makes_what_was_stored(&frame, most);
+    }
+}
+
+#[test]
+#[ignore = "needs RenderDoc: run .ci/frames"]
+fn recordings_that_are_here_are_imported() {
+    for name in ["ogre", "ogre-inside", "ogre-far", "ogre-short"] {
+        let file = recording(&format!("{name}.rdc"));
+        let frame = import::import(&file, &options(), &Progress::default()).expect("a frame");
+        println!("{name}");
+        assert_makes_what_was_stored(&frame, 8);
+        if recording(name).is_dir() {
+            assert_eq!(frame, import::read(&recording(name)).expect("a frame"), "{name}");
+        }
+    }
+}
+
+/// Its depth map can't be read back on OpenGL ES, which is said; the picture can.
+#[test]
+#[ignore = "needs RenderDoc and glmark2: run .ci/frames"]
+fn a_shadow_map_of_glmark_is_recorded() {
+    let frame = record(&["glmark2-es2", "-b", "shadow", "-s", "320x240"], 60).expect("a frame");
+    assert_eq!((frame.api, draws(&frame).len()), (Api::Gles, 3));
+    assert_makes_what_was_stored(&frame, 8);
+}
+
+/// Our own frames, drawn by wgpu on Vulkan.
+#[test]
+#[ignore = "needs RenderDoc: run .ci/frames"]
+fn vulkan_is_recorded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out").display().to_string();
+    let program = env!("CARGO_BIN_EXE_stencilscope");
+    let capture = [program, "capture", "tori", "-t", "z-fail", "--size", "320x180", "--external-capture", "-o", &out];
+    let frame = record(&capture, 60).expect("a frame");
+    assert_eq!(frame.api, Api::Vulkan);
+    assert!(frame.events.iter().any(|event| event.groups == ["volumes"]));
+    assert_makes_what_was_stored(&frame, 8);
+}
+
+#[test]
+#[ignore = "needs RenderDoc: run .ci/frames"]
+fn programs_that_show_nothing_are_named() {
+    let failed = |command: &[&str]| record(command, 3).expect_err("no frame");
+    assert!(matches!(failed(&["no-such-program"]), ImportError::NoProgram { .. }));
+    assert!(matches!(failed(&["sh", "-c", "exit 3"]), ImportError::Died { how, .. } if how == "with exit code 3"));
+    assert!(matches!(failed(&["sleep", "100"]), ImportError::NeverPresented { seconds: 3, .. }));
+}
+
+#[test]
+#[ignore = "needs RenderDoc: run .ci/frames"]
+fn files_that_are_no_whole_captures_are_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let whole = std::fs::read(recording("ogre.rdc")).expect("a recording");
+    let failed = |bytes: &[u8]| {
+        let file = folder.path().join("frame.rdc");
+        std::fs::write(&file, bytes).expect("written");
+        import::import(&file, &options(), &Progress::default()).expect_err("no frame")
+    };
+    for bytes in [&b""[..], b"text", &whole[..100], &whole[..whole.len() / 2]] {
+        let error = failed(bytes);
+        assert!(matches!(error, ImportError::Corrupt { .. }), "{} bytes: {error}", bytes.len());
+    }
+}
+
+/// Killed in the middle of a recording, we leave neither the program nor a folder.
+#[test]
+#[ignore = "needs RenderDoc: run .ci/frames"]
+fn nothing_is_left_when_we_are_killed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pid = folder.path().join("pid");
+    let program = format!("echo $$ >{}; exec sleep 100", pid.display());
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stencilscope"));
+    command.args(["record", "--list", "--python", PYTHON, "--", "sh", "-c", &program]);
+    let temporary = folder.path().join("temporary");
+    std::fs::create_dir(&temporary).expect("made");
+    let mut child = command.env("TMPDIR", &temporary).stderr(Stdio::null()).spawn().expect("the program runs");
+    while !std::fs::read_to_string(&pid).is_ok_and(|text| text.ends_with('\n')) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().expect("killed");
+    child.wait().expect("ended");
+    let pid = std::fs::read_to_string(&pid).expect("a number");
+    assert!(has_ended(pid.trim()), "{pid} runs on");
+    assert!(crate::common::names(&temporary).is_empty());
+}
