@@ -2,7 +2,7 @@
 //!
 //! Names are a contract with scripts: add fields, rename none.
 
-use super::{AdapterInfo, Capture, DrawSummary, Timing};
+use super::{AdapterInfo, Capture, Differs, DrawSummary, Origin, Timing};
 use crate::accuracy::{ErrorCounts, Finding, Region};
 use crate::math::depth::DepthCurve;
 use crate::plan::{DecidedBy, LeftOut, Part, Side};
@@ -33,6 +33,9 @@ pub(super) struct Manifest {
     pub lights: Vec<LightEntry>,
     pub left_out: Vec<LeftOut>,
     pub timing: Timing,
+    /// Where it comes from, if another program drew it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -110,6 +113,9 @@ pub(super) struct DrawEntry {
     pub caster: Option<String>,
     pub part: String,
     pub triangles: u64,
+    /// Of another program's draw: pixels where it makes something else when it is computed anew.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub differs: Option<Differs>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -190,6 +196,7 @@ impl Manifest {
             lights: Vec::new(),
             left_out: capture.left_out.clone(),
             timing: capture.timing,
+            origin: capture.origin.clone(),
         }
     }
 }
@@ -227,6 +234,7 @@ impl From<&DrawSummary> for DrawEntry {
             caster: draw.caster.clone(),
             part: draw.part.name().to_owned(),
             triangles: draw.triangles,
+            differs: draw.differs,
         }
     }
 }
@@ -236,7 +244,7 @@ impl DrawEntry {
     pub fn to_summary(&self) -> Option<DrawSummary> {
         let part = Part::from_name(&self.part)?;
         let (name, caster) = (self.name.clone(), self.caster.clone());
-        Some(DrawSummary { name, caster, part, triangles: self.triangles, after: None })
+        Some(DrawSummary { name, caster, part, triangles: self.triangles, after: None, differs: self.differs })
     }
 }
 

@@ -49,6 +49,23 @@ pub struct Capture {
     pub timing: Timing,
     /// The plan's stable text form; empty where it is not known.
     pub plan_text: String,
+    /// Where it comes from, if another program drew it.
+    pub origin: Option<Origin>,
+}
+
+/// Where the frame of another program comes from.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Origin {
+    /// The program, where that is known.
+    pub program: Option<String>,
+    /// Whose calls it made: `OpenGL`.
+    pub api: String,
+    /// How its depth was stored: `D24S8`.
+    pub depth_format: String,
+    /// Who wrote it down: `RenderDoc 1.24`.
+    pub recorder: String,
+    /// What could not be read, in words.
+    pub limits: Vec<String>,
 }
 
 /// The adapter that ran a capture.
@@ -92,6 +109,18 @@ pub struct DrawSummary {
     pub triangles: u64,
     /// The state after it; `None` where only the state after its pass was captured.
     pub after: Option<DrawState>,
+    /// Of another program's draw that was computed anew from what was there before it: where that made something else
+    /// than was stored; `None` where that was not asked.
+    pub differs: Option<Differs>,
+}
+
+/// Pixels where a draw that is computed anew leaves something else than was stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Differs {
+    /// Depths that are farther apart than two steps of their format, or of 24 bits.
+    pub depth: u64,
+    /// Stencil values.
+    pub stencil: u64,
 }
 
 /// The state after one draw of a pass.

@@ -1,9 +1,11 @@
 //! `stencilscope import`: a frame out of a RenderDoc capture.
 
 use super::{CliError, output, progress};
-use crate::capture::disk;
+use crate::capture::disk::{self, Contents};
+use crate::capture::{Capture, Differs, DrawSummary};
 use crate::import::{self, ImportError, Options, RawFrame};
 use crate::progress::Progress;
+use crate::session::Session;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -34,6 +36,9 @@ pub struct FrameTarget {
     /// Print the frame's events and states
     #[arg(long)]
     list: bool,
+    /// A part of the name of the GPU that computes the draws anew; `llvmpipe` is the software one [default: the best]
+    #[arg(long, value_name = "SUBSTRING")]
+    adapter: Option<String>,
 }
 
 /// How RenderDoc is reached.
@@ -70,20 +75,39 @@ impl FrameTarget {
     ///
     /// # Errors
     /// It can't be printed or written.
-    pub fn deliver(&self, frame: RawFrame) -> Result<(), CliError> {
+    pub fn deliver(&self, frame: RawFrame, name: &str) -> Result<(), CliError> {
         if self.list {
             output::print(&import::list(&frame))?;
         }
-        self.output.as_deref().map_or(Ok(()), |folder| convert(frame, folder, self.overwrite))
+        let Some(folder) = &self.output else { return Ok(()) };
+        let (plan, capture) = import::convert(&frame, name)?;
+        drop(frame);
+        let mut session = Session::new(self.adapter.as_deref())?;
+        let capture = progress::with_bar("check", &Progress::default(), |progress| {
+            session.held_against_itself(&plan, &capture, progress)
+        })?;
+        disk::write(Contents { capture: &capture, plan: Some(&plan), scene: None }, folder, self.overwrite)?;
+        output::print(&summary(&capture, folder))
     }
 }
 
-/// Writes the frame as a capture folder.
-fn convert(_frame: RawFrame, folder: &Path, _overwrite: bool) -> Result<(), CliError> {
-    Err(CliError::Usage(format!(
-        "{}: frames of other programs can't be written yet; see what the frame holds with --list",
-        folder.display()
-    )))
+/// What was written, and where the frame is not to be trusted.
+fn summary(capture: &Capture, folder: &Path) -> String {
+    let [width, height] = capture.size;
+    let draws: Vec<&DrawSummary> = capture.steps.iter().flat_map(|step| &step.draws).collect();
+    let (passes, count) = (capture.steps.len(), draws.len());
+    let mut text =
+        format!("{}: {}, {width}x{height}, {passes} passes, {count} draws\n", folder.display(), capture.scene);
+    let checked = draws.iter().filter_map(|draw| Some((draw, draw.differs?)));
+    let (apart, equal): (Vec<_>, Vec<_>) = checked.partition(|(_, differs)| *differs != Differs::default());
+    text += &format!("computed anew: {} of {} draws leave what was stored\n", equal.len(), equal.len() + apart.len());
+    for (draw, Differs { depth, stencil }) in apart {
+        text += &format!("  {}: another depth at {depth} pixels, another stencil at {stencil}\n", draw.name);
+    }
+    for left in &capture.left_out {
+        text += &format!("left out: {left}: {}\n", left.because);
+    }
+    text
 }
 
 /// Does `work` while a bar shows how far RenderDoc has come.
@@ -99,5 +123,6 @@ pub fn run(arguments: &ImportArguments) -> Result<(), CliError> {
     arguments.target.check()?;
     let options = arguments.reader.options();
     let frame = with_bar(|progress| import::import(&arguments.file, &options, progress))?;
-    arguments.target.deliver(frame)
+    let name = arguments.file.file_stem().map_or_else(|| "frame".into(), |stem| stem.to_string_lossy());
+    arguments.target.deliver(frame, &name)
 }

@@ -4,7 +4,7 @@ use super::import::{FrameTarget, ReaderOptions, with_bar};
 use super::{CliError, output};
 use crate::import::{self, Recording};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 #[command(after_help = "A frame as a capture folder:  stencilscope record -o DIR -- PROGRAM ARGS…\n\
@@ -45,5 +45,7 @@ pub fn run(arguments: &RecordArguments) -> Result<(), CliError> {
     };
     let options = arguments.reader.options();
     let frame = with_bar(|progress| import::record(&recording, &options, progress))?;
-    arguments.target.deliver(frame)
+    let name =
+        Path::new(recording.program()).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into());
+    arguments.target.deliver(frame, &name)
 }

@@ -190,6 +190,7 @@ fn step(pass: &Pass, snapshot: Snapshot) -> Step {
         part: draw.part,
         triangles: u64::from(draw.triangles.end - draw.triangles.start),
         after: None,
+        differs: None,
     };
     Step {
         name: pass.name.clone(),

@@ -5,6 +5,21 @@ use std::path::PathBuf;
 /// Why there is no frame.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
+    /// No draw has a depth buffer.
+    #[error("the frame has no depth buffer that could be followed: --list shows what it draws")]
+    NoDepth,
+    /// The picture's depth buffer has several samples a pixel.
+    #[error(
+        "the frame's depth buffer has {samples} samples a pixel, of which no history can be told: switch the program's \
+         anti-aliasing off; --list shows its states"
+    )]
+    Multisampled {
+        /// Samples of a pixel.
+        samples: u32,
+    },
+    /// Every draw is of a kind that is not followed.
+    #[error("the frame draws no triangles that could be followed: --list shows what it draws")]
+    NothingDrawn,
     /// The interpreter can't be started.
     #[error(
         "`{python}` can't be started ({source}): install python3 and python3-renderdoc, or name an interpreter with --python"

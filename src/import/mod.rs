@@ -9,6 +9,7 @@
 //! comes out as plain data: [`RawFrame`]. What it means is for others to say.
 
 mod blobs;
+mod convert;
 mod document;
 mod error;
 mod geometry;
@@ -21,6 +22,7 @@ mod shader;
 mod states;
 mod unroll;
 
+pub use convert::{RECORDED, convert};
 pub use error::ImportError;
 pub use list::list;
 pub use raw::*;

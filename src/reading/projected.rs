@@ -155,6 +155,7 @@ mod tests {
             left_out: Vec::new(),
             timing: Timing::default(),
             plan_text: String::new(),
+            origin: None,
         }
     }
 

@@ -10,6 +10,7 @@ mod diagnose;
 mod draws;
 mod history;
 mod measure;
+mod recorded;
 mod report;
 mod step_tests;
 mod stress;
@@ -356,6 +357,7 @@ impl Session {
             left_out,
             timing,
             plan_text: plan.to_string(),
+            origin: None,
         }
     }
 }

@@ -25,7 +25,7 @@ fn image_of<const N: usize>(format: PixelFormat, size: [u32; 2], texel: impl Fn(
 }
 
 fn draw(name: &str, part: Part, triangles: u64) -> DrawSummary {
-    DrawSummary { name: name.to_owned(), caster: Some("box".to_owned()), part, triangles, after: None }
+    DrawSummary { name: name.to_owned(), caster: Some("box".to_owned()), part, triangles, after: None, differs: None }
 }
 
 fn step(name: &str, light: Option<usize>, draws: Vec<DrawSummary>, snapshot: Snapshot) -> Step {
@@ -103,6 +103,7 @@ pub fn z_fail(size: [u32; 2]) -> Capture {
         left_out: vec![LeftOut::new(Decision::Clear, "light 1", "nothing has written the stencil before")],
         timing: Timing { frame_ms: Some(6.25), ..Timing::default() },
         plan_text: String::new(),
+        origin: None,
     }
 }
 

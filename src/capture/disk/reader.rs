@@ -57,6 +57,7 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
         left_out: manifest.left_out,
         timing: manifest.timing,
         plan_text: read_plan(folder)?,
+        origin: manifest.origin,
     };
     match inconsistency(&capture) {
         Some(reason) => Err(wrong(reason.to_owned())),

@@ -36,6 +36,7 @@ fn step(name: &str, light: Option<usize>, snapshot: Snapshot) -> Step {
         part: Part::Side,
         triangles: 7,
         after: None,
+        differs: None,
     };
     Step {
         name: name.to_owned(),
@@ -119,6 +120,7 @@ fn example() -> Capture {
         left_out: vec![LeftOut::counted(Decision::Caps, 1, "torus 2", "outside the near-clip volume")],
         timing: Timing { frame_ms: Some(9.1), captured_ms: None, write_ms: None, setup_ms: Some(0.3) },
         plan_text: "pass ambient\n".into(),
+        origin: None,
     }
 }
 

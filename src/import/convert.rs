@@ -1,0 +1,167 @@
+//! A recorded frame as a plan and a capture: what another program drew, in the words of our own frames.
+//!
+//! ```text
+//! RawFrame ─ stage.rs     which targets are the picture, and which are depth maps
+//!          ─ states.rs    a draw's states as a raster state, its vertices as wgpu's clip space has them, its role
+//!          ─ passes.rs    runs of draws that do the same become passes, what was stored after each becomes steps
+//!          ─ pictures.rs  arrays as pictures
+//!          ─ eye.rs       how the eye sees: depth by distance, from the surfaces' vertices
+//! ```
+//!
+//! Nothing is computed anew here: every picture is what was read back.
+
+mod eye;
+mod passes;
+mod pictures;
+mod stage;
+mod states;
+
+use super::ImportError;
+use super::raw::RawFrame;
+use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Image, Origin, PixelFormat, Timing};
+use crate::plan::{
+    Attachment, AttachmentId, AttachmentRole, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight, PlanMap,
+    PlanView, Side, ViewId,
+};
+use glam::{DMat4, DVec3, DVec4, Mat4};
+use passes::Making;
+use stage::{Place, Stage};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The technique's name in plans and captures of other programs.
+pub const RECORDED: &str = "recorded";
+
+/// The attachment of the picture's depth and stencil; those of depth maps follow.
+const DEPTH_STENCIL: AttachmentId = AttachmentId(0);
+
+/// The attachment of a depth map.
+fn map_attachment(map: usize) -> AttachmentId {
+    AttachmentId(DEPTH_STENCIL.0 + 1 + map)
+}
+
+/// What was drawn and what was stored, as a plan and a capture that is called `name`.
+///
+/// # Errors
+/// There is no depth buffer to follow, it is multisampled, or nothing is drawn that can be followed.
+pub fn convert(frame: &RawFrame, name: &str) -> Result<(FramePlan, Capture), ImportError> {
+    let stage = Stage::of(frame)?;
+    let mut making = Making::new(frame, &stage);
+    frame.events.iter().for_each(|event| making.event(event));
+    if making.passes.is_empty() {
+        return Err(ImportError::NothingDrawn);
+    }
+    let faces: Vec<Vec<Arc<Image>>> = (0..stage.maps.len()).map(|map| faces(frame, &stage, &making, map)).collect();
+    let Making { passes, steps, meshes, left_out, .. } = making;
+    let mut attachments = vec![stage.attachment(frame, Place::Picture, AttachmentRole::DepthStencil)];
+    for map in 0..stage.maps.len() {
+        attachments.push(stage.attachment(frame, Place::Map(map, 0), AttachmentRole::Map(LightId(map))));
+    }
+    let size = stage.size(frame);
+    let mut plan = FramePlan {
+        technique: RECORDED.to_owned(),
+        settings: BTreeMap::new(),
+        size,
+        // Found from the draws below.
+        depth: crate::math::depth::DepthMapping::StandardInfinite.curve(1.0, 0.0, 0.0),
+        wraps_diffuse: false,
+        attachments,
+        views: vec![PlanView { name: "camera".to_owned(), origin: DVec3::ZERO, clip_from_relative: Mat4::IDENTITY }],
+        lights: Vec::new(),
+        ambient: [0.0; 3],
+        meshes,
+        passes,
+        left_out,
+    };
+    plan.depth = eye::curve(&plan);
+    plan.views[0].clip_from_relative = eye::clip_from_view(&plan.depth, size).as_mat4();
+    let lights = plan.passes.iter().filter_map(|pass| pass.light).map(|light| light.0 + 1).max().unwrap_or(0);
+    for light in (0..lights).map(LightId) {
+        let made = plan_light(&plan, light, faces.get(light.0).map_or(0, Vec::len));
+        plan.lights.push(made);
+        plan.attachments.push(Attachment {
+            name: format!("{} labels", light.name()),
+            role: AttachmentRole::Labels(light),
+            format: wgpu::TextureFormat::R8Uint,
+            size,
+            layers: 1,
+        });
+    }
+    let captured = |(index, light): (usize, &PlanLight)| CapturedLight {
+        position: DVec4::ZERO,
+        decided_by: light.decided_by,
+        shadow: None,
+        count: None,
+        map: light.map.as_ref().zip(faces.get(index)).map(|(map, faces)| CapturedMap {
+            faces: faces.clone(),
+            layer_names: Vec::new(),
+            light_from_world: map.light_from_world,
+            clip_from_light: map.clip_from_light.clone(),
+        }),
+        truth: None,
+    };
+    let capture = Capture {
+        scene: name.to_owned(),
+        technique: RECORDED.to_owned(),
+        settings: BTreeMap::new(),
+        size,
+        adapter: AdapterInfo { name: frame.adapter.clone(), driver: String::new(), kind: "other".to_owned() },
+        camera: eye::camera(&plan.depth),
+        depth: plan.depth,
+        steps,
+        lights: plan.lights.iter().enumerate().map(captured).collect(),
+        left_out: plan.left_out.clone(),
+        timing: Timing::default(),
+        plan_text: plan.to_string(),
+        origin: Some(Origin {
+            program: frame.program.clone(),
+            api: frame.api.name().to_owned(),
+            depth_format: format!("{:?}", frame.textures[stage.depth.texture].format),
+            recorder: frame.recorder.clone(),
+            limits: frame.limits.clone(),
+        }),
+    };
+    Ok((plan, capture))
+}
+
+/// What each layer of a depth map holds in the end; nothing drawn is as far as can be.
+fn faces(frame: &RawFrame, stage: &Stage, making: &Making, map: usize) -> Vec<Arc<Image>> {
+    let Attachment { size, layers, .. } =
+        stage.attachment(frame, Place::Map(map, 0), AttachmentRole::Map(LightId(map)));
+    let clear = || Arc::new(Image::uniform(PixelFormat::Depth32F, size, &1.0_f32.to_le_bytes()));
+    (0..layers).map(|layer| making.face(map, layer).unwrap_or_else(clear)).collect()
+}
+
+/// A light of which nothing is known yet but what decides where its shadow is.
+fn plan_light(plan: &FramePlan, light: LightId, faces: usize) -> PlanLight {
+    let of_light = plan.passes.iter().filter(|pass| pass.light == Some(light));
+    let draws = of_light.flat_map(|pass: &Pass| &pass.draws);
+    let sides: Vec<Side> = draws.flat_map(|draw| states::counted_sides(&draw.raster)).collect();
+    let decided_by = match (faces > 0, sides.contains(&Side::InFront), sides.contains(&Side::Behind)) {
+        (true, ..) => DecidedBy::Map,
+        (_, true, true) => DecidedBy::StencilCount { side: Side::AsNeeded },
+        (_, true, false) => DecidedBy::StencilCount { side: Side::InFront },
+        (_, false, true) => DecidedBy::StencilCount { side: Side::Behind },
+        (_, false, false) => DecidedBy::Nothing,
+    };
+    let map = PlanMap {
+        attachment: map_attachment(light.0),
+        faces: vec![Some(ViewId(0)); faces],
+        light_from_world: DMat4::IDENTITY,
+        clip_from_light: vec![DMat4::IDENTITY; faces],
+        clip_from_relative: vec![Mat4::IDENTITY; faces],
+        layer_names: Vec::new(),
+        lookup: Some(MapLookup { clear_depth: 1.0, bias_normal: 0.0, bias_receiver_plane: false, filter_width: 1 }),
+        projects_backwards: false,
+        is_kept: false,
+    };
+    PlanLight {
+        relative_position: [0.0; 4],
+        color: [1.0; 3],
+        range: None,
+        decided_by,
+        map: (faces > 0).then_some(map),
+        count: None,
+        labels: AttachmentId(plan.attachments.len()),
+    }
+}

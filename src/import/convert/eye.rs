@@ -1,0 +1,103 @@
+//! How the eye of a recorded frame sees, as far as its vertices say.
+//!
+//! A perspective makes w the distance along the view axis, and z = a·w + b for all that is not at infinity: two numbers,
+//! fitted over the vertices of the surfaces. The field of view can't be known, as clip space is view space stretched: it
+//! is taken as 90 degrees with square pixels, which keeps every straight line, every "between" and every silhouette.
+
+use crate::math::depth::{DepthCurve, DepthMapping};
+use crate::plan::{Draw, FramePlan, Part, Pass};
+use crate::scene::Camera;
+use glam::{DMat4, DVec3};
+
+/// Degrees; its tangent's half is 1.
+const FIELD_OF_VIEW: f64 = 90.0;
+/// How far a vertex may be off the fit, in parts of its w.
+const RESIDUAL: f64 = 1e-3;
+
+/// How depths of a plan's picture come from distances; without a fit, as if they were distances themselves.
+pub(super) fn curve(plan: &FramePlan) -> DepthCurve {
+    let picture = || plan.passes.iter().filter(|pass| plan.is_of_picture(pass));
+    let is_reversed = is_reversed(picture().flat_map(|pass| &pass.draws));
+    let surfaces = picture().flat_map(|pass| pass.draws.iter().map(move |draw| (pass, draw)));
+    let surfaces = surfaces.filter(|(_, draw)| draw.part == Part::Surface && draw.raster.depth_write);
+    let points: Vec<[f64; 2]> = surfaces.flat_map(|(pass, draw)| points(plan, pass, draw)).collect();
+    let mapping = |has_far: bool| match (is_reversed, has_far) {
+        (true, _) => DepthMapping::ReversedInfinite,
+        (false, true) => DepthMapping::StandardFinite,
+        (false, false) => DepthMapping::StandardInfinite,
+    };
+    match fitted(&points) {
+        Some([a, b]) => {
+            // Where depth is 1, or 0 where it is reversed.
+            let far = if is_reversed { -b / a } else { b / (1.0 - a) };
+            let far = Some(far).filter(|far| far.is_finite() && *far > 0.0);
+            DepthCurve { mapping: mapping(far.is_some()), offset: a, scale: b, far }
+        }
+        None => mapping(false).curve(1.0, 0.0, 0.0),
+    }
+}
+
+/// Is greater nearer? As most depth tests say.
+fn is_reversed<'a>(draws: impl Iterator<Item = &'a Draw>) -> bool {
+    use wgpu::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
+    let votes = draws.map(|draw| match draw.raster.depth_compare {
+        Greater | GreaterEqual => 1,
+        Less | LessEqual => -1,
+        _ => 0,
+    });
+    votes.sum::<i64>() > 0
+}
+
+/// z and w of a draw's vertices, z as the depth range has it.
+fn points(plan: &FramePlan, pass: &Pass, draw: &Draw) -> Vec<[f64; 2]> {
+    let [near, far] = pass.viewport(plan.size).depth.map(f64::from);
+    let place = |[_, _, z, w]: &[f32; 4]| {
+        let [z, w] = [f64::from(*z), f64::from(*w)];
+        [near * w + (far - near) * z, w]
+    };
+    let vertices = plan.meshes[draw.mesh.0].vertices.data();
+    vertices.iter().map(place).filter(|[z, w]| z.is_finite() && w.is_finite()).collect()
+}
+
+/// a and b of z = a·w + b by least squares; `None` where w is the same everywhere or points lie off the line.
+fn fitted(points: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let count = points.len() as f64;
+    let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / count;
+    let [z, w] = [mean(0), mean(1)];
+    let spread: f64 = points.iter().map(|point| (point[1] - w).powi(2)).sum();
+    let joint: f64 = points.iter().map(|point| (point[1] - w) * (point[0] - z)).sum();
+    let largest = points.iter().map(|point| point[1].abs()).fold(0.0, f64::max);
+    if points.len() < 3 || spread <= (1e-6 * largest).powi(2) * count {
+        return None;
+    }
+    let a = joint / spread;
+    let b = z - a * w;
+    let is_near = |point: &[f64; 2]| (a * point[1] + b - point[0]).abs() <= RESIDUAL * point[1].abs().max(b.abs());
+    (b != 0.0 && points.iter().all(is_near)).then_some([a, b])
+}
+
+/// An eye at the origin that looks along −z, for which clip space is view space.
+pub(super) fn camera(curve: &DepthCurve) -> Camera {
+    let plane = |depth: f64| Some(curve.scale / (depth - curve.offset)).filter(|at| at.is_finite() && *at > 0.0);
+    let near = plane(if curve.mapping.is_reversed() { 1.0 } else { 0.0 }).unwrap_or(1.0).clamp(1e-30, 1e30);
+    Camera {
+        eye: DVec3::ZERO,
+        target: DVec3::NEG_Z,
+        up: DVec3::Y,
+        fov_y_degrees: FIELD_OF_VIEW,
+        near,
+        far: curve.far.filter(|far| *far > near),
+    }
+}
+
+/// Clip space from the view space of that camera.
+pub(super) fn clip_from_view(curve: &DepthCurve, size: [u32; 2]) -> DMat4 {
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let row = curve.z_row();
+    DMat4::from_cols_array_2d(&[
+        [1.0 / aspect, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, 0.0],
+        [0.0, 0.0, row.x, -1.0],
+        [0.0, 0.0, row.y, 0.0],
+    ])
+}

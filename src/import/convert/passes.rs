@@ -1,0 +1,261 @@
+//! Runs of draws that do the same become passes, and what was stored after each draw becomes steps.
+
+use super::pictures::{Held, Pictures, uniform};
+use super::stage::{Place, Stage, size_of};
+use super::states::{self, Role};
+use crate::capture::{Aspect, DrawState, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
+use crate::import::raw::{RawDraw, RawEvent, RawFrame, RawKind, RawTarget};
+use crate::plan::{
+    Blob, DepthStencilTarget, Draw, DrawMesh, LeftOut, LightId, MeshId, Part, Pass, Program, RecordedPass,
+    StartContent, ViewId, Viewport,
+};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What the draws of a pass have in common.
+#[derive(Debug, Clone, PartialEq)]
+struct Run {
+    place: Place,
+    groups: Vec<String>,
+    viewport: Viewport,
+    scissor: Option<[u32; 4]>,
+    role: Role,
+}
+
+/// Passes and steps in the making.
+pub(super) struct Making<'a> {
+    frame: &'a RawFrame,
+    stage: &'a Stage,
+    pictures: Pictures,
+    held: BTreeMap<RawTarget, Held>,
+    /// Places whose depth or stencil something other than a draw has set since: a clear, a load, a copy.
+    put: BTreeMap<Place, [bool; 2]>,
+    run: Option<Run>,
+    /// What the steps last showed: colour, depth, stencil.
+    shown: [Option<Arc<Image>>; 3],
+    counting_light: Option<LightId>,
+    pub passes: Vec<Pass>,
+    pub steps: Vec<Step>,
+    pub meshes: Vec<DrawMesh>,
+    pub left_out: Vec<LeftOut>,
+}
+
+impl<'a> Making<'a> {
+    pub fn new(frame: &'a RawFrame, stage: &'a Stage) -> Making<'a> {
+        let mut making = Making {
+            frame,
+            stage,
+            pictures: Pictures::default(),
+            held: BTreeMap::new(),
+            put: BTreeMap::new(),
+            run: None,
+            shown: [None, None, None],
+            counting_light: None,
+            passes: Vec::new(),
+            steps: Vec::new(),
+            meshes: Vec::new(),
+            left_out: Vec::new(),
+        };
+        for (target, before) in &frame.before {
+            let texture = &frame.textures[target.texture];
+            let held = making.pictures.held(before, &texture.format, size_of(frame, *target));
+            making.held.insert(*target, held);
+            making.put.extend(stage.place(*target).map(|place| (place, [true; 2])));
+        }
+        making
+    }
+
+    /// What each face of a depth map holds now, where that is known.
+    pub fn face(&self, map: usize, layer: u32) -> Option<Arc<Image>> {
+        self.held.get(&self.stage.target(Place::Map(map, layer)))?.depth.clone()
+    }
+
+    pub fn event(&mut self, event: &RawEvent) {
+        if let RawKind::Draw(draw) = &event.kind {
+            // What a pass begins with is what is held before.
+            let begun = self.begin_for(event, draw);
+            self.note(event);
+            match begun {
+                Ok((place, cull)) => self.add(event, draw, place, cull),
+                Err(why) => self.leave_out(event, why),
+            }
+            return;
+        }
+        let before = event.depth_target.and_then(|target| self.held.get(&target).cloned()).unwrap_or_default();
+        self.note(event);
+        let Some(target) = event.depth_target else { return };
+        let (Some(place), Some(after)) = (self.stage.place(target), self.held.get(&target)) else { return };
+        let changed = [before.depth != after.depth, before.stencil != after.stencil];
+        if changed != [false; 2] {
+            let put = self.put.entry(place).or_default();
+            *put = [put[0] || changed[0], put[1] || changed[1]];
+            self.run = None;
+        }
+    }
+
+    /// Notes what an event left.
+    fn note(&mut self, event: &RawEvent) {
+        let (frame, after) = (self.frame, &event.after);
+        if let Some(target) = event.depth_target {
+            let format = &frame.textures[target.texture].format;
+            let left = self.pictures.held(after, format, size_of(frame, target));
+            let held = self.held.entry(target).or_default();
+            held.depth = left.depth.or(held.depth.take());
+            held.stencil = left.stencil.or(held.stencil.take());
+        }
+        if let Some(target) = event.color_targets.first() {
+            let format = &frame.textures[target.texture].format;
+            let left = self.pictures.held(after, format, size_of(frame, *target));
+            let held = self.held.entry(*target).or_default();
+            held.color = left.color.or(held.color.take());
+        }
+    }
+
+    /// Begins a pass for a draw, unless it goes on with the one before; or says why the draw can't be followed.
+    fn begin_for(&mut self, event: &RawEvent, draw: &RawDraw) -> Result<(Place, Option<wgpu::Face>), &'static str> {
+        let place = match (event.depth_target, event.color_targets.first()) {
+            (Some(target), _) => self.stage.place(target),
+            (None, Some(target)) => (Some(*target) == self.stage.color).then_some(Place::Colors),
+            (None, None) => None,
+        };
+        let place = place.ok_or("it draws into a picture that is neither this one nor a depth map")?;
+        let cull = states::drawable(draw)?;
+        let scissor = states::scissor(draw, size_of(self.frame, self.stage.target(place)));
+        if scissor.is_some_and(|[_, _, columns, rows]| columns == 0 || rows == 0) {
+            return Err("its scissor leaves no pixel");
+        }
+        let (viewport, role) = (states::viewport(draw), states::role(draw, place));
+        let run = Run { place, groups: event.groups.clone(), viewport, scissor, role };
+        if self.run.as_ref() != Some(&run) {
+            self.begin(run);
+        }
+        Ok((place, cull))
+    }
+
+    fn leave_out(&mut self, event: &RawEvent, because: &str) {
+        self.left_out.push(LeftOut {
+            decision: None,
+            name: None,
+            what: format!("event {}", event.id),
+            of: event.name.clone(),
+            count: None,
+            because: because.to_owned(),
+        });
+    }
+
+    /// The light of a pass: a map's own, or that whose volumes were counted last. A stencil that is emptied and counted
+    /// in again is another light's.
+    fn light(&mut self, run: &Run, stencil_is_put: bool) -> Option<LightId> {
+        if let Place::Map(map, _) = run.place {
+            return Some(LightId(map));
+        }
+        if run.role == Role::Counts && (stencil_is_put || self.counting_light.is_none()) {
+            let next = self.counting_light.map_or(self.stage.maps.len(), |light| light.0 + 1);
+            self.counting_light = Some(LightId(next));
+        }
+        self.counting_light.filter(|_| matches!(run.role, Role::Counts | Role::Tests))
+    }
+
+    fn begin(&mut self, run: Run) {
+        let put = if run.place == Place::Colors { [false; 2] } else { self.put.remove(&run.place).unwrap_or_default() };
+        // What it held before its first draw: what is held now may be what that left.
+        let (content, clears) = self.content(run.place, put);
+        let light = self.light(&run, put[1]);
+        let (attachment, layer) = match run.place {
+            Place::Picture | Place::Colors => (super::DEPTH_STENCIL, 0),
+            Place::Map(map, layer) => (super::map_attachment(map), layer),
+        };
+        let target = DepthStencilTarget { attachment, layer, clear_depth: clears.0, clear_stencil: clears.1 };
+        let (name, purpose) = (run.role.name().to_owned(), run.role.purpose().to_owned());
+        let recorded = RecordedPass { viewport: run.viewport, groups: run.groups.clone(), start: content };
+        self.passes.push(Pass {
+            name: name.clone(),
+            purpose: purpose.clone(),
+            light,
+            timed: true,
+            view: ViewId(0),
+            color: None,
+            depth_stencil: (run.place != Place::Colors).then_some(target),
+            scissor: run.scissor,
+            draws: Vec::new(),
+            image: None,
+            recorded: Some(Box::new(recorded)),
+        });
+        let snapshot = match run.place {
+            Place::Map(map, face) => Snapshot::Map { light: map, face: face as usize },
+            _ => Snapshot::Frame(self.snapshot()),
+        };
+        let light = light.map(|light| light.0);
+        self.steps.push(Step { name, purpose, light, draws: Vec::new(), gpu_ms: None, snapshot });
+        self.run = Some(run);
+    }
+
+    /// What depth and stencil of a place were set to since its last pass: content, or one value everywhere.
+    fn content(&self, place: Place, [depth, stencil]: [bool; 2]) -> (Option<StartContent>, (Option<f32>, Option<u8>)) {
+        let held = self.held.get(&self.stage.target(place)).cloned().unwrap_or_default();
+        let depth = held.depth.filter(|_| depth);
+        let stencil = held.stencil.filter(|_| stencil);
+        let one_depth = depth.as_deref().and_then(uniform).map(|texel| bytemuck::pod_read_unaligned(&texel));
+        let one_stencil = stencil.as_deref().and_then(uniform).map(|texel| texel[0]);
+        let rows = |image: Arc<Image>| image.rows().collect::<Vec<_>>().concat();
+        let start = StartContent {
+            depth: depth
+                .filter(|_| one_depth.is_none())
+                .map(|image| Blob::new(rows(image).chunks_exact(4).map(bytemuck::pod_read_unaligned).collect())),
+            stencil: stencil.filter(|_| one_stencil.is_none()).map(|image| Blob::new(rows(image))),
+        };
+        (Some(start).filter(|start| *start != StartContent::default()), (one_depth, one_stencil))
+    }
+
+    fn add(&mut self, event: &RawEvent, draw: &RawDraw, place: Place, cull: Option<wgpu::Face>) {
+        let is_of_picture = !matches!(place, Place::Map(..));
+        let after = is_of_picture.then(|| DrawState { snapshot: Snapshot::Frame(self.snapshot()), target: None });
+        let (Some(pass), Some(step)) = (self.passes.last_mut(), self.steps.last_mut()) else { return };
+        let part = match self.run.as_ref().map(|run| run.role) {
+            Some(Role::FillsMap) => Part::Map,
+            Some(Role::Counts) => Part::Side,
+            _ => Part::Surface,
+        };
+        let (name, triangles) = (format!("event {}", event.id), draw.triangles.len() as u32);
+        let mesh = MeshId(self.meshes.len());
+        let indices = draw.triangles.as_flattened().to_vec();
+        self.meshes.push(DrawMesh::of_positions(name.clone(), states::vertices(draw), indices));
+        let target = self.frame.textures[self.stage.target(place).texture].format.clone();
+        let raster = states::raster(draw, cull, place != Place::Colors && target.has_stencil());
+        let program = Program::Recorded {
+            may_discard: states::may(draw.fragment.may_discard),
+            writes_depth: states::may(draw.fragment.writes_depth),
+        };
+        if let Some(state) = &after {
+            step.snapshot = state.snapshot.clone();
+        }
+        let summary =
+            DrawSummary { name: name.clone(), caster: None, part, triangles: triangles.into(), after, differs: None };
+        step.draws.push(summary);
+        pass.draws.push(Draw { program, ..Draw::of_positions(name, part, mesh, triangles, raster) });
+    }
+
+    /// What the picture holds now.
+    fn snapshot(&mut self) -> FrameSnapshot {
+        let size = self.stage.size(self.frame);
+        let of_depth = self.held.get(&self.stage.depth).cloned().unwrap_or_default();
+        let color = self.stage.color.and_then(|color| self.held.get(&color)?.color.clone());
+        let mut aspect = |slot: usize, image: Option<Arc<Image>>, format: PixelFormat| {
+            let image = image.unwrap_or_else(|| {
+                let texel = vec![0; format.texel_bytes()];
+                self.shown[slot].clone().unwrap_or_else(|| Arc::new(Image::uniform(format, size, &texel)))
+            });
+            let unchanged = self.shown[slot].as_ref().is_some_and(|shown| *shown == image);
+            let image = self.shown[slot].take().filter(|_| unchanged).unwrap_or(image);
+            self.shown[slot] = Some(image.clone());
+            Aspect { image, unchanged }
+        };
+        let has_stencil = self.frame.textures[self.stage.depth.texture].format.has_stencil();
+        FrameSnapshot {
+            color: aspect(0, color, PixelFormat::Rgba8Srgb),
+            depth: aspect(1, of_depth.depth, PixelFormat::Depth32F),
+            stencil: has_stencil.then(|| aspect(2, of_depth.stencil, PixelFormat::U8)),
+            target: FrameTarget::Picture,
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Which of a frame's targets are the picture, and which are depth maps.
+
+use crate::import::ImportError;
+use crate::import::raw::{RawFormat, RawFrame, RawKind, RawTarget};
+use crate::plan::{Attachment, AttachmentRole};
+use std::collections::BTreeMap;
+use wgpu::TextureFormat;
+
+/// Where a draw goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Place {
+    /// Into the picture, with its depth.
+    Picture,
+    /// Into the picture's colours alone.
+    Colors,
+    /// Into a layer of a depth map.
+    Map(usize, u32),
+}
+
+/// The targets that are followed.
+#[derive(Debug)]
+pub(super) struct Stage {
+    /// The picture's depth and stencil.
+    pub depth: RawTarget,
+    /// The picture's colours, if it has any.
+    pub color: Option<RawTarget>,
+    /// Textures of depth maps, each with its level, in the order of their first draws.
+    pub maps: Vec<RawTarget>,
+}
+
+impl Stage {
+    /// The picture is where most triangles are drawn with depth and colours; other depth buffers are maps.
+    ///
+    /// # Errors
+    /// There is no depth buffer; the picture's is multisampled.
+    pub fn of(frame: &RawFrame) -> Result<Stage, ImportError> {
+        let mut drawn: BTreeMap<(bool, RawTarget), usize> = BTreeMap::new();
+        let mut colors: BTreeMap<(RawTarget, RawTarget), usize> = BTreeMap::new();
+        for event in &frame.events {
+            let (RawKind::Draw(draw), Some(depth)) = (&event.kind, event.depth_target) else { continue };
+            *drawn.entry((!event.color_targets.is_empty(), depth)).or_default() += draw.triangles.len();
+            if let Some(color) = event.color_targets.first() {
+                *colors.entry((depth, *color)).or_default() += draw.triangles.len();
+            }
+        }
+        let most = |counts: &BTreeMap<(bool, RawTarget), usize>| {
+            counts.iter().max_by_key(|((has_color, _), triangles)| (*has_color, **triangles)).map(|((_, of), _)| *of)
+        };
+        let depth = most(&drawn).ok_or(ImportError::NoDepth)?;
+        if frame.textures[depth.texture].samples > 1 {
+            return Err(ImportError::Multisampled { samples: frame.textures[depth.texture].samples });
+        }
+        let of_picture = colors.iter().filter(|((of, _), _)| *of == depth);
+        let color = of_picture.max_by_key(|(_, triangles)| **triangles).map(|((_, color), _)| *color);
+        let mut stage = Stage { depth, color, maps: Vec::new() };
+        let size = stage.size(frame);
+        stage.color = stage.color.filter(|color| size_of(frame, *color) == size);
+        for event in frame.events.iter().filter(|event| matches!(event.kind, RawKind::Draw(_))) {
+            let Some(target) = event.depth_target.filter(|target| target.texture != depth.texture) else { continue };
+            let is_known = stage.maps.iter().any(|map| map.texture == target.texture);
+            let RawFormatOf { has_depth, samples } = RawFormatOf::of(frame, target);
+            if !is_known && has_depth && samples == 1 {
+                stage.maps.push(RawTarget { layer: 0, ..target });
+            }
+        }
+        Ok(stage)
+    }
+
+    /// Width and height of the picture.
+    pub fn size(&self, frame: &RawFrame) -> [u32; 2] {
+        size_of(frame, self.depth)
+    }
+
+    /// What a depth target is.
+    pub fn place(&self, target: RawTarget) -> Option<Place> {
+        if target == self.depth {
+            return Some(Place::Picture);
+        }
+        let map = self.maps.iter().position(|map| (map.texture, map.mip) == (target.texture, target.mip))?;
+        Some(Place::Map(map, target.layer))
+    }
+
+    /// The target of a place.
+    pub fn target(&self, place: Place) -> RawTarget {
+        match place {
+            Place::Picture | Place::Colors => self.depth,
+            Place::Map(map, layer) => RawTarget { layer, ..self.maps[map] },
+        }
+    }
+
+    /// The attachment of a place's depth and stencil.
+    pub fn attachment(&self, frame: &RawFrame, place: Place, role: AttachmentRole) -> Attachment {
+        let target = self.target(place);
+        let texture = &frame.textures[target.texture];
+        let layers = if matches!(place, Place::Map(..)) { texture.layers.max(1) } else { 1 };
+        Attachment {
+            name: texture.name.clone(),
+            role,
+            format: format_of(&texture.format),
+            size: size_of(frame, target),
+            layers,
+        }
+    }
+}
+
+struct RawFormatOf {
+    has_depth: bool,
+    samples: u32,
+}
+
+impl RawFormatOf {
+    fn of(frame: &RawFrame, target: RawTarget) -> RawFormatOf {
+        let texture = &frame.textures[target.texture];
+        RawFormatOf { has_depth: texture.format.has_depth(), samples: texture.samples }
+    }
+}
+
+/// Width and height of a level.
+pub(super) fn size_of(frame: &RawFrame, target: RawTarget) -> [u32; 2] {
+    frame.textures[target.texture].size.map(|side| (side >> target.mip.min(31)).max(1))
+}
+
+fn format_of(format: &RawFormat) -> TextureFormat {
+    match format {
+        RawFormat::D16 => TextureFormat::Depth16Unorm,
+        RawFormat::D24 => TextureFormat::Depth24Plus,
+        RawFormat::D24S8 => TextureFormat::Depth24PlusStencil8,
+        RawFormat::D32FS8 | RawFormat::S8 => TextureFormat::Depth32FloatStencil8,
+        _ => TextureFormat::Depth32Float,
+    }
+}

@@ -1,0 +1,232 @@
+//! A draw's states in wgpu's words, its vertices as wgpu's clip space has them, and what it is for.
+//!
+//! wgpu's clip space has y up and z from 0 to w, and its viewport has the smaller depth first: y and z are turned where
+//! the program's are not so. Which way round a triangle runs was told as it is seen, so that stays.
+
+use super::stage::Place;
+use crate::import::raw::{
+    RawBlend, RawCompare, RawCull, RawDepth, RawDraw, RawFill, RawMay, RawStencilFace, RawStencilOperation,
+};
+use crate::plan::{ColorWrite, FaceMasks, May, RasterState, Side, StencilFace, Viewport};
+use wgpu::{CompareFunction, StencilOperation};
+
+named_enum! {
+    /// What a run of draws is for, as its states say.
+    pub enum Role {
+        /// Draws surfaces: depth is written.
+        Surfaces = "surfaces",
+        /// Counts in the stencil, as shadow volumes do.
+        Counts = "volumes",
+        /// Marks the stencil with a value.
+        Marks = "marks",
+        /// Draws where the stencil test passes, as what a light adds.
+        Tests = "light",
+        /// Fills a depth map.
+        FillsMap = "map",
+        /// Draws over what is there.
+        Overlays = "overlay",
+    }
+}
+
+impl Role {
+    /// One sentence for the learner.
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Role::Surfaces => "Surfaces are drawn, and the nearest leave their depth.",
+            Role::Counts => "Faces add to the stencil or take away from it, as those of shadow volumes do.",
+            Role::Marks => "The stencil is set to a value where these draws show.",
+            Role::Tests => {
+                "Draws pass only where the stencil test lets them: this is what a light adds where no shadow is."
+            }
+            Role::FillsMap => "Depth alone is drawn into a picture of its own: a shadow map.",
+            Role::Overlays => "Colours are drawn over what is there; no depth is left.",
+        }
+    }
+}
+
+/// What a draw is for.
+pub(super) fn role(draw: &RawDraw, place: Place) -> Role {
+    if matches!(place, Place::Map(..)) {
+        return Role::FillsMap;
+    }
+    let faces = draw.stencil.as_ref().map_or(&[][..], |faces| &faces[..]);
+    let operations = |face: &RawStencilFace| [face.fail, face.depth_fail, face.pass];
+    let writing = faces.iter().filter(|face| face.write_mask != 0).flat_map(operations);
+    let writes: Vec<RawStencilOperation> = writing.filter(|op| *op != RawStencilOperation::Keep).collect();
+    let counts = writes.iter().any(|operation| steps(*operation) != 0);
+    let tests = faces.iter().any(|face| !matches!(face.compare, RawCompare::Always | RawCompare::Never));
+    let writes_depth = draw.depth.is_some_and(|depth| depth.write);
+    match (counts, tests, writes.is_empty()) {
+        (true, ..) => Role::Counts,
+        (false, true, _) => Role::Tests,
+        (false, false, false) => Role::Marks,
+        (false, false, true) if writes_depth => Role::Surfaces,
+        (false, false, true) => Role::Overlays,
+    }
+}
+
+/// What an operation adds.
+fn steps(operation: RawStencilOperation) -> i32 {
+    match operation {
+        RawStencilOperation::IncrementClamp | RawStencilOperation::IncrementWrap => 1,
+        RawStencilOperation::DecrementClamp | RawStencilOperation::DecrementWrap => -1,
+        _ => 0,
+    }
+}
+
+/// On which side of the surface a counting state counts.
+pub(super) fn counted_sides(raster: &RasterState) -> Vec<Side> {
+    let counts = |operation: StencilOperation| {
+        matches!(
+            operation,
+            StencilOperation::IncrementClamp
+                | StencilOperation::IncrementWrap
+                | StencilOperation::DecrementClamp
+                | StencilOperation::DecrementWrap
+        )
+    };
+    let faces = [&raster.stencil.front, &raster.stencil.back];
+    let behind = faces.iter().any(|face| counts(face.depth_fail_op)).then_some(Side::Behind);
+    let in_front = faces.iter().any(|face| counts(face.pass_op)).then_some(Side::InFront);
+    behind.into_iter().chain(in_front).collect()
+}
+
+/// The faces that are culled, if its triangles can be drawn as they are.
+///
+/// # Errors
+/// Why they can't, in words.
+pub(super) fn drawable(draw: &RawDraw) -> Result<Option<wgpu::Face>, &'static str> {
+    if draw.triangles.is_empty() {
+        return Err("it draws points, lines or nothing");
+    }
+    if draw.samples > 1 {
+        return Err("its target is multisampled");
+    }
+    if draw.shape.fill != RawFill::Solid {
+        return Err("its triangles are not filled");
+    }
+    match draw.shape.cull {
+        RawCull::None => Ok(None),
+        RawCull::Front => Ok(Some(wgpu::Face::Front)),
+        RawCull::Back => Ok(Some(wgpu::Face::Back)),
+        RawCull::Both => Err("it culls both faces"),
+    }
+}
+
+/// Vertices as wgpu's clip space has them.
+pub(super) fn vertices(draw: &RawDraw) -> Vec<[f32; 4]> {
+    let is_turned = draw.view.depth_range[0] > draw.view.depth_range[1];
+    let place = |[x, y, z, w]: &[f32; 4]| {
+        let y = if draw.view.y_up { *y } else { -y };
+        let z = if draw.view.z_from_minus_w { 0.5 * z + 0.5 * w } else { *z };
+        [*x, y, if is_turned { w - z } else { z }, *w]
+    };
+    draw.positions.iter().map(place).collect()
+}
+
+/// Where clip space lands.
+pub(super) fn viewport(draw: &RawDraw) -> Viewport {
+    let [near, far] = draw.view.depth_range;
+    Viewport { area: draw.view.viewport, depth: [near.min(far).clamp(0.0, 1.0), near.max(far).clamp(0.0, 1.0)] }
+}
+
+/// The scissor inside of a target; `None` where all of it may be drawn.
+pub(super) fn scissor(draw: &RawDraw, size: [u32; 2]) -> Option<[u32; 4]> {
+    let [left, top, columns, rows] = draw.view.scissor?.map(i64::from);
+    let [width, height] = size.map(i64::from);
+    let clamp = |value: i64, most: i64| value.clamp(0, most);
+    let [from_x, from_y] = [clamp(left, width), clamp(top, height)];
+    let [to_x, to_y] = [clamp(left + columns, width).max(from_x), clamp(top + rows, height).max(from_y)];
+    let area = [from_x, from_y, to_x - from_x, to_y - from_y].map(|value| value as u32);
+    (area != [0, 0, size[0], size[1]]).then_some(area)
+}
+
+/// The raster state.
+pub(super) fn raster(draw: &RawDraw, cull: Option<wgpu::Face>, has_stencil: bool) -> RasterState {
+    let shape = &draw.shape;
+    let [constant, slope_scale, clamp] = shape.bias;
+    let (depth_compare, depth_write) = match draw.depth {
+        Some(RawDepth { compare, write, .. }) => (compared(compare), write),
+        None => (CompareFunction::Always, false),
+    };
+    let front_face = if shape.front_is_counter_clockwise { wgpu::FrontFace::Ccw } else { wgpu::FrontFace::Cw };
+    let state = RasterState {
+        depth_compare,
+        unclipped_depth: shape.depth_clamp || !shape.depth_clip,
+        depth_write,
+        depth_bias: wgpu::DepthBiasState { constant: constant as i32, slope_scale, clamp },
+        cull,
+        front_face,
+        color: draw.blend.as_ref().map_or(ColorWrite::None, color),
+        ..RasterState::surface()
+    };
+    let Some([front, back]) = draw.stencil.filter(|_| has_stencil) else { return state };
+    let mut state = state.with_faces(face(&front), face(&back), front.reference);
+    state.stencil.read_mask = front.compare_mask.into();
+    state.stencil.write_mask = front.write_mask.into();
+    let masks = |face: &RawStencilFace| FaceMasks {
+        reference: face.reference,
+        read: face.compare_mask,
+        write: face.write_mask,
+    };
+    state.back = Some(masks(&back)).filter(|of_back| *of_back != masks(&front));
+    state
+}
+
+fn face(face: &RawStencilFace) -> StencilFace {
+    StencilFace {
+        compare: compared(face.compare),
+        fail_op: operation(face.fail),
+        depth_fail_op: operation(face.depth_fail),
+        pass_op: operation(face.pass),
+    }
+}
+
+fn color(blend: &RawBlend) -> ColorWrite {
+    if blend.write == [false; 4] {
+        return ColorWrite::None;
+    }
+    let Some([equation, _]) = &blend.equations else { return ColorWrite::Replace };
+    match (equation.source.as_str(), equation.target.as_str(), equation.operation.as_str()) {
+        ("One", "Zero", "Add") => ColorWrite::Replace,
+        ("One", "One", "Add") => ColorWrite::Add,
+        ("DstCol", "Zero", "Add") | ("Zero", "SrcCol", "Add") => ColorWrite::Multiply,
+        (_, _, "Minimum") => ColorWrite::Minimum,
+        _ => ColorWrite::Blend,
+    }
+}
+
+/// In the plan's words.
+pub(super) fn may(may: RawMay) -> May {
+    match may {
+        RawMay::No => May::No,
+        RawMay::Yes => May::Yes,
+        RawMay::Unknown => May::Unknown,
+    }
+}
+
+fn compared(compare: RawCompare) -> CompareFunction {
+    match compare {
+        RawCompare::Never => CompareFunction::Never,
+        RawCompare::Less => CompareFunction::Less,
+        RawCompare::LessEqual => CompareFunction::LessEqual,
+        RawCompare::Equal => CompareFunction::Equal,
+        RawCompare::GreaterEqual => CompareFunction::GreaterEqual,
+        RawCompare::Greater => CompareFunction::Greater,
+        RawCompare::NotEqual => CompareFunction::NotEqual,
+        RawCompare::Always => CompareFunction::Always,
+    }
+}
+
+fn operation(operation: RawStencilOperation) -> StencilOperation {
+    match operation {
+        RawStencilOperation::Keep => StencilOperation::Keep,
+        RawStencilOperation::Zero => StencilOperation::Zero,
+        RawStencilOperation::Replace => StencilOperation::Replace,
+        RawStencilOperation::IncrementClamp => StencilOperation::IncrementClamp,
+        RawStencilOperation::DecrementClamp => StencilOperation::DecrementClamp,
+        RawStencilOperation::Invert => StencilOperation::Invert,
+        RawStencilOperation::IncrementWrap => StencilOperation::IncrementWrap,
+        RawStencilOperation::DecrementWrap => StencilOperation::DecrementWrap,
+    }
+}

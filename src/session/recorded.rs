@@ -1,0 +1,94 @@
+//! Another program's frame held against itself: each draw is computed anew from what was stored before it.
+
+use super::{Session, SessionError};
+use crate::capture::{Capture, Differs, DrawState, FrameSnapshot, Image, Snapshot};
+use crate::gpu::Memory;
+use crate::plan::{Blob, Draw, FramePlan, MeshId, Pass, StartContent};
+use crate::progress::Progress;
+use std::sync::Arc;
+
+/// Steps of a float's depth that count as one: those of 24 bits.
+const FLOAT_STEPS: u32 = 0xff_ffff;
+
+impl Session {
+    /// Computes each draw of another program's frame anew, from what was stored before it, and notes at how many pixels
+    /// that leaves something else than was stored.
+    ///
+    /// # Errors
+    /// A plan that can't run, a lost GPU; [`SessionError::Cancelled`].
+    pub fn held_against_itself(
+        &mut self,
+        plan: &FramePlan,
+        capture: &Capture,
+        progress: &Progress,
+    ) -> Result<Capture, SessionError> {
+        let mut checked = capture.clone();
+        progress.start(plan.passes.iter().map(|pass| pass.draws.len()).sum());
+        let mut before: Option<FrameSnapshot> = None;
+        for (pass, step) in plan.passes.iter().zip(&mut checked.steps) {
+            let is_followed = plan.is_of_picture(pass) && pass.depth_stencil.is_some();
+            for (index, (draw, summary)) in pass.draws.iter().zip(&mut step.draws).enumerate() {
+                if progress.is_cancelled() {
+                    return Err(SessionError::Cancelled);
+                }
+                progress.advance();
+                let Some(DrawState { snapshot: Snapshot::Frame(after), .. }) = &summary.after else { continue };
+                if is_followed {
+                    let alone = alone(plan, pass, draw, (index == 0, before.as_ref()));
+                    summary.differs = self.differs(&alone, after)?;
+                }
+                before = Some(after.clone());
+            }
+        }
+        Ok(checked)
+    }
+
+    /// Where a frame of one draw leaves something else than `after`.
+    fn differs(&mut self, alone: &FramePlan, after: &FrameSnapshot) -> Result<Option<Differs>, SessionError> {
+        let prepared = self.executor.prepare_once(alone)?;
+        let output = self.executor.capture(prepared, Memory::Mapped, false)?;
+        let Some(Snapshot::Frame(made)) = output.steps.first().map(|step| &step.snapshot) else { return Ok(None) };
+        let steps = alone.attachments[0].depth_steps().unwrap_or(FLOAT_STEPS);
+        let stencil = match (&made.stencil, &after.stencil) {
+            (Some(made), Some(after)) => bytes(&made.image).zip(bytes(&after.image)).filter(|(a, b)| a != b).count(),
+            _ => 0,
+        };
+        let is_apart = |(a, b): &(f32, f32)| (a - b).abs() * steps as f32 > 1.5;
+        let depth = depths(&made.depth.image).zip(depths(&after.depth.image)).filter(is_apart).count();
+        Ok(Some(Differs { depth: depth as u64, stencil: stencil as u64 }))
+    }
+}
+
+/// A frame of one draw, whose targets begin with what was stored before it.
+fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, (is_first, before): (bool, Option<&FrameSnapshot>)) -> FramePlan {
+    let mut pass = Pass { draws: vec![Draw { mesh: MeshId(0), ..draw.clone() }], light: None, ..pass.clone() };
+    if let (Some(target), false) = (&mut pass.depth_stencil, is_first) {
+        (target.clear_depth, target.clear_stencil) = (None, None);
+    }
+    if let Some(recorded) = &mut pass.recorded {
+        let given = recorded.start.take().filter(|_| is_first).unwrap_or_default();
+        let depth = || Some(Blob::new(depths(&before?.depth.image).collect()));
+        let stencil = || Some(Blob::new(bytes(&before?.stencil.as_ref()?.image).collect()));
+        let start = StartContent { depth: given.depth.or_else(depth), stencil: given.stencil.or_else(stencil) };
+        recorded.start = Some(start).filter(|start| *start != StartContent::default());
+    }
+    FramePlan {
+        technique: plan.technique.clone(),
+        settings: plan.settings.clone(),
+        attachments: plan.attachments[..1].to_vec(),
+        views: plan.views.clone(),
+        lights: Vec::new(),
+        meshes: vec![plan.meshes[draw.mesh.0].clone()],
+        passes: vec![pass],
+        left_out: Vec::new(),
+        ..*plan
+    }
+}
+
+fn bytes(image: &Arc<Image>) -> impl Iterator<Item = u8> + '_ {
+    image.rows().flatten().copied()
+}
+
+fn depths(image: &Arc<Image>) -> impl Iterator<Item = f32> + '_ {
+    image.rows().flat_map(|row| row.chunks_exact(4)).map(bytemuck::pod_read_unaligned)
+}
