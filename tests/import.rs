@@ -170,7 +170,9 @@ fn lies_are_refused_in_words() {
         }),
         ("lies outside", |document, _| document["blobs"] = json!([[0, 1_000_000, 16]])),
         ("lies outside", |document, _| document["blobs"] = json!([[u64::MAX, 2, 16]])),
-        ("not 48 bytes long", |document, _| document["blobs"] = json!([[0, 11, 16], [0, 11, 16], [0, 11, 48]])),
+        ("not 14 bytes long", |document, _| {
+            document["blobs"] = json!([[0, 11, 16], [0, 11, 16], [0, 0, 0], [0, 0, 0], [0, 11, 14]])
+        }),
         ("frame.json", |document, _| document["events"] = json!("none")),
     ];
     for (words, lie) in cases {
