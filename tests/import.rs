@@ -26,19 +26,21 @@ fn draws<'a>(frame: &'a RawFrame) -> Vec<&'a RawDraw> {
     frame.events.iter().map(|event| &event.kind).filter_map(draw).collect()
 }
 
-/// Asserts that the positions and states of all draws make what was stored, but for `most` pixels a draw.
+/// Asserts that the positions and states of all draws make what was stored.
 #[track_caller]
-fn assert_makes_what_was_stored(frame: &RawFrame, most: usize) {
+fn assert_makes_what_was_stored(frame: &RawFrame) {
+    /// Pixels a draw whose centre is nearly on an edge: either rasteriser may be right.
+    const EDGES: usize = 8;
     let compared = machine::compare(frame);
     assert!(compared.iter().any(|draw| draw.changed > 0), "nothing was compared");
     for draw in &compared {
         println!("{draw:?}");
-        assert!(draw.depth <= most && draw.stencil <= most, "{draw:?}");
-        assert!(draw.touched >= draw.changed, "{draw:?}");
+        let wrong = [draw.depth, draw.untied, draw.changed.saturating_sub(draw.touched)];
+        assert!(wrong.iter().all(|pixels| *pixels <= EDGES), "event {}: {draw:?}", draw.event);
     }
 }
 
-/// Depth ties, where volume and surface share a corner: either rasteriser may be right.
+/// Pixels a draw whose stencil may differ where volume and surface share a corner, and so a depth.
 const TIES: usize = 8;
 
 #[test]
@@ -48,13 +50,14 @@ fn the_stencil_shadows_of_ogre_come_out_whole() {
     assert!(frame.limits.is_empty(), "{:?}", frame.limits);
     let triangles: Vec<usize> = draws(&frame).iter().map(|draw| draw.triangles.len()).collect();
     assert_eq!(triangles, [2, 576, 12, 4, 120, 12, 8, 2, 576, 12, 4]);
-    assert_makes_what_was_stored(&frame, TIES);
+    assert_makes_what_was_stored(&frame);
+    assert!(machine::compare(&frame).iter().all(|draw| draw.stencil <= TIES));
 }
 
 #[test]
 fn z_fail_and_z_pass_of_one_frame_come_out_whole() {
     let frame = import::read(&recording("ogre-inside")).expect("a frame");
-    assert_makes_what_was_stored(&frame, TIES);
+    assert_makes_what_was_stored(&frame);
 }
 
 /// Row 0 is at the top: OGRE's blue background is above the floor.
