@@ -1,7 +1,9 @@
 //! Frames of other programs: what comes out of a recording, and what happens to one that lies.
 
 mod machine;
+#[cfg(unix)]
 mod process;
+#[cfg(unix)]
 mod recorded;
 
 use flate2::Compression;
@@ -230,6 +232,22 @@ fn an_index_that_restarts_has_all_bits() {
         .path(),
     );
     assert_eq!(draws(&frame.expect("a frame"))[0].triangles, [[0, 1, 2], [2, 1, 0]]);
+}
+
+/// RenderDoc's bytes for Vulkan: stencil above depth, rows from the top, and unused room at the end.
+#[test]
+fn depth_of_24_bits_with_stencil_has_room_after_it_on_vulkan() {
+    let frame = import::read(
+        made(|document, blobs| {
+            document["api"] = json!("Vulkan");
+            let words = [0x0100_0000_u32, 0x02ff_ffff, 0x0300_0001, 0x0480_0000];
+            blobs[1] = words.iter().flat_map(|word| word.to_le_bytes()).chain([9; 4]).collect();
+        })
+        .path(),
+    );
+    let after = &frame.expect("a frame").events[0].after;
+    assert_eq!(after.depth_bits.as_deref(), Some(&[0, 0xff_ffff, 1, 0x80_0000][..]));
+    assert_eq!(after.stencil.as_deref(), Some(&[1, 2, 3, 4][..]));
 }
 
 /// A random number from another; good enough to choose what to break.

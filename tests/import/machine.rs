@@ -169,7 +169,9 @@ impl Machine {
         /// A last place or two of depth: two rasterisers round differently.
         const NEARLY: f64 = 2e-6;
         let depth = after.depth.as_ref()?;
-        let differs = |(own, stored): (&f64, &f32)| (own - f64::from(*stored)).abs() > NEARLY;
+        // And one step of an integer, where the exact depth is half-way between two.
+        let nearly = self.largest.map_or(NEARLY, |largest| NEARLY.max(1.5 / f64::from(largest)));
+        let differs = |(own, stored): (&f64, &f32)| (own - f64::from(*stored)).abs() > nearly;
         let stencil = after.stencil.as_deref().unwrap_or(&self.stencil);
         let depths = before.depth.as_ref()?.iter().zip(depth.iter()).map(|(a, b)| a != b);
         let stencils = before.stencil.as_deref().unwrap_or(stencil).iter().zip(stencil).map(|(a, b)| a != b);

@@ -46,6 +46,20 @@ fn recordings_that_are_here_are_imported() {
     }
 }
 
+/// Clip space with its origin at the top, depth turned round, strips and fans that start again, instances, masks, a cube.
+#[test]
+#[ignore = "needs RenderDoc, pygame and PyOpenGL: run .ci/frames"]
+fn opengl_as_few_use_it_is_the_right_way_round() {
+    let frame = record(&[PYTHON, &recording("odd.py").display().to_string()], 60).expect("a frame");
+    assert_makes_what_was_stored(&frame);
+    let compared = super::machine::compare(&frame);
+    assert_eq!(compared.len(), 7, "all but the one of four samples");
+    assert!(compared.iter().all(|draw| draw.changed > 0), "{compared:?}");
+    assert_eq!(frame.limits.len(), 1, "{:?}", frame.limits);
+    let layers: Vec<u32> = frame.events.iter().filter_map(|event| Some(event.depth_target?.layer)).collect();
+    assert_eq!(layers[2..6], [1, 1, 4, 4]);
+}
+
 /// Its depth map can't be read back on OpenGL ES, which is said; the picture can.
 #[test]
 #[ignore = "needs RenderDoc and glmark2: run .ci/frames"]
