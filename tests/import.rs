@@ -1,7 +1,9 @@
 //! Frames of other programs: what comes out of a recording, and what happens to one that lies.
 
 mod machine;
+#[cfg(unix)]
 mod process;
+#[cfg(unix)]
 mod recorded;
 
 use flate2::Compression;
@@ -26,19 +28,21 @@ fn draws<'a>(frame: &'a RawFrame) -> Vec<&'a RawDraw> {
     frame.events.iter().map(|event| &event.kind).filter_map(draw).collect()
 }
 
-/// Asserts that the positions and states of all draws make what was stored, but for `most` pixels a draw.
+/// Asserts that the positions and states of all draws make what was stored.
 #[track_caller]
-fn assert_makes_what_was_stored(frame: &RawFrame, most: usize) {
+fn assert_makes_what_was_stored(frame: &RawFrame) {
+    /// Pixels a draw whose centre is nearly on an edge: either rasteriser may be right.
+    const EDGES: usize = 8;
     let compared = machine::compare(frame);
     assert!(compared.iter().any(|draw| draw.changed > 0), "nothing was compared");
     for draw in &compared {
         println!("{draw:?}");
-        assert!(draw.depth <= most && draw.stencil <= most, "{draw:?}");
-        assert!(draw.touched >= draw.changed, "{draw:?}");
+        let wrong = [draw.depth, draw.untied, draw.changed.saturating_sub(draw.touched)];
+        assert!(wrong.iter().all(|pixels| *pixels <= EDGES), "event {}: {draw:?}", draw.event);
     }
 }
 
-/// Depth ties, where volume and surface share a corner: either rasteriser may be right.
+/// Pixels a draw whose stencil may differ where volume and surface share a corner, and so a depth.
 const TIES: usize = 8;
 
 #[test]
@@ -48,13 +52,14 @@ fn the_stencil_shadows_of_ogre_come_out_whole() {
     assert!(frame.limits.is_empty(), "{:?}", frame.limits);
     let triangles: Vec<usize> = draws(&frame).iter().map(|draw| draw.triangles.len()).collect();
     assert_eq!(triangles, [2, 576, 12, 4, 120, 12, 8, 2, 576, 12, 4]);
-    assert_makes_what_was_stored(&frame, TIES);
+    assert_makes_what_was_stored(&frame);
+    assert!(machine::compare(&frame).iter().all(|draw| draw.stencil <= TIES));
 }
 
 #[test]
 fn z_fail_and_z_pass_of_one_frame_come_out_whole() {
     let frame = import::read(&recording("ogre-inside")).expect("a frame");
-    assert_makes_what_was_stored(&frame, TIES);
+    assert_makes_what_was_stored(&frame);
 }
 
 /// Row 0 is at the top: OGRE's blue background is above the floor.
@@ -170,7 +175,9 @@ fn lies_are_refused_in_words() {
         }),
         ("lies outside", |document, _| document["blobs"] = json!([[0, 1_000_000, 16]])),
         ("lies outside", |document, _| document["blobs"] = json!([[u64::MAX, 2, 16]])),
-        ("not 48 bytes long", |document, _| document["blobs"] = json!([[0, 11, 16], [0, 11, 16], [0, 11, 48]])),
+        ("not 14 bytes long", |document, _| {
+            document["blobs"] = json!([[0, 11, 16], [0, 11, 16], [0, 0, 0], [0, 0, 0], [0, 11, 14]])
+        }),
         ("frame.json", |document, _| document["events"] = json!("none")),
     ];
     for (words, lie) in cases {
@@ -225,6 +232,22 @@ fn an_index_that_restarts_has_all_bits() {
         .path(),
     );
     assert_eq!(draws(&frame.expect("a frame"))[0].triangles, [[0, 1, 2], [2, 1, 0]]);
+}
+
+/// RenderDoc's bytes for Vulkan: stencil above depth, rows from the top, and unused room at the end.
+#[test]
+fn depth_of_24_bits_with_stencil_has_room_after_it_on_vulkan() {
+    let frame = import::read(
+        made(|document, blobs| {
+            document["api"] = json!("Vulkan");
+            let words = [0x0100_0000_u32, 0x02ff_ffff, 0x0300_0001, 0x0480_0000];
+            blobs[1] = words.iter().flat_map(|word| word.to_le_bytes()).chain([9; 4]).collect();
+        })
+        .path(),
+    );
+    let after = &frame.expect("a frame").events[0].after;
+    assert_eq!(after.depth_bits.as_deref(), Some(&[0, 0xff_ffff, 1, 0x80_0000][..]));
+    assert_eq!(after.stencil.as_deref(), Some(&[1, 2, 3, 4][..]));
 }
 
 /// A random number from another; good enough to choose what to break.

@@ -3,7 +3,8 @@
     xvfb-run -a stencilscope record --python /usr/bin/python3 --list -- /usr/bin/python3 ogre.py [OPTION…]
 
     --inside        the eye stands in a shadow
-    --far D         a far plane at distance D, which cuts the volumes (0: none)
+    --along         the light stands low, and the eye in a shadow, looking along it
+    --far D         a far plane at distance D, which cuts the volumes
     --reach D       volumes end at distance D from the light instead of at infinity
     --size WxH      of the window
 
@@ -22,6 +23,7 @@ import Ogre.RTShader
 
 options = argparse.ArgumentParser()
 options.add_argument("--inside", action="store_true")
+options.add_argument("--along", action="store_true")
 options.add_argument("--far", type=float)
 options.add_argument("--reach", type=float)
 options.add_argument("--size", default="320x240")
@@ -47,7 +49,7 @@ Ogre.MaterialManager.getSingleton().addListener(listener)
 groups.initialiseAllResourceGroups()
 scene.setAmbientLight(Ogre.ColourValue(0.2, 0.2, 0.2))
 scene.setShadowTechnique(Ogre.SHADOWTYPE_STENCIL_ADDITIVE)
-if options.reach is not None:
+if options.reach is not None or options.far is not None:
     scene.setShadowUseInfiniteFarPlane(False)
 
 
@@ -103,7 +105,11 @@ put(mesh("torus", *torus(24, 12, 42, 16)), (-70, 60, 0), 0.3)
 put(mesh("box", BOX, BOX_TRIANGLES), (60, 60, 20), 0.5)
 put(mesh("tetrahedron", TETRAHEDRON, TETRAHEDRON_TRIANGLES), (0, 40, 110), 0.2)
 
-eye, target = ((38, 14, 6), (-80, 20, 10)) if options.inside else ((0, 150, 400), (0, 30, 0))
+eye, target, lamp = (0, 150, 400), (0, 30, 0), (120, 260, 90)
+if options.inside:
+    eye, target = (38, 14, 6), (-80, 20, 10)
+if options.along:
+    eye, target, lamp = (-15, 47, -5), (-200, 0, -70), (360, 110, 120)
 camera = scene.createCamera("camera")
 camera.setNearClipDistance(1)
 camera.setAutoAspectRatio(True)
@@ -117,7 +123,7 @@ light = scene.createLight("light")
 light.setType(Ogre.Light.LT_POINT)
 node = scene.getRootSceneNode().createChildSceneNode()
 node.attachObject(light)
-node.setPosition(Ogre.Vector3(120, 260, 90))
+node.setPosition(Ogre.Vector3(*lamp))
 if options.reach is not None:
     # Without an infinite far plane, OGRE ends volumes where the light does.
     light.setAttenuation(options.reach, 1, 0, 0)

@@ -132,11 +132,11 @@ pub enum ImportError {
         reason: String,
     },
     /// The program has ended before the frame.
-    #[error("`{program}` ended {how} before frame {frame}{and_said}; {mend}")]
+    #[error("`{program}` ended{how} before frame {frame}{and_said}; {mend}")]
     Died {
         /// Its name.
         program: String,
-        /// `with exit code 1`, `by signal 11`, or nothing.
+        /// ` with exit code 1`, ` by signal 11`, or nothing where RenderDoc has kept it.
         how: String,
         /// The frame that was asked for.
         frame: u32,

@@ -84,7 +84,7 @@ def opened():
     codes = rd.ResultCode if hasattr(rd, "ResultCode") else rd.ReplayStatus
     kinds = {
         codes.FileNotFound: "missing",
-        codes.FileIOFailed: "missing",
+        codes.FileIOFailed: "corrupt",
         codes.FileCorrupted: "corrupt",
         codes.FileIncompatibleVersion: "newer",
         codes.ImageUnsupported: "corrupt",

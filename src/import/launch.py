@@ -67,7 +67,7 @@ def main():
     rd.InitialiseReplay(rd.GlobalEnvironment(), [])
     options = rd.GetDefaultCaptureOptions()
     words = " ".join(shlex.quote(word) for word in program[1:])
-    started = rd.ExecuteAndInject(found, os.getcwd(), words, [], os.path.join(folder, "capture"), options, False)
+    started = rd.ExecuteAndInject(os.path.abspath(found), os.getcwd(), words, [], os.path.join(folder, "capture"), options, False)
     if not started.ident:
         fail("program", started.result.Message() if hasattr(started.result, "Message") else started.result)
     control = rd.CreateTargetControl("", started.ident, "stencilscope", True)

@@ -21,6 +21,7 @@ pub fn format(name: &str) -> RawFormat {
         "D32" | "D32_FLOAT" => RawFormat::D32F,
         "D32S8" => RawFormat::D32FS8,
         "S8" => RawFormat::S8,
+        "R8G8B8_UNORM" => RawFormat::Rgb8,
         "R8G8B8A8_UNORM" => RawFormat::Rgba8,
         "R8G8B8A8_SRGB" => RawFormat::Rgba8Srgb,
         "B8G8R8A8_UNORM" => RawFormat::Bgra8,
@@ -37,6 +38,7 @@ pub fn texel_bytes(format: &RawFormat) -> Option<usize> {
     match format {
         RawFormat::S8 => Some(1),
         RawFormat::D16 => Some(2),
+        RawFormat::Rgb8 => Some(3),
         RawFormat::D32FS8 | RawFormat::Rgba16F => Some(8),
         RawFormat::Other(_) => None,
         _ => Some(4),
@@ -80,6 +82,7 @@ pub fn read(format: &RawFormat, bytes: &[u8], width: usize, layout: Layout) -> R
         RawFormat::Other(_) => RawContents::default(),
         color => {
             let color: Arc<[u8]> = match color {
+                RawFormat::Rgb8 => bytes.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect(),
                 RawFormat::Bgra8 | RawFormat::Bgra8Srgb => {
                     bytes.as_chunks::<4>().0.iter().flat_map(|[b, g, r, a]| [*r, *g, *b, *a]).collect()
                 }
@@ -168,6 +171,7 @@ mod tests {
     #[test]
     fn colours_are_red_first_and_floats_are_cut() {
         let color = |format: &RawFormat, bytes: &[u8]| read(format, bytes, 1, VULKAN).color.expect("a colour").to_vec();
+        assert_eq!(color(&RawFormat::Rgb8, &[1, 2, 3]), [1, 2, 3, 255]);
         assert_eq!(color(&RawFormat::Bgra8, &[1, 2, 3, 4]), [3, 2, 1, 4]);
         // 1, 2, NaN and −1 as halves.
         assert_eq!(color(&RawFormat::Rgba16F, &[0, 0x3c, 0, 0x40, 1, 0x7c, 0, 0xbc]), [255, 255, 0, 0]);

@@ -244,7 +244,8 @@ pub fn record_error(ended: Ended, recording: &Recording, options: &Options) -> I
         "died" => {
             let Ended::Said { last, .. } = &ended else { return common_error(ended, options) };
             let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
-            ImportError::Died { program, how: words.to_owned(), frame: recording.frame, and_said, mend: died_mend() }
+            let how = if words.is_empty() { String::new() } else { format!(" {words}") };
+            ImportError::Died { program, how, frame: recording.frame, and_said, mend: died_mend() }
         }
         "never" => never(recording, words),
         "unsupported" => {

@@ -69,6 +69,8 @@ pub enum RawFormat {
     D32FS8,
     /// Stencil in 8 bits.
     S8,
+    /// Colour: three bytes.
+    Rgb8,
     /// Colour: four bytes.
     Rgba8,
     /// Colour: four bytes, sRGB.

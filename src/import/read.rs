@@ -145,10 +145,13 @@ impl Reader {
             return Ok(known.clone());
         }
         let [found, expected] = [self.blobs.length(blob)?, u64::from(width) * u64::from(height) * texel as u64];
-        if found != expected {
+        // RenderDoc leaves a byte a texel after Vulkan's depth of 24 bits with stencil: room for what it has put above.
+        let has_room = texture.format == RawFormat::D24S8 && found == expected / 4 * 5;
+        if found != expected && !has_room {
             return Err(broken(format!("a picture of `{name}` has {found} bytes, not {expected}")));
         }
-        let bytes = self.blobs.read(blob)?;
+        let mut bytes = self.blobs.read(blob)?;
+        bytes.truncate(usize::try_from(expected).unwrap_or(usize::MAX));
         // What is made of it is at most as much again, and as much as floats.
         self.blobs.reserve(found.saturating_mul(3))?;
         let layout = Layout { bottom_row_first: self.is_gl(), depth_above_stencil: self.is_gl() };

@@ -15,7 +15,6 @@ use stencilscope::import::{
 #[derive(Debug)]
 pub struct Compared {
     pub event: u32,
-    pub pixels: usize,
     /// Pixels that the draw has a fragment on.
     pub touched: usize,
     /// Pixels whose stored stencil or depth the draw has changed.
@@ -24,9 +23,11 @@ pub struct Compared {
     pub depth: usize,
     /// Pixels whose stencil is another one.
     pub stencil: usize,
+    /// Those of them where no fragment was as deep as what was stored, nearly: nothing but a last place excuses these.
+    pub untied: usize,
 }
 
-/// Every draw whose depth and stencil are known before and after.
+/// Every draw whose depth and stencil are known before and after, and whose shader keeps all fragments.
 pub fn compare(frame: &RawFrame) -> Vec<Compared> {
     let mut held: BTreeMap<RawTarget, RawContents> = frame.before.iter().cloned().collect();
     let mut found = Vec::new();
@@ -34,6 +35,9 @@ pub fn compare(frame: &RawFrame) -> Vec<Compared> {
         let Some(target) = event.depth_target else { continue };
         let before = held.insert(target, event.after.clone());
         let (RawKind::Draw(draw), Some(before)) = (&event.kind, before) else { continue };
+        if draw.fragment.may_discard != RawMay::No {
+            continue;
+        }
         let texture = &frame.textures[target.texture];
         let [width, height] = texture.size.map(|side| (side >> target.mip) as usize);
         if let Some(mut machine) = Machine::new(&before, [width, height], texture.format.largest_depth()) {
@@ -44,6 +48,9 @@ pub fn compare(frame: &RawFrame) -> Vec<Compared> {
     found
 }
 
+/// Last places of depth by which two rasterisers may differ.
+const TIE: f64 = 8.0;
+
 struct Machine {
     size: [usize; 2],
     /// The largest stored depth, where it is an integer.
@@ -51,6 +58,8 @@ struct Machine {
     depth: Vec<f64>,
     stencil: Vec<u8>,
     touched: Vec<bool>,
+    /// Pixels with a fragment as deep as what was stored, but for a few last places.
+    tied: Vec<bool>,
 }
 
 impl Machine {
@@ -61,11 +70,11 @@ impl Machine {
             _ => depth,
         };
         let stencil = before.stencil.as_ref().map_or_else(|| vec![0; depth.len()], |stencil| stencil.to_vec());
-        Some(Self { size, largest, touched: vec![false; depth.len()], depth, stencil })
+        let [touched, tied] = [(); 2].map(|()| vec![false; depth.len()]);
+        Some(Self { size, largest, touched, tied, depth, stencil })
     }
 
     fn draw(&mut self, draw: &RawDraw) {
-        assert_eq!(draw.fragment.may_discard, RawMay::No, "what is discarded is not known");
         for triangle in &draw.triangles {
             self.triangle(draw, triangle.map(|corner| draw.positions[corner as usize].map(f64::from)));
         }
@@ -140,6 +149,8 @@ impl Machine {
             Some(largest) => (depth * largest).round() / largest,
             None => f64::from(depth as f32),
         };
+        let last_place = self.largest.map_or(depth * f64::from(f32::EPSILON), |largest| 1.0 / f64::from(largest));
+        self.tied[at] |= (depth - self.depth[at]).abs() <= TIE * last_place;
         let passes_depth = draw.depth.is_none_or(|test| compares(test.compare, depth, self.depth[at]));
         let face = draw.stencil.map(|[front, back]| if is_front { front } else { back });
         let passes_stencil = face.is_none_or(|face| {
@@ -158,17 +169,20 @@ impl Machine {
         /// A last place or two of depth: two rasterisers round differently.
         const NEARLY: f64 = 2e-6;
         let depth = after.depth.as_ref()?;
-        let differs = |(own, stored): (&f64, &f32)| (own - f64::from(*stored)).abs() > NEARLY;
+        // And one step of an integer, where the exact depth is half-way between two.
+        let nearly = self.largest.map_or(NEARLY, |largest| NEARLY.max(1.5 / f64::from(largest)));
+        let differs = |(own, stored): (&f64, &f32)| (own - f64::from(*stored)).abs() > nearly;
         let stencil = after.stencil.as_deref().unwrap_or(&self.stencil);
         let depths = before.depth.as_ref()?.iter().zip(depth.iter()).map(|(a, b)| a != b);
         let stencils = before.stencil.as_deref().unwrap_or(stencil).iter().zip(stencil).map(|(a, b)| a != b);
+        let wrong = self.stencil.iter().zip(stencil).map(|(own, stored)| own != stored);
         Some(Compared {
             event,
-            pixels: depth.len(),
             touched: self.touched.iter().filter(|touched| **touched).count(),
             changed: depths.zip(stencils).filter(|(depth, stencil)| *depth || *stencil).count(),
             depth: self.depth.iter().zip(depth.iter()).filter(|pair| differs(*pair)).count(),
-            stencil: self.stencil.iter().zip(stencil).filter(|(own, stored)| own != stored).count(),
+            stencil: wrong.clone().filter(|wrong| *wrong).count(),
+            untied: wrong.zip(&self.tied).filter(|(wrong, tied)| *wrong && !**tied).count(),
         })
     }
 }

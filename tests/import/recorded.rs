@@ -24,11 +24,11 @@ fn record(command: &[&str], seconds: u64) -> Result<RawFrame, ImportError> {
 #[ignore = "needs RenderDoc and OGRE: run .ci/frames"]
 fn ogre_is_recorded_with_every_option() {
     let script = recording("ogre.py").display().to_string();
-    for (more, most) in [(&[][..], 8), (&["--inside"], 8), (&["--far", "450"], 8), (&["--reach", "330"], 8)] {
+    for more in [&[][..], &["--inside"], &["--along"], &["--along", "--far", "350"], &["--reach", "330"]] {
         let frame = record(&[&[PYTHON, script.as_str()], more].concat(), 60).expect("a frame");
         println!("{more:?}");
         assert_eq!((frame.api, frame.limits.len()), (Api::OpenGl, 0), "{:?}", frame.limits);
-        assert_makes_what_was_stored(&frame, most);
+        assert_makes_what_was_stored(&frame);
     }
 }
 
@@ -39,11 +39,25 @@ fn recordings_that_are_here_are_imported() {
         let file = recording(&format!("{name}.rdc"));
         let frame = import::import(&file, &options(), &Progress::default()).expect("a frame");
         println!("{name}");
-        assert_makes_what_was_stored(&frame, 8);
+        assert_makes_what_was_stored(&frame);
         if recording(name).is_dir() {
             assert_eq!(frame, import::read(&recording(name)).expect("a frame"), "{name}");
         }
     }
+}
+
+/// Clip space with its origin at the top, depth turned round, strips and fans that start again, instances, masks, a cube.
+#[test]
+#[ignore = "needs RenderDoc, pygame and PyOpenGL: run .ci/frames"]
+fn opengl_as_few_use_it_is_the_right_way_round() {
+    let frame = record(&[PYTHON, &recording("odd.py").display().to_string()], 60).expect("a frame");
+    assert_makes_what_was_stored(&frame);
+    let compared = super::machine::compare(&frame);
+    assert_eq!(compared.len(), 7, "all but the one of four samples");
+    assert!(compared.iter().all(|draw| draw.changed > 0), "{compared:?}");
+    assert_eq!(frame.limits.len(), 1, "{:?}", frame.limits);
+    let layers: Vec<u32> = frame.events.iter().filter_map(|event| Some(event.depth_target?.layer)).collect();
+    assert_eq!(layers[2..6], [1, 1, 4, 4]);
 }
 
 /// Its depth map can't be read back on OpenGL ES, which is said; the picture can.
@@ -52,7 +66,7 @@ fn recordings_that_are_here_are_imported() {
 fn a_shadow_map_of_glmark_is_recorded() {
     let frame = record(&["glmark2-es2", "-b", "shadow", "-s", "320x240"], 60).expect("a frame");
     assert_eq!((frame.api, draws(&frame).len()), (Api::Gles, 3));
-    assert_makes_what_was_stored(&frame, 8);
+    assert_makes_what_was_stored(&frame);
 }
 
 /// Our own frames, drawn by wgpu on Vulkan.
@@ -66,7 +80,7 @@ fn vulkan_is_recorded() {
     let frame = record(&capture, 60).expect("a frame");
     assert_eq!(frame.api, Api::Vulkan);
     assert!(frame.events.iter().any(|event| event.groups == ["volumes"]));
-    assert_makes_what_was_stored(&frame, 8);
+    assert_makes_what_was_stored(&frame);
 }
 
 #[test]
@@ -74,7 +88,9 @@ fn vulkan_is_recorded() {
 fn programs_that_show_nothing_are_named() {
     let failed = |command: &[&str]| record(command, 3).expect_err("no frame");
     assert!(matches!(failed(&["no-such-program"]), ImportError::NoProgram { .. }));
-    assert!(matches!(failed(&["sh", "-c", "exit 3"]), ImportError::Died { how, .. } if how == "with exit code 3"));
+    // RenderDoc may have taken the exit code for itself.
+    let died = failed(&["sh", "-c", "echo alas; exit 3"]);
+    assert!(matches!(&died, ImportError::Died { and_said, .. } if and_said.contains("alas")), "{died}");
     assert!(matches!(failed(&["sleep", "100"]), ImportError::NeverPresented { seconds: 3, .. }));
 }
 
