@@ -1,5 +1,6 @@
 //! Frames of other programs: what comes out of a recording, and what happens to one that lies.
 
+mod convert;
 mod machine;
 #[cfg(unix)]
 mod process;

@@ -254,11 +254,11 @@ impl Work {
             let reason = "the frame takes so long that what is asked next would wait for the clock";
             return Err(SessionError::Unanswered(reason.to_owned()));
         }
-        let Some(open) = self.open.take() else { return Err(SessionError::NoFrame) };
-        let last = self.last.take();
-        let result =
-            self.session().and_then(|session| session.answer(&asked.ask, &open, last.as_ref(), &asked.progress));
-        (self.open, self.last) = (Some(open), last);
+        let (open, last) = (self.open.take(), self.last.take());
+        let result = self
+            .session()
+            .and_then(|session| session.answer(&asked.ask, open.as_deref(), last.as_ref(), &asked.progress));
+        (self.open, self.last) = (open, last);
         result
     }
 
@@ -289,7 +289,11 @@ impl Work {
                 return (self.tell)(News::OpenedFolder { capture: Arc::new(whole.capture), source: name });
             }
         };
-        let Some(source) = &frame.source else { return };
+        let Some(source) = &frame.source else {
+            (self.open, self.spec) = (None, None);
+            (self.tell)(News::OpenedFolder { capture: Arc::clone(&frame.capture), source: name });
+            return self.show(frame, Duration::ZERO);
+        };
         let spec = OpenSpec::new(disk::scene_file(Path::new(folder)).display().to_string());
         let scene = Box::new(source.scene.clone());
         let request = Box::new(RunRequest::of(&scene, source.request.choice.clone(), source.request.size));

@@ -117,10 +117,12 @@ pub struct DrawSummary {
 /// Pixels where a draw that is computed anew leaves something else than was stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Differs {
-    /// Depths that are farther apart than two steps of their format, or of 24 bits.
+    /// Depths that are farther apart than rounding explains: sixteen steps of their format, or of 24 bits.
     pub depth: u64,
     /// Stencil values.
     pub stencil: u64,
+    /// Depths that are another one, but no farther apart than that.
+    pub rounded: u64,
 }
 
 /// The state after one draw of a pass.
@@ -283,6 +285,14 @@ pub struct Timing {
     pub write_ms: Option<f64>,
     /// Everything before the first frame: planning, geometry, pipelines, uploads.
     pub setup_ms: Option<f64>,
+}
+
+impl Differs {
+    /// Is it as stored, but for rounding?
+    #[must_use]
+    pub fn is_nowhere(self) -> bool {
+        self.depth == 0 && self.stencil == 0
+    }
 }
 
 impl Capture {

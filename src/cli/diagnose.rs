@@ -1,7 +1,7 @@
 //! `stencilscope diagnose`: where shadows are wrong, why, what mends it, and the proof.
 
 use super::fix::Fix;
-use super::options::{FrameOptions, SceneOptions, Subject};
+use super::options::{FrameOptions, SceneOptions, SceneSubject, Subject};
 use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::{CaptureError, disk};
@@ -51,7 +51,8 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     let DiagnoseArguments { scene_options, frame, output: folder, .. } = arguments;
     frame.refuse_draws("a diagnosis looks at draws by itself")?;
     frame.refuse_external_capture("a diagnosis runs many frames")?;
-    let Subject { loaded, scene, request, .. } = Subject::new(&arguments.scene, scene_options, frame)?;
+    let subject = Subject::new(&arguments.scene, scene_options, frame)?;
+    let SceneSubject { loaded, scene, request } = subject.scene()?;
     let json = arguments.json.as_ref().and_then(Option::as_deref);
     json.map_or(Ok(()), output::check_target)?;
     folder.as_deref().map_or(Ok(()), |folder| check_folder(folder, arguments.overwrite))?;

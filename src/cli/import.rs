@@ -99,9 +99,14 @@ fn summary(capture: &Capture, folder: &Path) -> String {
     let mut text =
         format!("{}: {}, {width}x{height}, {passes} passes, {count} draws\n", folder.display(), capture.scene);
     let checked = draws.iter().filter_map(|draw| Some((draw, draw.differs?)));
-    let (apart, equal): (Vec<_>, Vec<_>) = checked.partition(|(_, differs)| *differs != Differs::default());
-    text += &format!("computed anew: {} of {} draws leave what was stored\n", equal.len(), equal.len() + apart.len());
-    for (draw, Differs { depth, stencil }) in apart {
+    let (equal, apart): (Vec<_>, Vec<_>) = checked.partition(|(_, differs)| differs.is_nowhere());
+    let exact = equal.iter().filter(|(_, differs)| differs.rounded == 0).count();
+    let all = equal.len() + apart.len();
+    text += &format!(
+        "computed anew: {} of {all} draws leave what was stored, {exact} of them to the last bit\n",
+        equal.len()
+    );
+    for (draw, Differs { depth, stencil, .. }) in apart {
         text += &format!("  {}: another depth at {depth} pixels, another stencil at {stencil}\n", draw.name);
     }
     for left in &capture.left_out {

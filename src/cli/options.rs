@@ -132,15 +132,22 @@ impl SceneOptions {
     }
 }
 
-/// What a command asks about: a scene that is to be drawn, or the frame of a capture folder.
-pub struct Subject {
+/// What a command asks about.
+pub enum Subject {
+    /// A scene that is to be drawn.
+    Scene(Box<SceneSubject>),
+    /// The frame of a capture folder.
+    Folder(RunFrame),
+}
+
+/// A scene, and how it is drawn.
+pub struct SceneSubject {
     /// Still at time 0, with all motions.
     pub loaded: Scene,
     /// As it stands at the moment that is asked about.
     pub scene: Scene,
     /// How it is drawn, untimed.
     pub request: CaptureRequest,
-    stored: Option<RunFrame>,
 }
 
 impl Subject {
@@ -155,7 +162,7 @@ impl Subject {
             let loaded = scene.load(name)?;
             let at = loaded.at(scene.time);
             let request = CaptureRequest { timing_runs: 0, ..frame.request(&at)? };
-            return Ok(Subject { loaded, scene: at, request, stored: None });
+            return Ok(Subject::Scene(Box::new(SceneSubject { loaded, scene: at, request })));
         }
         if !scene.is_untouched() || frame.technique.is_some() || !frame.set.is_empty() {
             let mend = "leave its options out, or name its scene.toml in place of the folder";
@@ -163,19 +170,39 @@ impl Subject {
         }
         let alone = "it holds pictures alone, as of an older version: capture the scene again";
         let whole = RunFrame::from_folder(disk::read_whole(folder)?);
-        let stored = whole.map_err(|_| CliError::Usage(format!("`{name}`: {alone}")))?;
-        let FrameSource { scene, request } = stored.source()?.clone();
-        Ok(Subject { loaded: scene.clone(), scene, request, stored: Some(stored) })
+        whole.map(Subject::Folder).map_err(|_| CliError::Usage(format!("`{name}`: {alone}")))
     }
 
-    /// The frame: as it was stored, or run now.
+    /// Width and height of the picture.
+    pub fn size(&self) -> [u32; 2] {
+        match self {
+            Subject::Scene(scene) => scene.request.size,
+            Subject::Folder(frame) => frame.plan.size,
+        }
+    }
+
+    /// The frame: run now, or as it was stored.
     ///
     /// # Errors
     /// A scene that can't be drawn; a lost GPU.
     pub fn frame(self, session: &mut Session) -> Result<RunFrame, CliError> {
-        match self.stored {
-            Some(stored) => Ok(stored),
-            None => Ok(session.render(self.scene, self.request)?),
+        match self {
+            Subject::Scene(scene) => Ok(session.render(scene.scene, scene.request)?),
+            Subject::Folder(frame) => Ok(frame),
+        }
+    }
+
+    /// What the frame is made from.
+    ///
+    /// # Errors
+    /// Another program drew it.
+    pub fn scene(self) -> Result<SceneSubject, CliError> {
+        match self {
+            Subject::Scene(scene) => Ok(*scene),
+            Subject::Folder(frame) => {
+                let FrameSource { scene, request } = frame.source()?.clone();
+                Ok(SceneSubject { loaded: scene.clone(), scene, request })
+            }
         }
     }
 }

@@ -31,7 +31,7 @@ pub struct PixelArguments {
 pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     arguments.frame.refuse_draws("a history always goes fragment by fragment")?;
     let subject = Subject::new(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
-    let size = subject.request.size;
+    let size = subject.size();
     if let Some(pixel) = arguments.at.iter().find(|[x, y]| *x >= size[0] || *y >= size[1]) {
         return Err(SessionError::NoSuchPixel { pixel: *pixel, size }.into());
     }

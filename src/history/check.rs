@@ -132,7 +132,9 @@ impl PixelHistory {
     fn differs(&self, captured: &CapturedAfter) -> Option<Disagreement> {
         let last = self.events.iter().rev().find(|event| event.pass <= captured.pass);
         let computed = last.map_or(self.start, |event| event.after);
-        let same_depth = computed.depth.to_bits() == captured.stored.depth.to_bits();
+        let is_near = || (computed.depth - captured.stored.depth).abs() <= self.depth_rounding;
+        let same_bits = computed.depth.to_bits() == captured.stored.depth.to_bits();
+        let same_depth = same_bits || (self.depth_rounding > 0.0 && is_near());
         let same_stencil = !self.has_stencil || computed.stencil == captured.stored.stencil;
         let same_count = captured.count.is_none_or(|count| count == computed.count);
         let differs = !(same_depth && same_stencil && same_count);

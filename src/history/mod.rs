@@ -41,6 +41,8 @@ pub struct PixelHistory {
     pub has_stencil: bool,
     /// Is greater depth nearer?
     pub is_reversed: bool,
+    /// How far the depths that the events make may be from those that were stored: 0 in our own frames.
+    pub depth_rounding: f32,
     /// Before the first event: zeros, or what another program's frame began with.
     pub start: Held,
     /// In the order in which they happened.

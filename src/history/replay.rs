@@ -47,6 +47,7 @@ impl PixelHistory {
             }),
             is_reversed: plan.depth.mapping.is_reversed(),
             start,
+            depth_rounding: rounding(plan),
             computed: replay.held,
             events: replay.events,
             captured: captured_after.last().map(|captured| captured.stored),
@@ -139,6 +140,13 @@ impl Replay<'_> {
         };
         self.push(one.pass, triangle(draw, one, face, fate), self.held);
     }
+}
+
+/// How far depths may be from what was stored in another program's frame.
+fn rounding(plan: &FramePlan) -> f32 {
+    let recorded = plan.passes.iter().find(|pass| pass.recorded.is_some() && plan.is_of_picture(pass));
+    let target = recorded.and_then(|pass| Some(plan.attachment(pass.depth_stencil.as_ref()?.attachment)));
+    target.map_or(0.0, |target| target.depth_rounding())
 }
 
 /// What a pixel of the picture holds before the frame's first pass.

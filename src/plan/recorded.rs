@@ -85,6 +85,13 @@ impl Attachment {
         }
     }
 
+    /// How far a depth that is computed anew may be from the one that was stored: sixteen steps of its format, or of 24
+    /// bits. OpenGL's clip space begins at −w, and a corner's depth is rounded once more on its way to ours.
+    #[must_use]
+    pub fn depth_rounding(&self) -> f32 {
+        16.0 / self.depth_steps().unwrap_or(0xff_ffff) as f32
+    }
+
     /// A depth as it is stored: the nearest that the format has.
     #[must_use]
     pub fn stored_depth(&self, depth: f32) -> f32 {

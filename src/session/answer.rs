@@ -48,12 +48,19 @@ impl RunFrame {
         let Capture { technique, settings, size, .. } = &whole.capture;
         let choice = Choice::parse(&TechniqueRequest { name: technique.clone(), settings: settings.clone() });
         let request = choice.map(|choice| CaptureRequest::new(choice, *size));
-        match (whole, request) {
-            (WholeFrame { capture, plan: Some(plan), scene: Some(scene) }, Ok(request)) => {
+        let (whole, source) = match (whole, request) {
+            (WholeFrame { capture, plan, scene: Some(scene) }, Ok(request)) => {
                 let source = Some(Arc::new(FrameSource { scene, request }));
+                (WholeFrame { capture, plan, scene: None }, source)
+            }
+            (whole, _) => (whole, None),
+        };
+        let is_known = source.is_some() || whole.capture.origin.is_some();
+        match whole {
+            WholeFrame { capture, plan: Some(plan), .. } if is_known => {
                 Ok(RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source })
             }
-            (whole, _) => Err(Box::new(whole)),
+            whole => Err(Box::new(whole)),
         }
     }
 
@@ -74,7 +81,7 @@ impl RunFrame {
 }
 
 impl Session {
-    /// Answers a question about `frame`, or about `scene` as it was opened. What takes many turns, a report or stress
+    /// Answers a question about `frame`, or about `scene` as it was opened, if there is one. What takes many turns, a report or stress
     /// cases, is made by who can let other work come between.
     ///
     /// # Errors
@@ -82,21 +89,22 @@ impl Session {
     pub fn answer(
         &mut self,
         ask: &Ask,
-        scene: &Scene,
+        scene: Option<&Scene>,
         frame: Option<&RunFrame>,
         progress: &Progress,
     ) -> Result<Answer, SessionError> {
         let of_frame = || frame.ok_or(SessionError::NoFrame);
+        let of_scene = || scene.ok_or(SessionError::NoScene);
         Ok(match ask {
             Ask::WallsOf(WallsOf { off, time }) => {
-                Answer::WallsOf(Arc::new(self.walls.walls(&without(scene, off).at(*time))))
+                Answer::WallsOf(Arc::new(self.walls.walls(&without(of_scene()?, off).at(*time))))
             }
             Ask::MeshesOf(_) => {
                 let mesh = |(object, topology)| ObjectMesh { object, topology };
-                Answer::MeshesOf(Arc::new(self.topologies(scene).into_iter().map(mesh).collect()))
+                Answer::MeshesOf(Arc::new(self.topologies(of_scene()?).into_iter().map(mesh).collect()))
             }
             Ask::CaptureOf(CaptureOf { request }) => {
-                let scene = request.applied_to(scene).at(request.time);
+                let scene = request.applied_to(of_scene()?).at(request.time);
                 let request = CaptureRequest::new(request.choice.clone(), request.size);
                 Answer::CaptureOf(Arc::new(self.capture(&scene, &request)?))
             }

@@ -7,9 +7,6 @@ use crate::plan::{Blob, Draw, FramePlan, MeshId, Pass, StartContent};
 use crate::progress::Progress;
 use std::sync::Arc;
 
-/// Steps of a float's depth that count as one: those of 24 bits.
-const FLOAT_STEPS: u32 = 0xff_ffff;
-
 impl Session {
     /// Computes each draw of another program's frame anew, from what was stored before it, and notes at how many pixels
     /// that leaves something else than was stored.
@@ -48,14 +45,17 @@ impl Session {
         let prepared = self.executor.prepare_once(alone)?;
         let output = self.executor.capture(prepared, Memory::Mapped, false)?;
         let Some(Snapshot::Frame(made)) = output.steps.first().map(|step| &step.snapshot) else { return Ok(None) };
-        let steps = alone.attachments[0].depth_steps().unwrap_or(FLOAT_STEPS);
         let stencil = match (&made.stencil, &after.stencil) {
             (Some(made), Some(after)) => bytes(&made.image).zip(bytes(&after.image)).filter(|(a, b)| a != b).count(),
             _ => 0,
         };
-        let is_apart = |(a, b): &(f32, f32)| (a - b).abs() * steps as f32 > 1.5;
-        let depth = depths(&made.depth.image).zip(depths(&after.depth.image)).filter(is_apart).count();
-        Ok(Some(Differs { depth: depth as u64, stencil: stencil as u64 }))
+        let mut differs = Differs { stencil: stencil as u64, ..Differs::default() };
+        for (made, after) in depths(&made.depth.image).zip(depths(&after.depth.image)) {
+            let is_near = (made - after).abs() <= alone.attachments[0].depth_rounding();
+            differs.depth += u64::from(!is_near);
+            differs.rounded += u64::from(is_near && made != after);
+        }
+        Ok(Some(differs))
     }
 }
 

@@ -104,6 +104,7 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
         pixel: at,
         has_stencil: true,
         is_reversed: true,
+        depth_rounding: 0.0,
         start: Held { depth: 0.0, stencil: 0, count: 0.0 },
         computed: making.held,
         captured: making.after.last().map(|after| after.stored),

@@ -87,7 +87,7 @@ fn answer(inspector: &mut Inspector, asked: &[Action], session: &mut Session, sc
     };
     for action in asked {
         let Action::Ask(asked) = action else { continue };
-        let result = session.answer(&asked.ask, scene, Some(&frame), &asked.progress);
+        let result = session.answer(&asked.ask, Some(scene), Some(&frame), &asked.progress);
         inspector.answer(asked.ticket, result.map_err(|error| error.to_string()), true);
     }
 }

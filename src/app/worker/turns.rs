@@ -121,7 +121,7 @@ impl Work {
                     continue;
                 }
                 if asked.ask.kind().holds() != Holds::Frame || of == frames {
-                    let result = session.answer(&asked.ask, open, Some(frame), &asked.progress);
+                    let result = session.answer(&asked.ask, Some(open), Some(frame), &asked.progress);
                     tell(News::Answered { ticket: asked.ticket, result: result.map_err(|error| error.to_string()) });
                 }
             }
