@@ -74,6 +74,7 @@ pub mod picture;
 pub mod plan;
 pub mod progress;
 pub mod reading;
+pub mod recorded;
 pub mod report;
 pub mod scene;
 pub mod session;

@@ -48,12 +48,19 @@ impl Outcome {
     }
 }
 
+/// Does the stencil test of a face pass where `stored` is held?
+#[must_use]
+pub fn stencil_passes(state: &RasterState, front_facing: bool, stored: u8) -> bool {
+    let (face, FaceMasks { reference, read, .. }) = state.face(front_facing);
+    compare(face.compare, reference & read, stored & read)
+}
+
 /// Tests `fragment` against `stored` under `state`. Culling is not part of it: culled faces make
 /// no fragments.
 #[must_use]
 pub fn test(state: &RasterState, fragment: Fragment, stored: Stored) -> Outcome {
-    let (face, FaceMasks { reference, read, write }) = state.face(fragment.front_facing);
-    let stencil_passed = compare(face.compare, reference & read, stored.stencil & read);
+    let (face, FaceMasks { reference, write, .. }) = state.face(fragment.front_facing);
+    let stencil_passed = stencil_passes(state, fragment.front_facing, stored.stencil);
     let depth_passed = stencil_passed.then(|| compare(state.depth_compare, fragment.depth, stored.depth));
     let operation = match depth_passed {
         None => face.fail_op,

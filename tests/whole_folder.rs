@@ -11,7 +11,7 @@ use stencilscope::capture::disk::{WholeFrame, read, read_whole, write};
 use stencilscope::plan::FramePlan;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, Object, Scene};
-use stencilscope::session::{Fault, FrameSource, RunFrame, Session};
+use stencilscope::session::{Fault, RunFrame, Session};
 use stencilscope::technique::Technique;
 
 const SIZE: [u32; 2] = [61, 37];
@@ -44,7 +44,7 @@ fn plan_scene_and_settings_of_every_technique_come_back_the_same() {
         let frame = written(&mut session, technique, &folder);
         let WholeFrame { mut capture, plan, scene } = read_whole(&folder).expect("read");
         capture.timing.write_ms = None;
-        let FrameSource { scene: of_run, request } = frame.source().expect("a source");
+        let (of_run, request) = frame.made().expect("a source");
         assert!(capture == *frame.capture, "{}", technique.name());
         let plan = plan.expect("a plan");
         assert!(without_images(&plan) == without_images(&frame.plan), "{}", technique.name());
@@ -56,7 +56,7 @@ fn plan_scene_and_settings_of_every_technique_come_back_the_same() {
         let left = |capture: &Capture| capture.steps.iter().map(|step| step.snapshot.clone()).collect::<Vec<_>>();
         assert!(left(&again) == left(&frame.capture) && again.lights == frame.capture.lights, "{}", technique.name());
         let opened = RunFrame::from_folder(read_whole(&folder).expect("read")).expect("a whole frame");
-        assert_eq!(opened.source().expect("a source").request.choice, request.choice);
+        assert_eq!(opened.made().expect("a source").1.choice, request.choice);
     }
 }
 
@@ -77,7 +77,7 @@ fn histories_ladders_and_diagnoses_are_those_of_the_run() {
             assert_eq!(of_run.ladder(0, &frame.capture.depth), of_folder.ladder(0, &opened.capture.depth));
         }
         let mut diagnose = |frame: &RunFrame| {
-            let FrameSource { scene, request } = frame.source().expect("a source");
+            let (scene, request) = frame.made().expect("a source");
             session.diagnose(scene, request, Fault::None, &Progress::default()).expect("a diagnosis")
         };
         assert!(diagnose(&frame) == diagnose(&opened), "{}", technique.name());

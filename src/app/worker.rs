@@ -289,14 +289,14 @@ impl Work {
                 return (self.tell)(News::OpenedFolder { capture: Arc::new(whole.capture), source: name });
             }
         };
-        let Some(source) = &frame.source else {
+        let Ok((scene, request)) = frame.made() else {
             (self.open, self.spec) = (None, None);
             (self.tell)(News::OpenedFolder { capture: Arc::clone(&frame.capture), source: name });
             return self.show(frame, Duration::ZERO);
         };
         let spec = OpenSpec::new(disk::scene_file(Path::new(folder)).display().to_string());
-        let scene = Box::new(source.scene.clone());
-        let request = Box::new(RunRequest::of(&scene, source.request.choice.clone(), source.request.size));
+        let request = Box::new(RunRequest::of(scene, request.choice.clone(), request.size));
+        let scene = Box::new(scene.clone());
         self.brought = Brought::default();
         self.take_over(&request);
         let (scene_number, files) = (self.scenes, crate::scene::files_of(&spec));

@@ -188,7 +188,8 @@ fn write_files(Contents { capture, plan, scene }: Contents, folder: &Path) -> Re
     }
     if let Some(scene) = scene {
         let settings = capture.settings.clone();
-        let technique = Some(TechniqueRequest { name: capture.technique.clone(), settings });
+        let technique = TechniqueRequest { name: capture.technique.clone(), settings };
+        let technique = Some(technique).filter(|_| capture.origin.is_none());
         scene::file::store(&Scene { technique, ..scene.clone() }, None, &folder.join(SCENE))?;
     }
     let write_ms = start.elapsed().as_secs_f64() * 1e3;

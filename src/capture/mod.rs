@@ -187,7 +187,8 @@ pub struct Aspect {
 /// What a capture knows of a light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CapturedLight {
-    /// Homogeneous world position: `w = 1` a point, `w = 0` the direction towards it.
+    /// Homogeneous world position: `w = 1` a point, `w = 0` the direction towards it. Zero: not known, in another
+    /// program's frame.
     pub position: glam::DVec4,
     /// What decided where its shadow is.
     pub decided_by: DecidedBy,

@@ -3,8 +3,10 @@
 use super::{CliError, output, progress};
 use crate::capture::disk::{self, Contents};
 use crate::capture::{Capture, Differs, DrawSummary};
-use crate::import::{self, ImportError, Options, RawFrame};
+use crate::import::{self, Converted, ImportError, Options, RawFrame};
+use crate::plan::LightId;
 use crate::progress::Progress;
+use crate::recorded::FoundLight;
 use crate::session::Session;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -80,19 +82,19 @@ impl FrameTarget {
             output::print(&import::list(&frame))?;
         }
         let Some(folder) = &self.output else { return Ok(()) };
-        let (plan, capture) = import::convert(&frame, name)?;
+        let Converted { plan, capture, scene, lights } = import::convert(&frame, name)?;
         drop(frame);
         let mut session = Session::new(self.adapter.as_deref())?;
         let capture = progress::with_bar("check", &Progress::default(), |progress| {
             session.held_against_itself(&plan, &capture, progress)
         })?;
-        disk::write(Contents { capture: &capture, plan: Some(&plan), scene: None }, folder, self.overwrite)?;
-        output::print(&summary(&capture, folder))
+        disk::write(Contents { capture: &capture, plan: Some(&plan), scene: scene.as_ref() }, folder, self.overwrite)?;
+        output::print(&summary(&capture, folder, &lights))
     }
 }
 
 /// What was written, and where the frame is not to be trusted.
-fn summary(capture: &Capture, folder: &Path) -> String {
+fn summary(capture: &Capture, folder: &Path, lights: &[Option<FoundLight>]) -> String {
     let [width, height] = capture.size;
     let draws: Vec<&DrawSummary> = capture.steps.iter().flat_map(|step| &step.draws).collect();
     let (passes, count) = (capture.steps.len(), draws.len());
@@ -108,6 +110,13 @@ fn summary(capture: &Capture, folder: &Path) -> String {
     );
     for (draw, Differs { depth, stencil, .. }) in apart {
         text += &format!("  {}: another depth at {depth} pixels, another stencil at {stencil}\n", draw.name);
+    }
+    for (index, light) in lights.iter().enumerate() {
+        let name = LightId(index).name();
+        text += &match light {
+            Some(FoundLight { agree, of, .. }) => format!("{name}: found, {agree} of {of} edges run away from it\n"),
+            None => format!("{name}: not found: no shadow volumes tell where it is\n"),
+        };
     }
     for left in &capture.left_out {
         text += &format!("left out: {left}: {}\n", left.because);

@@ -3,7 +3,7 @@
 use super::CliError;
 use crate::capture::disk;
 use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, open};
-use crate::session::{CaptureRequest, Every, FrameSource, RunFrame, Session};
+use crate::session::{CaptureRequest, Every, RunFrame, Session};
 use crate::technique::{Choice, ChoiceError, Technique};
 use clap::Args;
 use glam::DVec3;
@@ -200,8 +200,8 @@ impl Subject {
         match self {
             Subject::Scene(scene) => Ok(*scene),
             Subject::Folder(frame) => {
-                let FrameSource { scene, request } = frame.source()?.clone();
-                Ok(SceneSubject { loaded: scene.clone(), scene, request })
+                let (scene, request) = frame.made()?;
+                Ok(SceneSubject { loaded: scene.clone(), scene: scene.clone(), request: request.clone() })
             }
         }
     }

@@ -23,6 +23,8 @@ use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, DecidedBy, FramePlan, LightId, MapLookup, Pass, PlanLight, PlanMap,
     PlanView, Side, ViewId,
 };
+use crate::recorded::{self, FoundLight};
+use crate::scene::Scene;
 use glam::{DMat4, DVec3, DVec4, Mat4};
 use passes::Making;
 use stage::{Place, Stage};
@@ -40,11 +42,24 @@ fn map_attachment(map: usize) -> AttachmentId {
     AttachmentId(DEPTH_STENCIL.0 + 1 + map)
 }
 
-/// What was drawn and what was stored, as a plan and a capture that is called `name`.
+/// Another program's frame in our words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Converted {
+    /// What was drawn.
+    pub plan: FramePlan,
+    /// What was stored.
+    pub capture: Capture,
+    /// What it is of, where all of its lights were found.
+    pub scene: Option<Scene>,
+    /// Where its lights are, as far as the draws tell.
+    pub lights: Vec<Option<FoundLight>>,
+}
+
+/// What was drawn and what was stored, called `name`.
 ///
 /// # Errors
 /// There is no depth buffer to follow, it is multisampled, or nothing is drawn that can be followed.
-pub fn convert(frame: &RawFrame, name: &str) -> Result<(FramePlan, Capture), ImportError> {
+pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
     let stage = Stage::of(frame)?;
     let mut making = Making::new(frame, &stage);
     frame.events.iter().for_each(|event| making.event(event));
@@ -87,8 +102,13 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<(FramePlan, Capture), Imp
             layers: 1,
         });
     }
+    let found: Vec<Option<FoundLight>> =
+        (0..plan.lights.len()).map(|light| recorded::light(&plan, LightId(light))).collect();
+    for (light, found) in plan.lights.iter_mut().zip(&found) {
+        light.relative_position = found.map_or([0.0; 4], |found| found.position.as_vec4().to_array());
+    }
     let captured = |(index, light): (usize, &PlanLight)| CapturedLight {
-        position: DVec4::ZERO,
+        position: found[index].map_or(DVec4::ZERO, |found| found.position),
         decided_by: light.decided_by,
         shadow: None,
         count: None,
@@ -100,7 +120,7 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<(FramePlan, Capture), Imp
         }),
         truth: None,
     };
-    let capture = Capture {
+    let mut capture = Capture {
         scene: name.to_owned(),
         technique: RECORDED.to_owned(),
         settings: BTreeMap::new(),
@@ -121,7 +141,12 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<(FramePlan, Capture), Imp
             limits: frame.limits.clone(),
         }),
     };
-    Ok((plan, capture))
+    for light in 0..plan.lights.len() {
+        capture.lights[light].shadow = recorded::labels(&plan, &capture, LightId(light));
+    }
+    let positions: Option<Vec<DVec4>> = found.iter().map(|found| found.map(|found| found.position)).collect();
+    let scene = positions.map(|lights| recorded::scene(&plan, capture.camera, name, lights));
+    Ok(Converted { plan, capture, scene, lights: found })
 }
 
 /// What each layer of a depth map holds in the end; nothing drawn is as far as can be.

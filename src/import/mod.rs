@@ -22,7 +22,7 @@ mod shader;
 mod states;
 mod unroll;
 
-pub use convert::{RECORDED, convert};
+pub use convert::{Converted, RECORDED, convert};
 pub use error::ImportError;
 pub use list::list;
 pub use raw::*;

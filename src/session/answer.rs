@@ -26,7 +26,7 @@ pub struct RunFrame {
     pub capture: Arc<Capture>,
     /// What was run.
     pub plan: Arc<FramePlan>,
-    /// What it was made from; `None`: another program drew it.
+    /// What it was made from, or in another program's frame what its draws tell of that; `None`: they do not.
     pub source: Option<Arc<FrameSource>>,
 }
 
@@ -35,8 +35,8 @@ pub struct RunFrame {
 pub struct FrameSource {
     /// The scene at the moment that was captured.
     pub scene: Scene,
-    /// How it was captured.
-    pub request: CaptureRequest,
+    /// How it was captured; `None`: another program drew it.
+    pub request: Option<CaptureRequest>,
 }
 
 impl RunFrame {
@@ -48,28 +48,32 @@ impl RunFrame {
         let Capture { technique, settings, size, .. } = &whole.capture;
         let choice = Choice::parse(&TechniqueRequest { name: technique.clone(), settings: settings.clone() });
         let request = choice.map(|choice| CaptureRequest::new(choice, *size));
-        let (whole, source) = match (whole, request) {
-            (WholeFrame { capture, plan, scene: Some(scene) }, Ok(request)) => {
-                let source = Some(Arc::new(FrameSource { scene, request }));
-                (WholeFrame { capture, plan, scene: None }, source)
-            }
-            (whole, _) => (whole, None),
-        };
-        let is_known = source.is_some() || whole.capture.origin.is_some();
-        match whole {
-            WholeFrame { capture, plan: Some(plan), .. } if is_known => {
+        let is_recorded = whole.capture.origin.is_some();
+        match (whole, request) {
+            (WholeFrame { capture, plan: Some(plan), scene }, request) if is_recorded || request.is_ok() => {
+                let request = request.ok().filter(|_| !is_recorded);
+                let source = scene.map(|scene| Arc::new(FrameSource { scene, request }));
                 Ok(RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source })
             }
-            whole => Err(Box::new(whole)),
+            (whole, _) => Err(Box::new(whole)),
         }
     }
 
-    /// What it was made from.
+    /// What it is of.
+    ///
+    /// # Errors
+    /// Another program drew it, and its draws do not tell.
+    pub fn scene(&self) -> Result<&Scene, SessionError> {
+        self.source.as_ref().map(|source| &source.scene).ok_or(SessionError::NoScene)
+    }
+
+    /// What it was made from, and how.
     ///
     /// # Errors
     /// Another program drew it.
-    pub fn source(&self) -> Result<&FrameSource, SessionError> {
-        self.source.as_deref().ok_or(SessionError::NoScene)
+    pub fn made(&self) -> Result<(&Scene, &CaptureRequest), SessionError> {
+        let request = self.source.as_ref().and_then(|source| source.request.as_ref()).ok_or(SessionError::NoScene)?;
+        Ok((self.scene()?, request))
     }
 
     /// What a capture folder of it holds.
@@ -118,7 +122,7 @@ impl Session {
             }
             Ask::AnatomyOf(_) => {
                 let frame = of_frame()?;
-                let FrameSource { scene, request } = frame.source()?;
+                let (scene, request) = frame.made()?;
                 Answer::AnatomyOf(Arc::new(self.anatomy(scene, &request.choice, &frame.plan)))
             }
             Ask::TestsOf(TestsOf { step, draw }) => {
@@ -127,17 +131,17 @@ impl Session {
             }
             Ask::TruthOf(_) => {
                 let frame = of_frame()?;
-                Answer::TruthOf(Arc::new(self.truth(&frame.source()?.scene, &frame.capture, progress)?))
+                Answer::TruthOf(Arc::new(self.truth(frame.scene()?, &frame.capture, progress)?))
             }
             Ask::DiagnosisOf(_) => {
                 let frame = of_frame()?;
                 self.make_room(&frame.plan);
-                let FrameSource { scene, request } = frame.source()?;
+                let (scene, request) = frame.made()?;
                 Answer::DiagnosisOf(Arc::new(self.diagnose(scene, request, Fault::None, progress)?))
             }
             Ask::TimingOf(_) => {
                 let frame = of_frame()?;
-                let FrameSource { scene, request } = frame.source()?;
+                let (scene, request) = frame.made()?;
                 let cost = self.capture_cost(scene, request, TIMED_FRAMES)?;
                 let (frame_ms, captured_ms) = (median_ms(&cost.frames), median_ms(&cost.captured));
                 Answer::TimingOf(Arc::new(Timing { frame_ms, captured_ms, ..frame.capture.timing }))

@@ -254,7 +254,7 @@ impl Session {
     /// As [`Session::capture`].
     pub fn render(&mut self, scene: Scene, request: CaptureRequest) -> Result<RunFrame, SessionError> {
         let (capture, plan) = self.capture_with_plan(&scene, &request)?;
-        let source = Some(Arc::new(FrameSource { scene, request }));
+        let source = Some(Arc::new(FrameSource { scene, request: Some(request) }));
         Ok(RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source })
     }
 

@@ -3,9 +3,10 @@
 use super::recording;
 use crate::common::random::Random;
 use crate::common::session;
+use glam::DVec3;
 use stencilscope::capture::disk::{Contents, read_whole, write};
 use stencilscope::capture::{Capture, Differs};
-use stencilscope::import::{convert, read};
+use stencilscope::import::{Converted, convert, read};
 use stencilscope::plan::{DecidedBy, FramePlan, Side, lint};
 use stencilscope::progress::Progress;
 use stencilscope::session::{RunFrame, Session};
@@ -15,7 +16,7 @@ const MOST_DIFFERING: u64 = 16;
 
 fn converted(session: &mut Session, name: &str) -> (FramePlan, Capture) {
     let frame = read(&recording(name)).expect("a recording");
-    let (plan, capture) = convert(&frame, name).expect("a frame");
+    let Converted { plan, capture, .. } = convert(&frame, name).expect("a frame");
     assert_eq!(lint::check(&plan), []);
     let capture = session.held_against_itself(&plan, &capture, &Progress::default()).expect("checked");
     (plan, capture)
@@ -57,7 +58,7 @@ fn every_draw_makes_what_was_stored_but_at_a_few_pixels() {
 fn a_draw_that_was_stored_wrong_is_marked_with_its_count() {
     let mut session = session();
     let frame = read(&recording("ogre")).expect("a recording");
-    let (mut plan, capture) = convert(&frame, "ogre").expect("a frame");
+    let Converted { mut plan, capture, .. } = convert(&frame, "ogre").expect("a frame");
     // Its faces count the other way round: what was stored is something else.
     let volumes = plan.passes.iter_mut().find(|pass| pass.name == "volumes").expect("volumes");
     let stencil = &mut volumes.draws[0].raster.stencil;
@@ -100,4 +101,51 @@ fn how_the_eye_sees_is_found_from_the_vertices() {
     // The script's camera: near plane at 1, no far plane that OGRE's shadows would be cut at.
     let near = capture.depth.scale / (0.0 - capture.depth.offset);
     assert!((near - 1.0).abs() < 1e-3, "{:?}", capture.depth);
+}
+
+/// The script's view of a place: a camera at `eye` that looks at `target`, whose x and y are stretched as an eye of 90
+/// degrees sees them.
+fn seen(eye: DVec3, target: DVec3, place: DVec3) -> DVec3 {
+    // OGRE's own field of view, and its rule for what is up where the camera looks down -z by default.
+    let up = DVec3::Y;
+    let ahead = (target - eye).normalize();
+    let right = ahead.cross(up).normalize();
+    let above = right.cross(ahead);
+    let stretch = 1.0 / (45.0_f64.to_radians() / 2.0).tan();
+    let from = place - eye;
+    DVec3::new(from.dot(right) * stretch, from.dot(above) * stretch, -from.dot(ahead))
+}
+
+#[test]
+fn the_light_is_found_where_the_script_put_it() {
+    let frames = [
+        ("ogre", DVec3::new(0.0, 150.0, 400.0), DVec3::new(0.0, 30.0, 0.0)),
+        ("ogre-inside", DVec3::new(38.0, 14.0, 6.0), DVec3::new(-80.0, 20.0, 10.0)),
+    ];
+    for (name, eye, target) in frames {
+        let frame = read(&recording(name)).expect("a recording");
+        let Converted { lights, capture, .. } = convert(&frame, name).expect("a frame");
+        let [Some(found)] = lights[..] else { panic!("{name}: {lights:?}") };
+        let expected = seen(eye, target, DVec3::new(120.0, 260.0, 90.0));
+        let position = found.position.truncate();
+        let angle = position.angle_between(expected).to_degrees();
+        let off = (position - expected).length() / expected.length();
+        println!("{name}: {} of {} edges, {angle} degrees, {off} off", found.agree, found.of);
+        assert!(found.position.w == 1.0 && angle < 0.1 && off < 2e-3, "{name}: {position} {expected}");
+        assert_eq!(capture.lights[0].position, found.position);
+    }
+}
+
+#[test]
+fn no_pixel_of_right_frames_is_wrong_against_rays_through_their_own_triangles() {
+    let mut session = session();
+    for name in ["ogre", "ogre-inside"] {
+        let frame = read(&recording(name)).expect("a recording");
+        let Converted { capture, scene, .. } = convert(&frame, name).expect("a frame");
+        let judged = session.judged(&scene.expect("a scene"), &capture, &Progress::default()).expect("a truth");
+        let error = judged.error().expect("an error");
+        println!("{name}: {error:?}");
+        assert!(error.compared > 20_000, "{name}: {error:?}");
+        assert_eq!(error.wrong(), 0, "{name}: {error:?}");
+    }
 }

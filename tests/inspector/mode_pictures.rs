@@ -83,7 +83,7 @@ fn answer(inspector: &mut Inspector, asked: &[Action], session: &mut Session, sc
     let frame = RunFrame {
         capture,
         plan: Arc::new(plan.clone()),
-        source: Some(Arc::new(FrameSource { scene: scene.clone(), request })),
+        source: Some(Arc::new(FrameSource { scene: scene.clone(), request: Some(request) })),
     };
     for action in asked {
         let Action::Ask(asked) = action else { continue };

@@ -106,7 +106,7 @@ impl Work {
         };
         let (tell, frames) = (&self.tell, self.frames);
         session.make_room(&frame.plan);
-        let scene = &frame.source()?.scene;
+        let (scene, _) = frame.made()?;
         let what = Measurement { choices: question.choices.clone(), size: frame.plan.size, runs: question.runs };
         let mut given_back = Instant::now();
         let mut between = |session: &mut Session| {

@@ -1,0 +1,33 @@
+//! What a frame takes for lit, from what the stencil test of the light's pass lets through.
+
+use crate::capture::{Capture, Image, PixelFormat, Snapshot};
+use crate::plan::{FramePlan, LightId, Pass};
+use crate::stencil_machine::stencil_passes;
+use crate::truth::{BACKGROUND, LIT, SHADOW};
+use std::sync::Arc;
+
+/// A byte a pixel, as techniques say it: lit, in shadow, or background where no surface was drawn. `None` where no pass
+/// of the light asks the stencil.
+#[must_use]
+pub fn labels(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc<Image>> {
+    let asks = |pass: &Pass| {
+        let is_of_light = pass.light == Some(light) && plan.is_of_picture(pass);
+        is_of_light && pass.draws.iter().any(|draw| draw.raster.stencil.is_enabled() && !draw.part.is_of_volume())
+    };
+    let index = plan.passes.iter().position(asks)?;
+    let raster = &plan.passes[index].draws.iter().find(|draw| draw.raster.stencil.is_enabled())?.raster;
+    // The stencil that it asks is what the pass before left.
+    let before = capture.frame_at(index.checked_sub(1)?)?;
+    let Snapshot::Frame(after) = &capture.steps.get(index)?.snapshot else { return None };
+    let stencil = &before.stencil.as_ref()?.image;
+    let clear = plan.depth.mapping.clear_depth().to_le_bytes();
+    let rows = stencil.rows().zip(after.depth.image.rows());
+    let label = |(stencil, depth): (&u8, &[u8])| match depth == clear {
+        true => BACKGROUND,
+        false if stencil_passes(raster, true, *stencil) => LIT,
+        false => SHADOW,
+    };
+    let labels: Vec<u8> =
+        rows.flat_map(|(stencil, depth)| stencil.iter().zip(depth.chunks_exact(4)).map(label)).collect();
+    Some(Arc::new(Image::packed(PixelFormat::U8, plan.size, labels)))
+}

@@ -1,0 +1,184 @@
+//! Where a light is, from the shadow volumes that are counted for it.
+//!
+//! Every edge of a side that runs from a caster's corner to that corner carried away lies on a line through the light.
+//! Other edges of the volume, diagonals of its sides and silhouettes, lie anywhere. So edges vote: two of them meet near
+//! a point, and the point that most edges point away from is the light; where most run the same way, it is a direction.
+//! The winner is fitted by least squares over its voters, again and again with a finer measure of who they are.
+
+use super::space::{Space, triangles};
+use crate::plan::{FramePlan, LightId};
+use glam::{DMat3, DVec3, DVec4};
+use std::collections::BTreeMap;
+
+/// Edges that vote, at most.
+const MOST_EDGES: usize = 2000;
+/// Pairs of edges that are tried.
+const TRIES: usize = 3000;
+/// How far an edge may point past the light and vote for it: the sine of the angle.
+const REACH: f64 = 1e-3;
+/// The same in the fits that follow.
+const FINER: [f64; 3] = [1e-3, 2e-4, 5e-5];
+/// A light is found if so many edges agree, and so much of them all.
+const LEAST_EDGES: usize = 6;
+const LEAST_SHARE: f64 = 0.1;
+
+/// A light that was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundLight {
+    /// Homogeneous, in the eye's space: a point, or with `w = 0` the direction towards it.
+    pub position: DVec4,
+    /// Edges that point away from it.
+    pub agree: usize,
+    /// Edges that were asked.
+    pub of: usize,
+}
+
+/// An edge of a volume, as a line.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    from: DVec3,
+    /// Of unit length.
+    along: DVec3,
+}
+
+/// Where a light is; `None` where no volumes tell.
+#[must_use]
+pub fn light(plan: &FramePlan, light: LightId) -> Option<FoundLight> {
+    let lines = thinned(lines(plan, light));
+    let best = candidates(&lines).into_iter().max_by_key(|position| voters(&lines, *position, REACH).count())?;
+    let mut position = best;
+    for reach in FINER {
+        let fine = voters(&lines, position, reach).collect::<Vec<_>>();
+        position = fitted(&fine, position).unwrap_or(position);
+    }
+    let agree = voters(&lines, position, REACH).count();
+    let is_found = agree >= LEAST_EDGES && agree as f64 >= LEAST_SHARE * lines.len() as f64;
+    is_found.then_some(FoundLight { position, agree, of: lines.len() })
+}
+
+/// Edges that may run away from the light: towards infinity where some do, else all.
+fn lines(plan: &FramePlan, light: LightId) -> Vec<Line> {
+    let (mut infinite, mut finite) = (Vec::new(), BTreeMap::new());
+    for pass in plan.passes.iter().filter(|pass| pass.light == Some(light) && plan.is_of_picture(pass)) {
+        let space = Space::new(plan, pass);
+        for draw in pass.draws.iter().filter(|draw| draw.part.is_of_volume()) {
+            let places = space.places(plan, draw);
+            for (_, corners) in triangles(plan, draw, &places) {
+                for index in 0..3 {
+                    let (from, to) = (corners[index], corners[(index + 1) % 3]);
+                    let (from, to) = if from.w == 0.0 { (to, from) } else { (from, to) };
+                    let along = (to.truncate() - from.truncate() * to.w).try_normalize();
+                    let Some(along) = along.filter(|_| from.w != 0.0) else { continue };
+                    let line = Line { from: from.truncate(), along };
+                    if to.w == 0.0 {
+                        infinite.push(line);
+                    } else {
+                        // Two triangles share an edge.
+                        let ends = [from, to].map(|end| end.to_array().map(f64::to_bits));
+                        finite.insert((ends[0].min(ends[1]), ends[0].max(ends[1])), line);
+                    }
+                }
+            }
+        }
+    }
+    if infinite.is_empty() { finite.into_values().collect() } else { infinite }
+}
+
+/// Some of them, evenly.
+fn thinned(lines: Vec<Line>) -> Vec<Line> {
+    let step = lines.len().div_ceil(MOST_EDGES).max(1);
+    lines.into_iter().step_by(step).collect()
+}
+
+/// Where pairs of lines come nearest to each other, and the ways they run.
+fn candidates(lines: &[Line]) -> Vec<DVec4> {
+    let count = lines.len();
+    let mut found = Vec::new();
+    // Steps that have no common pattern with how meshes list their edges.
+    let (mut first, mut second) = (0, 0);
+    for _ in 0..TRIES {
+        if count < 2 {
+            break;
+        }
+        first = (first + 7919) % count;
+        second = (second + 104_729 + first) % count;
+        let (a, b) = (lines[first], lines[second]);
+        let across = a.along.cross(b.along);
+        if across.length() < REACH {
+            found.push(a.along.extend(0.0));
+            continue;
+        }
+        let system = DMat3::from_cols(a.along, -b.along, across);
+        let shares = system.inverse() * (b.from - a.from);
+        let point = a.from + a.along * shares.x;
+        found.extend(point.is_finite().then(|| point.extend(1.0)));
+    }
+    // What runs away from the light runs away from where the light is.
+    found
+        .iter()
+        .map(|one| if one.w == 0.0 { -*one } else { *one })
+        .chain(found.iter().filter(|one| one.w == 0.0).copied())
+        .collect()
+}
+
+/// Lines that point away from the light.
+fn voters(lines: &[Line], position: DVec4, reach: f64) -> impl Iterator<Item = Line> + '_ {
+    lines.iter().copied().filter(move |line| {
+        let away = (line.from * position.w - position.truncate()).normalize_or_zero();
+        line.along.cross(away).length() < reach && (line.along.dot(away) > 0.0 || position.w != 0.0)
+    })
+}
+
+/// The point nearest to all lines, or their mean way.
+fn fitted(lines: &[Line], position: DVec4) -> Option<DVec4> {
+    if position.w == 0.0 {
+        let towards = -lines.iter().map(|line| line.along).sum::<DVec3>();
+        return towards.try_normalize().map(|towards| towards.extend(0.0));
+    }
+    let mut system = DMat3::ZERO;
+    let mut right = DVec3::ZERO;
+    for line in lines {
+        // Errors are angles: what is far away tells less about the place.
+        let weight = 1.0 / (line.from - position.truncate()).length_squared().max(f64::MIN_POSITIVE);
+        let across = DMat3::IDENTITY
+            - DMat3::from_cols(line.along * line.along.x, line.along * line.along.y, line.along * line.along.z);
+        system += across * weight;
+        right += across * line.from * weight;
+    }
+    let point = system.inverse() * right;
+    (lines.len() >= LEAST_EDGES && point.is_finite()).then(|| point.extend(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(from: [f64; 3], along: [f64; 3]) -> Line {
+        Line { from: DVec3::from_array(from), along: DVec3::from_array(along).normalize() }
+    }
+
+    #[test]
+    fn lines_that_meet_find_their_point_among_others_that_do_not() {
+        let light = DVec3::new(3.0, 5.0, -7.0);
+        let corner = |index: usize| {
+            let at = index as f64;
+            DVec3::new((at * 1.7).sin() * 4.0, (at * 0.9).cos() * 2.0 - 3.0, -10.0 - (at * 2.3).sin() * 5.0)
+        };
+        let mut lines: Vec<Line> =
+            (0..40).map(|index| line(corner(index).to_array(), (corner(index) - light).to_array())).collect();
+        lines.extend((0..60).map(|index| line(corner(index).to_array(), corner(index * 3 + 1).to_array())));
+        let best = candidates(&lines).into_iter().max_by_key(|one| voters(&lines, *one, REACH).count());
+        let fine: Vec<Line> = voters(&lines, best.expect("one"), REACH).collect();
+        let found = fitted(&fine, best.expect("one")).expect("a light");
+        assert!((found.truncate() - light).length() < 1e-6 && found.w == 1.0, "{found}");
+    }
+
+    #[test]
+    fn lines_that_run_the_same_way_find_a_direction_towards_the_light() {
+        let along = DVec3::new(-1.0, -3.0, 0.5);
+        let mut lines: Vec<Line> = (0..30).map(|index| line([f64::from(index), 0.0, -9.0], along.to_array())).collect();
+        lines.extend((0..20).map(|index| line([f64::from(index), 1.0, -5.0], [1.0, f64::from(index), 0.3])));
+        let best = candidates(&lines).into_iter().max_by_key(|one| voters(&lines, *one, REACH).count()).expect("one");
+        assert!((best - (-along.normalize()).extend(0.0)).length() < 1e-9, "{best}");
+    }
+}

@@ -1,0 +1,20 @@
+//! What another program's frame says by itself: where its lights are, its surfaces, what it takes for lit.
+//!
+//! ```text
+//! FramePlan ─ space.rs   clip space as the view space of an assumed eye: straight lines stay straight
+//!           ─ light.rs   the sides of shadow volumes run away from the light: where they meet, it is
+//!           ─ scene.rs   surfaces as objects, and casters that are out of view by their volumes
+//!           ─ labels.rs  what the stencil test of the light's pass lets through is lit
+//! ```
+//!
+//! The scene that comes out can be traced like any other, so the truth of the frame is known from nothing but its draws.
+
+mod labels;
+mod light;
+mod scene;
+mod space;
+
+pub use labels::labels;
+pub use light::{FoundLight, light};
+pub use scene::scene;
+pub use space::Space;

@@ -1,0 +1,70 @@
+//! From clip space to the space that the eye stands in.
+//!
+//! A perspective has w = distance along the view axis and z = a·w + b·h, where h is 1 for what is somewhere and 0 for what
+//! is at infinity. So (x, y, −w, h) is view space but for a stretch of x and y, which the field of view would tell. The
+//! stretch is taken as that of an eye that sees 90 degrees in square pixels: lines, planes and what lies between what
+//! are kept by any stretch.
+
+use crate::math::depth::DepthCurve;
+use crate::plan::{Draw, FramePlan, Pass, Viewport};
+use glam::DVec4;
+
+/// h below this is at infinity: depths near the far end round.
+const INFINITE: f64 = 0.5;
+
+/// How a pass's clip space lies in the eye's.
+#[derive(Debug, Clone, Copy)]
+pub struct Space {
+    curve: DepthCurve,
+    viewport: Viewport,
+    size: [f64; 2],
+}
+
+impl Space {
+    /// Of a pass of the picture.
+    #[must_use]
+    pub fn new(plan: &FramePlan, pass: &Pass) -> Space {
+        Space { curve: plan.depth, viewport: pass.viewport(plan.size), size: plan.size.map(f64::from) }
+    }
+
+    /// A vertex as a homogeneous point of view space: w is 1, or 0 where it is a direction. `None` where it is no number.
+    #[must_use]
+    pub fn place(&self, vertex: [f32; 4]) -> Option<DVec4> {
+        let [x, y, z, w] = vertex.map(f64::from);
+        let [left, top, width, height] = self.viewport.area.map(f64::from);
+        let [columns, rows] = self.size;
+        // In the clip space of the whole picture and of all depths.
+        let x = x * width / columns + w * ((2.0 * left + width) / columns - 1.0);
+        let y = y * height / rows - w * ((2.0 * top + height) / rows - 1.0);
+        let [near, far] = self.viewport.depth.map(f64::from);
+        let z = near * w + (far - near) * z;
+        let h = (z - self.curve.offset * w) / self.curve.scale;
+        let place = DVec4::new(x * columns / rows, y, -w, h);
+        if !place.is_finite() {
+            return None;
+        }
+        // What is nearly 1 or 0 was that before it was rounded.
+        Some(if h.abs() > INFINITE { (place / h).truncate().extend(1.0) } else { place.truncate().extend(0.0) })
+    }
+
+    /// The vertices of a draw's mesh.
+    #[must_use]
+    pub fn places(&self, plan: &FramePlan, draw: &Draw) -> Vec<Option<DVec4>> {
+        plan.meshes[draw.mesh.0].vertices.data().iter().map(|vertex| self.place(*vertex)).collect()
+    }
+}
+
+/// The triangles of a draw whose corners are numbers.
+pub(super) fn triangles<'a>(
+    plan: &'a FramePlan,
+    draw: &'a Draw,
+    places: &'a [Option<DVec4>],
+) -> impl Iterator<Item = ([u32; 3], [DVec4; 3])> + 'a {
+    let indices = plan.meshes[draw.mesh.0].indices.data();
+    let range = draw.triangles.start as usize..draw.triangles.end as usize;
+    let corners = indices.as_chunks::<3>().0.get(range).unwrap_or_default();
+    corners.iter().filter_map(|corners| {
+        let place = |corner: u32| *places.get((corner + draw.base_vertex) as usize)?;
+        Some((*corners, [place(corners[0])?, place(corners[1])?, place(corners[2])?]))
+    })
+}
