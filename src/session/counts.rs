@@ -14,6 +14,10 @@ impl Session {
     /// # Errors
     /// A scene or setting that can't be planned, a lost GPU.
     pub fn counts(&mut self, scene: &Scene, capture: &Capture) -> Result<Vec<Option<Arc<Image>>>, SessionError> {
+        // Another program's frame is not ours to run with another counter.
+        if capture.origin.is_some() {
+            return Ok(Vec::new());
+        }
         let request = TechniqueRequest { name: capture.technique.clone(), settings: capture.settings.clone() };
         let Some(choice) = Choice::parse(&request)?.counting_in_floats() else { return Ok(Vec::new()) };
         let request = CaptureRequest::new(choice, capture.size);

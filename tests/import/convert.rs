@@ -3,7 +3,7 @@
 use super::recording;
 use crate::common::random::Random;
 use crate::common::session;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use stencilscope::capture::disk::{Contents, read_whole, write};
 use stencilscope::capture::{Capture, Differs};
 use stencilscope::import::{Converted, convert, read};
@@ -106,11 +106,10 @@ fn how_the_eye_sees_is_found_from_the_vertices() {
 /// The script's view of a place: a camera at `eye` that looks at `target`, whose x and y are stretched as an eye of 90
 /// degrees sees them.
 fn seen(eye: DVec3, target: DVec3, place: DVec3) -> DVec3 {
-    // OGRE's own field of view, and its rule for what is up where the camera looks down -z by default.
-    let up = DVec3::Y;
+    // OGRE turns a camera by the shortest arc from −z, and sees 45 degrees.
     let ahead = (target - eye).normalize();
-    let right = ahead.cross(up).normalize();
-    let above = right.cross(ahead);
+    let turned = DQuat::from_rotation_arc(DVec3::NEG_Z, ahead);
+    let [right, above] = [turned * DVec3::X, turned * DVec3::Y];
     let stretch = 1.0 / (45.0_f64.to_radians() / 2.0).tan();
     let from = place - eye;
     DVec3::new(from.dot(right) * stretch, from.dot(above) * stretch, -from.dot(ahead))
