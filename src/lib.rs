@@ -79,6 +79,8 @@ pub mod stress;
 pub mod technique;
 pub mod testing;
 pub mod truth;
+#[cfg(feature = "inspector")]
+pub mod viewport;
 
 /// The vectors and matrices, and the raster states, that this crate's types are made of.
 pub use {glam, wgpu};

@@ -145,6 +145,10 @@ fn geometry_is_asked_for_once_a_frame_and_only_while_it_is_shown() {
 #[test]
 fn every_part_has_a_switch_that_shows_and_hides_it() {
     let mut harness = shown();
+    // From so far away that the camera with its frustum is seen, too.
+    harness.get_by_label(FREE).focus();
+    harness.run_steps(2);
+    (0..8).for_each(|_| super::press(&mut harness, Key::Minus));
     let with_objects = look(&mut harness, FREE);
     // Without the floor, which hides the far end.
     click(&mut harness, "Objects");
@@ -237,7 +241,7 @@ fn one_caster_can_be_looked_at_alone() {
 }
 
 /// A ball over a floor.
-fn ball_scene(around: u32, rings: u32) -> Scene {
+pub fn ball_scene(around: u32, rings: u32) -> Scene {
     let ball = shapes::sphere(1.0, around, rings).expect("a ball");
     let mut ball = Object::new("ball", Arc::new(ball), Material::default());
     ball.pose.translate.y = 1.2;
@@ -247,18 +251,13 @@ fn ball_scene(around: u32, rings: u32) -> Scene {
     scene
 }
 
-/// A ball of 69 696 triangles looks as one of 3 968, of which each is drawn, and the legend tells.
+/// A ball of 69 696 triangles looks as one of 3 968.
 #[test]
-fn a_large_mesh_is_drawn_coarser_but_whole_and_the_legend_says_so() {
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
-    let words = "Drawn coarser here, caps too: ball, ";
+fn a_large_mesh_looks_as_a_small_one_of_its_shape() {
     let mut looks = Vec::new();
-    for (around, rings, is_coarser) in [(64, 32, false), (264, 133, true)] {
+    for (around, rings) in [(64, 32), (264, 133)] {
         let mut harness = harness_of(over(&ball_scene(around, rings)), [1296.0, 816.0]);
         show(&mut harness);
-        draw(&mut harness, folder.as_deref(), &format!("scene-ball-{around}"), [1280, 800]);
-        assert_eq!(harness.query_by_label_contains(words).is_some(), is_coarser);
-        assert_eq!(harness.query_by_label_contains("of 69\u{2009}696 triangles.").is_some(), is_coarser);
         looks.push(look(&mut harness, FREE));
         for name in ["Sides", "Light caps", "Dark caps", "Silhouettes", "Frusta"] {
             click(&mut harness, name);
@@ -273,7 +272,7 @@ fn a_large_mesh_is_drawn_coarser_but_whole_and_the_legend_says_so() {
     };
     let (all, alone, ball) = (unlike(0, 3), unlike(1, 4), unlike(4, 5));
     println!("{all} texels differ, without volumes {alone}; objects take {ball}");
-    assert!(ball > 5_000 && alone < 400 && all < 2_000, "{all}, {alone} of {ball}");
+    assert!(ball > 5_000 && alone < 400 && all < 4_000, "{all}, {alone} of {ball}");
 }
 
 /// The times of a machine that others use too are no ground to fail: they are printed, and a drag must not
@@ -344,6 +343,14 @@ fn pictures_of_the_scene_tab_can_be_drawn() {
         ("tori", Technique::PlanarTexture, [344, 71]),
         ("two-lights", Technique::Projective, [320, 200]),
     ];
+    let extra = std::env::var("SCENES").unwrap_or_default();
+    let extra: Vec<&str> = extra.split(',').filter(|n| !n.is_empty()).collect();
+    let scenes: Vec<_> = if extra.is_empty() {
+        scenes.to_vec()
+    } else {
+        extra.iter().map(|n| (*n, Technique::ZFail, [344, 200])).collect()
+    };
+    let light = std::env::var_os("LIGHT").is_some();
     for (name, technique, pick) in scenes {
         for (view, act) in &views {
             // Without a folder one look at each is enough.
@@ -351,9 +358,13 @@ fn pictures_of_the_scene_tab_can_be_drawn() {
                 continue;
             }
             let mut harness = harness_over(name, technique, pick, size.map(|side| (side + 16) as f32));
+            if light {
+                super::click_button(&mut harness, "Light");
+            }
             show(&mut harness);
             act(&mut harness);
             harness.run_steps(2);
+            let name = name.rsplit('/').next().unwrap();
             draw(&mut harness, folder.as_deref(), &format!("scene-{name}-{}-{view}", technique.name()), size);
         }
     }
