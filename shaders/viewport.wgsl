@@ -42,7 +42,7 @@ fn face(at: vec4f, normal: vec4f, color: vec4f, steps: f32) -> Face {
     var share = 1.0;
     if any(normal.xyz != vec3f(0.0)) {
         let facing = dot(normalize(normal.xyz), normalize(view.viewer.xyz - at.xyz * view.viewer.w));
-        share = 0.44 + 0.40 * abs(facing) + 0.16 * normal.y * sign(facing);
+        share = 0.52 + 0.34 * abs(facing) + 0.14 * normal.y * sign(facing);
     }
     return Face(clip_position(at, steps), vec4f(color.rgb * share, color.a), at.w);
 }

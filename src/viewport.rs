@@ -391,3 +391,18 @@ fn bind(device: &wgpu::Device, pipeline: &wgpu::RenderPipeline, entries: &[wgpu:
     let layout = &pipeline.get_bind_group_layout(0);
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("viewport"), layout, entries })
 }
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_shader_is_valid_and_its_view_is_as_large_as_this_one() {
+        let module = naga::front::wgsl::parse_str(include_str!("../shaders/viewport.wgsl")).expect("a module");
+        let flags = naga::valid::ValidationFlags::all();
+        let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty());
+        validator.validate(&module).expect("valid");
+        let is_view = |ty: &&naga::Type| ty.name.as_deref() == Some("View");
+        let view = module.types.iter().map(|(_, ty)| ty).find(is_view).expect("a view");
+        let naga::TypeInner::Struct { span, .. } = view.inner else { panic!("a struct") };
+        assert_eq!(span as usize, size_of::<super::View>());
+    }
+}

@@ -13,6 +13,7 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 use std::time::Instant;
 use stencilscope::anatomy::Anatomy;
+use stencilscope::ask::AnatomyOf;
 use stencilscope::scene::builtin::ALL;
 use stencilscope::technique::Technique;
 use stencilscope::viewport::{DrawnPicture, Viewports};
@@ -198,6 +199,15 @@ fn a_large_model_is_drawn_whole_while_it_is_turned() {
     times.sort_by_key(|(all, ..)| *all);
     println!("a frame of {triangles} triangles while it is turned: {:?}", times[times.len() / 2]);
     let start = Instant::now();
+    harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy_of(&scene, Technique::ZFail)));
+    println!("another anatomy is there after {:?}", start.elapsed());
+    let start = Instant::now();
+    harness.step();
+    println!("a frame with it: {:?}", start.elapsed());
+    drawn(&harness, &gpu, |picture| assert!(!Arc::ptr_eq(&picture.geometry, &still.0), "its geometry is another"));
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a GPU");
+    println!("drawn after {:?}", start.elapsed());
+    let start = Instant::now();
     drawn(&harness, &gpu, |_| ());
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("a GPU");
     println!("and while nothing changes: {:?}", start.elapsed());
@@ -297,7 +307,7 @@ fn share_of_view(anatomy: &Anatomy, clip_from_stage: DMat4, origin: DVec3) -> [f
     })
 }
 
-/// All of the model is in the view, and it takes a good part of it, however large the floor is.
+/// All of the model is in the view, and it takes a third of it at least, however large the floor is.
 #[test]
 fn the_view_is_framed_on_what_stands_on_the_floor() {
     let gpu = create_render_state(default_wgpu_setup(), RendererOptions::default());
@@ -312,6 +322,6 @@ fn the_view_is_framed_on_what_stands_on_the_floor() {
         let [left, low, right, high] = share_of_view(&anatomy, view.clip_from_stage.as_dmat4(), origin);
         println!("{}: {left:.2} to {right:.2}, {low:.2} to {high:.2}", scene.name);
         assert!(left > -1.0 && right < 1.0 && low > -1.0 && high < 1.0, "{}: {left} {right} {low} {high}", scene.name);
-        assert!((right - left).max(high - low) > 0.7, "{}: {left} {right} {low} {high}", scene.name);
+        assert!((right - left).max(high - low) > 2.0 / 3.0, "{}: {left} {right} {low} {high}", scene.name);
     }
 }

@@ -82,6 +82,13 @@ pub fn drag(harness: &mut Harness<Seen>, from: Pos2, by: Vec2, button: PointerBu
     harness.run_steps(2);
 }
 
+/// A view shows three times as much.
+pub fn farther(harness: &mut Harness<Seen>, view: &str) {
+    harness.get_by_label(view).focus();
+    harness.run_steps(2);
+    (0..8).for_each(|_| super::press(harness, Key::Minus));
+}
+
 /// The view's texels, so that two looks can be compared.
 fn look(harness: &mut Harness<Seen>, view: &str) -> Vec<[u8; 4]> {
     // Away from everything that answers to the pointer.
@@ -146,9 +153,7 @@ fn geometry_is_asked_for_once_a_frame_and_only_while_it_is_shown() {
 fn every_part_has_a_switch_that_shows_and_hides_it() {
     let mut harness = shown();
     // From so far away that the camera with its frustum is seen, too.
-    harness.get_by_label(FREE).focus();
-    harness.run_steps(2);
-    (0..8).for_each(|_| super::press(&mut harness, Key::Minus));
+    farther(&mut harness, FREE);
     let with_objects = look(&mut harness, FREE);
     // Without the floor, which hides the far end.
     click(&mut harness, "Objects");

@@ -323,6 +323,25 @@ mod tests {
     }
 
     #[test]
+    fn the_gpu_puts_a_place_where_the_lens_does_and_what_is_nearer_before_what_is_not() {
+        for (projection, ..) in Projection::ALL {
+            let lens = PaneView { yaw: 33.0, pitch: 21.0, ..pane(projection) }.lens(RECT);
+            let origin = DVec3::new(0.5, 0.25, -0.75);
+            let clip = lens.on_gpu(origin, 9.0).clip_from_stage.as_dmat4();
+            let towards = lens.rotation.transpose() * DVec3::Z;
+            let mut depths = Vec::new();
+            for at in [DVec3::new(1.5, 1.0, 2.0), DVec3::new(1.5, 1.0, 2.0) + towards * 3.0, lens.center] {
+                let at_clip = clip * (at - origin).extend(1.0);
+                let on_screen = at_clip.truncate() / at_clip.w;
+                let found = RECT.center() + vec2(on_screen.x as f32, -on_screen.y as f32) * RECT.size() / 2.0;
+                assert!((found - lens.place(at).expect("seen")).length() < 1e-2, "{projection:?}");
+                depths.push(on_screen.z);
+            }
+            assert!(depths[0] < depths[1] && depths.iter().all(|depth| (0.0..1.0).contains(depth)), "{depths:?}");
+        }
+    }
+
+    #[test]
     fn a_line_is_cut_where_it_goes_behind_the_eye() {
         let lens = pane(Projection::Perspective).lens(RECT);
         let behind = DVec3::new(1.0, 3.0, 40.0);

@@ -22,7 +22,9 @@ const SMOOTH: f32 = 0.8;
 /// How far volumes go beyond what there is to see, in parts of its radius.
 const BEYOND: f64 = 1.5;
 /// A view is widened by so much, in parts, to show lamps and camera.
-const NEAR_BY: f64 = 1.4;
+const NEAR_BY: f64 = 1.55;
+/// What materials are mixed with, in both themes.
+const GREY: Color32 = Color32::from_rgb(0x8b, 0x92, 0xa1);
 /// A corner that is not there yet.
 const NONE: u32 = u32::MAX;
 /// Frusta beyond so many are drawn fainter, and so are edges of finer meshes.
@@ -242,7 +244,7 @@ impl Build<'_> {
         }
         // The creases of a fine mesh are noise.
         let strength = (QUIET_EDGES / triangles.len().max(1) as f32).sqrt().min(1.0);
-        let ink = self.theme.background.gamma_multiply(0.55 * strength);
+        let ink = Color32::BLACK.gamma_multiply(0.55 * strength);
         for edge in &object.edges {
             self.line([edge.low, edge.high].map(at), 1.0, ink);
         }
@@ -253,7 +255,7 @@ impl Build<'_> {
         let [red, green, blue] = object.color.map(|channel| (channel * 255.0).round() as u8);
         let color = coloring::linear([red, green, blue, 255]);
         // Not so loud as the parts of volumes, and never as dark as the ground.
-        let color = mix(mix(self.theme.panel, self.theme.dim, 0.85), color, 0.6);
+        let color = mix(GREY, color, 0.6);
         if object.visible { color } else { color.gamma_multiply(0.25) }
     }
 

@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 /// Height of a view of all, in radii of what it shows.
-const MARGIN: f64 = 2.2;
+const MARGIN: f64 = 2.1;
 
 /// One of the views.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
