@@ -114,7 +114,6 @@ pub struct Drawing {
 
 impl Drawing {
     /// For egui's painter.
-    #[must_use]
     pub fn shape(self) -> Shape {
         Shape::Callback(Callback::new_paint_callback(self.rect, self))
     }
@@ -352,8 +351,9 @@ impl DrawnPicture {
         let part = |triangles: &[[u32; 3]]| 3 * triangles.len() as u32;
         let Geometry { solids, holders, shells, lines, .. } = &*self.geometry;
         let (solids, holders) = (part(solids), part(solids) + part(holders));
-        let ranges = [0..solids, solids..holders, solids..holders, holders..holders + part(shells)];
-        for (pipeline, range) in pipelines.iter().zip(ranges.into_iter().chain([0..lines.len() as u32])) {
+        let (shells, lines) = (holders + part(shells), lines.len() as u32);
+        let ranges = [0..solids, solids..holders, solids..holders, holders..shells, 0..lines];
+        for (pipeline, range) in pipelines.iter().zip(ranges) {
             if range.is_empty() {
                 continue;
             }

@@ -86,11 +86,8 @@ fn chunks(anatomy: &Anatomy, origin: DVec3) -> Vec<Chunk> {
         |object: &stencilscope::anatomy::PlacedObject| size(ends(&mut object.positions.iter().copied())) >= whole / 2.0;
     let has_held = !anatomy.objects.iter().all(large);
     let mut found = Vec::new();
-    for (index, object) in anatomy.objects.iter().enumerate() {
+    for (index, object) in anatomy.objects.iter().enumerate().filter(|(_, object)| object.visible) {
         let holds = has_held && large(object);
-        if !object.visible && !(holds && object.casts) {
-            continue;
-        }
         for part in object.mesh.triangles().chunks(32) {
             let places = |corners: &[u32; 3]| corners.map(|corner| object.positions[corner as usize] - origin);
             let triangles: Vec<_> = part.iter().map(places).collect();

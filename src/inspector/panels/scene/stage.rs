@@ -238,9 +238,9 @@ impl Build<'_> {
         self.stage.is_cut |= found.iter().flatten().any(|corner| *corner == NONE);
         found.retain(|corners| !corners.contains(&NONE));
         match (inside, object.visible) {
-            (Some(_), _) => self.geometry.holders.extend(found),
+            (_, false) => self.geometry.shells.extend(found),
+            (Some(_), true) => self.geometry.holders.extend(found),
             (None, true) => self.geometry.solids.extend(found),
-            (None, false) => self.geometry.shells.extend(found),
         }
         // The creases of a fine mesh are noise.
         let strength = (QUIET_EDGES / triangles.len().max(1) as f32).sqrt().min(1.0);
