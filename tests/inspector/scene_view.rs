@@ -348,14 +348,6 @@ fn pictures_of_the_scene_tab_can_be_drawn() {
         ("tori", Technique::PlanarTexture, [344, 71]),
         ("two-lights", Technique::Projective, [320, 200]),
     ];
-    let extra = std::env::var("SCENES").unwrap_or_default();
-    let extra: Vec<&str> = extra.split(',').filter(|n| !n.is_empty()).collect();
-    let scenes: Vec<_> = if extra.is_empty() {
-        scenes.to_vec()
-    } else {
-        extra.iter().map(|n| (*n, Technique::ZFail, [344, 200])).collect()
-    };
-    let light = std::env::var_os("LIGHT").is_some();
     for (name, technique, pick) in scenes {
         for (view, act) in &views {
             // Without a folder one look at each is enough.
@@ -363,13 +355,9 @@ fn pictures_of_the_scene_tab_can_be_drawn() {
                 continue;
             }
             let mut harness = harness_over(name, technique, pick, size.map(|side| (side + 16) as f32));
-            if light {
-                super::click_button(&mut harness, "Light");
-            }
             show(&mut harness);
             act(&mut harness);
             harness.run_steps(2);
-            let name = name.rsplit('/').next().unwrap();
             draw(&mut harness, folder.as_deref(), &format!("scene-{name}-{}-{view}", technique.name()), size);
         }
     }

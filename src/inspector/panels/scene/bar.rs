@@ -148,9 +148,8 @@ fn chooser(ui: &mut Ui, name: &str, all: &str, names: &[String], chosen: &mut Op
 
 fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
     if stage.is_cut {
-        ui.add(
-            egui::Label::new(theme::note("Not all of it is drawn: there is more than the window's GPU takes.")).wrap(),
-        );
+        let words = "Not all of it is drawn: there is too much of it, or places are no numbers.";
+        ui.add(egui::Label::new(theme::note(words)).wrap());
     }
     if !stage.left_out.is_empty() {
         let names = stage.left_out.iter().take(3).cloned().collect::<Vec<_>>().join(", ");

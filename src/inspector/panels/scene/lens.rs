@@ -169,7 +169,7 @@ impl Lens {
         let view = DMat4::from_mat3(self.rotation) * DMat4::from_translation(origin - self.center);
         let [x, y] = (2.0 * self.scale / self.size).to_array();
         // Depth is linear in parallel views, and has room for all there is.
-        let range = reach + (origin - self.center).length();
+        let range = (reach + (origin - self.center).length()).max(1e-9);
         let (clip, step) = match self.eye {
             Some(eye) => {
                 let (across, ahead) = (DVec4::new(x * eye, 0.0, 0.0, 0.0), DVec4::new(0.0, 0.0, 0.0, -1.0));

@@ -29,7 +29,7 @@ const GREY: Color32 = Color32::from_rgb(0x8b, 0x92, 0xa1);
 const NONE: u32 = u32::MAX;
 /// Frusta beyond so many are drawn fainter, and so are edges of finer meshes.
 const QUIET: f32 = 4.0;
-const QUIET_EDGES: f32 = 800.0;
+const QUIET_EDGES: f32 = 500.0;
 /// Multiplicities beyond one that are written beside their edges, at most.
 const MOST_NUMBERS: usize = 400;
 /// What the GPU is given at most: a window's buffers hold no more.
@@ -61,7 +61,7 @@ pub struct Stage {
     pub labels: Vec<Label>,
     /// Casters that hold everything, whose volumes are not shown unless they are chosen.
     pub left_out: BTreeSet<String>,
-    /// There is more than the GPU is given.
+    /// There is more than the GPU is given, or it has places that are no numbers.
     pub is_cut: bool,
 }
 
@@ -403,4 +403,39 @@ impl Build<'_> {
 #[must_use]
 pub fn mix(from: Color32, to: Color32, share: f32) -> Color32 {
     from.lerp_to_gamma(to, share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stage() -> Stage {
+        Stage { middle: DVec3::new(1.0, 0.0, 0.0), radius: 5.0, ..Stage::default() }
+    }
+
+    fn light(position: DVec4) -> PlacedLight {
+        PlacedLight { position, color: [1.0; 3], range: None }
+    }
+
+    #[test]
+    fn a_side_that_runs_to_a_suns_point_at_infinity_is_a_strip_with_sides_side_by_side() {
+        let sun = light(DVec4::new(0.0, 2.0, 0.0, 0.0));
+        let down = DVec4::new(0.0, -2.0, 0.0, 0.0);
+        let (a, b) = (DVec3::new(1.0, 2.0, 0.0), DVec3::new(-1.0, 2.0, 0.0));
+        assert_eq!(stage().ended(down, &sun), DVec4::new(0.0, -5.0, 0.0, 0.0), "the GPU has it at infinity");
+        let strip = stage().polygon([a.extend(1.0), b.extend(1.0), down], Some(&sun));
+        let far = DVec3::NEG_Y * 5.0 * BEYOND;
+        assert_eq!(strip, [a, b, b + far, a + far]);
+        assert!(stage().polygon([down; 3], Some(&sun)).is_empty());
+    }
+
+    #[test]
+    fn corners_at_infinity_lie_on_the_rays_of_a_lamp() {
+        let lamp = DVec3::new(1.0, 4.0, 0.0);
+        let near = DVec3::new(2.0, 1.0, 2.0);
+        let end = stage().ended((near - lamp).extend(0.0), &light(lamp.extend(1.0)));
+        let along = end.truncate() + stage().middle - lamp;
+        assert!(end.w == 1.0 && along.normalize().dot((near - lamp).normalize()) > 1.0 - 1e-12, "{end}");
+        assert!((along.length() - 4.0 - BEYOND * 5.0).abs() < 1e-9);
+    }
 }
