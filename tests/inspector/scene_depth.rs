@@ -154,7 +154,7 @@ fn wheel(harness: &mut Harness<Seen>, by: f32) {
         source: egui::MouseWheelSource::Wheel,
         modifiers: Modifiers::NONE,
     });
-    harness.run_steps(6);
+    harness.run_steps(3);
 }
 
 fn place_in(rect: Rect, random: &mut Random) -> egui::Pos2 {
