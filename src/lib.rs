@@ -44,6 +44,8 @@
 //!   that without trust, and what comes out is [`import::RawFrame`].
 //! - **A panel**: a file in `inspector/panels/`, a field and an arm in `inspector/panels/mod.rs`, a name in
 //!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. What it says of a frame comes from [`reading`].
+//! - **The Scene tab**: `inspector/panels/scene/stage.rs` makes faces and lines of a frame's [`anatomy`], and `viewport.rs`
+//!   draws them with a depth buffer on the GPU that draws the window, whichever device has made the frame.
 //!
 //! World space is right-handed with Y up, in `f64`; positions go to the GPU relative to the eye.
 //! Depth is reversed and infinite unless set otherwise: 1 at the near plane, 0 at infinity. Front faces are
@@ -83,6 +85,8 @@ pub mod stress;
 pub mod technique;
 pub mod testing;
 pub mod truth;
+#[cfg(feature = "inspector")]
+pub mod viewport;
 
 /// The vectors and matrices, and the raster states, that this crate's types are made of.
 pub use {glam, wgpu};

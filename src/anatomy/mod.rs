@@ -154,30 +154,3 @@ impl Frustum {
         self.far.iter().all(|corner| *corner == self.far[0])
     }
 }
-
-impl Anatomy {
-    /// Smallest and largest corner of all objects that are drawn or cast, and of the camera and point lights;
-    /// `None` where there is nothing.
-    #[must_use]
-    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let objects = self.objects.iter().flat_map(|object| object.positions.iter().copied());
-        let lights = self.lights.iter().filter(|light| light.position.w != 0.0);
-        let points = objects.chain(lights.map(|light| light.position.truncate() / light.position.w));
-        let all = points.chain([self.camera.eye]);
-        all.map(|point| (point, point)).reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
-    }
-
-    /// The volume of a light and caster, where one is drawn.
-    #[must_use]
-    pub fn volume(&self, light: usize, caster: usize) -> Option<&ShadowVolume> {
-        self.volumes.iter().find(|volume| volume.light == light && volume.caster == caster)
-    }
-
-    /// Triangles of all objects and volumes.
-    #[must_use]
-    pub fn triangles(&self) -> usize {
-        let objects = self.objects.iter().map(|object| object.mesh.triangles().len());
-        let parts = self.volumes.iter().flat_map(|volume| &volume.parts).map(|part| part.triangles.len());
-        objects.chain(parts).sum()
-    }
-}

@@ -3,6 +3,7 @@
 use super::news::WindowNews;
 use super::{AppError, no_window};
 use crate::session::MEMORY_HINTS;
+use crate::viewport;
 use egui::{Context, ViewportId};
 use egui_wgpu::winit::Painter;
 use egui_wgpu::{RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -75,6 +76,9 @@ impl Surface {
         ));
         let set = pollster::block_on(painter.set_window(ViewportId::ROOT, Some(Arc::clone(&window))));
         set.map_err(|error| no_window(&error))?;
+        if let Some(gpu) = painter.render_state() {
+            viewport::install(&gpu);
+        }
         let scale = Some(window.scale_factor() as f32);
         let most = painter.max_texture_side();
         let theme = event_loop.system_theme();

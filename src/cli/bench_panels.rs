@@ -130,12 +130,22 @@ mod measured {
             panels.point(drag(frame));
         }
         let costs: Vec<FrameCost> = (4..4 + FRAMES).map(|frame| panels.point(drag(frame))).collect();
+        let mut picture = |at| {
+            panels.point(at);
+            let start = Instant::now();
+            panels.picture().map(|_| ms(start.elapsed()))
+        };
+        // The window twice, with the view turned and as it was: what is between them is the view.
+        let drawn = (0..10).map(|frame| Ok(picture(drag(frame))? - picture(drag(frame))?));
+        let drawn: Result<Vec<f64>, AppError> = drawn.collect();
+        let drawn = drawn.map_or_else(|error| error.to_string(), |times| format!("{:.2}", median(times)));
         panels.frame(vec![button(false)]);
         panels.inspector().show_panel(Panel::Picture);
         let all = |of: fn(&FrameCost) -> Duration| median(costs.iter().map(|cost| ms(of(cost))).collect());
         let total = all(FrameCost::total);
         format!(
-            "  orbit          frame_ms {total:.2} (panels {:.2}, triangles {:.2}) while the Scene tab is dragged: {}\n",
+            "  orbit          frame_ms {total:.2} (panels {:.2}, triangles {:.2}) while the Scene tab is dragged: {}; drawn_ms \
+             {drawn} on the GPU\n",
             all(|cost| cost.panels),
             all(|cost| cost.triangles),
             verdict(total, LIMIT_PANELS_MS)

@@ -1,6 +1,6 @@
 //! Handles of lights and camera, in the Scene tab and over the picture.
 
-use super::scene_view::{box_scene, draft_of, drag, over, show, shown};
+use super::scene_view::{box_scene, draft_of, drag, farther, over, show, shown};
 use super::{Seen, click, harness_of, press};
 use egui::{Key, PointerButton, vec2};
 use egui_kittest::Harness;
@@ -44,6 +44,7 @@ fn a_dragged_light_moves_in_the_plane_of_the_view_and_the_numbers_follow() {
 fn arrow_keys_move_what_has_the_focus_along_the_nearest_axis() {
     let mut harness = shown();
     click(&mut harness, "Top");
+    farther(&mut harness, "Top view of the scene");
     harness.get_by_label("Camera in the Top view").focus();
     harness.run_steps(2);
     let first = box_scene().camera;
@@ -63,6 +64,7 @@ fn arrow_keys_move_what_has_the_focus_along_the_nearest_axis() {
 #[test]
 fn an_axis_moves_along_itself_alone() {
     let mut harness = shown();
+    farther(&mut harness, "Free view of the scene");
     assert!(harness.query_by_label("Light 1 along y in the Free view").is_none(), "axes are of the chosen one");
     harness.get_by_label("Light 1 in the Free view").focus();
     harness.run_steps(3);
@@ -87,6 +89,31 @@ fn a_direction_is_turned_and_stays_one() {
     let towards = asked(&harness).lights[0].position;
     assert!(towards.w == 0.0 && towards.x > 0.1 && towards.z.abs() < 1e-9, "{towards}");
     assert!((towards.length() - 2.0).abs() < 1e-9, "its length means nothing and stays: {towards}");
+}
+
+/// Nothing is run or answered meanwhile: the handle goes over the picture that is there.
+#[test]
+fn a_dragged_light_s_handle_is_under_the_pointer_in_the_next_frame() {
+    let mut harness = shown();
+    let name = "Light 1 in the Free view";
+    let from = harness.get_by_label(name).rect().center();
+    harness.hover_at(from);
+    harness.run_steps(1);
+    let (button, modifiers) = (PointerButton::Primary, egui::Modifiers::NONE);
+    harness.event(egui::Event::PointerButton { pos: from, button, pressed: true, modifiers });
+    harness.run_steps(1);
+    let runs = |harness: &Harness<Seen>| {
+        harness.state().actions.iter().filter(|action| matches!(action, Action::Run(_))).count()
+    };
+    for (index, by) in [vec2(12.0, 4.0), vec2(30.0, 16.0), vec2(34.0, 40.0)].into_iter().enumerate() {
+        harness.hover_at(from + by);
+        harness.step();
+        // What is drawn is from before this frame's move, so the handle is seen there in the next.
+        harness.step();
+        let at = harness.get_by_label(name).rect().center();
+        assert!((at - from - by).length() < 2.0, "{at} is not {}", from + by);
+        assert_eq!(runs(&harness), index + 1, "each move asks for a run");
+    }
 }
 
 #[test]

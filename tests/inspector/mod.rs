@@ -20,6 +20,7 @@ mod picture_modes;
 mod pictures;
 mod random_input;
 mod report;
+mod scene_depth;
 mod scene_view;
 mod settings;
 mod shadow_map;

@@ -82,6 +82,13 @@ pub fn drag(harness: &mut Harness<Seen>, from: Pos2, by: Vec2, button: PointerBu
     harness.run_steps(2);
 }
 
+/// A view shows three times as much.
+pub fn farther(harness: &mut Harness<Seen>, view: &str) {
+    harness.get_by_label(view).focus();
+    harness.run_steps(2);
+    (0..8).for_each(|_| super::press(harness, Key::Minus));
+}
+
 /// The view's texels, so that two looks can be compared.
 fn look(harness: &mut Harness<Seen>, view: &str) -> Vec<[u8; 4]> {
     // Away from everything that answers to the pointer.
@@ -145,6 +152,8 @@ fn geometry_is_asked_for_once_a_frame_and_only_while_it_is_shown() {
 #[test]
 fn every_part_has_a_switch_that_shows_and_hides_it() {
     let mut harness = shown();
+    // From so far away that the camera with its frustum is seen, too.
+    farther(&mut harness, FREE);
     let with_objects = look(&mut harness, FREE);
     // Without the floor, which hides the far end.
     click(&mut harness, "Objects");
@@ -237,7 +246,7 @@ fn one_caster_can_be_looked_at_alone() {
 }
 
 /// A ball over a floor.
-fn ball_scene(around: u32, rings: u32) -> Scene {
+pub fn ball_scene(around: u32, rings: u32) -> Scene {
     let ball = shapes::sphere(1.0, around, rings).expect("a ball");
     let mut ball = Object::new("ball", Arc::new(ball), Material::default());
     ball.pose.translate.y = 1.2;
@@ -247,18 +256,13 @@ fn ball_scene(around: u32, rings: u32) -> Scene {
     scene
 }
 
-/// A ball of 69 696 triangles looks as one of 3 968, of which each is drawn, and the legend tells.
+/// A ball of 69 696 triangles looks as one of 3 968.
 #[test]
-fn a_large_mesh_is_drawn_coarser_but_whole_and_the_legend_says_so() {
-    let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
-    let words = "Drawn coarser here, caps too: ball, ";
+fn a_large_mesh_looks_as_a_small_one_of_its_shape() {
     let mut looks = Vec::new();
-    for (around, rings, is_coarser) in [(64, 32, false), (264, 133, true)] {
+    for (around, rings) in [(64, 32), (264, 133)] {
         let mut harness = harness_of(over(&ball_scene(around, rings)), [1296.0, 816.0]);
         show(&mut harness);
-        draw(&mut harness, folder.as_deref(), &format!("scene-ball-{around}"), [1280, 800]);
-        assert_eq!(harness.query_by_label_contains(words).is_some(), is_coarser);
-        assert_eq!(harness.query_by_label_contains("of 69\u{2009}696 triangles.").is_some(), is_coarser);
         looks.push(look(&mut harness, FREE));
         for name in ["Sides", "Light caps", "Dark caps", "Silhouettes", "Frusta"] {
             click(&mut harness, name);
@@ -273,7 +277,7 @@ fn a_large_mesh_is_drawn_coarser_but_whole_and_the_legend_says_so() {
     };
     let (all, alone, ball) = (unlike(0, 3), unlike(1, 4), unlike(4, 5));
     println!("{all} texels differ, without volumes {alone}; objects take {ball}");
-    assert!(ball > 5_000 && alone < 400 && all < 2_000, "{all}, {alone} of {ball}");
+    assert!(ball > 5_000 && alone < 400 && all < 4_000, "{all}, {alone} of {ball}");
 }
 
 /// The times of a machine that others use too are no ground to fail: they are printed, and a drag must not

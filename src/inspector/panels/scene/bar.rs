@@ -147,8 +147,9 @@ fn chooser(ui: &mut Ui, name: &str, all: &str, names: &[String], chosen: &mut Op
 }
 
 fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
-    if let Some(coarser) = &stage.coarser {
-        ui.add(egui::Label::new(theme::note(coarser)).wrap());
+    if stage.is_cut {
+        let words = "Not all of it is drawn: there is too much of it, or places are no numbers.";
+        ui.add(egui::Label::new(theme::note(words)).wrap());
     }
     if !stage.left_out.is_empty() {
         let names = stage.left_out.iter().take(3).cloned().collect::<Vec<_>>().join(", ");

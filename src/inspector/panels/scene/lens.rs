@@ -4,11 +4,14 @@
 //! middle of the view. The oblique projections (cavalier, cabinet) draw depth at an angle, at full or
 //! half length, so that a front keeps its true shape.
 
+use crate::viewport::View;
 use egui::{Pos2, Rect, Vec2, pos2};
-use glam::{DMat3, DVec2, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// What of the distance to the middle lies before the near plane of a perspective view.
 const NEAR: f64 = 0.02;
+/// How much nearer than what they lie on shells are drawn: in parts of their distance, or of the view's height.
+const STEP: f64 = 3e-4;
 /// A view straight down keeps this much from the pole, degrees, so that up stays up.
 const MOST_PITCH: f64 = 89.9;
 
@@ -60,13 +63,13 @@ impl Projection {
 pub struct PaneView {
     /// The point in the middle, world space.
     pub center: DVec3,
-    /// Metres from the view's lower to its upper edge, at the middle's distance.
+    /// Metres across the shorter side of the view, at the middle's distance.
     pub height: f64,
     /// Turned about the upright axis, degrees; 0 looks along −z.
     pub yaw: f64,
     /// Looking down by so many degrees.
     pub pitch: f64,
-    /// Of a perspective view, degrees.
+    /// Across the shorter side of a perspective view, degrees.
     pub fov_y: f64,
     /// How depth is drawn.
     pub projection: Projection,
@@ -115,8 +118,9 @@ impl PaneView {
             rotation: self.rotation(),
             center: self.center,
             middle: rect.center(),
+            size: DVec2::new(f64::from(rect.width().max(1.0)), f64::from(rect.height().max(1.0))),
             // A view that a small window leaves no room for still has a scale, so that dragging stays finite.
-            scale: f64::from(rect.height().max(1.0)) / self.height,
+            scale: f64::from(rect.size().min_elem().max(1.0)) / self.height,
             shear: DVec2::new(cosine, sine) * length,
             eye: (self.projection == Projection::Perspective).then(|| self.distance()),
         }
@@ -132,6 +136,8 @@ pub struct Lens {
     pub center: DVec3,
     /// Where that is on the screen.
     pub middle: Pos2,
+    /// Width and height, points.
+    pub size: DVec2,
     /// Points a metre, at the middle's distance.
     pub scale: f64,
     /// How far right and up a metre of depth is drawn.
@@ -154,6 +160,34 @@ impl Lens {
         match self.eye {
             Some(eye) => (self.center + world * DVec3::Z * eye).extend(1.0),
             None => (world * self.shear.extend(1.0)).extend(0.0),
+        }
+    }
+
+    /// What the GPU draws by: clip space, with reversed depth, of places relative to `origin`, all within `reach` of it.
+    #[must_use]
+    pub fn on_gpu(&self, origin: DVec3, reach: f64) -> View {
+        let view = DMat4::from_mat3(self.rotation) * DMat4::from_translation(origin - self.center);
+        let [x, y] = (2.0 * self.scale / self.size).to_array();
+        // Depth is linear in parallel views, and has room for all there is.
+        let range = (reach + (origin - self.center).length()).max(1e-9);
+        let (clip, step) = match self.eye {
+            Some(eye) => {
+                let (across, ahead) = (DVec4::new(x * eye, 0.0, 0.0, 0.0), DVec4::new(0.0, 0.0, 0.0, -1.0));
+                let up = DVec4::new(0.0, y * eye, 0.0, 0.0);
+                (DMat4::from_cols(across, up, ahead, DVec4::new(0.0, 0.0, eye * NEAR, eye)), [STEP, 0.0])
+            }
+            None => {
+                let depth = DVec4::new(-self.shear.x * x, -self.shear.y * y, 0.5 / range, 0.0);
+                let step = STEP * self.size.y / self.scale * 0.5 / range;
+                (DMat4::from_cols(DVec4::X * x, DVec4::Y * y, depth, DVec4::new(0.0, 0.0, 0.5, 1.0)), [0.0, step])
+            }
+        };
+        let viewer = self.viewer();
+        View {
+            clip_from_stage: (clip * view).as_mat4(),
+            viewer: (viewer - (origin * viewer.w).extend(0.0)).as_vec4(),
+            step: DVec2::from(step).as_vec2(),
+            ..bytemuck::Zeroable::zeroed()
         }
     }
 
@@ -285,6 +319,25 @@ mod tests {
             let towards = (viewer.truncate() - at * viewer.w).normalize();
             let [here, there] = [at, at + towards].map(|at| lens.place(at).expect("seen"));
             assert!((here - there).length() < 1e-3, "{projection:?}");
+        }
+    }
+
+    #[test]
+    fn the_gpu_puts_a_place_where_the_lens_does_and_what_is_nearer_before_what_is_not() {
+        for (projection, ..) in Projection::ALL {
+            let lens = PaneView { yaw: 33.0, pitch: 21.0, ..pane(projection) }.lens(RECT);
+            let origin = DVec3::new(0.5, 0.25, -0.75);
+            let clip = lens.on_gpu(origin, 9.0).clip_from_stage.as_dmat4();
+            let towards = lens.rotation.transpose() * DVec3::Z;
+            let mut depths = Vec::new();
+            for at in [DVec3::new(1.5, 1.0, 2.0), DVec3::new(1.5, 1.0, 2.0) + towards * 3.0, lens.center] {
+                let at_clip = clip * (at - origin).extend(1.0);
+                let on_screen = at_clip.truncate() / at_clip.w;
+                let found = RECT.center() + vec2(on_screen.x as f32, -on_screen.y as f32) * RECT.size() / 2.0;
+                assert!((found - lens.place(at).expect("seen")).length() < 1e-2, "{projection:?}");
+                depths.push(on_screen.z);
+            }
+            assert!(depths[0] < depths[1] && depths.iter().all(|depth| (0.0..1.0).contains(depth)), "{depths:?}");
         }
     }
 

@@ -1,27 +1,22 @@
 //! The Scene tab: a free second camera that sees the first one, with all that shadows are made of.
 //!
 //! ```text
-//! Anatomy ──► stage.rs (faces, lines; once a frame) ──► paint.rs (sorted; once a view) ──► egui mesh
+//! Anatomy ──► stage.rs (faces, lines; once a frame) ──► viewport.rs (on the window's GPU; once a view) ──► picture
 //! lens.rs     projections, world to screen        pane.rs     one view: mouse, keys, what is on top
 //! bar.rs      the toolbar and the legend          rays.rs     the pick's rays, the selected triangle
-//! gizmos.rs   lights and camera as handles    walls.rs    what all else is behind or before
-//! far_end.rs  where volumes that have no end are ended   coarse.rs  large meshes as fewer triangles
+//! gizmos.rs   lights and camera as handles
 //! ```
 //!
-//! No GPU code: everything is sorted and projected on the CPU, and only when something changed.
+//! Without a renderer nothing is drawn but what lies on top, and all that can be pressed is there.
 
 mod bar;
-mod coarse;
-mod far_end;
 mod gizmos;
 mod lens;
-mod paint;
 mod pane;
 mod rays;
 mod stage;
 mod toggles;
 mod view;
-mod walls;
 
 pub use view::SceneView;
 use view::{Layout, Pane};

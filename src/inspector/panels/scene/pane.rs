@@ -1,16 +1,17 @@
-//! One view: mouse and keys turn, move and scale it; over the painted stage lie words, rays and handles.
+//! One view: mouse and keys turn, move and scale it; over the drawn stage lie words, rays and handles.
 
 use super::lens::{Lens, Projection};
 use super::stage::Stage;
-use super::view::{Pane, SceneView};
+use super::view::{Pane, SceneView, index_of};
 use super::{gizmos, rays};
 use crate::anatomy::Anatomy;
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::plate;
 use crate::inspector::model::Model;
+use crate::viewport::Drawing;
 use egui::{
-    Align2, CornerRadius, EventFilter, Key, PointerButton, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, Ui,
+    Align2, CornerRadius, EventFilter, Key, PointerButton, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
     UiBuilder, WidgetInfo, vec2,
 };
 use std::sync::Arc;
@@ -40,10 +41,16 @@ pub fn ui(
     let name = format!("{} view of the scene", pane.name());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, &name));
     navigate(ui, view, pane, &response);
-    let mesh = view.painted(stage, pane, rect);
     let lens = view.view_mut(pane).lens(rect);
     let painter = ui.painter_at(rect);
-    painter.add(Shape::mesh(mesh));
+    let drawing = Drawing {
+        geometry: stage.geometry.clone(),
+        view: lens.on_gpu(stage.middle, stage.reach),
+        rect,
+        slot: index_of(pane),
+        moves: ui.input(|input| input.pointer.any_down()),
+    };
+    painter.add(drawing.shape());
     if view.shown.rays {
         rays::ui(ui, model, view.choice, stage, anatomy, &lens, rect);
     }

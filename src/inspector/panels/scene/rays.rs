@@ -1,7 +1,7 @@
 //! The pick's rays and the history's selected triangle, over a view.
 
 use super::lens::Lens;
-use super::stage::{Stage, finite_triangle};
+use super::stage::Stage;
 use super::toggles::Choice;
 use crate::anatomy::Anatomy;
 use crate::capture::Capture;
@@ -54,27 +54,22 @@ pub fn ui(ui: &Ui, model: &Model, choice: Choice, stage: &Stage, anatomy: &Anato
 
 /// Where the selected triangle is: the middle of what of it is drawn. `None` where none is selected.
 pub fn middle_of_selected(model: &Model, stage: &Stage, anatomy: &Anatomy) -> Option<DVec3> {
-    let triangles = selected(model, model.frame.capture.as_ref()?, stage, anatomy);
-    let corners: Vec<DVec3> = triangles.into_iter().flatten().collect();
+    let corners = selected(model, model.frame.capture.as_ref()?, stage, anatomy)?;
     let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
     middle.is_finite().then_some(middle)
 }
 
-/// What is drawn of the selected triangle: it may reach to infinity.
-fn selected(model: &Model, capture: &Capture, stage: &Stage, anatomy: &Anatomy) -> Vec<[DVec3; 3]> {
-    let history = model.history_of_frame();
-    let event = history.as_ref().and_then(|history| {
-        let event = history.events.get(model.selected_in(history)?)?;
-        Some(event).filter(|event| event.is_from_camera)
-    });
-    let Some((event, triangle)) = event.and_then(|event| Some((event, event.triangle()?))) else { return Vec::new() };
+/// Corners of what is drawn of the selected triangle: it may reach to infinity.
+fn selected(model: &Model, capture: &Capture, stage: &Stage, anatomy: &Anatomy) -> Option<Vec<DVec3>> {
+    let history = model.history_of_frame()?;
+    let event = history.events.get(model.selected_in(&history)?).filter(|event| event.is_from_camera)?;
     // Corners are relative to the eye.
-    let world = triangle.corners.map(|corner| {
+    let world = event.triangle()?.corners.map(|corner| {
         let relative = DVec4::from_array(corner.map(f64::from));
         relative + (capture.camera.eye * relative.w).extend(0.0)
     });
     let light = event.light.and_then(|light| anatomy.lights.get(light));
-    finite_triangle(world, light, stage)
+    Some(stage.polygon(world, light)).filter(|corners| corners.len() > 2)
 }
 
 fn selected_triangle(
@@ -83,15 +78,15 @@ fn selected_triangle(
     capture: &Capture,
     (stage, anatomy, lens, rect): (&Stage, &Anatomy, &Lens, Rect),
 ) {
+    let Some(corners) = selected(model, capture, stage, anatomy) else { return };
     let painter = ui.painter_at(rect);
     let color = theme::of(ui).selected;
-    for corners in selected(model, capture, stage, anatomy) {
-        let edges = [[corners[0], corners[1]], [corners[1], corners[2]], [corners[2], corners[0]]];
-        let points: Vec<_> = corners.iter().filter_map(|corner: &DVec3| lens.place(*corner)).collect();
-        if points.len() == 3 {
-            painter.add(Shape::convex_polygon(points, color.gamma_multiply(0.25), Stroke::NONE));
-        }
-        for edge in edges.into_iter().filter_map(|edge| lens.line(edge)) {
+    let points: Vec<_> = corners.iter().filter_map(|corner| lens.place(*corner)).collect();
+    if points.len() == corners.len() {
+        painter.add(Shape::convex_polygon(points, color.gamma_multiply(0.25), Stroke::NONE));
+    }
+    for (index, corner) in corners.iter().enumerate() {
+        if let Some(edge) = lens.line([*corner, corners[(index + 1) % corners.len()]]) {
             painter.line_segment(edge, Stroke::new(1.5, color));
         }
     }

@@ -1,84 +1,39 @@
-//! What the views draw: faces and lines of an anatomy, finite and small enough to be sorted.
+//! What the views draw: faces, lines and words of an anatomy, made once an anatomy and choice of what is shown.
 //!
-//! Made once an anatomy and choice of what is shown, whatever the view. Corners are shared, so that each
-//! is projected once a view. Walls are split off exactly (`walls.rs`), other large triangles are cut up: a
-//! painter who goes by the distance of middles would paint a floor over what stands on it.
+//! Everything is relative to the stage's middle, so that single precision is enough. What a lamp throws to infinity
+//! is ended on a sphere about the lamp, which every ray from it meets once, so that volumes stay closed; what a
+//! directional light throws there goes to the GPU as it is, and fades on its way.
 
-use super::coarse::{Coarsened, Detail, words_of_fewer};
-use super::far_end::FarEnd;
 use super::toggles::{Choice, Toggles};
-use super::walls::{Sides, Walls};
 use crate::anatomy::{Anatomy, Frustum, PlacedLight, PlacedObject, ShadowVolume, Silhouette, ViewOf};
+use crate::inspector::look::coloring;
 use crate::inspector::look::theme::Theme;
 use crate::plan::Part;
+use crate::viewport::{Geometry, Line, Vertex};
 use egui::Color32;
 use glam::{DVec3, DVec4, Vec3};
-use std::borrow::Cow;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
-/// Faces that cutting up may add.
-const MOST_CUTS: usize = 16_000;
 /// An object holds others if it is so large, in parts of the whole.
 const HOLDER: f64 = 0.5;
-/// The longest piece of a shell, in parts of what there is to see: its order among its like is not seen.
-const SHELL_PIECE: f64 = 0.7;
 /// Triangles share a corner, and its shade, where their normals differ by less than this cosine's angle.
 const SMOOTH: f32 = 0.8;
+/// How far volumes go beyond what there is to see, in parts of its radius.
+const BEYOND: f64 = 1.5;
+/// A view is widened by so much, in parts, to show lamps and camera.
+const NEAR_BY: f64 = 1.55;
+/// What materials are mixed with, in both themes.
+const GREY: Color32 = Color32::from_rgb(0x8b, 0x92, 0xa1);
 /// A corner that is not there yet.
 const NONE: u32 = u32::MAX;
-/// Frusta beyond so many are drawn fainter.
+/// Frusta beyond so many are drawn fainter, and so are edges of finer meshes.
 const QUIET: f32 = 4.0;
+const QUIET_EDGES: f32 = 500.0;
 /// Multiplicities beyond one that are written beside their edges, at most.
 const MOST_NUMBERS: usize = 400;
-
-/// A corner of faces.
-#[derive(Debug, Clone, Copy)]
-pub struct Point {
-    /// Relative to the stage's middle.
-    pub at: Vec3,
-    /// Of unit length, for shading; zero: not shaded.
-    pub normal: Vec3,
-    /// Premultiplied.
-    pub color: Color32,
-    /// On which side of it, as its normal goes, the camera is, if it is of what holds everything: seen from the
-    /// other side it is glass. 0 elsewhere.
-    pub inner: f32,
-}
-
-/// How a face takes part in the order of painting.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Layer {
-    /// Everything is either behind it or before it.
-    Wall,
-    /// By its distance.
-    Solid,
-    /// By its distance, before the solid that it lies on.
-    Shell,
-}
-
-/// A triangle.
-#[derive(Debug, Clone, Copy)]
-pub struct Face {
-    /// Indices of points.
-    pub corners: [u32; 3],
-    /// Its order.
-    pub layer: Layer,
-    /// On which sides of the walls it lies.
-    pub sides: Sides,
-}
-
-/// A line.
-#[derive(Debug, Clone, Copy)]
-pub struct Line {
-    /// Relative to the stage's middle.
-    pub ends: [Vec3; 2],
-    /// In points.
-    pub width: f32,
-    /// Its ink.
-    pub color: Color32,
-    /// On which sides of the walls it lies.
-    pub sides: Sides,
-}
+/// What the GPU is given at most: a window's buffers hold no more.
+const MOST_VERTICES: usize = 7_000_000;
 
 /// Words at a place.
 #[derive(Debug, Clone)]
@@ -94,326 +49,326 @@ pub struct Label {
 /// What the views draw.
 #[derive(Debug, Default)]
 pub struct Stage {
-    /// World space; corners are relative to it.
+    /// World space; geometry is relative to it.
     pub middle: DVec3,
     /// Half of what there is to see, metres.
     pub radius: f64,
-    /// Corners of the faces.
-    pub points: Vec<Point>,
-    /// In no order.
-    pub faces: Vec<Face>,
-    /// In no order.
-    pub lines: Vec<Line>,
+    /// The farthest that anything is from the middle, metres.
+    pub reach: f64,
+    /// Faces and lines.
+    pub geometry: Arc<Geometry>,
     /// Multiplicities and names.
     pub labels: Vec<Label>,
-    /// What hides all that is behind it.
-    pub walls: Walls,
     /// Casters that hold everything, whose volumes are not shown unless they are chosen.
     pub left_out: BTreeSet<String>,
-    /// What is drawn with fewer triangles than it has, in words.
-    pub coarser: Option<String>,
+    /// There is more than the GPU is given, or it has places that are no numbers.
+    pub is_cut: bool,
 }
 
 /// Which objects hold the others: rooms, walls, floors. They may be as large as they like, and must not
 /// hide what they hold.
 #[must_use]
 pub fn holders(anatomy: &Anatomy) -> Vec<bool> {
-    let ends = |points: &mut dyn Iterator<Item = DVec3>| {
-        points.map(|point| (point, point)).reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
-    };
-    let size = |ends: Option<(DVec3, DVec3)>| ends.map_or(0.0, |(low, high)| (high - low).length());
-    let whole = size(ends(&mut anatomy.objects.iter().flat_map(|object| object.positions.iter().copied())));
-    let sizes = anatomy.objects.iter().map(|object| size(ends(&mut object.positions.iter().copied())));
+    let size =
+        |points: &mut dyn Iterator<Item = DVec3>| bounds(points).map_or(0.0, |(low, high)| (high - low).length());
+    let whole = size(&mut anatomy.objects.iter().flat_map(|object| object.positions.iter().copied()));
+    let sizes = anatomy.objects.iter().map(|object| size(&mut object.positions.iter().copied()));
     let large: Vec<bool> = sizes.map(|size| size >= HOLDER * whole).collect();
     // Where all are, none holds another.
     if large.contains(&false) { large } else { vec![false; large.len()] }
 }
 
-/// The middle and half of what there is to see: the camera, lamps that are not far away, and all objects
-/// but those that hold the others.
+/// The middle and half of what there is to see: all objects but those that hold the others.
 #[must_use]
 pub fn sphere(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
-    let held = anatomy.objects.iter().zip(holders).filter(|(_, holds)| !**holds);
-    let points = held.flat_map(|(object, _)| object.positions.iter().copied()).chain([anatomy.camera.eye]);
-    let grow = |(low, high): (DVec3, DVec3), point: DVec3| (low.min(point), high.max(point));
-    let (low, high) = points.fold((anatomy.camera.eye, anatomy.camera.eye), grow);
-    let (middle, room) = ((low + high) / 2.0, (high - low).length());
+    let held = anatomy.objects.iter().zip(holders).filter(|(object, holds)| !**holds && is_seen(object));
+    let camera = &anatomy.camera;
+    match bounds(&mut held.flat_map(|(object, _)| object.positions.iter().copied())) {
+        Some((low, high)) if low != high => ((low + high) / 2.0, (high - low).length() / 2.0),
+        // An eye alone sees as far as its target.
+        _ => (camera.target, (camera.target - camera.eye).length().clamp(1e-3, 1e6) / 2.0),
+    }
+}
+
+/// What a view shows at first: all that there is to see, and of lamps and camera those that are near it.
+#[must_use]
+pub fn framed(anatomy: &Anatomy, holders: &[bool]) -> (DVec3, f64) {
+    let (middle, radius) = sphere(anatomy, holders);
     let lamps = anatomy.lights.iter().filter(|light| light.position.w != 0.0);
     let lamps = lamps.map(|light| light.position.truncate() / light.position.w);
-    let (low, high) = lamps.filter(|lamp| (*lamp - middle).length() < 1.5 * room).fold((low, high), grow);
-    // An eye alone sees as far as its target.
-    let least = (anatomy.camera.target - anatomy.camera.eye).length().clamp(1e-3, 1e6) / 2.0;
-    ((low + high) / 2.0, ((high - low).length() / 2.0).max(least))
+    lamps.chain([anatomy.camera.eye]).fold((middle, radius), |(center, reach), place| {
+        let away = place - center;
+        // The smallest sphere about both.
+        let grown = (away.length() + reach) / 2.0;
+        if grown <= reach || grown > NEAR_BY * radius {
+            return (center, reach);
+        }
+        (center + away.normalize_or_zero() * (grown - reach), grown)
+    })
+}
+
+fn bounds(points: &mut dyn Iterator<Item = DVec3>) -> Option<(DVec3, DVec3)> {
+    points.map(|point| (point, point)).reduce(|(low, high), (point, _)| (low.min(point), high.max(point)))
+}
+
+fn is_seen(object: &PlacedObject) -> bool {
+    object.visible || object.casts
 }
 
 impl Stage {
     /// Of `anatomy`, in the colours of `theme`.
     #[must_use]
-    pub fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, theme: &Theme, coarsened: &mut Coarsened) -> Stage {
+    pub fn new(anatomy: &Anatomy, shown: &Toggles, choice: Choice, theme: &Theme) -> Stage {
         let holders = holders(anatomy);
         let (middle, radius) = sphere(anatomy, &holders);
-        let walls = Walls::new(anatomy, &holders, middle, radius);
-        let mut stage = Stage { middle, radius, walls, ..Stage::default() };
-        let detail = Detail::new(anatomy, shown, choice, &holders);
+        let stage = Stage { middle, radius, ..Stage::default() };
+        let geometry = Geometry { origin: middle, ..Geometry::default() };
+        let mut build = Build { stage, geometry, theme };
         if shown.names {
-            stage.names(anatomy, &holders);
+            build.names(anatomy, &holders);
         }
         if shown.objects {
-            stage.objects(anatomy, &holders, (&detail, coarsened), theme);
+            for (object, holds) in anatomy.objects.iter().zip(&holders).filter(|(object, _)| is_seen(object)) {
+                build.object(object, holds.then_some(anatomy.camera.eye));
+            }
         }
         let volumes = || anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster, &holders));
         // Through many shells as much is seen as through a few.
-        let strength = 1.0 / (volumes().count().max(1) as f32).sqrt().max(1.0);
+        let strength = 1.0 / (volumes().count().max(1) as f32).sqrt();
         for volume in volumes() {
-            if let (Some(light), Some(caster)) = (anatomy.lights.get(volume.light), anatomy.objects.get(volume.caster))
-            {
-                stage.volume((volume, caster, light), shown, (&detail, coarsened), strength, theme);
+            if let Some(light) = anatomy.lights.get(volume.light) {
+                build.volume(volume, light, shown, strength);
             }
         }
         if shown.silhouettes {
             for silhouette in anatomy.silhouettes.iter().filter(|one| choice.has(one.light, one.caster, &holders)) {
                 if let Some(caster) = anatomy.objects.get(silhouette.caster) {
-                    stage.silhouette(silhouette, caster, theme);
+                    build.silhouette(silhouette, caster);
                 }
             }
         }
         if shown.frusta {
-            stage.frusta(anatomy, choice, theme);
+            build.frusta(anatomy, choice);
         }
         if shown.near_clip {
-            stage.near_clips(anatomy, choice, theme);
+            build.near_clips(anatomy, choice);
         }
-        let left_out = anatomy.volumes.iter().map(|volume| volume.caster);
-        stage.left_out = match choice.caster {
-            None => {
-                left_out.filter(|caster| holders[*caster]).map(|caster| anatomy.objects[caster].name.clone()).collect()
-            }
-            Some(_) => BTreeSet::new(),
-        };
-        coarsened.forget_unused();
+        let Build { mut stage, geometry, .. } = build;
+        if choice.caster.is_none() {
+            let held_back = anatomy.volumes.iter().map(|volume| volume.caster).filter(|caster| holders[*caster]);
+            stage.left_out = held_back.map(|caster| anatomy.objects[caster].name.clone()).collect();
+        }
+        stage.geometry = Arc::new(geometry);
         stage
     }
 
-    fn objects(
-        &mut self,
-        anatomy: &Anatomy,
-        holders: &[bool],
-        (detail, coarsened): (&Detail, &mut Coarsened),
-        theme: &Theme,
-    ) {
-        let is_seen = |object: &PlacedObject| object.visible || object.casts;
-        let (walls, limit) = (self.walls.clone(), self.radius / 10.0);
-        let longest = |index: usize, object: &PlacedObject| {
-            if is_seen(object) && !walls.is_wall(index) { longest_edge(object) } else { 0.0 }
+    /// A corner of `light`'s volumes relative to the middle; at infinity with `w = 0` where the light is a direction.
+    fn ended(&self, corner: DVec4, light: &PlacedLight) -> DVec4 {
+        let place = match (corner.w == 0.0, light.position.w == 0.0) {
+            (false, _) => corner.truncate() / corner.w,
+            (true, true) => return (corner.truncate().normalize_or_zero() * self.radius).extend(0.0),
+            (true, false) => {
+                let lamp = light.position.truncate() / light.position.w;
+                let reach = (lamp - self.middle).length() + BEYOND * self.radius;
+                lamp + corner.truncate().normalize_or_zero() * reach
+            }
         };
-        let longest = anatomy.objects.iter().enumerate().map(|(index, object)| longest(index, object));
-        let limit = limit.max(longest.fold(0.0, f64::max) / 64.0);
-        let mut room = MOST_CUTS;
-        let ground = mix(theme.panel, theme.dim, 0.62);
-        let edge = mix(theme.panel, theme.dim, 0.2);
-        let mut fewer = Vec::new();
-        for (index, object) in anatomy.objects.iter().enumerate().filter(|(_, object)| is_seen(object)) {
-            // What is not seen in the picture is seen here as glass.
-            let color = if object.visible { ground } else { ground.gamma_multiply(0.25) };
-            let eye = holders[index].then_some(anatomy.camera.eye);
-            let coarse = detail.of_object(object, coarsened);
-            if let Some(coarse) = &coarse {
-                fewer.push((&*object.name, coarse.triangles.len(), object.mesh.triangles().len()));
-            }
-            let triangles = coarse.as_ref().map_or(object.mesh.triangles(), |coarse| coarse.triangles.as_slice());
-            match walls.is_wall(index) {
-                true => self.solid(object, triangles, (color, eye), (f64::INFINITY, &mut room), Layer::Wall),
-                false => self.solid(object, triangles, (color, eye), (limit, &mut room), Layer::Solid),
-            }
-            for edge_ends in &object.edges {
-                let ends = [edge_ends.low, edge_ends.high].map(|end| object.positions[end as usize]);
-                self.long_line(ends, limit, 1.0, edge);
-            }
-        }
-        self.coarser = words_of_fewer(&fewer);
+        (place - self.middle).extend(1.0)
     }
 
-    /// Triangles in place of an object's own, or these; of one that holds others, the camera's `eye` says which side is glass.
-    fn solid(
-        &mut self,
-        object: &PlacedObject,
-        triangles: &[[u32; 3]],
-        (color, eye): (Color32, Option<DVec3>),
-        (limit, room): (f64, &mut usize),
-        layer: Layer,
-    ) {
+    /// What is drawn of one triangle of `light`'s volumes, or of no light's: corners of a polygon, world space.
+    #[must_use]
+    pub fn polygon(&self, corners: [DVec4; 3], light: Option<&PlacedLight>) -> Vec<DVec3> {
+        let ended = light.map_or(corners.map(|corner| corner - (self.middle * corner.w).extend(0.0)), |light| {
+            corners.map(|corner| self.ended(corner, light))
+        });
+        let mut polygon = Vec::new();
+        for (index, corner) in ended.iter().enumerate() {
+            if corner.w != 0.0 {
+                polygon.push(self.middle + corner.truncate() / corner.w);
+                continue;
+            }
+            // Sides run side by side: each is ended on its own.
+            for neighbour in [ended[(index + 2) % 3], ended[(index + 1) % 3]].iter().filter(|other| other.w != 0.0) {
+                polygon.push(self.middle + neighbour.truncate() / neighbour.w + corner.truncate() * BEYOND);
+            }
+        }
+        polygon
+    }
+}
+
+/// A stage that is being made.
+struct Build<'a> {
+    stage: Stage,
+    geometry: Geometry,
+    theme: &'a Theme,
+}
+
+impl Build<'_> {
+    /// The triangles and edges of an object. One that holds others turns its front to `inside`, the picture's eye.
+    fn object(&mut self, object: &PlacedObject, inside: Option<DVec3>) {
+        let triangles = object.mesh.triangles();
         let at = |corner: u32| object.positions[corner as usize];
         let across = |[a, b, c]: [u32; 3]| (at(b) - at(a)).cross(at(c) - at(a));
         let mut normals = vec![DVec3::ZERO; object.positions.len()];
-        for &corners in object.mesh.triangles() {
-            let across = across(corners);
-            corners.iter().for_each(|corner| normals[*corner as usize] += across);
+        for &corners in triangles {
+            corners.iter().for_each(|corner| normals[*corner as usize] += across(corners));
         }
         let normals: Vec<Vec3> = normals.into_iter().map(|normal| normal.normalize_or_zero().as_vec3()).collect();
+        let color = self.material(object);
         let mut shared = vec![NONE; object.positions.len()];
-        for &corners in triangles {
-            let places = corners.map(at);
-            let normal = across(corners).normalize_or_zero().as_vec3();
-            let inner = eye.map_or(0.0, |eye| normal.dot((eye - places[0]).as_vec3()).signum());
-            if longest_of(&places) <= limit {
-                let indices = [0, 1, 2].map(|index| {
-                    let corner = corners[index] as usize;
-                    let is_smooth = eye.is_none() && normals[corner].dot(normal) >= SMOOTH;
-                    match shared[corner] {
-                        known if is_smooth && known != NONE => known,
-                        _ if is_smooth => {
-                            shared[corner] = self.point(places[index], normals[corner], color, inner);
-                            shared[corner]
-                        }
-                        _ => self.point(places[index], normal, color, inner),
-                    }
-                });
-                self.face(indices, places, layer);
-                continue;
+        let mut found = Vec::with_capacity(triangles.len());
+        for &[a, b, c] in triangles {
+            let mut corners = [a, b, c];
+            if inside.is_some_and(|eye| across(corners).dot(eye - at(a)) < 0.0) {
+                corners = [a, c, b];
             }
-            cut_up(places, limit, room, &mut |places| {
-                let indices = places.map(|place| self.point(place, normal, color, inner));
-                self.face(indices, places, layer);
-            });
+            let normal = across(corners).normalize_or_zero().as_vec3();
+            found.push(corners.map(|corner| {
+                let (index, smooth) = (corner as usize, normals[corner as usize]);
+                if inside.is_some() || smooth.dot(normal) < SMOOTH {
+                    return self.vertex(at(corner), normal, color);
+                }
+                if shared[index] == NONE {
+                    shared[index] = self.vertex(at(corner), smooth, color);
+                }
+                shared[index]
+            }));
+        }
+        self.stage.is_cut |= found.iter().flatten().any(|corner| *corner == NONE);
+        found.retain(|corners| !corners.contains(&NONE));
+        match (inside, object.visible) {
+            (_, false) => self.geometry.shells.extend(found),
+            (Some(_), true) => self.geometry.holders.extend(found),
+            (None, true) => self.geometry.solids.extend(found),
+        }
+        // The creases of a fine mesh are noise.
+        let strength = (QUIET_EDGES / triangles.len().max(1) as f32).sqrt().min(1.0);
+        let ink = Color32::BLACK.gamma_multiply(0.55 * strength);
+        for edge in &object.edges {
+            self.line([edge.low, edge.high].map(at), 1.0, ink);
         }
     }
 
-    fn point(&mut self, place: DVec3, normal: Vec3, color: Color32, inner: f32) -> u32 {
-        self.points.push(Point { at: (place - self.middle).as_vec3(), normal, color, inner });
-        (self.points.len() - 1) as u32
+    /// What is not seen in the picture is seen here as glass.
+    fn material(&self, object: &PlacedObject) -> Color32 {
+        let [red, green, blue] = object.color.map(|channel| (channel * 255.0).round() as u8);
+        let color = coloring::linear([red, green, blue, 255]);
+        // Not so loud as the parts of volumes, and never as dark as the ground.
+        let color = mix(GREY, color, 0.6);
+        if object.visible { color } else { color.gamma_multiply(0.25) }
     }
 
-    fn face(&mut self, corners: [u32; 3], places: [DVec3; 3], layer: Layer) {
-        let sides = match layer {
-            Layer::Wall => Sides::default(),
-            Layer::Solid | Layer::Shell => self.walls.sides((places[0] + places[1] + places[2]) / 3.0),
-        };
-        self.faces.push(Face { corners, layer, sides });
+    /// [`NONE`] where there is no more room.
+    fn vertex(&mut self, place: DVec3, normal: Vec3, color: Color32) -> u32 {
+        self.corner((place - self.stage.middle).extend(1.0), normal, color)
     }
 
-    fn volume(
-        &mut self,
-        (volume, caster, light): (&ShadowVolume, &PlacedObject, &PlacedLight),
-        shown: &Toggles,
-        (detail, coarsened): (&Detail, &mut Coarsened),
-        strength: f32,
-        theme: &Theme,
-    ) {
-        let far = FarEnd::new(light, self.middle, self.radius);
-        let limit = self.radius * SHELL_PIECE;
+    fn corner(&mut self, at: DVec4, normal: Vec3, color: Color32) -> u32 {
+        let index = self.geometry.vertices.len();
+        if index >= MOST_VERTICES || !at.is_finite() {
+            return NONE;
+        }
+        self.stage.reach = self.stage.reach.max(at.truncate().length());
+        self.geometry.vertices.push(Vertex::new(at, normal, color));
+        index as u32
+    }
+
+    fn volume(&mut self, volume: &ShadowVolume, light: &PlacedLight, shown: &Toggles, strength: f32) {
         for part in &volume.parts {
             let (is_shown, share) = match part.part {
                 Part::Side => (shown.sides, 0.26 * strength),
-                Part::LightCap => (shown.light_caps, 0.55),
+                Part::LightCap => (shown.light_caps, 0.24 * strength.max(0.5)),
                 _ => (shown.dark_caps, 0.36 * strength),
             };
-            let Some(color) = theme.part(part.part).filter(|_| is_shown) else { continue };
+            let Some(color) = self.theme.part(part.part).filter(|_| is_shown) else { continue };
             let color = color.gamma_multiply(share);
-            let mut room = MOST_CUTS;
-            let triangles = match part.part {
-                Part::Side => Cow::Borrowed(&part.triangles),
-                _ => detail.of_cap(caster, volume, &part.triangles, coarsened),
-            };
             let mut shared = vec![NONE; volume.vertices.len()];
-            for &indices in triangles.iter() {
-                let corners = indices.map(|corner| volume.vertices[corner as usize]);
-                let finite = far.finite(corners);
-                if let Some(places) = finite[0]
-                    .filter(|places| far.is_whole(&corners) && longest_of(places) <= limit && !self.walls.cut(places))
-                {
-                    let points = [0, 1, 2].map(|index| {
-                        let slot = &mut shared[indices[index] as usize];
-                        if *slot == NONE {
-                            *slot = self.point(places[index], Vec3::ZERO, color, 0.0);
-                        }
-                        *slot
-                    });
-                    self.face(points, places, Layer::Shell);
-                    continue;
-                }
-                for places in finite.into_iter().flatten() {
-                    for places in self.walls.split(places, &mut room) {
-                        cut_up(places, limit, &mut room, &mut |places| self.shell(places, color));
+            for corners in &part.triangles {
+                let corners = corners.map(|corner| {
+                    let slot = &mut shared[corner as usize];
+                    if *slot == NONE {
+                        let at = self.stage.ended(volume.vertices[corner as usize], light);
+                        *slot = self.corner(at, Vec3::ZERO, color);
                     }
+                    *slot
+                });
+                match corners.contains(&NONE) {
+                    true => self.stage.is_cut = true,
+                    false => self.geometry.shells.push(corners),
                 }
             }
         }
     }
 
-    fn silhouette(&mut self, silhouette: &Silhouette, caster: &PlacedObject, theme: &Theme) {
+    fn silhouette(&mut self, silhouette: &Silhouette, caster: &PlacedObject) {
+        // Of a fine mesh there are so many short edges that they would hide it.
+        let strength = (QUIET_EDGES / silhouette.edges.len().max(1) as f32).sqrt().clamp(0.35, 1.0);
         for edge in &silhouette.edges {
             let ends = [edge.edge.low, edge.edge.high].map(|end| caster.positions[end as usize]);
             let many = edge.multiplicity.unsigned_abs();
-            self.long_line(ends, self.radius / 20.0, 1.2 + 0.5 * many.clamp(1, 4).saturating_sub(1) as f32, theme.text);
-            if many > 1 && self.labels.len() < MOST_NUMBERS {
+            let width = 1.2 + 0.5 * many.clamp(1, 4).saturating_sub(1) as f32;
+            self.line(ends, width * strength.max(0.7), self.theme.text.gamma_multiply(strength));
+            if many > 1 && self.stage.labels.len() < MOST_NUMBERS {
                 let text = format!("{}{many}", if edge.multiplicity > 0 { "+" } else { "−" });
-                self.labels.push(Label { at: (ends[0] + ends[1]) / 2.0, text, of: Some(ends) });
+                self.stage.labels.push(Label { at: (ends[0] + ends[1]) / 2.0, text, of: Some(ends) });
             }
         }
     }
 
-    fn frusta(&mut self, anatomy: &Anatomy, choice: Choice, theme: &Theme) {
+    fn frusta(&mut self, anatomy: &Anatomy, choice: Choice) {
         let is_shown = |frustum: &&Frustum| match frustum.of {
             ViewOf::Camera => true,
             ViewOf::Map { light, caster, .. } => choice.has_frustum(light, caster),
         };
         let shown = || anatomy.frusta.iter().filter(is_shown);
         // Many are as loud as a few.
-        let strength = (QUIET / shown().count().max(1) as f32).sqrt().clamp(0.25, 1.0);
+        let strength = (QUIET / shown().count().max(1) as f32).clamp(0.25, 1.0);
         for frustum in shown() {
             let (color, fill) = match frustum.of {
-                ViewOf::Camera => (theme.text.gamma_multiply(0.75), 0.25),
+                ViewOf::Camera => (self.theme.text.gamma_multiply(0.75), 0.25),
                 // What a texture or a silhouette is seen through lies on a surface, or there are many.
                 ViewOf::Map { caster, .. } if caster.is_some() || frustum.ends_at_light() => {
-                    (theme.lit.gamma_multiply(0.75 * strength), 0.0)
+                    (self.theme.lit.gamma_multiply(0.75 * strength), 0.0)
                 }
-                ViewOf::Map { .. } => (theme.lit.gamma_multiply(0.75 * strength), 0.25),
+                ViewOf::Map { .. } => (self.theme.lit.gamma_multiply(0.75 * strength), 0.25),
             };
-            let apart = |at: DVec4| at.truncate() / at.w;
-            let near = frustum.near.map(apart);
-            let reach = (self.middle - near[0]).length() + self.radius;
-            let far = [0, 1, 2, 3].map(|corner| {
-                let far = frustum.far[corner];
-                if far.w == 0.0 { near[corner] + far.truncate().normalize() * reach } else { apart(far) }
-            });
-            let limit = self.radius / 10.0;
+            let near = frustum.near.map(|corner| corner.truncate() / corner.w);
+            let far = [0, 1, 2, 3].map(|corner| self.end(near[corner], frustum.far[corner]));
             for corner in 0..4 {
                 let next = (corner + 1) % 4;
-                self.long_line([near[corner], far[corner]], limit, 1.0, color);
-                self.long_line([near[corner], near[next]], limit, 2.0, color);
+                self.line([near[corner], far[corner]], 1.0, color);
+                self.line([near[corner], near[next]], 2.0, color);
                 if frustum.far[corner].w != 0.0 && far[corner] != far[next] {
-                    self.long_line([far[corner], far[next]], limit, 1.0, color);
+                    self.line([far[corner], far[next]], 1.0, color);
                 }
             }
-            for corners in [[near[0], near[1], near[2]], [near[0], near[2], near[3]]] {
-                if fill > 0.0 {
-                    self.shell(corners, color.gamma_multiply(fill));
-                }
+            if fill > 0.0 {
+                self.shell([near[0], near[1], near[2]], color.gamma_multiply(fill));
+                self.shell([near[0], near[2], near[3]], color.gamma_multiply(fill));
             }
         }
     }
 
-    fn near_clips(&mut self, anatomy: &Anatomy, choice: Choice, theme: &Theme) {
-        let color = theme.decided;
+    fn near_clips(&mut self, anatomy: &Anatomy, choice: Choice) {
+        let color = self.theme.decided;
         for (light, near_clip) in anatomy.near_clips.iter().enumerate() {
             let Some(near_clip) = near_clip.filter(|_| choice.light.is_none_or(|one| one == light)) else { continue };
-            let corners = near_clip.rectangle;
-            let reach = (self.middle - corners[0]).length() + self.radius;
             for index in 0..4 {
-                let ends = [corners[index], corners[(index + 1) % 4]];
-                let tips = ends.map(|end| match near_clip.apex.w == 0.0 {
-                    true => end + near_clip.apex.truncate().normalize() * reach,
-                    false => near_clip.apex.truncate() / near_clip.apex.w,
-                });
-                let mut room = MOST_CUTS;
-                for corners in [[ends[0], ends[1], tips[0]], [ends[1], tips[1], tips[0]]] {
-                    let fill = color.gamma_multiply(0.22);
-                    cut_up(corners, self.radius / 2.0, &mut room, &mut |corners| self.shell(corners, fill));
-                }
-                self.long_line([ends[0], tips[0]], self.radius / 10.0, 1.0, color);
-                self.long_line(ends, self.radius / 10.0, 1.0, color);
+                let ends = [near_clip.rectangle[index], near_clip.rectangle[(index + 1) % 4]];
+                let tips = ends.map(|end| self.end(end, near_clip.apex));
+                self.shell([ends[0], ends[1], tips[0]], color.gamma_multiply(0.22));
+                self.shell([ends[1], tips[1], tips[0]], color.gamma_multiply(0.22));
+                self.line([ends[0], tips[0]], 1.0, color);
+                self.line(ends, 1.0, color);
             }
         }
+    }
+
+    /// Where something that starts at a place ends; what runs to infinity, beyond all there is to see.
+    fn end(&self, start: DVec3, end: DVec4) -> DVec3 {
+        let reach = (self.stage.middle - start).length() + self.stage.radius;
+        if end.w == 0.0 { start + end.truncate().normalize_or_zero() * reach } else { end.truncate() / end.w }
     }
 
     fn names(&mut self, anatomy: &Anatomy, holders: &[bool]) {
@@ -425,67 +380,23 @@ impl Stage {
                 (true, false) => format!("{} (receives none)", object.name),
                 (false, _) => format!("{} (casts none)", object.name),
             };
-            self.labels.push(Label { at, text, of: None });
+            self.stage.labels.push(Label { at, text, of: None });
         }
     }
 
     fn shell(&mut self, places: [DVec3; 3], color: Color32) {
-        let points = places.map(|place| self.point(place, Vec3::ZERO, color, 0.0));
-        self.face(points, places, Layer::Shell);
+        let corners = places.map(|place| self.vertex(place, Vec3::ZERO, color));
+        self.geometry.shells.extend(Some(corners).filter(|corners| !corners.contains(&NONE)));
     }
 
-    /// A line in pieces, so that each is sorted by where it is.
-    fn long_line(&mut self, ends: [DVec3; 2], limit: f64, width: f32, color: Color32) {
-        let [from, to] = ends;
-        let pieces = ((to - from).length() / limit).ceil().clamp(1.0, 32.0) as usize;
-        let at = |piece: usize| from.lerp(to, piece as f64 / pieces as f64);
-        for piece in 0..pieces {
-            let ends = [at(piece), at(piece + 1)];
-            let sides = self.walls.sides((ends[0] + ends[1]) / 2.0);
-            self.lines.push(Line { ends: ends.map(|end| (end - self.middle).as_vec3()), width, color, sides });
+    fn line(&mut self, ends: [DVec3; 2], width: f32, color: Color32) {
+        let [from, to] = ends.map(|end| (end - self.stage.middle).as_vec3());
+        if from.is_finite() && to.is_finite() && self.geometry.lines.len() < MOST_VERTICES {
+            self.stage.reach =
+                ends.iter().fold(self.stage.reach, |reach, end| reach.max((*end - self.stage.middle).length()));
+            self.geometry.lines.push(Line { from, width, to, color });
         }
     }
-}
-
-/// The finite part of a triangle, ended where the volumes of its light are.
-#[must_use]
-pub fn finite_triangle(corners: [DVec4; 3], light: Option<&PlacedLight>, stage: &Stage) -> Vec<[DVec3; 3]> {
-    match light {
-        Some(light) => FarEnd::new(light, stage.middle, stage.radius).finite(corners).into_iter().flatten().collect(),
-        None if corners.iter().all(|corner| corner.w != 0.0) => {
-            vec![corners.map(|corner| corner.truncate() / corner.w)]
-        }
-        None => Vec::new(),
-    }
-}
-
-/// Halves a triangle's longest edge until none is longer than `limit`, or no more may be added.
-fn cut_up(corners: [DVec3; 3], limit: f64, room: &mut usize, found: &mut impl FnMut([DVec3; 3])) {
-    let mut waiting = vec![corners];
-    while let Some([a, b, c]) = waiting.pop() {
-        let edges = [(b - a).length(), (c - b).length(), (a - c).length()];
-        let longest =
-            if edges[0] >= edges[1] && edges[0] >= edges[2] { 0 } else { 1 + usize::from(edges[2] > edges[1]) };
-        // A corner that is no number must not be halved for ever.
-        if *room == 0 || !(edges[longest] > limit && edges[longest].is_finite()) {
-            found([a, b, c]);
-            continue;
-        }
-        *room -= 1;
-        let [a, b, c] = [[a, b, c], [b, c, a], [c, a, b]][longest];
-        let middle = (a + b) / 2.0;
-        waiting.push([a, middle, c]);
-        waiting.push([middle, b, c]);
-    }
-}
-
-fn longest_of([a, b, c]: &[DVec3; 3]) -> f64 {
-    (*b - *a).length().max((*c - *b).length()).max((*a - *c).length())
-}
-
-fn longest_edge(object: &PlacedObject) -> f64 {
-    let places = |corners: &[u32; 3]| corners.map(|corner| object.positions[corner as usize]);
-    object.mesh.triangles().iter().map(|corners| longest_of(&places(corners))).fold(0.0, f64::max)
 }
 
 /// A colour between two, `share` of the way to the second.
@@ -498,20 +409,33 @@ pub fn mix(from: Color32, to: Color32, share: f32) -> Color32 {
 mod tests {
     use super::*;
 
+    fn stage() -> Stage {
+        Stage { middle: DVec3::new(1.0, 0.0, 0.0), radius: 5.0, ..Stage::default() }
+    }
+
+    fn light(position: DVec4) -> PlacedLight {
+        PlacedLight { position, color: [1.0; 3], range: None }
+    }
+
     #[test]
-    fn cutting_up_keeps_the_area_and_stops_at_the_limit() {
-        let corners = [DVec3::ZERO, DVec3::new(8.0, 0.0, 0.0), DVec3::new(0.0, 0.0, 3.0)];
-        let (mut area, mut longest) = (0.0, 0.0_f64);
-        let mut room = 10_000;
-        cut_up(corners, 0.5, &mut room, &mut |[a, b, c]| {
-            area += (b - a).cross(c - a).length() / 2.0;
-            longest = longest.max((b - a).length());
-        });
-        assert!((area - 12.0).abs() < 1e-9 && longest <= 0.5, "{area} {longest}");
-        let mut count = 0;
-        cut_up(corners, 1e-9, &mut 100, &mut |_| count += 1);
-        assert_eq!(count, 101);
-        cut_up([DVec3::NAN; 3], 0.5, &mut 10, &mut |_| count += 1);
-        assert_eq!(count, 102);
+    fn a_side_that_runs_to_a_suns_point_at_infinity_is_a_strip_with_sides_side_by_side() {
+        let sun = light(DVec4::new(0.0, 2.0, 0.0, 0.0));
+        let down = DVec4::new(0.0, -2.0, 0.0, 0.0);
+        let (a, b) = (DVec3::new(1.0, 2.0, 0.0), DVec3::new(-1.0, 2.0, 0.0));
+        assert_eq!(stage().ended(down, &sun), DVec4::new(0.0, -5.0, 0.0, 0.0), "the GPU has it at infinity");
+        let strip = stage().polygon([a.extend(1.0), b.extend(1.0), down], Some(&sun));
+        let far = DVec3::NEG_Y * 5.0 * BEYOND;
+        assert_eq!(strip, [a, b, b + far, a + far]);
+        assert!(stage().polygon([down; 3], Some(&sun)).is_empty());
+    }
+
+    #[test]
+    fn corners_at_infinity_lie_on_the_rays_of_a_lamp() {
+        let lamp = DVec3::new(1.0, 4.0, 0.0);
+        let near = DVec3::new(2.0, 1.0, 2.0);
+        let end = stage().ended((near - lamp).extend(0.0), &light(lamp.extend(1.0)));
+        let along = end.truncate() + stage().middle - lamp;
+        assert!(end.w == 1.0 && along.normalize().dot((near - lamp).normalize()) > 1.0 - 1e-12, "{end}");
+        assert!((along.length() - 4.0 - BEYOND * 5.0).abs() < 1e-9);
     }
 }

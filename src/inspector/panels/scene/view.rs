@@ -1,17 +1,17 @@
 //! What the tab remembers: its views, what they show, and what was made for them.
 
-use super::coarse::Coarsened;
 use super::lens::{PaneView, Projection};
-use super::paint;
 use super::stage::{self, Stage};
 use super::toggles::{Choice, Toggles};
 use crate::anatomy::Anatomy;
 use crate::inspector::canvas::handles::Grip;
 use crate::inspector::look::theme;
 use crate::scene::Camera;
-use egui::{Mesh, Rect};
 use glam::DVec3;
 use std::sync::Arc;
+
+/// Height of a view of all, in radii of what it shows.
+const MARGIN: f64 = 2.1;
 
 /// One of the views.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,8 +79,6 @@ pub struct SceneView {
     /// Which scene that is.
     scenes_opened: u64,
     built: Option<Built>,
-    coarsened: Coarsened,
-    painted: [Option<Painted>; 4],
 }
 
 impl Default for SceneView {
@@ -96,8 +94,6 @@ impl Default for SceneView {
             wants_triangle: false,
             scenes_opened: 0,
             built: None,
-            coarsened: Coarsened::default(),
-            painted: [const { None }; 4],
         }
     }
 }
@@ -112,15 +108,6 @@ struct Built {
     stage: Arc<Stage>,
 }
 
-/// A painted view and what it is of.
-#[derive(Debug)]
-struct Painted {
-    stage: Arc<Stage>,
-    view: PaneView,
-    rect: Rect,
-    mesh: Arc<Mesh>,
-}
-
 impl SceneView {
     /// Another scene is open: it is looked at as a whole.
     fn forget(&mut self) {
@@ -128,7 +115,6 @@ impl SceneView {
         self.choice = Choice::default();
         self.grip = None;
         self.built = None;
-        self.painted = [const { None }; 4];
     }
 
     /// Forgets what belongs to another scene than the one that was opened last.
@@ -150,18 +136,17 @@ impl SceneView {
 
     /// Every view as first shown: all of the scene.
     pub fn reset(&mut self, anatomy: &Anatomy) {
-        let (middle, radius) = stage::sphere(anatomy, &stage::holders(anatomy));
+        let (middle, radius) = stage::framed(anatomy, &stage::holders(anatomy));
         for pane in Pane::ALL {
             let kept = *self.view_mut(pane);
             let mut view = PaneView { projection: kept.projection, oblique: kept.oblique, ..pane.first_view() };
             view.center = middle;
-            view.height = 2.1 * radius;
+            view.height = MARGIN * radius;
             if pane == Pane::Free {
                 // Over the camera's shoulder, so that one sees what it sees.
                 (view.yaw, view.pitch) = angles(&anatomy.camera);
                 view.orbit(-38.0, 0.0);
                 view.pitch = 24.0;
-                view.height = 2.0 * radius;
             }
             *self.view_mut(pane) = view;
         }
@@ -188,29 +173,15 @@ impl SceneView {
         {
             return built.stage.clone();
         }
-        let stage = Arc::new(Stage::new(anatomy, &self.shown, self.choice, theme, &mut self.coarsened));
+        let stage = Arc::new(Stage::new(anatomy, &self.shown, self.choice, theme));
         let (anatomy, stage_too) = (anatomy.clone(), stage.clone());
         self.built = Some(Built { anatomy, shown: self.shown, choice: self.choice, is_dark, stage: stage_too });
         stage
     }
-
-    pub fn painted(&mut self, stage: &Arc<Stage>, pane: Pane, rect: Rect) -> Arc<Mesh> {
-        let view = *self.view_mut(pane);
-        let slot = &mut self.painted[index_of(pane)];
-        if let Some(painted) = slot
-            && Arc::ptr_eq(&painted.stage, stage)
-            && painted.view == view
-            && painted.rect == rect
-        {
-            return painted.mesh.clone();
-        }
-        let mesh = paint::paint(stage, &view.lens(rect), rect);
-        *slot = Some(Painted { stage: stage.clone(), view, rect, mesh: mesh.clone() });
-        mesh
-    }
 }
 
-fn index_of(pane: Pane) -> usize {
+/// Its place in a row of all.
+pub fn index_of(pane: Pane) -> usize {
     Pane::ALL.iter().position(|one| *one == pane).unwrap_or_default()
 }
 
