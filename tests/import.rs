@@ -62,6 +62,19 @@ fn z_fail_and_z_pass_of_one_frame_come_out_whole() {
     assert_makes_what_was_stored(&frame);
 }
 
+/// What wgpu draws on Vulkan: depth as a float and turned round, a viewport of negative height, light caps.
+#[test]
+fn our_own_z_fail_comes_out_whole() {
+    let frame = import::read(&recording("own")).expect("a frame");
+    assert_eq!((frame.api, draws(&frame).len()), (Api::Vulkan, 15));
+    let passes = frame.events.iter().filter(|event| event.kind == RawKind::BeginPass);
+    let passes: Vec<&str> = passes.map(|event| event.groups[0].as_str()).collect();
+    assert_eq!(passes, ["ambient", "volumes", "mask", "light"]);
+    let volume = draws(&frame)[2];
+    assert!(volume.view.y_up && !volume.view.z_from_minus_w && volume.view.viewport == [0.0, 0.0, 160.0, 120.0]);
+    assert_makes_what_was_stored(&frame);
+}
+
 /// Row 0 is at the top: OGRE's blue background is above the floor.
 #[test]
 fn pictures_and_geometry_are_the_same_way_up() {
