@@ -63,6 +63,19 @@ fn z_fail_and_z_pass_of_one_frame_come_out_whole() {
     assert_makes_what_was_stored(&frame);
 }
 
+/// What wgpu draws on Vulkan: depth as a float and turned round, a viewport of negative height, light caps.
+#[test]
+fn our_own_z_fail_comes_out_whole() {
+    let frame = import::read(&recording("own")).expect("a frame");
+    assert_eq!((frame.api, draws(&frame).len()), (Api::Vulkan, 15));
+    let passes = frame.events.iter().filter(|event| event.kind == RawKind::BeginPass);
+    let passes: Vec<&str> = passes.map(|event| event.groups[0].as_str()).collect();
+    assert_eq!(passes, ["ambient", "volumes", "mask", "light"]);
+    let volume = draws(&frame)[2];
+    assert!(volume.view.y_up && !volume.view.z_from_minus_w && volume.view.viewport == [0.0, 0.0, 160.0, 120.0]);
+    assert_makes_what_was_stored(&frame);
+}
+
 /// Row 0 is at the top: OGRE's blue background is above the floor.
 #[test]
 fn pictures_and_geometry_are_the_same_way_up() {
@@ -157,11 +170,18 @@ fn a_folder_made_by_hand_is_read() {
 #[test]
 fn lies_are_refused_in_words() {
     type Lie = fn(&mut Value, &mut Vec<Vec<u8>>);
-    let cases: [(&str, Lie); 16] = [
+    let cases: [(&str, Lie); 17] = [
         ("format 2, not 1", |document, _| document["format"] = json!(2)),
         ("of the API `D3D11`", |document, _| document["api"] = json!("D3D11")),
         ("has 70000x2 texels", |document, _| document["textures"][0]["size"][0] = json!(70_000)),
         ("has 16 bytes, not 64", |document, _| document["textures"][0]["size"] = json!([4, 4])),
+        ("has 16 bytes, not 32", |document, _| {
+            // Another texture has the same bytes, and they fit it.
+            (document["textures"][1]["size"], document["textures"][1]["format"]) =
+                (json!([2, 4]), json!("R8G8B8A8_UNORM"));
+            document["events"][1]["depth_after"] = json!(0);
+            document["events"][0]["depth_after"] = json!(null);
+        }),
         ("there is no byte string 99", |document, _| document["events"][1]["color_after"] = json!(99)),
         ("level 0 of layer 3 of texture 0", |document, _| document["before"][0]["target"]["layer"] = json!(3)),
         ("of texture 8", |document, _| document["events"][0]["depth"]["texture"] = json!(8)),

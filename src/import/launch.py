@@ -60,6 +60,13 @@ def how_it_ended():
     return ""
 
 
+def is_ours(pid):
+    try:
+        return os.getpgid(pid) == os.getpgrp()
+    except OSError:
+        return False
+
+
 def main():
     found = shutil.which(program[0])
     if found is None:
@@ -67,11 +74,11 @@ def main():
     rd.InitialiseReplay(rd.GlobalEnvironment(), [])
     options = rd.GetDefaultCaptureOptions()
     words = " ".join(shlex.quote(word) for word in program[1:])
-    started = rd.ExecuteAndInject(os.path.abspath(found), os.getcwd(), words, [], os.path.join(folder, "capture"), options, False)
-    if not started.ident:
-        fail("program", started.result.Message() if hasattr(started.result, "Message") else started.result)
-    control = rd.CreateTargetControl("", started.ident, "stencilscope", True)
-    if control is None:
+    program_file, captures = os.path.abspath(found), os.path.join(folder, "capture")
+    started = rd.ExecuteAndInject(program_file, os.getcwd(), words, [], captures, options, False)
+    # Nobody to speak with: it has ended before RenderDoc could reach it. Then another program may stand at its port.
+    control = rd.CreateTargetControl("", started.ident, "stencilscope", False) if started.ident else None
+    if control is None or not is_ours(control.GetPID()):
         fail("died", how_it_ended())
     control.QueueCapture(frame, 1)
     end, api, unsupported = time.monotonic() + seconds, None, None

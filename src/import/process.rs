@@ -54,6 +54,7 @@ pub enum Ended {
 #[derive(Debug)]
 pub struct Run {
     child: Child,
+    has_ended: bool,
     folder: tempfile::TempDir,
     lines: Receiver<String>,
     last: Arc<Mutex<String>>,
@@ -89,7 +90,7 @@ impl Run {
         if let (Some(errors), last) = (child.stderr.take(), Arc::clone(&last)) {
             std::thread::spawn(move || each_line(errors, |line| keep(&last, line)));
         }
-        Ok(Self { child, folder, lines, last, start: Instant::now(), limits })
+        Ok(Self { child, has_ended: false, folder, lines, last, start: Instant::now(), limits })
     }
 
     /// Where the script writes.
@@ -140,8 +141,11 @@ impl Run {
     }
 
     fn end(&mut self) {
-        // While the child is not waited for, its number is that of its group and of nobody else. What has ended
-        // already needs no more ending: errors say nothing new.
+        // Once the child is waited for, its number may be that of another process.
+        if std::mem::replace(&mut self.has_ended, true) {
+            return;
+        }
+        // What has ended already needs no more ending: errors say nothing new.
         #[cfg(unix)]
         let _ = rustix::process::kill_process_group(
             rustix::process::Pid::from_child(&self.child),
@@ -269,7 +273,12 @@ fn never(recording: &Recording, seen: &str) -> ImportError {
         frame: recording.frame,
         seconds: recording.seconds,
         seen: seen.to_owned(),
-        mend: if has_display() { "ask for an earlier --frame or more --seconds" } else { NO_DISPLAY },
+        mend: match has_display() {
+            true => {
+                "ask for an earlier --frame or more --seconds, and name the program itself, not a script that starts it"
+            }
+            false => NO_DISPLAY,
+        },
     }
 }
 

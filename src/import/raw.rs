@@ -124,7 +124,8 @@ pub struct RawTarget {
     pub layer: u32,
 }
 
-/// Pictures of a target: width times height texels, row 0 at the top. Equal ones are one in memory.
+/// Pictures of a target: each has exactly its width times its height texels, row 0 at the top. Equal ones are one in
+/// memory.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RawContents {
     /// Depth as the buffer has it, 0 to 1; an integer divided by the largest of its format.
@@ -191,10 +192,10 @@ pub struct RawDraw {
     pub topology: RawTopology,
     /// Clip-space positions after the last vertex stage, of all instances; NaN and infinity as they come.
     pub positions: Vec<[f32; 4]>,
-    /// Indices into `positions`, in the order drawn. Strips and fans are taken apart, each triangle with the winding
+    /// Indices into `positions`, all of them within, in the order drawn. Strips and fans are taken apart, each triangle with the winding
     /// that the API gives it. Empty for points and lines.
     pub triangles: Vec<[u32; 3]>,
-    /// The triangles of each instance.
+    /// The triangles of each instance, one range after the other.
     pub instances: Vec<Range<usize>>,
     /// Where the pixels are, and what a clip-space position means.
     pub view: RawView,

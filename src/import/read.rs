@@ -103,8 +103,8 @@ struct Reader {
     /// Layers and levels of each.
     sizes: Vec<[u32; 2]>,
     blobs: Blobs,
-    /// Pictures by byte string, format and width: those that are equal are one in memory.
-    pictures: BTreeMap<(usize, usize, u32), RawContents>,
+    /// Pictures by byte string, format and size: those that are equal are one in memory.
+    pictures: BTreeMap<(usize, usize, [u32; 2]), RawContents>,
     shaders: BTreeMap<(String, usize), RawFragment>,
     limits: BTreeSet<String>,
 }
@@ -139,16 +139,16 @@ impl Reader {
             return Ok(RawContents::default());
         };
         let [width, height] = self.size(target);
-        // A texture of the same format and width, by its first one.
-        let alike = self.textures.iter().position(|other| other.format == texture.format).unwrap_or(target.texture);
-        if let Some(known) = self.pictures.get(&(blob, alike, width)) {
-            return Ok(known.clone());
-        }
         let [found, expected] = [self.blobs.length(blob)?, u64::from(width) * u64::from(height) * texel as u64];
         // RenderDoc leaves a byte a texel after Vulkan's depth of 24 bits with stencil: room for what it has put above.
         let has_room = texture.format == RawFormat::D24S8 && found == expected / 4 * 5;
         if found != expected && !has_room {
             return Err(broken(format!("a picture of `{name}` has {found} bytes, not {expected}")));
+        }
+        // The first texture of the format stands for it.
+        let alike = self.textures.iter().position(|other| other.format == texture.format).unwrap_or(target.texture);
+        if let Some(known) = self.pictures.get(&(blob, alike, [width, height])) {
+            return Ok(known.clone());
         }
         let mut bytes = self.blobs.read(blob)?;
         bytes.truncate(usize::try_from(expected).unwrap_or(usize::MAX));
@@ -156,7 +156,7 @@ impl Reader {
         self.blobs.reserve(found.saturating_mul(3))?;
         let layout = Layout { bottom_row_first: self.is_gl(), depth_above_stencil: self.is_gl() };
         let contents = pictures::read(&self.textures[target.texture].format, &bytes, width as usize, layout);
-        self.pictures.insert((blob, alike, width), contents.clone());
+        self.pictures.insert((blob, alike, [width, height]), contents.clone());
         Ok(contents)
     }
 
