@@ -38,6 +38,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "truth",
             "accuracy",
             "history",
+            "recorded",
             "numbers",
             "picture",
         ],
@@ -99,6 +100,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "stress",
             "ask",
             "reading",
+            "recorded",
         ],
     ),
     (
@@ -163,6 +165,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "stress",
             "ask",
             "reading",
+            "recorded",
         ],
     ),
     ("main", &["cli"]),

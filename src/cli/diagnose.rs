@@ -9,7 +9,7 @@ use crate::diagnosis::{Cause, Diagnosis, Mend, Proof, wrong_pixels};
 use crate::picture::Picture;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::session::{CaptureRequest, Fault, Session};
+use crate::session::{CaptureRequest, Fault, RunFrame, Session};
 use clap::Args;
 use std::collections::BTreeMap;
 use std::fs;
@@ -52,6 +52,10 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
     frame.refuse_draws("a diagnosis looks at draws by itself")?;
     frame.refuse_external_capture("a diagnosis runs many frames")?;
     let subject = Subject::new(&arguments.scene, scene_options, frame)?;
+    let subject = match subject {
+        Subject::Folder(frame) if frame.capture.origin.is_some() => return recorded(arguments, &frame),
+        subject => subject,
+    };
     let SceneSubject { loaded, scene, request } = subject.scene()?;
     let json = arguments.json.as_ref().and_then(Option::as_deref);
     json.map_or(Ok(()), output::check_target)?;
@@ -85,6 +89,28 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
         output::print(&notes)?;
     }
     verdict(&diagnosis)
+}
+
+/// Diagnoses another program's frame.
+fn recorded(arguments: &DiagnoseArguments, run: &RunFrame) -> Result<(), CliError> {
+    if arguments.output.is_some() || arguments.fix.is_some() {
+        let why = "another program drew this frame, and there is no scene to write: leave `-o` and `--fix` out";
+        return Err(CliError::Usage(why.to_owned()));
+    }
+    let json = arguments.json.as_ref().and_then(Option::as_deref);
+    json.map_or(Ok(()), output::check_target)?;
+    let mut session = Session::new(arguments.frame.adapter.as_deref())?;
+    let diagnosis = with_bar("diagnosis", &Progress::default(), |progress| session.diagnose_recorded(run, progress))?;
+    match &arguments.json {
+        Some(_) => output::deliver(&diagnosis.to_json().map_err(|error| broken(error.into()))?, json)?,
+        None => output::print(&diagnosis.to_text())?,
+    }
+    let proven = diagnosis.faults.iter().find(|found| found.proof == Proof::Proven);
+    let because = proven.map_or_else(String::new, |found| format!(", by {}", found.fault.name()));
+    match diagnosis.wrong() {
+        0 => Ok(()),
+        pixels => Err(CliError::Wrong { pixels, because }),
+    }
 }
 
 fn verdict(diagnosis: &Diagnosis) -> Result<(), CliError> {

@@ -15,6 +15,7 @@ mod json;
 mod mend;
 pub(crate) mod mesh_facts;
 pub(crate) mod proof;
+pub mod recorded;
 pub(crate) mod regions;
 pub(crate) mod rules;
 mod shown;

@@ -3,17 +3,23 @@
 //! ```text
 //! FramePlan ─ space.rs   clip space as the view space of an assumed eye: straight lines stay straight
 //!           ─ light.rs   the sides of shadow volumes run away from the light: where they meet, it is
+//!           ─ edges.rs   where volumes are open
+//!           ─ ends.rs    which end of a volume is the caster's
 //!           ─ scene.rs   surfaces as objects, and casters that are out of view by their volumes
 //!           ─ labels.rs  what the stencil test of the light's pass lets through is lit
 //! ```
 //!
 //! The scene that comes out can be traced like any other, so the truth of the frame is known from nothing but its draws.
 
+mod edges;
+mod ends;
 mod labels;
 mod light;
 mod scene;
 mod space;
 
+pub use edges::OpenEdges;
+pub use ends::far_ends;
 pub use labels::labels;
 pub use light::{FoundLight, light};
 pub use scene::scene;

@@ -3,7 +3,8 @@
 //! What casts is told by the volumes: a surface casts if a volume of some light begins at its corners. A volume that
 //! begins at none is of a caster out of view: its near end casts, unseen, or where it has none, a fan over its near edges.
 
-use super::space::{Space, triangles};
+use super::ends::far_ends;
+use super::space::{Space, neighbours, triangles};
 use crate::plan::{Draw, FramePlan, Part, Pass};
 use crate::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene, SceneBuilder};
 use glam::{DVec3, DVec4};
@@ -46,9 +47,15 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
             .max_by_key(|(count, _)| *count);
         match most {
             Some((count, object)) if count * 4 >= finite.len() && count > 0 => object.casts = true,
-            _ => unseen.extend(
-                near_end(plan, draw, &places).map(|mesh| Object::of(format!("caster of {}", draw.name), mesh).unseen()),
-            ),
+            _ => {
+                let light = pass.light.and_then(|light| lights.get(light.0)).copied();
+                let mesh = light.and_then(|light| near_end(plan, draw, &places, light));
+                let is_known =
+                    |mesh: &Mesh| unseen.iter().any(|one: &Object| one.mesh.content_hash() == mesh.content_hash());
+                if let Some(mesh) = mesh.filter(|mesh| !is_known(mesh)) {
+                    unseen.push(Object::of(format!("caster of {}", draw.name), mesh).unseen());
+                }
+            }
         }
     }
     let lights = lights.into_iter().map(|position| Light { position, ..Light::point(DVec3::ZERO) });
@@ -87,18 +94,25 @@ fn built(triangles: Vec<[DVec3; 3]>) -> Option<Mesh> {
     builder.build().ok().filter(|mesh| !mesh.triangles().is_empty())
 }
 
-/// What of a volume stops light where its caster is not seen: a finite volume itself, the near cap of an infinite one,
-/// or a fan over the edges of its sides.
-fn near_end(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4>]) -> Option<Mesh> {
-    if let Some(cap) = mesh(plan, draw, places, |corners| corners.iter().all(|corner| corner.w == 1.0)) {
-        return Some(cap);
+/// What of a volume stops light where its caster is not seen: the cap at its near end, or where it has none, a fan over
+/// the near edges of its sides.
+fn near_end(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4>], light: DVec4) -> Option<Mesh> {
+    let far = far_ends(places, light);
+    let is_near = |corner: u32| far.get((corner + draw.base_vertex) as usize) == Some(&false);
+    let place =
+        |corner: u32| places.get((corner + draw.base_vertex) as usize).copied().flatten().map(|at| at.truncate());
+    let (mut cap, mut edges) = (Vec::new(), Vec::new());
+    for (corners, _) in triangles(plan, draw, places) {
+        let near: Option<Vec<DVec3>> = corners.into_iter().filter(|corner| is_near(*corner)).map(place).collect();
+        match near.as_deref() {
+            Some([a, b, c]) => cap.push([*a, *b, *c]),
+            Some([a, b]) => edges.push([*a, *b]),
+            _ => {}
+        }
     }
-    let edge = |corners: [DVec4; 3]| {
-        let near: Vec<DVec3> =
-            corners.iter().filter(|corner| corner.w == 1.0).map(|corner| corner.truncate()).collect();
-        <[DVec3; 2]>::try_from(near).ok()
-    };
-    let edges: Vec<[DVec3; 2]> = triangles(plan, draw, places).filter_map(|(_, corners)| edge(corners)).collect();
+    if !cap.is_empty() {
+        return built(cap);
+    }
     let middle = edges.as_flattened().iter().sum::<DVec3>() / (edges.len() as f64 * 2.0);
     built(edges.into_iter().map(|[from, to]| [from, to, middle]).collect())
 }
@@ -119,13 +133,7 @@ impl Corners {
     }
 
     fn count(&self, places: &[DVec3]) -> usize {
-        let is_near = |place: &&DVec3| {
-            let [x, y, z] = Corners::cell(**place);
-            let around = [-1, 0, 1];
-            around
-                .iter()
-                .any(|dx| around.iter().any(|dy| around.iter().any(|dz| self.0.contains(&[x + dx, y + dy, z + dz]))))
-        };
+        let is_near = |place: &&DVec3| neighbours(Corners::cell(**place)).any(|cell| self.0.contains(&cell));
         places.iter().filter(is_near).count()
     }
 }

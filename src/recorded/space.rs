@@ -47,11 +47,30 @@ impl Space {
         Some(if h.abs() > INFINITE { (place / h).truncate().extend(1.0) } else { place.truncate().extend(0.0) })
     }
 
+    /// The vertex of a homogeneous place of view space: the inverse of [`Space::place`].
+    #[must_use]
+    pub fn clip(&self, place: DVec4) -> [f32; 4] {
+        let [left, top, width, height] = self.viewport.area.map(f64::from);
+        let [columns, rows] = self.size;
+        let w = -place.z;
+        let x = (place.x * rows / columns - w * ((2.0 * left + width) / columns - 1.0)) * columns / width;
+        let y = (place.y + w * ((2.0 * top + height) / rows - 1.0)) * rows / height;
+        let [near, far] = self.viewport.depth.map(f64::from);
+        let z = self.curve.offset * w + self.curve.scale * place.w;
+        let z = if far > near { (z - near * w) / (far - near) } else { 0.0 };
+        [x, y, z, w].map(|value| value as f32)
+    }
+
     /// The vertices of a draw's mesh.
     #[must_use]
     pub fn places(&self, plan: &FramePlan, draw: &Draw) -> Vec<Option<DVec4>> {
         plan.meshes[draw.mesh.0].vertices.data().iter().map(|vertex| self.place(*vertex)).collect()
     }
+}
+
+/// A cell and those that touch it: what was rounded may lie next door.
+pub fn neighbours([x, y, z]: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
+    (0..27).map(move |index| [x + index % 3 - 1, y + index / 3 % 3 - 1, z + index / 9 - 1])
 }
 
 /// The triangles of a draw whose corners are numbers.

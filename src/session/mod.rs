@@ -7,6 +7,7 @@ mod anatomy;
 mod answer;
 mod counts;
 mod diagnose;
+mod diagnose_recorded;
 mod draws;
 mod history;
 mod measure;

@@ -4,12 +4,15 @@ use super::recording;
 use crate::common::random::Random;
 use crate::common::session;
 use glam::{DQuat, DVec3};
+use std::sync::Arc;
 use stencilscope::capture::disk::{Contents, read_whole, write};
 use stencilscope::capture::{Capture, Differs};
+use stencilscope::diagnosis::Proof;
+use stencilscope::diagnosis::recorded::FrameFault;
 use stencilscope::import::{Converted, convert, read};
-use stencilscope::plan::{DecidedBy, FramePlan, Side, lint};
+use stencilscope::plan::{Blob, DecidedBy, FramePlan, LightId, RasterState, Side, StartContent, lint};
 use stencilscope::progress::Progress;
-use stencilscope::session::{RunFrame, Session};
+use stencilscope::session::{FrameSource, RunFrame, Session};
 
 /// As a draw's depth and stencil may differ on another rasterizer: pixels on edges and at depths that are equal.
 const MOST_DIFFERING: u64 = 16;
@@ -147,4 +150,88 @@ fn no_pixel_of_right_frames_is_wrong_against_rays_through_their_own_triangles() 
         assert!(error.compared > 20_000, "{name}: {error:?}");
         assert_eq!(error.wrong(), 0, "{name}: {error:?}");
     }
+}
+
+fn frame_of(name: &str) -> RunFrame {
+    let frame = read(&recording(name)).expect("a recording");
+    let Converted { plan, capture, scene, .. } = convert(&frame, name).expect("a frame");
+    let source = scene.map(|scene| Arc::new(FrameSource { scene, request: None }));
+    RunFrame { capture: Arc::new(capture), plan: Arc::new(plan), source }
+}
+
+/// A frame whose plan has one fault, run by us as if its program had drawn it so.
+fn provoked(session: &mut Session, name: &str, change: impl Fn(&mut FramePlan)) -> RunFrame {
+    let mut frame = frame_of(name);
+    let mut plan = (*frame.plan).clone();
+    change(&mut plan);
+    let scene = frame.scene().expect("a scene").clone();
+    let run = session.capture_plan(&scene, &plan).expect("a capture");
+    let mut capture = Capture { steps: run.steps, ..(*frame.capture).clone() };
+    capture.lights[0].shadow = stencilscope::recorded::labels(&plan, &capture, LightId(0));
+    (frame.plan, frame.capture) = (Arc::new(plan), Arc::new(capture));
+    frame
+}
+
+fn volumes(plan: &mut FramePlan) -> impl Iterator<Item = &mut RasterState> {
+    let draws = plan.passes.iter_mut().flat_map(|pass| &mut pass.draws);
+    draws.filter(|draw| draw.part.is_of_volume()).map(|draw| &mut draw.raster)
+}
+
+#[test]
+fn what_is_wrong_is_named_first_and_proven_by_a_changed_plan() {
+    let mut session = session();
+    let mut proven = |name: &str, fault: FrameFault, change: &dyn Fn(&mut FramePlan)| {
+        let frame = provoked(&mut session, name, change);
+        let diagnosis = session.diagnose_recorded(&frame, &Progress::default()).expect("a diagnosis");
+        assert!(diagnosis.wrong() > 50, "{}: {}", fault.name(), diagnosis.to_text());
+        let first = diagnosis.faults.first().expect("a fault");
+        assert_eq!((first.fault, first.proof), (fault, Proof::Proven), "{}", diagnosis.to_text());
+        assert!(diagnosis.to_json().expect("JSON").contains(fault.name()));
+    };
+    proven("ogre", FrameFault::FaceCulled, &|plan| {
+        volumes(plan).for_each(|raster| raster.cull = Some(wgpu::Face::Back))
+    });
+    proven("ogre", FrameFault::VolumesWriteDepth, &|plan| volumes(plan).for_each(|raster| raster.depth_write = true));
+    proven("ogre", FrameFault::MaskHides, &|plan| {
+        let draws = plan.passes.iter_mut().filter(|pass| pass.name == "light").flat_map(|pass| &mut pass.draws);
+        draws.for_each(|draw| draw.raster.stencil.read_mask = 0xfe);
+    });
+    proven("ogre", FrameFault::NotCleared, &|plan| {
+        let volumes = plan.passes.iter_mut().find(|pass| pass.name == "volumes").expect("volumes");
+        volumes.depth_stencil.as_mut().expect("a target").clear_stencil = None;
+        let texels = (plan.size[0] * plan.size[1]) as usize;
+        let start = StartContent { depth: None, stencil: Some(Blob::new(vec![3; texels])) };
+        plan.passes[0].recorded.as_mut().expect("recorded").start = Some(start);
+    });
+    proven("ogre", FrameFault::Clamped, &|plan| {
+        for raster in volumes(plan) {
+            raster.stencil.front.pass_op = wgpu::StencilOperation::DecrementClamp;
+            raster.stencil.back.pass_op = wgpu::StencilOperation::IncrementClamp;
+        }
+    });
+}
+
+#[test]
+fn a_right_frame_has_no_wrong_pixel_and_says_so() {
+    let mut session = session();
+    let diagnosis = session.diagnose_recorded(&frame_of("ogre"), &Progress::default()).expect("a diagnosis");
+    assert!(diagnosis.wrong() == 0 && diagnosis.wrong_again <= MOST_DIFFERING, "{}", diagnosis.to_text());
+    assert!(diagnosis.to_text().contains("0 of 47 478 pixels wrong"), "{}", diagnosis.to_text());
+}
+
+#[test]
+fn a_frame_that_its_program_drew_wrong_is_found_named_and_proven() {
+    let mut session = session();
+    let mut diagnosis = |name| session.diagnose_recorded(&frame_of(name), &Progress::default()).expect("a diagnosis");
+    let short = diagnosis("ogre-short");
+    let first = short.faults.first().expect("a fault");
+    assert!(short.wrong() > 500, "{}", short.to_text());
+    assert_eq!((first.fault, first.proof, first.pixels_left), (FrameFault::FiniteExtrusion, Proof::Proven, 0));
+    // Its volumes are cut by the far plane, and were open besides.
+    let far = diagnosis("ogre-far");
+    let first = far.faults.first().expect("a fault");
+    assert_eq!((first.fault, first.proof), (FrameFault::FarClip, Proof::Part), "{}", far.to_text());
+    assert!(first.pixels_left * 3 < far.wrong(), "{}", far.to_text());
+    let joined = far.faults.iter().find(|found| !found.together_with.is_empty()).expect("faults together");
+    assert!(joined.fault == FrameFault::FarClip && joined.pixels_left * 20 < far.wrong(), "{}", far.to_text());
 }

@@ -1,0 +1,455 @@
+//! What is wrong in another program's frame, and the proof: its own plan with one thing changed.
+//!
+//! ```text
+//! FramePlan ─► suspicions: what its states and volumes say, in numbers, each with a changed plan
+//!           ─► run again (`Session::diagnose_recorded`) ─► how many pixels are still wrong ─► proof
+//! ```
+//!
+//! No rule looks at the program: what is known is what was drawn.
+
+use super::Proof;
+use crate::accuracy::{ErrorCounts, Region};
+use crate::numbers;
+use crate::plan::{Blob, Draw, DrawMesh, FramePlan, LightId, MeshId, Pass, RasterState};
+use crate::recorded::{OpenEdges, Space, far_ends};
+use glam::DVec4;
+use serde_json::json;
+use wgpu::StencilOperation as Operation;
+
+named_enum! {
+    /// Why pixels of a frame are wrong.
+    pub enum FrameFault {
+        /// A far plane cuts volumes that are counted behind the surface.
+        FarClip = "far-clip",
+        /// The near plane cuts volumes that are counted in front of the surface.
+        NearPlaneCut = "near-plane-cut",
+        /// Volumes end before the receiver.
+        FiniteExtrusion = "finite-extrusion",
+        /// One side of the volumes' faces is thrown away, though both count.
+        FaceCulled = "face-culled",
+        /// Counts stop at 0 or 255, and what takes away may come before what adds.
+        Clamped = "clamped",
+        /// Volumes write depth, and hide each other.
+        VolumesWriteDepth = "volumes-write-depth",
+        /// The stencil holds something before the first volume is counted.
+        NotCleared = "stencil-not-cleared",
+        /// The light's pass looks at some bits of the count alone.
+        MaskHides = "stencil-mask",
+        /// The volumes are not closed, and are counted behind the surface.
+        OpenVolume = "open-volume",
+    }
+}
+
+impl FrameFault {
+    /// What it is and what to do, in the program's own terms.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        match self {
+            FrameFault::FarClip => {
+                "The far plane cuts shadow volumes away that z-fail counts. Use a projection to infinity, or depth \
+                 clamping (GL_DEPTH_CLAMP, depthClampEnable) for the volumes."
+            }
+            FrameFault::NearPlaneCut => {
+                "The near plane cuts shadow volumes open that z-pass counts. Count from behind with z-fail and closed \
+                 volumes; depth clamping saves what lies in front of the eye."
+            }
+            FrameFault::FiniteExtrusion => {
+                "The shadow volumes end before they reach the surface. Extrude them to infinity (w = 0)."
+            }
+            FrameFault::FaceCulled => {
+                "Face culling throws away one side of the volumes, and only the other counts. Switch culling off for \
+                 the volumes."
+            }
+            FrameFault::Clamped => {
+                "The stencil operations stop at 0 and 255. Use those that wrap (GL_INCR_WRAP, INCREMENT_AND_WRAP): \
+                 then the order of faces does not matter."
+            }
+            FrameFault::VolumesWriteDepth => {
+                "Shadow volumes write depth, so that faces behind them are not counted as they should. Switch depth \
+                 writing off for the volumes."
+            }
+            FrameFault::NotCleared => {
+                "The stencil is not cleared before volumes are counted in it. Clear it for every light."
+            }
+            FrameFault::MaskHides => {
+                "The light's stencil test looks at some of the bits that were counted in. Compare all of them."
+            }
+            FrameFault::OpenVolume => {
+                "Z-fail needs closed volumes, and these have edges of one triangle. Draw both caps."
+            }
+        }
+    }
+}
+
+/// What may be wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Suspicion {
+    /// What it may be.
+    pub fault: FrameFault,
+    /// What it is suspected from, in numbers.
+    pub evidence: String,
+    /// The frame without it.
+    pub mended: FramePlan,
+}
+
+/// A suspicion that was tried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaultFound {
+    /// What it is.
+    pub fault: FrameFault,
+    /// The light whose shadows it is about.
+    pub light: LightId,
+    /// What it was suspected from.
+    pub evidence: String,
+    /// What its run has shown.
+    pub proof: Proof,
+    /// Pixels of the light that are wrong without it.
+    pub pixels_left: u64,
+    /// Faults that were taken away with it; empty where it was tried alone.
+    pub together_with: Vec<FrameFault>,
+}
+
+/// What is wrong in another program's frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameDiagnosis {
+    /// What the frame is called.
+    pub scene: String,
+    /// Of each light: its pixels, and the largest wrong region.
+    pub lights: Vec<(ErrorCounts, Option<Region>)>,
+    /// The proven ones first.
+    pub faults: Vec<FaultFound>,
+    /// Wrong pixels where the frame is run again as it is: it should be as many.
+    pub wrong_again: u64,
+}
+
+impl FrameDiagnosis {
+    /// Wrong pixels of all lights.
+    #[must_use]
+    pub fn wrong(&self) -> u64 {
+        self.lights.iter().map(|(error, _)| error.wrong()).sum()
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();
+        let mut text = format!(
+            "{}: {} of {} pixels wrong against rays through its own triangles ({} false shadow, {} missing shadow); {} at \
+             edges excused\n",
+            self.scene,
+            numbers::count(error.wrong()),
+            numbers::count(error.compared),
+            error.false_shadow,
+            error.missing_shadow,
+            error.edge_band
+        );
+        for (index, (error, worst)) in self.lights.iter().enumerate() {
+            let Some(worst) = worst else { continue };
+            let [left, top, right, bottom] = worst.bounds;
+            text += &format!(
+                "{}: {} wrong; the largest region: {} pixels of {} from {left},{top} to {right},{bottom}\n",
+                LightId(index).name(),
+                numbers::count(error.wrong()),
+                numbers::count(worst.pixels),
+                worst.kind.name().replace('_', " "),
+            );
+        }
+        if self.wrong_again != self.wrong() {
+            text += &format!("run again as it is, {} pixels are wrong\n", numbers::count(self.wrong_again));
+        }
+        for found in &self.faults {
+            let FaultFound { fault, light, proof, pixels_left, together_with, .. } = found;
+            let with: String = together_with.iter().map(|other| format!(" and {}", other.name())).collect();
+            let (left, proof) = (numbers::count(*pixels_left), proof.name());
+            text += &format!("\n{}{with} ({}), {proof}: {left} pixels left\n", fault.name(), light.name());
+            text += &format!("  {}\n  {}\n", found.evidence, found.fault.meaning());
+        }
+        if self.wrong() > 0 && self.faults.is_empty() {
+            text += "no known cause fits\n";
+        }
+        text
+    }
+
+    /// For scripts: as `diagnose --json` of a scene, with one region a light.
+    ///
+    /// # Errors
+    /// What the serialiser refuses; nothing here is known to be refused.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        let error: ErrorCounts = self.lights.iter().map(|(error, _)| *error).sum();
+        let cause = |found: &FaultFound| {
+            json!({
+                "cause": found.fault.name(),
+                "meaning": found.fault.meaning(),
+                "evidence": found.evidence,
+                "mend": null,
+                "proof": found.proof.name(),
+                "pixels_left": found.pixels_left,
+                "together_with": found.together_with,
+            })
+        };
+        let region = |(index, (error, worst)): (usize, &(ErrorCounts, Option<Region>))| {
+            let worst = worst.as_ref()?;
+            let of_light = self.faults.iter().filter(|found| found.light.0 == index);
+            Some(json!({
+                "pixels": error.wrong(),
+                "kind": worst.kind.name(),
+                "light": index,
+                "box": worst.bounds,
+                "at": worst.at,
+                "casters": [],
+                "receivers": [],
+                "causes": of_light.map(cause).collect::<Vec<_>>(),
+            }))
+        };
+        let document = json!({
+            "schema": 1,
+            "scene": self.scene,
+            "technique": "recorded",
+            "settings": {},
+            "error": error,
+            "mesh_findings": [],
+            "regions": self.lights.iter().enumerate().filter_map(region).collect::<Vec<_>>(),
+        });
+        Ok(serde_json::to_string_pretty(&document)? + "\n")
+    }
+}
+
+/// What may be wrong with the shadows of a light at `position`, from states and volumes alone.
+#[must_use]
+pub fn suspicions(plan: &FramePlan, light: LightId, position: DVec4) -> Vec<Suspicion> {
+    FrameFault::ALL.into_iter().filter_map(|fault| suspicion(fault, plan, light, position)).collect()
+}
+
+/// What speaks for a fault in a plan; `None` where nothing does.
+#[must_use]
+pub fn suspicion(fault: FrameFault, plan: &FramePlan, light: LightId, position: DVec4) -> Option<Suspicion> {
+    let counting = Counting { plan, light };
+    let (evidence, mended) = match fault {
+        FrameFault::FarClip => counting.clipped(true),
+        FrameFault::NearPlaneCut => counting.clipped(false),
+        FrameFault::FiniteExtrusion => counting.finite(position),
+        FrameFault::FaceCulled => counting.culled(),
+        FrameFault::Clamped => counting.clamped(),
+        FrameFault::VolumesWriteDepth => counting.writes_depth(),
+        FrameFault::NotCleared => counting.not_cleared(),
+        FrameFault::MaskHides => counting.mask_hides(),
+        FrameFault::OpenVolume => counting.open(),
+    }?;
+    Some(Suspicion { fault, evidence, mended })
+}
+
+/// The draws that count a light's volumes.
+struct Counting<'a> {
+    plan: &'a FramePlan,
+    light: LightId,
+}
+
+fn counts(operation: Operation) -> bool {
+    use Operation::{DecrementClamp, DecrementWrap, IncrementClamp, IncrementWrap};
+    matches!(operation, IncrementClamp | IncrementWrap | DecrementClamp | DecrementWrap)
+}
+
+/// Does a state count behind the surface, or in front of it?
+fn sides(raster: &RasterState) -> [bool; 2] {
+    let faces = [&raster.stencil.front, &raster.stencil.back];
+    [faces.iter().any(|face| counts(face.depth_fail_op)), faces.iter().any(|face| counts(face.pass_op))]
+}
+
+impl Counting<'_> {
+    fn is_of_light(&self, pass: &Pass) -> bool {
+        pass.light == Some(self.light) && self.plan.is_of_picture(pass)
+    }
+
+    fn draws(&self) -> impl Iterator<Item = (&Pass, &Draw)> {
+        let passes = self.plan.passes.iter().filter(|pass| self.is_of_light(pass));
+        passes
+            .flat_map(|pass| pass.draws.iter().map(move |draw| (pass, draw)))
+            .filter(|(_, draw)| draw.part.is_of_volume())
+    }
+
+    /// The plan with the states of the counting draws changed.
+    fn with_states(&self, change: impl Fn(&mut RasterState)) -> FramePlan {
+        let mut plan = self.plan.clone();
+        for pass in plan.passes.iter_mut().filter(|pass| pass.light == Some(self.light)) {
+            pass.draws.iter_mut().filter(|draw| draw.part.is_of_volume()).for_each(|draw| change(&mut draw.raster));
+        }
+        plan
+    }
+
+    fn clipped(&self, is_far: bool) -> Option<(String, FramePlan)> {
+        // Counted behind the surface, what is cut at the far end is missed; counted in front of it, at the near end.
+        let is_meant = |raster: &RasterState| sides(raster)[usize::from(!is_far)] && !raster.unclipped_depth;
+        let is_reversed = self.plan.depth.mapping.is_reversed();
+        let is_cut = |[_, _, z, w]: &[f32; 4]| if is_far != is_reversed { z > w } else { *z < 0.0 };
+        let draws: Vec<&Draw> = self.draws().map(|(_, draw)| draw).filter(|draw| is_meant(&draw.raster)).collect();
+        let of_draw =
+            |draw: &&Draw| self.plan.meshes[draw.mesh.0].vertices.data().iter().filter(|at| is_cut(at)).count();
+        let cut: usize = draws.iter().map(of_draw).sum();
+        if cut == 0 {
+            return None;
+        }
+        let plane = if is_far { "far" } else { "near" };
+        let evidence = format!(
+            "{} corners of the volumes lie beyond the {plane} plane, and depth clamping is off",
+            numbers::count(cut as u64)
+        );
+        let unclipped = |raster: &mut RasterState| raster.unclipped_depth |= is_meant(raster);
+        Some((evidence, self.with_states(unclipped)))
+    }
+
+    fn finite(&self, position: DVec4) -> Option<(String, FramePlan)> {
+        let mut plan = self.with_states(|raster| raster.unclipped_depth = true);
+        let (mut moved, mut all) = (0, 0);
+        for (pass, draw) in self.draws() {
+            let space = Space::new(self.plan, pass);
+            let places = space.places(self.plan, draw);
+            if places.iter().flatten().any(|place| place.w == 0.0) {
+                return None;
+            }
+            let far = far_ends(&places, position);
+            all += places.len();
+            moved += far.iter().filter(|far| **far).count();
+            let mut vertices = self.plan.meshes[draw.mesh.0].vertices.data().to_vec();
+            for ((vertex, place), _) in vertices.iter_mut().zip(&places).zip(&far).filter(|(_, far)| **far) {
+                let Some(place) = place else { continue };
+                let away = place.truncate() * position.w - position.truncate();
+                *vertex = space.clip(away.extend(0.0));
+            }
+            plan.meshes[draw.mesh.0].vertices = Blob::new(vertices);
+        }
+        if moved == 0 {
+            return None;
+        }
+        let [moved, all] = [moved, all].map(|count| numbers::count(count as u64));
+        let evidence =
+            format!("no corner of the volumes is at infinity: {moved} of {all} are a far end that is somewhere");
+        Some((evidence, plan))
+    }
+
+    fn culled(&self) -> Option<(String, FramePlan)> {
+        let is_one_sided = |raster: &RasterState| {
+            let ops = |face: &crate::plan::StencilFace| [face.depth_fail_op, face.pass_op].into_iter().any(counts);
+            raster.cull.is_some() && ops(&raster.stencil.front) && ops(&raster.stencil.back)
+        };
+        let culled = self.draws().filter(|(_, draw)| is_one_sided(&draw.raster)).count();
+        // What is drawn once for each side is whole.
+        let sides: Vec<_> = self.draws().filter_map(|(_, draw)| draw.raster.cull).collect();
+        let is_whole = sides.contains(&wgpu::Face::Front) && sides.contains(&wgpu::Face::Back);
+        if culled == 0 || is_whole {
+            return None;
+        }
+        let evidence = format!("{culled} draws of volumes count on both faces, and cull one of them");
+        Some((evidence, self.with_states(|raster| raster.cull = None)))
+    }
+
+    fn clamped(&self) -> Option<(String, FramePlan)> {
+        let wrapped = |operation: &mut Operation| {
+            *operation = match *operation {
+                Operation::IncrementClamp => Operation::IncrementWrap,
+                Operation::DecrementClamp => Operation::DecrementWrap,
+                other => other,
+            }
+        };
+        let is_clamped =
+            |operation: Operation| matches!(operation, Operation::IncrementClamp | Operation::DecrementClamp);
+        let clamps = |raster: &RasterState| {
+            let faces = [&raster.stencil.front, &raster.stencil.back];
+            faces.iter().any(|face| is_clamped(face.depth_fail_op) || is_clamped(face.pass_op))
+        };
+        let draws = self.draws().filter(|(_, draw)| clamps(&draw.raster)).count();
+        if draws == 0 {
+            return None;
+        }
+        let plan = self.with_states(|raster| {
+            for face in [&mut raster.stencil.front, &mut raster.stencil.back] {
+                wrapped(&mut face.depth_fail_op);
+                wrapped(&mut face.pass_op);
+            }
+        });
+        Some((format!("{draws} draws of volumes count with operations that stop"), plan))
+    }
+
+    fn writes_depth(&self) -> Option<(String, FramePlan)> {
+        let draws = self.draws().filter(|(_, draw)| draw.raster.depth_write).count();
+        let plan = || self.with_states(|raster| raster.depth_write = false);
+        (draws > 0).then(|| (format!("{draws} draws of volumes write depth"), plan()))
+    }
+
+    fn not_cleared(&self) -> Option<(String, FramePlan)> {
+        let index = self.plan.passes.iter().position(|pass| self.is_of_light(pass))?;
+        let upto = self.plan.passes.iter().take(index + 1).filter(|pass| self.plan.is_of_picture(pass));
+        let is_cleared = |pass: &Pass| pass.depth_stencil.as_ref().is_some_and(|target| target.clear_stencil.is_some());
+        let counts_before = |pass: &Pass| pass.draws.iter().any(|draw| draw.raster.writes_stencil());
+        let (mut is_clean, mut holds) = (false, 0);
+        for pass in upto {
+            let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.stencil.as_ref());
+            if let Some(start) = start {
+                holds = start.data().iter().filter(|value| **value != 0).count();
+                is_clean = holds == 0;
+            }
+            is_clean |= is_cleared(pass);
+            if counts_before(pass) && !self.is_of_light(pass) {
+                is_clean = false;
+            }
+        }
+        if is_clean {
+            return None;
+        }
+        let mut plan = self.plan.clone();
+        let pass = &mut plan.passes[index];
+        if let Some(recorded) = &mut pass.recorded {
+            recorded.start.iter_mut().for_each(|start| start.stencil = None);
+        }
+        pass.depth_stencil.iter_mut().for_each(|target| target.clear_stencil = Some(0));
+        let evidence = format!(
+            "nothing clears the stencil before the light's volumes; {} pixels held another value than 0 as the frame began",
+            numbers::count(holds as u64)
+        );
+        Some((evidence, plan))
+    }
+
+    fn mask_hides(&self) -> Option<(String, FramePlan)> {
+        let written = self.draws().fold(0, |all, (_, draw)| {
+            [true, false].iter().fold(all, |all, is_front| all | draw.raster.face(*is_front).1.write)
+        });
+        let asks = |draw: &Draw| draw.raster.stencil.is_enabled() && !draw.part.is_of_volume();
+        let passes = || self.plan.passes.iter().filter(|pass| self.is_of_light(pass));
+        let asking = passes().flat_map(|pass| &pass.draws).find(|draw| asks(draw))?;
+        let read = asking.raster.face(true).1.read;
+        if written & !read == 0 {
+            return None;
+        }
+        let mut plan = self.plan.clone();
+        for pass in plan.passes.iter_mut().filter(|pass| pass.light == Some(self.light)) {
+            for draw in pass.draws.iter_mut().filter(|draw| asks(draw)) {
+                draw.raster.stencil.read_mask = 0xff;
+                draw.raster.back = None;
+            }
+        }
+        let evidence = format!("volumes count in the bits {written:#04x}, and the light's test compares {read:#04x}");
+        Some((evidence, plan))
+    }
+
+    /// Closes what is open of the volumes that are counted behind the surface, taken together.
+    fn open(&self) -> Option<(String, FramePlan)> {
+        let draws = || self.draws().filter(|(_, draw)| sides(&draw.raster)[0]);
+        let open = OpenEdges::of(self.plan, draws().map(|(_, draw)| draw));
+        let caps = open.caps();
+        let triangles = caps.len() as u32;
+        let (pass, draw) = draws().next().filter(|_| triangles > 0)?;
+        let mut plan = self.plan.clone();
+        let mesh = MeshId(plan.meshes.len());
+        let indices = (0..triangles * 3).collect();
+        plan.meshes.push(DrawMesh::of_positions("caps", caps.as_flattened().to_vec(), indices));
+        let raster = RasterState { cull: None, ..draw.raster.clone() };
+        let cap =
+            Draw { raster, mesh, triangles: 0..triangles, base_vertex: 0, name: "caps".to_owned(), ..draw.clone() };
+        let index = self.plan.passes.iter().position(|one| std::ptr::eq(one, pass))?;
+        plan.passes[index].draws.push(cap);
+        let evidence = format!(
+            "{} edges of the volumes that are counted behind the surface are of one triangle",
+            numbers::count(open.count() as u64)
+        );
+        Some((evidence, plan))
+    }
+}

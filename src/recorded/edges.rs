@@ -1,0 +1,82 @@
+//! Where shadow volumes are open: edges that their triangles do not run along as often one way as the other.
+
+use crate::plan::{Draw, FramePlan};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A corner by its bits.
+type Corner = [u32; 4];
+
+/// Open edges of some draws together. What is drawn twice, once for each face, counts once.
+#[derive(Debug, Clone, Default)]
+pub struct OpenEdges {
+    /// From and to, and how often more it is run along so than the other way.
+    edges: Vec<([Corner; 2], u32)>,
+}
+
+impl OpenEdges {
+    /// Of draws of a plan.
+    #[must_use]
+    pub fn of<'a>(plan: &FramePlan, draws: impl Iterator<Item = &'a Draw>) -> OpenEdges {
+        let mut seen: BTreeSet<[Corner; 3]> = BTreeSet::new();
+        let mut sums: BTreeMap<[Corner; 2], i64> = BTreeMap::new();
+        for draw in draws {
+            let mesh = &plan.meshes[draw.mesh.0];
+            let range = draw.triangles.start as usize..draw.triangles.end as usize;
+            for corners in mesh.indices.data().as_chunks::<3>().0.get(range).unwrap_or_default() {
+                let at = |corner: u32| {
+                    let vertex = mesh.vertices.data().get((corner + draw.base_vertex) as usize)?;
+                    // −0 is 0.
+                    Some(vertex.map(|value| (value + 0.0).to_bits()))
+                };
+                let [Some(a), Some(b), Some(c)] = corners.map(at) else { continue };
+                if !seen.insert([a, b, c]) {
+                    continue;
+                }
+                for (from, to) in [(a, b), (b, c), (c, a)] {
+                    *sums.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+                }
+            }
+        }
+        let open = sums.into_iter().filter(|([from, to], sum)| from != to && *sum != 0);
+        let edge = |([low, high], sum): ([Corner; 2], i64)| {
+            (if sum > 0 { [low, high] } else { [high, low] }, sum.unsigned_abs() as u32)
+        };
+        OpenEdges { edges: open.map(edge).collect() }
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// Triangles that close them: of each connected run of edges a fan round its middle.
+    #[must_use]
+    pub fn caps(&self) -> Vec<[[f32; 4]; 3]> {
+        let mut root: BTreeMap<Corner, Corner> = BTreeMap::new();
+        fn find(root: &BTreeMap<Corner, Corner>, corner: Corner) -> Corner {
+            let mut at = corner;
+            while let Some(next) = root.get(&at).filter(|next| **next != at) {
+                at = *next;
+            }
+            at
+        }
+        for ([from, to], _) in &self.edges {
+            let (a, b) = (find(&root, *from), find(&root, *to));
+            root.insert(a, b);
+            root.entry(b).or_insert(b);
+        }
+        let place = |corner: Corner| corner.map(f32::from_bits);
+        let mut middles: BTreeMap<Corner, [f64; 4]> = BTreeMap::new();
+        for ([from, _], _) in &self.edges {
+            let middle = middles.entry(find(&root, *from)).or_default();
+            middle.iter_mut().zip(place(*from)).for_each(|(sum, value)| *sum += f64::from(value));
+        }
+        let mut caps = Vec::new();
+        for ([from, to], times) in &self.edges {
+            let middle = middles[&find(&root, *from)].map(|value| value as f32);
+            caps.extend(std::iter::repeat_n([place(*to), place(*from), middle], *times as usize));
+        }
+        caps
+    }
+}

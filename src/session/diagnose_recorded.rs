@@ -1,0 +1,107 @@
+//! Why another program's frame is wrong: suspicions from its plan, each tried by running the plan without it.
+
+use super::{RunFrame, Session, SessionError};
+use crate::accuracy::ErrorCounts;
+use crate::capture::{Capture, Image};
+use crate::diagnosis::Proof;
+use crate::diagnosis::recorded::{FaultFound, FrameDiagnosis, FrameFault, Suspicion, suspicion, suspicions};
+use crate::gpu::Memory;
+use crate::plan::{FramePlan, LightId};
+use crate::progress::Progress;
+use crate::recorded::labels;
+use glam::DVec4;
+use std::sync::Arc;
+
+impl Session {
+    /// Says where another program's frame is wrong, why, and proves it by running its plan with one thing changed.
+    ///
+    /// # Errors
+    /// Its lights were not found, so that nothing is known to be wrong; a plan that can't run;
+    /// [`SessionError::Cancelled`].
+    pub fn diagnose_recorded(&mut self, frame: &RunFrame, progress: &Progress) -> Result<FrameDiagnosis, SessionError> {
+        let (scene, plan, capture) = (frame.scene()?, &frame.plan, &frame.capture);
+        let traced = self.traced(scene, plan.size, progress)?;
+        let compare = |light: usize, shadow: &Arc<Image>| traced.compare(light, shadow);
+        let mut lights = Vec::new();
+        let mut faults = Vec::new();
+        let again = self.run_again(plan, capture)?;
+        let mut wrong_again = 0;
+        for (index, light) in capture.lights.iter().enumerate() {
+            let Some(shadow) = &light.shadow else {
+                lights.push((ErrorCounts::default(), None));
+                continue;
+            };
+            let found = compare(index, shadow);
+            let wrong = found.counts.wrong();
+            lights.push((found.counts, found.worst));
+            let id = LightId(index);
+            let same = labels(plan, &again, id).map_or(0, |shadow| compare(index, &shadow).counts.wrong());
+            wrong_again += same;
+            let mut judge = |session: &mut Session, plan: &FramePlan| {
+                let run = session.run_again(plan, capture)?;
+                Ok::<_, SessionError>(
+                    labels(plan, &run, id).map_or(wrong, |shadow| compare(index, &shadow).counts.wrong()),
+                )
+            };
+            let proof_of = |left: u64| match left {
+                0 if wrong > 0 => Proof::Proven,
+                // Another rasterizer may do a pixel better.
+                left if left < wrong.min(same) => Proof::Part,
+                _ => Proof::NotIt,
+            };
+            let mut of_light = Vec::new();
+            for Suspicion { fault, evidence, mended } in suspicions(plan, id, light.position) {
+                if progress.is_cancelled() {
+                    return Err(SessionError::Cancelled);
+                }
+                let pixels_left = judge(self, &mended)?;
+                let proof = proof_of(pixels_left);
+                of_light.push(FaultFound { fault, light: id, evidence, proof, pixels_left, together_with: Vec::new() });
+            }
+            if wrong > 0 && of_light.iter().all(|found| found.proof != Proof::Proven) {
+                of_light.extend(self.together(plan, (id, light.position), &of_light, &mut judge, proof_of)?);
+            }
+            faults.extend(of_light);
+        }
+        faults.sort_by_key(|found| Proof::ALL.iter().position(|proof| *proof == found.proof));
+        Ok(FrameDiagnosis { scene: capture.scene.clone(), lights, faults, wrong_again })
+    }
+
+    /// The first fault that takes some of the wrong pixels away, and with it, one by one, whatever takes most of the rest
+    /// away; `None` where nothing helps it.
+    fn together(
+        &mut self,
+        plan: &FramePlan,
+        (light, position): (LightId, DVec4),
+        found: &[FaultFound],
+        judge: &mut impl FnMut(&mut Session, &FramePlan) -> Result<u64, SessionError>,
+        proof_of: impl Fn(u64) -> Proof,
+    ) -> Result<Option<FaultFound>, SessionError> {
+        let Some(first) = found.iter().find(|one| one.proof == Proof::Part) else { return Ok(None) };
+        let without = |fault, plan: &FramePlan| suspicion(fault, plan, light, position).map(|found| found.mended);
+        let Some(mut mended) = without(first.fault, plan) else { return Ok(None) };
+        let mut joined = first.clone();
+        loop {
+            let mut best: Option<(u64, FrameFault, FramePlan)> = None;
+            let is_in = |fault: FrameFault| fault == first.fault || joined.together_with.contains(&fault);
+            for fault in found.iter().map(|one| one.fault).filter(|fault| !is_in(*fault)) {
+                let Some(plan) = without(fault, &mended) else { continue };
+                let left = judge(self, &plan)?;
+                if left < best.as_ref().map_or(joined.pixels_left, |(best, ..)| *best) {
+                    best = Some((left, fault, plan));
+                }
+            }
+            let Some((left, fault, plan)) = best else { break };
+            (joined.pixels_left, joined.proof, mended) = (left, proof_of(left), plan);
+            joined.together_with.push(fault);
+        }
+        Ok(Some(joined).filter(|joined| !joined.together_with.is_empty()))
+    }
+
+    /// What a recorded plan leaves when it is run from its first pass on.
+    fn run_again(&mut self, plan: &FramePlan, capture: &Capture) -> Result<Capture, SessionError> {
+        let prepared = self.executor.prepare_once(plan)?;
+        let output = self.executor.capture(prepared, Memory::Shared, false)?;
+        Ok(Capture { steps: output.steps, ..capture.clone() })
+    }
+}
