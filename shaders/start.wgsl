@@ -1,7 +1,12 @@
 // Puts depths into a target: what another program's frame began with.
 
-@group(0) @binding(0) var<storage, read> depths: array<f32>;
-override width: u32;
+struct Content {
+    // Of the target, texels.
+    width: u32,
+    depths: array<f32>,
+}
+
+@group(0) @binding(0) var<storage, read> content: Content;
 
 @vertex
 fn vs_start(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
@@ -11,5 +16,5 @@ fn vs_start(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
 
 @fragment
 fn fs_start(@builtin(position) at: vec4f) -> @builtin(frag_depth) f32 {
-    return depths[u32(at.y) * width + u32(at.x)];
+    return content.depths[u32(at.y) * content.width + u32(at.x)];
 }

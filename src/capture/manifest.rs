@@ -252,8 +252,13 @@ impl LightEntry {
     /// A light without files.
     pub fn new(index: usize, position: DVec4) -> LightEntry {
         let at = position.truncate().to_array();
-        let (kind, position, towards) =
-            if position.w == 0.0 { ("directional", None, Some(at)) } else { ("point", Some(at), None) };
+        let (kind, position, towards) = if position == DVec4::ZERO {
+            ("unknown", None, None)
+        } else if position.w == 0.0 {
+            ("directional", None, Some(at))
+        } else {
+            ("point", Some(at), None)
+        };
         let kind = kind.to_owned();
         LightEntry {
             index,
@@ -296,8 +301,11 @@ impl LightEntry {
         })
     }
 
-    /// Homogeneous; `None` where neither form is given.
+    /// Homogeneous; zero where it is not known, `None` where neither form is given.
     pub fn homogeneous(&self) -> Option<DVec4> {
+        if self.kind == "unknown" {
+            return Some(DVec4::ZERO);
+        }
         let point = self.position.map(|at| DVec3::from_array(at).extend(1.0));
         point.or_else(|| self.towards.map(|at| DVec3::from_array(at).extend(0.0)))
     }

@@ -4,7 +4,7 @@ use super::{CliError, output, progress};
 use crate::capture::disk::{self, Contents};
 use crate::capture::{Capture, Differs, DrawSummary};
 use crate::import::{self, Converted, ImportError, Options, RawFrame};
-use crate::plan::LightId;
+use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
 use crate::recorded::FoundLight;
 use crate::session::Session;
@@ -89,12 +89,12 @@ impl FrameTarget {
             session.held_against_itself(&plan, &capture, progress)
         })?;
         disk::write(Contents { capture: &capture, plan: Some(&plan), scene: scene.as_ref() }, folder, self.overwrite)?;
-        output::print(&summary(&capture, folder, &lights))
+        output::print(&summary(&plan, &capture, folder, &lights))
     }
 }
 
 /// What was written, and where the frame is not to be trusted.
-fn summary(capture: &Capture, folder: &Path, lights: &[Option<FoundLight>]) -> String {
+fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<FoundLight>]) -> String {
     let [width, height] = capture.size;
     let draws: Vec<&DrawSummary> = capture.steps.iter().flat_map(|step| &step.draws).collect();
     let (passes, count) = (capture.steps.len(), draws.len());
@@ -117,6 +117,12 @@ fn summary(capture: &Capture, folder: &Path, lights: &[Option<FoundLight>]) -> S
             Some(FoundLight { agree, of, .. }) => format!("{name}: found, {agree} of {of} edges run away from it\n"),
             None => format!("{name}: not found: no shadow volumes tell where it is\n"),
         };
+    }
+    for draw in plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| draw.may_discard()) {
+        text += &format!("  {}: its shader may discard fragments, which histories do not know\n", draw.name);
+    }
+    for limit in capture.origin.iter().flat_map(|origin| &origin.limits) {
+        text += &format!("limit: {limit}\n");
     }
     for left in &capture.left_out {
         text += &format!("left out: {left}: {}\n", left.because);

@@ -317,7 +317,7 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes, passes: Range<usize>) 
         if !mode.runs(pass) {
             continue;
         }
-        if !prepared.is_kept(pass) {
+        if !prepared.is_kept(pass) && pass.targets().next().is_some() {
             if let Some(content) = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()) {
                 start::record(&mut encoder, prepared, index, content);
             }

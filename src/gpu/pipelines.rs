@@ -46,6 +46,7 @@ pub(super) struct Pipelines {
     pub smooth_sampler: wgpu::Sampler,
     modules: HashMap<Program, ShaderModule>,
     pipelines: HashMap<PipelineKey, RenderPipeline>,
+    starts: HashMap<TextureFormat, RenderPipeline>,
 }
 
 /// Pipelines kept at once: a driver may keep a hundred kilobytes of code for each. A plan of more makes some anew.
@@ -61,7 +62,18 @@ impl Pipelines {
             min_filter: wgpu::FilterMode::Linear,
             ..wgpu::SamplerDescriptor::default()
         });
-        Pipelines { layouts: Layouts::new(device), smooth_sampler, modules: HashMap::new(), pipelines: HashMap::new() }
+        Pipelines {
+            layouts: Layouts::new(device),
+            smooth_sampler,
+            modules: HashMap::new(),
+            pipelines: HashMap::new(),
+            starts: HashMap::new(),
+        }
+    }
+
+    /// What puts depths into a target of a format.
+    pub fn start(&mut self, device: &Device, format: TextureFormat) -> RenderPipeline {
+        self.starts.entry(format).or_insert_with(|| super::start::pipeline(device, format)).clone()
     }
 
     /// The pipeline of a description, made on first use.

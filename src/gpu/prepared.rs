@@ -42,6 +42,8 @@ pub(super) struct PreparedPass {
     pub depth_stencil: Option<TextureView>,
     pub has_stencil: bool,
     pub draws: Vec<PreparedDraw>,
+    /// What puts depths into its target before it begins.
+    pub start: Option<RenderPipeline>,
     /// Where its image from the CPU goes.
     pub image_target: Option<Texture>,
 }
@@ -85,7 +87,15 @@ impl<'a> Prepared<'a> {
         let mut passes = Vec::with_capacity(plan.passes.len());
         for pass in &plan.passes {
             let mut prepared = prepared_targets(plan, pass, &textures);
+            let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.depth.as_ref());
+            let target = pass.depth_stencil.as_ref().filter(|_| start.is_some());
+            prepared.start =
+                target.map(|target| pipelines.start(device, plan.attachment(target.attachment).held_format()));
             for (draw, index) in pass.draws.iter().zip(&mut next_draw) {
+                // Another program's colours are not known: a draw that leaves nothing else is not run.
+                if pass.targets().next().is_none() {
+                    continue;
+                }
                 let states = draw.raster.by_face();
                 let of_state = |raster: &RasterState| {
                     let reference = raster.stencil_reference;
@@ -244,6 +254,7 @@ fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Prep
         depth_stencil: target.map(|target| view(target.attachment, target.layer)),
         has_stencil: target.is_some_and(|target| plan.attachment(target.attachment).format.has_stencil_aspect()),
         draws: Vec::with_capacity(pass.draws.len()),
+        start: None,
         image_target: pass.image.as_ref().and(pass.color.as_ref()).map(|target| textures[target.attachment.0].clone()),
     }
 }

@@ -5,7 +5,7 @@ use super::prepared::Prepared;
 use super::shaders;
 use crate::plan::{Blob, StartContent};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{BufferUsages, CommandEncoder, Device, LoadOp, Operations, StoreOp, TextureFormat};
+use wgpu::{BufferUsages, CommandEncoder, Device, LoadOp, Operations, RenderPipeline, StoreOp, TextureFormat};
 
 const ROW_ALIGNMENT: usize = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize;
 
@@ -23,8 +23,9 @@ pub(super) fn record(encoder: &mut CommandEncoder, prepared: &Prepared, index: u
             wgpu::TexelCopyTextureInfo { texture, mip_level: 0, origin, aspect },
         );
     }
-    if let (Some(depth), Some(view)) = (&content.depth, &prepared.passes[index].depth_stencil) {
-        draw_depth(encoder, &prepared.context.device, depth, view, (texture.format(), texture.width()));
+    let pass = &prepared.passes[index];
+    if let (Some(depth), Some(view), Some(pipeline)) = (&content.depth, &pass.depth_stencil, &pass.start) {
+        draw_depth(encoder, &prepared.context.device, depth, pipeline, (view, texture));
     }
 }
 
@@ -45,24 +46,18 @@ fn copy_stencil(encoder: &mut CommandEncoder, device: &Device, stencil: &Blob<u8
     encoder.copy_buffer_to_texture(wgpu::TexelCopyBufferInfo { buffer: &buffer, layout }, target, size);
 }
 
-fn draw_depth(
-    encoder: &mut CommandEncoder,
-    device: &Device,
-    depth: &Blob<f32>,
-    view: &wgpu::TextureView,
-    (format, width): (TextureFormat, u32),
-) {
+/// What puts depths into a target of a format.
+pub(super) fn pipeline(device: &Device, format: TextureFormat) -> RenderPipeline {
     let source = wgpu::ShaderSource::Wgsl(shaders::START.into());
     let module = &device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("start"), source });
-    let constants: &[(&str, f64)] = &[("width", f64::from(width))];
-    let compilation_options = wgpu::PipelineCompilationOptions { constants, ..Default::default() };
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    let compilation_options = wgpu::PipelineCompilationOptions::default();
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("start"),
         layout: None,
         vertex: wgpu::VertexState {
             module,
             entry_point: Some("vs_start"),
-            compilation_options: Default::default(),
+            compilation_options: compilation_options.clone(),
             buffers: &[],
         },
         primitive: wgpu::PrimitiveState::default(),
@@ -82,27 +77,35 @@ fn draw_depth(
         }),
         multiview_mask: None,
         cache: None,
-    });
+    })
+}
+
+fn draw_depth(
+    encoder: &mut CommandEncoder,
+    device: &Device,
+    depth: &Blob<f32>,
+    pipeline: &RenderPipeline,
+    (view, texture): (&wgpu::TextureView, &wgpu::Texture),
+) {
+    let contents = &[&texture.width().to_le_bytes(), depth.bytes()].concat();
     let usage = BufferUsages::STORAGE;
-    let contents = depth.bytes();
     let buffer = device.create_buffer_init(&BufferInitDescriptor { label: Some("start"), contents, usage });
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("start"),
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
     });
+    let kept = || Operations { load: LoadOp::Load, store: StoreOp::Store };
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("start"),
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view,
             depth_ops: Some(Operations { load: LoadOp::Load, store: StoreOp::Store }),
-            stencil_ops: format
-                .has_stencil_aspect()
-                .then_some(Operations { load: LoadOp::Load, store: StoreOp::Store }),
+            stencil_ops: texture.format().has_stencil_aspect().then(kept),
         }),
         ..wgpu::RenderPassDescriptor::default()
     });
-    pass.set_pipeline(&pipeline);
+    pass.set_pipeline(pipeline);
     pass.set_bind_group(0, &group, &[]);
     pass.draw(0..3, 0..1);
 }

@@ -145,9 +145,10 @@ impl PixelHistory {
 /// Pass, what comes first in it, draw, triangle.
 fn place(event: &Event) -> (usize, u8, usize, u32) {
     match &event.kind {
-        EventKind::ClearDepth => (event.pass, 0, 0, 0),
-        EventKind::ClearStencil => (event.pass, 1, 0, 0),
-        EventKind::ClearCount => (event.pass, 2, 0, 0),
-        EventKind::Triangle(one) => (event.pass, 3, one.draw, one.primitive),
+        EventKind::Put => (event.pass, 0, 0, 0),
+        EventKind::ClearDepth => (event.pass, 1, 0, 0),
+        EventKind::ClearStencil => (event.pass, 2, 0, 0),
+        EventKind::ClearCount => (event.pass, 3, 0, 0),
+        EventKind::Triangle(one) => (event.pass, 4, one.draw, one.primitive),
     }
 }

@@ -86,6 +86,7 @@ fn entry(history: &PixelHistory, event: &Event) -> EventEntry {
         pass: event.pass,
         draw: one.map(|one| one.draw),
         name: match &event.kind {
+            EventKind::Put => "other content".to_owned(),
             EventKind::ClearDepth => "clear depth".to_owned(),
             EventKind::ClearStencil => "clear stencil".to_owned(),
             EventKind::ClearCount => "clear count".to_owned(),

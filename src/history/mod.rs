@@ -120,6 +120,9 @@ pub struct Event {
 /// What can happen to a pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EventKind {
+    /// Something other than a draw or a clear of everything has set depth and stencil before the pass, in another
+    /// program's frame: a copy, a clear of a part, a draw that is not followed.
+    Put,
     /// The pass begins by clearing depth.
     ClearDepth,
     /// The pass begins by clearing the stencil.

@@ -3,7 +3,8 @@
 use super::{Disagreement, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent, captured_after};
 use crate::capture::{Capture, FrameTarget};
 use crate::plan::{
-    AttachmentRole, ColorWrite, Coverage, Covering, Draw, Face, FragmentLog, FramePlan, LightId, Pass, Program, ViewId,
+    AttachmentRole, ColorWrite, Coverage, Covering, Draw, Face, FragmentLog, FramePlan, LightId, Pass, Program,
+    StartContent, ViewId,
 };
 use crate::stencil_machine::{self, Fragment};
 use wgpu::CompareFunction;
@@ -23,7 +24,7 @@ impl PixelHistory {
         log: &FragmentLog,
     ) -> PixelHistory {
         let start = start_of(plan, pixel);
-        let mut replay = Replay { plan, held: start, events: Vec::new(), contradictions: Vec::new() };
+        let mut replay = Replay { plan, pixel, held: start, events: Vec::new(), contradictions: Vec::new() };
         let is_hidden = |one: &&Covering| matches!(one.coverage, Coverage::Culled(_) | Coverage::Clipped(..));
         let hidden = covering.iter().filter(is_hidden).count() as u32;
         let mut fragments = log.fragments.iter().peekable();
@@ -63,6 +64,7 @@ impl PixelHistory {
 
 struct Replay<'a> {
     plan: &'a FramePlan,
+    pixel: [u32; 2],
     held: Held,
     events: Vec<Event>,
     contradictions: Vec<Disagreement>,
@@ -84,8 +86,13 @@ impl Replay<'_> {
         self.held = after;
     }
 
-    /// What a pass clears as it begins.
+    /// What a pass begins with: content, and what it clears.
     fn clear(&mut self, index: usize, pass: &Pass) {
+        // The frame's own start is no event.
+        if let Some(start) = start_content(pass).filter(|_| first_with_depth(self.plan) != Some(index)) {
+            let put = held_in(start, self.plan, self.pixel, self.held);
+            self.push(index, EventKind::Put, put);
+        }
         if let Some(target) = &pass.depth_stencil {
             if let Some(depth) = target.clear_depth {
                 self.push(index, EventKind::ClearDepth, Held { depth, ..self.held });
@@ -107,7 +114,8 @@ impl Replay<'_> {
             self.push(one.pass, triangle(draw, one, Face { is_front, depth }, Fate::Discarded(clip)), self.held);
             return;
         }
-        let depth = if draw.raster.unclipped_depth { depth.clamp(0.0, 1.0) } else { depth };
+        let [near, far] = pass.viewport(self.plan.size).depth;
+        let depth = if draw.raster.unclipped_depth { depth.clamp(near, far) } else { depth };
         let target = pass.depth_stencil.as_ref().map(|target| self.plan.attachment(target.attachment));
         let depth = target.map_or(depth, |target| target.stored_depth(depth));
         let outcome =
@@ -144,19 +152,32 @@ impl Replay<'_> {
 
 /// How far depths may be from what was stored in another program's frame.
 fn rounding(plan: &FramePlan) -> f32 {
-    let recorded = plan.passes.iter().find(|pass| pass.recorded.is_some() && plan.is_of_picture(pass));
-    let target = recorded.and_then(|pass| Some(plan.attachment(pass.depth_stencil.as_ref()?.attachment)));
+    let first = first_with_depth(plan).map(|index| &plan.passes[index]).filter(|pass| pass.recorded.is_some());
+    let target = first.and_then(|pass| Some(plan.attachment(pass.depth_stencil.as_ref()?.attachment)));
     target.map_or(0.0, |target| target.depth_rounding())
 }
 
 /// What a pixel of the picture holds before the frame's first pass.
-fn start_of(plan: &FramePlan, [x, y]: [u32; 2]) -> Held {
-    let first = plan.passes.iter().find(|pass| plan.is_of_picture(pass) && pass.depth_stencil.is_some());
-    let start = first.and_then(|pass| pass.recorded.as_ref()?.start.as_ref());
+fn start_of(plan: &FramePlan, pixel: [u32; 2]) -> Held {
+    let first = first_with_depth(plan).and_then(|index| start_content(&plan.passes[index]));
+    first.map_or(NEW, |start| held_in(start, plan, pixel, NEW))
+}
+
+/// The first pass that has the picture's depth.
+fn first_with_depth(plan: &FramePlan) -> Option<usize> {
+    plan.passes.iter().position(|pass| plan.is_of_picture(pass) && pass.depth_stencil.is_some())
+}
+
+fn start_content(pass: &Pass) -> Option<&StartContent> {
+    pass.recorded.as_ref()?.start.as_ref()
+}
+
+/// What a pixel holds of some content, and of `held` where that says nothing.
+fn held_in(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], held: Held) -> Held {
     let index = y as usize * plan.size[0] as usize + x as usize;
-    let depth = start.and_then(|start| start.depth.as_ref()?.data().get(index).copied());
-    let stencil = start.and_then(|start| start.stencil.as_ref()?.data().get(index).copied());
-    Held { depth: depth.unwrap_or(NEW.depth), stencil: stencil.unwrap_or(NEW.stencil), ..NEW }
+    let depth = start.depth.as_ref().and_then(|depth| depth.data().get(index).copied());
+    let stencil = start.stencil.as_ref().and_then(|stencil| stencil.data().get(index).copied());
+    Held { depth: depth.unwrap_or(held.depth), stencil: stencil.unwrap_or(held.stencil), ..held }
 }
 
 /// What a pass of the picture draws into.
@@ -188,7 +209,10 @@ fn clears(plan: &FramePlan) -> u32 {
             pass.color.as_ref().filter(|_| plan.counts_in_float(pass)).and_then(|target| target.clear).is_some();
         u32::from(depth) + u32::from(stencil) + u32::from(count)
     };
-    plan.passes.iter().filter(|pass| plan.is_of_picture(pass)).map(of_pass).sum()
+    let first = first_with_depth(plan);
+    let passes = || plan.passes.iter().enumerate().filter(|(_, pass)| plan.is_of_picture(pass));
+    let put = passes().filter(|(index, pass)| start_content(pass).is_some() && first != Some(*index)).count() as u32;
+    put + passes().map(|(_, pass)| of_pass(pass)).sum::<u32>()
 }
 
 fn triangle(draw: &Draw, one: &Covering, face: Face, fate: Fate) -> EventKind {

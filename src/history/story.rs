@@ -81,6 +81,7 @@ impl PixelHistory {
         };
         let pass = &event.pass_name;
         match &event.kind {
+            EventKind::Put => format!("{pass}: other content"),
             EventKind::ClearDepth => format!("{pass}: clear depth"),
             EventKind::ClearStencil => format!("{pass}: clear stencil"),
             EventKind::ClearCount => format!("{pass}: clear count"),
@@ -103,6 +104,11 @@ impl PixelHistory {
     #[must_use]
     pub fn line(&self, event: &Event, curve: &DepthCurve) -> String {
         match &event.kind {
+            EventKind::Put => format!(
+                "a copy, a clear of a part or a draw that is not followed has left depth {} and stencil {}",
+                numbers::depth(event.after.depth),
+                event.after.stencil
+            ),
             EventKind::ClearDepth => format!("clear depth to {}", numbers::depth(event.after.depth)),
             EventKind::ClearStencil => format!("clear stencil to {}", event.after.stencil),
             EventKind::ClearCount => format!("clear count to {}", numbers::count_in_float(event.after.count)),

@@ -88,9 +88,11 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
         passes,
         left_out,
     };
-    plan.depth = eye::curve(&plan);
+    let curve = eye::curve(&plan);
+    plan.depth = curve.unwrap_or_else(|| eye::unknown(&plan));
     plan.views[0].clip_from_relative = eye::clip_from_view(&plan.depth, size).as_mat4();
-    let lights = plan.passes.iter().filter_map(|pass| pass.light).map(|light| light.0 + 1).max().unwrap_or(0);
+    let of_passes = plan.passes.iter().filter_map(|pass| pass.light).map(|light| light.0 + 1).max();
+    let lights = of_passes.unwrap_or(0).max(stage.maps.len());
     for light in (0..lights).map(LightId) {
         let made = plan_light(&plan, light, faces.get(light.0).map_or(0, Vec::len));
         plan.lights.push(made);
@@ -103,7 +105,7 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
         });
     }
     let found: Vec<Option<FoundLight>> =
-        (0..plan.lights.len()).map(|light| recorded::light(&plan, LightId(light))).collect();
+        (0..plan.lights.len()).map(|light| curve.and_then(|_| recorded::light(&plan, LightId(light)))).collect();
     for (light, found) in plan.lights.iter_mut().zip(&found) {
         light.relative_position = found.map_or([0.0; 4], |found| found.position.as_vec4().to_array());
     }
@@ -144,8 +146,13 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
     for light in 0..plan.lights.len() {
         capture.lights[light].shadow = recorded::labels(&plan, &capture, LightId(light));
     }
+    if curve.is_none() {
+        let limit = "how depth comes from distance can't be told from the vertices, so that no light is looked for";
+        capture.origin.iter_mut().for_each(|origin| origin.limits.push(limit.to_owned()));
+    }
     let positions: Option<Vec<DVec4>> = found.iter().map(|found| found.map(|found| found.position)).collect();
-    let scene = positions.map(|lights| recorded::scene(&plan, capture.camera, name, lights));
+    let scene =
+        positions.filter(|_| curve.is_some()).map(|lights| recorded::scene(&plan, capture.camera, name, lights));
     Ok(Converted { plan, capture, scene, lights: found })
 }
 
@@ -153,8 +160,8 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
 fn faces(frame: &RawFrame, stage: &Stage, making: &Making, map: usize) -> Vec<Arc<Image>> {
     let Attachment { size, layers, .. } =
         stage.attachment(frame, Place::Map(map, 0), AttachmentRole::Map(LightId(map)));
-    let clear = || Arc::new(Image::uniform(PixelFormat::Depth32F, size, &1.0_f32.to_le_bytes()));
-    (0..layers).map(|layer| making.face(map, layer).unwrap_or_else(clear)).collect()
+    let clear = Arc::new(Image::uniform(PixelFormat::Depth32F, size, &1.0_f32.to_le_bytes()));
+    (0..layers).map(|layer| making.face(map, layer).unwrap_or_else(|| clear.clone())).collect()
 }
 
 /// A light of which nothing is known yet but what decides where its shadow is.

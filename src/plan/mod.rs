@@ -236,7 +236,7 @@ impl Pass {
     #[must_use]
     pub fn reaches(&self, [x, y]: [u32; 2]) -> bool {
         let holds = |[left, top, columns, rows]: [u32; 4]| {
-            (left..left + columns).contains(&x) && (top..top + rows).contains(&y)
+            (left..left.saturating_add(columns)).contains(&x) && (top..top.saturating_add(rows)).contains(&y)
         };
         self.scissor.is_none_or(holds)
     }

@@ -97,6 +97,7 @@ impl RasterState {
     pub fn with_faces(mut self, front: StencilFace, back: StencilFace, reference: u8) -> RasterState {
         self.stencil = wgpu::StencilState { front, back, read_mask: 0xff, write_mask: 0xff };
         self.stencil_reference = reference;
+        self.back = None;
         self
     }
 
@@ -127,7 +128,7 @@ impl RasterState {
     /// As states whose reference and masks hold for both faces: itself, or one of each face.
     #[must_use]
     pub fn by_face(&self) -> Vec<RasterState> {
-        let Some(back) = self.back.filter(|_| self.stencil.is_enabled()) else {
+        let Some(back) = self.back else {
             return vec![RasterState { back: None, ..self.clone() }];
         };
         let mut of_back = RasterState { back: None, stencil_reference: back.reference, ..self.clone() };

@@ -46,7 +46,11 @@ fn split(pass: &Pass) -> Vec<Pass> {
             clear_stencil: target.clear_stencil.filter(|_| is_first),
             ..target.clone()
         });
-        Pass { color, depth_stencil, draws: vec![draw.clone()], ..pass.clone() }
+        let recorded = pass.recorded.clone().map(|mut recorded| {
+            recorded.start = recorded.start.take().filter(|_| is_first);
+            recorded
+        });
+        Pass { color, depth_stencil, recorded, draws: vec![draw.clone()], ..pass.clone() }
     };
     pass.draws.iter().enumerate().map(part).collect()
 }

@@ -117,6 +117,9 @@ impl FramePlan {
             draw.part.name(),
             draw.mesh.0
         )?;
+        if draw.may_discard() {
+            writeln!(f, "    its shader may discard fragments")?;
+        }
         if draw.faces_inwards {
             writeln!(f, "    its triangles face into the volume")?;
         }

@@ -61,6 +61,7 @@ impl Cells {
             has_changed,
         };
         match &event.kind {
+            EventKind::Put => cells.what = "other content".to_owned(),
             EventKind::ClearDepth => cells.what = "clear depth".to_owned(),
             EventKind::ClearStencil => cells.what = "clear stencil".to_owned(),
             EventKind::ClearCount => cells.what = "clear count".to_owned(),
@@ -178,7 +179,9 @@ fn change(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> (String,
         EventKind::ClearDepth => {
             return (format!("→ {}", numbers::digits(f64::from(after.depth))), depth != after.depth);
         }
-        EventKind::ClearStencil => return (format!("→ {}", signed(after.stencil)), stencil != after.stencil),
+        EventKind::Put | EventKind::ClearStencil => {
+            return (format!("→ {}", signed(after.stencil)), stencil != after.stencil);
+        }
         EventKind::ClearCount => return (format!("→ {}", float(after.count)), count != after.count),
         EventKind::Triangle(_) => {}
     }

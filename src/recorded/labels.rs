@@ -16,8 +16,14 @@ pub fn labels(plan: &FramePlan, capture: &Capture, light: LightId) -> Option<Arc
     };
     let index = plan.passes.iter().position(asks)?;
     let raster = &plan.passes[index].draws.iter().find(|draw| draw.raster.stencil.is_enabled())?.raster;
-    // The stencil that it asks is what the pass before left.
-    let before = capture.frame_at(index.checked_sub(1)?)?;
+    // The stencil that it asks is what the pass before left: where it sets its own, nothing was counted.
+    let pass = &plan.passes[index];
+    let is_set = pass.depth_stencil.as_ref().is_some_and(|target| target.clear_stencil.is_some())
+        || pass
+            .recorded
+            .as_ref()
+            .is_some_and(|recorded| recorded.start.as_ref().is_some_and(|start| start.stencil.is_some()));
+    let before = capture.frame_at(index.checked_sub(1).filter(|_| !is_set)?)?;
     let Snapshot::Frame(after) = &capture.steps.get(index)?.snapshot else { return None };
     let stencil = &before.stencil.as_ref()?.image;
     let clear = plan.depth.mapping.clear_depth().to_le_bytes();

@@ -8,7 +8,7 @@ use super::space::{Space, neighbours, triangles};
 use crate::plan::{Draw, FramePlan, Part, Pass};
 use crate::scene::{Camera, Light, Material, Mesh, MeshBuilder, Object, Scene, SceneBuilder};
 use glam::{DVec3, DVec4};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Corners are the same where they are no farther apart, in parts of their distance from the eye.
@@ -19,7 +19,7 @@ const SAME_PLACE: f64 = 1e-4;
 pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -> Scene {
     let surfaces = draws(plan, |draw| draw.part == Part::Surface && draw.raster.depth_write);
     let volumes = draws(plan, |draw| draw.part.is_of_volume());
-    let mut objects: Vec<(Object, Corners)> = Vec::new();
+    let (mut objects, mut corners): (Vec<Object>, _) = (Vec::new(), Corners::default());
     for (pass, draw) in surfaces {
         let space = Space::new(plan, pass);
         let places = space.places(plan, draw);
@@ -27,13 +27,13 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
             continue;
         };
         // What is drawn again, for light or ambient, is one object.
-        if objects.iter().any(|(known, _)| known.mesh.content_hash() == mesh.content_hash()) {
+        if objects.iter().any(|known| known.mesh.content_hash() == mesh.content_hash()) {
             continue;
         }
-        let corners = Corners::new(mesh.positions());
+        corners.add(objects.len(), mesh.positions());
         let object =
             Object { casts: volumes.is_empty(), ..Object::new(draw.name.clone(), Arc::new(mesh), Material::default()) };
-        objects.push((object, corners));
+        objects.push(object);
     }
     let mut unseen = Vec::new();
     for (pass, draw) in volumes {
@@ -41,12 +41,8 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
         let finite: Vec<DVec3> =
             places.iter().flatten().filter(|place| place.w == 1.0).map(|place| place.truncate()).collect();
         // Most of a volume's finite corners are its caster's: those of a finite far end are not.
-        let most = objects
-            .iter_mut()
-            .map(|(object, corners)| (corners.count(&finite), object))
-            .max_by_key(|(count, _)| *count);
-        match most {
-            Some((count, object)) if count * 4 >= finite.len() && count > 0 => object.casts = true,
+        match corners.most(&finite) {
+            Some((object, count)) if count * 4 >= finite.len() => objects[object].casts = true,
             _ => {
                 let light = pass.light.and_then(|light| lights.get(light.0)).copied();
                 let mesh = light.and_then(|light| near_end(plan, draw, &places, light));
@@ -60,7 +56,7 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
     }
     let lights = lights.into_iter().map(|position| Light { position, ..Light::point(DVec3::ZERO) });
     let builder = SceneBuilder::new(name).camera(camera).lights(lights);
-    builder.objects(objects.into_iter().map(|(object, _)| object)).objects(unseen).build()
+    builder.objects(objects).objects(unseen).build()
 }
 
 /// Draws of the picture, with their passes.
@@ -117,12 +113,18 @@ fn near_end(plan: &FramePlan, draw: &Draw, places: &[Option<DVec4>], light: DVec
     built(edges.into_iter().map(|[from, to]| [from, to, middle]).collect())
 }
 
-/// Places of a mesh's corners, to be found again though they were rounded on the way.
-struct Corners(BTreeSet<[i64; 3]>);
+/// Corners of objects, to be found again though they were rounded on the way.
+#[derive(Default)]
+struct Corners(BTreeMap<[i64; 3], Vec<usize>>);
 
 impl Corners {
-    fn new(places: &[DVec3]) -> Corners {
-        Corners(places.iter().map(|place| Corners::cell(*place)).collect())
+    fn add(&mut self, object: usize, places: &[DVec3]) {
+        for place in places {
+            let of_cell = self.0.entry(Corners::cell(*place)).or_default();
+            if of_cell.last() != Some(&object) {
+                of_cell.push(object);
+            }
+        }
     }
 
     /// A cell as large as places may be apart at its distance.
@@ -132,8 +134,15 @@ impl Corners {
         (place / size).to_array().map(|value| value.round() as i64)
     }
 
-    fn count(&self, places: &[DVec3]) -> usize {
-        let is_near = |place: &&DVec3| neighbours(Corners::cell(**place)).any(|cell| self.0.contains(&cell));
-        places.iter().filter(is_near).count()
+    /// The object that has most of these corners, and how many.
+    fn most(&self, places: &[DVec3]) -> Option<(usize, usize)> {
+        let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
+        for place in places {
+            let objects = neighbours(Corners::cell(*place)).filter_map(|cell| self.0.get(&cell)).flatten();
+            for object in objects.copied().collect::<BTreeSet<usize>>() {
+                *counts.entry(object).or_default() += 1;
+            }
+        }
+        counts.into_iter().max_by_key(|(_, count)| *count)
     }
 }

@@ -39,7 +39,12 @@ impl Session {
             .collect();
         let [.., depth_passes, fragments] = &stencils[..] else { return Err(SessionError::NoTests { step }) };
         let cleared = clears_stencil(&plan.passes[step]).filter(|_| draw.is_none_or(|draw| draw == 0));
+        let start = plan.passes[step].recorded.as_ref().and_then(|recorded| recorded.start.as_ref()?.stencil.as_ref());
+        let put = start.filter(|_| draw.is_none_or(|draw| draw == 0));
         let before = match (cleared, stencils.len().checked_sub(3).map(|index| &stencils[index])) {
+            (None, _) if let Some(put) = put => {
+                Arc::new(Image::packed(PixelFormat::U8, plan.size, put.data().to_vec()))
+            }
             (None, Some(before)) => before.clone(),
             (cleared, _) => Arc::new(Image::uniform(PixelFormat::U8, plan.size, &[cleared.unwrap_or(0)])),
         };
@@ -74,7 +79,13 @@ fn counting_plan(plan: &FramePlan, step: usize, draw: Option<usize>) -> Option<(
     }
     counting.draws.clone_from(&counted);
     counting.draws.iter_mut().for_each(|draw| count_up(&mut draw.raster));
+    if let Some(recorded) = counting.recorded.as_mut() {
+        recorded.start = recorded.start.take().filter(|_| first == 0);
+        // Counting begins at 0.
+        recorded.start.iter_mut().for_each(|start| start.stencil = None);
+    }
     let mut again = counting.clone();
+    again.recorded.iter_mut().for_each(|recorded| recorded.start = None);
     if let Some(target) = &mut again.depth_stencil {
         target.clear_depth = None;
     }
@@ -91,8 +102,12 @@ fn counting_plan(plan: &FramePlan, step: usize, draw: Option<usize>) -> Option<(
     if attachment.role != AttachmentRole::DepthStencil {
         return None;
     }
-    // Both keep depth as the same 32 bits.
-    attachment.format = wgpu::TextureFormat::Depth32FloatStencil8;
+    // The same depth, with a stencil beside it.
+    attachment.format = match attachment.depth_steps() {
+        Some(0xffff) => return None,
+        Some(_) => wgpu::TextureFormat::Depth24PlusStencil8,
+        None => wgpu::TextureFormat::Depth32FloatStencil8,
+    };
     counting.lights.iter_mut().filter_map(|light| light.map.as_mut()).for_each(|map| map.is_kept = false);
     Some((counting, counted))
 }
@@ -162,10 +177,10 @@ fn rule_of(raster: &RasterState, front_facing: bool, stencil: u8) -> Rule {
     }
     let stored = Stored { depth: 0.0, stencil };
     let passes = test(raster, Fragment { depth: 0.0, front_facing }, stored).stencil_passed;
-    let face = if front_facing { &raster.stencil.front } else { &raster.stencil.back };
+    let (face, masks) = raster.face(front_facing);
     let operations = if passes { vec![face.depth_fail_op, face.pass_op] } else { vec![face.fail_op] };
     let keeps = operations.iter().all(|operation| *operation == StencilOperation::Keep);
-    let is_apart = raster.stencil.write_mask & raster.stencil.read_mask & 0xff == 0;
+    let is_apart = masks.write & masks.read == 0;
     let is_always = face.compare == CompareFunction::Always;
     let verdict = if passes { StencilVerdict::Passes } else { StencilVerdict::Fails };
     Rule { verdict, lasts: keeps || is_apart || is_always }

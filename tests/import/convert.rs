@@ -216,7 +216,7 @@ fn a_right_frame_has_no_wrong_pixel_and_says_so() {
     let mut session = session();
     let diagnosis = session.diagnose_recorded(&frame_of("ogre"), &Progress::default()).expect("a diagnosis");
     assert!(diagnosis.wrong() == 0 && diagnosis.wrong_again <= MOST_DIFFERING, "{}", diagnosis.to_text());
-    assert!(diagnosis.to_text().contains("0 of 47 478 pixels wrong"), "{}", diagnosis.to_text());
+    assert!(diagnosis.to_text().starts_with("ogre: 0 of 47"), "{}", diagnosis.to_text());
 }
 
 #[test]

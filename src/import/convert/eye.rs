@@ -14,27 +14,46 @@ const FIELD_OF_VIEW: f64 = 90.0;
 /// How far a vertex may be off the fit, in parts of its w.
 const RESIDUAL: f64 = 1e-3;
 
-/// How depths of a plan's picture come from distances; without a fit, as if they were distances themselves.
-pub(super) fn curve(plan: &FramePlan) -> DepthCurve {
+/// How depths of a plan's picture come from distances; `None` where its surfaces do not tell, as without a perspective.
+pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
     let picture = || plan.passes.iter().filter(|pass| plan.is_of_picture(pass));
     let is_reversed = is_reversed(picture().flat_map(|pass| &pass.draws));
     let surfaces = picture().flat_map(|pass| pass.draws.iter().map(move |draw| (pass, draw)));
     let surfaces = surfaces.filter(|(_, draw)| draw.part == Part::Surface && draw.raster.depth_write);
-    let points: Vec<[f64; 2]> = surfaces.flat_map(|(pass, draw)| points(plan, pass, draw)).collect();
+    // A sky, an interface or a hand-held thing may have a projection of its own: most vertices decide.
+    let fits: Vec<(usize, [f64; 2])> = surfaces
+        .filter_map(|(pass, draw)| {
+            let points = points(plan, pass, draw);
+            Some((points.len(), fitted(&points)?))
+        })
+        .collect();
+    let is_like = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
+        (a - c).abs() <= RESIDUAL * (1.0 - a).abs().max(RESIDUAL) && (b - d).abs() <= RESIDUAL * b.abs()
+    };
+    let votes =
+        |fit: [f64; 2]| fits.iter().filter(|(_, other)| is_like(fit, *other)).map(|(count, _)| count).sum::<usize>();
+    let best = fits.iter().max_by_key(|(count, fit)| (votes(*fit), *count)).map(|(_, fit)| *fit);
     let mapping = |has_far: bool| match (is_reversed, has_far) {
         (true, _) => DepthMapping::ReversedInfinite,
         (false, true) => DepthMapping::StandardFinite,
         (false, false) => DepthMapping::StandardInfinite,
     };
-    match fitted(&points) {
+    match best {
         Some([a, b]) => {
             // Where depth is 1, or 0 where it is reversed.
             let far = if is_reversed { -b / a } else { b / (1.0 - a) };
             let far = Some(far).filter(|far| far.is_finite() && *far > 0.0);
-            DepthCurve { mapping: mapping(far.is_some()), offset: a, scale: b, far }
+            Some(DepthCurve { mapping: mapping(far.is_some()), offset: a, scale: b, far })
         }
-        None => mapping(false).curve(1.0, 0.0, 0.0),
+        None => None,
     }
+}
+
+/// What is taken where nothing is known: depth from 0 to 1, as if there were no far plane.
+pub(super) fn unknown(plan: &FramePlan) -> DepthCurve {
+    let is_reversed = is_reversed(plan.passes.iter().flat_map(|pass| &pass.draws));
+    let mapping = if is_reversed { DepthMapping::ReversedInfinite } else { DepthMapping::StandardInfinite };
+    mapping.curve(1.0, 0.0, 0.0)
 }
 
 /// Is greater nearer? As most depth tests say.

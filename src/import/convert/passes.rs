@@ -33,7 +33,11 @@ pub(super) struct Making<'a> {
     run: Option<Run>,
     /// What the steps last showed: colour, depth, stencil.
     shown: [Option<Arc<Image>>; 3],
+    /// The same before the pass that is being made.
+    shown_before: [Option<Arc<Image>>; 3],
     counting_light: Option<LightId>,
+    /// The stencil was set by something other than a draw since volumes were counted in it.
+    is_emptied: bool,
     pub passes: Vec<Pass>,
     pub steps: Vec<Step>,
     pub meshes: Vec<DrawMesh>,
@@ -50,7 +54,9 @@ impl<'a> Making<'a> {
             put: BTreeMap::new(),
             run: None,
             shown: [None, None, None],
+            shown_before: [None, None, None],
             counting_light: None,
+            is_emptied: true,
             passes: Vec::new(),
             steps: Vec::new(),
             meshes: Vec::new(),
@@ -73,19 +79,24 @@ impl<'a> Making<'a> {
     pub fn event(&mut self, event: &RawEvent) {
         if let RawKind::Draw(draw) = &event.kind {
             // What a pass begins with is what is held before.
-            let begun = self.begin_for(event, draw);
-            self.note(event);
-            match begun {
-                Ok((place, cull)) => self.add(event, draw, place, cull),
+            match self.begin_for(event, draw) {
+                Ok((place, cull)) => {
+                    self.note(event);
+                    return self.add(event, draw, place, cull);
+                }
                 Err(why) => self.leave_out(event, why),
             }
-            return;
         }
+        // What it leaves is there when the next pass begins, whatever it was.
         let before = event.depth_target.and_then(|target| self.held.get(&target).cloned()).unwrap_or_default();
         self.note(event);
         let Some(target) = event.depth_target else { return };
         let (Some(place), Some(after)) = (self.stage.place(target), self.held.get(&target)) else { return };
         let changed = [before.depth != after.depth, before.stencil != after.stencil];
+        // A clear is one even where it changes nothing: what is counted from then on is another light's.
+        let clears = matches!(event.kind, RawKind::Clear { stencil: true, .. });
+        self.is_emptied |= place == Place::Picture && (clears || changed[1]);
+        let changed = [changed[0], changed[1] || clears];
         if changed != [false; 2] {
             let put = self.put.entry(place).or_default();
             *put = [put[0] || changed[0], put[1] || changed[1]];
@@ -145,11 +156,11 @@ impl<'a> Making<'a> {
 
     /// The light of a pass: a map's own, or that whose volumes were counted last. A stencil that is emptied and counted
     /// in again is another light's.
-    fn light(&mut self, run: &Run, stencil_is_put: bool) -> Option<LightId> {
+    fn light(&mut self, run: &Run) -> Option<LightId> {
         if let Place::Map(map, _) = run.place {
             return Some(LightId(map));
         }
-        if run.role == Role::Counts && (stencil_is_put || self.counting_light.is_none()) {
+        if run.role == Role::Counts && std::mem::take(&mut self.is_emptied) {
             let next = self.counting_light.map_or(self.stage.maps.len(), |light| light.0 + 1);
             self.counting_light = Some(LightId(next));
         }
@@ -160,12 +171,13 @@ impl<'a> Making<'a> {
         let put = if run.place == Place::Colors { [false; 2] } else { self.put.remove(&run.place).unwrap_or_default() };
         // What it held before its first draw: what is held now may be what that left.
         let (content, clears) = self.content(run.place, put);
-        let light = self.light(&run, put[1]);
+        let light = self.light(&run);
         let (attachment, layer) = match run.place {
             Place::Picture | Place::Colors => (super::DEPTH_STENCIL, 0),
             Place::Map(map, layer) => (super::map_attachment(map), layer),
         };
         let target = DepthStencilTarget { attachment, layer, clear_depth: clears.0, clear_stencil: clears.1 };
+        self.shown_before.clone_from(&self.shown);
         let (name, purpose) = (run.role.name().to_owned(), run.role.purpose().to_owned());
         let recorded = RecordedPass { viewport: run.viewport, groups: run.groups.clone(), start: content };
         self.passes.push(Pass {
@@ -226,8 +238,13 @@ impl<'a> Making<'a> {
             may_discard: states::may(draw.fragment.may_discard),
             writes_depth: states::may(draw.fragment.writes_depth),
         };
-        if let Some(state) = &after {
-            step.snapshot = state.snapshot.clone();
+        if let Some(DrawState { snapshot: Snapshot::Frame(frame), .. }) = &after {
+            let mut frame = frame.clone();
+            let aspects = [Some(&mut frame.color), Some(&mut frame.depth), frame.stencil.as_mut()];
+            for (aspect, before) in aspects.into_iter().zip(&self.shown_before) {
+                aspect.into_iter().for_each(|aspect| aspect.unchanged = before.as_ref() == Some(&aspect.image));
+            }
+            step.snapshot = Snapshot::Frame(frame);
         }
         let summary =
             DrawSummary { name: name.clone(), caster: None, part, triangles: triangles.into(), after, differs: None };

@@ -1,8 +1,8 @@
 //! Which of a frame's targets are the picture, and which are depth maps.
 
 use crate::import::ImportError;
-use crate::import::raw::{RawFormat, RawFrame, RawKind, RawTarget};
-use crate::plan::{Attachment, AttachmentRole};
+use crate::import::raw::{RawFormat, RawFrame, RawKind, RawTarget, RawTexture};
+use crate::plan::{Attachment, AttachmentRole, PlanMap};
 use std::collections::BTreeMap;
 use wgpu::TextureFormat;
 
@@ -58,8 +58,9 @@ impl Stage {
         for event in frame.events.iter().filter(|event| matches!(event.kind, RawKind::Draw(_))) {
             let Some(target) = event.depth_target.filter(|target| target.texture != depth.texture) else { continue };
             let is_known = stage.maps.iter().any(|map| map.texture == target.texture);
-            let RawFormatOf { has_depth, samples } = RawFormatOf::of(frame, target);
-            if !is_known && has_depth && samples == 1 {
+            let RawTexture { format, samples, layers, .. } = &frame.textures[target.texture];
+            let is_whole = *samples == 1 && *layers as usize <= PlanMap::MOST_FACES;
+            if !is_known && format.has_depth() && is_whole {
                 stage.maps.push(RawTarget { layer: 0, ..target });
             }
         }
@@ -77,7 +78,7 @@ impl Stage {
             return Some(Place::Picture);
         }
         let map = self.maps.iter().position(|map| (map.texture, map.mip) == (target.texture, target.mip))?;
-        Some(Place::Map(map, target.layer))
+        (target.layer < PlanMap::MOST_FACES as u32).then_some(Place::Map(map, target.layer))
     }
 
     /// The target of a place.
@@ -100,18 +101,6 @@ impl Stage {
             size: size_of(frame, target),
             layers,
         }
-    }
-}
-
-struct RawFormatOf {
-    has_depth: bool,
-    samples: u32,
-}
-
-impl RawFormatOf {
-    fn of(frame: &RawFrame, target: RawTarget) -> RawFormatOf {
-        let texture = &frame.textures[target.texture];
-        RawFormatOf { has_depth: texture.format.has_depth(), samples: texture.samples }
     }
 }
 

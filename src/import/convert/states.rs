@@ -102,6 +102,15 @@ pub(super) fn drawable(draw: &RawDraw) -> Result<Option<wgpu::Face>, &'static st
     if draw.samples > 1 {
         return Err("its target is multisampled");
     }
+    let [left, top, width, height] = draw.view.viewport;
+    if ![left, top, width, height].iter().all(|value| value.is_finite() && value.abs() <= 16384.0)
+        || width * height <= 0.0
+    {
+        return Err("its viewport is empty, or larger than can be");
+    }
+    if !draw.shape.bias.iter().chain(&draw.view.depth_range).all(|value| value.is_finite()) {
+        return Err("its depth bias or depth range is no number");
+    }
     if draw.shape.fill != RawFill::Solid {
         return Err("its triangles are not filled");
     }
@@ -154,7 +163,7 @@ pub(super) fn raster(draw: &RawDraw, cull: Option<wgpu::Face>, has_stencil: bool
         depth_compare,
         unclipped_depth: shape.depth_clamp || !shape.depth_clip,
         depth_write,
-        depth_bias: wgpu::DepthBiasState { constant: constant as i32, slope_scale, clamp },
+        depth_bias: wgpu::DepthBiasState { constant: constant.round() as i32, slope_scale, clamp },
         cull,
         front_face,
         color: draw.blend.as_ref().map_or(ColorWrite::None, color),
