@@ -319,7 +319,9 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes, passes: Range<usize>) 
         }
         if !prepared.is_kept(pass) && pass.targets().next().is_some() {
             if let Some(content) = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()) {
-                start::record(&mut encoder, prepared, index, content);
+                if let Some(target) = prepared.start_target(index) {
+                    start::record(&mut encoder, &target, content);
+                }
             }
             record_pass(&mut encoder, prepared, index, notes);
         }

@@ -6,7 +6,7 @@ use super::maps::{KeptMap, Maps};
 use super::pipelines::{PipelineKey, Pipelines};
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
 use super::uniforms::{self, UniformArray};
-use super::{Context, GpuError};
+use super::{Context, GpuError, start};
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, Program, RasterState, Visibility,
 };
@@ -142,14 +142,16 @@ impl<'a> Prepared<'a> {
         self.kept.iter().flatten().for_each(|map| map.set_drawn());
     }
 
-    /// The texture of an attachment.
-    pub(super) fn texture(&self, id: AttachmentId) -> &Texture {
-        &self.textures[id.0]
-    }
-
-    /// Where a layer that is drawn lies in its texture.
-    pub(super) fn layer(&self, id: AttachmentId, layer: u32) -> u32 {
-        held_layer(self.plan, id, layer)
+    /// Where a pass's depth and stencil lie; `None` where it has none.
+    pub(super) fn start_target(&self, index: usize) -> Option<start::Target<'_>> {
+        let target = self.plan.passes[index].depth_stencil.as_ref()?;
+        Some(start::Target {
+            device: &self.context.device,
+            texture: &self.textures[target.attachment.0],
+            layer: held_layer(self.plan, target.attachment, target.layer),
+            view: self.passes[index].depth_stencil.as_ref()?,
+            pipeline: self.passes[index].start.as_ref(),
+        })
     }
 
     /// Where the copies of a pass go: made when they are first wanted.

@@ -1,7 +1,6 @@
 //! What a pass's depth and stencil hold as it begins, put there from the CPU: depths by a draw, as nothing copies them
 //! into a buffer of floats, the stencil by a copy.
 
-use super::prepared::Prepared;
 use super::shaders;
 use crate::plan::{Blob, StartContent};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -9,23 +8,26 @@ use wgpu::{BufferUsages, CommandEncoder, Device, LoadOp, Operations, RenderPipel
 
 const ROW_ALIGNMENT: usize = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize;
 
-/// Records what brings the content of a pass's targets there.
-pub(super) fn record(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, content: &StartContent) {
-    let Some(target) = &prepared.plan.passes[index].depth_stencil else { return };
-    let texture = prepared.texture(target.attachment);
+/// Where content goes: a layer of a depth-stencil texture.
+pub(super) struct Target<'a> {
+    pub device: &'a Device,
+    pub texture: &'a wgpu::Texture,
+    pub layer: u32,
+    pub view: &'a wgpu::TextureView,
+    /// Of [`pipeline`], where there is depth to be put.
+    pub pipeline: Option<&'a RenderPipeline>,
+}
+
+/// Records what brings content there.
+pub(super) fn record(encoder: &mut CommandEncoder, target: &Target, content: &StartContent) {
+    let Target { device, texture, layer, view, pipeline } = *target;
     if let Some(stencil) = content.stencil.as_ref().filter(|_| texture.format().has_stencil_aspect()) {
-        let origin = wgpu::Origin3d { z: prepared.layer(target.attachment, target.layer), ..wgpu::Origin3d::ZERO };
+        let origin = wgpu::Origin3d { z: layer, ..wgpu::Origin3d::ZERO };
         let aspect = wgpu::TextureAspect::StencilOnly;
-        copy_stencil(
-            encoder,
-            &prepared.context.device,
-            stencil,
-            wgpu::TexelCopyTextureInfo { texture, mip_level: 0, origin, aspect },
-        );
+        copy_stencil(encoder, device, stencil, wgpu::TexelCopyTextureInfo { texture, mip_level: 0, origin, aspect });
     }
-    let pass = &prepared.passes[index];
-    if let (Some(depth), Some(view), Some(pipeline)) = (&content.depth, &pass.depth_stencil, &pass.start) {
-        draw_depth(encoder, &prepared.context.device, depth, pipeline, (view, texture));
+    if let (Some(depth), Some(pipeline)) = (&content.depth, pipeline) {
+        draw_depth(encoder, device, depth, pipeline, (view, texture));
     }
 }
 
