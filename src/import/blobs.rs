@@ -45,6 +45,11 @@ impl Blobs {
         Ok(())
     }
 
+    /// Gives back what was taken and is not kept.
+    pub fn give_back(&mut self, bytes: u64) {
+        self.left = self.left.saturating_add(bytes).min(MOST_BYTES);
+    }
+
     /// How long a byte string says that it is.
     ///
     /// # Errors

@@ -111,6 +111,19 @@ pub fn read(format: &RawFormat, bytes: &[u8], width: usize, layout: Layout) -> R
     }
 }
 
+/// Takes from `last` what is equal there, and returns the bytes of the rest.
+pub fn share(contents: &mut RawContents, last: &RawContents) -> u64 {
+    fn one<T: PartialEq>(new: &mut Option<Arc<[T]>>, last: &Option<Arc<[T]>>) -> u64 {
+        if new.is_some() && new == last {
+            new.clone_from(last);
+            return 0;
+        }
+        new.as_ref().map_or(0, |new| size_of_val::<[T]>(new) as u64)
+    }
+    let depths = one(&mut contents.depth, &last.depth) + one(&mut contents.depth_bits, &last.depth_bits);
+    depths + one(&mut contents.stencil, &last.stencil) + one(&mut contents.color, &last.color)
+}
+
 fn integers(format: &RawFormat, bits: impl Iterator<Item = u32>) -> RawContents {
     let bits: Arc<[u32]> = bits.collect();
     let largest = f64::from(format.largest_depth().unwrap_or(u32::MAX));

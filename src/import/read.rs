@@ -37,8 +37,16 @@ pub fn read(folder: &Path) -> Result<RawFrame, ImportError> {
     let limits = document.limits.into_iter().collect();
     let blobs = Blobs::open(&folder.join("data.bin"), document.blobs)?;
     let sizes = document.textures.iter().map(|texture| [texture.layers, texture.mips]).collect();
-    let mut reader =
-        Reader { api, textures, sizes, blobs, pictures: BTreeMap::new(), shaders: BTreeMap::new(), limits };
+    let mut reader = Reader {
+        api,
+        textures,
+        sizes,
+        blobs,
+        pictures: BTreeMap::new(),
+        last: BTreeMap::new(),
+        shaders: BTreeMap::new(),
+        limits,
+    };
     let mut before = Vec::new();
     for one in document.before {
         let target = reader.target(one.target)?;
@@ -105,6 +113,8 @@ struct Reader {
     blobs: Blobs,
     /// Pictures by byte string, format and size: those that are equal are one in memory.
     pictures: BTreeMap<(usize, usize, [u32; 2]), RawContents>,
+    /// The last picture of a format and size: the next may be equal to it but for the stencil.
+    last: BTreeMap<(usize, [u32; 2]), RawContents>,
     shaders: BTreeMap<(String, usize), RawFragment>,
     limits: BTreeSet<String>,
 }
@@ -155,7 +165,12 @@ impl Reader {
         // What is made of it is at most as much again, and as much as floats.
         self.blobs.reserve(found.saturating_mul(3))?;
         let layout = Layout { bottom_row_first: self.is_gl(), depth_above_stencil: self.is_gl() };
-        let contents = pictures::read(&self.textures[target.texture].format, &bytes, width as usize, layout);
+        let mut contents = pictures::read(&self.textures[target.texture].format, &bytes, width as usize, layout);
+        let last = self.last.entry((alike, [width, height])).or_default();
+        let kept = pictures::share(&mut contents, last);
+        last.clone_from(&contents);
+        // The bytes go, and what is as it was is there already.
+        self.blobs.give_back(found.saturating_mul(4).saturating_sub(kept));
         self.pictures.insert((blob, alike, [width, height]), contents.clone());
         Ok(contents)
     }
