@@ -90,7 +90,7 @@ fn check_name(name: &str) -> Result<(), CliError> {
 
 /// The ground truth: rays a second, sorting the scene apart from following them.
 fn truth(arguments: &BenchArguments) -> Result<(), CliError> {
-    let size = arguments.frame.size;
+    let size = arguments.frame.picture_size();
     for scene in scenes(arguments, || Ok(vec![bumpy_model(62, 31)?, bumpy_model(264, 133)?]))? {
         // What the options say is checked, though the truth depends on the size alone.
         arguments.frame.request(&scene)?;
@@ -151,7 +151,7 @@ fn auto(arguments: &BenchArguments) -> Result<(), CliError> {
     let built_in = || builtin::ALL.iter().map(|of| Ok(of.scene()?)).collect();
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
     let choices: Vec<Choice> = Technique::rivals().into_iter().map(Choice::new).collect();
-    let size = arguments.frame.size;
+    let size = arguments.frame.picture_size();
     let everyone = Measurement { choices, size, runs: 1 };
     for scene in scenes(arguments, built_in)? {
         let (mut to_fastest, mut to_z_fail, mut wrong) = (Vec::new(), Vec::new(), 0);

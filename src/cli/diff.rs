@@ -145,7 +145,7 @@ fn request(
     let frame = FrameOptions {
         technique: technique.cloned(),
         set: arguments.set.iter().chain(own).cloned().collect(),
-        size: arguments.size,
+        size: Some(arguments.size),
         every: arguments.every.clone(),
         adapter: arguments.adapter.clone(),
         external_capture: false,

@@ -14,6 +14,8 @@ use std::path::Path;
 const LARGEST: u32 = 16_384;
 /// Used where neither the command line nor the scene names a technique.
 const DEFAULT_TECHNIQUE: &str = "auto";
+/// Used where the command line names no size.
+const DEFAULT_SIZE: [u32; 2] = [1280, 720];
 /// How often a frame is timed with and without snapshots.
 const TIMING_RUNS: usize = 5;
 
@@ -61,9 +63,9 @@ pub struct FrameOptions {
     /// A setting of the technique; repeatable
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
-    /// Width and height of the picture
-    #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "1280x720")]
-    pub size: [u32; 2],
+    /// Width and height of the picture [default: 1280x720]
+    #[arg(long, value_name = "WxH", value_parser = picture_size)]
+    pub size: Option<[u32; 2]>,
     /// How often to snapshot
     #[arg(long, value_name = "pass|draw", default_value = "pass")]
     pub every: String,
@@ -164,11 +166,11 @@ impl Subject {
             let request = CaptureRequest { timing_runs: 0, ..frame.request(&at)? };
             return Ok(Subject::Scene(Box::new(SceneSubject { loaded, scene: at, request })));
         }
-        if !scene.is_untouched() || frame.technique.is_some() || !frame.set.is_empty() {
+        if !scene.is_untouched() || frame.technique.is_some() || !frame.set.is_empty() || frame.size.is_some() {
             let mend = "leave its options out, or name its scene.toml in place of the folder";
             return Err(CliError::Usage(format!("`{name}` is a frame that was captured already: {mend}")));
         }
-        let alone = "it holds pictures alone, as of an older version: capture the scene again";
+        let alone = "it holds no frame that this version can run: capture the scene again";
         let whole = RunFrame::from_folder(disk::read_whole(folder)?);
         whole.map(Subject::Folder).map_err(|_| CliError::Usage(format!("`{name}`: {alone}")))
     }
@@ -215,11 +217,16 @@ impl FrameOptions {
     pub fn request(&self, scene: &Scene) -> Result<CaptureRequest, CliError> {
         Ok(CaptureRequest {
             choice: self.choice(scene)?,
-            size: self.size,
+            size: self.picture_size(),
             timing_runs: TIMING_RUNS,
             every: self.every()?,
             external_capture: self.external_capture,
         })
+    }
+
+    /// Width and height of the picture.
+    pub fn picture_size(&self) -> [u32; 2] {
+        self.size.unwrap_or(DEFAULT_SIZE)
     }
 
     /// The technique of the command line, else the scene's, else the default. The scene's

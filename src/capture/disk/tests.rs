@@ -301,7 +301,7 @@ fn reading_after(change: impl Fn(&str) -> String) -> String {
 #[test]
 fn broken_folders_are_refused_with_a_reason() {
     let replaced = |from: &'static str, to: &'static str| reading_after(move |text| text.replacen(from, to, 1));
-    assert!(replaced("\"schema\": 1", "\"schema\": 2").contains("schema is 2"));
+    assert!(replaced("\"schema\": 2", "\"schema\": 3").contains("schema is 3"));
     assert!(replaced("000-ambient.depth.npy", "../secret.npy").contains("outside its folder"));
     assert!(replaced("000-ambient.depth.npy", "missing.npy").contains("missing.npy"));
     assert!(replaced("000-ambient.depth.npy", "000-ambient.stencil.npy").contains("stencil.npy"));
