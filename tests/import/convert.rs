@@ -235,3 +235,15 @@ fn a_frame_that_its_program_drew_wrong_is_found_named_and_proven() {
     let joined = far.faults.iter().find(|found| !found.together_with.is_empty()).expect("faults together");
     assert!(joined.fault == FrameFault::FarClip && joined.pixels_left * 20 < far.wrong(), "{}", far.to_text());
 }
+
+/// Vulkan's clip space is wgpu's: nothing is rounded on the way.
+#[test]
+fn our_own_frame_on_vulkan_is_computed_anew_to_the_last_bit() {
+    let (plan, capture) = converted(&mut session(), "own");
+    let names: Vec<&str> = plan.passes.iter().map(|pass| pass.name.as_str()).collect();
+    assert!(names.contains(&"volumes") && names.contains(&"light"), "{names:?}");
+    assert!(plan.passes.iter().any(|pass| pass.recorded.as_ref().is_some_and(|of| of.groups == ["volumes"])));
+    for differs in differing(&capture) {
+        assert_eq!(differs, Differs::default());
+    }
+}
