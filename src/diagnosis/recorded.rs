@@ -157,14 +157,19 @@ impl FrameDiagnosis {
         if self.wrong_again != self.wrong() {
             text += &format!("run again as it is, {} pixels are wrong\n", numbers::count(self.wrong_again));
         }
-        for found in &self.faults {
+        let (helping, others): (Vec<_>, Vec<_>) = self.faults.iter().partition(|found| found.proof != Proof::NotIt);
+        for found in helping {
             let FaultFound { fault, light, proof, pixels_left, together_with, .. } = found;
             let with: String = together_with.iter().map(|other| format!(" and {}", other.name())).collect();
             let (left, proof) = (numbers::count(*pixels_left), proof.name());
             text += &format!("\n{}{with} ({}), {proof}: {left} pixels left\n", fault.name(), light.name());
             text += &format!("  {}\n  {}\n", found.evidence, found.fault.meaning());
         }
-        if self.wrong() > 0 && self.faults.is_empty() {
+        if self.wrong() > 0 && !others.is_empty() {
+            let names: Vec<&str> = others.iter().map(|found| found.fault.name()).collect();
+            text += &format!("\ntried, and not it: {}\n", names.join(", "));
+        }
+        if self.wrong() > 0 && self.faults.iter().all(|found| found.proof == Proof::NotIt) {
             text += "no known cause fits\n";
         }
         text

@@ -247,3 +247,27 @@ fn our_own_frame_on_vulkan_is_computed_anew_to_the_last_bit() {
         assert_eq!(differs, Differs::default());
     }
 }
+
+#[test]
+fn commands_answer_from_the_folder_of_a_recorded_frame() {
+    let work = crate::commands::folder();
+    let run = |arguments: &[&str]| crate::commands::run(work.path(), arguments);
+    let text = crate::commands::text;
+    for (name, code) in [("ogre", 0), ("ogre-short", 1)] {
+        let frame = frame_of(name);
+        write(frame.contents(), &work.path().join(name), false).expect("written");
+        let told = run(&["diagnose", name]);
+        assert_eq!(told.status.code(), Some(code), "{}", text(&told.stderr));
+        assert_eq!(text(&told.stdout).contains("finite-extrusion (light 1), proven: 0 pixels left"), code == 1);
+        let json = run(&["diagnose", name, "--json"]);
+        let document: serde_json::Value = serde_json::from_slice(&json.stdout).expect("JSON");
+        let regions = document["regions"].as_array().expect("regions");
+        assert_eq!(regions.len(), code as usize);
+        assert!(regions.iter().all(|region| region["causes"][0]["proof"] == "proven"), "{document}");
+        let history = run(&["pixel", name, "--at", "160,170"]);
+        assert!(text(&history.stdout).contains("pass 2, light 1: volumes"), "{}", text(&history.stdout));
+    }
+    let refused = run(&["diagnose", "ogre", "--fix", "mended.toml"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("another program drew this frame"), "{}", text(&refused.stderr));
+}
