@@ -42,7 +42,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "picture",
         ],
     ),
-    ("anatomy", &["math", "scene", "geometry", "plan", "technique"]),
+    ("anatomy", &["math", "scene", "geometry", "plan", "technique", "recorded"]),
     ("report", &["technique", "capture", "numbers"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (

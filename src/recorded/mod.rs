@@ -16,5 +16,5 @@ mod space;
 
 pub use labels::labels;
 pub use light::{FoundLight, light};
-pub use scene::scene;
+pub use scene::{casters, scene};
 pub use space::Space;

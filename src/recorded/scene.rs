@@ -37,8 +37,7 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
     let mut unseen = Vec::new();
     for (pass, draw) in volumes {
         let places = Space::new(plan, pass).places(plan, draw);
-        let finite: Vec<DVec3> =
-            places.iter().flatten().filter(|place| place.w == 1.0).map(|place| place.truncate()).collect();
+        let finite = finite(&places);
         // Most of a volume's finite corners are its caster's: those of a finite far end are not.
         let most = objects
             .iter_mut()
@@ -54,6 +53,26 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
     let lights = lights.into_iter().map(|position| Light { position, ..Light::point(DVec3::ZERO) });
     let builder = SceneBuilder::new(name).camera(camera).lights(lights);
     builder.objects(objects.into_iter().map(|(object, _)| object)).objects(unseen).build()
+}
+
+/// The draws of shadow volumes with their passes, and the index of the object of `scene` that throws each: most of a
+/// volume's corners that are not at infinity are its caster's.
+#[must_use]
+pub fn casters<'a>(plan: &'a FramePlan, scene: &Scene) -> Vec<(&'a Pass, &'a Draw, usize)> {
+    let casting = scene.objects.iter().enumerate().filter(|(_, object)| object.casts);
+    let casting: Vec<(usize, Corners)> =
+        casting.map(|(index, object)| (index, Corners::new(&object.world_positions()))).collect();
+    let thrown = |(pass, draw)| {
+        let finite = finite(&Space::new(plan, pass).places(plan, draw));
+        let most = casting.iter().max_by_key(|(_, corners)| corners.count(&finite));
+        most.map(|(index, _)| (pass, draw, *index))
+    };
+    draws(plan, |draw| draw.part.is_of_volume()).into_iter().filter_map(thrown).collect()
+}
+
+/// Places that are not at infinity.
+fn finite(places: &[Option<DVec4>]) -> Vec<DVec3> {
+    places.iter().flatten().filter(|place| place.w == 1.0).map(|place| place.truncate()).collect()
 }
 
 /// Draws of the picture, with their passes.
