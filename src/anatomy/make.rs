@@ -3,9 +3,9 @@
 use super::{Anatomy, PlacedLight, PlacedObject, Silhouette, frusta, volumes};
 use crate::geometry::{Caster, Casters, Edge, EdgeList, Facings, GeometryCache, silhouette};
 use crate::plan::FramePlan;
+use crate::recorded::Space;
 use crate::scene::{Object, Scene};
 use crate::technique::{Choice, casting};
-use crate::recorded::Space;
 use glam::{DVec3, DVec4};
 
 /// Cosine of the angle between neighbours' normals from which on the edge between them is drawn: 25°.
@@ -83,7 +83,12 @@ pub fn recorded_places(plan: &FramePlan, pass: usize, corners: [[f32; 4]; 3]) ->
     Some([a?, b?, c?])
 }
 
-fn silhouettes(scene: &Scene, choice: Option<&Choice>, placed: &[PlacedObject], cache: &mut GeometryCache) -> Vec<Silhouette> {
+fn silhouettes(
+    scene: &Scene,
+    choice: Option<&Choice>,
+    placed: &[PlacedObject],
+    cache: &mut GeometryCache,
+) -> Vec<Silhouette> {
     let mut found = Vec::new();
     let mut facings = Facings::default();
     for (light, position) in scene.lights.iter().map(crate::scene::Light::homogeneous).enumerate() {

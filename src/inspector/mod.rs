@@ -202,6 +202,7 @@ impl Inspector {
     /// What was run for the capture that is shown.
     pub fn set_plan(&mut self, plan: Arc<FramePlan>) {
         self.model.frame.plan = Some(plan);
+        self.model.answers.know_plan();
     }
 
     /// What was run for the capture that is shown; `None` for a capture folder.

@@ -83,8 +83,14 @@ fn open_name(model: &Model) -> Option<String> {
 fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(scene) = &model.scene else {
         // A capture folder: its technique is a fact, not a choice.
-        if let Some(capture) = &model.frame.capture {
-            ui.label(theme::note(format!("technique {}", capture.technique)));
+        match (&model.frame.capture, model.origin()) {
+            (_, Some(_)) => {
+                ui.label(theme::note("drawn by another program: its technique can't be changed"));
+            }
+            (Some(capture), None) => {
+                ui.label(theme::note(format!("technique {}", capture.technique)));
+            }
+            (None, None) => {}
         }
         return;
     };

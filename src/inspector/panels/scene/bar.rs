@@ -21,8 +21,10 @@ pub fn toolbar(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
             if see.on_hover_text("The free view becomes the picture's own").clicked() {
                 view.see_from(&anatomy.camera);
             }
-            let gizmos = ui.checkbox(&mut view.gizmos, "Gizmos");
-            gizmos.on_hover_text("Handles that move lights and camera: drag them, or use the arrow keys");
+            if !anatomy.is_view_assumed {
+                let gizmos = ui.checkbox(&mut view.gizmos, "Gizmos");
+                gizmos.on_hover_text("Handles that move lights and camera: drag them, or use the arrow keys");
+            }
         });
     });
 }
@@ -147,6 +149,11 @@ fn chooser(ui: &mut Ui, name: &str, all: &str, names: &[String], chosen: &mut Op
 }
 
 fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
+    if anatomy.is_view_assumed {
+        let words = "Found from the draws of another program. Its field of view is not known: 90° is assumed, so widths \
+                     and heights may be stretched.";
+        ui.add(egui::Label::new(theme::note(words)).wrap());
+    }
     if stage.is_cut {
         let words = "Not all of it is drawn: there is too much of it, or places are no numbers.";
         ui.add(egui::Label::new(theme::note(words)).wrap());
