@@ -130,6 +130,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "plan",
             "technique",
             "capture",
+            "import",
             "session",
             "inspector",
             "progress",
@@ -144,6 +145,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
     (
         "cli",
         &[
+            "recorded",
             "files",
             "numbers",
             "import",

@@ -94,7 +94,12 @@ fn silhouettes(
     for (light, position) in scene.lights.iter().map(crate::scene::Light::homogeneous).enumerate() {
         for (index, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.casts) {
             let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed[index].positions };
-            let casters = choice.map_or(Casters::All, |choice| casting(choice, cache, caster, position));
+            let casters = match choice {
+                Some(choice) => casting(choice, cache, caster, position),
+                // Whose triangles another program takes is not known: no more than are needed.
+                None if cache.light_facing_suffices(caster, position).is_ok() => Casters::LightFacing,
+                None => Casters::All,
+            };
             cache.planes(caster).facings(caster.world, object.mesh.triangles(), position, &mut facings);
             facings.keep_casting(casters);
             let mut edges = Vec::new();

@@ -80,6 +80,11 @@ impl Inspector {
         }
     }
 
+    /// Offers these frames of other programs too.
+    pub fn offer_frames(&mut self, frames: Vec<SceneEntry>) {
+        self.open_dialog.frames = frames;
+    }
+
     /// Draws everything and returns what the user wishes.
     pub fn ui(&mut self, ui: &mut egui::Ui) -> Vec<Action> {
         self.style(ui);

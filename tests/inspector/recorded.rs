@@ -9,8 +9,8 @@ use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Differs};
-use stencilscope::import::{Converted, convert, read};
-use stencilscope::inspector::{Action, Inspector};
+use stencilscope::import::{Converted, SHIPPED, Shipped, convert, read};
+use stencilscope::inspector::{Action, Inspector, SceneEntry};
 use stencilscope::plan::{FramePlan, May, Program};
 use stencilscope::progress::Progress;
 use stencilscope::reading::shown::PictureKind;
@@ -82,7 +82,7 @@ fn it_says_who_drew_the_frame_and_what_can_not_be_done_with_it() {
 }
 
 #[test]
-fn a_picked_pixel_has_its_history_and_what_was_not_held_is_told_of_no_pixel() {
+fn a_picked_pixel_has_its_history() {
     let mut session = common::session();
     let ogre = frame(&mut session, "ogre");
     let mut harness = harness_of(inspector(&ogre), TALL);
@@ -101,10 +101,10 @@ fn draws_that_make_something_else_are_marked() {
     let mut session = common::session();
     let ogre = frame(&mut session, "ogre");
     let ogre = changed(&ogre, |plan, capture| {
-        let draw = &mut capture.steps[1].draws[1];
-        draw.differs = Some(Differs { depth: 0, stencil: 1234, rounded: 5 });
-        let both = May::Yes;
-        plan.passes[1].draws[1].program = Program::Recorded { may_discard: both, writes_depth: May::No };
+        capture.steps.iter_mut().flat_map(|step| &mut step.draws).for_each(|draw| draw.differs = None);
+        capture.steps[1].draws[1].differs = Some(Differs { depth: 0, stencil: 1234, rounded: 5 });
+        let program = Program::Recorded { may_discard: May::Yes, writes_depth: May::Unknown };
+        plan.passes[1].draws[1].program = program;
     });
     let name = ogre.capture.steps[1].draws[1].name.clone();
     let mut harness = harness_of(inspector(&ogre), [1280.0, 800.0]);
@@ -112,8 +112,9 @@ fn draws_that_make_something_else_are_marked() {
     let row = harness.get_by_label(&format!("{name}, differs")).rect();
     harness.hover_at(row.center());
     harness.run_steps(8);
-    harness.get_by_label_contains("another stencil at 1 234 pixels and another depth at 0 pixels");
-    harness.get_by_label_contains("Its shader may discard fragments");
+    harness.get_by_label_contains("another stencil at 1\u{2009}234 pixels and another depth at 0 pixels");
+    harness.get_by_label_contains("Its shader may discard fragments, which is not followed");
+    harness.get_by_label_contains("Its shader could not be read: it may write its own depth");
     let others = harness.query_all_by_label_contains(", differs").count();
     assert_eq!(others, 1);
 }
@@ -212,4 +213,37 @@ fn without_a_found_light_scene_and_truth_say_why() {
     harness.get_by_role_and_label(Role::Tab, "Scene").click();
     answer_all(&mut harness, &mut session, &ogre);
     harness.get_by_label_contains("no shadow volumes tell where its light is");
+}
+
+#[test]
+fn frames_that_come_with_the_program_are_offered_and_open() {
+    let entry = |shipped: &Shipped| SceneEntry { name: shipped.name.to_owned(), lesson: shipped.lesson.to_owned() };
+    let mut inspector = Inspector::new(Vec::new());
+    inspector.offer_frames(SHIPPED.iter().map(entry).collect());
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    click_button(&mut harness, "Open…");
+    harness.get_by_label("A frame of another program");
+    for shipped in SHIPPED {
+        harness.get_by_label(shipped.lesson);
+        let whole = shipped.open().expect("a frame");
+        assert!(whole.plan.is_some() && whole.scene.is_some(), "{}", shipped.name);
+    }
+    click_button(&mut harness, "ogre-short");
+    assert!(harness.state().actions.contains(&Action::Open("ogre-short".to_owned())));
+}
+
+#[test]
+fn a_frame_with_volumes_that_end_too_early_shows_where_shadow_is_missing() {
+    let mut session = common::session();
+    let short = frame(&mut session, "ogre-short");
+    let mut inspector = inspector(&short);
+    inspector.set_picture_kind(PictureKind::Error);
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    answer_all(&mut harness, &mut session, &short);
+    let error = harness.state().inspector.capture().and_then(|capture| capture.error()).expect("an error");
+    assert!(error.missing_shadow > 300 && error.missing_shadow == error.wrong(), "{error:?}");
+    click_button(&mut harness, "Go to the largest");
+    answer_all(&mut harness, &mut session, &short);
+    harness.get_by_label_contains("Lit by light 1");
+    harness.get_by_label("History");
 }

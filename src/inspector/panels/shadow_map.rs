@@ -107,7 +107,11 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     let lights = lights(&capture);
     let Some(first) = lights.first() else {
         model.selection.readers = Arc::default();
-        return empty(ui, rect, "This frame has no shadow map. Choose the technique shadow-map above.");
+        let words = match model.origin() {
+            Some(_) => "This frame has no shadow map.",
+            None => "This frame has no shadow map. Choose the technique shadow-map above.",
+        };
+        return empty(ui, rect, words);
     };
     if !lights.contains(&own.light) {
         own.light = *first;
@@ -334,7 +338,10 @@ fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &Links
         ui.label(theme::note("Finding which texel each pixel reads…"));
     }
     let is_recorded = capture.origin.is_some();
-    if is_recorded {
+    if let Some(origin) = &capture.origin {
+        for limit in &origin.limits {
+            ui.add(egui::Label::new(theme::note(format!("Not read: {limit}"))).wrap());
+        }
         let words = "Another program drew this map, and how its light sees is not known: no pixel is linked with the \
                      texel that it reads.";
         ui.add(egui::Label::new(theme::note(words)).wrap());

@@ -76,7 +76,8 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
 
 fn open_name(model: &Model) -> Option<String> {
     let of_scene = model.scene.as_ref().map(|scene| scene.name.clone());
-    of_scene.or_else(|| model.frame.capture.as_ref().map(|capture| format!("{} (capture)", capture.scene)))
+    let what = if model.origin().is_some() { "recorded" } else { "capture" };
+    of_scene.or_else(|| model.frame.capture.as_ref().map(|capture| format!("{} ({what})", capture.scene)))
 }
 
 /// A button a technique, joined into one.

@@ -201,8 +201,12 @@ fn summary(step: &Step) -> String {
     }
     let draws = format::counted(step.draws.len() as u64, "draw");
     let differing = step.draws.iter().filter(|draw| draw.differs.is_some_and(|differs| !differs.is_nowhere())).count();
-    let differing = if differing > 0 { format!(" · {differing} ≠") } else { String::new() };
-    format!("{draws} · {}{differing}", format::counted(step.triangles(), "triangle"))
+    let differing = match differing {
+        0 => String::new(),
+        1 => " · 1 differs".to_owned(),
+        count => format!(" · {count} differ"),
+    };
+    format!("{draws}{differing} · {}", format::counted(step.triangles(), "triangle"))
 }
 
 /// What a step changed, as a picture with its colouring.

@@ -94,7 +94,7 @@ fn heading(ui: &mut Ui, own: &mut Passes, name: &str, group: [usize; 2]) {
     let sign = if is_folded { "▶" } else { "▼" };
     let colors = theme::of(ui);
     let at = pos2(rect.left() + 8.0, rect.center().y - 7.0);
-    theme::line(ui, at, 12.0, sign, TextStyle::Small, colors.dim);
+    theme::line(ui, at, 12.0, sign, TextStyle::Monospace, colors.dim);
     theme::line(ui, at + vec2(16.0, -1.0), rect.width() - 32.0, name, TextStyle::Body, colors.text);
     let words = if is_folded { "show" } else { "hide" };
     if response.on_hover_text(format!("A debug group of the program: click to {words} its passes")).clicked() {
