@@ -31,7 +31,7 @@ macro_rules! shipped {
 pub const SHIPPED: &[Shipped] = &[
     shipped!("ogre", "OGRE's stencil shadows as they should be: three volumes, counted in front of surfaces"),
     shipped!("ogre-inside", "The eye in a shadow: OGRE counts that volume behind surfaces"),
-    shipped!("ogre-short", "Volumes that end too early: a part of the shadow is lost"),
+    shipped!("ogre-short", "Volumes that end at the light's reach: beyond it, shadow is not counted"),
 ];
 
 impl Shipped {

@@ -91,6 +91,7 @@ fn a_picked_pixel_has_its_history() {
     answer_all(&mut harness, &mut session, &ogre);
     assert_eq!(harness.state().inspector.picked(), Some(DARK));
     harness.get_by_label_contains("Dark under light 1");
+    harness.get_by_label_contains("so the light pass skips it");
     let rows = harness.query_all_by_role(Role::Row).count();
     assert!(rows >= 3, "{rows} rows");
     assert!(harness.query_by_label_contains("holds pictures and no geometry").is_none());
@@ -245,5 +246,6 @@ fn a_frame_with_volumes_that_end_too_early_shows_where_shadow_is_missing() {
     click_button(&mut harness, "Go to the largest");
     answer_all(&mut harness, &mut session, &short);
     harness.get_by_label_contains("Lit by light 1");
+    harness.get_by_label_contains("so the light pass adds the light");
     harness.get_by_label("History");
 }

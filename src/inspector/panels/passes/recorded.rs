@@ -97,10 +97,9 @@ fn heading(ui: &mut Ui, own: &mut Passes, name: &str, group: [usize; 2]) {
     theme::line(ui, at, 12.0, sign, TextStyle::Monospace, colors.dim);
     theme::line(ui, at + vec2(16.0, -1.0), rect.width() - 32.0, name, TextStyle::Body, colors.text);
     let words = if is_folded { "show" } else { "hide" };
-    if response.on_hover_text(format!("A debug group of the program: click to {words} its passes")).clicked() {
-        if !own.folded.remove(&group) {
-            own.folded.insert(group);
-        }
+    let response = response.on_hover_text(format!("A debug group of the program: click to {words} its passes"));
+    if response.clicked() && !own.folded.remove(&group) {
+        own.folded.insert(group);
     }
 }
 
