@@ -43,7 +43,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "picture",
         ],
     ),
-    ("anatomy", &["math", "scene", "geometry", "plan", "technique"]),
+    ("anatomy", &["math", "scene", "geometry", "plan", "technique", "recorded"]),
     ("report", &["technique", "capture", "numbers"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
@@ -132,6 +132,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "plan",
             "technique",
             "capture",
+            "import",
             "session",
             "inspector",
             "progress",
@@ -146,6 +147,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
     (
         "cli",
         &[
+            "recorded",
             "files",
             "numbers",
             "import",

@@ -89,7 +89,7 @@ fn of_projector(clip_from_world: DMat4, light: DVec4, caster: &[DVec3], of: View
     is_usable.then(|| [to([light; 4]), to(near.map(onwards))])
 }
 
-fn of_camera(camera: &Camera, aspect: f64, far: Option<f64>) -> Frustum {
+pub fn of_camera(camera: &Camera, aspect: f64, far: Option<f64>) -> Frustum {
     let rays = rays(camera, aspect);
     let at = |ray: DVec3, distance: f64| (camera.eye + ray * distance).extend(1.0);
     Frustum {

@@ -1,18 +1,20 @@
 //! Puts an anatomy together.
 
 use super::{Anatomy, PlacedLight, PlacedObject, Silhouette, frusta, volumes};
-use crate::geometry::{Caster, Edge, EdgeList, Facings, GeometryCache, silhouette};
+use crate::geometry::{Caster, Casters, Edge, EdgeList, Facings, GeometryCache, silhouette};
 use crate::plan::FramePlan;
+use crate::recorded::Space;
 use crate::scene::{Object, Scene};
 use crate::technique::{Choice, casting};
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 /// Cosine of the angle between neighbours' normals from which on the edge between them is drawn: 25°.
 const CREASE: f64 = 0.906;
 
-/// What the frame of `plan` is made of: of `scene` at its moment, made as `choice` says.
+/// What the frame of `plan` is made of: of `scene` at its moment, made as `choice` says; without one another program
+/// drew it, and `scene` is what its draws tell of that.
 #[must_use]
-pub fn anatomy(scene: &Scene, choice: &Choice, plan: &FramePlan, cache: &mut GeometryCache) -> Anatomy {
+pub fn anatomy(scene: &Scene, choice: Option<&Choice>, plan: &FramePlan, cache: &mut GeometryCache) -> Anatomy {
     let objects: Vec<PlacedObject> = scene.objects.iter().map(|object| placed(object, cache)).collect();
     let aspect = f64::from(plan.size[0]) / f64::from(plan.size[1].max(1));
     Anatomy {
@@ -24,9 +26,17 @@ pub fn anatomy(scene: &Scene, choice: &Choice, plan: &FramePlan, cache: &mut Geo
             .iter()
             .map(|light| PlacedLight { position: light.position, color: light.color, range: light.range })
             .collect(),
-        volumes: volumes::of_plan(plan, &objects),
+        volumes: match choice {
+            Some(_) => volumes::of_plan(plan, &objects),
+            None => volumes::recorded(plan, scene),
+        },
         silhouettes: silhouettes(scene, choice, &objects, cache),
-        frusta: frusta::all(scene, plan, &objects, aspect),
+        frusta: match choice {
+            Some(_) => frusta::all(scene, plan, &objects, aspect),
+            // How another program's maps lie in space is not known.
+            None => vec![frusta::of_camera(&scene.camera, aspect, plan.depth.far)],
+        },
+        is_view_assumed: choice.is_none(),
         near_clips: scene.lights.iter().map(|light| frusta::near_clip(&scene.camera, aspect, light)).collect(),
         objects,
     }
@@ -63,13 +73,33 @@ fn worth_drawing(edges: &EdgeList, positions: &[DVec3], triangles: &[[u32; 3]]) 
     (0..edges.edges().len()).filter(is_worth).map(|index| edges.edges()[index]).collect()
 }
 
-fn silhouettes(scene: &Scene, choice: &Choice, placed: &[PlacedObject], cache: &mut GeometryCache) -> Vec<Silhouette> {
+/// The corners of a triangle of another program's pass as places of its anatomy; `None` where it is our own, or they
+/// are no numbers.
+#[must_use]
+pub fn recorded_places(plan: &FramePlan, pass: usize, corners: [[f32; 4]; 3]) -> Option<[DVec4; 3]> {
+    let pass = plan.passes.get(pass).filter(|pass| pass.recorded.is_some())?;
+    let space = Space::new(plan, pass);
+    let [a, b, c] = corners.map(|corner| space.place(corner));
+    Some([a?, b?, c?])
+}
+
+fn silhouettes(
+    scene: &Scene,
+    choice: Option<&Choice>,
+    placed: &[PlacedObject],
+    cache: &mut GeometryCache,
+) -> Vec<Silhouette> {
     let mut found = Vec::new();
     let mut facings = Facings::default();
     for (light, position) in scene.lights.iter().map(crate::scene::Light::homogeneous).enumerate() {
         for (index, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.casts) {
             let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed[index].positions };
-            let casters = casting(choice, cache, caster, position);
+            let casters = match choice {
+                Some(choice) => casting(choice, cache, caster, position),
+                // Whose triangles another program takes is not known: no more than are needed.
+                None if cache.light_facing_suffices(caster, position).is_ok() => Casters::LightFacing,
+                None => Casters::All,
+            };
             cache.planes(caster).facings(caster.world, object.mesh.triangles(), position, &mut facings);
             facings.keep_casting(casters);
             let mut edges = Vec::new();
@@ -94,7 +124,7 @@ mod tests {
         settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
         let mut cache = GeometryCache::default();
         let plan = plan(Job { scene: &scene, size: [320, 180], choice: &choice, cache: &mut cache }).expect("a plan");
-        anatomy(&scene, &choice, &plan, &mut cache)
+        anatomy(&scene, Some(&choice), &plan, &mut cache)
     }
 
     /// Each side of a triangle is run back by another one: by vertex where they are near, by position

@@ -14,7 +14,7 @@ mod frusta;
 mod make;
 mod volumes;
 
-pub use make::anatomy;
+pub use make::{anatomy, recorded_places};
 
 use crate::geometry::{Edge, SilhouetteEdge};
 use crate::plan::Part;
@@ -29,6 +29,9 @@ pub struct Anatomy {
     pub technique: String,
     /// The camera that the frame is seen by.
     pub camera: Camera,
+    /// Its field of view is not known, and stands at 90 degrees: another program drew the frame. All is in its view
+    /// space then.
+    pub is_view_assumed: bool,
     /// Width over height of the picture.
     pub aspect: f64,
     /// In the scene's order.

@@ -2,6 +2,8 @@
 
 use super::{PlacedObject, ShadowVolume, VolumePart};
 use crate::plan::{Draw, DrawMesh, FramePlan, MeshId, Pass, ViewId};
+use crate::recorded::{self, Space};
+use crate::scene::Scene;
 use glam::{DVec3, DVec4};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -32,6 +34,28 @@ pub fn of_plan(plan: &FramePlan, objects: &[PlacedObject]) -> Vec<ShadowVolume> 
     found.into_values().map(|(_, volume)| volume).collect()
 }
 
+/// The volumes of another program's frame, one for each draw, in the space of its assumed eye.
+pub fn recorded(plan: &FramePlan, scene: &Scene) -> Vec<ShadowVolume> {
+    let mut found = Vec::new();
+    for (pass, draw, caster) in recorded::casters(plan, scene) {
+        let (Some(light), Some(mesh)) = (pass.light, plan.meshes.get(draw.mesh.0)) else { continue };
+        let places = Space::new(plan, pass).places(plan, draw);
+        let is_place = |corner: &u32| places.get(*corner as usize).is_some_and(Option::is_some);
+        let triangles = corners(draw, mesh).filter(|corners| corners.iter().all(is_place)).collect();
+        let volume = ShadowVolume {
+            light: light.0,
+            caster,
+            vertices: places.iter().map(|place| place.unwrap_or_default()).collect(),
+            parts: vec![VolumePart { part: draw.part, triangles }],
+        };
+        // Two passes draw one volume twice.
+        if !found.contains(&volume) {
+            found.push(volume);
+        }
+    }
+    found
+}
+
 fn draws_of_volumes(pass: &Pass) -> impl Iterator<Item = (usize, &Draw)> {
     let is_of_volume = |draw: &&Draw| draw.part.is_of_volume();
     let light = pass.light.map(|light| light.0);
@@ -47,13 +71,19 @@ fn world(mesh: &DrawMesh, origin: DVec3) -> Vec<DVec4> {
 }
 
 fn add(volume: &mut ShadowVolume, draw: &Draw, mesh: &DrawMesh) {
-    let indices = &mesh.indices.data()[draw.triangles.start as usize * 3..draw.triangles.end as usize * 3];
-    let triangles = indices.chunks_exact(3).map(|corners| {
-        let [a, b, c] = [0, 1, 2].map(|corner| corners[corner] + draw.base_vertex);
-        if draw.faces_inwards { [a, c, b] } else { [a, b, c] }
-    });
+    let triangles = corners(draw, mesh);
     match volume.parts.iter_mut().find(|part| part.part == draw.part) {
         Some(part) => part.triangles.extend(triangles),
         None => volume.parts.push(VolumePart { part: draw.part, triangles: triangles.collect() }),
     }
+}
+
+/// The triangles of a draw, counter-clockwise seen from outside its volume.
+fn corners(draw: &Draw, mesh: &DrawMesh) -> impl Iterator<Item = [u32; 3]> {
+    let range = draw.triangles.start as usize..draw.triangles.end as usize;
+    let triangles = mesh.indices.data().as_chunks::<3>().0.get(range).unwrap_or_default();
+    triangles.iter().map(|corners| {
+        let [a, b, c] = corners.map(|corner| corner + draw.base_vertex);
+        if draw.faces_inwards { [a, c, b] } else { [a, b, c] }
+    })
 }

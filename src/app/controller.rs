@@ -13,6 +13,7 @@ use super::worker::{Start, Worker};
 use super::{AppError, ViewRequest};
 use crate::ask::Asked;
 use crate::capture::Capture;
+use crate::import::SHIPPED;
 use crate::inspector::{Action, ExportData, Inspector, Remembered, SceneEntry};
 use crate::reading::shown::PictureKind;
 use crate::scene::{TechniqueRequest, builtin};
@@ -70,11 +71,10 @@ impl Controller {
         };
         let to_window = Arc::clone(&tell);
         let worker = Worker::start(start, move |news| to_window(WindowNews::Worker(news)))?;
-        let scene = |builtin: &builtin::Builtin| SceneEntry {
-            name: builtin.name.to_owned(),
-            lesson: builtin.lesson.to_owned(),
-        };
-        let mut inspector = Inspector::new(builtin::ALL.iter().map(scene).collect());
+        let entry = |name: &str, lesson: &str| SceneEntry { name: name.to_owned(), lesson: lesson.to_owned() };
+        let scenes = builtin::ALL.iter().map(|builtin| entry(builtin.name, builtin.lesson)).collect();
+        let mut inspector = Inspector::new(scenes);
+        inspector.offer_frames(SHIPPED.iter().map(|shipped| entry(shipped.name, shipped.lesson)).collect());
         if remembers {
             inspector.recall(memory::load());
         }

@@ -17,6 +17,8 @@ use super::queue::{Inbox, Order, Queue};
 use super::{AppError, ViewSource, allocator};
 use crate::ask::{Ask, Asked, Holds, Kind, RunRequest};
 use crate::capture::disk::{self, WholeFrame};
+use crate::import::Shipped;
+use crate::progress::Progress;
 use crate::scene::file::store;
 use crate::scene::{OpenSpec, Scene};
 use crate::session::{CaptureRequest, Every, RunFrame, Session, SessionError};
@@ -269,6 +271,10 @@ impl Work {
             self.show_folder(disk::read_whole(path).map_err(|error| error.to_string())?, name);
             return Ok(());
         }
+        if let Some(shipped) = Shipped::named(name) {
+            self.show_folder(shipped.open().map_err(|error| error.to_string())?, name);
+            return Ok(());
+        }
         let spec = OpenSpec::new(name);
         let scene = crate::scene::open(&spec).map_err(|error| error.to_string())?;
         if let Some(wish) = &scene.technique {
@@ -282,6 +288,7 @@ impl Work {
     fn show_folder(&mut self, whole: WholeFrame, folder: &str) {
         self.scenes += 1;
         let name = folder.to_owned();
+        let whole = self.checked(whole);
         let frame = match RunFrame::from_folder(whole) {
             Ok(frame) => frame,
             Err(whole) => {
@@ -303,6 +310,20 @@ impl Work {
         (self.open, self.spec) = (Some(scene.clone()), Some(spec));
         (self.tell)(News::Opened { scene_number, scene, source: Some(name), files, request });
         self.show(frame, Duration::ZERO);
+    }
+
+    /// A frame of another program whose draws nobody has computed anew yet, as an import does.
+    fn checked(&mut self, whole: WholeFrame) -> WholeFrame {
+        let is_checked = whole.capture.steps.iter().flat_map(|step| &step.draws).any(|draw| draw.differs.is_some());
+        let is_meant = whole.capture.origin.is_some() && !is_checked;
+        let Some(plan) = whole.plan.as_ref().filter(|_| is_meant) else { return whole };
+        let checked =
+            self.session().and_then(|session| session.held_against_itself(plan, &whole.capture, &Progress::default()));
+        match checked {
+            Ok(capture) => WholeFrame { capture, ..whole },
+            // What was stored can be looked at without a GPU.
+            Err(_) => whole,
+        }
     }
 
     /// Tells of a frame that was run.

@@ -95,6 +95,8 @@ pub struct Answers {
     has_frame: bool,
     /// There is a scene to run; a folder's frame answers only what is read from it.
     has_scene: bool,
+    /// The frame can be run, though there is no scene: another program drew it.
+    has_plan: bool,
 }
 
 impl Default for Answers {
@@ -107,6 +109,7 @@ impl Default for Answers {
             now: 0.0,
             has_frame: false,
             has_scene: false,
+            has_plan: false,
         }
     }
 }
@@ -247,7 +250,7 @@ impl Answers {
         let kind = ask.kind();
         let can_be = match kind.holds() {
             _ if kind.is_read_from_capture() => self.has_frame,
-            Holds::Frame => self.has_frame && self.has_scene,
+            Holds::Frame => self.has_frame && (self.has_scene || self.has_plan),
             Holds::Scene => self.has_scene,
             Holds::Always => true,
         };
@@ -320,9 +323,14 @@ impl Answers {
 
     /// Another scene is open, or (`has_scene` false) a folder, which can't be run.
     pub fn new_scene(&mut self, has_scene: bool) {
-        self.has_scene = has_scene;
+        (self.has_scene, self.has_plan) = (has_scene, false);
         self.replace(Holds::Frame, |_, slot| slot.known = None);
         self.replace(Holds::Scene, |_, slot| slot.known = None);
+    }
+
+    /// What was run for the frame is known: it answers what a run of it tells.
+    pub fn know_plan(&mut self) {
+        self.has_plan = true;
     }
 
     /// Drops what is asked and what was given up of answers that hold so long. What was started by hand goes on, or

@@ -2,6 +2,7 @@
 
 use super::CliError;
 use crate::capture::disk;
+use crate::import::Shipped;
 use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, open};
 use crate::session::{CaptureRequest, Every, RunFrame, Session};
 use crate::technique::{Choice, ChoiceError, Technique};
@@ -160,7 +161,9 @@ impl Subject {
     /// frame of it.
     pub fn new(name: &str, scene: &SceneOptions, frame: &FrameOptions) -> Result<Subject, CliError> {
         let folder = Path::new(name);
-        if !disk::is_capture(folder) {
+        let is_capture = disk::is_capture(folder);
+        let shipped = Shipped::named(name).filter(|_| !is_capture);
+        if !is_capture && shipped.is_none() {
             let loaded = scene.load(name)?;
             let at = loaded.at(scene.time);
             let request = CaptureRequest { timing_runs: 0, ..frame.request(&at)? };
@@ -171,7 +174,10 @@ impl Subject {
             return Err(CliError::Usage(format!("`{name}` is a frame that was captured already: {mend}")));
         }
         let alone = "it holds no frame that this version can run: capture the scene again";
-        let whole = RunFrame::from_folder(disk::read_whole(folder)?);
+        let whole = RunFrame::from_folder(match shipped {
+            Some(shipped) => shipped.open()?,
+            None => disk::read_whole(folder)?,
+        });
         whole.map(Subject::Folder).map_err(|_| CliError::Usage(format!("`{name}`: {alone}")))
     }
 

@@ -70,6 +70,7 @@ pub mod window {
     use super::{CliError, FrameOptions, SceneOptions, ViewArguments, capture_instead};
     use crate::app::{self, AppError, ViewRequest, ViewSource};
     use crate::capture::disk;
+    use crate::import::Shipped;
     use crate::session::CaptureRequest;
     use crate::technique::{Choice, Technique};
     use std::path::Path;
@@ -84,11 +85,15 @@ pub mod window {
     /// Everything that can be wrong with the arguments is found before a window is made.
     fn request(arguments: &ViewArguments) -> Result<ViewRequest, CliError> {
         let folder = Path::new(&arguments.scene);
-        if !folder.is_dir() {
+        let shipped = Shipped::named(&arguments.scene).filter(|_| !folder.is_dir());
+        if !folder.is_dir() && shipped.is_none() {
             let request = scene_request(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
             return Ok(ViewRequest { step: arguments.pass, pick: arguments.at, truth: arguments.truth, ..request });
         }
-        let whole = disk::read_whole(folder)?;
+        let whole = match shipped {
+            Some(shipped) => shipped.open()?,
+            None => disk::read_whole(folder)?,
+        };
         // How a scene would be rendered that is opened from the window later.
         let request = CaptureRequest::new(Choice::new(Technique::ZFail), whole.capture.size);
         Ok(ViewRequest {

@@ -154,7 +154,7 @@ pub struct TriangleEvent {
     pub is_front: bool,
     /// It faces into the volume that it bounds.
     pub faces_inwards: bool,
-    /// Whom its shader asks how much of the light arrives, where it adds the light.
+    /// Whom its shader asks how much of the light arrives, where it adds the light; of another program's surfaces nobody.
     pub lights: Option<Visibility>,
     /// As the depth test sees it; outside 0 to 1 where it was clipped.
     pub depth: f32,

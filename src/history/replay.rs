@@ -3,8 +3,8 @@
 use super::{Disagreement, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent, captured_after};
 use crate::capture::{Capture, FrameTarget};
 use crate::plan::{
-    AttachmentRole, ColorWrite, Coverage, Covering, Draw, Face, FragmentLog, FramePlan, LightId, Pass, Program,
-    StartContent, ViewId,
+    AttachmentRole, ColorWrite, Coverage, Covering, Draw, Face, FragmentLog, FramePlan, LightId, Part, Pass, Program,
+    StartContent, ViewId, Visibility,
 };
 use crate::stencil_machine::{self, Fragment};
 use wgpu::CompareFunction;
@@ -228,6 +228,8 @@ fn triangle(draw: &Draw, one: &Covering, face: Face, fate: Fate) -> EventKind {
         faces_inwards: draw.faces_inwards,
         lights: match draw.program {
             Program::Light(visibility) => Some(visibility),
+            // Whatever else another program's shader asks is not known.
+            Program::Recorded { .. } if draw.part == Part::Surface => Some(Visibility::Everywhere),
             _ => None,
         },
         depth: face.depth,

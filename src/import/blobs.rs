@@ -5,29 +5,31 @@
 
 use super::error::ImportError;
 use flate2::read::ZlibDecoder;
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
-use std::path::Path;
 
 /// Bytes that may be read or made in all.
 pub const MOST_BYTES: u64 = 8 << 30;
 
+/// A file, or bytes in memory.
+trait Source: Read + Seek {}
+
+impl<T: Read + Seek> Source for T {}
+
 /// The file, and where each byte string is in it.
 pub struct Blobs {
-    file: File,
+    file: Box<dyn Source>,
     table: Vec<[u64; 3]>,
     left: u64,
 }
 
 impl Blobs {
-    /// Opens the file and looks through the table.
+    /// Looks through the table.
     ///
     /// # Errors
-    /// No file; a byte string that lies outside of it.
-    pub fn open(path: &Path, table: Vec<[u64; 3]>) -> Result<Self, ImportError> {
-        let failed = |error: std::io::Error| ImportError::Folder(format!("data.bin: {error}"));
-        let file = File::open(path).map_err(failed)?;
-        let length = file.metadata().map_err(failed)?.len();
+    /// A file that can't be read; a byte string that lies outside of it.
+    pub fn new(file: impl Read + Seek + 'static, table: Vec<[u64; 3]>) -> Result<Self, ImportError> {
+        let mut file = Box::new(file);
+        let length = file.seek(SeekFrom::End(0)).map_err(|error| ImportError::Folder(format!("data.bin: {error}")))?;
         let lies_inside = |[at, packed, _]: &[u64; 3]| at.checked_add(*packed).is_some_and(|end| end <= length);
         if let Some(at) = table.iter().position(|entry| !lies_inside(entry)) {
             return Err(ImportError::Folder(format!("data.bin: byte string {at} lies outside of it")));
@@ -70,7 +72,7 @@ impl Blobs {
         self.file.seek(SeekFrom::Start(at)).map_err(|error| broken(&error))?;
         // The bytes are what takes memory, not the length that the table has.
         let mut bytes = Vec::new();
-        let mut unpacked = ZlibDecoder::new((&self.file).take(packed)).take(length.saturating_add(1));
+        let mut unpacked = ZlibDecoder::new(self.file.by_ref().take(packed)).take(length.saturating_add(1));
         unpacked.read_to_end(&mut bytes).map_err(|error| broken(&error))?;
         if bytes.len() as u64 != length {
             return Err(broken(&format!("it is not {length} bytes long")));

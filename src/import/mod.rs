@@ -19,6 +19,7 @@ mod process;
 mod raw;
 mod read;
 mod shader;
+mod shipped;
 mod states;
 mod unroll;
 
@@ -27,6 +28,7 @@ pub use error::ImportError;
 pub use list::list;
 pub use raw::*;
 pub use read::read;
+pub use shipped::{SHIPPED, Shipped};
 
 use crate::progress::Progress;
 use process::{Limits, Run};

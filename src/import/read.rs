@@ -14,7 +14,8 @@ use super::raw::{
 };
 use super::{geometry, shader, states};
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Read;
+use std::fs::File;
+use std::io::{Read, Seek};
 use std::path::Path;
 
 /// Bytes of `frame.json`.
@@ -31,11 +32,20 @@ const MOST_TEXTURES: usize = 100_000;
 /// # Errors
 /// A file that is missing, broken or larger than what is read.
 pub fn read(folder: &Path) -> Result<RawFrame, ImportError> {
-    let document = document(&folder.join("frame.json"))?;
+    let open = |name: &str| File::open(folder.join(name)).map_err(|error| broken(format!("{name}: {error}")));
+    read_from(open("frame.json")?, open("data.bin")?)
+}
+
+/// Reads its two files.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_from(document: impl Read, data: impl Read + Seek + 'static) -> Result<RawFrame, ImportError> {
+    let document = self::document(document)?;
     let api = Api::from_name(&document.api).ok_or_else(|| broken(format!("it is of the API `{}`", document.api)))?;
     let textures = document.textures.iter().map(texture).collect::<Result<_, _>>()?;
     let limits = document.limits.into_iter().collect();
-    let blobs = Blobs::open(&folder.join("data.bin"), document.blobs)?;
+    let blobs = Blobs::new(data, document.blobs)?;
     let sizes = document.textures.iter().map(|texture| [texture.layers, texture.mips]).collect();
     let mut reader = Reader {
         api,
@@ -69,9 +79,8 @@ fn broken(what: impl Into<String>) -> ImportError {
     ImportError::Folder(what.into())
 }
 
-fn document(path: &Path) -> Result<Document, ImportError> {
+fn document(file: impl Read) -> Result<Document, ImportError> {
     let failed = |error: &dyn std::fmt::Display| broken(format!("frame.json: {error}"));
-    let file = std::fs::File::open(path).map_err(|error| failed(&error))?;
     let mut text = Vec::new();
     file.take(MOST_TEXT + 1).read_to_end(&mut text).map_err(|error| failed(&error))?;
     if text.len() as u64 > MOST_TEXT {

@@ -80,6 +80,11 @@ impl Inspector {
         }
     }
 
+    /// Offers these frames of other programs too.
+    pub fn offer_frames(&mut self, frames: Vec<SceneEntry>) {
+        self.open_dialog.frames = frames;
+    }
+
     /// Draws everything and returns what the user wishes.
     pub fn ui(&mut self, ui: &mut egui::Ui) -> Vec<Action> {
         self.style(ui);
@@ -202,6 +207,7 @@ impl Inspector {
     /// What was run for the capture that is shown.
     pub fn set_plan(&mut self, plan: Arc<FramePlan>) {
         self.model.frame.plan = Some(plan);
+        self.model.answers.know_plan();
     }
 
     /// What was run for the capture that is shown; `None` for a capture folder.

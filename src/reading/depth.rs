@@ -51,10 +51,11 @@ impl DepthMeasure {
         DepthMeasure::Perspective { scale, offset, clear: mapping.clear_depth() }
     }
 
-    /// Of a face of a light's shadow map; `None` where there is none or its matrix tells no distance.
+    /// Of a face of a light's shadow map; `None` where there is none or its matrix tells no distance, as
+    /// those of other programs, which are not known.
     #[must_use]
     pub fn of_map(capture: &Capture, light: usize, face: usize) -> Option<DepthMeasure> {
-        let map = capture.lights.get(light)?.map.as_ref()?;
+        let map = capture.lights.get(light)?.map.as_ref().filter(|_| capture.origin.is_none())?;
         DepthMeasure::of_matrix(*map.clip_from_light.get(face)?, capture.depth.mapping.clear_depth())
     }
 

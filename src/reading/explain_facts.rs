@@ -44,7 +44,9 @@ pub fn facts(known: &Known) -> Vec<Fact> {
         return vec![map(known, step)];
     }
     if step.draws.iter().any(|draw| draw.part.is_of_volume()) {
-        return vec![volumes(known), triangles(step)];
+        // Of another program's volumes sides and caps are not told apart.
+        let parts = known.capture.origin.is_none().then(|| triangles(step));
+        return std::iter::once(volumes(known)).chain(parts).collect();
     }
     if has(Part::PlanarShadow) {
         return vec![flattened(known, step)];

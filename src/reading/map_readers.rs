@@ -35,7 +35,8 @@ impl MapReaders {
     /// Of the picture after the frame of `plan`; `None` where the light has no shadow map, or nothing is drawn.
     #[must_use]
     pub fn new(capture: &Capture, plan: Option<&Arc<FramePlan>>, light: usize) -> Option<MapReaders> {
-        let lookup = Lookup::new(capture, plan, light)?;
+        // Where another program's map looks is not known.
+        let lookup = Lookup::new(capture, plan, light).filter(|_| capture.origin.is_none())?;
         let fragments = Fragments::new(capture, plan, light)?;
         let of_pixel = |at: [u32; 2]| match lookup.bias_normal == 0.0 {
             // Normals take time, and change nothing.

@@ -22,5 +22,5 @@ pub use edges::OpenEdges;
 pub use ends::far_ends;
 pub use labels::labels;
 pub use light::{FoundLight, light};
-pub use scene::scene;
+pub use scene::{casters, scene};
 pub use space::Space;

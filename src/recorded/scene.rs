@@ -38,8 +38,7 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
     let mut unseen = Vec::new();
     for (pass, draw) in volumes {
         let places = Space::new(plan, pass).places(plan, draw);
-        let finite: Vec<DVec3> =
-            places.iter().flatten().filter(|place| place.w == 1.0).map(|place| place.truncate()).collect();
+        let finite = finite(&places);
         // Most of a volume's finite corners are its caster's: those of a finite far end are not.
         match corners.most(&finite) {
             Some((object, count)) if count * 4 >= finite.len() => objects[object].casts = true,
@@ -57,6 +56,26 @@ pub fn scene(plan: &FramePlan, camera: Camera, name: &str, lights: Vec<DVec4>) -
     let lights = lights.into_iter().map(|position| Light { position, ..Light::point(DVec3::ZERO) });
     let builder = SceneBuilder::new(name).camera(camera).lights(lights);
     builder.objects(objects).objects(unseen).build()
+}
+
+/// The draws of shadow volumes with their passes, and the index of the object of `scene` that throws each: most of a
+/// volume's corners that are not at infinity are its caster's.
+#[must_use]
+pub fn casters<'a>(plan: &'a FramePlan, scene: &Scene) -> Vec<(&'a Pass, &'a Draw, usize)> {
+    let mut corners = Corners::default();
+    for (index, object) in scene.objects.iter().enumerate().filter(|(_, object)| object.casts) {
+        corners.add(index, &object.world_positions());
+    }
+    let thrown = |(pass, draw)| {
+        let (caster, _) = corners.most(&finite(&Space::new(plan, pass).places(plan, draw)))?;
+        Some((pass, draw, caster))
+    };
+    draws(plan, |draw| draw.part.is_of_volume()).into_iter().filter_map(thrown).collect()
+}
+
+/// Places that are not at infinity.
+fn finite(places: &[Option<DVec4>]) -> Vec<DVec3> {
+    places.iter().flatten().filter(|place| place.w == 1.0).map(|place| place.truncate()).collect()
 }
 
 /// Draws of the picture, with their passes.

@@ -7,8 +7,9 @@ use crate::scene::Scene;
 use crate::technique::Choice;
 
 impl Session {
-    /// What the frame of `plan` is made of: of `scene` at its moment, made as `choice` says.
-    pub fn anatomy(&mut self, scene: &Scene, choice: &Choice, plan: &FramePlan) -> Anatomy {
+    /// What the frame of `plan` is made of: of `scene` at its moment, made as `choice` says; without one another
+    /// program drew it.
+    pub fn anatomy(&mut self, scene: &Scene, choice: Option<&Choice>, plan: &FramePlan) -> Anatomy {
         anatomy(scene, choice, plan, &mut self.geometry)
     }
 }

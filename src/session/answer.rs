@@ -64,7 +64,7 @@ impl RunFrame {
     /// # Errors
     /// Another program drew it, and its draws do not tell.
     pub fn scene(&self) -> Result<&Scene, SessionError> {
-        self.source.as_ref().map(|source| &source.scene).ok_or(SessionError::NoScene)
+        self.source.as_ref().map(|source| &source.scene).ok_or(SessionError::NoLights)
     }
 
     /// What it was made from, and how.
@@ -122,8 +122,8 @@ impl Session {
             }
             Ask::AnatomyOf(_) => {
                 let frame = of_frame()?;
-                let (scene, request) = frame.made()?;
-                Answer::AnatomyOf(Arc::new(self.anatomy(scene, &request.choice, &frame.plan)))
+                let choice = frame.made().ok().map(|(_, request)| &request.choice);
+                Answer::AnatomyOf(Arc::new(self.anatomy(frame.scene()?, choice, &frame.plan)))
             }
             Ask::TestsOf(TestsOf { step, draw }) => {
                 let tests = self.step_tests(&of_frame()?.plan, *step, *draw)?;

@@ -111,6 +111,9 @@ pub enum SessionError {
     /// There is nothing to ask about.
     #[error("the open scene was not rendered: mend what the error says, then ask again")]
     NoFrame,
+    /// What is found from lights.
+    #[error("another program drew this frame, and no shadow volumes tell where its light is")]
+    NoLights,
     /// What only scenes have.
     #[error("another program drew this frame, and there is no scene that it could be drawn from anew")]
     NoScene,

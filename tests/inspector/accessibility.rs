@@ -39,7 +39,7 @@ pub fn known(technique: Technique) -> Inspector {
     let capture = session.judged(&scene, &capture, &Progress::default()).expect("a truth");
     let pick = [TORI[0] / 2, TORI[1] * 2 / 3];
     let history = session.history(&plan, &capture, pick).expect("a history");
-    let anatomy = session.anatomy(&scene, &request.choice, &plan);
+    let anatomy = session.anatomy(&scene, Some(&request.choice), &plan);
     let mut inspector = pictures::inspector(&scene, &request, &Arc::new(capture), pick);
     inspector.set_plan(Arc::new(plan));
     inspector.tell(HistoryOf { at: pick }, Ok(Arc::new(history)));

@@ -146,7 +146,7 @@ fn edges_that_count_twice_have_their_number() {
         let mut request = common::request(Technique::ZFail, [640, 360]);
         request.choice.set("casters", casters).expect("a setting");
         let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-        let anatomy = Arc::new(session.anatomy(&scene, &request.choice, &plan));
+        let anatomy = Arc::new(session.anatomy(&scene, Some(&request.choice), &plan));
         let many = anatomy.silhouettes.iter().flat_map(|silhouette| &silhouette.edges);
         let many = many.filter(|edge| edge.multiplicity.unsigned_abs() > 1).count();
         let inspector = super::pictures::inspector(&scene, &request, &Arc::new(capture), [10, 10]);
@@ -180,7 +180,7 @@ fn lines_numbers_and_names_are_in_it_as_in_the_window() {
     // Every triangle casts, so edges of silhouettes count twice.
     request.choice.set("casters", "all").expect("a setting");
     let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let anatomy = Arc::new(session.anatomy(&scene, &request.choice, &plan));
+    let anatomy = Arc::new(session.anatomy(&scene, Some(&request.choice), &plan));
     let mut harness =
         harness_of(super::pictures::inspector(&scene, &request, &Arc::new(capture), [10, 10]), [1280.0, 800.0]);
     for overlay in [Overlay::Silhouettes, Overlay::Names, Overlay::Receivers, Overlay::Volumes] {

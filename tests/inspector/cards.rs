@@ -164,7 +164,7 @@ fn pictures_of_cards_can_be_drawn() {
     let request = common::request(stencilscope::technique::Technique::ZPass, [640, 360]);
     let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
     let capture = session.judged(&scene, &capture, &Default::default()).expect("a truth");
-    let anatomy = Arc::new(session.anatomy(&scene, &request.choice, &plan));
+    let anatomy = Arc::new(session.anatomy(&scene, Some(&request.choice), &plan));
     let capture = Arc::new(capture);
     let pick = [330, 225];
     let history = Arc::new(session.history(&plan, &capture, pick).expect("a history"));

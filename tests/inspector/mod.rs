@@ -19,6 +19,7 @@ mod overlays;
 mod picture_modes;
 mod pictures;
 mod random_input;
+mod recorded;
 mod report;
 mod scene_depth;
 mod scene_view;

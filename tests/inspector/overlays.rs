@@ -122,7 +122,7 @@ fn lines_receivers_and_names_come_from_the_frames_anatomy() {
     let scene = open(&OpenSpec::new("tori")).expect("tori");
     let request = common::request(Technique::ZFail, [320, 180]);
     let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let anatomy = Arc::new(session.anatomy(&scene, &request.choice, &plan));
+    let anatomy = Arc::new(session.anatomy(&scene, Some(&request.choice), &plan));
     let inspector = super::pictures::inspector(&scene, &request, &Arc::new(capture), [10, 10]);
     let mut harness = harness_of(inspector, [1280.0, 800.0]);
     let plain = harness.render().expect("a picture");

@@ -271,3 +271,19 @@ fn random_input_over_a_real_capture_does_not_panic() {
         run("tori", seed, inspector, &captures);
     }
 }
+
+#[test]
+fn random_input_over_a_recorded_frame_does_not_panic() {
+    let mut session = common::session();
+    let ogre = recorded::frame(&mut session, "ogre");
+    for seed in [21, 22] {
+        let mut inspector = recorded::inspector(&ogre);
+        let at = [60, 140];
+        let history = session.history(&ogre.plan, &ogre.capture, at).expect("a history");
+        let scene = ogre.scene().expect("a scene");
+        inspector.pick(at);
+        inspector.tell(HistoryOf { at }, Ok(Arc::new(history)));
+        inspector.tell(AnatomyOf {}, Ok(Arc::new(session.anatomy(scene, None, &ogre.plan))));
+        run("ogre", seed, inspector, &[Arc::clone(&ogre.capture)]);
+    }
+}

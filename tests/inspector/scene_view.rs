@@ -42,7 +42,7 @@ pub fn draft_of(scene: &Scene) -> RunRequest {
 pub fn anatomy_of(scene: &Scene, technique: Technique) -> Arc<Anatomy> {
     let (choice, mut cache) = (Choice::new(technique), GeometryCache::default());
     let plan = plan(Job { scene, size: SIZE, choice: &choice, cache: &mut cache }).expect("a plan");
-    Arc::new(anatomy(scene, &choice, &plan, &mut cache))
+    Arc::new(anatomy(scene, Some(&choice), &plan, &mut cache))
 }
 
 /// Panels over a scene, with its anatomy.
@@ -315,7 +315,7 @@ fn harness_over(name: &str, technique: Technique, pick: [u32; 2], size: [f32; 2]
     let mut session = common::session();
     let request = common::request(technique, [640, 360]);
     let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
-    let anatomy = session.anatomy(&scene, &request.choice, &plan);
+    let anatomy = session.anatomy(&scene, Some(&request.choice), &plan);
     let history = session.history(&plan, &capture, pick).expect("a history");
     let mut inspector = inspector_over(&scene, &request, &Arc::new(capture), pick);
     inspector.tell(AnatomyOf {}, Ok(Arc::new(anatomy)));

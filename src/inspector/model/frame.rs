@@ -3,7 +3,7 @@
 
 use super::Model;
 use crate::ask::{DrawsOf, Kind, TestsOf, TimingOf, TruthOf};
-use crate::capture::{Capture, FrameTruth};
+use crate::capture::{Capture, FrameTruth, Origin};
 use crate::plan::FramePlan;
 use crate::reading::shown::has_truth;
 use std::sync::Arc;
@@ -29,6 +29,18 @@ impl ShownFrame {
 }
 
 impl Model {
+    /// Can it be asked what only a run of the frame tells? Not of a folder that holds pictures alone.
+    #[must_use]
+    pub fn can_ask(&self) -> bool {
+        self.scene.is_some() || self.frame.plan.is_some()
+    }
+
+    /// Where the frame comes from, if another program drew it.
+    #[must_use]
+    pub fn origin(&self) -> Option<&Origin> {
+        self.frame.capture.as_ref()?.origin.as_ref()
+    }
+
     /// Shows another capture. The step stays where it means the same, and so does the pick
     /// where it still lies inside.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {

@@ -12,10 +12,10 @@ use std::sync::Arc;
 pub const PATIENCE: f64 = 0.12;
 
 impl Model {
-    /// Wants the history of the picked pixel; nothing where no pixel is picked, or the frame is a folder's.
+    /// Wants the history of the picked pixel; nothing where no pixel is picked, or there are pictures alone.
     #[must_use]
     pub fn want_history(&self) -> Reply<PixelHistory> {
-        match self.selection.pick.filter(|_| self.scene.is_some() && self.frame.capture.is_some()) {
+        match self.selection.pick.filter(|_| self.can_ask() && self.frame.capture.is_some()) {
             Some(at) => self.answers.want(HistoryOf { at }),
             None => Reply::default(),
         }
@@ -26,7 +26,7 @@ impl Model {
     pub fn want_history_until(&self) -> Option<f64> {
         let reply = self.want_history();
         let is_waited_for = self.selection.pick.is_some() && reply.ready.is_none() && reply.failed.is_none();
-        (is_waited_for && self.scene.is_some() && !is_late(&reply)).then(|| (PATIENCE - reply.waits_for).max(0.001))
+        (is_waited_for && self.can_ask() && !is_late(&reply)).then(|| (PATIENCE - reply.waits_for).max(0.001))
     }
 
     /// The history of the picked pixel, or of the one that was picked just before, of the same frame.

@@ -48,6 +48,9 @@ pub fn ui(ui: &mut Ui, own: &mut Explain, model: &mut Model) {
 }
 
 fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
+    if capture.origin.is_some() && capture.left_out.is_empty() {
+        return;
+    }
     theme::heading(ui, "Left out");
     if capture.left_out.is_empty() {
         ui.add(Label::new(theme::note("Nothing: this scene needs all that the technique has.")).wrap());

@@ -63,6 +63,11 @@ fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
             let stencil = target.clear_stencil.map_or_else(kept, |value| format!("cleared to {value}"));
             row("depth, stencil", format!("{}: depth {depth}, stencil {stencil}", name(target.attachment)));
         }
+        if let Some(recorded) = &pass.recorded {
+            let [left, top, width, height] = recorded.viewport.area;
+            let [near, far] = recorded.viewport.depth;
+            row("viewport", format!("{width}×{height} pixels from {left}, {top}; depths {near} to {far}"));
+        }
         if let Some([left, top, columns, rows]) = pass.scissor {
             row("scissor", format!("{columns}×{rows} pixels from {left}, {top}"));
         }
@@ -100,6 +105,12 @@ fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, 
 fn matrices(ui: &mut Ui, model: &Model, plan: &FramePlan, pass: &Pass, capture: &crate::capture::Capture) {
     let Some(view) = plan.views.get(pass.view.0) else { return };
     theme::heading(ui, "Matrices");
+    if pass.recorded.is_some() {
+        let words =
+            "Another program drew this frame: its vertices are in clip space already, and its matrices are not known.";
+        ui.add(Label::new(theme::note(words)).wrap());
+        return;
+    }
     let origin = view.origin;
     let from = format!(
         "relative = world − ({}, {}, {}), in f64: what is near stays exact however far it is from the world's origin.",

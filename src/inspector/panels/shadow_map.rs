@@ -107,7 +107,11 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
     let lights = lights(&capture);
     let Some(first) = lights.first() else {
         model.selection.readers = Arc::default();
-        return empty(ui, rect, "This frame has no shadow map. Choose the technique shadow-map above.");
+        let words = match model.origin() {
+            Some(_) => "This frame has no shadow map.",
+            None => "This frame has no shadow map. Choose the technique shadow-map above.",
+        };
+        return empty(ui, rect, words);
     };
     if !lights.contains(&own.light) {
         own.light = *first;
@@ -333,8 +337,19 @@ fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &Links
     if links.is_waited_for {
         ui.label(theme::note("Finding which texel each pixel reads…"));
     }
+    let is_recorded = capture.origin.is_some();
+    if let Some(origin) = &capture.origin {
+        for limit in &origin.limits {
+            ui.add(egui::Label::new(theme::note(format!("Not read: {limit}"))).wrap());
+        }
+        let words = "Another program drew this map, and how its light sees is not known: no pixel is linked with the \
+                     texel that it reads.";
+        ui.add(egui::Label::new(theme::note(words)).wrap());
+    }
     let Some(texel) = links.texel else {
-        ui.add(egui::Label::new(theme::note("Point at a texel, or at a pixel of the small picture.")).wrap());
+        let words =
+            if is_recorded { "Point at a texel." } else { "Point at a texel, or at a pixel of the small picture." };
+        ui.add(egui::Label::new(theme::note(words)).wrap());
         return;
     };
     let [x, y] = texel.at;
@@ -385,8 +400,10 @@ fn values(
     let measure = DepthMeasure::of_map(capture, light, texel.face);
     if let Some(stored) = stored {
         values.push(("stored depth", format::depth(stored)));
-        let distance = measure.and_then(|measure| measure.value(stored));
-        values.push(("caster at", distance.map_or_else(|| "no caster".to_owned(), format::metres)));
+        if let Some(measure) = measure {
+            let distance = measure.value(stored);
+            values.push(("caster at", distance.map_or_else(|| "no caster".to_owned(), format::metres)));
+        }
     }
     let readers = links.readers;
     if let Some(depth) = links.pixel.and_then(|pixel| readers?.depth_of(pixel)) {

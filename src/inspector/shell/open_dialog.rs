@@ -5,7 +5,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use egui::{Context, Id, Key, RichText, Ui, vec2};
 
-/// A built-in scene in the dialog.
+/// A built-in scene, or a frame of another program, in the dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SceneEntry {
     /// What opens it.
@@ -19,6 +19,8 @@ pub struct SceneEntry {
 pub struct OpenDialog {
     /// Built-in ones.
     scenes: Vec<SceneEntry>,
+    /// Of other programs.
+    pub frames: Vec<SceneEntry>,
     path: String,
 }
 
@@ -26,7 +28,7 @@ impl OpenDialog {
     /// Offers these.
     #[must_use]
     pub fn new(scenes: Vec<SceneEntry>) -> OpenDialog {
-        OpenDialog { scenes, path: String::new() }
+        OpenDialog { scenes, ..OpenDialog::default() }
     }
 }
 
@@ -62,13 +64,14 @@ enum Answer {
 fn contents(ui: &mut Ui, dialog: &mut OpenDialog) -> Answer {
     let mut answer = Answer::Waiting;
     theme::heading(ui, "Open");
-    if !dialog.scenes.is_empty() {
-        ui.label(theme::note("A built-in scene"));
-        let scroll = egui::ScrollArea::vertical().max_height(300.0).auto_shrink([false, true]);
+    let lists = [("A built-in scene", &dialog.scenes, 300.0), ("A frame of another program", &dialog.frames, 120.0)];
+    for (title, entries, height) in lists.into_iter().filter(|(_, entries, _)| !entries.is_empty()) {
+        ui.label(theme::note(title));
+        let scroll = egui::ScrollArea::vertical().id_salt(title).max_height(height).auto_shrink([false, true]);
         scroll.show(ui, |ui| {
-            for scene in &dialog.scenes {
-                if scene_row(ui, &scene.name, &scene.lesson) {
-                    answer = Answer::Open(scene.name.clone());
+            for entry in entries {
+                if scene_row(ui, &entry.name, &entry.lesson) {
+                    answer = Answer::Open(entry.name.clone());
                 }
             }
         });

@@ -75,8 +75,9 @@ fn costs(ui: &mut Ui, model: &Model) {
     if let Some(capture) = &model.frame.capture {
         let adapter = &capture.adapter;
         let short_name = adapter.name.split(" (").next().unwrap_or_default();
-        ui.label(theme::note(format!("{short_name}, {}", adapter.driver))).on_hover_text(&adapter.name);
-        if capture.timing.frame_ms.is_none() {
+        let words: Vec<&str> = [short_name, &adapter.driver].into_iter().filter(|word| !word.is_empty()).collect();
+        ui.label(theme::note(words.join(", "))).on_hover_text(&adapter.name);
+        if capture.timing.frame_ms.is_none() && model.scene.is_some() {
             model.answers.want(TimingOf {});
         }
         if let Some(frame) = capture.timing.frame_ms {

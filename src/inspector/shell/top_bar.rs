@@ -76,15 +76,22 @@ fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
 
 fn open_name(model: &Model) -> Option<String> {
     let of_scene = model.scene.as_ref().map(|scene| scene.name.clone());
-    of_scene.or_else(|| model.frame.capture.as_ref().map(|capture| format!("{} (capture)", capture.scene)))
+    let what = if model.origin().is_some() { "recorded" } else { "capture" };
+    of_scene.or_else(|| model.frame.capture.as_ref().map(|capture| format!("{} ({what})", capture.scene)))
 }
 
 /// A button a technique, joined into one.
 fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     let Some(scene) = &model.scene else {
         // A capture folder: its technique is a fact, not a choice.
-        if let Some(capture) = &model.frame.capture {
-            ui.label(theme::note(format!("technique {}", capture.technique)));
+        match (&model.frame.capture, model.origin()) {
+            (_, Some(_)) => {
+                ui.label(theme::note("drawn by another program: its technique can't be changed"));
+            }
+            (Some(capture), None) => {
+                ui.label(theme::note(format!("technique {}", capture.technique)));
+            }
+            (None, None) => {}
         }
         return;
     };

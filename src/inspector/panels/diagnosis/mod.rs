@@ -68,8 +68,12 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
         None => {
             let is_new = known.is_none();
             let words = if is_new { "Diagnose" } else { "Diagnose again" };
-            let button = ui.add_enabled(can_run, egui::Button::new(words));
-            if button.on_hover_text("Say where this frame is wrong, why, and what mends it").clicked() {
+            if model.origin().is_none()
+                && ui
+                    .add_enabled(can_run, egui::Button::new(words))
+                    .on_hover_text("Say where this frame is wrong, why, and what mends it")
+                    .clicked()
+            {
                 model.answers.start(DiagnosisOf {});
             }
             ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
@@ -93,6 +97,11 @@ fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
         None if can_run => {
             "Follows rays through the scene, groups wrong pixels, and runs what may mend them: only what \
                             takes them away is called proven."
+                .to_owned()
+        }
+        None if model.origin().is_some() => {
+            "Another program drew this frame: nothing can be run another way to mend it. The picture Error shows where \
+             it is wrong, the history of a pixel there why."
                 .to_owned()
         }
         None => "Open a scene to find out why its shadows are wrong.".to_owned(),

@@ -1,7 +1,7 @@
 //! Under the passes: the draws of the selected one, and what the frame left out.
 
 use super::fields::Passes;
-use super::thumbnail;
+use super::{recorded, thumbnail};
 use crate::ask::Reply;
 use crate::capture::{Capture, DrawState, DrawSummary, FrameTarget, Image, Snapshot, StepDraws};
 use crate::inspector::look::coloring::Coloring;
@@ -67,9 +67,14 @@ fn row(
     let draw = &capture.steps[model.selection.step].draws[index];
     let is_selected = model.selection.draw == Some(index);
     let is_missing = is_selected && !model.selected().is_held(capture);
-    let is_fetched = is_missing && model.scene.is_some() && fetched.failed.is_none();
+    let is_fetched = is_missing && model.can_ask() && fetched.failed.is_none();
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
-    let name = if is_fetched { format!("{}, being fetched", draw.name) } else { draw.name.clone() };
+    let mark = recorded::mark(draw);
+    let name = match &mark {
+        _ if is_fetched => format!("{}, being fetched", draw.name),
+        Some(_) => format!("{}, differs", draw.name),
+        None => draw.name.clone(),
+    };
     response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &name));
     own.widgets.push(response.id);
     widgets::keep_arrows(ui, &response);
@@ -88,9 +93,10 @@ fn row(
         paint_change(ui, model, capture, index, rect);
     }
     let right = if is_fetched { "fetching …".to_owned() } else { format::count(draw.triangles) };
-    paint_words(ui, draw, is_selected, &right, rect);
+    paint_words(ui, draw, is_selected, (mark.as_deref(), &right), rect);
     let changes = if changes_nothing(draw) { "\nIt changed nothing" } else { "" };
-    response.on_hover_text(format!("{}: {}{changes}", draw.part.name(), draw.name));
+    let recorded = recorded::explained(model, draw, index);
+    response.on_hover_text(format!("{}: {}{changes}{recorded}", draw.part.name(), draw.name));
 }
 
 fn changes_nothing(draw: &DrawSummary) -> bool {
@@ -109,8 +115,8 @@ fn paint_change(ui: &Ui, model: &mut Model, capture: &Capture, index: usize, row
     }
 }
 
-/// The part's swatch, the draw's name, and at the right its triangles.
-fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, right: &str, row: Rect) {
+/// The part's swatch, the draw's name, and at the right its mark and its triangles.
+fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, (mark, right): (Option<&str>, &str), row: Rect) {
     let left = row.left() + INDENT;
     if let Some(color) = theme::of(ui).part(draw.part) {
         let swatch = Rect::from_center_size(pos2(left + 5.0, row.center().y), vec2(10.0, 10.0));
@@ -120,7 +126,11 @@ fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, right: &str, row:
     let left = left + 18.0;
     let at = pos2(row.right() - 8.0, row.center().y);
     let font = TextStyle::Monospace.resolve(ui.style());
-    let right = ui.painter().text(at, egui::Align2::RIGHT_CENTER, right, font, theme::of(ui).dim);
+    let mut right = ui.painter().text(at, egui::Align2::RIGHT_CENTER, right, font.clone(), theme::of(ui).dim);
+    if let Some(mark) = mark {
+        let at = pos2(right.left() - 8.0, at.y);
+        right = ui.painter().text(at, egui::Align2::RIGHT_CENTER, mark, font, theme::of(ui).error);
+    }
     let color = match (is_selected, changes_nothing(draw)) {
         (true, _) => theme::of(ui).text,
         (false, true) => theme::of(ui).faint,
@@ -150,7 +160,7 @@ fn note(ui: &mut Ui, model: &Model, capture: &Capture, fetched: &Reply<StepDraws
         return;
     }
     let (text, color) = match &fetched.failed {
-        _ if model.scene.is_none() => {
+        _ if !model.can_ask() => {
             let text = "This folder has no states after draws, so draws can't be stepped through: capture it with \
                         --every draw.";
             (text.to_owned(), theme::of(ui).text)

@@ -2,6 +2,7 @@
 
 use crate::inspector::model::StepSearch;
 use egui::Id;
+use std::collections::BTreeSet;
 
 /// The panel.
 #[derive(Debug, Default)]
@@ -12,6 +13,10 @@ pub struct Passes {
     pub search_wants_focus: bool,
     /// The step of which all draws are listed, however many.
     pub all_draws: Option<usize>,
+    /// Debug groups whose passes are hidden: the first of their passes, and how deep they are.
+    pub folded: BTreeSet<[usize; 2]>,
+    /// Which frame that is of, by how many scenes were opened.
+    pub folded_of: u64,
     /// Its widgets: they leave the stepping keys alone.
     pub widgets: Vec<Id>,
 }

@@ -3,6 +3,7 @@
 
 pub mod draws;
 pub mod fields;
+pub mod recorded;
 pub mod thumbnail;
 pub mod transport;
 
@@ -31,6 +32,7 @@ pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
         return;
     }
     transport::ui(ui, own, model);
+    recorded::origin(ui, model);
     purpose(ui, &capture.steps[model.selection.step.min(capture.steps.len() - 1)]);
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
@@ -53,6 +55,7 @@ fn tree(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>
         Some(StepSearch::Find(words)) => words.clone(),
         _ => String::new(),
     };
+    let groups = recorded::Groups::new(own, model);
     let mut group = None;
     let mut found = 0;
     for (index, step) in capture.steps.iter().enumerate() {
@@ -60,6 +63,16 @@ fn tree(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>
             continue;
         }
         found += 1;
+        if let Some(groups) = &groups {
+            let Some(levels) = groups.above(ui, own, index) else { continue };
+            recorded::indented(ui, levels, |ui| {
+                pass_row(ui, own, model, capture, index);
+                if index == model.selection.step {
+                    draws::of_step(ui, own, model, capture);
+                }
+            });
+            continue;
+        }
         if group.replace(step.light) != Some(step.light) {
             let last = capture.steps[index..].iter().take_while(|other| other.light == step.light).count();
             group_heading(ui, own, model, capture, step.light, index + last - 1);
@@ -88,10 +101,7 @@ fn group_heading(
     let text = match light {
         None => "Scene".to_owned(),
         Some(index) => {
-            let kind = capture
-                .lights
-                .get(index)
-                .map_or("", |light| if light.position.w == 0.0 { " · directional" } else { " · point" });
+            let kind = capture.lights.get(index).map_or("", |light| kind_of(light.position));
             format!("Light {}{kind}", index + 1)
         }
     };
@@ -108,6 +118,15 @@ fn group_heading(
         model.select_step(last);
     }
     ui.add_space(2.0);
+}
+
+/// What kind of light is there; a place that is not known is zero.
+fn kind_of(position: glam::DVec4) -> &'static str {
+    match position.w {
+        _ if position == glam::DVec4::ZERO => " · not found",
+        0.0 => " · directional",
+        _ => " · point",
+    }
 }
 
 /// One pass: thumbnail of what it changed, number and name, what it drew, its time.
@@ -151,7 +170,10 @@ fn pass_row(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capt
         pick_mark(ui, pos2(rect.right() - 14.0, rect.top() + 31.0), index);
     }
     let room = rect.right() - if is_touched { 26.0 } else { 8.0 } - left;
-    theme::line(ui, pos2(left, rect.top() + 23.0), room, &summary(step), TextStyle::Small, theme::of(ui).dim);
+    let is_in_group = model.frame.plan.as_ref().is_some_and(|plan| !recorded::groups_of(plan, index).is_empty());
+    let light = step.light.filter(|_| is_in_group).map(|light| format!("{} · ", format::light(light)));
+    let summary = light.unwrap_or_default() + &summary(step);
+    theme::line(ui, pos2(left, rect.top() + 23.0), room, &summary, TextStyle::Small, theme::of(ui).dim);
 }
 
 /// The crosshair of the pick, small: the pass did something to the picked pixel.
@@ -178,7 +200,13 @@ fn summary(step: &Step) -> String {
         return "no draws".to_owned();
     }
     let draws = format::counted(step.draws.len() as u64, "draw");
-    format!("{draws} · {}", format::counted(step.triangles(), "triangle"))
+    let differing = step.draws.iter().filter(|draw| draw.differs.is_some_and(|differs| !differs.is_nowhere())).count();
+    let differing = match differing {
+        0 => String::new(),
+        1 => " · 1 differs".to_owned(),
+        count => format!(" · {count} differ"),
+    };
+    format!("{draws}{differing} · {}", format::counted(step.triangles(), "triangle"))
 }
 
 /// What a step changed, as a picture with its colouring.

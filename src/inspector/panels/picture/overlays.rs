@@ -128,7 +128,7 @@ pub fn sheets(own: &mut Overlays, model: &Model, capture: &Capture, shown: &Show
     if shown.kind == PictureKind::Map {
         return sheets;
     }
-    if model.modes.overlays.iter().any(|overlay| overlay.needs_anatomy()) && model.scene.is_some() {
+    if model.modes.overlays.iter().any(|overlay| overlay.needs_anatomy()) && model.can_ask() {
         let light = model.view.light;
         if let Some(anatomy) = model.answers.want(AnatomyOf {}).ready {
             let made = own.make(&model.modes.overlays, &anatomy, capture, light);
@@ -139,7 +139,7 @@ pub fn sheets(own: &mut Overlays, model: &Model, capture: &Capture, shown: &Show
         }
     }
     if model.modes.overlays.contains(&Overlay::Tests)
-        && model.scene.is_some()
+        && model.can_ask()
         && let Some(known) = model.want_tests().ready
     {
         let image = known.outcomes.clone();
@@ -223,7 +223,7 @@ fn card(ui: &mut Ui, own: &Overlays, model: &Model, rect: Rect) {
 }
 
 fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
-    if model.scene.is_none() {
+    if !model.can_ask() {
         ui.add(
             egui::Label::new(theme::note("Opened from a folder: its geometry is not known. Open the scene instead."))
                 .wrap(),

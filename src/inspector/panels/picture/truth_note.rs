@@ -30,7 +30,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &Shown) {
 }
 
 fn contents(ui: &mut Ui, model: &mut Model, shown: &Shown) {
-    if model.scene.is_none() {
+    if !model.can_ask() {
         ui.add(egui::Label::new("This folder has no truth: capture it with --truth.").wrap());
         return;
     }

@@ -9,6 +9,9 @@ const BANNER_HEIGHT: f32 = 56.0;
 
 /// The button over the picture.
 pub fn button(ui: &mut Ui, model: &mut Model) {
+    if model.origin().is_some() {
+        return;
+    }
     let can = model.scene.is_some() && model.frame.capture.is_some();
     let word = theme::switch_word(ui, "Walk", model.walk.is_on());
     let button = ui.add_enabled(can, egui::Button::selectable(model.walk.is_on(), word));

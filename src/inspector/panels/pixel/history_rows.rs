@@ -29,7 +29,7 @@ pub fn ui(
     rows: Rows,
 ) -> f32 {
     heading(ui, own, model, told, at);
-    if model.scene.is_none() {
+    if !model.can_ask() {
         let text = "A capture folder holds pictures and no geometry, so what happened between them is not known. Open \
                     the scene itself, or run `stencilscope pixel SCENE --at X,Y`.";
         ui.add(egui::Label::new(theme::note(text)).wrap());
@@ -59,7 +59,7 @@ pub fn ui(
 fn heading(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, at: [u32; 2]) {
     ui.horizontal(|ui| {
         theme::heading(ui, "History");
-        if model.scene.is_none() || told.failed.is_some() {
+        if !model.can_ask() || told.failed.is_some() {
             return;
         }
         let Some(history) = told.history.as_ref().filter(|_| !told.is_late) else {
@@ -247,7 +247,7 @@ fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory
 const IN_SCENE: &str = "Show the triangle in the Scene tab";
 
 fn can_show_in_scene(model: &Model, event: &Event) -> bool {
-    model.scene.is_some() && event.is_from_camera && event.triangle().is_some()
+    model.can_ask() && event.is_from_camera && event.triangle().is_some()
 }
 
 fn show_in_scene(model: &mut Model, event: &Event) {

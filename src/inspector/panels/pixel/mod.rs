@@ -86,7 +86,7 @@ fn sentence(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, (capture, 
     let light = light_in_question(model, capture, at);
     // One that is wrong explains nothing.
     let history = told.history.as_ref().filter(|_| told.is_of_pick && told.wrong.is_empty());
-    let is_waiting = !told.is_of_pick && told.failed.is_none() && model.scene.is_some();
+    let is_waiting = !told.is_of_pick && told.failed.is_none() && model.can_ask();
     let held = own.sentence.take().filter(|_| is_waiting && !told.is_late);
     let verdict = held.unwrap_or_else(|| {
         let verdict = verdict(capture, light, at);

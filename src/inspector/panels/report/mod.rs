@@ -119,8 +119,12 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
         None => {
             let is_new = measured.is_none_or(|measured| measured.report.rows.is_empty());
             let words = if is_new { "Measure" } else { "Measure again" };
-            let button = ui.add_enabled(can_run, egui::Button::new(words));
-            if button.on_hover_text("Measure every technique on the open scene; this takes a while").clicked() {
+            if model.origin().is_none()
+                && ui
+                    .add_enabled(can_run, egui::Button::new(words))
+                    .on_hover_text("Measure every technique on the open scene; this takes a while")
+                    .clicked()
+            {
                 match ReportOf::grid() {
                     Ok(question) => model.answers.start(question),
                     Err(error) => model.push_error(error.to_string()),
@@ -129,7 +133,11 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
             if !is_new && ui.button("Save…").on_hover_text("Write the rows or the plot to a file").clicked() {
                 model.dialog = Some(Dialog::Export(ExportKind::Report));
             }
-            ui.add(egui::Label::new(theme::note(explanation(measured.filter(|_| !is_new), can_run))).wrap());
+            let words = match model.origin().filter(|_| is_new) {
+                Some(_) => "Another program drew this frame: no technique can be measured on it.".to_owned(),
+                None => explanation(measured.filter(|_| !is_new), can_run),
+            };
+            ui.add(egui::Label::new(theme::note(words)).wrap());
         }
     });
 }

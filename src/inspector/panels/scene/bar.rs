@@ -21,8 +21,10 @@ pub fn toolbar(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
             if see.on_hover_text("The free view becomes the picture's own").clicked() {
                 view.see_from(&anatomy.camera);
             }
-            let gizmos = ui.checkbox(&mut view.gizmos, "Gizmos");
-            gizmos.on_hover_text("Handles that move lights and camera: drag them, or use the arrow keys");
+            if !anatomy.is_view_assumed {
+                let gizmos = ui.checkbox(&mut view.gizmos, "Gizmos");
+                gizmos.on_hover_text("Handles that move lights and camera: drag them, or use the arrow keys");
+            }
         });
     });
 }
@@ -73,9 +75,15 @@ fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     theme::heading(ui, "Shown");
     let triangles = |count: u64| format!("{} triangles", format::count(count));
     switch(ui, &mut shown.objects, Mark::Square(colors.dim), "Objects", &triangles(objects));
-    switch(ui, &mut shown.sides, Mark::Square(colors.side), "Sides", &triangles(count(Part::Side)));
-    switch(ui, &mut shown.light_caps, Mark::Square(colors.light_cap), "Light caps", &triangles(count(Part::LightCap)));
-    switch(ui, &mut shown.dark_caps, Mark::Square(colors.dark_cap), "Dark caps", &triangles(count(Part::DarkCap)));
+    if anatomy.is_view_assumed {
+        let hint = format!("{}; sides and caps are not told apart", triangles(count(Part::Side)));
+        switch(ui, &mut shown.sides, Mark::Square(colors.side), "Volumes", &hint);
+    } else {
+        let caps = [count(Part::LightCap), count(Part::DarkCap)].map(triangles);
+        switch(ui, &mut shown.sides, Mark::Square(colors.side), "Sides", &triangles(count(Part::Side)));
+        switch(ui, &mut shown.light_caps, Mark::Square(colors.light_cap), "Light caps", &caps[0]);
+        switch(ui, &mut shown.dark_caps, Mark::Square(colors.dark_cap), "Dark caps", &caps[1]);
+    }
     let hint = format!("{} edges; thicker and numbered where the multiplicity is not ±1", format::count(edges));
     switch(ui, &mut shown.silhouettes, Mark::Line(colors.text, 2.0), "Silhouettes", &hint);
     let hint = "What the camera sees, with the near rectangle, and what each light's map sees; of a receiver's texture \
@@ -147,6 +155,11 @@ fn chooser(ui: &mut Ui, name: &str, all: &str, names: &[String], chosen: &mut Op
 }
 
 fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
+    if anatomy.is_view_assumed {
+        let words = "Found from the draws of another program. Its field of view is not known: 90° is assumed, so widths \
+                     and heights may be stretched.";
+        ui.add(egui::Label::new(theme::note(words)).wrap());
+    }
     if stage.is_cut {
         let words = "Not all of it is drawn: there is too much of it, or places are no numbers.";
         ui.add(egui::Label::new(theme::note(words)).wrap());
@@ -160,7 +173,7 @@ fn notes(ui: &mut Ui, anatomy: &Anatomy, stage: &Stage) {
         let words = format!("{} draws no volumes; silhouettes exist all the same.", anatomy.technique);
         ui.add(egui::Label::new(theme::note(words)).wrap());
     }
-    if !anatomy.volumes.is_empty() {
+    if !anatomy.volumes.is_empty() && !anatomy.is_view_assumed {
         let lacks = |part: Part| anatomy.volumes.iter().all(|volume| volume.parts.iter().all(|one| one.part != part));
         let lacking = [(Part::LightCap, "light caps"), (Part::DarkCap, "dark caps")];
         let lacking: Vec<&str> = lacking.into_iter().filter(|(part, _)| lacks(*part)).map(|(_, name)| name).collect();

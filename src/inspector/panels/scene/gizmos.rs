@@ -6,11 +6,13 @@
 use super::lens::Lens;
 use super::stage::Stage;
 use super::view::{Pane, SceneView};
+use crate::anatomy::Anatomy;
 use crate::ask::RunRequest;
 use crate::inspector::action::Action;
 use crate::inspector::canvas::handles::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
 use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::Model;
+use crate::scene::Light;
 use egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use glam::DVec3;
 
@@ -25,34 +27,59 @@ pub fn ui(
     ui: &Ui,
     model: &mut Model,
     view: &mut SceneView,
-    stage: &Stage,
+    (anatomy, stage): (&Anatomy, &Stage),
     (pane, lens, rect): (Pane, &Lens, Rect),
     actions: &mut Vec<Action>,
 ) {
-    let Some(draft) = model.scene.as_mut().map(|scene| &mut scene.draft) else { return };
     let anchor = Anchor { middle: stage.middle, reach: 0.85 * stage.radius };
+    let here = Here { pane, lens, rect, anchor };
+    let Some(draft) = model.scene.as_mut().map(|scene| &mut scene.draft) else {
+        return signs(ui, anatomy, view.shown.names, &here);
+    };
     let painter = ui.painter_at(rect);
     let mut changed = false;
     let lights = (0..draft.lights.len()).map(Grip::Light);
     let grips: Vec<Grip> = [Grip::Target, Grip::Eye].into_iter().chain(lights).collect();
-    let here = Here { pane, lens, rect, anchor };
     if let (Some(eye), Some(target)) = (lens.place(draft.camera.eye), lens.place(draft.camera.target)) {
         painter.extend(egui::Shape::dashed_line(&[eye, target], Stroke::new(1.0, theme::of(ui).dim), 2.0, 4.0));
     }
     for grip in grips {
         let Some(at) = lens.place(place(draft, grip, anchor)).filter(|at| rect.contains(*at)) else { continue };
-        sign(ui, &painter, draft, grip, at, &here);
+        sign(ui, &painter, (grip, is_directional(draft, grip)), at, &here);
         if view.gizmos {
             changed |= handle(ui, view, draft, (grip, at), &here);
         }
         if view.shown.names {
-            let below = at + vec2(0.0, 10.0);
-            widgets::plate(&painter, below, Align2::CENTER_TOP, &grip.name(), false, theme::of(ui));
+            name(ui, &painter, grip, at);
         }
     }
     if changed {
         model.run_draft(actions);
     }
+}
+
+/// Of another program's frame the found lights and the eye, which nobody can move.
+fn signs(ui: &Ui, anatomy: &Anatomy, has_names: bool, here: &Here) {
+    let painter = ui.painter_at(here.rect);
+    let lights = anatomy.lights.iter().enumerate().map(|(index, light)| {
+        let light = Light { position: light.position, ..Light::point(DVec3::ZERO) };
+        (Grip::Light(index), place_of_light(&light, 0.0, here.anchor), light.is_directional())
+    });
+    for (grip, place, is_directional) in std::iter::once((Grip::Eye, anatomy.camera.eye, false)).chain(lights) {
+        let Some(at) = here.lens.place(place).filter(|at| here.rect.contains(*at)) else { continue };
+        sign(ui, &painter, (grip, is_directional), at, here);
+        if has_names {
+            name(ui, &painter, grip, at);
+        }
+    }
+}
+
+fn name(ui: &Ui, painter: &Painter, grip: Grip, at: Pos2) {
+    widgets::plate(painter, at + vec2(0.0, 10.0), Align2::CENTER_TOP, &grip.name(), false, theme::of(ui));
+}
+
+fn is_directional(draft: &RunRequest, grip: Grip) -> bool {
+    matches!(grip, Grip::Light(index) if draft.lights[index].is_directional())
 }
 
 /// Of the view that is drawn.
@@ -82,13 +109,11 @@ fn move_by(draft: &mut RunRequest, grip: Grip, by: DVec3, anchor: Anchor) {
 }
 
 /// What a thing looks like, whether it can be moved or not.
-fn sign(ui: &Ui, painter: &Painter, draft: &RunRequest, grip: Grip, at: Pos2, here: &Here) {
+fn sign(ui: &Ui, painter: &Painter, (grip, is_directional): (Grip, bool), at: Pos2, here: &Here) {
     let colors = theme::of(ui);
     match grip {
-        Grip::Light(index) => {
-            if draft.lights[index].is_directional()
-                && let Some(middle) = here.lens.place(here.anchor.middle)
-            {
+        Grip::Light(_) => {
+            if is_directional && let Some(middle) = here.lens.place(here.anchor.middle) {
                 let along = (middle - at) * 0.35;
                 painter.arrow(at, along, Stroke::new(1.5, colors.lit));
             }
@@ -135,8 +160,7 @@ fn handle(ui: &Ui, view: &mut SceneView, draft: &mut RunRequest, (grip, at): (Gr
         let step = f64::from(here.rect.height()) / lens.scale;
         by += (nearest_axis(lens.rotation.row(0)) * right + nearest_axis(lens.rotation.row(1)) * up) * step;
     }
-    let is_direction = matches!(grip, Grip::Light(index) if draft.lights[index].is_directional());
-    if view.grip == Some(grip) && !is_direction {
+    if view.grip == Some(grip) && !is_directional(draft, grip) {
         for (letter, axis) in AXES {
             let length = lens.moved(point, vec2(AXIS as f32, 0.0)).length();
             let Some([from, tip]) = lens.line([point, point + axis * length]) else { continue };

@@ -87,7 +87,7 @@ fn missing(model: &Model) -> Option<[String; 2]> {
     match (&model.frame.capture, &model.scene, &model.activity.job) {
         (None, _, Some(job)) => own([job, ""]),
         (None, _, None) => own(["Nothing is open yet.", "Press Open…, or drop a scene or a model here."]),
-        (Some(_), None, _) => own([
+        (Some(_), None, _) if !model.can_ask() => own([
             "Opened from a folder: its geometry is not known.",
             "Open the scene instead, with Open… or by dropping its file here.",
         ]),

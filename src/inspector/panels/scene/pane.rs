@@ -55,7 +55,7 @@ pub fn ui(
         rays::ui(ui, model, view.choice, stage, anatomy, &lens, rect);
     }
     labels(ui, stage, &lens, rect);
-    gizmos::ui(ui, model, view, stage, (pane, &lens, rect), actions);
+    gizmos::ui(ui, model, view, (anatomy, stage), (pane, &lens, rect), actions);
     let outline = if response.has_focus() { theme::of(ui).focus } else { theme::of(ui).line };
     painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, outline), StrokeKind::Inside);
     title(ui, view, pane, rect);

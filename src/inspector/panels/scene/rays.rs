@@ -3,7 +3,7 @@
 use super::lens::Lens;
 use super::stage::Stage;
 use super::toggles::Choice;
-use crate::anatomy::Anatomy;
+use crate::anatomy::{Anatomy, recorded_places};
 use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -64,9 +64,14 @@ fn selected(model: &Model, capture: &Capture, stage: &Stage, anatomy: &Anatomy) 
     let history = model.history_of_frame()?;
     let event = history.events.get(model.selected_in(&history)?).filter(|event| event.is_from_camera)?;
     // Corners are relative to the eye.
-    let world = event.triangle()?.corners.map(|corner| {
-        let relative = DVec4::from_array(corner.map(f64::from));
-        relative + (capture.camera.eye * relative.w).extend(0.0)
+    let corners = event.triangle()?.corners;
+    let plan = model.frame.plan.as_ref();
+    let recorded = plan.and_then(|plan| recorded_places(plan, event.pass, corners));
+    let world = recorded.unwrap_or_else(|| {
+        corners.map(|corner| {
+            let relative = DVec4::from_array(corner.map(f64::from));
+            relative + (capture.camera.eye * relative.w).extend(0.0)
+        })
     });
     let light = event.light.and_then(|light| anatomy.lights.get(light));
     Some(stage.polygon(world, light)).filter(|corners| corners.len() > 2)

@@ -15,6 +15,9 @@ use egui::{DragValue, RichText, Ui};
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
     if model.scene.is_none() {
         let text = match (&model.frame.capture, &model.activity.job) {
+            (Some(_), _) if model.origin().is_some() => {
+                "Another program drew this frame: its lights, camera and technique can't be changed here."
+            }
             (Some(_), _) => {
                 "This is a capture folder: what is in it can be looked at, not run again. Open a scene to change settings."
             }

@@ -1,0 +1,53 @@
+//! Frames of other programs that come with this one: they can be looked at where there is no RenderDoc.
+
+use super::read::read_from;
+use super::{Converted, ImportError, convert};
+use crate::capture::disk::WholeFrame;
+use std::io::Cursor;
+
+/// A frame that another program drew, built in.
+#[derive(Debug, Clone, Copy)]
+pub struct Shipped {
+    /// What opens it.
+    pub name: &'static str,
+    /// What it shows, in a sentence.
+    pub lesson: &'static str,
+    document: &'static [u8],
+    data: &'static [u8],
+}
+
+macro_rules! shipped {
+    ($name:literal, $lesson:literal) => {
+        Shipped {
+            name: $name,
+            lesson: $lesson,
+            document: include_bytes!(concat!("../../assets/recordings/", $name, "/frame.json")),
+            data: include_bytes!(concat!("../../assets/recordings/", $name, "/data.bin")),
+        }
+    };
+}
+
+/// All of them.
+pub const SHIPPED: &[Shipped] = &[
+    shipped!("ogre", "OGRE's stencil shadows as they should be: three volumes, counted in front of surfaces"),
+    shipped!("ogre-inside", "The eye in a shadow: OGRE counts that volume behind surfaces"),
+    shipped!("ogre-short", "Volumes that end at the light's reach: beyond it, shadow is not counted"),
+];
+
+impl Shipped {
+    /// The one of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<&'static Shipped> {
+        SHIPPED.iter().find(|shipped| shipped.name == name)
+    }
+
+    /// Its frame.
+    ///
+    /// # Errors
+    /// It can't be read, which is a bug.
+    pub fn open(&self) -> Result<WholeFrame, ImportError> {
+        let frame = read_from(self.document, Cursor::new(self.data))?;
+        let Converted { plan, capture, scene, .. } = convert(&frame, self.name)?;
+        Ok(WholeFrame { capture, plan: Some(plan), scene })
+    }
+}

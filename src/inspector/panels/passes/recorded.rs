@@ -1,0 +1,142 @@
+//! What only the frames of other programs have: who drew them, their debug groups, and draws that make something else
+//! when they are computed anew.
+
+use super::fields::Passes;
+use crate::capture::{Differs, DrawSummary};
+use crate::inspector::look::theme;
+use crate::inspector::look::widgets;
+use crate::inspector::model::Model;
+use crate::plan::{FramePlan, May, Program};
+use crate::reading::format;
+use egui::{Label, Role, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use std::sync::Arc;
+
+/// How far a level of groups is set in, points, and how many levels are.
+const INDENT: f32 = 12.0;
+const MOST_INDENTED: usize = 4;
+
+/// Who drew the frame, with what, and who wrote it down; what could not be read of it.
+pub fn origin(ui: &mut Ui, model: &Model) {
+    let Some(origin) = model.origin() else { return };
+    let program = origin.program.as_ref().map_or_else(String::new, |program| format!("{program} · "));
+    let words = format!("{program}{} · depth {} · recorded by {}", origin.api, origin.depth_format, origin.recorder);
+    let hover = "Another program drew this frame. Its pictures are as they were stored; its draws are computed anew for \
+                 histories and counts of tests.";
+    ui.add(Label::new(theme::note(words)).wrap()).on_hover_text(hover);
+    for limit in &origin.limits {
+        ui.add(Label::new(theme::note(format!("Not read: {limit}"))).wrap());
+    }
+}
+
+/// The debug groups of a pass, outermost first.
+pub fn groups_of(plan: &FramePlan, pass: usize) -> &[String] {
+    plan.passes.get(pass).and_then(|pass| pass.recorded.as_ref()).map_or(&[], |recorded| &recorded.groups)
+}
+
+/// The debug groups of a frame that has any.
+#[derive(Debug)]
+pub struct Groups {
+    plan: Arc<FramePlan>,
+}
+
+impl Groups {
+    /// Of the shown frame. The selected pass is in no group that hides its passes once it has to be seen.
+    pub fn new(own: &mut Passes, model: &Model) -> Option<Groups> {
+        let plan = model.frame.plan.clone()?;
+        if (0..plan.passes.len()).all(|pass| groups_of(&plan, pass).is_empty()) {
+            return None;
+        }
+        let groups = Groups { plan };
+        if std::mem::replace(&mut own.folded_of, model.scenes_opened) != model.scenes_opened {
+            own.folded.clear();
+        }
+        if model.selection.wants_scroll {
+            let step = model.selection.step;
+            for level in 0..groups_of(&groups.plan, step).len() {
+                own.folded.remove(&[groups.first(step, level), level]);
+            }
+        }
+        Some(groups)
+    }
+
+    /// The first pass of the group that a pass is in on a level.
+    fn first(&self, pass: usize, level: usize) -> usize {
+        let path = groups_of(&self.plan, pass).get(..=level);
+        let is_in = |other: &usize| groups_of(&self.plan, *other).get(..=level) == path;
+        (0..=pass).rev().take_while(is_in).last().unwrap_or(pass)
+    }
+
+    /// Draws the groups that begin with a pass; how deep it is set in, or `None` where one of its groups hides it.
+    pub fn above(&self, ui: &mut Ui, own: &mut Passes, pass: usize) -> Option<usize> {
+        let path = groups_of(&self.plan, pass);
+        for (level, name) in path.iter().enumerate() {
+            let first = self.first(pass, level);
+            if first == pass {
+                indented(ui, level, |ui| heading(ui, own, name, [pass, level]));
+            }
+            if own.folded.contains(&[first, level]) {
+                return None;
+            }
+        }
+        Some(path.len())
+    }
+}
+
+/// A group: a click shows or hides its passes.
+fn heading(ui: &mut Ui, own: &mut Passes, name: &str, group: [usize; 2]) {
+    let is_folded = own.folded.contains(&group);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::click());
+    let label = format!("Debug group {name}");
+    response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, !is_folded, &label));
+    own.widgets.push(response.id);
+    widgets::keep_arrows(ui, &response);
+    theme::row_background(ui, rect, false, &response);
+    let sign = if is_folded { "▶" } else { "▼" };
+    let colors = theme::of(ui);
+    let at = pos2(rect.left() + 8.0, rect.center().y - 7.0);
+    theme::line(ui, at, 12.0, sign, TextStyle::Monospace, colors.dim);
+    theme::line(ui, at + vec2(16.0, -1.0), rect.width() - 32.0, name, TextStyle::Body, colors.text);
+    let words = if is_folded { "show" } else { "hide" };
+    let response = response.on_hover_text(format!("A debug group of the program: click to {words} its passes"));
+    if response.clicked() && !own.folded.remove(&group) {
+        own.folded.insert(group);
+    }
+}
+
+/// Set in by so many levels of groups.
+pub fn indented(ui: &mut Ui, levels: usize, add: impl FnOnce(&mut Ui)) {
+    let mut room = ui.available_rect_before_wrap();
+    room.min.x = (room.min.x + INDENT * levels.min(MOST_INDENTED) as f32).min(room.max.x);
+    ui.scope_builder(UiBuilder::new().max_rect(room), add);
+}
+
+/// At how many pixels a draw that is computed anew leaves something else than was stored; `None` where it does not.
+pub fn mark(draw: &DrawSummary) -> Option<String> {
+    let Differs { depth, stencil, .. } = draw.differs.filter(|differs| !differs.is_nowhere())?;
+    Some(format!("≠ {}", format::count(depth.max(stencil))))
+}
+
+/// What the mark means, and what the shader of a draw of the selected pass may do that is not known here.
+pub fn explained(model: &Model, draw: &DrawSummary, index: usize) -> String {
+    let mut words = String::new();
+    if let Some(Differs { depth, stencil, .. }) = draw.differs.filter(|differs| !differs.is_nowhere()) {
+        words += &format!(
+            "\n≠ Computed anew from what was there before it, this draw leaves another stencil at {} and another depth \
+             at {}. Histories are not to be trusted there.",
+            format::counted(stencil, "pixel"),
+            format::counted(depth, "pixel"),
+        );
+    }
+    let plan = model.frame.plan.as_ref();
+    let draw = plan.and_then(|plan| plan.passes.get(model.selection.step)?.draws.get(index));
+    if let Some(Program::Recorded { may_discard, writes_depth }) = draw.map(|draw| draw.program) {
+        let mut tell = |may: May, what: &str| match may {
+            May::No => {}
+            May::Yes => words += &format!("\nIts shader may {what}, which is not followed"),
+            May::Unknown => words += &format!("\nIts shader could not be read: it may {what}"),
+        };
+        tell(may_discard, "discard fragments");
+        tell(writes_depth, "write its own depth");
+    }
+    words
+}
