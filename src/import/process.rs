@@ -58,6 +58,8 @@ pub struct Run {
     folder: tempfile::TempDir,
     lines: Receiver<String>,
     last: Arc<Mutex<String>>,
+    /// Ends with standard error.
+    errors: Receiver<()>,
     start: Instant,
     limits: Limits,
 }
@@ -87,10 +89,14 @@ impl Run {
             std::thread::spawn(move || each_line(output, |line| send.send(line).is_ok()));
         }
         let last = Arc::new(Mutex::new(String::new()));
+        let (open, closed) = sync_channel::<()>(0);
         if let (Some(errors), last) = (child.stderr.take(), Arc::clone(&last)) {
-            std::thread::spawn(move || each_line(errors, |line| keep(&last, line)));
+            std::thread::spawn(move || {
+                each_line(errors, |line| keep(&last, line));
+                drop(open);
+            });
         }
-        Ok(Self { child, has_ended: false, folder, lines, last, start: Instant::now(), limits })
+        Ok(Self { child, has_ended: false, folder, lines, last, errors: closed, start: Instant::now(), limits })
     }
 
     /// Where the script writes.
@@ -134,9 +140,11 @@ impl Run {
         }
     }
 
-    /// The last line on standard error, once what is under way has come.
+    /// The last line on standard error, once that has ended, or what is under way had time to come.
     fn last(&self) -> String {
-        std::thread::sleep(TURN);
+        const PATIENCE: Duration = Duration::from_secs(2);
+        // Nothing is sent: it ends, or the time does.
+        let _ = self.errors.recv_timeout(PATIENCE);
         self.last.lock().map(|last| last.clone()).unwrap_or_default()
     }
 
