@@ -226,8 +226,10 @@ impl<'a> Making<'a> {
             may_discard: states::may(draw.fragment.may_discard),
             writes_depth: states::may(draw.fragment.writes_depth),
         };
-        if let Some(state) = &after {
-            step.snapshot = state.snapshot.clone();
+        if let (Some(DrawState { snapshot: Snapshot::Frame(after), .. }), Snapshot::Frame(snapshot)) =
+            (&after, &mut step.snapshot)
+        {
+            *snapshot = after_all(snapshot, after.clone());
         }
         let summary =
             DrawSummary { name: name.clone(), caster: None, part, triangles: triangles.into(), after, differs: None };
@@ -258,4 +260,14 @@ impl<'a> Making<'a> {
             target: FrameTarget::Picture,
         }
     }
+}
+
+/// The state after draws that left `before`, and one more that left `after`: what none of them changed is unchanged.
+fn after_all(before: &FrameSnapshot, mut after: FrameSnapshot) -> FrameSnapshot {
+    after.color.unchanged &= before.color.unchanged;
+    after.depth.unchanged &= before.depth.unchanged;
+    if let (Some(after), Some(before)) = (&mut after.stencil, &before.stencil) {
+        after.unchanged &= before.unchanged;
+    }
+    after
 }
