@@ -30,8 +30,8 @@ macro_rules! shipped {
 /// All of them.
 pub const SHIPPED: &[Shipped] = &[
     shipped!("ogre", "OGRE's stencil shadows as they should be: three volumes, counted in front of surfaces"),
-    shipped!("ogre-inside", "The eye in a shadow: OGRE counts that volume behind surfaces"),
-    shipped!("ogre-short", "Volumes that end at the light's reach: beyond it, shadow is not counted"),
+    shipped!("ogre-inside", "the eye in a shadow: OGRE counts that volume behind surfaces"),
+    shipped!("ogre-short", "volumes that end at the light's reach: beyond it, shadow is not counted"),
 ];
 
 impl Shipped {

@@ -74,6 +74,19 @@ fn a_draw_that_was_stored_wrong_is_marked_with_its_count() {
 }
 
 #[test]
+fn a_pass_changed_what_any_of_its_draws_changed() {
+    let mut session = session();
+    for name in ["ogre", "ogre-inside", "ogre-short"] {
+        let (_, capture) = converted(&mut session, name);
+        for step in &capture.steps {
+            let draws = || step.draws.iter().filter_map(|draw| draw.after.as_ref());
+            let is_changed = draws().any(|state| !state.changes_nothing());
+            assert_eq!(step.snapshot.aspects().any(|aspect| !aspect.unchanged), is_changed, "{name}: {}", step.name);
+        }
+    }
+}
+
+#[test]
 fn histories_agree_with_the_stored_bytes_and_have_ladders() {
     let (mut session, mut random) = (session(), Random::new(2));
     let parent = tempfile::tempdir().expect("a folder");

@@ -64,7 +64,9 @@ enum Answer {
 fn contents(ui: &mut Ui, dialog: &mut OpenDialog) -> Answer {
     let mut answer = Answer::Waiting;
     theme::heading(ui, "Open");
-    let lists = [("A built-in scene", &dialog.scenes, 300.0), ("A frame of another program", &dialog.frames, 120.0)];
+    // What is under the lists stays in sight.
+    let room = (ui.ctx().content_rect().height() - 340.0).clamp(60.0, 300.0);
+    let lists = [("A built-in scene", &dialog.scenes, room), ("A frame of another program", &dialog.frames, 120.0)];
     for (title, entries, height) in lists.into_iter().filter(|(_, entries, _)| !entries.is_empty()) {
         ui.label(theme::note(title));
         let scroll = egui::ScrollArea::vertical().id_salt(title).max_height(height).auto_shrink([false, true]);
