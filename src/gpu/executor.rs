@@ -318,10 +318,9 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes, passes: Range<usize>) 
             continue;
         }
         if !prepared.is_kept(pass) && pass.targets().next().is_some() {
-            if let Some(content) = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref()) {
-                if let Some(target) = prepared.start_target(index) {
-                    start::record(&mut encoder, &target, content);
-                }
+            let content = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref());
+            if let (Some(content), Some(target)) = (content, prepared.start_target(index)) {
+                start::record(&mut encoder, &target, content);
             }
             record_pass(&mut encoder, prepared, index, notes);
         }
