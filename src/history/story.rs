@@ -182,9 +182,10 @@ fn who(one: &TriangleEvent) -> String {
         Part::Surface => one.draw_name.clone(),
         Part::Receiver => format!("receiver {}", one.draw_name),
         Part::PlanarShadow => format!("flattened {}", one.draw_name),
-        other => {
-            let caster = one.caster.as_ref().unwrap_or(&one.draw_name);
-            format!("{} of {caster}", other.name().replace('-', " "))
-        }
+        other => match &one.caster {
+            Some(caster) => format!("{} of {caster}", other.name().replace('-', " ")),
+            // Of another program's volumes sides and caps are not told apart.
+            None => format!("volume {}", one.draw_name),
+        },
     }
 }

@@ -114,6 +114,8 @@ pub fn named(one: &TriangleEvent) -> (String, String) {
         Part::Surface => (one.draw_name.clone(), String::new()),
         Part::Receiver => ("receiver".to_owned(), one.draw_name.clone()),
         Part::PlanarShadow => ("flattened".to_owned(), caster()),
+        // Of another program's volumes sides and caps are not told apart.
+        part if part.is_of_volume() && one.caster.is_none() => (one.draw_name.clone(), String::new()),
         other => (other.name().replace('-', " "), caster()),
     }
 }

@@ -92,6 +92,8 @@ fn a_picked_pixel_has_its_history() {
     assert_eq!(harness.state().inspector.picked(), Some(DARK));
     harness.get_by_label_contains("Dark under light 1");
     harness.get_by_label_contains("so the light pass skips it");
+    let names = harness.query_all_by_label_contains("side of").count() + harness.query_all_by_label("side").count();
+    assert!(names <= 1, "but for the column's title: which part of a volume a face is, is not known");
     let rows = harness.query_all_by_role(Role::Row).count();
     assert!(rows >= 3, "{rows} rows");
     assert!(harness.query_by_label_contains("holds pictures and no geometry").is_none());

@@ -96,7 +96,8 @@ fn row(
     paint_words(ui, draw, is_selected, (mark.as_deref(), &right), rect);
     let changes = if changes_nothing(draw) { "\nIt changed nothing" } else { "" };
     let recorded = recorded::explained(model, draw, index);
-    response.on_hover_text(format!("{}: {}{changes}{recorded}", draw.part.name(), draw.name));
+    let part = if draw.part.is_of_volume() && draw.caster.is_none() { "volume" } else { draw.part.name() };
+    response.on_hover_text(format!("{part}: {}{changes}{recorded}", draw.name));
 }
 
 fn changes_nothing(draw: &DrawSummary) -> bool {
