@@ -21,6 +21,7 @@ pub use run_request::{RunRequest, without};
 use crate::anatomy::Anatomy;
 use crate::capture::{Capture, FrameTruth, StepDraws, Timing};
 use crate::diagnosis::Diagnosis;
+use crate::diagnosis::recorded::FrameDiagnosis;
 use crate::history::PixelHistory;
 use crate::plan::FramePlan;
 use crate::reading::{MapReaders, ObjectMesh, TestOutcomes};
@@ -134,6 +135,8 @@ questions! {
     TruthOf { } -> FrameTruth;
     /// Where the frame is wrong, why, and what mends it.
     DiagnosisOf { } -> Diagnosis;
+    /// Where another program's frame is wrong and why, with the proof.
+    FaultsOf { } -> FrameDiagnosis;
     /// Every technique measured on the open scene.
     ReportOf { /// Techniques with their settings.
         choices: Vec<Choice>,
@@ -191,7 +194,7 @@ impl Kind {
     /// Is it asked by a press of a button only, as it takes long?
     #[must_use]
     pub fn is_started_by_hand(self) -> bool {
-        matches!(self, Kind::DiagnosisOf | Kind::ReportOf | Kind::StressOf)
+        matches!(self, Kind::DiagnosisOf | Kind::FaultsOf | Kind::ReportOf | Kind::StressOf)
     }
 
     /// Is it about the shown frame, and answered within about the time of one? Long work lets it come between.
@@ -248,7 +251,7 @@ impl Ask {
             }
             Ask::MeshesOf(_) => Some("looking at meshes".to_owned()),
             Ask::TruthOf(_) => Some("tracing the truth".to_owned()),
-            Ask::DiagnosisOf(_) => Some("diagnosing".to_owned()),
+            Ask::DiagnosisOf(_) | Ask::FaultsOf(_) => Some("diagnosing".to_owned()),
             Ask::ReportOf(_) => Some("measuring every technique".to_owned()),
             _ => None,
         }

@@ -139,6 +139,7 @@ impl Session {
                 let (scene, request) = frame.made()?;
                 Answer::DiagnosisOf(Arc::new(self.diagnose(scene, request, Fault::None, progress)?))
             }
+            Ask::FaultsOf(_) => Answer::FaultsOf(Arc::new(self.diagnose_recorded(of_frame()?, progress)?)),
             Ask::TimingOf(_) => {
                 let frame = of_frame()?;
                 let (scene, request) = frame.made()?;

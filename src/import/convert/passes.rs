@@ -33,8 +33,6 @@ pub(super) struct Making<'a> {
     run: Option<Run>,
     /// What the steps last showed: colour, depth, stencil.
     shown: [Option<Arc<Image>>; 3],
-    /// The same before the pass that is being made.
-    shown_before: [Option<Arc<Image>>; 3],
     counting_light: Option<LightId>,
     /// The stencil was set by something other than a draw since volumes were counted in it.
     is_emptied: bool,
@@ -54,7 +52,6 @@ impl<'a> Making<'a> {
             put: BTreeMap::new(),
             run: None,
             shown: [None, None, None],
-            shown_before: [None, None, None],
             counting_light: None,
             is_emptied: true,
             passes: Vec::new(),
@@ -177,7 +174,6 @@ impl<'a> Making<'a> {
             Place::Map(map, layer) => (super::map_attachment(map), layer),
         };
         let target = DepthStencilTarget { attachment, layer, clear_depth: clears.0, clear_stencil: clears.1 };
-        self.shown_before.clone_from(&self.shown);
         let (name, purpose) = (run.role.name().to_owned(), run.role.purpose().to_owned());
         let recorded = RecordedPass { viewport: run.viewport, groups: run.groups.clone(), start: content };
         self.passes.push(Pass {
@@ -238,13 +234,10 @@ impl<'a> Making<'a> {
             may_discard: states::may(draw.fragment.may_discard),
             writes_depth: states::may(draw.fragment.writes_depth),
         };
-        if let Some(DrawState { snapshot: Snapshot::Frame(frame), .. }) = &after {
-            let mut frame = frame.clone();
-            let aspects = [Some(&mut frame.color), Some(&mut frame.depth), frame.stencil.as_mut()];
-            for (aspect, before) in aspects.into_iter().zip(&self.shown_before) {
-                aspect.into_iter().for_each(|aspect| aspect.unchanged = before.as_ref() == Some(&aspect.image));
-            }
-            step.snapshot = Snapshot::Frame(frame);
+        if let (Some(DrawState { snapshot: Snapshot::Frame(after), .. }), Snapshot::Frame(snapshot)) =
+            (&after, &mut step.snapshot)
+        {
+            *snapshot = after_all(snapshot, after.clone());
         }
         let summary =
             DrawSummary { name: name.clone(), caster: None, part, triangles: triangles.into(), after, differs: None };
@@ -275,4 +268,14 @@ impl<'a> Making<'a> {
             target: FrameTarget::Picture,
         }
     }
+}
+
+/// The state after draws that left `before`, and one more that left `after`: what none of them changed is unchanged.
+fn after_all(before: &FrameSnapshot, mut after: FrameSnapshot) -> FrameSnapshot {
+    after.color.unchanged &= before.color.unchanged;
+    after.depth.unchanged &= before.depth.unchanged;
+    if let (Some(after), Some(before)) = (&mut after.stencil, &before.stencil) {
+        after.unchanged &= before.unchanged;
+    }
+    after
 }

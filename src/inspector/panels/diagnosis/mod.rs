@@ -1,11 +1,12 @@
 //! The Diagnosis tab: where the frame is wrong, why, and what mends it.
 //!
 //! Regions are rows; a click goes to a pixel of one, to its history and to the step that decided it. The
-//! causes of the selected region, their mends and what they left are in `detail.rs`. It shows data and
-//! asks for it; running is the app's.
+//! causes of the selected region, their mends and what they left are in `detail.rs`, what is wrong in another
+//! program's frame in `recorded.rs`. It shows data and asks for it; running is the app's.
 
 pub mod detail;
 pub mod fields;
+mod recorded;
 
 use crate::accuracy::Finding;
 use crate::ask::{DiagnosisOf, Kind, Reply};
@@ -28,6 +29,9 @@ const ROW: f32 = 40.0;
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
+    if model.origin().is_some() {
+        return recorded::ui(ui, model);
+    }
     let reply = model.answers.under_way::<DiagnosisOf>();
     let known = model.answers.last::<DiagnosisOf>().map(|(_, diagnosis)| Arc::clone(diagnosis));
     top_line(ui, model, &reply, known.as_deref());
@@ -68,12 +72,8 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
         None => {
             let is_new = known.is_none();
             let words = if is_new { "Diagnose" } else { "Diagnose again" };
-            if model.origin().is_none()
-                && ui
-                    .add_enabled(can_run, egui::Button::new(words))
-                    .on_hover_text("Say where this frame is wrong, why, and what mends it")
-                    .clicked()
-            {
+            let button = ui.add_enabled(can_run, egui::Button::new(words));
+            if button.on_hover_text("Say where this frame is wrong, why, and what mends it").clicked() {
                 model.answers.start(DiagnosisOf {});
             }
             ui.add(egui::Label::new(theme::note(summary(model, known, can_run))).wrap());
@@ -97,11 +97,6 @@ fn summary(model: &Model, known: Option<&Diagnosis>, can_run: bool) -> String {
         None if can_run => {
             "Follows rays through the scene, groups wrong pixels, and runs what may mend them: only what \
                             takes them away is called proven."
-                .to_owned()
-        }
-        None if model.origin().is_some() => {
-            "Another program drew this frame: nothing can be run another way to mend it. The picture Error shows where \
-             it is wrong, the history of a pixel there why."
                 .to_owned()
         }
         None => "Open a scene to find out why its shadows are wrong.".to_owned(),

@@ -1,0 +1,53 @@
+//! What is wrong in another program's frame: a fault a paragraph, with its evidence and its proof.
+
+use crate::ask::{FaultsOf, Kind};
+use crate::diagnosis::Proof;
+use crate::diagnosis::recorded::{FaultFound, FrameDiagnosis};
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::format;
+use egui::{RichText, ScrollArea, Ui};
+
+/// Draws the panel.
+pub fn ui(ui: &mut Ui, model: &mut Model) {
+    let reply = model.answers.under_way::<FaultsOf>();
+    ui.horizontal_wrapped(|ui| match reply.steps() {
+        Some(_) => {
+            if ui.button("Cancel").clicked() {
+                model.answers.cancel(Kind::FaultsOf);
+            }
+            ui.label(theme::note("following rays, and running the frame with one thing changed"));
+        }
+        None => {
+            if ui.button("Diagnose").on_hover_text("Say where this frame is wrong and why, and prove it").clicked() {
+                model.answers.start(FaultsOf {});
+            }
+            let words = "Follows rays through the frame's own triangles, and runs the frame again without what may be \
+                         wrong in it: only what takes the wrong pixels away is called proven.";
+            ui.add(egui::Label::new(theme::note(words)).wrap());
+        }
+    });
+    if let Some(error) = &reply.failed {
+        ui.add(egui::Label::new(RichText::new(format!("× {error}")).color(theme::of(ui).error)).wrap());
+    }
+    let Some(known) = reply.ready else { return };
+    ScrollArea::vertical().id_salt("faults").auto_shrink([false, false]).show(ui, |ui| found(ui, &known));
+}
+
+fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
+    let compared: u64 = diagnosis.lights.iter().map(|(error, _)| error.compared).sum();
+    let [wrong, compared] = [diagnosis.wrong(), compared].map(format::count);
+    theme::heading(ui, &format!("{wrong} of {compared} compared pixels are wrong"));
+    for FaultFound { fault, light, evidence, proof, pixels_left, together_with } in &diagnosis.faults {
+        if *proof == Proof::NotIt {
+            continue;
+        }
+        let with: String = together_with.iter().map(|other| format!(" and {}", other.name())).collect();
+        let left = format::count(*pixels_left);
+        let words = format!("{}{with} ({}), {}: {left} pixels left", fault.name(), light.name(), proof.name());
+        ui.add_space(4.0);
+        ui.add(egui::Label::new(RichText::new(words).strong()).wrap());
+        ui.add(egui::Label::new(format!("{evidence}.")).wrap());
+        ui.add(egui::Label::new(theme::note(fault.meaning())).wrap());
+    }
+}
