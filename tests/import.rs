@@ -4,44 +4,16 @@ mod convert;
 mod machine;
 #[cfg(unix)]
 mod process;
-#[cfg(unix)]
-mod recorded;
+mod shared;
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use serde_json::{Value, json};
+use shared::{assert_makes_what_was_stored, draws, recording};
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
-use stencilscope::import::{self, Api, ImportError, RawDraw, RawFrame, RawKind, RawTopology};
+use stencilscope::import::{self, Api, ImportError, RawKind, RawTopology};
 use tempfile::TempDir;
-
-/// A folder below `assets/recordings`.
-fn recording(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/recordings").join(name)
-}
-
-fn draws<'a>(frame: &'a RawFrame) -> Vec<&'a RawDraw> {
-    let draw = |kind: &'a RawKind| match kind {
-        RawKind::Draw(draw) => Some(draw.as_ref()),
-        _ => None,
-    };
-    frame.events.iter().map(|event| &event.kind).filter_map(draw).collect()
-}
-
-/// Asserts that the positions and states of all draws make what was stored.
-#[track_caller]
-fn assert_makes_what_was_stored(frame: &RawFrame) {
-    /// Pixels a draw whose centre is nearly on an edge: either rasteriser may be right.
-    const EDGES: usize = 8;
-    let compared = machine::compare(frame);
-    assert!(compared.iter().any(|draw| draw.changed > 0), "nothing was compared");
-    for draw in &compared {
-        println!("{draw:?}");
-        let wrong = [draw.depth, draw.untied, draw.changed.saturating_sub(draw.touched)];
-        assert!(wrong.iter().all(|pixels| *pixels <= EDGES), "event {}: {draw:?}", draw.event);
-    }
-}
 
 /// Pixels a draw whose stencil may differ where volume and surface share a corner, and so a depth.
 const TIES: usize = 8;

@@ -1,9 +1,9 @@
 //! The process that reads a capture, played by scripts of the shell: limits, errors, and what is left behind.
 
+use super::shared::has_ended;
 use crate::common::names;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
-use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use stencilscope::import::{self, ImportError, Options};
@@ -137,17 +137,4 @@ fn work_that_is_called_off_ends() {
     progress.cancel();
     let error = import::import(&folder.path().join("frame.rdc"), &options, &progress);
     assert!(matches!(error, Err(ImportError::Cancelled)), "{error:?}");
-}
-
-/// Is there no such process, or only what is left of one?
-pub fn has_ended(process: &str) -> bool {
-    let end = Instant::now() + Duration::from_secs(10);
-    let runs = || {
-        let status = fs::read_to_string(Path::new("/proc").join(process).join("status")).unwrap_or_default();
-        status.lines().any(|line| line.starts_with("State:") && !line.contains('Z'))
-    };
-    while runs() && Instant::now() < end {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    !runs()
 }

@@ -1,8 +1,12 @@
-//! Real programs under RenderDoc. These need packages that the other tests do not: `.ci/frames` installs them and runs
-//! these.
+//! Real programs under RenderDoc: a test program of its own, as it needs packages that the other tests do not.
+//! `.ci/frames` installs them and runs it.
 
-use super::process::has_ended;
-use super::{assert_makes_what_was_stored, draws, recording};
+#[path = "import/machine.rs"]
+mod machine;
+#[path = "import/shared.rs"]
+mod shared;
+
+use shared::{assert_makes_what_was_stored, draws, has_ended, recording};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 use stencilscope::import::{self, Api, ImportError, Options, RawFrame, Recording};
@@ -21,7 +25,6 @@ fn record(command: &[&str], seconds: u64) -> Result<RawFrame, ImportError> {
 }
 
 #[test]
-#[ignore = "needs RenderDoc and OGRE: run .ci/frames"]
 fn ogre_is_recorded_with_every_option() {
     let script = recording("ogre.py").display().to_string();
     for more in [&[][..], &["--inside"], &["--along"], &["--along", "--far", "350"], &["--reach", "330"]] {
@@ -33,7 +36,6 @@ fn ogre_is_recorded_with_every_option() {
 }
 
 #[test]
-#[ignore = "needs RenderDoc: run .ci/frames"]
 fn recordings_that_are_here_are_imported() {
     for name in ["ogre", "ogre-inside", "ogre-far", "ogre-short", "own"] {
         let file = recording(&format!("{name}.rdc"));
@@ -51,11 +53,10 @@ fn recordings_that_are_here_are_imported() {
 
 /// Clip space with its origin at the top, depth turned round, strips and fans that start again, instances, masks, a cube.
 #[test]
-#[ignore = "needs RenderDoc, pygame and PyOpenGL: run .ci/frames"]
 fn opengl_as_few_use_it_is_the_right_way_round() {
     let frame = record(&[PYTHON, &recording("odd.py").display().to_string()], 60).expect("a frame");
     assert_makes_what_was_stored(&frame);
-    let compared = super::machine::compare(&frame);
+    let compared = machine::compare(&frame);
     assert_eq!(compared.len(), 7, "all but the one of four samples");
     assert!(compared.iter().all(|draw| draw.changed > 0), "{compared:?}");
     assert_eq!(frame.limits.len(), 1, "{:?}", frame.limits);
@@ -65,7 +66,6 @@ fn opengl_as_few_use_it_is_the_right_way_round() {
 
 /// Its depth map can't be read back on OpenGL ES, which is said; the picture can.
 #[test]
-#[ignore = "needs RenderDoc and glmark2: run .ci/frames"]
 fn a_shadow_map_of_glmark_is_recorded() {
     let frame = record(&["glmark2-es2", "-b", "shadow", "-s", "320x240"], 60).expect("a frame");
     assert_eq!((frame.api, draws(&frame).len()), (Api::Gles, 3));
@@ -74,7 +74,6 @@ fn a_shadow_map_of_glmark_is_recorded() {
 
 /// Our own frames, drawn by wgpu on Vulkan.
 #[test]
-#[ignore = "needs RenderDoc: run .ci/frames"]
 fn vulkan_is_recorded() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out").display().to_string();
@@ -87,7 +86,6 @@ fn vulkan_is_recorded() {
 }
 
 #[test]
-#[ignore = "needs RenderDoc: run .ci/frames"]
 fn programs_that_show_nothing_are_named() {
     let failed = |command: &[&str]| record(command, 3).expect_err("no frame");
     assert!(matches!(failed(&["no-such-program"]), ImportError::NoProgram { .. }));
@@ -98,7 +96,6 @@ fn programs_that_show_nothing_are_named() {
 }
 
 #[test]
-#[ignore = "needs RenderDoc: run .ci/frames"]
 fn files_that_are_no_whole_captures_are_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let whole = std::fs::read(recording("ogre.rdc")).expect("a recording");
@@ -115,7 +112,6 @@ fn files_that_are_no_whole_captures_are_named() {
 
 /// Killed in the middle of a recording, we leave neither the program nor a folder.
 #[test]
-#[ignore = "needs RenderDoc: run .ci/frames"]
 fn nothing_is_left_when_we_are_killed() {
     let folder = tempfile::tempdir().expect("a folder");
     let pid = folder.path().join("pid");
@@ -132,5 +128,5 @@ fn nothing_is_left_when_we_are_killed() {
     child.wait().expect("ended");
     let pid = std::fs::read_to_string(&pid).expect("a number");
     assert!(has_ended(pid.trim()), "{pid} runs on");
-    assert!(crate::common::names(&temporary).is_empty());
+    assert!(std::fs::read_dir(&temporary).expect("a folder").next().is_none());
 }
