@@ -327,7 +327,7 @@ impl Counting<'_> {
         }
         let [moved, all] = [moved, all].map(|count| numbers::count(count as u64));
         let evidence =
-            format!("no corner of the volumes is at infinity: {moved} of {all} are a far end that is somewhere");
+            format!("no corner of the volumes is at infinity: {moved} of {all} are a far end at a finite distance");
         Some((evidence, plan))
     }
 

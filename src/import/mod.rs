@@ -1,12 +1,13 @@
 //! A frame that another program drew, out of a RenderDoc capture.
 //!
 //! ```text
-//! PROGRAM ──launch.py──► capture.rdc ──extract.py──► frame.json, data.bin ──read──► RawFrame
+//! PROGRAM ──launch.py──► capture.rdc ──extract.py──► frame.json, data.bin ──read──► RawFrame ──convert──► plan, capture
 //! ```
 //!
 //! A capture is read by RenderDoc's own Python module, in a process of its own with a limit of time and memory: anybody
 //! may have made it. The scripts do as little as they can; what they leave in a folder is read here, without trust, and
-//! comes out as plain data: [`RawFrame`]. What it means is for others to say.
+//! comes out as plain data: [`RawFrame`]. [`convert`] says it in the words of our own frames; what such a frame means is
+//! `recorded`'s to say.
 
 mod blobs;
 mod convert;

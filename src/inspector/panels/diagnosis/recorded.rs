@@ -37,6 +37,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model) {
 fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
     let compared: u64 = diagnosis.lights.iter().map(|(error, _)| error.compared).sum();
     let [wrong, compared] = [diagnosis.wrong(), compared].map(format::count);
+    ui.add_space(4.0);
     theme::heading(ui, &format!("{wrong} of {compared} compared pixels are wrong"));
     for FaultFound { fault, light, evidence, proof, pixels_left, together_with } in &diagnosis.faults {
         if *proof == Proof::NotIt {
