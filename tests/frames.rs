@@ -9,7 +9,7 @@ mod shared;
 use shared::{assert_makes_what_was_stored, draws, has_ended, recording};
 use std::process::{Command, Stdio};
 use std::time::Duration;
-use stencilscope::import::{self, Api, ImportError, Options, RawFrame, Recording};
+use stencilscope::import::{self, Api, ImportError, Options, RawContents, RawFrame, Recording};
 use stencilscope::progress::Progress;
 
 /// Debian's interpreter, which has the packages' modules.
@@ -49,6 +49,17 @@ fn recordings_that_are_here_are_imported() {
             assert!(found.lines().skip(1).eq(kept.lines().skip(1)), "{name}: {found}\n{kept}");
         }
     }
+}
+
+/// A list of states and vertices needs no pictures: of a frame that is too large for them, too.
+#[test]
+fn a_list_reads_no_pictures() {
+    let file = recording("ogre.rdc");
+    let states = Options { pictures: false, ..options() };
+    let [whole, states] =
+        [options(), states].map(|options| import::import(&file, &options, &Progress::default()).expect("a frame"));
+    assert_eq!(import::list(&whole), import::list(&states));
+    assert!(states.events.iter().all(|event| event.after == RawContents::default()));
 }
 
 /// Clip space with its origin at the top, depth turned round, strips and fans that start again, instances, masks, a cube.

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use shared::{assert_makes_what_was_stored, draws, recording};
 use std::fs;
 use std::io::Write;
-use stencilscope::import::{self, Api, ImportError, RawKind, RawTopology};
+use stencilscope::import::{self, Api, ImportError, RawContents, RawKind, RawTopology};
 use tempfile::TempDir;
 
 /// Pixels a draw whose stencil may differ where volume and surface share a corner, and so a depth.
@@ -54,7 +54,7 @@ fn pictures_and_geometry_are_the_same_way_up() {
     let frame = import::read(&recording("ogre")).expect("a frame");
     let color = frame.events.last().and_then(|_| frame.events.iter().rev().find_map(|event| event.after.color.clone()));
     let color = color.expect("a colour");
-    assert_eq!(color[..4], [26, 26, 76, 255], "background");
+    assert_eq!(color.rgba_at([0, 0]), Some([26, 26, 76, 255]), "background");
     let floor = draws(&frame)[0];
     let view = &floor.view;
     assert!(view.y_up && view.z_from_minus_w && view.viewport == [0.0, 0.0, 320.0, 240.0]);
@@ -127,6 +127,17 @@ fn made(change: impl FnOnce(&mut Value, &mut Vec<Vec<u8>>)) -> TempDir {
     folder
 }
 
+/// Depth as the integers of 24 bits that it was stored as.
+fn bits(after: &RawContents) -> Vec<u32> {
+    let depth = after.depth.as_ref().expect("depth");
+    let depths = depth.rows().flat_map(|row| row.as_chunks::<4>().0).map(|depth| f32::from_le_bytes(*depth));
+    depths.map(|depth| (f64::from(depth) * f64::from(0xff_ffff)).round() as u32).collect()
+}
+
+fn stencils(after: &RawContents) -> Vec<u8> {
+    after.stencil.as_ref().expect("stencil").rows().flatten().copied().collect()
+}
+
 #[test]
 fn a_folder_made_by_hand_is_read() {
     let frame = import::read(made(|_, _| {}).path()).expect("a frame");
@@ -135,8 +146,7 @@ fn a_folder_made_by_hand_is_read() {
     assert_eq!((draw.topology, &draw.triangles[..]), (RawTopology::TriangleList, &[[0, 1, 2]][..]));
     assert!(draw.positions[1][0].is_nan() && draw.positions[2][2].is_infinite());
     let after = &frame.events[1].after;
-    assert_eq!(after.depth_bits.as_deref(), Some(&[0xff_ffff; 4][..]));
-    assert_eq!((after.stencil.as_deref(), after.depth.as_deref()), (Some(&[255; 4][..]), Some(&[1.0; 4][..])));
+    assert_eq!((bits(after), stencils(after)), (vec![0xff_ffff; 4], vec![255; 4]));
 }
 
 #[test]
@@ -197,6 +207,66 @@ fn a_byte_string_of_any_claimed_length_takes_no_memory() {
     assert!(matches!(import::read(folder.path()), Err(ImportError::TooLarge { .. })));
 }
 
+/// No depth, no triangles, several samples: each in one line that says what to do.
+#[test]
+fn frames_that_can_not_be_followed_are_named() {
+    type Change = fn(&mut Value);
+    let cases: [(&str, Change); 4] = [
+        ("no depth buffer that could be followed: --list shows", |document| {
+            (document["events"][0]["depth"], document["events"][1]["depth"]) = (Value::Null, Value::Null);
+            document["events"][0]["depth_after"] = Value::Null;
+            document["events"][1]["depth_after"] = Value::Null;
+        }),
+        ("4 samples a pixel, of which no history can be told: switch the program's anti-aliasing off", |document| {
+            document["textures"][1]["samples"] = json!(4);
+        }),
+        ("no triangles that could be followed", |document| {
+            document["events"][1]["draw"]["instances"][0]["topology"] = json!("LineList");
+        }),
+        ("no depth buffer", |document| document["events"].as_array_mut().expect("events").truncate(1)),
+    ];
+    for (words, change) in cases {
+        let frame = import::read(made(|document, _| change(document)).path()).expect("a frame");
+        let error = import::convert(&frame, "made").expect_err(words).to_string();
+        assert!(error.contains(words) && !error.contains('\n'), "{words}: {error}");
+    }
+}
+
+/// Two thousand draws of 64 x 256 pixels, each of which changes eight rows: the frame takes what has changed.
+#[test]
+fn a_frame_of_many_draws_takes_the_memory_of_what_they_changed() {
+    const DRAWS: usize = 2000;
+    const SIZE: [usize; 2] = [64, 256];
+    let folder = made(|document, blobs| {
+        document["textures"][0]["size"] = json!(SIZE);
+        document["textures"][1]["size"] = json!(SIZE);
+        let mut picture = vec![0; SIZE[0] * SIZE[1] * 4];
+        blobs[0].clone_from(&picture);
+        blobs[1].clone_from(&picture);
+        let (first, draw) = (document["events"][0].clone(), document["events"][1].clone());
+        let after = |at: usize| {
+            let mut event = draw.clone();
+            (event["id"], event["depth_after"]) = (json!(2 + at), json!(blobs.len() + at));
+            event
+        };
+        let events: Vec<Value> = std::iter::once(first).chain((0..DRAWS).map(after)).collect();
+        document["events"] = json!(events);
+        for at in 0..DRAWS {
+            let rows = SIZE[0] * 4 * 8;
+            let start = at % (SIZE[1] / 8) * rows;
+            picture[start..start + rows].iter_mut().for_each(|byte| *byte = byte.wrapping_add(1));
+            blobs.push(picture.clone());
+        }
+    });
+    let frame = import::read(folder.path()).expect("a frame");
+    let made = import::convert(&frame, "made").expect("followed");
+    let draws: Vec<_> = made.capture.steps.iter().flat_map(|step| &step.draws).collect();
+    assert_eq!(draws.len(), DRAWS);
+    let whole = DRAWS * SIZE[0] * SIZE[1] * 5;
+    let bytes = made.capture.bytes();
+    assert!(bytes * 20 < whole as u64, "{bytes} of {whole}");
+}
+
 #[test]
 fn what_can_not_be_followed_is_said() {
     let frame = import::read(
@@ -239,8 +309,7 @@ fn depth_of_24_bits_with_stencil_has_room_after_it_on_vulkan() {
         .path(),
     );
     let after = &frame.expect("a frame").events[0].after;
-    assert_eq!(after.depth_bits.as_deref(), Some(&[0, 0xff_ffff, 1, 0x80_0000][..]));
-    assert_eq!(after.stencil.as_deref(), Some(&[1, 2, 3, 4][..]));
+    assert_eq!((bits(after), stencils(after)), (vec![0, 0xff_ffff, 1, 0x80_0000], vec![1, 2, 3, 4]));
 }
 
 /// A random number from another; good enough to choose what to break.

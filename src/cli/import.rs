@@ -58,9 +58,14 @@ pub struct ReaderOptions {
 }
 
 impl ReaderOptions {
-    /// As the import takes them.
-    pub fn options(&self) -> Options {
-        Options { python: self.python.clone(), seconds: self.replay_seconds, most_memory: self.memory << 30 }
+    /// As the import takes them; a list needs no pictures.
+    pub fn options(&self, target: &FrameTarget) -> Options {
+        Options {
+            python: self.python.clone(),
+            seconds: self.replay_seconds,
+            most_memory: self.memory << 30,
+            pictures: target.output.is_some(),
+        }
     }
 }
 
@@ -141,7 +146,7 @@ pub fn with_bar(work: impl FnOnce(&Progress) -> Result<RawFrame, ImportError>) -
 /// It can't be read or replayed; no module `renderdoc`; the folder can't be written.
 pub fn run(arguments: &ImportArguments) -> Result<(), CliError> {
     arguments.target.check()?;
-    let options = arguments.reader.options();
+    let options = arguments.reader.options(&arguments.target);
     let frame = with_bar(|progress| import::import(&arguments.file, &options, progress))?;
     let name = arguments.file.file_stem().map_or_else(|| "frame".into(), |stem| stem.to_string_lossy());
     arguments.target.deliver(frame, &name)

@@ -43,7 +43,7 @@ pub fn run(arguments: &RecordArguments) -> Result<(), CliError> {
         seconds: arguments.seconds,
         keep: arguments.keep.clone(),
     };
-    let options = arguments.reader.options();
+    let options = arguments.reader.options(&arguments.target);
     let frame = with_bar(|progress| import::record(&recording, &options, progress))?;
     let name =
         Path::new(recording.program()).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into());

@@ -35,6 +35,8 @@ named_enum! {
         NotCleared = "stencil-not-cleared",
         /// The light's pass looks at some bits of the count alone.
         MaskHides = "stencil-mask",
+        /// A cap as deep as the surface that it lies on passes the depth test, and is not counted behind it.
+        CapFighting = "cap-fighting",
         /// The volumes are not closed, and are counted behind the surface.
         OpenVolume = "open-volume",
     }
@@ -74,6 +76,10 @@ impl FrameFault {
             FrameFault::MaskHides => {
                 "The light's stencil test looks at some of the bits that were counted in. Compare all of them."
             }
+            FrameFault::CapFighting => {
+                "A volume's cap lies on the surface that throws the shadow. Z-fail must count it: let only nearer \
+                 fragments pass the depth test of the volumes (less, not less or equal)."
+            }
             FrameFault::OpenVolume => {
                 "Z-fail needs closed volumes, and these have edges of one triangle. Draw both caps."
             }
@@ -109,6 +115,23 @@ pub struct FaultFound {
     pub together_with: Vec<FrameFault>,
 }
 
+impl FaultFound {
+    /// Its names, its light and what its run has shown: `far-clip (light 1), part: 10 pixels left`.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let with: String = self.together_with.iter().map(|other| format!(" and {}", other.name())).collect();
+        let (name, light, proof) = (self.fault.name(), self.light.name(), self.proof.name());
+        format!("{name}{with} ({light}), {proof}: {} pixels left", numbers::count(self.pixels_left))
+    }
+
+    /// What it is and what to do; of all of them where it is several.
+    #[must_use]
+    pub fn meaning(&self) -> String {
+        let all = std::iter::once(&self.fault).chain(&self.together_with);
+        all.map(|fault| fault.meaning()).collect::<Vec<_>>().join(" ")
+    }
+}
+
 /// What is wrong in another program's frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameDiagnosis {
@@ -120,6 +143,10 @@ pub struct FrameDiagnosis {
     pub faults: Vec<FaultFound>,
     /// Wrong pixels where the frame is run again as it is: it should be as many.
     pub wrong_again: u64,
+    /// Surfaces at which no volume begins: they are taken to cast no shadow, which the frame can't say.
+    pub silent: Vec<String>,
+    /// Casters that the picture does not show.
+    pub unseen: Vec<String>,
 }
 
 impl FrameDiagnosis {
@@ -158,20 +185,25 @@ impl FrameDiagnosis {
             text += &format!("run again as it is, {} pixels are wrong\n", numbers::count(self.wrong_again));
         }
         let (helping, others): (Vec<_>, Vec<_>) = self.faults.iter().partition(|found| found.proof != Proof::NotIt);
-        for found in helping {
-            let FaultFound { fault, light, proof, pixels_left, together_with, .. } = found;
-            let with: String = together_with.iter().map(|other| format!(" and {}", other.name())).collect();
-            let (left, proof) = (numbers::count(*pixels_left), proof.name());
-            text += &format!("\n{}{with} ({}), {proof}: {left} pixels left\n", fault.name(), light.name());
-            text += &format!("  {}\n  {}\n", found.evidence, found.fault.meaning());
+        for found in &helping {
+            text += &format!("\n{}\n  {}\n  {}\n", found.title(), found.evidence, found.meaning());
         }
         if self.wrong() > 0 && !others.is_empty() {
-            let names: Vec<&str> = others.iter().map(|found| found.fault.name()).collect();
+            let is_joined = |fault| helping.iter().any(|found| found.together_with.contains(&fault));
+            let others = others.iter().filter(|found| !is_joined(found.fault));
+            let names: Vec<&str> = others.map(|found| found.fault.name()).collect();
             text += &format!("\ntried, and not it: {}\n", names.join(", "));
         }
         if self.wrong() > 0 && self.faults.iter().all(|found| found.proof == Proof::NotIt) {
             text += "no known cause fits\n";
         }
+        let said = |text: &mut String, names: &[String], what: &str| {
+            if !names.is_empty() {
+                *text += &format!("\n{what}: {}\n", names.join(", "));
+            }
+        };
+        said(&mut text, &self.silent, "taken to cast no shadow, as no volume begins at its corners");
+        said(&mut text, &self.unseen, "out of view, and known by its volume alone");
         text
     }
 
@@ -184,7 +216,7 @@ impl FrameDiagnosis {
         let cause = |found: &FaultFound| {
             json!({
                 "cause": found.fault.name(),
-                "meaning": found.fault.meaning(),
+                "meaning": found.meaning(),
                 "evidence": found.evidence,
                 "mend": null,
                 "proof": found.proof.name(),
@@ -238,6 +270,7 @@ pub fn suspicion(fault: FrameFault, plan: &FramePlan, light: LightId, position: 
         FrameFault::VolumesWriteDepth => counting.writes_depth(),
         FrameFault::NotCleared => counting.not_cleared(),
         FrameFault::MaskHides => counting.mask_hides(),
+        FrameFault::CapFighting => counting.cap_fighting(),
         FrameFault::OpenVolume => counting.open(),
     }?;
     Some(Suspicion { fault, evidence, mended })
@@ -433,6 +466,26 @@ impl Counting<'_> {
         }
         let evidence = format!("volumes count in the bits {written:#04x}, and the light's test compares {read:#04x}");
         Some((evidence, plan))
+    }
+
+    /// Lets only nearer fragments pass where volumes are counted behind the surface.
+    fn cap_fighting(&self) -> Option<(String, FramePlan)> {
+        use wgpu::CompareFunction::{Greater, GreaterEqual, Less, LessEqual};
+        let is_meant =
+            |raster: &RasterState| sides(raster)[0] && matches!(raster.depth_compare, LessEqual | GreaterEqual);
+        let draws = self.draws().filter(|(_, draw)| is_meant(&draw.raster)).count();
+        if draws == 0 {
+            return None;
+        }
+        let plan = self.with_states(|raster| {
+            if is_meant(raster) {
+                raster.depth_compare = if raster.depth_compare == LessEqual { Less } else { Greater };
+            }
+        });
+        Some((
+            format!("{draws} draws of volumes that are counted behind the surface pass where they are as deep as it"),
+            plan,
+        ))
     }
 
     /// Closes what is open of the volumes that are counted behind the surface, taken together.

@@ -4,7 +4,6 @@
 //! RawFrame ─ stage.rs     which targets are the picture, and which are depth maps
 //!          ─ states.rs    a draw's states as a raster state, its vertices as wgpu's clip space has them, its role
 //!          ─ passes.rs    runs of draws that do the same become passes, what was stored after each becomes steps
-//!          ─ pictures.rs  arrays as pictures
 //!          ─ eye.rs       how the eye sees: depth by distance, from the surfaces' vertices
 //! ```
 //!
@@ -12,7 +11,6 @@
 
 mod eye;
 mod passes;
-mod pictures;
 mod stage;
 mod states;
 

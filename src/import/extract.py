@@ -1,8 +1,8 @@
-"""Takes one frame out of a RenderDoc capture: `extract.py FOLDER CAPTURE`.
+"""Takes one frame out of a RenderDoc capture: `extract.py FOLDER CAPTURE [states]`.
 
 Runs in a process of its own, started by stencilscope, and does as little as it can: for each event the raster
 state, the vertices after the last vertex stage and what the targets hold afterwards, as RenderDoc has them. Units,
-orientation and meaning are the reader's (read.rs).
+orientation and meaning are the reader's (read.rs). With `states` what targets hold is left out.
 
     FOLDER/frame.json   textures, events and states; a number that stands for bytes is an index of `blobs`
     FOLDER/data.bin     blobs, each compressed by zlib; `blobs` has [offset, bytes here, bytes] of each
@@ -21,7 +21,7 @@ import sys
 import threading
 import zlib
 
-folder, capture_file = sys.argv[1], sys.argv[2]
+folder, capture_file, reads_pictures = sys.argv[1], sys.argv[2], sys.argv[3:] != ["states"]
 
 # RenderDoc writes to standard output too: what it says goes with the errors.
 speaker = os.fdopen(os.dup(1), "w")
@@ -55,19 +55,19 @@ except ImportError as error:
 class Store:
     """The blobs: each content once."""
 
+    # Bytes on the disk.
     MOST = 4 << 30
 
     def __init__(self):
         self.file = open(os.path.join(folder, "data.bin"), "wb")
-        self.known, self.table, self.bytes = {}, [], 0
+        self.known, self.table = {}, []
 
     def put(self, data):
         key = (len(data), hashlib.sha256(data).digest())
         if key not in self.known:
-            self.bytes += len(data)
-            if self.bytes > self.MOST:
-                fail("large", self.MOST >> 30)
             packed = zlib.compress(data, 1)
+            if self.file.tell() + len(packed) > self.MOST:
+                fail("large", self.MOST >> 30)
             self.known[key] = len(self.table)
             self.table.append([self.file.tell(), len(packed), len(data)])
             self.file.write(packed)
@@ -161,7 +161,7 @@ def targets(action, kind):
 
 def contents(to):
     """What a target holds now; nothing where RenderDoc can't tell it pixel by pixel."""
-    if to is None or textures[to["texture"]]["samples"] > 1:
+    if not reads_pictures or to is None or textures[to["texture"]]["samples"] > 1:
         return None
     one, where = texture_ids[to["texture"]], rd.Subresource(to["mip"], to["layer"], 0)
     data = replay.GetTextureData(one, where)

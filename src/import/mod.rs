@@ -48,11 +48,13 @@ pub struct Options {
     pub seconds: u64,
     /// Bytes of memory at which its process is ended.
     pub most_memory: u64,
+    /// Is what the targets hold after each draw read, or are states and vertices alone?
+    pub pictures: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { python: "python3".to_owned(), seconds: 600, most_memory: 8 << 30 }
+        Self { python: "python3".to_owned(), seconds: 600, most_memory: 8 << 30, pictures: true }
     }
 }
 
@@ -92,7 +94,9 @@ pub fn import(file: &Path, options: &Options, progress: &Progress) -> Result<Raw
         return Err(ImportError::NoFile { file: file.to_owned(), reason });
     }
     let limits = Limits { time: Duration::from_secs(options.seconds), memory: options.most_memory };
-    let mut run = Run::start(&options.python, EXTRACT, &[file.as_os_str().to_owned()], limits)?;
+    let mut arguments = vec![file.as_os_str().to_owned()];
+    arguments.extend((!options.pictures).then(|| "states".into()));
+    let mut run = Run::start(&options.python, EXTRACT, &arguments, limits)?;
     run.finish(progress).map_err(|ended| process::import_error(ended, file, options))?;
     read(run.folder())
 }

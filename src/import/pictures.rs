@@ -1,6 +1,8 @@
 //! What a target holds, from RenderDoc's bytes: row 0 at the top, depth, stencil and colour apart.
 
 use super::raw::{RawContents, RawFormat};
+use crate::capture::{Image, PixelFormat};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// How RenderDoc gives the bytes of an API.
@@ -45,43 +47,47 @@ pub fn texel_bytes(format: &RawFormat) -> Option<usize> {
     }
 }
 
-/// The pictures in the bytes of `width` × some rows; none where the format is not read.
-pub fn read(format: &RawFormat, bytes: &[u8], width: usize, layout: Layout) -> RawContents {
+/// The pictures in the bytes of a target of that size; none where the format is not read.
+pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: Layout) -> RawContents {
     let Some(texel) = texel_bytes(format) else { return RawContents::default() };
-    let rows = bytes.chunks_exact((width * texel).max(1));
+    let rows = bytes.chunks_exact((size[0] as usize * texel).max(1));
     let bytes: Vec<u8> = if layout.bottom_row_first {
         rows.rev().flatten().copied().collect()
     } else {
         rows.flatten().copied().collect()
     };
     let words = || bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word));
+    let picture = |format, texels: Vec<u8>| Some(Arc::new(Image::packed(format, size, texels)));
+    let stencil = |texels: Vec<u8>| picture(PixelFormat::U8, texels);
+    let none = RawContents::default;
     match format {
         RawFormat::D16 => {
-            let shorts = bytes.as_chunks::<2>().0.iter();
-            integers(format, shorts.map(|short| u32::from(u16::from_le_bytes(*short))))
+            let shorts = bytes.as_chunks::<2>().0.iter().map(|short| u32::from(u16::from_le_bytes(*short)));
+            RawContents { depth: picture(PixelFormat::Depth32F, depths(format, shorts)), ..none() }
         }
-        RawFormat::D24 => integers(format, words().map(|word| word & 0xff_ffff)),
+        RawFormat::D24 => {
+            let words = words().map(|word| word & 0xff_ffff);
+            RawContents { depth: picture(PixelFormat::Depth32F, depths(format, words)), ..none() }
+        }
         RawFormat::D24S8 => {
             let parts = |word: u32| match layout.depth_above_stencil {
                 true => (word >> 8, word as u8),
                 false => (word & 0xff_ffff, (word >> 24) as u8),
             };
-            let stencil = words().map(|word| parts(word).1).collect();
-            RawContents { stencil: Some(stencil), ..integers(format, words().map(|word| parts(word).0)) }
+            let depth = picture(PixelFormat::Depth32F, depths(format, words().map(|word| parts(word).0)));
+            RawContents { depth, stencil: stencil(words().map(|word| parts(word).1).collect()), ..none() }
         }
-        RawFormat::D32F => RawContents { depth: Some(words().map(f32::from_bits).collect()), ..RawContents::default() },
+        RawFormat::D32F => RawContents { depth: picture(PixelFormat::Depth32F, bytes), ..none() },
         RawFormat::D32FS8 => {
-            let texels = || bytes.as_chunks::<8>().0.iter();
-            RawContents {
-                depth: Some(texels().map(|t| f32::from_le_bytes([t[0], t[1], t[2], t[3]])).collect()),
-                stencil: Some(texels().map(|t| t[4]).collect()),
-                ..RawContents::default()
-            }
+            let texels = bytes.as_chunks::<8>().0;
+            let depth = texels.iter().flat_map(|t| [t[0], t[1], t[2], t[3]]).collect();
+            let depth = picture(PixelFormat::Depth32F, depth);
+            RawContents { depth, stencil: stencil(texels.iter().map(|t| t[4]).collect()), ..none() }
         }
-        RawFormat::S8 => RawContents { stencil: Some(bytes.into()), ..RawContents::default() },
-        RawFormat::Other(_) => RawContents::default(),
+        RawFormat::S8 => RawContents { stencil: stencil(bytes), ..none() },
+        RawFormat::Other(_) => none(),
         color => {
-            let color: Arc<[u8]> = match color {
+            let color: Vec<u8> = match color {
                 RawFormat::Rgb8 => bytes.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect(),
                 RawFormat::Bgra8 | RawFormat::Bgra8Srgb => {
                     bytes.as_chunks::<4>().0.iter().flat_map(|[b, g, r, a]| [*r, *g, *b, *a]).collect()
@@ -104,31 +110,41 @@ pub fn read(format: &RawFormat, bytes: &[u8], width: usize, layout: Layout) -> R
                         [part(0), part(10), part(20), (word >> 30) * 85].map(|value| value as u8)
                     })
                     .collect(),
-                _ => bytes.into(),
+                _ => bytes,
             };
-            RawContents { color: Some(color), ..RawContents::default() }
+            RawContents { color: picture(PixelFormat::Rgba8Srgb, color), ..none() }
         }
     }
 }
 
-/// Takes from `last` what is equal there, and returns the bytes of the rest.
+/// Takes from `last` the rows that are equal there, and returns the bytes of the rest.
 pub fn share(contents: &mut RawContents, last: &RawContents) -> u64 {
-    fn one<T: PartialEq>(new: &mut Option<Arc<[T]>>, last: &Option<Arc<[T]>>) -> u64 {
-        if new.is_some() && new == last {
-            new.clone_from(last);
-            return 0;
+    let one = |new: &mut Option<Arc<Image>>, last: &Option<Arc<Image>>| {
+        let Some(image) = new else { return 0 };
+        if let Some(last) = last {
+            if image == last {
+                new.clone_from(&Some(last.clone()));
+                return 0;
+            }
+            if let Some(shared) = image.sharing(last) {
+                let is_own =
+                    |rows: &Range<usize>| !last.memory().any(|of| of.start <= rows.start && rows.end <= of.end);
+                let own: usize = shared.memory().filter(is_own).map(|rows| rows.len()).sum();
+                *new = Some(Arc::new(shared));
+                return own as u64;
+            }
         }
-        new.as_ref().map_or(0, |new| size_of_val::<[T]>(new) as u64)
-    }
-    let depths = one(&mut contents.depth, &last.depth) + one(&mut contents.depth_bits, &last.depth_bits);
-    depths + one(&mut contents.stencil, &last.stencil) + one(&mut contents.color, &last.color)
+        image.memory().map(|rows| rows.len() as u64).sum()
+    };
+    one(&mut contents.depth, &last.depth)
+        + one(&mut contents.stencil, &last.stencil)
+        + one(&mut contents.color, &last.color)
 }
 
-fn integers(format: &RawFormat, bits: impl Iterator<Item = u32>) -> RawContents {
-    let bits: Arc<[u32]> = bits.collect();
-    let largest = f64::from(format.largest_depth().unwrap_or(u32::MAX));
-    let depth = bits.iter().map(|&depth| (f64::from(depth) / largest) as f32).collect();
-    RawContents { depth: Some(depth), depth_bits: Some(bits), ..RawContents::default() }
+/// Integers as the floats that a GPU reads them as: correctly rounded, so that each is another one.
+fn depths(format: &RawFormat, bits: impl Iterator<Item = u32>) -> Vec<u8> {
+    let largest = format.largest_depth().unwrap_or(u32::MAX) as f32;
+    bits.flat_map(|depth| (depth as f32 / largest).to_le_bytes()).collect()
 }
 
 /// A float with five bits of exponent and `mantissa` bits after it.
@@ -162,28 +178,37 @@ mod tests {
     const GL: Layout = Layout { bottom_row_first: true, depth_above_stencil: true };
     const VULKAN: Layout = Layout { bottom_row_first: false, depth_above_stencil: false };
 
+    fn texels(image: &Option<Arc<Image>>) -> Vec<u8> {
+        image.as_ref().expect("a picture").rows().flatten().copied().collect()
+    }
+
     #[test]
     fn the_top_row_comes_first_on_every_api() {
-        assert_eq!(read(&RawFormat::S8, &[1, 2, 3, 4], 2, GL).stencil.as_deref(), Some(&[3, 4, 1, 2][..]));
-        assert_eq!(read(&RawFormat::S8, &[1, 2, 3, 4], 2, VULKAN).stencil.as_deref(), Some(&[1, 2, 3, 4][..]));
+        let stencil = |layout| texels(&read(&RawFormat::S8, &[1, 2, 3, 4], [2, 2], layout).stencil);
+        assert_eq!([stencil(GL), stencil(VULKAN)], [vec![3, 4, 1, 2], vec![1, 2, 3, 4]]);
     }
 
     #[test]
     fn depth_of_24_bits_is_exact() {
         let word = 0xabcd_ef12_u32.to_le_bytes();
-        let gl = read(&RawFormat::D24S8, &word, 1, GL);
-        assert_eq!((gl.depth_bits.as_deref(), gl.stencil.as_deref()), (Some(&[0xab_cdef][..]), Some(&[0x12][..])));
-        let vulkan = read(&RawFormat::D24S8, &word, 1, VULKAN);
-        assert_eq!(
-            (vulkan.depth_bits.as_deref(), vulkan.stencil.as_deref()),
-            (Some(&[0xcd_ef12][..]), Some(&[0xab][..]))
-        );
-        assert_eq!(read(&RawFormat::D16, &[0xff, 0xff], 1, GL).depth.as_deref(), Some(&[1.0][..]));
+        let depth = |bits: u32| Some((f64::from(bits) / f64::from(0xff_ffff)) as f32);
+        let read = |format: &RawFormat, bytes: &[u8], layout| {
+            let RawContents { depth, stencil, .. } = read(format, bytes, [1, 1], layout);
+            (depth.and_then(|depth| depth.depth_at([0, 0])), stencil.and_then(|stencil| stencil.byte_at([0, 0])))
+        };
+        assert_eq!(read(&RawFormat::D24S8, &word, GL), (depth(0xab_cdef), Some(0x12)));
+        assert_eq!(read(&RawFormat::D24S8, &word, VULKAN), (depth(0xcd_ef12), Some(0xab)));
+        assert_eq!(read(&RawFormat::D16, &[0xff, 0xff], GL), (Some(1.0), None));
+        // No two steps are the same float: the integer comes back.
+        for bits in [1_u32, 2, 0x7f_ffff, 0x80_0000, 0xff_fffd, 0xff_fffe] {
+            let (Some(float), _) = read(&RawFormat::D24, &bits.to_le_bytes(), GL) else { panic!("a depth") };
+            assert_eq!((f64::from(float) * f64::from(0xff_ffff)).round(), f64::from(bits));
+        }
     }
 
     #[test]
     fn colours_are_red_first_and_floats_are_cut() {
-        let color = |format: &RawFormat, bytes: &[u8]| read(format, bytes, 1, VULKAN).color.expect("a colour").to_vec();
+        let color = |format: &RawFormat, bytes: &[u8]| texels(&read(format, bytes, [1, 1], VULKAN).color);
         assert_eq!(color(&RawFormat::Rgb8, &[1, 2, 3]), [1, 2, 3, 255]);
         assert_eq!(color(&RawFormat::Bgra8, &[1, 2, 3, 4]), [3, 2, 1, 4]);
         // 1, 2, NaN and −1 as halves.
@@ -195,6 +220,19 @@ mod tests {
 
     #[test]
     fn an_unknown_format_has_no_picture() {
-        assert_eq!(read(&format("R32_UINT"), &[0; 16], 2, GL), RawContents::default());
+        assert_eq!(read(&format("R32_UINT"), &[0; 16], [2, 2], GL), RawContents::default());
+    }
+
+    /// Of 64 rows the last eight are others: they alone take memory.
+    #[test]
+    fn rows_that_stay_are_shared_with_the_last_picture() {
+        let bytes = |last: u8| [vec![1; 56 * 4], vec![last; 8 * 4]].concat();
+        let first = read(&RawFormat::S8, &bytes(2), [4, 64], VULKAN);
+        let mut equal = read(&RawFormat::S8, &bytes(2), [4, 64], VULKAN);
+        assert_eq!(share(&mut equal, &first), 0);
+        let mut other = read(&RawFormat::S8, &bytes(3), [4, 64], VULKAN);
+        assert_eq!(share(&mut other, &first), 32);
+        assert_eq!(texels(&other.stencil), bytes(3));
+        assert_eq!(share(&mut other, &RawContents::default()), 64 * 4);
     }
 }

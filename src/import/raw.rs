@@ -3,6 +3,7 @@
 //! Every API comes out the same way round: row 0 of a picture is at the top, viewport and scissor count pixels
 //! from there, and "counter-clockwise" is what the eye sees on that picture.
 
+use crate::capture::Image;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -124,19 +125,17 @@ pub struct RawTarget {
     pub layer: u32,
 }
 
-/// Pictures of a target: each has exactly its width times its height texels, row 0 at the top. Equal ones are one in
-/// memory.
+/// Pictures of a target: each has exactly its width times its height texels, row 0 at the top. Rows that are as they
+/// were in the last picture of the target are in its memory.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RawContents {
-    /// Depth as the buffer has it, 0 to 1; an integer divided by the largest of its format.
-    pub depth: Option<Arc<[f32]>>,
-    /// The same depth as an integer, where the format has 16 or 24 bits.
-    pub depth_bits: Option<Arc<[u32]>>,
+    /// Depth as the buffer has it, 0 to 1; an integer divided by the largest of its format, which tells each apart.
+    pub depth: Option<Arc<Image>>,
     /// Stencil.
-    pub stencil: Option<Arc<[u8]>>,
+    pub stencil: Option<Arc<Image>>,
     /// Colour for the eye: four bytes a texel. Formats of eight bits as they are; floats cut to 0 to 1 and
     /// encoded as sRGB.
-    pub color: Option<Arc<[u8]>>,
+    pub color: Option<Arc<Image>>,
 }
 
 /// One thing that the frame does.

@@ -122,8 +122,8 @@ struct Reader {
     blobs: Blobs,
     /// Pictures by byte string, format and size: those that are equal are one in memory.
     pictures: BTreeMap<(usize, usize, [u32; 2]), RawContents>,
-    /// The last picture of a format and size: the next may be equal to it but for the stencil.
-    last: BTreeMap<(usize, [u32; 2]), RawContents>,
+    /// The last pictures of each target: those of the next are mostly the same rows.
+    last: BTreeMap<RawTarget, RawContents>,
     shaders: BTreeMap<(String, usize), RawFragment>,
     limits: BTreeSet<String>,
 }
@@ -167,15 +167,16 @@ impl Reader {
         // The first texture of the format stands for it.
         let alike = self.textures.iter().position(|other| other.format == texture.format).unwrap_or(target.texture);
         if let Some(known) = self.pictures.get(&(blob, alike, [width, height])) {
+            self.last.insert(target, known.clone());
             return Ok(known.clone());
         }
         let mut bytes = self.blobs.read(blob)?;
         bytes.truncate(usize::try_from(expected).unwrap_or(usize::MAX));
-        // What is made of it is at most as much again, and as much as floats.
+        // What is made of it is at most as much again, and as much as depths.
         self.blobs.reserve(found.saturating_mul(3))?;
         let layout = Layout { bottom_row_first: self.is_gl(), depth_above_stencil: self.is_gl() };
-        let mut contents = pictures::read(&self.textures[target.texture].format, &bytes, width as usize, layout);
-        let last = self.last.entry((alike, [width, height])).or_default();
+        let mut contents = pictures::read(&self.textures[target.texture].format, &bytes, [width, height], layout);
+        let last = self.last.entry(target).or_default();
         let kept = pictures::share(&mut contents, last);
         last.clone_from(&contents);
         // The bytes go, and what is as it was is there already.

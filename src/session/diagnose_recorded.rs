@@ -9,6 +9,7 @@ use crate::gpu::Memory;
 use crate::plan::{FramePlan, LightId};
 use crate::progress::Progress;
 use crate::recorded::labels;
+use crate::scene::Object;
 use glam::DVec4;
 use std::sync::Arc;
 
@@ -20,7 +21,7 @@ impl Session {
     /// [`SessionError::Cancelled`].
     pub fn diagnose_recorded(&mut self, frame: &RunFrame, progress: &Progress) -> Result<FrameDiagnosis, SessionError> {
         let (scene, plan, capture) = (frame.scene()?, &frame.plan, &frame.capture);
-        let traced = self.traced(scene, plan.size, progress)?;
+        let traced = self.traced_for(scene, capture, progress)?;
         let compare = |light: usize, shadow: &Arc<Image>| traced.compare(light, shadow);
         let mut lights = Vec::new();
         let mut faults = Vec::new();
@@ -64,7 +65,17 @@ impl Session {
             faults.extend(of_light);
         }
         faults.sort_by_key(|found| Proof::ALL.iter().position(|proof| *proof == found.proof));
-        Ok(FrameDiagnosis { scene: capture.scene.clone(), lights, faults, wrong_again })
+        let named = |is_meant: &dyn Fn(&Object) -> bool| {
+            scene.objects.iter().filter(|object| is_meant(object)).map(|object| object.name.clone()).collect()
+        };
+        Ok(FrameDiagnosis {
+            scene: capture.scene.clone(),
+            lights,
+            faults,
+            wrong_again,
+            silent: named(&|object| object.visible && !object.casts),
+            unseen: named(&|object| !object.visible),
+        })
     }
 
     /// The first fault that takes some of the wrong pixels away, and with it, one by one, whatever takes most of the rest
@@ -78,22 +89,23 @@ impl Session {
         proof_of: impl Fn(u64) -> Proof,
     ) -> Result<Option<FaultFound>, SessionError> {
         let Some(first) = found.iter().find(|one| one.proof == Proof::Part) else { return Ok(None) };
-        let without = |fault, plan: &FramePlan| suspicion(fault, plan, light, position).map(|found| found.mended);
-        let Some(mut mended) = without(first.fault, plan) else { return Ok(None) };
+        let without = |fault, plan: &FramePlan| suspicion(fault, plan, light, position);
+        let Some(Suspicion { mut mended, .. }) = without(first.fault, plan) else { return Ok(None) };
         let mut joined = first.clone();
         loop {
-            let mut best: Option<(u64, FrameFault, FramePlan)> = None;
+            let mut best: Option<(u64, Suspicion)> = None;
             let is_in = |fault: FrameFault| fault == first.fault || joined.together_with.contains(&fault);
             for fault in found.iter().map(|one| one.fault).filter(|fault| !is_in(*fault)) {
-                let Some(plan) = without(fault, &mended) else { continue };
-                let left = judge(self, &plan)?;
-                if left < best.as_ref().map_or(joined.pixels_left, |(best, ..)| *best) {
-                    best = Some((left, fault, plan));
+                let Some(found) = without(fault, &mended) else { continue };
+                let left = judge(self, &found.mended)?;
+                if left < best.as_ref().map_or(joined.pixels_left, |(best, _)| *best) {
+                    best = Some((left, found));
                 }
             }
-            let Some((left, fault, plan)) = best else { break };
+            let Some((left, Suspicion { fault, evidence, mended: plan })) = best else { break };
             (joined.pixels_left, joined.proof, mended) = (left, proof_of(left), plan);
             joined.together_with.push(fault);
+            joined.evidence = format!("{}; {evidence}", joined.evidence);
         }
         Ok(Some(joined).filter(|joined| !joined.together_with.is_empty()))
     }

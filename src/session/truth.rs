@@ -27,6 +27,8 @@ pub(super) struct Traced {
 struct Key {
     size: [u32; 2],
     camera: Camera,
+    /// Where rays of sight end.
+    far: Option<f64>,
     lights: Vec<DVec4>,
     objects: Vec<ObjectKey>,
 }
@@ -41,7 +43,7 @@ struct ObjectKey {
 }
 
 impl Key {
-    fn new(scene: &Scene, size: [u32; 2]) -> Key {
+    fn new(scene: &Scene, size: [u32; 2], far: Option<f64>) -> Key {
         let objects = scene.objects.iter().map(|object| ObjectKey {
             mesh: object.mesh.content_hash(),
             pose: object.pose,
@@ -50,7 +52,7 @@ impl Key {
             visible: object.visible,
         });
         let lights = scene.lights.iter().map(|light| light.position);
-        Key { size, camera: scene.camera, lights: lights.collect(), objects: objects.collect() }
+        Key { size, camera: scene.camera, far, lights: lights.collect(), objects: objects.collect() }
     }
 }
 
@@ -60,7 +62,7 @@ impl Session {
     /// # Errors
     /// A scene that no ray can be followed for; [`SessionError::Cancelled`] if `progress` was.
     pub fn truth(&mut self, scene: &Scene, capture: &Capture, progress: &Progress) -> Result<FrameTruth, SessionError> {
-        let traced = self.traced(scene, capture.size, progress)?;
+        let traced = self.traced_for(scene, capture, progress)?;
         let size = capture.size;
         let mut lights = Vec::with_capacity(capture.lights.len());
         for (index, light) in capture.lights.iter().enumerate() {
@@ -93,12 +95,34 @@ impl Session {
         size: [u32; 2],
         progress: &Progress,
     ) -> Result<Arc<Traced>, SessionError> {
-        if let Some(traced) = self.known_truth(scene, size) {
+        self.traced_to(scene, size, None, progress)
+    }
+
+    /// The truth that a capture is held against: what lies beyond another program's far plane is not in its picture.
+    pub(super) fn traced_for(
+        &mut self,
+        scene: &Scene,
+        capture: &Capture,
+        progress: &Progress,
+    ) -> Result<Arc<Traced>, SessionError> {
+        let far = capture.depth.far.filter(|_| capture.origin.is_some());
+        self.traced_to(scene, capture.size, far, progress)
+    }
+
+    fn traced_to(
+        &mut self,
+        scene: &Scene,
+        size: [u32; 2],
+        far: Option<f64>,
+        progress: &Progress,
+    ) -> Result<Arc<Traced>, SessionError> {
+        let key = Key::new(scene, size, far);
+        if let Some(traced) = self.known_truth(&key) {
             return Ok(traced);
         }
-        let tracer = Tracer::new(scene, size)?;
+        let tracer = Tracer::new(scene, size)?.ending_at(far);
         let truth = tracer.trace(progress).ok_or(SessionError::Cancelled)?;
-        Ok(self.keep_truth(scene, tracer, truth))
+        Ok(self.keep_truth(key, tracer, truth))
     }
 
     /// The same on a thread of its own, while `between` is called every now and then.
@@ -109,7 +133,8 @@ impl Session {
         progress: &Progress,
         between: &mut dyn FnMut(&mut Session),
     ) -> Result<Arc<Traced>, SessionError> {
-        if let Some(traced) = self.known_truth(scene, size) {
+        let key = Key::new(scene, size, None);
+        if let Some(traced) = self.known_truth(&key) {
             return Ok(traced);
         }
         let traced = thread::scope(|scope| {
@@ -125,16 +150,14 @@ impl Session {
             tracing.join()
         });
         let (tracer, truth) = traced.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-        Ok(self.keep_truth(scene, tracer, truth))
+        Ok(self.keep_truth(key, tracer, truth))
     }
 
-    fn known_truth(&self, scene: &Scene, size: [u32; 2]) -> Option<Arc<Traced>> {
-        let key = Key::new(scene, size);
-        self.traced.as_ref().filter(|traced| traced.key == key).cloned()
+    fn known_truth(&self, key: &Key) -> Option<Arc<Traced>> {
+        self.traced.as_ref().filter(|traced| traced.key == *key).cloned()
     }
 
-    fn keep_truth(&mut self, scene: &Scene, tracer: Tracer, truth: Truth) -> Arc<Traced> {
-        let key = Key::new(scene, truth.size);
+    fn keep_truth(&mut self, key: Key, tracer: Tracer, truth: Truth) -> Arc<Traced> {
         self.traced.insert(Arc::new(Traced { key, tracer, truth })).clone()
     }
 }

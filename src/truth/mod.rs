@@ -164,6 +164,14 @@ impl Tracer {
         Ok(Tracer { view: View::new(&scene.camera, size), world, size, eye, lights })
     }
 
+    /// The same, with rays of sight that end at a far plane: what lies beyond is not looked for. A far plane is a part of
+    /// another program's picture; of ours it is a technique's, which may be wrong with it.
+    #[must_use]
+    pub fn ending_at(mut self, far: Option<f64>) -> Tracer {
+        self.view.far = far.unwrap_or(f64::INFINITY);
+        self
+    }
+
     /// Width and height of the picture.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
@@ -271,7 +279,7 @@ impl Tracer {
             let distance = self.distance(seen, directions[line]);
             let best = nearest[line];
             let is_nearer = distance < best.distance || (distance == best.distance && seen.index < best.triangle);
-            if distance >= self.view.near && is_nearer {
+            if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
                 let rounding = seen.plane_rounding();
                 nearest[line] = Nearest { distance, triangle: seen.index, eye_side: seen.center_side, rounding };
             }

@@ -8,6 +8,8 @@ use glam::{DMat3, DVec3};
 #[derive(Debug, Clone, Copy)]
 pub struct View {
     pub near: f64,
+    /// Where rays end: infinite, but where a far plane is part of what is asked.
+    pub far: f64,
     world_from_view: DMat3,
     size: [f64; 2],
     /// Half the picture's width and height at distance 1.
@@ -20,6 +22,7 @@ impl View {
         let half_height = (camera.fov_y_degrees.to_radians() / 2.0).tan();
         View {
             near: camera.near,
+            far: f64::INFINITY,
             world_from_view: view_from_world_rotation(camera.target - camera.eye, camera.up).transpose(),
             size,
             half: [half_height * size[0] / size[1], half_height],

@@ -222,6 +222,21 @@ fn what_is_wrong_is_named_first_and_proven_by_a_changed_plan() {
             raster.stencil.back.pass_op = wgpu::StencilOperation::IncrementClamp;
         }
     });
+    proven("own", FrameFault::CapFighting, &|plan| {
+        let nearer = volumes(plan).filter(|raster| raster.depth_compare == wgpu::CompareFunction::Greater);
+        nearer.for_each(|raster| raster.depth_compare = wgpu::CompareFunction::GreaterEqual);
+    });
+}
+
+/// Which objects are meant to cast is nothing that a frame says.
+#[test]
+fn what_is_taken_to_cast_nothing_is_said() {
+    let mut session = session();
+    let diagnosis = session.diagnose_recorded(&frame_of("ogre"), &Progress::default()).expect("a diagnosis");
+    assert_eq!((diagnosis.silent.len(), diagnosis.unseen.len()), (1, 0), "{}", diagnosis.to_text());
+    assert!(diagnosis.to_text().contains("taken to cast no shadow, as no volume begins at its corners: event 32"));
+    let diagnosis = session.diagnose_recorded(&frame_of("ogre-inside"), &Progress::default()).expect("a diagnosis");
+    assert!(!diagnosis.unseen.is_empty(), "{}", diagnosis.to_text());
 }
 
 #[test]
@@ -240,13 +255,21 @@ fn a_frame_that_its_program_drew_wrong_is_found_named_and_proven() {
     let first = short.faults.first().expect("a fault");
     assert!(short.wrong() > 500, "{}", short.to_text());
     assert_eq!((first.fault, first.proof, first.pixels_left), (FrameFault::FiniteExtrusion, Proof::Proven, 0));
-    // Its volumes are cut by the far plane, and were open besides.
+    // Its volumes are cut by the far plane, and where OGRE left a cap out of the box's they were open besides.
     let far = diagnosis("ogre-far");
     let first = far.faults.first().expect("a fault");
-    assert_eq!((first.fault, first.proof), (FrameFault::FarClip, Proof::Part), "{}", far.to_text());
-    assert!(first.pixels_left * 3 < far.wrong(), "{}", far.to_text());
-    let joined = far.faults.iter().find(|found| !found.together_with.is_empty()).expect("faults together");
-    assert!(joined.fault == FrameFault::FarClip && joined.pixels_left * 20 < far.wrong(), "{}", far.to_text());
+    assert_eq!((first.fault, first.proof), (FrameFault::FarClip, Proof::Proven), "{}", far.to_text());
+    assert_eq!((first.pixels_left, &first.together_with[..]), (0, &[FrameFault::OpenVolume][..]));
+    for said in
+        ["far-clip and open-volume (light 1), proven: 0 pixels left", "; 84 edges of", "depth clamping", "both caps"]
+    {
+        assert!(far.to_text().contains(said), "{said}: {}", far.to_text());
+    }
+    let alone = &far.faults[1];
+    assert!(alone.fault == FrameFault::FarClip && alone.pixels_left * 3 < far.wrong(), "{}", far.to_text());
+    // What lies beyond the far plane is in nobody's picture.
+    let compared: u64 = far.lights.iter().map(|(error, _)| error.compared).sum();
+    assert!(compared < 76_800 && far.lights.iter().all(|(error, _)| error.wrong_surface == 0), "{}", far.to_text());
 }
 
 /// Vulkan's clip space is wgpu's: nothing is rounded on the way.

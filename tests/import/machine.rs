@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use stencilscope::capture::Image;
 use stencilscope::glam::DVec3;
 use stencilscope::import::{
     RawCompare, RawContents, RawCull, RawDraw, RawFrame, RawKind, RawMay, RawStencilFace, RawStencilOperation,
@@ -64,12 +65,11 @@ struct Machine {
 
 impl Machine {
     fn new(before: &RawContents, size: [usize; 2], largest: Option<u32>) -> Option<Self> {
-        let depth: Vec<f64> = before.depth.as_ref()?.iter().map(|depth| f64::from(*depth)).collect();
-        let depth = match (&before.depth_bits, largest) {
-            (Some(bits), Some(largest)) => bits.iter().map(|bits| f64::from(*bits) / f64::from(largest)).collect(),
-            _ => depth,
-        };
-        let stencil = before.stencil.as_ref().map_or_else(|| vec![0; depth.len()], |stencil| stencil.to_vec());
+        // An integer depth is taken as the quotient that it is, not as the float next to it.
+        let exact =
+            |depth: f64| largest.map_or(depth, |largest| (depth * f64::from(largest)).round() / f64::from(largest));
+        let depth: Vec<f64> = depths(before.depth.as_ref()?).map(|depth| exact(f64::from(depth))).collect();
+        let stencil = before.stencil.as_ref().map_or_else(|| vec![0; depth.len()], |stencil| bytes(stencil));
         let [touched, tied] = [(); 2].map(|()| vec![false; depth.len()]);
         Some(Self { size, largest, touched, tied, depth, stencil })
     }
@@ -171,20 +171,32 @@ impl Machine {
         let depth = after.depth.as_ref()?;
         // And one step of an integer, where the exact depth is half-way between two.
         let nearly = self.largest.map_or(NEARLY, |largest| NEARLY.max(1.5 / f64::from(largest)));
-        let differs = |(own, stored): (&f64, &f32)| (own - f64::from(*stored)).abs() > nearly;
-        let stencil = after.stencil.as_deref().unwrap_or(&self.stencil);
-        let depths = before.depth.as_ref()?.iter().zip(depth.iter()).map(|(a, b)| a != b);
-        let stencils = before.stencil.as_deref().unwrap_or(stencil).iter().zip(stencil).map(|(a, b)| a != b);
-        let wrong = self.stencil.iter().zip(stencil).map(|(own, stored)| own != stored);
+        let differs = |(own, stored): (&f64, f32)| (own - f64::from(stored)).abs() > nearly;
+        let stencil = after.stencil.as_ref().map_or_else(|| self.stencil.clone(), |stencil| bytes(stencil));
+        let before_stencil = before.stencil.as_ref().map_or_else(|| stencil.clone(), |stencil| bytes(stencil));
+        let changed = depths(before.depth.as_ref()?).zip(depths(depth)).map(|(a, b)| a != b);
+        let changed =
+            changed.zip(before_stencil.iter().zip(&stencil)).filter(|(depth, (a, b))| *depth || a != b).count();
+        let wrong = self.stencil.iter().zip(&stencil).map(|(own, stored)| own != stored);
         Some(Compared {
             event,
             touched: self.touched.iter().filter(|touched| **touched).count(),
-            changed: depths.zip(stencils).filter(|(depth, stencil)| *depth || *stencil).count(),
-            depth: self.depth.iter().zip(depth.iter()).filter(|pair| differs(*pair)).count(),
+            changed,
+            depth: self.depth.iter().zip(depths(depth)).filter(|pair| differs(*pair)).count(),
             stencil: wrong.clone().filter(|wrong| *wrong).count(),
             untied: wrong.zip(&self.tied).filter(|(wrong, tied)| *wrong && !**tied).count(),
         })
     }
+}
+
+/// The bytes of a picture of one byte a texel.
+fn bytes(image: &Image) -> Vec<u8> {
+    image.rows().flatten().copied().collect()
+}
+
+/// The depths of a picture.
+fn depths(image: &Image) -> impl Iterator<Item = f32> {
+    image.rows().flat_map(|row| row.as_chunks::<4>().0).map(|depth| f32::from_le_bytes(*depth))
 }
 
 fn after(face: &RawStencilFace, stored: u8, passes_stencil: bool, passes_depth: bool) -> u8 {

@@ -1,10 +1,9 @@
 //! Runs of draws that do the same become passes, and what was stored after each draw becomes steps.
 
-use super::pictures::{Held, Pictures, uniform};
 use super::stage::{Place, Stage, size_of};
 use super::states::{self, Role};
 use crate::capture::{Aspect, DrawState, DrawSummary, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot, Step};
-use crate::import::raw::{RawDraw, RawEvent, RawFrame, RawKind, RawTarget};
+use crate::import::raw::{RawContents, RawDraw, RawEvent, RawFrame, RawKind, RawTarget};
 use crate::plan::{
     Blob, DepthStencilTarget, Draw, DrawMesh, LeftOut, LightId, MeshId, Part, Pass, Program, RecordedPass,
     StartContent, ViewId, Viewport,
@@ -26,8 +25,7 @@ struct Run {
 pub(super) struct Making<'a> {
     frame: &'a RawFrame,
     stage: &'a Stage,
-    pictures: Pictures,
-    held: BTreeMap<RawTarget, Held>,
+    held: BTreeMap<RawTarget, RawContents>,
     /// Places whose depth or stencil something other than a draw has set since: a clear, a load, a copy.
     put: BTreeMap<Place, [bool; 2]>,
     run: Option<Run>,
@@ -47,7 +45,6 @@ impl<'a> Making<'a> {
         let mut making = Making {
             frame,
             stage,
-            pictures: Pictures::default(),
             held: BTreeMap::new(),
             put: BTreeMap::new(),
             run: None,
@@ -60,9 +57,7 @@ impl<'a> Making<'a> {
             left_out: Vec::new(),
         };
         for (target, before) in &frame.before {
-            let texture = &frame.textures[target.texture];
-            let held = making.pictures.held(before, &texture.format, size_of(frame, *target));
-            making.held.insert(*target, held);
+            making.hold(*target, before.clone());
             making.put.extend(stage.place(*target).map(|place| (place, [true; 2])));
         }
         making
@@ -103,20 +98,23 @@ impl<'a> Making<'a> {
 
     /// Notes what an event left.
     fn note(&mut self, event: &RawEvent) {
-        let (frame, after) = (self.frame, &event.after);
+        let after = &event.after;
         if let Some(target) = event.depth_target {
-            let format = &frame.textures[target.texture].format;
-            let left = self.pictures.held(after, format, size_of(frame, target));
-            let held = self.held.entry(target).or_default();
-            held.depth = left.depth.or(held.depth.take());
-            held.stencil = left.stencil.or(held.stencil.take());
+            self.hold(target, RawContents { color: None, ..after.clone() });
         }
         if let Some(target) = event.color_targets.first() {
-            let format = &frame.textures[target.texture].format;
-            let left = self.pictures.held(after, format, size_of(frame, *target));
-            let held = self.held.entry(*target).or_default();
-            held.color = left.color.or(held.color.take());
+            self.hold(*target, RawContents { color: after.color.clone(), ..RawContents::default() });
         }
+    }
+
+    /// Notes what a target holds, as far as that is known.
+    fn hold(&mut self, target: RawTarget, RawContents { depth, stencil, color }: RawContents) {
+        let size = size_of(self.frame, target);
+        let of_size = |image: Option<Arc<Image>>| image.filter(|image| image.size() == size);
+        let held = self.held.entry(target).or_default();
+        held.depth = of_size(depth).or(held.depth.take());
+        held.stencil = of_size(stencil).or(held.stencil.take());
+        held.color = of_size(color).or(held.color.take());
     }
 
     /// Begins a pass for a draw, unless it goes on with the one before; or says why the draw can't be followed.
@@ -278,4 +276,11 @@ fn after_all(before: &FrameSnapshot, mut after: FrameSnapshot) -> FrameSnapshot 
         after.unchanged &= before.unchanged;
     }
     after
+}
+
+/// The one texel that is everywhere, if it is.
+fn uniform(image: &Image) -> Option<Vec<u8>> {
+    let texel = image.format().texel_bytes();
+    let first = image.rows().next()?.get(..texel)?.to_vec();
+    image.rows().all(|row| row.chunks_exact(texel).all(|one| one == first)).then_some(first)
 }

@@ -2,7 +2,7 @@
 
 use crate::ask::{FaultsOf, Kind};
 use crate::diagnosis::Proof;
-use crate::diagnosis::recorded::{FaultFound, FrameDiagnosis};
+use crate::diagnosis::recorded::FrameDiagnosis;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
@@ -39,16 +39,19 @@ fn found(ui: &mut Ui, diagnosis: &FrameDiagnosis) {
     let [wrong, compared] = [diagnosis.wrong(), compared].map(format::count);
     ui.add_space(4.0);
     theme::heading(ui, &format!("{wrong} of {compared} compared pixels are wrong"));
-    for FaultFound { fault, light, evidence, proof, pixels_left, together_with } in &diagnosis.faults {
-        if *proof == Proof::NotIt {
-            continue;
-        }
-        let with: String = together_with.iter().map(|other| format!(" and {}", other.name())).collect();
-        let left = format::count(*pixels_left);
-        let words = format!("{}{with} ({}), {}: {left} pixels left", fault.name(), light.name(), proof.name());
+    for fault in diagnosis.faults.iter().filter(|fault| fault.proof != Proof::NotIt) {
         ui.add_space(4.0);
-        ui.add(egui::Label::new(RichText::new(words).strong()).wrap());
-        ui.add(egui::Label::new(format!("{evidence}.")).wrap());
+        ui.add(egui::Label::new(RichText::new(fault.title()).strong()).wrap());
+        ui.add(egui::Label::new(format!("{}.", fault.evidence)).wrap());
         ui.add(egui::Label::new(theme::note(fault.meaning())).wrap());
+    }
+    for (names, what) in [
+        (&diagnosis.silent, "Taken to cast no shadow, as no volume begins at its corners"),
+        (&diagnosis.unseen, "Out of view, and known by its volume alone"),
+    ] {
+        if !names.is_empty() {
+            ui.add_space(4.0);
+            ui.add(egui::Label::new(theme::note(format!("{what}: {}.", names.join(", ")))).wrap());
+        }
     }
 }
