@@ -150,9 +150,38 @@ fn a_folder_made_by_hand_is_read() {
 }
 
 #[test]
+fn a_picture_may_be_put_together_of_pieces() {
+    let frame = import::read(
+        made(|document, blobs| {
+            document["textures"][0]["size"] = json!([2, 4]);
+            document["events"][0]["color_after"] = json!(5);
+            document["events"][1]["color_after"] = json!(5);
+            document["before"] = json!([]);
+            blobs.push(Vec::new());
+        })
+        .path(),
+    );
+    assert!(frame.is_err(), "no bytes are no picture");
+    let folder = made(|document, _| {
+        document["textures"][0]["size"] = json!([2, 4]);
+        document["events"][0]["color_after"] = json!(5);
+        document["events"][1]["color_after"] = json!(5);
+        document["before"] = json!([]);
+    });
+    let file = folder.path().join("frame.json");
+    let mut document: Value = serde_json::from_slice(&fs::read(&file).expect("read")).expect("JSON");
+    document["blobs"].as_array_mut().expect("blobs").push(json!({"pieces": [0, 1]}));
+    fs::write(&file, document.to_string()).expect("written");
+    let frame = import::read(folder.path()).expect("a frame");
+    // OpenGL's rows come from the bottom.
+    let color = frame.events[1].after.color.as_ref().expect("a colour");
+    assert_eq!([color.rgba_at([0, 0]), color.rgba_at([1, 3])], [Some([0xff; 4]), Some([7; 4])]);
+}
+
+#[test]
 fn lies_are_refused_in_words() {
     type Lie = fn(&mut Value, &mut Vec<Vec<u8>>);
-    let cases: [(&str, Lie); 17] = [
+    let cases: [(&str, Lie); 20] = [
         ("format 2, not 1", |document, _| document["format"] = json!(2)),
         ("of the API `D3D11`", |document, _| document["api"] = json!("D3D11")),
         ("has 70000x2 texels", |document, _| document["textures"][0]["size"][0] = json!(70_000)),
@@ -180,6 +209,14 @@ fn lies_are_refused_in_words() {
         ("lies outside", |document, _| document["blobs"] = json!([[u64::MAX, 2, 16]])),
         ("not 14 bytes long", |document, _| {
             document["blobs"] = json!([[0, 11, 16], [0, 11, 16], [0, 0, 0], [0, 0, 0], [0, 11, 14]])
+        }),
+        ("byte string 1 is a piece that has pieces", |document, _| {
+            document["blobs"] = json!([[0, 11, 16], {"pieces": [0, 1]}]);
+        }),
+        ("there is no byte string 7", |document, _| document["blobs"] = json!([{"pieces": [7]}])),
+        ("has 18446744073709551615 bytes, not 16", |document, _| {
+            document["blobs"] = json!([[0, 11, u64::MAX], {"pieces": [0, 0]}]);
+            document["before"][0]["contents"] = json!(1);
         }),
         ("frame.json", |document, _| document["events"] = json!("none")),
     ];

@@ -15,8 +15,17 @@ pub struct Document {
     pub before: Vec<Before>,
     pub events: Vec<Event>,
     pub limits: Vec<String>,
+    pub blobs: Vec<Blob>,
+}
+
+/// A byte string.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub enum Blob {
     /// Offset in `data.bin`, compressed bytes there, bytes.
-    pub blobs: Vec<[u64; 3]>,
+    Stored([u64; 3]),
+    /// Others, one after the other.
+    Joined { pieces: Vec<usize> },
 }
 
 #[derive(Debug, Deserialize)]

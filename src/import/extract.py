@@ -5,7 +5,8 @@ state, the vertices after the last vertex stage and what the targets hold afterw
 orientation and meaning are the reader's (read.rs). With `states` what targets hold is left out.
 
     FOLDER/frame.json   textures, events and states; a number that stands for bytes is an index of `blobs`
-    FOLDER/data.bin     blobs, each compressed by zlib; `blobs` has [offset, bytes here, bytes] of each
+    FOLDER/data.bin     blobs, each compressed by zlib; `blobs` has [offset, bytes here, bytes] of each, or the
+                        numbers of those that it is put together of, as {"pieces": [...]}
 
 Standard output is for who started us, a line each: `progress DONE OF`, `error KIND WORDS`, `done`. When standard
 input ends, who started us has ended, and so do we.
@@ -57,10 +58,12 @@ class Store:
 
     # Bytes on the disk.
     MOST = 4 << 30
+    # Bytes of a picture that are kept together: mostly they are those of the picture before.
+    PIECE = 1 << 16
 
     def __init__(self):
         self.file = open(os.path.join(folder, "data.bin"), "wb")
-        self.known, self.table = {}, []
+        self.known, self.table, self.last = {}, [], {}
 
     def put(self, data):
         key = (len(data), hashlib.sha256(data).digest())
@@ -72,6 +75,20 @@ class Store:
             self.table.append([self.file.tell(), len(packed), len(data)])
             self.file.write(packed)
         return self.known[key]
+
+    def put_picture(self, target, data):
+        """What a target holds, piece by piece; nothing is looked at twice that is as it was."""
+        index, last, before = self.last.get(target, (None, b"", []))
+        if index is not None and data == last:
+            return index
+        pieces = []
+        for number, start in enumerate(range(0, len(data), self.PIECE)):
+            piece = data[start : start + self.PIECE]
+            is_same = number < len(before) and piece == last[start : start + self.PIECE]
+            pieces.append(before[number] if is_same else self.put(piece))
+        self.table.append({"pieces": pieces})
+        self.last[target] = len(self.table) - 1, data, pieces
+        return len(self.table) - 1
 
 
 def resource(bound):
@@ -170,7 +187,7 @@ def contents(to):
         if replay.GetMinMax(one, where, rd.CompType.Typeless)[1].floatValue[0] > 0:
             limits.add("this driver does not let depth be read from `%s` on OpenGL ES" % textures[to["texture"]]["name"])
             return None
-    return store.put(data) if len(data) else None
+    return store.put_picture(json.dumps(to), data) if len(data) else None
 
 
 def face(side):

@@ -51,10 +51,9 @@ pub fn texel_bytes(format: &RawFormat) -> Option<usize> {
 pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: Layout) -> RawContents {
     let Some(texel) = texel_bytes(format) else { return RawContents::default() };
     let rows = bytes.chunks_exact((size[0] as usize * texel).max(1));
-    let bytes: Vec<u8> = if layout.bottom_row_first {
-        rows.rev().flatten().copied().collect()
-    } else {
-        rows.flatten().copied().collect()
+    let bytes = match layout.bottom_row_first {
+        true => rows.rev().collect::<Vec<_>>().concat(),
+        false => rows.collect::<Vec<_>>().concat(),
     };
     let words = || bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word));
     let picture = |format, texels: Vec<u8>| Some(Arc::new(Image::packed(format, size, texels)));
@@ -80,7 +79,7 @@ pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: Layout) ->
         RawFormat::D32F => RawContents { depth: picture(PixelFormat::Depth32F, bytes), ..none() },
         RawFormat::D32FS8 => {
             let texels = bytes.as_chunks::<8>().0;
-            let depth = texels.iter().flat_map(|t| [t[0], t[1], t[2], t[3]]).collect();
+            let depth = quads(texels.iter().map(|t| [t[0], t[1], t[2], t[3]]));
             let depth = picture(PixelFormat::Depth32F, depth);
             RawContents { depth, stencil: stencil(texels.iter().map(|t| t[4]).collect()), ..none() }
         }
@@ -90,7 +89,7 @@ pub fn read(format: &RawFormat, bytes: &[u8], size: [u32; 2], layout: Layout) ->
             let color: Vec<u8> = match color {
                 RawFormat::Rgb8 => bytes.as_chunks::<3>().0.iter().flat_map(|[r, g, b]| [*r, *g, *b, 255]).collect(),
                 RawFormat::Bgra8 | RawFormat::Bgra8Srgb => {
-                    bytes.as_chunks::<4>().0.iter().flat_map(|[b, g, r, a]| [*r, *g, *b, *a]).collect()
+                    quads(bytes.as_chunks::<4>().0.iter().map(|[b, g, r, a]| [*r, *g, *b, *a]))
                 }
                 RawFormat::Rgba16F => {
                     let halves = bytes.as_chunks::<2>().0.iter().map(|half| float(u16::from_le_bytes(*half), 10));
@@ -144,7 +143,11 @@ pub fn share(contents: &mut RawContents, last: &RawContents) -> u64 {
 /// Integers as the floats that a GPU reads them as: correctly rounded, so that each is another one.
 fn depths(format: &RawFormat, bits: impl Iterator<Item = u32>) -> Vec<u8> {
     let largest = format.largest_depth().unwrap_or(u32::MAX) as f32;
-    bits.flat_map(|depth| (depth as f32 / largest).to_le_bytes()).collect()
+    quads(bits.map(|depth| (depth as f32 / largest).to_le_bytes()))
+}
+
+fn quads(texels: impl Iterator<Item = [u8; 4]>) -> Vec<u8> {
+    texels.collect::<Vec<_>>().into_flattened()
 }
 
 /// A float with five bits of exponent and `mantissa` bits after it.

@@ -5,7 +5,6 @@ use crate::capture::{Capture, Differs, DrawState, FrameSnapshot, Image, Snapshot
 use crate::gpu::Memory;
 use crate::plan::{Blob, Draw, FramePlan, MeshId, Pass, StartContent};
 use crate::progress::Progress;
-use std::sync::Arc;
 
 impl Session {
     /// Computes each draw of another program's frame anew, from what was stored before it, and notes at how many pixels
@@ -46,14 +45,19 @@ impl Session {
         let output = self.executor.capture(prepared, Memory::Mapped, false)?;
         let Some(Snapshot::Frame(made)) = output.steps.first().map(|step| &step.snapshot) else { return Ok(None) };
         let stencil = match (&made.stencil, &after.stencil) {
-            (Some(made), Some(after)) => bytes(&made.image).zip(bytes(&after.image)).filter(|(a, b)| a != b).count(),
+            (Some(made), Some(after)) => {
+                let rows = unequal_rows(&made.image, &after.image);
+                rows.flat_map(|(made, after)| made.iter().zip(after)).filter(|(made, after)| made != after).count()
+            }
             _ => 0,
         };
         let mut differs = Differs { stencil: stencil as u64, ..Differs::default() };
-        for (made, after) in depths(&made.depth.image).zip(depths(&after.depth.image)) {
-            let is_near = (made - after).abs() <= alone.attachments[0].depth_rounding();
-            differs.depth += u64::from(!is_near);
-            differs.rounded += u64::from(is_near && made != after);
+        for (made, after) in unequal_rows(&made.depth.image, &after.depth.image) {
+            for (made, after) in depths(made).zip(depths(after)) {
+                let is_near = (made - after).abs() <= alone.attachments[0].depth_rounding();
+                differs.depth += u64::from(!is_near);
+                differs.rounded += u64::from(is_near && made != after);
+            }
         }
         Ok(Some(differs))
     }
@@ -67,8 +71,8 @@ fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, (is_first, before): (bool, 
     }
     if let Some(recorded) = &mut pass.recorded {
         let given = recorded.start.take().filter(|_| is_first).unwrap_or_default();
-        let depth = || Some(Blob::new(depths(&before?.depth.image).collect()));
-        let stencil = || Some(Blob::new(bytes(&before?.stencil.as_ref()?.image).collect()));
+        let depth = || Some(Blob::new(before?.depth.image.rows().flat_map(depths).collect()));
+        let stencil = || Some(Blob::new(before?.stencil.as_ref()?.image.rows().collect::<Vec<_>>().concat()));
         let start = StartContent { depth: given.depth.or_else(depth), stencil: given.stencil.or_else(stencil) };
         recorded.start = Some(start).filter(|start| *start != StartContent::default());
     }
@@ -85,10 +89,11 @@ fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, (is_first, before): (bool, 
     }
 }
 
-fn bytes(image: &Arc<Image>) -> impl Iterator<Item = u8> + '_ {
-    image.rows().flatten().copied()
+/// Rows that are not the same bytes.
+fn unequal_rows<'a>(made: &'a Image, after: &'a Image) -> impl Iterator<Item = (&'a [u8], &'a [u8])> {
+    made.rows().zip(after.rows()).filter(|(made, after)| made != after)
 }
 
-fn depths(image: &Arc<Image>) -> impl Iterator<Item = f32> + '_ {
-    image.rows().flat_map(|row| row.chunks_exact(4)).map(bytemuck::pod_read_unaligned)
+fn depths(row: &[u8]) -> impl Iterator<Item = f32> + '_ {
+    row.as_chunks::<4>().0.iter().map(|depth| f32::from_le_bytes(*depth))
 }
