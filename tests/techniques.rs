@@ -94,11 +94,11 @@ fn winding_and_holes_do_not_change_a_shadow() {
 #[test]
 fn z_pass_and_z_fail_leave_the_same_count_where_the_eye_is_outside() {
     let mut session = session();
-    let scene = from_above(vec![cuboid("box", [-1.0, 1.0, -1.0], [1.0, 2.0, 0.5]), square("sheet", 0.5, 2.0)]);
+    let scene = from_above(vec![cuboid("box", [-1.0, 1.0, -1.0], [1.0, 2.0, 0.5]), square("sheet", 2.5, 0.7)]);
     let [z_pass, z_fail] = VOLUMES.map(|technique| stencil_after(&capture(&mut session, &scene, technique), "volumes"));
     assert_eq!(z_pass, z_fail);
-    // A closed box counts twice, the sheet under it once.
-    assert!([0, 1, 2].iter().all(|count| z_fail.contains(count)) && z_fail.iter().all(|count| *count <= 3));
+    // A closed box counts one, and so does the sheet over it.
+    assert!([0, 1, 2].iter().all(|count| z_fail.contains(count)) && z_fail.iter().all(|count| *count <= 2));
 }
 
 /// A roof over the eye but not under it: the eye is inside its shadow volume.

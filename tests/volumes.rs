@@ -5,7 +5,7 @@ use crate::common::{cuboid, from_above, label_counts, mesh, request, session, sq
 use glam::DVec3;
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Snapshot};
-use stencilscope::plan::{FramePlan, Part, StencilFace};
+use stencilscope::plan::{CountOf, FramePlan, Part, StencilFace};
 use stencilscope::scene::shapes;
 use stencilscope::scene::{Light, Material, Mesh, Object, Scene};
 use stencilscope::session::{CaptureRequest, Session};
@@ -82,7 +82,7 @@ fn settings_that_are_right_for_a_box_throw_its_exact_shadow() {
     for technique in VOLUMES {
         for settings in [
             &[][..],
-            &[("casters", "by-topology")],
+            &[("casters", "all")],
             &[("casters", "light-facing")],
             &[("casters", "light-back-facing")],
             &[("faces", "two-pass")],
@@ -147,6 +147,42 @@ fn light_facing_is_wrong_on_an_open_mesh_and_with_the_light_inside() {
     assert!(right[1] > 30_000 && lit[1] == 0, "{right:?} {lit:?}");
     let proven = counts(&mut session, &scene, Technique::ZFail, &[("casters", "by-topology")]);
     assert_eq!(proven, right, "by-topology sees that the light is inside");
+}
+
+/// A proven body counts one, whatever else counts; the plan and the capture say what a count is of.
+#[test]
+fn a_body_counts_one_where_it_is_proven_closed() {
+    let mut session = session();
+    let whole = || cuboid("whole", [-1.0, 1.0, -1.0], [1.0, 2.0, 1.0]);
+    let open = || {
+        of_mesh(&cuboid("open", [-1.0, 2.5, -1.0], [1.0, 3.0, 1.0]), |index, corners| match index {
+            6 | 7 => vec![],
+            _ => vec![corners],
+        })
+    };
+    let cases: [(Vec<Object>, &[(&str, &str)], CountOf, f32); 5] = [
+        (vec![whole()], &[], CountOf::Bodies, 1.0),
+        (vec![whole()], &[("casters", "all")], CountOf::Surfaces, 2.0),
+        // By hand nothing is proven.
+        (vec![whole()], &[("casters", "light-facing")], CountOf::Surfaces, 1.0),
+        (vec![open()], &[], CountOf::Surfaces, 1.0),
+        (vec![whole(), open()], &[], CountOf::Mixed, 2.0),
+    ];
+    for technique in [Technique::ZFail, Technique::ZPass, Technique::ZPassPlus] {
+        for (casters, settings, of, deepest) in &cases {
+            let mut scene = from_above(casters.clone());
+            scene.objects[0].casts = false;
+            let settings = [&[("counter", "float")], *settings].concat();
+            let found = capture(&mut session, &scene, technique, &settings);
+            assert_eq!(found.lights[0].count_of, Some(*of), "{technique:?} {settings:?}");
+            let count = found.lights[0].count.as_ref().expect("a count");
+            let texels = count.rows().flat_map(bytemuck::pod_collect_to_vec::<u8, f32>);
+            assert_eq!(texels.fold(0.0, f32::max), *deepest, "{technique:?} {settings:?}");
+        }
+    }
+    let mut nothing = from_above(vec![]);
+    nothing.objects[0].casts = false;
+    assert_eq!(capture(&mut session, &nothing, Technique::ZFail, &[]).lights[0].count_of, None);
 }
 
 /// What by-topology took and why is in the plan.

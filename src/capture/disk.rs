@@ -278,7 +278,11 @@ impl Written {
 }
 
 fn write_light(folder: &Path, index: usize, light: &CapturedLight) -> Result<LightEntry, CaptureError> {
-    let mut entry = LightEntry { decided_by: Some(light.decided_by), ..LightEntry::new(index, light.position) };
+    let mut entry = LightEntry {
+        decided_by: Some(light.decided_by),
+        count_of: light.count_of,
+        ..LightEntry::new(index, light.position)
+    };
     if let Some(shadow) = &light.shadow {
         entry.shadow = Some(shadow_file(index));
         files::write_image(&folder.join(shadow_file(index)), shadow)?;

@@ -5,7 +5,7 @@
 use super::{AdapterInfo, Capture, Differs, DrawSummary, Origin, Timing};
 use crate::accuracy::{ErrorCounts, Finding, Region};
 use crate::math::depth::DepthCurve;
-use crate::plan::{DecidedBy, LeftOut, Part, Side};
+use crate::plan::{CountOf, DecidedBy, LeftOut, Part, Side};
 use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
@@ -129,6 +129,9 @@ pub(super) struct LightEntry {
     /// What decided where its shadow is; a folder without it is of an older version.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decided_by: Option<DecidedBy>,
+    /// What its count counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count_of: Option<CountOf>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shadow: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -266,6 +269,7 @@ impl LightEntry {
             position,
             towards,
             decided_by: None,
+            count_of: None,
             shadow: None,
             count: None,
             wrapped_pixels: None,

@@ -17,7 +17,7 @@ pub use image::{Image, PixelFormat};
 pub use step_tests::{MOST_FRAGMENTS, StencilVerdict, StepTests, TestCounts};
 
 use crate::accuracy::{ErrorCounts, Region};
-use crate::plan::{DecidedBy, LeftOut, Part};
+use crate::plan::{CountOf, DecidedBy, LeftOut, Part};
 use crate::truth::{LIT, SHADOW};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -192,6 +192,8 @@ pub struct CapturedLight {
     pub position: glam::DVec4,
     /// What decided where its shadow is.
     pub decided_by: DecidedBy,
+    /// What a count of its shadow volumes counts, where that is known.
+    pub count_of: Option<CountOf>,
     /// The technique's labels, one byte a pixel: 0 lit, 1 in shadow, 2 background, 3 turned away from the light or
     /// beyond its range.
     pub shadow: Option<Arc<Image>>,

@@ -3,6 +3,7 @@
 use super::options::{FrameOptions, SceneOptions, Subject, pixel};
 use super::{CliError, output};
 use crate::history::PixelDocument;
+use crate::plan::LightId;
 use crate::session::{RunFrame, Session, SessionError};
 use clap::Args;
 use std::time::Instant;
@@ -40,6 +41,9 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
     let RunFrame { capture, plan, .. } = subject.frame(&mut session)?;
     let mut stories = vec![format!("{}, {}, {}x{}\n", capture.scene, capture.technique, size[0], size[1])];
+    for (light, counted) in capture.lights.iter().enumerate().filter_map(|(at, light)| Some((at, light.count_of?))) {
+        stories[0] += &format!("{}: {}\n", LightId(light).name(), counted.meaning());
+    }
     let mut documents = Vec::with_capacity(arguments.at.len());
     let mut wrong = 0;
     for pixel in &arguments.at {

@@ -110,6 +110,7 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
     let captured = |(index, light): (usize, &PlanLight)| CapturedLight {
         position: found[index].map_or(DVec4::ZERO, |found| found.position),
         decided_by: light.decided_by,
+        count_of: None,
         shadow: None,
         count: None,
         map: light.map.as_ref().zip(faces.get(index)).map(|(map, faces)| CapturedMap {
@@ -190,6 +191,7 @@ fn plan_light(plan: &FramePlan, light: LightId, faces: usize) -> PlanLight {
         color: [1.0; 3],
         range: None,
         decided_by,
+        count_of: None,
         map: (faces > 0).then_some(map),
         count: None,
         labels: AttachmentId(plan.attachments.len()),

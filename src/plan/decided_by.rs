@@ -45,6 +45,39 @@ pub enum Side {
     AsNeeded,
 }
 
+/// What a count of a light's shadow volumes is a count of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CountOf {
+    /// Casters that are proven closed: of each, only triangles that face the light cast.
+    Bodies,
+    /// Triangles, whichever way they face: both sides of a closed mesh cast.
+    Surfaces,
+    /// Some casters are proven closed, of others every surface counts.
+    Mixed,
+}
+
+impl CountOf {
+    /// In a sentence, for whoever reads a count.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        match self {
+            CountOf::Bodies => {
+                "A count is of bodies: every caster is proven closed, and counts 1 each time the way to the light goes \
+                 through it."
+            }
+            CountOf::Surfaces => {
+                "A count is of surfaces, not of bodies: each one on the way to the light counts 1, so that a closed body \
+                 whose both sides cast counts 2."
+            }
+            CountOf::Mixed => {
+                "A count is of bodies and of surfaces: a caster that is proven closed counts 1 each time the way to the \
+                 light goes through it, of the others each surface counts 1."
+            }
+        }
+    }
+}
+
 impl DecidedBy {
     /// Are shadow volumes counted, in whatever way?
     #[must_use]

@@ -30,7 +30,7 @@ pub mod words;
 
 pub use buffers::{Blob, DrawMesh, SurfaceData};
 pub use coverage::{Clip, Coverage, Covering, Face, FragmentLog, LoggedFragment};
-pub use decided_by::{DecidedBy, Side};
+pub use decided_by::{CountOf, DecidedBy, Side};
 pub use decision::Decision;
 pub use image::{CpuImage, MakeImage};
 pub use left_out::LeftOut;
@@ -150,6 +150,9 @@ pub struct PlanLight {
     pub range: Option<f32>,
     /// What its light pass asks.
     pub decided_by: DecidedBy,
+    /// What a count of its volumes counts, where that is known.
+    #[serde(default)]
+    pub count_of: Option<CountOf>,
     /// Its shadow map, where the technique makes one.
     pub map: Option<PlanMap>,
     /// Where its volumes are counted, if not in the stencil.

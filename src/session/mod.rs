@@ -338,6 +338,7 @@ impl Session {
         let lights = lights.map(|((light, planned), ((shadow, count), faces))| CapturedLight {
             position: light.position,
             decided_by: planned.decided_by,
+            count_of: planned.count_of,
             shadow,
             count,
             map: faces.zip(planned.map.as_ref()).map(|(faces, map)| CapturedMap {

@@ -22,7 +22,7 @@ use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::settings::{VolumeSettings, WhoCasts};
 use super::{Choice, PlanError};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
-use crate::plan::{DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Side, Visibility};
+use crate::plan::{CountOf, DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Side, Visibility};
 use crate::scene::Scene;
 use counting::Step;
 pub use counting::{Counting, Form};
@@ -46,8 +46,8 @@ pub(super) const Z_FAIL: Description = Description {
     // Also each way to count, cast and store depth that costs or saves something.
     report_rows: &[
         &[],
+        &[("casters", "all")],
         &[("casters", "light-facing")],
-        &[("casters", "by-topology")],
         &[("faces", "two-pass")],
         &[("counter", "float")],
         &[("extrusion", "finite:100")],
@@ -184,6 +184,7 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
     let in_float = settings.counts_in_float || may_overflow;
     frame.plan.lights[light.0].decided_by =
         if in_float { DecidedBy::FloatCount { side } } else { DecidedBy::StencilCount { side } };
+    frame.plan.lights[light.0].count_of = what_counts(&volumes);
     if in_float {
         count_in_float(frame, light, usual, settings, &volumes);
         return;
@@ -203,6 +204,17 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
     let purpose = "Adds the light where the count is zero, and raises the count there, so that no pixel is lit twice. \
                    Everywhere else the surface is inside a shadow volume and stays dark.";
     frame.light_pass(light, purpose, &Drawn::light_once_where_zero(0xff));
+}
+
+/// What a count of these counts; `None` if there are none.
+fn what_counts(volumes: &[Volume]) -> Option<CountOf> {
+    let bodies = volumes.iter().filter(|volume| volume.is_body).count();
+    match volumes.len() {
+        0 => None,
+        all if bodies == all => Some(CountOf::Bodies),
+        _ if bodies == 0 => Some(CountOf::Surfaces),
+        _ => Some(CountOf::Mixed),
+    }
 }
 
 /// How all of these are counted, `usual` if there are none; `None` where each has its own way.
@@ -267,7 +279,8 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
         let mut needed = needed_parts(frame, form, &parts, object);
         needed.retain(|part| !part.triangles.is_empty());
         let mesh = frame.add_mesh(mesh);
-        volumes.push(Volume { caster: object.name.clone(), counting: form.counting, mesh, parts, needed });
+        let is_body = options.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
+        volumes.push(Volume { caster: object.name.clone(), counting: form.counting, is_body, mesh, parts, needed });
         counted.push(index);
     }
     let pairs = volumes.iter().zip(&counted);

@@ -73,7 +73,7 @@ fn no_stencil_is_kept_where_a_float_counts() {
     assert!(found.left_out.iter().any(|left| left.decision == Some(Decision::Stencil)));
 }
 
-/// Under `casters = all` each of 128 closed shells counts twice: 256 reads 0 in eight bits.
+/// Behind 256 closed shells, each of which counts one: that reads 0 in eight bits.
 #[test]
 fn counts_of_256_are_right_in_a_float_and_noticed_where_the_stencil_wraps() {
     let mut session = session();

@@ -258,7 +258,7 @@ fn inside_is_inside_one_volume_and_cuts_two_others() {
     assert_eq!(z_fail, 0);
 }
 
-/// How many triangles of the gate are between the light and what is seen at the middle of a pixel.
+/// How many boxes of the gate are between the light and what is seen at the middle of a pixel: each is entered and left.
 fn true_count(scene: &Scene, size: [u32; 2], pixel: [u32; 2]) -> Option<usize> {
     let camera = &scene.camera;
     let [width, height] = size.map(f64::from);
@@ -278,7 +278,7 @@ fn true_count(scene: &Scene, size: [u32; 2], pixel: [u32; 2]) -> Option<usize> {
     let world = boxes.world_positions();
     let light = place_of(&scene.lights[0]);
     let crossed = |corners: &&[u32; 3]| crosses(light, point, corners.map(|vertex| world[vertex as usize]));
-    Some(boxes.mesh.triangles().iter().filter(crossed).count())
+    Some(boxes.mesh.triangles().iter().filter(crossed).count().div_ceil(2))
 }
 
 /// How many of a capture's wrong pixels have each count.
@@ -317,7 +317,7 @@ fn the_gate_is_300_deep_and_only_256_is_wrong() {
         assert!(pixels[&deep][0] >= 200, "{deep}: {:?}", pixels[&deep]);
     }
     for (count, [all, wrong]) in pixels {
-        // 257 and the like are rays through an edge of two triangles.
+        // 257 and the like may be rays through an edge of two triangles.
         if count == 256 {
             assert!(wrong * 10 >= all * 9, "{wrong} of {all}");
         } else {

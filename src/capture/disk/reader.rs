@@ -239,6 +239,14 @@ impl Reader<'_> {
             _ => None,
         };
         let decided_by = entry.decided_by(technique);
-        Ok(CapturedLight { position, decided_by, shadow, count, map, truth: self.truth(entry)? })
+        Ok(CapturedLight {
+            position,
+            decided_by,
+            count_of: entry.count_of,
+            shadow,
+            count,
+            map,
+            truth: self.truth(entry)?,
+        })
     }
 }

@@ -76,8 +76,15 @@ fn example() -> Capture {
         clip_from_light: (0..3).map(|index| DMat4::from_rotation_y(f64::from(index))).collect(),
     };
     let decided_by = DecidedBy::StencilCount { side: Side::Behind };
-    let unlit =
-        |position: DVec4, map| CapturedLight { position, decided_by, shadow: None, count: None, map, truth: None };
+    let unlit = |position: DVec4, map| CapturedLight {
+        position,
+        decided_by,
+        count_of: None,
+        shadow: None,
+        count: None,
+        map,
+        truth: None,
+    };
     let lit = |position: DVec4, map| CapturedLight { shadow: Some(padded(PixelFormat::U8, 1)), ..unlit(position, map) };
     let truth = CapturedTruth {
         labels: padded(PixelFormat::U8, 0),

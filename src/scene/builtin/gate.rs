@@ -1,10 +1,9 @@
-//! `gate`: 150 closed boxes, each inside the last, so that up to 300 shadow volumes overlap.
+//! `gate`: 300 closed boxes, each inside the last, so that up to 300 shadow volumes overlap.
 //!
-//! When every triangle casts, a closed shell counts twice: behind all 150 boxes the count is 300,
-//! which eight bits keep as 44, still a shadow. Behind exactly 128 of them it is 256, which they
-//! keep as 0: a bright frame inside the shadow, where no light can be. The sizes leave room between
-//! the 125th, the 128th and the last box, so that counts of 250, 256 and 300 are all wide enough to
-//! be seen.
+//! A closed box counts one: behind all of them the count is 300, which eight bits keep as 44, still a
+//! shadow. Behind exactly 256 it is one that they keep as 0: a bright frame inside the shadow, where
+//! no light can be. The sizes leave room between the 250th, the 256th and the last box, so that all
+//! three counts are wide enough to be seen.
 
 use crate::scene::{Camera, Light, Material, Mesh, MeshError, Object, Pose, Scene, SceneBuilder, shapes};
 use glam::DVec3;
@@ -17,7 +16,7 @@ const GATE: [f32; 3] = [0.62, 0.23, 0.10];
 /// Of the outermost box.
 const SIZE: [f64; 3] = [1.7, 2.6, 0.5];
 /// How many boxes, from which to which size relative to the outermost, from outside to inside.
-const GROUPS: [(u32, f64, f64); 3] = [(125, 1.0, 0.85), (3, 0.8, 0.79), (22, 0.6, 0.55)];
+const GROUPS: [(u32, f64, f64); 3] = [(250, 1.0, 0.85), (6, 0.8, 0.79), (44, 0.6, 0.55)];
 
 /// The floor is at height 0, the wall behind the gate at z = −1.6.
 pub fn build() -> Result<Scene, MeshError> {
@@ -40,7 +39,7 @@ pub fn build() -> Result<Scene, MeshError> {
         .build())
 }
 
-/// One mesh, the outermost box first: one caster of 150 closed shells.
+/// One mesh, the outermost box first: one caster of 300 closed shells.
 fn nested_boxes() -> Result<Mesh, MeshError> {
     let sizes = GROUPS.iter().flat_map(|(count, outer, inner)| {
         let step = (outer - inner) / f64::from(count - 1);

@@ -74,7 +74,7 @@ pub const ALL: &[Builtin] = &[
     },
     Builtin {
         name: "gate",
-        lesson: "150 boxes in each other: 300 volumes deep, so that a count of 256 reads 0 and light shines where it can't",
+        lesson: "300 boxes in each other: 300 volumes deep, so that a count of 256 reads 0 and light shines where it can't",
         build: gate::build,
     },
     Builtin {

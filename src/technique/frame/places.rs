@@ -60,6 +60,7 @@ impl Frame<'_> {
                 color,
                 range,
                 decided_by: DecidedBy::Nothing,
+                count_of: None,
                 map: None,
                 count: None,
                 labels,

@@ -7,10 +7,10 @@ use crate::plan::Decision;
 
 const CASTERS: Words<WhoCasts> = words(
     "casters",
-    &["all", "by-topology", "light-facing", "light-back-facing"],
+    &["by-topology", "all", "light-facing", "light-back-facing"],
     &[
-        WhoCasts::Always(Casters::All),
         WhoCasts::ByTopology,
+        WhoCasts::Always(Casters::All),
         WhoCasts::Always(Casters::LightFacing),
         WhoCasts::Always(Casters::LightBackFacing),
     ],

@@ -14,6 +14,8 @@ use glam::DVec3;
 pub struct Volume {
     pub caster: String,
     pub counting: Counting,
+    /// A body that is proven closed, of which one side casts.
+    pub is_body: bool,
     pub mesh: MeshId,
     pub parts: VolumeParts,
     /// Which of its parts count in the volume pass.

@@ -138,7 +138,7 @@ const LIGHT_INSIDE_MESH: Case = Case {
         scene.lights = vec![Light::point([0.1, 0.85, 0.05])];
         Ok(scene)
     }),
-    also: &[LIGHT_FACING, BY_TOPOLOGY],
+    also: &[LIGHT_FACING, ALL_CAST],
     least: |_| Least::all_dark("outside the mesh all is dark"),
     failures: &[
         CUT_BY_NEAR.is_missing().at_most(0.999),

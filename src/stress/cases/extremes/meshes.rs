@@ -55,7 +55,7 @@ const OPEN_MESH: Case = Case {
         let open: Vec<[u32; 3]> = closed.triangles().iter().filter(|corners| !is_top(corners)).copied().collect();
         over_floor(vec![Object::of("open box", shapes::triangles(&points, &open)?).at([0.0, 0.8, 0.0])])
     }),
-    also: &[LIGHT_FACING, BY_TOPOLOGY],
+    also: &[LIGHT_FACING, ALL_CAST],
     failures: &[fails(
         LIGHT_FACING,
         "light-facing-open",
@@ -193,7 +193,7 @@ const INSTANCES: Case = Case {
         ];
         over_floor(casters.to_vec())
     }),
-    also: &[LIGHT_FACING, BY_TOPOLOGY],
+    also: &[LIGHT_FACING, ALL_CAST],
     ..PLAIN
 };
 

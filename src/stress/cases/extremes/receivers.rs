@@ -85,7 +85,7 @@ const ROUND_RECEIVER: Case = Case {
         let board = Object::of("board", shapes::quad([0.5, 0.9])?).at([0.4, 1.6, 0.0]);
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([2.5, 3.0, 0.5]), vec![floor(3.0)?, ring, board]))
     }),
-    also: &[LIGHT_FACING, BY_TOPOLOGY],
+    also: &[LIGHT_FACING, ALL_CAST],
     failures: &[NOT_PLANAR, NOT_PLANAR_TEXTURE, BETWEEN.at_most(0.003)],
     ..PLAIN
 };
