@@ -451,6 +451,11 @@ impl Inspector {
         self.model.shown(capture).map(|shown| shown.kind)
     }
 
+    /// Shows what each step writes.
+    pub fn follow_steps(&mut self) {
+        self.model.view.follow_steps();
+    }
+
     /// Wishes for a kind of picture.
     pub fn set_picture_kind(&mut self, kind: PictureKind) {
         self.model.choose_picture(kind);

@@ -1,11 +1,31 @@
 //! Small widgets that several panels are made of.
 
 use super::theme;
-use egui::{Align2, CornerRadius, Response, RichText, Stroke, Ui, pos2, vec2};
+use egui::{Align2, CornerRadius, Response, RichText, Stroke, StrokeKind, Ui, pos2, vec2};
+
+/// One of several buttons side by side.
+#[derive(Debug, Clone, Copy)]
+pub struct Segment<'a> {
+    /// Its words.
+    pub label: &'a str,
+    /// What it does, or why it can't be pressed.
+    pub explanation: &'a str,
+    /// It can be pressed.
+    pub is_enabled: bool,
+    /// It is not chosen, but what it stands for is seen.
+    pub is_seen: bool,
+}
 
 /// Buttons side by side in one frame, of which one is chosen: label and explanation of each.
 /// Returns the one that was clicked.
 pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
+    let all =
+        labels.iter().map(|(label, explanation)| Segment { label, explanation, is_enabled: true, is_seen: false });
+    segments_of(ui, &all.collect::<Vec<_>>(), chosen)
+}
+
+/// As [`segments`], where some can't be pressed.
+pub fn segments_of(ui: &mut Ui, segments: &[Segment], chosen: Option<usize>) -> Option<usize> {
     let mut clicked = None;
     let frame = egui::Frame::new()
         .fill(theme::of(ui).raised)
@@ -15,17 +35,31 @@ pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> 
         // Laid out left to right whatever surrounds them.
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
-            for (index, (label, explanation)) in labels.iter().enumerate() {
+            for (index, segment) in segments.iter().enumerate() {
                 let is_chosen = chosen == Some(index);
-                let color = if is_chosen { theme::of(ui).text } else { theme::of(ui).dim };
+                let color = match (segment.is_enabled, is_chosen || segment.is_seen) {
+                    (false, _) => theme::of(ui).faint,
+                    (true, true) => theme::of(ui).text,
+                    (true, false) => theme::of(ui).dim,
+                };
                 let fill = if is_chosen { theme::of(ui).selected_row } else { theme::of(ui).raised };
-                let text = RichText::new(*label).color(color);
+                let text = RichText::new(segment.label).color(color);
                 let button = egui::Button::selectable(is_chosen, text)
                     .fill(fill)
                     .stroke(Stroke::NONE)
                     .corner_radius(CornerRadius::same(3))
                     .min_size(vec2(0.0, theme::ROW_HEIGHT - 2.0));
-                if ui.add(button).on_hover_text(*explanation).clicked() {
+                let button = ui.add_enabled(segment.is_enabled, button);
+                let button = button.on_hover_text(segment.explanation).on_disabled_hover_text(segment.explanation);
+                if segment.is_seen {
+                    let [from, to] = [button.rect.left() + 8.0, button.rect.right() - 8.0];
+                    ui.painter().hline(from..=to, button.rect.bottom() - 2.0, Stroke::new(1.5, theme::of(ui).dim));
+                }
+                if button.has_focus() {
+                    let outline = Stroke::new(1.0, theme::of(ui).focus);
+                    ui.painter().rect_stroke(button.rect, CornerRadius::same(3), outline, StrokeKind::Inside);
+                }
+                if button.clicked() {
                     clicked = Some(index);
                 }
             }

@@ -96,6 +96,8 @@ pub struct Requests {
     pub tour: Option<usize>,
     /// The Scene tab brings the selected triangle to the middle.
     pub triangle_in_scene: bool,
+    /// The Shadow map tab brings the texel that the picked pixel reads to the middle: of this light's map.
+    pub texel_under: Option<usize>,
     /// The menu of overlays opens.
     pub overlay_menu: bool,
     /// The search field of the passes opens.
@@ -122,13 +124,19 @@ impl Model {
         self.view.choose(kind);
     }
 
+    /// The kind of picture that is shown at the selected moment.
+    #[must_use]
+    pub fn kind(&self) -> Option<PictureKind> {
+        self.view.kind_at(self.frame.capture.as_ref()?, self.moment())
+    }
+
     /// Wants the truth where its picture is wished for and it is not known.
     pub fn want_truth(&self) {
-        let is_missing =
-            self.frame.capture.as_ref().is_some_and(|capture| {
-                !has_truth(capture) && available(capture, self.moment()).contains(&self.view.kind)
-            });
-        if self.view.kind.needs_truth() && is_missing {
+        let is_missing = self.frame.capture.as_ref().is_some_and(|capture| {
+            let kinds = available(capture, self.moment());
+            !has_truth(capture) && self.view.kind.is_some_and(|kind| kinds.contains(&kind))
+        });
+        if self.view.wants_truth() && is_missing {
             self.answers.want(TruthOf {});
         }
     }

@@ -108,6 +108,8 @@ impl Tours {
         }
         self.at = Some(TourState { is_pending: false, ..at });
         model.modes.overlays.clear();
+        // A stop that names no picture shows what its step writes.
+        model.view.follow_steps();
         for go in stop.go {
             do_stop(model, *go, &capture);
         }

@@ -20,7 +20,7 @@ use crate::inspector::canvas::magnifier;
 use crate::inspector::canvas::{self, Canvas, Sheet, marks};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::segments;
+use crate::inspector::look::widgets::{Segment, segments, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{Compare, With};
 use crate::inspector::model::looking::{NoBefore, Phase, has_phases};
@@ -82,7 +82,7 @@ pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut 
         legend::ui(ui, &mut own.counts_findings, model, corners, &shown, range);
     }
     truth_note::ui(ui, model, corners, &shown);
-    if model.view.kind == PictureKind::Overdraw && shown.kind != PictureKind::Overdraw {
+    if model.view.kind == Some(PictureKind::Overdraw) && shown.kind != PictureKind::Overdraw {
         overlays::counting_note(ui, model, corners);
     }
     walking::banner(ui, model, rect);
@@ -190,7 +190,7 @@ pub fn layers(
 /// What the sides of a comparison are called: the compared one, and the one that is shown.
 pub fn compared_names(model: &Model, capture: &Capture, compare: &Compare) -> [String; 2] {
     let now = match compare.with {
-        With::Step(_) => model.moment().words(),
+        With::Step(_) => model.moment().words(capture),
         With::Technique(_) => capture.technique.clone(),
     };
     [compare.with.words(capture), now]
@@ -287,18 +287,35 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
     }
 }
 
-/// A button for each kind of picture that exists at this step.
+/// A button for what each step writes, and one for each kind of picture. One that this step has none of keeps its
+/// place, so that nothing moves from step to step.
 fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
-    let kinds = available(capture, model.moment());
-    let labels: Vec<(&str, &str)> = kinds.iter().map(|kind| (kind.name(capture), kind.meaning(capture))).collect();
-    // What was chosen, even while its truth is not known yet.
-    let is_made_later = model.view.kind.needs_truth() || model.view.kind == PictureKind::Overdraw;
-    let is_asked_for = is_made_later && kinds.contains(&model.view.kind);
-    let shown = || model.shown(capture).map(|shown| shown.kind);
-    let current = if is_asked_for { Some(model.view.kind) } else { shown() };
-    let chosen = kinds.iter().position(|kind| Some(*kind) == current);
-    if let Some(index) = segments(ui, &labels, chosen) {
-        model.choose_picture(kinds[index]);
+    let available = available(capture, model.moment());
+    let kinds: Vec<PictureKind> =
+        PictureKind::ALL.into_iter().filter(|kind| !kind.is_of_some_frames() || available.contains(kind)).collect();
+    let shown = model.kind();
+    let auto = Segment {
+        label: "Auto",
+        explanation: "What each step writes: colour, stencil, depth, or a light's map",
+        is_enabled: true,
+        is_seen: false,
+    };
+    let of_kind = |kind: &PictureKind| {
+        let is_enabled = available.contains(kind);
+        Segment {
+            label: kind.name(capture),
+            explanation: if is_enabled { kind.meaning(capture) } else { kind.why_missing(capture) },
+            is_enabled,
+            is_seen: shown == Some(*kind) && model.view.kind != Some(*kind),
+        }
+    };
+    let segments: Vec<Segment> = std::iter::once(auto).chain(kinds.iter().map(of_kind)).collect();
+    let chosen =
+        model.view.kind.map_or(Some(0), |chosen| kinds.iter().position(|kind| *kind == chosen).map(|at| at + 1));
+    match segments_of(ui, &segments, chosen) {
+        Some(0) => model.view.follow_steps(),
+        Some(index) => model.choose_picture(kinds[index - 1]),
+        None => {}
     }
 }
 

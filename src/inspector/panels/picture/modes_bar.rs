@@ -17,20 +17,20 @@ const NOTE_WIDTH: f32 = 232.0;
 
 /// Draws the tools that go with `shown`: those that are always there first, so that they keep their place.
 pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&Shown>) {
-    let kind = shown.map_or(model.view.kind, |shown| shown.kind);
+    let kind = shown.map(|shown| shown.kind).or_else(|| model.kind());
     let is_single = shown.is_none_or(|shown| shown.images.len() == 1);
     ui.add_enabled_ui(is_single, |ui| {
         toggle(ui, model);
         overlays::menu(ui, model);
     });
     phases(ui, model, kind);
-    if kind == PictureKind::Stencil {
+    if kind == Some(PictureKind::Stencil) {
         bits(ui, model);
     }
 }
 
-fn phases(ui: &mut Ui, model: &mut Model, kind: PictureKind) {
-    if !has_phases(kind) {
+fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
+    if !kind.is_some_and(has_phases) {
         return;
     }
     let chosen = Phase::ALL.iter().position(|phase| *phase == model.modes.phase);

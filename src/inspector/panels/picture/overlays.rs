@@ -295,7 +295,9 @@ fn tests(ui: &mut Ui, model: &Model) {
         ui.add(egui::Label::new(theme::note(text)).wrap());
         return;
     };
-    theme::heading(ui, &format!("Tests of {}", model.selected().words()));
+    if let Some(capture) = &model.frame.capture {
+        theme::heading(ui, &format!("Tests of {}", model.selected().words(capture)));
+    }
     for (outcome, name, hover) in OUTCOMES {
         let pixels = known.pixels[usize::from(outcome)];
         if pixels > 0 {

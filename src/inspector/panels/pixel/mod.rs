@@ -2,6 +2,7 @@
 
 pub mod history_rows;
 pub mod ladder;
+pub mod map;
 pub mod room;
 pub mod run;
 pub mod told;
@@ -18,8 +19,9 @@ use crate::reading::counts;
 use crate::reading::depth::{DepthMeasure, FIXED_BITS};
 use crate::reading::format;
 use crate::reading::layers::MapContent;
+use crate::reading::map_decision::MapDecision;
 use crate::reading::shown::{PictureKind, has_truth};
-use crate::reading::verdict::{explained, verdict};
+use crate::reading::verdict::{by_map, explained, verdict};
 use egui::{Color32, RichText, Ui};
 
 pub use told::Pixel;
@@ -45,12 +47,17 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
             ui.spacing_mut().item_spacing.y = 2.0;
         }
         let bottom = ui.cursor().top() + size.y;
-        sentence(ui, own, model, &told, (&capture, at));
+        let light = light_in_question(model, &capture, at);
+        let map = map::decision(model, &capture, light, at);
+        sentence(ui, own, model, &told, (&capture, at), map.as_ref());
         ui.add_space(gap);
         values(ui, model, &capture, at, is_tight);
         if !capture.lights.is_empty() {
             ui.add_space(gap);
             lights(ui, &capture, at);
+            if let Some(decision) = &map {
+                map::ui(ui, model, &capture, decision);
+            }
         }
         ui.add_space(gap);
         run::ui(ui, model, &capture, at);
@@ -61,7 +68,6 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
         // the pointer.
         let end = history_rows::ui(ui, own, model, &told, (&capture, at), rows);
         ui.add_space(gap);
-        let light = light_in_question(model, &capture, at);
         ladder::ui(ui, own, model, &told, (&capture, light), bottom - end - gap);
     });
 }
@@ -82,7 +88,14 @@ fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
 
 /// While the history of a pixel is on its way the last sentence stays, so that it does not change
 /// twice.
-fn sentence(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, (capture, at): (&Capture, [u32; 2])) {
+fn sentence(
+    ui: &mut Ui,
+    own: &mut Pixel,
+    model: &Model,
+    told: &Told,
+    (capture, at): (&Capture, [u32; 2]),
+    map: Option<&MapDecision>,
+) {
     let light = light_in_question(model, capture, at);
     // One that is wrong explains nothing.
     let history = told.history.as_ref().filter(|_| told.is_of_pick && told.wrong.is_empty());
@@ -96,6 +109,7 @@ fn sentence(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, (capture, 
         }
     });
     own.sentence = Some(verdict.clone());
+    let verdict = map.map_or(verdict.clone(), |decision| by_map(verdict, decision));
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         theme::heading(ui, &verdict.title);
@@ -105,7 +119,7 @@ fn sentence(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, (capture, 
 
 /// A name and a value, or two of them in a row where `is_tight`.
 fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight: bool) {
-    theme::heading(ui, &format!("After {}", model.moment().words()));
+    theme::heading(ui, &format!("After {}", model.moment().words(capture)));
     let row_height = ui.spacing().interact_size.y.min(20.0);
     let grid = |name| egui::Grid::new(name).min_row_height(row_height);
     let in_row = if is_tight { 2 } else { 1 };
@@ -119,7 +133,7 @@ fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight:
         }
     });
     let has_count = model.moment().frame(capture).is_some() && model.counts_to_show(capture).is_some();
-    let texel = model.selection.map_pick.filter(|_| model.view.kind == PictureKind::Map);
+    let texel = model.selection.map_pick.filter(|_| model.kind() == Some(PictureKind::Map));
     if has_count || texel.is_some() {
         // Some of these are long.
         grid("pixel further values").num_columns(2).spacing(spacing).show(ui, |ui| {
