@@ -373,10 +373,11 @@ impl Inspector {
         self.model.activity.job.is_some()
     }
 
-    /// A scene could not be opened, or its frame not be made: a tour that waits for it says so.
+    /// A scene could not be opened, or its frame not be made: a tour that waits for it says so, and it is told until
+    /// one can be.
     pub fn push_failure(&mut self, error: String) {
         self.tours.note_error(&error);
-        self.push_error(error);
+        self.model.push_failure(error);
     }
 
     /// Shows an error with its mend until it is dismissed; what was shown before stays.

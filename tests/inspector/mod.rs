@@ -485,6 +485,20 @@ fn an_error_stays_until_dismissed_and_so_does_the_picture() {
 }
 
 #[test]
+fn why_a_scene_could_not_be_opened_goes_once_one_is_and_other_errors_stay() {
+    let mut harness = harness(z_fail(SIZE));
+    let inspector = &mut harness.state_mut().inspector;
+    inspector.push_failure("nothing.obj: no such file: check the path".to_owned());
+    inspector.push_error("out.png can't be written: choose another place".to_owned());
+    harness.run_steps(2);
+    harness.get_by_label("nothing.obj: no such file: check the path");
+    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("no such file").is_none());
+    harness.get_by_label("out.png can't be written: choose another place");
+}
+
+#[test]
 fn with_nothing_open_it_says_what_to_do() {
     let harness = harness_of(Inspector::default(), [1280.0, 800.0]);
     harness.get_by_label("Nothing is open yet.");

@@ -14,14 +14,23 @@ pub struct Segment<'a> {
     pub is_enabled: bool,
     /// It is not chosen, but what it stands for is seen.
     pub is_seen: bool,
+    /// What was changed of what it stands for, marked by a dot; empty where nothing was.
+    pub changed: &'a str,
+}
+
+impl<'a> Segment<'a> {
+    /// One that can be pressed.
+    #[must_use]
+    pub fn new(label: &'a str, explanation: &'a str) -> Segment<'a> {
+        Segment { label, explanation, is_enabled: true, is_seen: false, changed: "" }
+    }
 }
 
 /// Buttons side by side in one frame, of which one is chosen: label and explanation of each.
 /// Returns the one that was clicked.
 pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
-    let all =
-        labels.iter().map(|(label, explanation)| Segment { label, explanation, is_enabled: true, is_seen: false });
-    segments_of(ui, &all.collect::<Vec<_>>(), chosen)
+    let all: Vec<Segment> = labels.iter().map(|(label, explanation)| Segment::new(label, explanation)).collect();
+    segments_of(ui, &all, chosen)
 }
 
 /// As [`segments`], where some can't be pressed.
@@ -51,6 +60,15 @@ pub fn segments_of(ui: &mut Ui, segments: &[Segment], chosen: Option<usize>) -> 
                     .min_size(vec2(0.0, theme::ROW_HEIGHT - 2.0));
                 let button = ui.add_enabled(segment.is_enabled, button);
                 let button = button.on_hover_text(segment.explanation).on_disabled_hover_text(segment.explanation);
+                if !segment.changed.is_empty() {
+                    let name = format!("{}, changed: {}", segment.label, segment.changed);
+                    let at = button.rect.right_top() + vec2(-5.0, 5.0);
+                    ui.painter().circle_filled(at, 2.5, theme::of(ui).lit);
+                    let place = egui::Rect::from_center_size(at, vec2(8.0, 8.0));
+                    let mark = ui.interact(place, button.id.with("changed"), egui::Sense::hover());
+                    mark.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
+                    mark.on_hover_text(name.as_str());
+                }
                 if segment.is_seen {
                     let [from, to] = [button.rect.left() + 8.0, button.rect.right() - 8.0];
                     ui.painter().hline(from..=to, button.rect.bottom() - 2.0, Stroke::new(1.5, theme::of(ui).dim));
@@ -66,6 +84,28 @@ pub fn segments_of(ui: &mut Ui, segments: &[Segment], chosen: Option<usize>) -> 
         });
     });
     clicked
+}
+
+/// The name of a setting: brighter where it was changed.
+pub fn setting_name(ui: &mut Ui, name: &str, is_changed: bool) -> Response {
+    let ink = if is_changed { theme::of(ui).text } else { theme::of(ui).dim };
+    ui.label(theme::note(name).color(ink))
+}
+
+/// Width of a button that takes one change back, points.
+const RESET_WIDTH: f32 = 14.0;
+
+/// The start of a setting's row: where it was changed a mark, which takes the change back when pressed. It has its room
+/// all the same, so that nothing moves.
+pub fn reset(ui: &mut Ui, name: &str, is_changed: bool, before: &str) -> bool {
+    let size = vec2(RESET_WIDTH, ui.spacing().interact_size.y);
+    if !is_changed {
+        ui.allocate_exact_size(size, egui::Sense::hover());
+        return false;
+    }
+    let button = egui::Button::new(theme::number("↺")).frame_when_inactive(false).min_size(size);
+    let button = ui.add(button).accessible_name(format!("Reset {name}"));
+    button.on_hover_text(format!("Changed. Back to {before}")).clicked()
 }
 
 /// A widget of the pass tree keeps the arrows: they step, and do not move the focus.

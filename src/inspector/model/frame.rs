@@ -45,6 +45,7 @@ impl Model {
     /// where it still lies inside.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
         self.activity.is_waiting = false;
+        self.activity.succeeded();
         let before = self.frame.capture.take();
         self.select_in(before.as_deref(), &capture);
         self.answers.new_frame();

@@ -20,15 +20,18 @@ pub mod selection;
 pub mod undo;
 pub mod walk;
 
-use crate::ask::{Answers, Kind, TruthOf};
+use crate::ask::{Answers, Kind, ReportOf, TruthOf};
 use crate::inspector::action::{Dialog, Panel};
 use crate::inspector::look::texture::PictureCache;
 use crate::reading::shown::{PictureKind, PictureView, available, has_truth};
+use crate::report::MeasuredReport;
 use animation::Animation;
 use frame::ShownFrame;
 use looking::Modes;
 use memory::ThemeChoice;
 use scene::OpenScene;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use selection::Selection;
 use undo::Undo;
 use walk::Walk;
@@ -60,6 +63,8 @@ pub struct Model {
     pub theme: ThemeChoice,
     /// What was opened, the last first.
     pub recent: Vec<String>,
+    /// What was measured of scenes that were open before, by name.
+    reports: BTreeMap<String, (ReportOf, Arc<MeasuredReport>)>,
     /// Changes that can be taken back.
     pub undo: Undo,
     /// How the scene is to be run that was asked for by taking a change back.
@@ -81,10 +86,20 @@ pub struct Activity {
     pub is_waiting: bool,
     /// Errors that were not dismissed yet.
     pub errors: Vec<String>,
+    /// Those of them that say why a scene could not be opened or run.
+    failures: BTreeSet<String>,
     /// The file that is open changed: it can be loaded again.
     pub changed_file: Option<String>,
     /// What was exported last.
     pub exported: Option<String>,
+}
+
+impl Activity {
+    /// A scene was opened or run: that it could not be before is past.
+    pub fn succeeded(&mut self) {
+        let failures = std::mem::take(&mut self.failures);
+        self.errors.retain(|error| !failures.contains(error));
+    }
 }
 
 /// What one panel wishes of another: done in the same or the next frame.
@@ -139,6 +154,12 @@ impl Model {
         if self.view.wants_truth() && is_missing {
             self.answers.want(TruthOf {});
         }
+    }
+
+    /// Shows why a scene could not be opened or run, until one is.
+    pub fn push_failure(&mut self, error: String) {
+        self.activity.failures.insert(error.clone());
+        self.push_error(error);
     }
 
     /// Shows an error with its mend until it is dismissed; what was shown before stays.

@@ -2,9 +2,10 @@
 
 use crate::inspector::action::{Action, Dialog};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::segments;
+use crate::inspector::look::widgets::{Segment, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::memory::ThemeChoice;
+use crate::inspector::model::scene::OpenScene;
 use crate::inspector::shell::export;
 use crate::technique::Technique;
 use egui::{Margin, RichText, Ui};
@@ -110,9 +111,28 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         combo.response.accessible_name("Technique");
         picked.filter(|index| chosen != Some(*index))
     } else {
-        segments(ui, &labels, chosen)
+        let changes = Technique::ALL.map(|technique| changes(scene, technique));
+        let segment = |((label, explanation), changed)| Segment { changed, ..Segment::new(label, explanation) };
+        let all: Vec<Segment> = labels.into_iter().zip(changes.iter().map(String::as_str)).map(segment).collect();
+        segments_of(ui, &all, chosen)
     };
     if let Some(index) = picked {
         model.choose_technique(Technique::ALL[index], actions);
     }
+}
+
+/// The settings of a technique that are not its own: `casters light-facing`.
+fn changes(scene: &OpenScene, technique: Technique) -> String {
+    let choice = if scene.draft.choice.technique() == technique {
+        Some(&scene.draft.choice)
+    } else {
+        scene.choices.get(&technique)
+    };
+    let Some(choice) = choice else { return String::new() };
+    let specs = technique.settings().iter();
+    let changed = specs.filter_map(|spec| {
+        let value = choice.settings().get(spec.key).filter(|value| *value != spec.default)?;
+        Some(format!("{} {value}", spec.key))
+    });
+    changed.collect::<Vec<_>>().join(", ")
 }

@@ -21,7 +21,7 @@ use std::sync::Arc;
 use thumbnail::{changed_aspect, colored_layer, paint_row_background, paint_thumbnail};
 
 /// What is said of a mask in its row.
-const BESIDE: &str = "beside the frame, to compare";
+const BESIDE: &str = "beside the frame";
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {

@@ -294,20 +294,12 @@ fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let kinds: Vec<PictureKind> =
         PictureKind::ALL.into_iter().filter(|kind| !kind.is_of_some_frames() || available.contains(kind)).collect();
     let shown = model.kind();
-    let auto = Segment {
-        label: "Auto",
-        explanation: "What each step writes: colour, stencil, depth, or a light's map",
-        is_enabled: true,
-        is_seen: false,
-    };
+    let auto = Segment::new("Auto", "What each step writes: colour, stencil, depth, or a light's map");
     let of_kind = |kind: &PictureKind| {
         let is_enabled = available.contains(kind);
-        Segment {
-            label: kind.name(capture),
-            explanation: if is_enabled { kind.meaning(capture) } else { kind.why_missing(capture) },
-            is_enabled,
-            is_seen: shown == Some(*kind) && model.view.kind != Some(*kind),
-        }
+        let explanation = if is_enabled { kind.meaning(capture) } else { kind.why_missing(capture) };
+        let is_seen = shown == Some(*kind) && model.view.kind != Some(*kind);
+        Segment { is_enabled, is_seen, ..Segment::new(kind.name(capture), explanation) }
     };
     let segments: Vec<Segment> = std::iter::once(auto).chain(kinds.iter().map(of_kind)).collect();
     let chosen =
