@@ -259,17 +259,26 @@ fn control_g_goes_to_a_number_and_control_f_finds_a_pass() {
 }
 
 #[test]
-fn a_right_click_picks_and_arrows_nudge_while_the_picture_has_the_focus() {
+fn a_right_click_picks_and_arrows_step_all_the_same() {
     let mut harness = harness(z_fail(SIZE));
     harness.get_by_label("No pixel is picked.");
     let at = place_of(&harness, [12, 7], SIZE);
     mouse(&mut harness, at, PointerButton::Secondary);
     assert_eq!(harness.state().inspector.picked(), Some([12, 7]));
-    press(&mut harness, Key::ArrowRight);
-    press(&mut harness, Key::ArrowUp);
-    assert_eq!(harness.state().inspector.picked(), Some([13, 6]));
-    assert_eq!(harness.state().inspector.step(), 3, "the picture keeps its keys");
-    harness.get_by_label("13, 6");
+    press(&mut harness, Key::ArrowLeft);
+    assert_eq!((harness.state().inspector.step(), harness.state().inspector.picked()), (1, Some([12, 7])));
+    for (modifiers, key, expected) in [
+        (Modifiers::SHIFT, Key::ArrowRight, [13, 7]),
+        (Modifiers::SHIFT, Key::ArrowUp, [13, 6]),
+        (Modifiers::COMMAND | Modifiers::SHIFT, Key::ArrowDown, [13, 16]),
+    ] {
+        harness.key_press_modifiers(modifiers, key);
+        harness.run_steps(2);
+        assert_eq!((harness.state().inspector.step(), harness.state().inspector.picked()), (1, Some(expected)));
+    }
+    harness.get_by_label("13, 16");
+    press(&mut harness, Key::Escape);
+    assert_eq!(harness.state().inspector.picked(), None);
 }
 
 #[test]

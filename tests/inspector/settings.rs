@@ -142,7 +142,7 @@ fn meshes_of_another_scene_are_not_known_yet() {
 
 #[test]
 fn what_was_changed_is_marked_and_goes_back_by_itself() {
-    let mut harness = harness(z_fail(SIZE));
+    let mut harness = harness_of(inspector(z_fail(SIZE)), [1280.0, 2000.0]);
     click(&mut harness, "Scene settings");
     assert!(harness.query_by_label_contains("Reset ").is_none(), "nothing was changed");
     let place = harness.get_by_role_and_label(Role::SpinButton, "Field of view").rect();

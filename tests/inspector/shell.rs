@@ -69,7 +69,7 @@ fn undo_goes_back_to_the_scene_that_was_open_before_and_runs_it_as_it_was() {
 fn the_theme_changes_by_key_and_button_and_is_remembered() {
     let mut harness = harness(z_fail(SIZE));
     assert!(harness.ctx.global_style().visuals.dark_mode);
-    click_button(&mut harness, "Light");
+    click_button(&mut harness, "Theme");
     assert!(!harness.ctx.global_style().visuals.dark_mode);
     assert_eq!(harness.state().inspector.remembered().theme, ThemeChoice::Light);
     shortcut(&mut harness, Modifiers::COMMAND, Key::L);

@@ -103,17 +103,42 @@ pub fn reset(ui: &mut Ui, name: &str, is_changed: bool, before: &str) -> bool {
         ui.allocate_exact_size(size, egui::Sense::hover());
         return false;
     }
-    let button = egui::Button::new(theme::number("↺")).frame_when_inactive(false).min_size(size);
+    let button = egui::Button::new(theme::number("↺").size(15.0)).frame_when_inactive(false).small().min_size(size);
     let button = ui.add(button).accessible_name(format!("Reset {name}"));
     button.on_hover_text(format!("Changed. Back to {before}")).clicked()
 }
 
-/// A widget of the pass tree keeps the arrows: they step, and do not move the focus.
+/// A widget that arrows move itself: while it has the focus they do not step.
 pub fn keep_arrows(ui: &Ui, response: &Response) {
     if response.has_focus() {
         let arrows =
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..egui::EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+        ui.data_mut(|data| data.insert_temp(own_arrows(), response.id));
+    }
+}
+
+/// Do arrows move the widget with the focus itself?
+#[must_use]
+pub fn has_own_arrows(ctx: &egui::Context, focus: Option<egui::Id>) -> bool {
+    focus.is_some() && focus == ctx.data(|data| data.get_temp(own_arrows()))
+}
+
+/// Where it is noted which one that is.
+fn own_arrows() -> egui::Id {
+    egui::Id::unique("moved by arrows itself")
+}
+
+/// What stands at the right end of a row, in the order in which it is read and Tab goes.
+pub fn at_right(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+    let id = ui.scope_id().with(name);
+    let known: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
+    ui.add_space((ui.available_width() - known).max(0.0));
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let width = ui.scope_builder(egui::UiBuilder::new().layout(layout), contents).response.rect.width();
+    if (width - known).abs() > 0.5 {
+        ui.data_mut(|data| data.insert_temp(id, width));
+        ui.ctx().request_discard("what stands at the right has another width");
     }
 }
 

@@ -30,9 +30,9 @@ use frame::ShownFrame;
 use looking::Modes;
 use memory::ThemeChoice;
 use scene::OpenScene;
+use selection::Selection;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use selection::Selection;
 use undo::Undo;
 use walk::Walk;
 

@@ -62,9 +62,11 @@ impl Model {
         });
         self.activity.is_waiting = self.scene.is_some();
         // One that is loaded again may be another one by now.
-        let name = self.scene.as_ref().map(|scene| scene.name.clone()).filter(|name| {
-            before.is_none_or(|before| before.name != *name)
-        });
+        let name = self
+            .scene
+            .as_ref()
+            .map(|scene| scene.name.clone())
+            .filter(|name| before.is_none_or(|before| before.name != *name));
         if let Some((question, report)) = name.and_then(|name| self.reports.get(&name)) {
             self.answers.tell(question.clone(), Ok(Arc::clone(report)));
         }

@@ -5,6 +5,7 @@ use super::Model;
 use crate::ask::{DrawsOf, Kind, Reply};
 use crate::capture::{Capture, Step, StepDraws};
 use crate::history::Event;
+use crate::inspector::canvas;
 use crate::reading::moment::Moment;
 use crate::reading::shown::{PictureKind, Zoom};
 use crate::reading::steps;
@@ -199,6 +200,15 @@ impl Model {
             self.selection.playing = self.neighbours()[1].map(|_| now + SECONDS_A_STEP);
         }
         self.selection.playing.map(|next| (next - now).max(0.0))
+    }
+
+    /// Moves the pick of the shown picture by so many pixels; without one, from the middle.
+    pub fn move_pick(&mut self, by: [i32; 2]) {
+        let Some(capture) = self.frame.capture.clone() else { return };
+        let Some(shown) = self.shown(&capture) else { return };
+        let Some(size) = shown.images.first().map(|image| image.size()) else { return };
+        let pick = self.selection.pick_of(shown.kind);
+        *pick = Some(canvas::moved(*pick, by, size));
     }
 
     /// Picks a pixel and brings it to the middle, large enough that `side` texels around it take

@@ -2,7 +2,7 @@
 
 use crate::inspector::action::{Action, Dialog};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{Segment, segments_of};
+use crate::inspector::look::widgets::{Segment, at_right, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::memory::ThemeChoice;
 use crate::inspector::model::scene::OpenScene;
@@ -26,8 +26,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             recent(ui, model, actions);
             ui.add_space(8.0);
             techniques(ui, model, actions);
-            let right = egui::Layout::right_to_left(egui::Align::Center);
-            ui.with_layout(right, |ui| tools(ui, model, actions));
+            at_right(ui, "tools", |ui| tools(ui, model, actions));
         });
     });
 }
@@ -50,28 +49,28 @@ fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
     menu.response.accessible_name(format!("What is open: {name}")).on_hover_text("What is open, and what was");
 }
 
-/// Right to left: help, theme, export, redo, undo.
+/// Undo, redo, export, theme, help.
 fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
-    if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
-        model.dialog = Some(Dialog::Help);
+    let undo = ui.add_enabled(model.undo.can_undo(), egui::Button::new("Undo"));
+    if undo.on_hover_text("Take the last change of scene or technique back (Ctrl-Z)").clicked() {
+        model.take_back(actions);
     }
-    let other = match model.theme.other() {
-        ThemeChoice::Dark => "Dark",
-        ThemeChoice::Light => "Light",
-    };
-    let theme = ui.button(other).on_hover_text(format!("Change to the {} theme (Ctrl-L)", other.to_lowercase()));
-    if theme.clicked() {
-        model.theme = model.theme.other();
-    }
-    let menu = ui.menu_button("Export", |ui| export::menu(ui, model));
-    menu.response.on_hover_text("Save the picture, its values, the capture or the scene (Ctrl-S)");
     let redo = ui.add_enabled(model.undo.can_redo(), egui::Button::new("Redo"));
     if redo.on_hover_text("Make the change again (Ctrl-Shift-Z)").clicked() {
         model.make_again(actions);
     }
-    let undo = ui.add_enabled(model.undo.can_undo(), egui::Button::new("Undo"));
-    if undo.on_hover_text("Take the last change of scene or technique back (Ctrl-Z)").clicked() {
-        model.take_back(actions);
+    let menu = ui.menu_button("Export", |ui| export::menu(ui, model));
+    menu.response.on_hover_text("Save the picture, its values, the capture or the scene (Ctrl-S)");
+    // "Light" alone would be one of the scene's.
+    let other = match model.theme.other() {
+        ThemeChoice::Dark => "dark",
+        ThemeChoice::Light => "light",
+    };
+    if ui.button("Theme").on_hover_text(format!("Change to the {other} theme (Ctrl-L)")).clicked() {
+        model.theme = model.theme.other();
+    }
+    if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
+        model.dialog = Some(Dialog::Help);
     }
 }
 

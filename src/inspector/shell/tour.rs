@@ -9,6 +9,7 @@ use crate::accuracy::Finding;
 use crate::capture::Capture;
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::at_right;
 use crate::inspector::model::Model;
 use crate::inspector::tours::{Go, TOURS, Tour};
 use crate::technique::Technique;
@@ -224,16 +225,16 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Opti
     ui.horizontal(|ui| {
         theme::heading(ui, stop.title);
         ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.button("End tour").on_hover_text("Leave the panels as they are").clicked() {
-                to = Some(None);
+        at_right(ui, "tour buttons", |ui| {
+            if ui.add_enabled(at.stop > 0, egui::Button::new("Stop before")).clicked() {
+                to = Some(at.stop.checked_sub(1));
             }
             let is_last = at.stop + 1 == count;
             if ui.add_enabled(!is_last, egui::Button::new("Next stop")).clicked() {
                 to = Some(Some(at.stop + 1));
             }
-            if ui.add_enabled(at.stop > 0, egui::Button::new("Stop before")).clicked() {
-                to = Some(at.stop.checked_sub(1));
+            if ui.button("End tour").on_hover_text("Leave the panels as they are").clicked() {
+                to = Some(None);
             }
         });
     });

@@ -10,7 +10,6 @@ pub mod transport;
 use crate::capture::{Capture, FrameTarget, Image, Snapshot, Step};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets;
 use crate::inspector::model::{Model, StepSearch};
 use crate::reading::counts;
 use crate::reading::format;
@@ -25,7 +24,6 @@ const BESIDE: &str = "beside the frame";
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
-    own.widgets.clear();
     if let Some(search) = model.requests.search.take() {
         own.search = Some(search);
         own.search_wants_focus = true;
@@ -70,7 +68,7 @@ fn tree(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>
         if let Some(groups) = &groups {
             let Some(levels) = groups.above(ui, own, index) else { continue };
             recorded::indented(ui, levels, |ui| {
-                pass_row(ui, own, model, capture, index);
+                pass_row(ui, model, capture, index);
                 if index == model.selection.step {
                     draws::of_step(ui, own, model, capture);
                 }
@@ -79,9 +77,9 @@ fn tree(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>
         }
         if group.replace(step.light) != Some(step.light) {
             let last = capture.steps[index..].iter().take_while(|other| other.light == step.light).count();
-            group_heading(ui, own, model, capture, step.light, index + last - 1);
+            group_heading(ui, model, capture, step.light, index + last - 1);
         }
-        pass_row(ui, own, model, capture, index);
+        pass_row(ui, model, capture, index);
         if index == model.selection.step {
             draws::of_step(ui, own, model, capture);
         }
@@ -93,14 +91,7 @@ fn tree(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>
 }
 
 /// What the passes below belong to; pressed it selects `last`, the last of them: the state after all.
-fn group_heading(
-    ui: &mut Ui,
-    own: &mut Passes,
-    model: &mut Model,
-    capture: &Capture,
-    light: Option<usize>,
-    last: usize,
-) {
+fn group_heading(ui: &mut Ui, model: &mut Model, capture: &Capture, light: Option<usize>, last: usize) {
     ui.add_space(8.0);
     let text = match light {
         None => "Scene".to_owned(),
@@ -111,8 +102,6 @@ fn group_heading(
     };
     let heading = ui.add(egui::Label::new(theme::note(&text)).selectable(false).sense(Sense::click()));
     heading.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, false, &text));
-    own.widgets.push(heading.id);
-    widgets::keep_arrows(ui, &heading);
     if heading.has_focus() {
         let outline = Stroke::new(1.0, theme::of(ui).focus);
         ui.painter().rect_stroke(heading.rect.expand(2.0), CornerRadius::same(2), outline, StrokeKind::Outside);
@@ -134,14 +123,12 @@ fn kind_of(position: glam::DVec4) -> &'static str {
 }
 
 /// One pass: thumbnail of what it changed, number and name, what it drew, its time.
-fn pass_row(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>, index: usize) {
+fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize) {
     let step = &capture.steps[index];
     let is_selected = index == model.selection.step && model.selection.draw.is_none();
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::PASS_ROW_HEIGHT), Sense::click());
     let title = steps::title(capture, index);
     response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &title));
-    own.widgets.push(response.id);
-    widgets::keep_arrows(ui, &response);
     if is_selected && model.selection.wants_scroll {
         response.scroll_to_me(None);
     }

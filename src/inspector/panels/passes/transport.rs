@@ -3,7 +3,6 @@
 use super::fields::Passes;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets;
 use crate::inspector::model::{Model, StepSearch};
 use crate::reading::format;
 use crate::reading::steps;
@@ -13,7 +12,6 @@ use egui::{Key, Ui, vec2};
 pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
     let Some(capture) = model.frame.capture.clone() else { return };
     let count = model.steps();
-    let mut ids = Vec::new();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let [before, after] = model.neighbours();
@@ -33,7 +31,6 @@ pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
         if play.clicked() {
             model.toggle_play(ui.input(|input| input.time));
         }
-        ids.extend([back.id, forth.id, play.id]);
         at_the_right(
             ui,
             match steps::number(&capture, model.selection.step) {
@@ -42,23 +39,17 @@ pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
             },
         );
     });
-    ids.extend(draw_controls(ui, model, &capture));
-    for id in &ids {
-        if let Some(response) = ui.ctx().read_response(*id) {
-            widgets::keep_arrows(ui, &response);
-        }
-    }
+    draw_controls(ui, model, &capture);
     if count > 1 {
-        ids.push(scrubber(ui, model, &capture));
+        scrubber(ui, model, &capture);
     }
     search(ui, own, model);
-    own.widgets.extend(ids);
 }
 
 /// Back and forth through the draws of the whole frame, and which one is selected.
-fn draw_controls(ui: &mut Ui, model: &mut Model, capture: &Capture) -> [egui::Id; 2] {
+fn draw_controls(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let at = model.selected();
-    let row = ui.horizontal(|ui| {
+    ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let back = ui.add_enabled(at.previous(capture).is_some(), egui::Button::new(symbol("▲")));
         let back = back.accessible_name("Previous draw").on_hover_text("Previous draw (up arrow)");
@@ -77,9 +68,7 @@ fn draw_controls(ui: &mut Ui, model: &mut Model, capture: &Capture) -> [egui::Id
             None => format!("after its {}", format::counted(draws as u64, "draw")),
         };
         at_the_right(ui, words);
-        [back.id, forth.id]
     });
-    row.inner
 }
 
 /// Words in what is left of a row, cut short where that is little.
@@ -94,7 +83,7 @@ fn symbol(text: &str) -> egui::RichText {
     theme::number(text)
 }
 
-fn scrubber(ui: &mut Ui, model: &mut Model, capture: &Capture) -> egui::Id {
+fn scrubber(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     ui.spacing_mut().slider_width = ui.available_width();
     // A mask lies between two of them.
     let reached = steps::numbered(capture).take_while(|step| *step <= model.selection.step).count();
@@ -105,7 +94,6 @@ fn scrubber(ui: &mut Ui, model: &mut Model, capture: &Capture) -> egui::Id {
         model.selection.playing = None;
         model.select_step(steps::of_number(capture, number));
     }
-    response.id
 }
 
 /// The field of Ctrl-G or Ctrl-F while it is open: Enter goes, Escape closes.

@@ -20,7 +20,7 @@ use crate::inspector::canvas::magnifier;
 use crate::inspector::canvas::{self, Canvas, Sheet, marks};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{Segment, segments, segments_of};
+use crate::inspector::look::widgets::{Segment, at_right, segments, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{Compare, With};
 use crate::inspector::model::looking::{NoBefore, Phase, has_phases};
@@ -105,6 +105,7 @@ fn single(
         view: &mut model.view,
         pick: model.selection.pick_of(shown.kind),
         textures: &mut model.textures,
+        has_arrows: false,
     };
     let (placement, hover) = canvas::ui(ui, canvas, rect, shown, coloring, &sheets);
     model.selection.hover = hover.map(|at| Hover { image: 0, at });
@@ -248,7 +249,7 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Cap
         let shown = model.shown(capture);
         ui.horizontal(|ui| {
             kinds(ui, model, capture);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| zoom(ui, own, model, capture));
+            at_right(ui, "zoom", |ui| zoom(ui, own, model, capture));
         });
         let mut has_place = true;
         // As high as segments are, whether there are any or not.
@@ -386,15 +387,16 @@ fn depth_mode(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// Right to left: Fit, 1:1, the other buttons, and the zoom in per cent where it moves none of them.
+/// The zoom in per cent where it moves no button, then the buttons.
 fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
     let size = model.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };
-    let fits = model.view.zoom == Zoom::Fit;
-    let word = theme::switch_word(ui, "Fit", fits);
-    if ui.add(egui::Button::selectable(fits, word)).on_hover_text("The whole picture").clicked() {
-        model.view.zoom = Zoom::Fit;
+    if let Zoom::Pixels(pixels) = model.view.zoom {
+        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
     }
+    walking::button(ui, model);
+    gizmos::button(ui, &mut own.has_gizmos, model);
+    let fits = model.view.zoom == Zoom::Fit;
     let is_exact = model.view.zoom == Zoom::Pixels(1.0);
     let word = theme::switch_word(ui, "1:1", is_exact);
     if ui.add(egui::Button::selectable(is_exact, word)).on_hover_text("One screen pixel a texel").clicked() {
@@ -403,9 +405,8 @@ fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Captur
         }
         model.view.zoom = Zoom::Pixels(1.0);
     }
-    gizmos::button(ui, &mut own.has_gizmos, model);
-    walking::button(ui, model);
-    if let Zoom::Pixels(pixels) = model.view.zoom {
-        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
+    let word = theme::switch_word(ui, "Fit", fits);
+    if ui.add(egui::Button::selectable(fits, word)).on_hover_text("The whole picture").clicked() {
+        model.view.zoom = Zoom::Fit;
     }
 }

@@ -4,13 +4,13 @@
 use super::overlays;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::segments;
+use crate::inspector::look::widgets::{at_right, segments};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{self, Compare, Phase, With, has_phases, step_words};
 use crate::reading::change::ChangeCache;
 use crate::reading::shown::{PictureKind, Shown};
 use crate::technique::Technique;
-use egui::{Align, Button, Layout, Rect, Ui, UiBuilder, vec2};
+use egui::{Button, Rect, Ui, UiBuilder, vec2};
 
 /// Width of the note on a comparison, points.
 const NOTE_WIDTH: f32 = 232.0;
@@ -64,15 +64,13 @@ fn toggle(ui: &mut Ui, model: &mut Model) {
 /// What is compared with, flush right; drawn while comparing.
 pub fn compare_row(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let Some(mut compare) = model.modes.compare else { return };
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| compared_with(ui, model, capture, &mut compare));
+    at_right(ui, "compare with", |ui| compared_with(ui, model, capture, &mut compare));
     model.modes.compare = Some(compare);
 }
 
-/// Right to left: swaps the sides, and what is compared with.
+/// What is compared with, and a button that swaps the sides.
 fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Compare) {
-    if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
-        compare.flipped = !compare.flipped;
-    }
+    ui.label(theme::note("with"));
     let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
     let combo = combo.selected_text(compare.with.words(capture)).height(420.0).show_ui(ui, |ui| {
         for step in 0..capture.steps.len() {
@@ -96,7 +94,9 @@ fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Co
         }
     });
     combo.response.accessible_name("Compare with");
-    ui.label(theme::note("with"));
+    if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
+        compare.flipped = !compare.flipped;
+    }
 }
 
 /// In the upper left corner of `rect`: how many texels differ, or why nothing is compared.

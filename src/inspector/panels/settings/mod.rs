@@ -72,7 +72,7 @@ fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
     let Some(scene) = &mut model.scene else { return false };
     let mut changed = false;
     ui.add_space(8.0);
-    egui::Grid::new("technique settings").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
+    egui::Grid::new("technique settings").num_columns(3).min_col_width(0.0).spacing([6.0, 4.0]).show(ui, |ui| {
         for spec in scene.draft.choice.technique().settings() {
             let off = scene.draft.choice.without_effect(spec.key);
             let is_changed = scene.draft.choice.settings().get(spec.key).is_some_and(|value| value != spec.default);

@@ -50,7 +50,7 @@ fn row<T: PartialEq + Clone>(
 
 /// The rows of a heading.
 fn grid(ui: &mut Ui, name: impl egui::AsIdSalt, rows: impl FnOnce(&mut Ui) -> bool) -> bool {
-    egui::Grid::new(name).num_columns(3).spacing([8.0, 4.0]).show(ui, rows).inner
+    egui::Grid::new(name).num_columns(3).min_col_width(0.0).spacing([6.0, 4.0]).show(ui, rows).inner
 }
 
 /// Which objects are there.
@@ -90,10 +90,11 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
             let picker = ui.color_edit_button_rgb(color).accessible_name(of("colour"));
             picker.on_hover_text("Linear red, green and blue").changed()
         });
-        changed |= row(ui, (&of("intensity"), "intensity"), &mut light.intensity, &before.intensity, |ui, intensity| {
-            let widget = DragValue::new(intensity).range(0.0..=1000.0).speed(0.01);
-            ui.add(widget).accessible_name(of("intensity")).changed()
-        });
+        changed |=
+            row(ui, (&of("intensity"), "intensity"), &mut light.intensity, &before.intensity, |ui, intensity| {
+                let widget = DragValue::new(intensity).range(0.0..=1000.0).speed(0.01);
+                ui.add(widget).accessible_name(of("intensity")).changed()
+            });
         changed
     })
 }
@@ -163,7 +164,9 @@ fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: b
 fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
     let mut changed = false;
     ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
+        // Three long numbers have room beside their name.
+        ui.spacing_mut().item_spacing.x = 3.0;
+        ui.spacing_mut().button_padding.x = 4.0;
         for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
             let widget = DragValue::new(number).speed(0.02).max_decimals(4).update_while_editing(false);
             changed |= ui.add(widget).accessible_name(format!("{name} {axis}")).changed();
