@@ -200,3 +200,15 @@ fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
     let inspector = &harness.state().inspector;
     assert_eq!(inspector.capture().expect("a capture").steps[inspector.step()].name, "receivers");
 }
+
+#[test]
+fn who_has_picked_nothing_is_offered_the_tour_of_the_technique() {
+    let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
+    harness.get_by_label("New here? z-fail in 7 stops");
+    click_button(&mut harness, "Take the tour");
+    harness.run_steps(3);
+    harness.get_by_label("tour of z-fail, stop 1 of 7");
+    let mut picked = over("tori", Technique::ZFail);
+    picked.pick([80, 60]);
+    assert!(harness_of(picked, [1600.0, 1000.0]).query_by_label("Take the tour").is_none());
+}

@@ -11,7 +11,7 @@ use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::at_right;
 use crate::inspector::model::Model;
-use crate::inspector::tours::{Go, TOURS, Tour};
+use crate::inspector::tours::{Go, TOURS, Tour, tour_of};
 use crate::technique::Technique;
 use egui::{Label, Margin, RichText, Ui};
 
@@ -44,7 +44,7 @@ impl Tours {
 
     /// Goes to a stop of the tour of a technique.
     pub fn go_to_stop_of(&mut self, model: &mut Model, technique: Technique, stop: usize, actions: &mut Vec<Action>) {
-        if let Some(tour) = TOURS.iter().position(|tour| tour.technique == technique) {
+        if let Some((tour, _)) = tour_of(technique) {
             self.go_to_stop(model, tour, stop, actions);
         }
     }
@@ -165,7 +165,7 @@ fn do_stop(model: &mut Model, go: Go, capture: &Capture) {
 /// How many stops the tour of a technique has.
 #[must_use]
 pub fn stops_of(technique: Technique) -> usize {
-    TOURS.iter().find(|tour| tour.technique == technique).map_or(0, |tour| tour.stops.len())
+    tour_of(technique).map_or(0, |(_, tour)| tour.stops.len())
 }
 
 fn scene_of(go: &[Go]) -> Option<&'static str> {

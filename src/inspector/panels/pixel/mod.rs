@@ -15,6 +15,7 @@ use crate::inspector::look::palette;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::inspector::panels::picture::error_legend;
+use crate::inspector::tours::tour_of;
 use crate::reading::counts;
 use crate::reading::depth::{DepthMeasure, FIXED_BITS};
 use crate::reading::format;
@@ -36,7 +37,7 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
         ui.add(egui::Label::new(theme::note("Open a scene to look at its pixels.")).wrap());
         return;
     };
-    let Some(at) = model.selection.pick else { return how_to_pick(ui) };
+    let Some(at) = model.selection.pick else { return how_to_pick(ui, model) };
     let told = own.told(model);
     let size = ui.available_size();
     let is_tight = room::is_tight(size);
@@ -72,11 +73,25 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
     });
 }
 
-fn how_to_pick(ui: &mut Ui) {
+/// Nothing is picked: how to, and where who is new here may begin.
+fn how_to_pick(ui: &mut Ui, model: &mut Model) {
     theme::heading(ui, "No pixel is picked.");
-    let text = "Right-click a pixel of the picture, or drag with the right button. The arrow keys move the pick while \
-                the picture has the focus, ten pixels at a time with Shift.";
+    let text = "Right-click a pixel of the picture, or drag with the right button: why it is dark or lit is told here. \
+                Shift and the arrow keys move the pick, Esc takes it away.";
     ui.add(egui::Label::new(theme::note(text)).wrap());
+    let current = model.scene.as_ref().map(|scene| scene.draft.choice.technique());
+    let Some((index, tour)) = current.and_then(tour_of) else { return };
+    ui.add_space(12.0);
+    theme::card(ui).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        theme::heading(ui, &format!("New here? {} in {} stops", tour.technique.name(), tour.stops.len()));
+        ui.add(egui::Label::new(theme::note(format!("{}.", tour.promise))).wrap());
+        ui.add_space(4.0);
+        let hover = "Goes through the technique stop by stop, and moves the panels for you";
+        if ui.button("Take the tour").on_hover_text(hover).clicked() {
+            model.requests.tour = Some(index);
+        }
+    });
 }
 
 /// The light that the sentence is about: the selected step's, or the first that is blocked.
