@@ -43,8 +43,8 @@ pub struct PicturePanel {
     overlays: Overlays,
     /// What changed, made once.
     changes: ChangeCache,
-    /// Lights in view are handles.
-    has_gizmos: bool,
+    /// Lights are no handles.
+    hides_gizmos: bool,
     /// Where the divider was last: 0 at the picture's left border, 1 at its right one.
     seam: Option<f32>,
     /// The legend of the error picture counts, and does not only say what colours mean.
@@ -119,7 +119,7 @@ fn single(
         }
     }
     outline::ui(ui, model, rect, shown, placement);
-    if own.has_gizmos {
+    if !own.hides_gizmos {
         gizmos::ui(ui, model, rect, shown, placement, actions);
     }
     let corners = walking::under_banner(model, rect);
@@ -395,7 +395,7 @@ fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Captur
         ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
     }
     walking::button(ui, model);
-    gizmos::button(ui, &mut own.has_gizmos, model);
+    gizmos::button(ui, &mut own.hides_gizmos, model);
     let fits = model.view.zoom == Zoom::Fit;
     let is_exact = model.view.zoom == Zoom::Pixels(1.0);
     let word = theme::switch_word(ui, "1:1", is_exact);

@@ -23,6 +23,7 @@ use crate::reading::layers::MapContent;
 use crate::reading::map_decision::MapDecision;
 use crate::reading::shown::{PictureKind, has_truth};
 use crate::reading::verdict::{by_map, explained, verdict};
+use crate::technique::Technique;
 use egui::{Color32, RichText, Ui};
 
 pub use told::Pixel;
@@ -73,6 +74,11 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
     });
 }
 
+/// The tour to begin with: `auto` counts as z-pass does wherever it can, and that one tells what is counted.
+fn first_tour(technique: Technique) -> Technique {
+    if technique == Technique::Auto { Technique::ZPass } else { technique }
+}
+
 /// Nothing is picked: how to, and where who is new here may begin.
 fn how_to_pick(ui: &mut Ui, model: &mut Model) {
     theme::heading(ui, "No pixel is picked.");
@@ -80,12 +86,13 @@ fn how_to_pick(ui: &mut Ui, model: &mut Model) {
                 Shift and the arrow keys move the pick, Esc takes it away.";
     ui.add(egui::Label::new(theme::note(text)).wrap());
     let current = model.scene.as_ref().map(|scene| scene.draft.choice.technique());
-    let Some((index, tour)) = current.and_then(tour_of) else { return };
+    let Some((index, tour)) = current.map(first_tour).and_then(tour_of) else { return };
     ui.add_space(12.0);
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        theme::heading(ui, &format!("New here? {} in {} stops", tour.technique.name(), tour.stops.len()));
-        ui.add(egui::Label::new(theme::note(format!("{}.", tour.promise))).wrap());
+        theme::heading(ui, "New here?");
+        let words = format!("{}: {} stops with {}.", tour.promise, tour.stops.len(), tour.technique.name());
+        ui.add(egui::Label::new(theme::note(words)).wrap());
         ui.add_space(4.0);
         let hover = "Goes through the technique stop by stop, and moves the panels for you";
         if ui.button("Take the tour").on_hover_text(hover).clicked() {
