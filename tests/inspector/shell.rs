@@ -324,3 +324,15 @@ fn in_a_narrow_window_the_techniques_are_a_menu() {
     harness.run_steps(3);
     assert_eq!(last_run(&harness).choice.technique(), Technique::ShadowMap);
 }
+
+#[test]
+fn the_techniques_stay_where_they_are_whatever_is_open() {
+    let place = |name: &str| {
+        let mut inspector = inspector(z_fail(SIZE));
+        inspector.set_scene(&Scene { name: name.to_owned(), ..scene() }, run_request(Technique::ZFail));
+        let harness = harness_of(inspector, [1280.0, 800.0]);
+        harness.get_by_label(&format!("What is open: {name}"));
+        harness.get_by_role_and_label(Role::Button, "z-fail").rect()
+    };
+    assert_eq!(place("b"), place("the prison block with its hundred and twenty cells.obj"));
+}

@@ -8,10 +8,13 @@ use crate::inspector::model::memory::ThemeChoice;
 use crate::inspector::model::scene::OpenScene;
 use crate::inspector::shell::export;
 use crate::technique::Technique;
-use egui::{Margin, RichText, Ui};
+use egui::containers::menu::MenuButton;
+use egui::{Margin, RichText, Ui, vec2};
 
 /// Room for a button a technique, and the tools to their right, points.
-const WIDE: f32 = 960.0;
+const WIDE: f32 = 930.0;
+/// Width of what is open: whatever that is called, the techniques stay where they are.
+const NAME_WIDTH: f32 = 112.0;
 
 /// Draws the bar.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
@@ -34,7 +37,10 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
 /// What is open, and what was: a menu.
 fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
     let Some(name) = open_name(model) else { return };
-    let menu = ui.menu_button(RichText::new(&name).color(theme::of(ui).text), |ui| {
+    let text = RichText::new(&name).color(theme::of(ui).text);
+    let size = vec2(NAME_WIDTH, ui.spacing().interact_size.y);
+    let button = egui::Button::new(text).truncate().min_size(size);
+    let entries = |ui: &mut Ui| {
         ui.label(theme::note("Opened before"));
         if model.recent.is_empty() {
             ui.label("nothing yet");
@@ -45,8 +51,11 @@ fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
                 ui.close();
             }
         }
+    };
+    let place = ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        MenuButton::from_button(button).ui(ui, entries).0
     });
-    menu.response.accessible_name(format!("What is open: {name}")).on_hover_text("What is open, and what was");
+    place.inner.accessible_name(format!("What is open: {name}")).on_hover_text("What is open, and what was");
 }
 
 /// Undo, redo, export, theme, help.

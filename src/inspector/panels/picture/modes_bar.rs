@@ -4,7 +4,7 @@
 use super::overlays;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::{at_right, segments};
+use crate::inspector::look::widgets::{Segment, at_right, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{self, Compare, Phase, With, has_phases, step_words};
 use crate::reading::change::ChangeCache;
@@ -29,12 +29,15 @@ pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&Shown>) {
     }
 }
 
+/// They keep their place where a picture has no before and after.
 fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
-    if !kind.is_some_and(has_phases) {
-        return;
-    }
-    let chosen = Phase::ALL.iter().position(|phase| *phase == model.modes.phase);
-    if let Some(index) = segments(ui, &Phase::LABELS, chosen) {
+    let is_enabled = kind.is_some_and(has_phases);
+    let segment = |(label, explanation): (&'static str, &'static str)| {
+        let explanation = if is_enabled { explanation } else { "Of colour, stencil and depth only" };
+        Segment { is_enabled, ..Segment::new(label, explanation) }
+    };
+    let chosen = Phase::ALL.iter().position(|phase| *phase == model.modes.phase).filter(|_| is_enabled);
+    if let Some(index) = segments_of(ui, &Phase::LABELS.map(segment), chosen) {
         model.modes.phase = Phase::ALL[index];
     }
 }
