@@ -101,10 +101,10 @@ impl MapDecision {
         let all = self.compared.len();
         match (all, self.lit()) {
             _ if self.gpu_says.is_some() => "too close to tell anew".to_owned(),
-            (1, 0) => "the stored one is nearer to the light: shadow".to_owned(),
-            (1, _) if self.middle.is_caster => "the stored one is not nearer: lit".to_owned(),
-            (1, _) => "no caster is there: lit".to_owned(),
-            (_, lit) => format!("{lit} of {all} texels hold nothing nearer: {lit}/{all} of the light"),
+            (1, 0) => "stored is nearer to the light: shadow".to_owned(),
+            (1, _) if self.middle.is_caster => "stored is not nearer: lit".to_owned(),
+            (1, _) => "nothing is stored: lit".to_owned(),
+            (_, lit) => format!("{lit} of {all} hold nothing nearer: {lit}/{all} lit"),
         }
     }
 

@@ -270,12 +270,12 @@ fn the_pixel_panel_names_the_texel_with_both_depths_and_what_follows() {
     let why = "Texel 2, 2 holds a caster 1.200 m from the light, and this surface is at 1.500 m: it is nearer, so the \
                light pass adds nothing.";
     dark.get_by_label(why);
-    for value in ["2, 2", "0.4 (1.200 m)", "0.25 (1.500 m)", "the stored one is nearer to the light: shadow"] {
+    for value in ["2, 2", "0.4 (1.200 m)", "0.25 (1.500 m)", "stored is nearer to the light: shadow"] {
         dark.get_by_label(value);
     }
     let lit = decided(false);
     lit.get_by_label_contains("nothing nearer is stored, so the light pass adds the light.");
-    lit.get_by_label("the stored one is not nearer: lit");
+    lit.get_by_label("stored is not nearer: lit");
 }
 
 #[test]
@@ -294,7 +294,5 @@ fn explain_has_the_comparison_with_its_numbers() {
     harness.run_steps(4);
     harness.get_by_label_contains("lit where the map stores nothing nearer to the light");
     harness.get_by_label("pixel 20, 15 reads texel 2, 2");
-    harness.get_by_label(
-        "stored 0.4 (1.200 m), this surface 0.25 (1.500 m): the stored one is nearer to the light: shadow",
-    );
+    harness.get_by_label("stored 0.4 (1.200 m), this surface 0.25 (1.500 m): stored is nearer to the light: shadow");
 }

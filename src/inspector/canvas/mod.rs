@@ -14,6 +14,7 @@ use crate::inspector::look::palette;
 use crate::inspector::look::texture::{PictureCache, TextureSize};
 use crate::inspector::look::theme;
 use crate::inspector::look::widgets::keep_arrows;
+use crate::inspector::model::selection::moved;
 use crate::reading::shown::{PictureView, Shown, Zoom};
 use egui::epaint::Mesh;
 use egui::{
@@ -190,13 +191,6 @@ fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: 
             *pick = Some(moved(*pick, by, placement.size));
         }
     }
-}
-
-/// A pick moved within a picture of this size; without one, from its middle.
-#[must_use]
-pub fn moved(pick: Option<[u32; 2]>, by: [i32; 2], size: [u32; 2]) -> [u32; 2] {
-    let from = pick.unwrap_or(size.map(|side| side / 2));
-    [0, 1].map(|axis| from[axis].saturating_add_signed(by[axis]).min(size[axis].saturating_sub(1)))
 }
 
 /// Texels to move by: one a key press, ten with Shift.

@@ -5,7 +5,6 @@ use super::Model;
 use crate::ask::{DrawsOf, Kind, Reply};
 use crate::capture::{Capture, Step, StepDraws};
 use crate::history::Event;
-use crate::inspector::canvas;
 use crate::reading::moment::Moment;
 use crate::reading::shown::{PictureKind, Zoom};
 use crate::reading::steps;
@@ -208,7 +207,7 @@ impl Model {
         let Some(shown) = self.shown(&capture) else { return };
         let Some(size) = shown.images.first().map(|image| image.size()) else { return };
         let pick = self.selection.pick_of(shown.kind);
-        *pick = Some(canvas::moved(*pick, by, size));
+        *pick = Some(moved(*pick, by, size));
     }
 
     /// Picks a pixel and brings it to the middle, large enough that `side` texels around it take
@@ -235,4 +234,11 @@ pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
         return index;
     }
     now.steps.iter().position(is_same).unwrap_or(last)
+}
+
+/// A pick moved within a picture of this size; without one, from its middle.
+#[must_use]
+pub fn moved(pick: Option<[u32; 2]>, by: [i32; 2], size: [u32; 2]) -> [u32; 2] {
+    let from = pick.unwrap_or(size.map(|side| side / 2));
+    [0, 1].map(|axis| from[axis].saturating_add_signed(by[axis]).min(size[axis].saturating_sub(1)))
 }

@@ -48,7 +48,10 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, decision: &MapDecis
             by => format!("This surface's depth, seen from the light, moved along its normal by up to {by} texels"),
         };
         row("pixel", decision.depth_words(decision.middle.depth), &moved);
-        row("so", decision.outcome(), "A texel with nothing nearer to the light lets the light pass");
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::note("so"));
+        ui.label(egui::RichText::new(decision.outcome()).color(theme::of(ui).text));
     });
     if ui.button(theme::note("Show the texel in Shadow map")).clicked() {
         model.requests.texel_under = Some(decision.light);
