@@ -151,7 +151,7 @@ questions! {
 
 impl ReportOf {
     /// Timed frames of each row of the default report.
-    const RUNS: usize = 5;
+    const RUNS: usize = 3;
 
     /// Every technique over its default settings.
     ///

@@ -51,11 +51,11 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     grid.min_row_height(row_height).show(ui, |ui| {
         head(ui, has);
         let mut before: Option<&Values> = None;
-        for index in 0..capture.steps.len() {
+        for (index, run) in runs.iter().enumerate() {
             if pass_cell(ui, capture, index, longest, index == model.selection.step) {
                 selected = Some(index);
             }
-            match &runs[index] {
+            match run {
                 Some(now) => {
                     row(ui, now, before, has);
                     before = Some(now);
