@@ -277,9 +277,11 @@ impl Work {
         }
         let spec = OpenSpec::new(name);
         let scene = crate::scene::open(&spec).map_err(|error| error.to_string())?;
-        if let Some(wish) = &scene.technique {
-            self.choice = Choice::parse(wish).map_err(|error| format!("{name}: {error}"))?;
-        }
+        // What was set for one scene says nothing of the next: the technique stays, with its own settings.
+        self.choice = match &scene.technique {
+            Some(wish) => Choice::parse(wish).map_err(|error| format!("{name}: {error}"))?,
+            None => Choice::new(self.choice.technique()),
+        };
         self.spec = Some(spec);
         self.show_scene(Box::new(scene), 0.0, Brought::default())
     }

@@ -151,7 +151,7 @@ questions! {
 
 impl ReportOf {
     /// Timed frames of each row of the default report.
-    const RUNS: usize = 5;
+    const RUNS: usize = 3;
 
     /// Every technique over its default settings.
     ///
@@ -178,8 +178,8 @@ impl Kind {
     #[must_use]
     pub fn holds(self) -> Holds {
         match self {
-            Kind::WallsOf | Kind::CaptureOf | Kind::MeshesOf | Kind::DiagnosisOf => Holds::Scene,
-            Kind::ReportOf | Kind::StressOf => Holds::Always,
+            Kind::WallsOf | Kind::CaptureOf | Kind::MeshesOf | Kind::DiagnosisOf | Kind::ReportOf => Holds::Scene,
+            Kind::StressOf => Holds::Always,
             _ => Holds::Frame,
         }
     }
@@ -245,7 +245,7 @@ impl Ask {
     #[must_use]
     pub fn doing(&self) -> Option<String> {
         match self {
-            Ask::DrawsOf(DrawsOf { step }) => Some(format!("capturing the draws of step {}", step + 1)),
+            Ask::DrawsOf(_) => Some("capturing the pass draw by draw".to_owned()),
             Ask::CaptureOf(CaptureOf { request }) => {
                 Some(format!("capturing {} to compare", request.choice.technique().name()))
             }

@@ -143,8 +143,19 @@ pub struct CauseFound {
     /// Wrong pixels of the region that the mend leaves, with those that it makes newly wrong in the
     /// region's box; `None` where it was not run.
     pub pixels_left: Option<u64>,
+    /// Where another technique mends it: what mends most of it without changing the technique.
+    pub staying: Option<Staying>,
     /// Causes without whose mends, made at the same time, this one proves nothing; mostly none.
     pub together_with: Vec<Cause>,
+}
+
+/// What to change who stays with a technique.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Staying {
+    /// Changes of settings and scene.
+    pub mend: Mend,
+    /// Wrong pixels that it leaves.
+    pub pixels_left: u64,
 }
 
 named_enum! {
@@ -229,6 +240,8 @@ pub struct Advice {
     pub wrong_left: u64,
     /// In a sentence.
     pub sentence: String,
+    /// Where another technique is advised: what to change who stays with this one.
+    pub staying: Option<Staying>,
 }
 
 impl Advice {
@@ -236,7 +249,7 @@ impl Advice {
     pub(crate) fn new(mend: &Mend, wrong_left: u64, wrong_now: u64) -> Advice {
         let outcome = outcome(wrong_left);
         let sentence = format!("To mend it, {mend}: {outcome}, of {} now.", numbers::count(wrong_now));
-        Advice { mend: mend.clone(), wrong_left, sentence }
+        Advice { mend: mend.clone(), wrong_left, sentence, staying: None }
     }
 
     /// Where another technique is advised: what to change who stays with this one, and how many pixels that leaves
@@ -244,6 +257,7 @@ impl Advice {
     pub(crate) fn or_staying(mut self, technique: Technique, staying: Option<(&Mend, u64)>) -> Advice {
         if let (Some(_), Some((mend, left))) = (self.mend.technique, staying) {
             self.sentence += &format!(" To stay with {}, {mend}: {}.", technique.name(), outcome(left));
+            self.staying = Some(Staying { mend: mend.clone(), pixels_left: left });
         }
         self
     }

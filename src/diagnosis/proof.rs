@@ -3,7 +3,7 @@
 use super::facts::Suspicion;
 use super::mend::Mend;
 use super::regions::Region;
-use super::{Cause, CauseFound, Proof};
+use super::{Cause, CauseFound, Proof, Staying};
 
 /// Which pixels of one light are wrong in one run, by number; too dark counts as wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,6 +39,7 @@ pub(crate) struct Tried {
     pub mend: Option<Mend>,
     pub proof: Proof,
     pub left: Option<u64>,
+    pub staying: Option<Staying>,
     pub together_with: Vec<Cause>,
 }
 
@@ -74,6 +75,7 @@ pub(crate) fn ranked(mut tried: Vec<Tried>) -> Vec<CauseFound> {
         mend: tried.mend,
         proof: tried.proof,
         pixels_left: tried.left,
+        staying: tried.staying,
         together_with: tried.together_with,
     };
     tried.into_iter().map(found).collect()

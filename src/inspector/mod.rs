@@ -56,6 +56,7 @@ pub struct Inspector {
     open_dialog: OpenDialog,
     export_dialog: Option<ExportDialog>,
     tours: Tours,
+    focus_before: keys::FocusBefore,
     styled: bool,
 }
 
@@ -76,6 +77,7 @@ impl Inspector {
             open_dialog: OpenDialog::new(scenes),
             export_dialog: None,
             tours: Tours::default(),
+            focus_before: keys::FocusBefore::default(),
             styled: false,
         }
     }
@@ -89,7 +91,7 @@ impl Inspector {
     pub fn ui(&mut self, ui: &mut egui::Ui) -> Vec<Action> {
         self.style(ui);
         let mut actions = Vec::new();
-        let Inspector { model, panels, dock, open_dialog, export_dialog, tours, .. } = self;
+        let Inspector { model, panels, dock, open_dialog, export_dialog, tours, focus_before, .. } = self;
         let now = ui.input(|input| input.time);
         model.textures.tick();
         model.answers.tick(now);
@@ -97,7 +99,7 @@ impl Inspector {
         model.undo.hold(ui.input(|input| input.pointer.any_down()) || model.walk.is_on());
         model.finish_restoring(&mut actions);
         if !walk::handle(ui.ctx(), model, &mut actions) {
-            keys::handle(ui.ctx(), model, &panels.passes.widgets, &mut actions);
+            keys::handle(ui.ctx(), focus_before, model, &mut actions);
         }
         if let Some(seconds) = model.play(now) {
             ui.ctx().request_repaint_after(Duration::from_secs_f64(seconds));
@@ -114,6 +116,7 @@ impl Inspector {
             *dock = Dock::new();
         }
         model.animate(now, &mut actions);
+        *focus_before = keys::remember(ui.ctx());
         self.ask(ui.ctx(), &mut actions);
         actions
     }
@@ -373,10 +376,11 @@ impl Inspector {
         self.model.activity.job.is_some()
     }
 
-    /// A scene could not be opened, or its frame not be made: a tour that waits for it says so.
+    /// A scene could not be opened, or its frame not be made: a tour that waits for it says so, and it is told until
+    /// one can be.
     pub fn push_failure(&mut self, error: String) {
         self.tours.note_error(&error);
-        self.push_error(error);
+        self.model.push_failure(error);
     }
 
     /// Shows an error with its mend until it is dismissed; what was shown before stays.
@@ -449,6 +453,11 @@ impl Inspector {
     pub fn picture_kind(&self) -> Option<PictureKind> {
         let capture = self.model.frame.capture.as_ref()?;
         self.model.shown(capture).map(|shown| shown.kind)
+    }
+
+    /// Shows what each step writes.
+    pub fn follow_steps(&mut self) {
+        self.model.view.follow_steps();
     }
 
     /// Wishes for a kind of picture.

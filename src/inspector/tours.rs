@@ -70,6 +70,12 @@ const fn stop(title: &'static str, text: &'static str, go: &'static [Go]) -> Sto
     Stop { title, text, go }
 }
 
+/// The tour of a technique, with its index.
+#[must_use]
+pub fn tour_of(technique: Technique) -> Option<(usize, &'static Tour)> {
+    TOURS.iter().enumerate().find(|(_, tour)| tour.technique == technique)
+}
+
 /// One a technique, in the order in which they build on each other.
 pub const TOURS: [Tour; 10] = [
     Tour {

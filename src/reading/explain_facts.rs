@@ -5,9 +5,10 @@
 
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
 use crate::history::{EventKind, PixelHistory};
-use crate::plan::{Part, Side};
+use crate::plan::{DecidedBy, Part, Side};
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
+use crate::reading::map_decision::MapDecision;
 use crate::scene::Light;
 use crate::truth::LABEL_NAMES;
 
@@ -33,6 +34,8 @@ pub struct Known<'a> {
     pub pick: Option<[u32; 2]>,
     /// What happened to it.
     pub history: Option<&'a PixelHistory>,
+    /// What a shadow map says of it.
+    pub map: Option<&'a MapDecision>,
 }
 
 /// The facts of a step, the most important first.
@@ -55,7 +58,9 @@ pub fn facts(known: &Known) -> Vec<Fact> {
         return vec![receivers(known)];
     }
     match &step.snapshot {
-        Snapshot::Frame(frame) if frame.target == FrameTarget::Labels => vec![labels(known, step)],
+        Snapshot::Frame(frame) if frame.target == FrameTarget::Labels => {
+            std::iter::once(labels(known, step)).chain(compared(known, step.light.unwrap_or(0))).collect()
+        }
         Snapshot::Frame(_) if step.light.is_some() => vec![light(known, step)],
         _ => vec![depth(known)],
     }
@@ -174,6 +179,10 @@ fn light(known: &Known, step: &Step) -> Fact {
         let [red, green, blue] = light.color.map(|share| format::digits(f64::from(share * light.intensity)));
         here.push(format!("{} adds ({red}, {green}, {blue}) × material × cosine of its angle", format::light(index)));
     }
+    if let Some(compared) = compared(known, index) {
+        here.extend(compared.here);
+        return fact(&compared.formula, here);
+    }
     let before = known.step.checked_sub(1).and_then(|before| known.capture.frame_at(before));
     let stencil = before.and_then(|frame| frame.stencil.as_ref());
     if let Some(stencil) = stencil {
@@ -191,6 +200,29 @@ fn light(known: &Known, step: &Step) -> Fact {
         return fact("light is added where count = 0", here);
     }
     fact("light is added where the technique lets it through", here)
+}
+
+/// How the light's shadow map decides, with the picked pixel's numbers; `None` where no map does.
+fn compared(known: &Known, light: usize) -> Option<Fact> {
+    if known.capture.decided_by(light) != DecidedBy::Map {
+        return None;
+    }
+    let formula =
+        "lit where the map stores nothing nearer to the light than this surface: stored depth against its own";
+    let here = match (known.pick, known.map.filter(|map| map.light == light)) {
+        (Some([x, y]), Some(map)) => vec![
+            format!("pixel {x}, {y} reads texel {}", map.place_words()),
+            format!(
+                "stored {}, this surface {}: {}",
+                map.stored_words(),
+                map.depth_words(map.middle.depth),
+                map.outcome()
+            ),
+        ],
+        (Some([x, y]), None) => vec![format!("pixel {x}, {y} reads no texel of it")],
+        (None, _) => vec!["Pick a pixel (right click) to see the texel that decides it.".to_owned()],
+    };
+    Some(fact(formula, here))
 }
 
 fn labels(known: &Known, step: &Step) -> Fact {

@@ -1,15 +1,19 @@
 //! An event of a pixel's history as the cells of a row, and as the row's name.
 
+use crate::capture::Capture;
 use crate::history::{Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
 use crate::math::depth::DepthCurve;
 use crate::numbers;
 use crate::plan::{Clip, Part};
+use crate::reading::steps;
 use wgpu::StencilOperation;
 
 /// What stands in a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
-    /// Number of the pass, from 1.
+    /// Number of the pass, from 1; `None` for a mask.
+    pub number: Option<usize>,
+    /// `pass 2`, `mask`.
     pub pass: String,
     /// What the fragment is of, for its colour.
     pub part: Option<Part>,
@@ -48,10 +52,12 @@ pub enum Outcome {
 impl Cells {
     /// The cells of an event.
     #[must_use]
-    pub fn of(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> Cells {
-        let (change, has_changed) = change(history, event, curve);
+    pub fn of(history: &PixelHistory, event: &Event, capture: &Capture) -> Cells {
+        let (change, has_changed) = change(history, event, &capture.depth);
+        let number = steps::number(capture, event.pass);
         let mut cells = Cells {
-            pass: (event.pass + 1).to_string(),
+            number,
+            pass: number.map_or_else(|| event.pass_name.clone(), |number| format!("pass {number}")),
             part: None,
             what: String::new(),
             of: String::new(),
@@ -78,7 +84,7 @@ impl Cells {
     /// The row in words, with every sign that it shows.
     #[must_use]
     pub fn name(&self) -> String {
-        let mut name = format!("pass {}: {}", self.pass, self.what);
+        let mut name = format!("{}: {}", self.pass, self.what);
         let mut add = |separator: &str, text: &str| {
             if !text.is_empty() {
                 name.push_str(separator);

@@ -95,6 +95,29 @@ impl MapReaders {
         Some(clip.z / clip.w)
     }
 
+    /// The texels that a pixel is compared with, row by row, and its depth at each; none where it reads none.
+    #[must_use]
+    pub fn compared(&self, pixel: [u32; 2]) -> Vec<(MapTexel, f64)> {
+        let found = self.fragments.at(pixel).filter(|fragment| fragment.reads);
+        let found = found.and_then(|fragment| Some((fragment, self.lookup.place(&fragment)?)));
+        let Some((fragment, (face, clip))) = found else { return Vec::new() };
+        let [_, column, row] = self.lookup.first_at(face, clip).map(i64::from);
+        let slope = if self.lookup.by_plane { self.lookup.slope(face, clip, fragment.plane) } else { DVec2::ZERO };
+        let place = self.lookup.texel(clip);
+        let size = DVec2::new(f64::from(self.lookup.size[0]), f64::from(self.lookup.size[1]));
+        let at = |first: i64, offset: u32, side: u32| {
+            (first + i64::from(offset)).clamp(0, i64::from(side.saturating_sub(1))) as u32
+        };
+        let texels = (0..self.lookup.filter).flat_map(|down| (0..self.lookup.filter).map(move |right| [right, down]));
+        let compare = |[right, down]: [u32; 2]| {
+            let at = [at(column, right, self.lookup.size[0]), at(row, down, self.lookup.size[1])];
+            let middle = DVec2::new(f64::from(at[0]) + 0.5, f64::from(at[1]) + 0.5);
+            let offset = (middle - place) / size * DVec2::new(2.0, -2.0);
+            (MapTexel { face, at }, clip.z / clip.w + slope.dot(offset))
+        };
+        texels.map(compare).collect()
+    }
+
     /// What a pixel covers of the map: its four corners on the plane of its surface, carried into the face that it
     /// reads, in texels and in order round it. `None` where it reads none, or a corner has no place there.
     #[must_use]
@@ -156,6 +179,8 @@ struct Lookup {
     filter: u32,
     /// How far points are moved along their normals, texels.
     bias_normal: f64,
+    /// Each texel is compared with the surface's own plane there.
+    by_plane: bool,
 }
 
 impl Lookup {
@@ -173,6 +198,7 @@ impl Lookup {
             light: of.position,
             filter: settings.filter_width,
             bias_normal: settings.bias_normal,
+            by_plane: settings.bias_receiver_plane,
         })
     }
 
@@ -217,6 +243,21 @@ impl Lookup {
     fn texel(&self, clip: DVec4) -> DVec2 {
         let size = DVec2::new(f64::from(self.size[0]), f64::from(self.size[1]));
         (DVec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size
+    }
+
+    /// How depth grows along x and y of a face on a plane with this normal; zero where the light sees it edge-on.
+    fn slope(&self, face: usize, clip: DVec4, plane: DVec3) -> DVec2 {
+        let along = |direction: DVec3| {
+            let moved = self.matrices[face] * direction.extend(0.0);
+            (moved.truncate() - clip.truncate() * (moved.w / clip.w)) / clip.w
+        };
+        let (right, up) = plane.any_orthonormal_pair();
+        let (a, b) = (along(right), along(up));
+        let area = a.x * b.y - a.y * b.x;
+        if area == 0.0 {
+            return DVec2::ZERO;
+        }
+        DVec2::new(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / area
     }
 
     /// Face and first texel that a fragment reads.

@@ -2,10 +2,12 @@
 //! texel it read. Whoever shows a frame, the window or a page, takes it from here: nothing knows a widget.
 //!
 //! ```text
-//! moment.rs    after a step, or after a draw     shown.rs     the picture of it        layers.rs   maps, textures
+//! steps.rs     what has a number, what is beside moment.rs    after a step or a draw    shown.rs    the picture of it
+//! layers.rs    maps, textures
 //! depth.rs     what a stored depth means         counts.rs    counts beyond eight bits change.rs   what a step changed
 //! verdict.rs   why a pixel is dark, a sentence   explain_facts.rs a step as a formula  meshes.rs   how meshes hang together
 //! history_row.rs, ladder_layout.rs  a pixel's events in rows, and along its view ray
+//! map_decision.rs what a texel stores against a pixel's depth
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
 //! ```
 
@@ -18,6 +20,7 @@ pub mod fragments;
 pub mod history_row;
 pub mod ladder_layout;
 pub mod layers;
+pub mod map_decision;
 pub mod map_readers;
 pub mod meshes;
 pub mod moment;
@@ -26,6 +29,7 @@ pub mod outcomes;
 pub mod pick_ray;
 pub mod projected;
 pub mod shown;
+pub mod steps;
 pub mod verdict;
 
 pub use map_readers::{MapReaders, MapTexel};

@@ -2,9 +2,10 @@
 //!
 //! After the last draw of a step is after the step, so the state after it is always known. Going
 //! draw by draw, a step whose draws nobody has selected counts as its last one, and a step
-//! without draws is a stop of its own.
+//! without draws is a stop of its own. What stands beside the frame is passed over ([`steps`]).
 
 use crate::capture::{Capture, DrawState, DrawSummary, FrameSnapshot, FrameTarget, Image, Snapshot};
+use crate::reading::steps;
 use std::sync::Arc;
 
 /// After a step, or after one of its draws.
@@ -23,11 +24,11 @@ impl From<usize> for Moment {
 }
 
 impl Moment {
-    /// `step 2`, `draw 3 of step 2`.
+    /// `step 2`, `draw 3 of step 2`, `the mask of light 1`.
     #[must_use]
-    pub fn words(self) -> String {
-        let step = self.step + 1;
-        self.draw.map_or_else(|| format!("step {step}"), |draw| format!("draw {} of step {step}", draw + 1))
+    pub fn words(self, capture: &Capture) -> String {
+        let step = steps::words(capture, self.step);
+        self.draw.map_or_else(|| step.clone(), |draw| format!("draw {} of {step}", draw + 1))
     }
 
     /// Does the capture know the state at this moment?
@@ -87,7 +88,7 @@ impl Moment {
         let following = self.draw.map(|draw| draw + 1).filter(|draw| *draw < draws(capture, self.step).len());
         let in_step = following.map(|draw| Moment { draw: Some(draw), ..self });
         in_step.or_else(|| {
-            let step = Some(self.step + 1).filter(|step| *step < capture.steps.len())?;
+            let step = steps::next(capture, self.step)?;
             Some(Moment { step, draw: (!draws(capture, step).is_empty()).then_some(0) })
         })
     }
@@ -98,7 +99,7 @@ impl Moment {
         let last = |step: usize| draws(capture, step).len().checked_sub(1);
         match self.draw.or_else(|| last(self.step)).and_then(|draw| draw.checked_sub(1)) {
             Some(draw) => Some(Moment { draw: Some(draw), ..self }),
-            None => self.step.checked_sub(1).map(|step| Moment { step, draw: last(step) }),
+            None => steps::previous(capture, self.step).map(|step| Moment { step, draw: last(step) }),
         }
     }
 }

@@ -25,12 +25,16 @@ impl TestOutcomes {
     }
 }
 
+/// What is said where it is not told apart how fragments fared.
+pub const SEVERAL: &str = "Several fragments came to these pixels, and the step changes what it tests: their number does \
+                           not tell which of them passed. The history of a pixel does: right-click one.";
+
 /// The combinations that can occur, with their names and what they mean.
 pub const OUTCOMES: [(u8, &str, &str); 6] = [
     (TestCounts::PASSED, "passed", "Every fragment here passed both tests"),
     (TestCounts::DEPTH_FAILED, "depth failed", "Every fragment here failed the depth test: hits of z-fail"),
     (TestCounts::PASSED | TestCounts::DEPTH_FAILED, "mixed", "Some passed both tests, some failed the depth test"),
     (TestCounts::STENCIL_FAILED, "stencil failed", "The stencil test let no fragment through"),
-    (TestCounts::UNKNOWN, "? not known", "The step writes what it tests, and several fragments came here"),
+    (TestCounts::UNKNOWN, "? several", SEVERAL),
     (0, "no fragment", "The step drew nothing here"),
 ];

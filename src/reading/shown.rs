@@ -1,10 +1,13 @@
 //! Which picture is shown and how: its kind, what a texel's value means, zoom and place.
 //!
 //! A capture holds up to eight kinds of picture. [`PictureView::shown`] finds the one wished for
-//! at a step, or what is shown while there is none. Truth and error may be wished for before they
-//! are there: until then those of the frame before stay, or else the picture before them.
+//! at a step, or what is shown while there is none; where none is wished for, it follows the steps and
+//! shows what each writes ([`written`]). Truth and error may be wished for before they are there: until
+//! then those of the frame before stay, or else the picture before them.
 
-use crate::capture::{Capture, CapturedLight, CapturedTruth, FrameTruth, Image, PixelFormat, Snapshot, StepTests};
+use crate::capture::{
+    Capture, CapturedLight, CapturedTruth, FrameTarget, FrameTruth, Image, PixelFormat, Snapshot, StepTests,
+};
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::layers::{self, Layer, MapContent};
@@ -35,16 +38,16 @@ pub enum PictureKind {
 }
 
 impl PictureKind {
-    /// All, in the order of their buttons.
+    /// All, in the order of their buttons: what only some frames have comes last.
     pub const ALL: [PictureKind; 9] = [
         PictureKind::Color,
         PictureKind::Stencil,
-        PictureKind::Count,
         PictureKind::Depth,
         PictureKind::Mask,
         PictureKind::Truth,
         PictureKind::Error,
         PictureKind::Overdraw,
+        PictureKind::Count,
         PictureKind::Map,
     ];
 
@@ -77,6 +80,25 @@ impl PictureKind {
             PictureKind::Error => "Where the technique and the truth differ",
             PictureKind::Overdraw => "How many fragments of the selected step reached every pixel",
             PictureKind::Map => MapContent::of_capture(capture).unwrap_or(MapContent::Depth).meaning(),
+        }
+    }
+
+    /// Is it of some frames only: of those with counts in floats, or with a light's map?
+    #[must_use]
+    pub fn is_of_some_frames(self) -> bool {
+        matches!(self, PictureKind::Count | PictureKind::Map)
+    }
+
+    /// Why there is none at a step.
+    #[must_use]
+    pub fn why_missing(self, capture: &Capture) -> &'static str {
+        match self {
+            PictureKind::Stencil if !has_stencil(capture) => "This frame has no stencil buffer",
+            PictureKind::Color | PictureKind::Stencil | PictureKind::Depth => {
+                "Nothing is drawn into the picture yet at this step"
+            }
+            PictureKind::Overdraw => "This step draws nothing into the picture",
+            _ => "This frame says of no light where it is blocked",
         }
     }
 
@@ -120,8 +142,8 @@ pub enum DepthMode {
 /// Everything about the picture panel that the user can change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureView {
-    /// The kind wished for.
-    pub kind: PictureKind,
+    /// The kind wished for; `None`: what each step writes.
+    pub kind: Option<PictureKind>,
     /// Whose mask or map.
     pub light: usize,
     /// Which layer of a map.
@@ -136,9 +158,7 @@ pub struct PictureView {
     pub depth_range: Option<[f64; 2]>,
     /// How the fragments of a step fared, of which the overdraw is shown.
     pub tests: Option<Arc<StepTests>>,
-    /// The kind to go back to when a map pass is left.
-    kind_before_map: Option<PictureKind>,
-    /// The kind that is shown until the truth is known.
+    /// What was wished for before the truth: shown until that is known.
     kind_before_truth: Option<PictureKind>,
     /// The truth of the frame before, shown until that of the frame is known.
     pub older_truth: Option<Arc<FrameTruth>>,
@@ -147,7 +167,7 @@ pub struct PictureView {
 impl Default for PictureView {
     fn default() -> PictureView {
         PictureView {
-            kind: PictureKind::Color,
+            kind: None,
             light: 0,
             face: FaceChoice::Grid,
             zoom: Zoom::Fit,
@@ -155,7 +175,6 @@ impl Default for PictureView {
             depth_mode: DepthMode::Linear,
             depth_range: None,
             tests: None,
-            kind_before_map: None,
             kind_before_truth: None,
             older_truth: None,
         }
@@ -184,32 +203,37 @@ pub struct Shown {
 impl PictureView {
     /// The user wishes to see `kind`.
     pub fn choose(&mut self, kind: PictureKind) {
-        if kind.needs_truth() && !self.kind.needs_truth() {
-            self.kind_before_truth = Some(self.kind);
+        if kind.needs_truth() && !self.wants_truth() {
+            self.kind_before_truth = self.kind;
         }
-        if !kind.needs_truth() {
-            self.older_truth = None;
-        }
-        self.kind_before_map = None;
-        self.switch(kind);
+        self.wish(Some(kind));
     }
 
-    fn switch(&mut self, kind: PictureKind) {
-        if (kind == PictureKind::Depth) != (self.kind == PictureKind::Depth) {
+    /// The user wishes to see what each step writes.
+    pub fn follow_steps(&mut self) {
+        self.wish(None);
+    }
+
+    fn wish(&mut self, kind: Option<PictureKind>) {
+        if !kind.is_some_and(PictureKind::needs_truth) {
+            self.older_truth = None;
+        }
+        if kind != self.kind {
             self.depth_range = None;
         }
         self.kind = kind;
     }
 
-    /// Follows to a step: a map pass shows its map, and the step after it what was shown before.
+    /// Is a picture wished for that can be shown only once the truth is known?
+    #[must_use]
+    pub fn wants_truth(&self) -> bool {
+        self.kind.is_some_and(PictureKind::needs_truth)
+    }
+
+    /// Follows to a step: to its light, and to the layer of the map that it draws.
     pub fn follow(&mut self, capture: &Capture, step: usize) {
         match capture.steps.get(step).map(|step| &step.snapshot) {
             Some(Snapshot::Map { light, face }) => {
-                if self.kind != PictureKind::Map {
-                    let before = self.kind;
-                    self.switch(PictureKind::Map);
-                    self.kind_before_map = Some(before);
-                }
                 self.light = *light;
                 let map = capture.lights.get(*light).and_then(|light| light.map.as_ref());
                 if map.is_some_and(|map| map.faces.len() > 1) {
@@ -217,8 +241,7 @@ impl PictureView {
                 }
             }
             _ => {
-                if let Some(before) = self.kind_before_map.take() {
-                    self.switch(before);
+                if self.kind != Some(PictureKind::Map) {
                     self.face = FaceChoice::Grid;
                 }
                 if let Some(light) = capture.steps.get(step).and_then(|step| step.light) {
@@ -232,22 +255,33 @@ impl PictureView {
     #[must_use]
     pub fn shown(&self, capture: &Capture, at: impl Into<Moment>) -> Option<Shown> {
         let at = at.into();
+        self.shown_as(capture, at, self.kind_at(capture, at)?)
+    }
+
+    /// The kind of picture to show at a moment: the one wished for; its twin, as a light's counts are kept in one of
+    /// two places; or what the step writes.
+    #[must_use]
+    pub fn kind_at(&self, capture: &Capture, at: Moment) -> Option<PictureKind> {
         let kinds = available(capture, at);
-        let wished = if self.kind.needs_truth() && self.truth_to_show(capture).is_none() {
-            self.kind_before_truth.unwrap_or(PictureKind::Color)
-        } else {
-            self.kind
-        };
+        let lacks_truth = self.wants_truth() && self.truth_to_show(capture).is_none();
+        let wished = if lacks_truth { self.kind_before_truth } else { self.kind };
         let twin = match wished {
-            PictureKind::Stencil => PictureKind::Count,
-            PictureKind::Count => PictureKind::Stencil,
-            other => other,
+            Some(PictureKind::Stencil) => Some(PictureKind::Count),
+            Some(PictureKind::Count) => Some(PictureKind::Stencil),
+            _ => None,
         };
-        let can_show = |kind: &PictureKind| *kind != PictureKind::Overdraw || self.tests_of(at).is_some();
-        let wished = [wished, twin].into_iter().find(|kind| kinds.contains(kind)).filter(can_show);
-        let kind = wished.or_else(|| kinds.iter().copied().find(|kind| !kind.needs_truth()))?;
+        let can_show = |kind: &PictureKind| {
+            kinds.contains(kind) && (*kind != PictureKind::Overdraw || self.tests_of(at).is_some())
+        };
+        let mut wishes = [wished, twin, written(capture, at.step)].into_iter().flatten();
+        wishes.find(can_show).or_else(|| kinds.iter().copied().find(|kind| !kind.needs_truth()))
+    }
+
+    /// The picture of this kind at a moment.
+    #[must_use]
+    pub fn shown_as(&self, capture: &Capture, at: Moment, kind: PictureKind) -> Option<Shown> {
         let frame = at.frame(capture);
-        let after = |what: &str| format!("{what} after {}", at.words());
+        let after = |what: &str| format!("{what} after {}", at.words(capture));
         let depth_format = if has_stencil(capture) { "Depth32FloatStencil8" } else { "Depth32Float" };
         let raw = DepthMeasure::Raw;
         let camera = || self.measure_or_raw(Some(DepthMeasure::of_camera(capture)));
@@ -349,7 +383,7 @@ impl PictureView {
             };
         }
         if drawn.is_some_and(|(_, layer, _)| chosen.is_none_or(|chosen| chosen == layer)) {
-            title += &format!(" after {}", at.words());
+            title += &format!(" after {}", at.words(capture));
         }
         let (measure, format) = match content {
             MapContent::Depth => {
@@ -374,6 +408,25 @@ impl Shown {
 #[must_use]
 pub fn has_truth(capture: &Capture) -> bool {
     capture.lights.iter().any(|light| light.truth.is_some())
+}
+
+/// The kind of picture that a step writes: what it changed, colour before stencil before depth.
+#[must_use]
+pub fn written(capture: &Capture, step: usize) -> Option<PictureKind> {
+    let frame = match &capture.steps.get(step)?.snapshot {
+        Snapshot::Map { .. } => return Some(PictureKind::Map),
+        Snapshot::Frame(frame) => frame,
+    };
+    Some(match frame.target {
+        FrameTarget::Labels => PictureKind::Mask,
+        FrameTarget::Count => PictureKind::Count,
+        FrameTarget::Picture if !frame.color.unchanged => PictureKind::Color,
+        FrameTarget::Picture if frame.stencil.as_ref().is_some_and(|stencil| !stencil.unchanged) => {
+            PictureKind::Stencil
+        }
+        FrameTarget::Picture if !frame.depth.unchanged => PictureKind::Depth,
+        FrameTarget::Picture => PictureKind::Color,
+    })
 }
 
 /// The kinds of picture that exist at a moment, or can be asked for, in the order of their buttons.

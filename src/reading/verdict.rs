@@ -8,6 +8,7 @@ use crate::history::PixelHistory;
 use crate::plan::{DecidedBy, Side};
 use crate::reading::counts;
 use crate::reading::format;
+use crate::reading::map_decision::MapDecision;
 use crate::truth::{BACKGROUND, FACES_AWAY, LIT};
 
 /// A sentence with what stands behind it.
@@ -21,7 +22,7 @@ pub struct Verdict {
     by_history: ByHistory,
 }
 
-/// A history knows the faces themselves.
+/// What is known beside the capture: a history knows the faces themselves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ByHistory {
     /// It says the same, with numbers.
@@ -30,6 +31,8 @@ enum ByHistory {
     Preceded,
     /// It is about something else.
     Kept,
+    /// A map decided, of which it says nothing.
+    Map,
 }
 
 /// The verdict with the reason that the pixel's history gives.
@@ -42,9 +45,18 @@ pub fn explained(verdict: Verdict, history: &PixelHistory, light: usize) -> Verd
     let reason = match verdict.by_history {
         ByHistory::Replaced => why,
         ByHistory::Preceded => format!("{why} {}", verdict.reason),
-        ByHistory::Kept => return verdict,
+        ByHistory::Kept | ByHistory::Map => return verdict,
     };
     Verdict { reason, ..verdict }
+}
+
+/// The verdict with what the light's shadow map stores, where that decided it.
+#[must_use]
+pub fn by_map(verdict: Verdict, decision: &MapDecision) -> Verdict {
+    match verdict.by_history {
+        ByHistory::Map => Verdict { reason: decision.sentence(), ..verdict },
+        _ => verdict,
+    }
 }
 
 /// What happened at pixel `at` under `light`.
@@ -113,7 +125,8 @@ fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verd
         }
         (DecidedBy::Labels, false) => "The technique's mask says that nothing lies between the surface and the light.",
     };
-    Verdict { title: format!("{title}."), reason: reason.to_owned(), by_history: ByHistory::Replaced }
+    let by_history = if capture.decided_by(light) == DecidedBy::Map { ByHistory::Map } else { ByHistory::Replaced };
+    Verdict { title: format!("{title}."), reason: reason.to_owned(), by_history }
 }
 
 /// Shadow volumes: the count that the light pass tested.

@@ -8,7 +8,7 @@ use crate::diagnosis::facts::Suspicion;
 use crate::diagnosis::proof::{Tried, Wrong, judge, ranked};
 use crate::diagnosis::regions::Region;
 use crate::diagnosis::rules::planar;
-use crate::diagnosis::{Advice, Cause, CauseFound, Mend, Proof, RegionFound};
+use crate::diagnosis::{Advice, Cause, CauseFound, Mend, Proof, RegionFound, Staying};
 use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -94,16 +94,16 @@ impl Session {
                 }
             }
             // What another technique mends wholly, this one may mend nearly.
-            if let (Some((mend, left)), Some((best, ..))) = (small, &best)
-                && best.technique.is_some()
-            {
-                suspicion.evidence.push_str(&format!("; to {mend} leaves {left} of {}", region.pixels.len()));
+            let is_other = best.as_ref().is_some_and(|(best, ..)| best.technique.is_some());
+            let staying = small.filter(|_| is_other).map(|(mend, pixels_left)| Staying { mend, pixels_left });
+            if let Some(Staying { mend, pixels_left }) = &staying {
+                suspicion.evidence.push_str(&format!("; to {mend} leaves {pixels_left} of {}", region.pixels.len()));
             }
             let (mend, proof, left) = match best {
                 Some((mend, proof, left)) => (Some(mend), proof, Some(left)),
                 None => (None, Proof::NotRun, None),
             };
-            tried.push(Tried { suspicion, mend, proof, left, together_with: Vec::new() });
+            tried.push(Tried { suspicion, mend, proof, left, staying, together_with: Vec::new() });
         }
         if !tried.iter().any(|one| one.proof == Proof::Proven) {
             self.try_together(runs, region, before, &mut tried)?;

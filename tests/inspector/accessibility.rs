@@ -211,3 +211,75 @@ fn tab_goes_on_from_the_picture_and_shift_tab_goes_back() {
         assert_eq!(focused(&harness) == picture, modifiers == Modifiers::SHIFT);
     }
 }
+
+/// Puts the focus on a widget, as Tab does.
+fn focus_on(harness: &mut Harness<Seen>, role: Role, label: &str) -> NodeId {
+    harness.get_by_role_and_label(role, label).focus();
+    harness.run_steps(2);
+    focused(harness).expect("the focus")
+}
+
+#[test]
+fn arrows_step_whatever_button_has_the_focus_and_leave_it_there() {
+    let mut harness = harness(z_fail(SIZE));
+    for (role, label) in [(Role::Canvas, "Picture canvas"), (Role::Button, "Depth"), (Role::Tab, "Explain")] {
+        press(&mut harness, Key::End);
+        let before = focus_on(&mut harness, role, label);
+        press(&mut harness, Key::ArrowLeft);
+        assert_eq!((harness.state().inspector.step(), focused(&harness)), (1, Some(before)), "{label}");
+    }
+}
+
+#[test]
+fn what_arrows_move_itself_keeps_them() {
+    let mut harness = harness(cube_map());
+    show(&mut harness, &["Shadow map"]);
+    focus_on(&mut harness, Role::Canvas, "Shadow map canvas");
+    press(&mut harness, Key::ArrowLeft);
+    assert_eq!(harness.state().inspector.step(), 3, "the texel moves");
+    harness.get_by_role_and_label(Role::Button, "Clear");
+}
+
+#[test]
+fn space_plays_and_t_animates_while_the_picture_has_the_focus_and_space_presses_a_button() {
+    let mut harness = harness(z_fail(SIZE));
+    focus_on(&mut harness, Role::Canvas, "Picture canvas");
+    press(&mut harness, Key::Space);
+    assert!(harness.state().inspector.is_playing());
+    press(&mut harness, Key::Space);
+    assert!(!harness.state().inspector.is_playing());
+    focus_on(&mut harness, Role::Button, "Depth");
+    press(&mut harness, Key::Space);
+    assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Depth));
+    assert!(!harness.state().inspector.is_playing());
+}
+
+#[test]
+fn escape_leaves_a_field_or_a_button_before_it_takes_the_pick_away() {
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.pick([3, 4]);
+    let mut harness = harness_of(inspector, WINDOW);
+    focus_on(&mut harness, Role::Button, "Depth");
+    press(&mut harness, Key::Escape);
+    assert_eq!(harness.state().inspector.picked(), Some([3, 4]));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::F);
+    harness.run_steps(2);
+    press(&mut harness, Key::Escape);
+    assert_eq!(harness.state().inspector.picked(), Some([3, 4]));
+    press(&mut harness, Key::Escape);
+    assert_eq!(harness.state().inspector.picked(), None);
+}
+
+#[test]
+fn tab_goes_from_left_to_right_in_every_row_of_tools() {
+    let mut harness = harness(z_fail(SIZE));
+    for row in [["Undo", "Redo", "Export", "Theme", "Help"], ["Walk", "Gizmos", "1:1", "Fit", "Compare"]] {
+        let there: Vec<&str> = row.into_iter().filter(|label| !is_disabled(&harness, label)).collect();
+        focus_on(&mut harness, Role::Button, there[0]);
+        for label in &there[1..] {
+            press(&mut harness, Key::Tab);
+            let expected = id_of(&harness.get_by_role_and_label(Role::Button, label));
+            assert_eq!(focused(&harness), Some(expected), "{label}");
+        }
+    }
+}

@@ -77,7 +77,7 @@ fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
             Technique::Auto => (Some(Side::InFront), Some("Stencil count"), "volume face"),
             Technique::Planar => (None, Some("Stencil value"), "flattened"),
             Technique::PlanarTexture => (None, None, "The texture of this flat receiver"),
-            Technique::ShadowMap => (None, None, "The light's map holds something nearer"),
+            Technique::ShadowMap => (None, None, "it is nearer, so the light pass adds nothing"),
             Technique::Projective => (None, None, "The silhouette of another object falls here"),
             Technique::RayTraced => (None, None, "The technique's mask says that something lies between"),
             Technique::None => (None, None, "No shadow of this light is made in this frame"),

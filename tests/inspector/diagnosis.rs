@@ -14,7 +14,7 @@ use stencilscope::accuracy::{ErrorCounts, Finding};
 use stencilscope::ask::{DiagnosisOf, HistoryOf, TruthOf};
 use stencilscope::diagnosis::{
     Advice, Cause, CauseFound, Diagnosis, Mend, MeshFinding, MeshTrouble, ObjectChange, Proof, RegionFound, RegionKind,
-    Rest,
+    Rest, Staying,
 };
 use stencilscope::inspector::{Action, Inspector};
 use stencilscope::progress::Progress;
@@ -24,7 +24,15 @@ use stencilscope::technique::{Choice, Technique};
 
 fn cause(cause: Cause, mend: Mend, proof: Proof, left: u64) -> CauseFound {
     let evidence = format!("evidence of {cause}");
-    CauseFound { cause, evidence, mend: Some(mend), proof, pixels_left: Some(left), together_with: Vec::new() }
+    CauseFound {
+        cause,
+        evidence,
+        mend: Some(mend),
+        proof,
+        pixels_left: Some(left),
+        staying: None,
+        together_with: Vec::new(),
+    }
 }
 
 /// A diagnosis by hand: two regions of z-pass, holes in a mesh.
@@ -72,7 +80,12 @@ pub fn found() -> Diagnosis {
             ),
         ],
         rest: Rest { regions: 2, pixels: 5 },
-        advice: Some(Advice { mend: z_fail(), wrong_left: 0, sentence: "To mend it, use z-fail.".to_owned() }),
+        advice: Some(Advice {
+            mend: z_fail(),
+            wrong_left: 0,
+            sentence: "To mend it, use z-fail.".to_owned(),
+            staying: None,
+        }),
     }
 }
 
@@ -240,4 +253,40 @@ fn pictures_of_a_diagnosis_can_be_drawn() {
             draw(&mut harness, folder.as_deref(), &format!("diagnosis-{}", technique.name()), *shown);
         }
     }
+}
+
+#[test]
+fn who_stays_with_a_technique_has_a_button_for_what_it_can_do_first() {
+    let bias = Mend::setting("bias-slope", "4");
+    let staying = Some(Staying { mend: bias.clone(), pixels_left: 1 });
+    let mut diagnosis = found();
+    diagnosis.technique = Technique::ShadowMap;
+    let acne = cause(Cause::Acne, Mend::technique(Technique::ZFail), Proof::Proven, 0);
+    diagnosis.regions[0].causes = vec![CauseFound { staying: staying.clone(), ..acne }];
+    diagnosis.advice.as_mut().expect("advice").staying = staying;
+    let mut inspector = inspector(z_fail(SIZE));
+    inspector.set_scene(&scene(), run_request(Technique::ShadowMap));
+    tell(&mut inspector, diagnosis);
+    let mut harness = harness_of(inspector, [1280.0, 1400.0]);
+    click(&mut harness, "Diagnosis");
+    harness.run_steps(2);
+    let stay =
+        harness.get_by_role_and_label(Role::Button, "Stay with shadow-map, 1 pixel left: set bias-slope = 4").rect();
+    let change = harness.get_by_role_and_label(Role::Button, "Apply the mend: use z-fail").rect();
+    assert!(stay.top() < change.top());
+    click_button(&mut harness, "Stay with shadow-map, apply all: set bias-slope = 4");
+    let Some(Action::Run(request)) = harness.state().actions.last() else { panic!("a run") };
+    assert_eq!(request.choice.technique(), Technique::ShadowMap);
+    assert_eq!(request.choice.settings()["bias-slope"], "4");
+}
+
+#[test]
+fn a_long_title_goes_on_in_a_second_line() {
+    let mut diagnosis = found();
+    diagnosis.regions[1].casters = vec!["the orange torus at the back of the room".to_owned()];
+    diagnosis.regions[1].receivers = vec!["the red torus by the window".to_owned()];
+    let harness = opened(|inspector| tell(inspector, diagnosis));
+    let short = harness.get_by_role_and_label(Role::Row, FIRST).rect().height();
+    let long = harness.query_all_by_role(Role::Row).map(|row| row.rect().height()).fold(0.0, f32::max);
+    assert!(long > short + 8.0, "{long} over {short}");
 }

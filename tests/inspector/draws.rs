@@ -34,15 +34,15 @@ fn up_and_down_go_draw_by_draw_through_the_whole_frame() {
     let mut harness = harness(with_draws(z_fail(SIZE)));
     press(&mut harness, Key::Home);
     assert_eq!(at(&harness), (0, None));
-    // Ambient has one draw, volumes two, the mask none, light one.
-    let path = [(1, Some(0)), (1, Some(1)), (2, None), (3, Some(0))];
+    // Ambient has one draw, volumes two, light one; the mask stands beside the frame.
+    let path = [(1, Some(0)), (1, Some(1)), (3, Some(0))];
     for expected in path {
         press(&mut harness, Key::ArrowDown);
         assert_eq!(at(&harness), expected);
     }
     press(&mut harness, Key::ArrowDown);
     assert_eq!(at(&harness), (3, Some(0)), "there is nothing after the last draw");
-    for expected in [(2, None), (1, Some(1)), (1, Some(0)), (0, Some(0))] {
+    for expected in [(1, Some(1)), (1, Some(0)), (0, Some(0))] {
         press(&mut harness, Key::ArrowUp);
         assert_eq!(at(&harness), expected);
     }
@@ -60,14 +60,14 @@ fn a_whole_pass_counts_as_its_last_draw() {
     click(&mut harness, "2 · volumes");
     assert_eq!(at(&harness), (1, None));
     press(&mut harness, Key::ArrowDown);
-    assert_eq!(at(&harness), (2, None));
+    assert_eq!(at(&harness), (3, Some(0)));
 }
 
 #[test]
 fn left_right_home_and_end_go_by_pass_and_leave_the_draws() {
     let mut harness = harness(with_draws(z_fail(SIZE)));
     for (key, expected) in
-        [(Key::ArrowRight, (2, None)), (Key::ArrowLeft, (0, None)), (Key::Home, (0, None)), (Key::End, (3, None))]
+        [(Key::ArrowRight, (3, None)), (Key::ArrowLeft, (0, None)), (Key::Home, (0, None)), (Key::End, (3, None))]
     {
         harness.state_mut().inspector.select_draw(1, 0);
         harness.run_steps(1);
@@ -85,11 +85,12 @@ fn buttons_and_rows_select_draws_and_say_which() {
     harness.get_by_label("draw 1 of 2");
     click_button(&mut harness, "Next draw");
     harness.get_by_label("draw 2 of 2");
-    harness.get_by_label("step 2 of 4");
+    harness.get_by_label("step 2 of 3");
     click(&mut harness, "sides of box");
     assert_eq!(at(&harness), (1, Some(0)));
-    click(&mut harness, "3 · mask");
+    click(&mut harness, "mask");
     harness.get_by_label("it draws nothing");
+    harness.get_by_label("beside the frame");
 }
 
 #[test]
@@ -138,7 +139,6 @@ fn the_last_draw_of_a_pass_is_known_without_asking() {
     click(&mut harness, "2 · volumes");
     click_button(&mut harness, "Stencil");
     click(&mut harness, "dark cap of box");
-    press(&mut harness, Key::ArrowDown);
     press(&mut harness, Key::ArrowDown);
     assert_eq!((at(&harness), asked(&harness)), ((3, Some(0)), vec![]));
 }

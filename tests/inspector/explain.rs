@@ -75,9 +75,10 @@ fn each_pass_is_explained_with_the_scenes_own_numbers() {
     harness.get_by_label_contains("sides, two triangles a silhouette edge: ");
     assert!(harness.query_all_by_label("Left out").count() > 0);
     press(&mut harness, Key::ArrowRight);
-    assert!(harness.query_all_by_label_contains(" in shadow, ").count() > 0);
-    press(&mut harness, Key::ArrowRight);
     harness.get_by_label("light is added where count = 0");
+    click(&mut harness, "Passes");
+    click(&mut harness, "mask");
+    assert!(harness.query_all_by_label_contains(" in shadow, ").count() > 0);
 }
 
 #[test]
@@ -198,4 +199,16 @@ fn a_tour_asks_for_its_scene_and_waits_for_its_technique() {
     harness.get_by_label_contains("Planar shadows know one kind of receiver");
     let inspector = &harness.state().inspector;
     assert_eq!(inspector.capture().expect("a capture").steps[inspector.step()].name, "receivers");
+}
+
+#[test]
+fn who_has_picked_nothing_is_offered_the_tour_of_the_technique() {
+    let mut harness = harness_of(over("tori", Technique::ZFail), [1600.0, 1000.0]);
+    harness.get_by_label("Counting behind the surface: right for any camera: 7 stops with z-fail.");
+    click_button(&mut harness, "Take the tour");
+    harness.run_steps(3);
+    harness.get_by_label("tour of z-fail, stop 1 of 7");
+    let mut picked = over("tori", Technique::ZFail);
+    picked.pick([80, 60]);
+    assert!(harness_of(picked, [1600.0, 1000.0]).query_by_label("Take the tour").is_none());
 }

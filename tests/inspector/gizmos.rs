@@ -130,8 +130,6 @@ fn a_light_in_view_is_dragged_over_the_picture() {
     let mut scene = box_scene();
     scene.lights = vec![Light::point(DVec3::new(0.5, 1.5, 1.0)), Light::point(DVec3::new(0.0, 1.0, 20.0))];
     let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
-    assert!(harness.query_by_label("Light 1 in the picture").is_none());
-    click(&mut harness, "Gizmos");
     assert!(harness.query_by_label("Light 2 in the picture").is_none(), "it is behind the eye");
     let before = harness.get_by_label("Light 1 in the picture").rect().center();
     drag_handle(&mut harness, "Light 1 in the picture", vec2(50.0, 0.0));
@@ -147,4 +145,18 @@ fn a_light_in_view_is_dragged_over_the_picture() {
     let before: DVec4 = asked(&harness).lights[0].position;
     press(&mut harness, Key::ArrowUp);
     assert!(asked(&harness).lights[0].position.y > before.y);
+}
+
+#[test]
+fn a_light_out_of_view_has_its_handle_at_the_border_and_comes_in_by_it() {
+    let mut scene = box_scene();
+    scene.lights = vec![Light::point(DVec3::new(40.0, 1.5, 1.0))];
+    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    let handle = harness.get_by_label("Light 1 in the picture").rect().center();
+    let canvas = harness.get_by_label("Picture canvas").rect();
+    assert!(canvas.contains(handle) && canvas.right() - handle.x < 60.0, "{handle} in {canvas}");
+    drag_handle(&mut harness, "Light 1 in the picture", vec2(-50.0, 0.0));
+    assert!(asked(&harness).lights[0].position.x < 40.0);
+    click(&mut harness, "Gizmos");
+    assert!(harness.query_by_label("Light 1 in the picture").is_none());
 }

@@ -9,6 +9,7 @@ mod decided_by;
 mod diagnosis;
 mod draws;
 mod explain;
+mod follows_steps;
 mod gizmos;
 mod history;
 mod history_by_hand;
@@ -34,7 +35,7 @@ use crate::common;
 use by_hand::{cube_map, z_fail};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
-use egui_kittest::{Harness, kittest::Queryable};
+use egui_kittest::{Harness, kittest::NodeT, kittest::Queryable};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stencilscope::ask::{Answer, Ask, Asked, Question, RunRequest};
@@ -143,6 +144,11 @@ fn click(harness: &mut Harness<Seen>, label: &str) {
     harness.run_steps(2);
 }
 
+/// Is the button of this name there, and not to be pressed?
+fn is_disabled(harness: &Harness<Seen>, label: &str) -> bool {
+    harness.get_by_role_and_label(Role::Button, label).accesskit_node().is_disabled()
+}
+
 fn click_button(harness: &mut Harness<Seen>, label: &str) {
     harness.get_by_role_and_label(Role::Button, label).click();
     harness.run_steps(2);
@@ -169,15 +175,15 @@ fn mouse(harness: &mut Harness<Seen>, at: Pos2, button: PointerButton) {
 fn it_opens_at_the_last_step_and_keys_walk_pass_by_pass() {
     let mut harness = harness(z_fail(SIZE));
     assert_eq!(harness.state().inspector.step(), 3);
-    harness.get_by_label("step 4 of 4");
+    harness.get_by_label("step 3 of 3");
     press(&mut harness, Key::ArrowLeft);
-    assert_eq!(harness.state().inspector.step(), 2);
+    assert_eq!(harness.state().inspector.step(), 1, "the mask is no step of the frame");
     press(&mut harness, Key::Home);
-    harness.get_by_label("step 1 of 4");
+    harness.get_by_label("step 1 of 3");
     press(&mut harness, Key::ArrowLeft);
     assert_eq!(harness.state().inspector.step(), 0, "there is nothing before the first step");
     press(&mut harness, Key::ArrowRight);
-    harness.get_by_label("step 2 of 4");
+    harness.get_by_label("step 2 of 3");
     press(&mut harness, Key::End);
     press(&mut harness, Key::ArrowRight);
     assert_eq!(harness.state().inspector.step(), 3);
@@ -187,7 +193,7 @@ fn it_opens_at_the_last_step_and_keys_walk_pass_by_pass() {
 fn buttons_scrubber_and_tree_select_steps() {
     let mut harness = harness(z_fail(SIZE));
     click(&mut harness, "Previous step");
-    assert_eq!(harness.state().inspector.step(), 2);
+    assert_eq!(harness.state().inspector.step(), 1);
     click(&mut harness, "Next step");
     assert_eq!(harness.state().inspector.step(), 3);
     click(&mut harness, "2 · volumes");
@@ -253,17 +259,26 @@ fn control_g_goes_to_a_number_and_control_f_finds_a_pass() {
 }
 
 #[test]
-fn a_right_click_picks_and_arrows_nudge_while_the_picture_has_the_focus() {
+fn a_right_click_picks_and_arrows_step_all_the_same() {
     let mut harness = harness(z_fail(SIZE));
     harness.get_by_label("No pixel is picked.");
     let at = place_of(&harness, [12, 7], SIZE);
     mouse(&mut harness, at, PointerButton::Secondary);
     assert_eq!(harness.state().inspector.picked(), Some([12, 7]));
-    press(&mut harness, Key::ArrowRight);
-    press(&mut harness, Key::ArrowUp);
-    assert_eq!(harness.state().inspector.picked(), Some([13, 6]));
-    assert_eq!(harness.state().inspector.step(), 3, "the picture keeps its keys");
-    harness.get_by_label("13, 6");
+    press(&mut harness, Key::ArrowLeft);
+    assert_eq!((harness.state().inspector.step(), harness.state().inspector.picked()), (1, Some([12, 7])));
+    for (modifiers, key, expected) in [
+        (Modifiers::SHIFT, Key::ArrowRight, [13, 7]),
+        (Modifiers::SHIFT, Key::ArrowUp, [13, 6]),
+        (Modifiers::COMMAND | Modifiers::SHIFT, Key::ArrowDown, [13, 16]),
+    ] {
+        harness.key_press_modifiers(modifiers, key);
+        harness.run_steps(2);
+        assert_eq!((harness.state().inspector.step(), harness.state().inspector.picked()), (1, Some(expected)));
+    }
+    harness.get_by_label("13, 16");
+    press(&mut harness, Key::Escape);
+    assert_eq!(harness.state().inspector.picked(), None);
 }
 
 #[test]
@@ -347,7 +362,7 @@ fn a_map_pass_shows_its_face_and_leaving_it_shows_what_was_shown_before() {
     press(&mut harness, Key::Home);
     assert_eq!(harness.state().inspector.picture_kind(), Some(PictureKind::Map));
     harness.get_by_label_contains("shadow map of light 1, face −x");
-    assert!(harness.query_by_role_and_label(Role::Button, "Colour").is_none(), "nothing is drawn yet");
+    assert!(is_disabled(&harness, "Colour"), "nothing is drawn yet, and nothing moves for it");
     click_button(&mut harness, "All");
     click(&mut harness, "Face −y");
     harness.get_by_label_contains("shadow map of light 1, face −y");
@@ -472,10 +487,24 @@ fn an_error_stays_until_dismissed_and_so_does_the_picture() {
     harness.state_mut().inspector.push_error("nothing.obj: no such file: check the path".to_owned());
     harness.run_steps(2);
     harness.get_by_label("nothing.obj: no such file: check the path");
-    harness.get_by_label("step 4 of 4");
+    harness.get_by_label("step 3 of 3");
     click(&mut harness, "Dismiss");
     assert!(harness.state().inspector.errors().is_empty());
     assert!(harness.query_by_label_contains("no such file").is_none());
+}
+
+#[test]
+fn why_a_scene_could_not_be_opened_goes_once_one_is_and_other_errors_stay() {
+    let mut harness = harness(z_fail(SIZE));
+    let inspector = &mut harness.state_mut().inspector;
+    inspector.push_failure("nothing.obj: no such file: check the path".to_owned());
+    inspector.push_error("out.png can't be written: choose another place".to_owned());
+    harness.run_steps(2);
+    harness.get_by_label("nothing.obj: no such file: check the path");
+    harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("no such file").is_none());
+    harness.get_by_label("out.png can't be written: choose another place");
 }
 
 #[test]
@@ -497,7 +526,7 @@ fn a_capture_folder_is_looked_at_but_not_run() {
     press(&mut harness, Key::Home);
     harness.get_by_role_and_label(Role::Tab, "Passes").click();
     harness.run_steps(2);
-    harness.get_by_label("step 1 of 4");
+    harness.get_by_label("step 1 of 3");
 }
 
 #[test]
@@ -562,5 +591,5 @@ fn key_presses_that_come_in_one_frame_all_count() {
         }
     }
     harness.run_steps(2);
-    assert_eq!(harness.state().inspector.step(), 1);
+    assert_eq!(harness.state().inspector.step(), 0);
 }

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use stencilscope::ask::ReportOf;
 use stencilscope::inspector::{Action, ExportData, ExportKind, Inspector};
 use stencilscope::report::{MeasuredReport, Report, Row};
+use stencilscope::scene::Scene;
 use stencilscope::technique::{Choice, Technique};
 
 fn tell(inspector: &mut Inspector, report: Report) {
@@ -178,4 +179,18 @@ fn the_rows_can_be_saved() {
     assert_eq!(*path, format!("{}-report.csv", report.rows[0].scene));
     let data = harness.state_mut().inspector.export(ExportKind::Report);
     assert!(matches!(data, Some(ExportData::Report(exported)) if *exported == report));
+}
+
+#[test]
+fn what_was_measured_of_one_scene_does_not_stand_under_another_and_comes_back_with_its_own() {
+    let row = "z-fail: none wrong, 21.7 ms";
+    let mut harness = showing(|inspector| tell(inspector, one_scene()));
+    harness.get_by_role_and_label(Role::Row, row);
+    let other = Scene { name: "another".to_owned(), ..scene() };
+    for (open, is_there) in [(&other, false), (&scene(), true)] {
+        harness.state_mut().inspector.set_scene(open, run_request(Technique::ZFail));
+        harness.state_mut().inspector.set_capture(Arc::new(z_fail(SIZE)));
+        harness.run_steps(3);
+        assert_eq!(harness.query_by_role_and_label(Role::Row, row).is_some(), is_there, "{}", open.name);
+    }
 }

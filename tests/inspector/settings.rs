@@ -1,16 +1,17 @@
 //! Settings by their widgets: a word or a number, what has no effect, and the meshes.
 
-use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, z_fail};
+use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, scene, z_fail};
 use crate::common;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::sync::Arc;
-use stencilscope::ask::MeshesOf;
+use stencilscope::ask::{MeshesOf, RunRequest};
 use stencilscope::geometry::{EdgeList, Topology};
 use stencilscope::inspector::Action;
 use stencilscope::reading::ObjectMesh;
 use stencilscope::scene::Mesh;
+use stencilscope::technique::{Choice, Technique};
 
 fn settings_of(technique: &str) -> Harness<'static, Seen> {
     let mut harness = harness(z_fail(SIZE));
@@ -19,6 +20,11 @@ fn settings_of(technique: &str) -> Harness<'static, Seen> {
     }
     click(&mut harness, "Scene settings");
     harness
+}
+
+fn last_run<'a>(harness: &'a Harness<Seen>) -> &'a RunRequest {
+    let Some(Action::Run(request)) = harness.state().actions.last() else { panic!("a run") };
+    request
 }
 
 fn set(harness: &Harness<Seen>, key: &str) -> Option<String> {
@@ -128,8 +134,35 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
 fn meshes_of_another_scene_are_not_known_yet() {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.tell(MeshesOf {}, Ok(Arc::new(vec![object("floor", &common::square("floor", 0.0, 1.0).mesh)])));
-    inspector.set_scene(&super::scene(), super::run_request(stencilscope::technique::Technique::ZFail));
+    inspector.set_scene(&scene(), super::run_request(Technique::ZFail));
     let mut harness = harness_of(inspector, [1280.0, 1200.0]);
     click(&mut harness, "Scene settings");
     harness.get_by_label("They are looked at once the first frame is captured.");
+}
+
+#[test]
+fn what_was_changed_is_marked_and_goes_back_by_itself() {
+    let mut harness = harness_of(inspector(z_fail(SIZE)), [1280.0, 2000.0]);
+    click(&mut harness, "Scene settings");
+    assert!(harness.query_by_label_contains("Reset ").is_none(), "nothing was changed");
+    let place = harness.get_by_role_and_label(Role::SpinButton, "Field of view").rect();
+    harness.get_by_role_and_label(Role::SpinButton, "Field of view").set_value_accesskit(70.0);
+    harness.run_steps(2);
+    assert_eq!(harness.get_by_role_and_label(Role::SpinButton, "Field of view").rect(), place, "nothing moves for it");
+    click_button(&mut harness, "Reset field of view");
+    assert_eq!(last_run(&harness).camera, scene().camera);
+    assert!(harness.query_by_label_contains("Reset ").is_none());
+}
+
+#[test]
+fn a_setting_of_the_technique_goes_back_to_its_default() {
+    let mut inspector = inspector(z_fail(SIZE));
+    let mut choice = Choice::new(Technique::ZFail);
+    choice.set("casters", "light-facing").expect("a setting");
+    assert!(!inspector.choose(choice).is_empty());
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    harness.get_by_label("z-fail, changed: casters light-facing");
+    click(&mut harness, "Scene settings");
+    click_button(&mut harness, "Reset casters");
+    assert_eq!(last_run(&harness).choice, Choice::new(Technique::ZFail));
 }

@@ -11,6 +11,7 @@ use glam::{DMat4, DVec3};
 use std::sync::Arc;
 use stencilscope::capture::{Capture, CapturedMap, Image, PixelFormat};
 use stencilscope::math::projection::orthographic;
+use stencilscope::plan::DecidedBy;
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 
@@ -241,4 +242,57 @@ fn texel_in_map(capture: &Capture, face: usize, [x, y]: [u32; 2]) -> Option<[u32
     let clip = map.clip_from_light[face] * map.light_from_world * world.extend(1.0);
     let [columns, rows] = map.faces[face].size().map(f64::from);
     Some([((clip.x / clip.w * 0.5 + 0.5) * columns) as u32, ((0.5 - clip.y / clip.w * 0.5) * rows) as u32])
+}
+
+/// The map by hand, of which the texel that the picked pixel reads holds something at 1.2 m from the light: the wall is
+/// at 0.9 m or at 1.5 m of its range of 2 m.
+fn decided(is_dark: bool) -> Harness<'static, Seen> {
+    let mut capture = capture();
+    capture.technique = "shadow-map".to_owned();
+    capture.lights[0].decided_by = DecidedBy::Map;
+    capture.settings.insert("depth".to_owned(), "reversed-infinite".to_owned());
+    let label = u8::from(is_dark);
+    capture.lights[0].shadow = Some(Arc::new(Image::uniform(PixelFormat::U8, SIZE, &[label])));
+    let map = capture.lights[0].map.as_mut().expect("a map");
+    map.faces = vec![Arc::new(Image::uniform(PixelFormat::Depth32F, [4, 4], &0.4_f32.to_le_bytes()))];
+    // The wall is a metre before the camera, so that far from the near plane of the map or a half of that.
+    let near = if is_dark { 0.5 } else { -0.5 };
+    map.light_from_world = DMat4::from_translation(DVec3::new(0.0, 0.0, -1.0 - near));
+    let mut inspector = inspector(capture);
+    inspector.pick([20, 15]);
+    harness_of(inspector, [1280.0, 1000.0])
+}
+
+#[test]
+fn the_pixel_panel_names_the_texel_with_both_depths_and_what_follows() {
+    let dark = decided(true);
+    dark.get_by_label("Dark under light 1.");
+    let why = "Texel 2, 2 holds a caster 1.200 m from the light, and this surface is at 1.500 m: it is nearer, so the \
+               light pass adds nothing.";
+    dark.get_by_label(why);
+    for value in ["2, 2", "0.4 (1.200 m)", "0.25 (1.500 m)", "stored is nearer to the light: shadow"] {
+        dark.get_by_label(value);
+    }
+    let lit = decided(false);
+    lit.get_by_label_contains("nothing nearer is stored, so the light pass adds the light.");
+    lit.get_by_label("stored is not nearer: lit");
+}
+
+#[test]
+fn the_texel_is_one_click_away_from_the_pixel() {
+    let mut harness = decided(true);
+    click_button(&mut harness, "Show the texel in Shadow map");
+    harness.run_steps(3);
+    harness.get_by_label("Texel 2, 2");
+    harness.get_by_label("pixel's depth");
+}
+
+#[test]
+fn explain_has_the_comparison_with_its_numbers() {
+    let mut harness = decided(true);
+    harness.get_by_role_and_label(Role::Tab, "Explain").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains("lit where the map stores nothing nearer to the light");
+    harness.get_by_label("pixel 20, 15 reads texel 2, 2");
+    harness.get_by_label("stored 0.4 (1.200 m), this surface 0.25 (1.500 m): stored is nearer to the light: shadow");
 }

@@ -69,7 +69,7 @@ fn undo_goes_back_to_the_scene_that_was_open_before_and_runs_it_as_it_was() {
 fn the_theme_changes_by_key_and_button_and_is_remembered() {
     let mut harness = harness(z_fail(SIZE));
     assert!(harness.ctx.global_style().visuals.dark_mode);
-    click_button(&mut harness, "Light");
+    click_button(&mut harness, "Theme");
     assert!(!harness.ctx.global_style().visuals.dark_mode);
     assert_eq!(harness.state().inspector.remembered().theme, ThemeChoice::Light);
     shortcut(&mut harness, Modifiers::COMMAND, Key::L);
@@ -323,4 +323,16 @@ fn in_a_narrow_window_the_techniques_are_a_menu() {
     harness.get_by_role_and_label(Role::Button, "shadow-map").click_accesskit();
     harness.run_steps(3);
     assert_eq!(last_run(&harness).choice.technique(), Technique::ShadowMap);
+}
+
+#[test]
+fn the_techniques_stay_where_they_are_whatever_is_open() {
+    let place = |name: &str| {
+        let mut inspector = inspector(z_fail(SIZE));
+        inspector.set_scene(&Scene { name: name.to_owned(), ..scene() }, run_request(Technique::ZFail));
+        let harness = harness_of(inspector, [1280.0, 800.0]);
+        harness.get_by_label(&format!("What is open: {name}"));
+        harness.get_by_role_and_label(Role::Button, "z-fail").rect()
+    };
+    assert_eq!(place("b"), place("the prison block with its hundred and twenty cells.obj"));
 }

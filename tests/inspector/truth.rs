@@ -37,7 +37,7 @@ fn error_without_truth_asks_for_it_once_and_the_last_picture_stays() {
     (0..43).for_each(|_| progress.advance());
     harness.run_steps(2);
     harness.get_by_label("The truth is being traced … 43 %");
-    harness.get_by_label("Shown until then: stencil after step 4.");
+    harness.get_by_label("Shown until then: stencil after step 3.");
     harness.state_mut().inspector.update_capture(Arc::new(with_truth(z_fail(SIZE))));
     harness.run_steps(2);
     assert_eq!((asked(&harness), kind(&harness)), (1, Some(PictureKind::Error)));

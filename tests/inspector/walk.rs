@@ -301,7 +301,6 @@ fn pictures_of_walking_can_be_drawn() {
     let folder = std::env::var_os("INSPECTOR_PICTURES").map(PathBuf::from);
     let mut harness = harness_of(over(&box_scene()), [1296.0, 816.0]);
     answer(&mut harness);
-    click(&mut harness, "Gizmos");
     draw(&mut harness, folder.as_deref(), "walk-before", [1280, 800]);
     click(&mut harness, "Walk");
     draw(&mut harness, folder.as_deref(), "walk", [1280, 800]);

@@ -202,6 +202,19 @@ fn wait_for_request(worker: &Worker, news: &Receiver<News>) -> (u64, RunRequest)
 }
 
 #[test]
+fn what_was_set_for_one_scene_is_not_set_for_the_next() {
+    let (worker, _, news) = started();
+    let (scene, mut request) = wait_for_request(&worker, &news);
+    request.choice = Choice::new(Technique::ZFail);
+    request.choice.set("casters", "light-facing").expect("a setting");
+    assert!(worker.order(Order::Run { scene, request: Box::new(request) }));
+    assert_eq!(captured(&news).1["casters"], "light-facing");
+    assert!(worker.order(Order::Open("tori".to_owned())));
+    let (technique, settings, _) = captured(&news);
+    assert_eq!((technique.as_str(), settings["casters"].as_str()), ("z-fail", "all"), "the technique stays");
+}
+
+#[test]
 fn the_size_of_a_case_goes_with_it_but_what_is_changed_meanwhile_stays() {
     let (worker, _frame, news) = started();
     let z_fail = case("wide-picture").entrants().into_iter().find(|entrant| entrant.technique == Technique::ZFail);

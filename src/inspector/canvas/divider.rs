@@ -2,11 +2,11 @@
 //! assistive technology as the slider that it is.
 
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::keep_arrows;
 use crate::inspector::model::looking::{Compare, NUDGE};
 use egui::accesskit::Action as Access;
 use egui::{
-    Align2, Color32, CornerRadius, CursorIcon, EventFilter, Key, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
-    vec2,
+    Align2, Color32, CornerRadius, CursorIcon, Key, Rect, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// Size of the handle, points.
@@ -32,10 +32,7 @@ pub fn ui(ui: &mut Ui, rect: Rect, compare: &mut Compare, names: [&str; 2]) {
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
         compare.at = (pointer.x - rect.left()) / rect.width().max(1.0);
     }
-    if response.has_focus() {
-        let arrows = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
-    }
+    keep_arrows(ui, &response);
     compare.at += NUDGE * steps(ui, response.id, response.has_focus()) as f32;
     compare.at = compare.at.clamp(0.0, 1.0);
 

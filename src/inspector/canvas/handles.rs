@@ -1,8 +1,9 @@
 //! Handles of lights and camera: what can be moved, where it stands, and how it is grabbed.
 
+use crate::inspector::look::widgets::keep_arrows;
 use crate::reading::format;
 use crate::scene::Light;
-use egui::{EventFilter, Id, Key, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use egui::{Id, Key, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::{DMat3, DVec3, DVec4};
 
 /// How far an arrow key moves, in parts of the view's height, and with Shift.
@@ -81,8 +82,7 @@ pub fn arrows(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
     if !response.has_focus() {
         return None;
     }
-    let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    keep_arrows(ui, response);
     let by = ui.input(|input| {
         let presses = |key| input.num_presses(key) as f64 * STEPS[usize::from(input.modifiers.shift)];
         [presses(Key::ArrowRight) - presses(Key::ArrowLeft), presses(Key::ArrowUp) - presses(Key::ArrowDown)]

@@ -13,6 +13,8 @@ use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::palette;
 use crate::inspector::look::texture::{PictureCache, TextureSize};
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::keep_arrows;
+use crate::inspector::model::selection::moved;
 use crate::reading::shown::{PictureView, Shown, Zoom};
 use egui::epaint::Mesh;
 use egui::{
@@ -57,6 +59,8 @@ pub struct Canvas<'a> {
     pub pick: &'a mut Option<[u32; 2]>,
     /// Where textures are kept.
     pub textures: &'a mut PictureCache,
+    /// Arrow keys move its pick while it has the focus.
+    pub has_arrows: bool,
 }
 
 /// The widget of the picture's own canvas.
@@ -76,14 +80,14 @@ pub fn ui(
     sheets: &[Sheet],
 ) -> (Placement, Option<[u32; 2]>) {
     let image = &shown.images[0];
-    let Canvas { name, view, pick, textures } = canvas;
+    let Canvas { name, view, pick, textures, has_arrows } = canvas;
     let response = ui.interact(rect, Id::unique(name), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, name));
     let pixels_per_point = ui.pixels_per_point();
     let place = |view: &PictureView| Placement::new(view, image.size(), rect, pixels_per_point);
     move_view(ui, view, &response, place(view), pixels_per_point);
     let placement = place(view);
-    picked(ui, pick, &response, placement);
+    picked(ui, pick, &response, placement, has_arrows);
     let hover = response.hover_pos().and_then(|at| placement.texel(at));
 
     let painter = ui.painter_at(rect);
@@ -171,8 +175,8 @@ fn set_view(view: &mut PictureView, pixels: f32, center: egui::Vec2) {
     view.center = [f64::from(center.x), f64::from(center.y)];
 }
 
-/// Right-click and right-drag pick; arrow keys nudge the pick while the picture has the focus.
-fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: Placement) {
+/// Right-click and right-drag pick; where it `has_arrows`, they move the pick while it has the focus.
+fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: Placement, has_arrows: bool) {
     if response.clicked() || response.secondary_clicked() || response.drag_started() {
         response.request_focus();
     }
@@ -180,16 +184,11 @@ fn picked(ui: &Ui, pick: &mut Option<[u32; 2]>, response: &Response, placement: 
     if let Some(texel) = response.interact_pointer_pos().filter(|_| by_mouse).and_then(|at| placement.texel(at)) {
         *pick = Some(texel);
     }
-    if response.has_focus() {
-        let arrows = egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+    if has_arrows && response.has_focus() {
+        keep_arrows(ui, response);
         let by = nudge(ui);
         if by != [0, 0] {
-            let from = pick.unwrap_or(placement.size.map(|side| side / 2));
-            *pick = Some([0, 1].map(|axis| {
-                let last = placement.size[axis].saturating_sub(1);
-                from[axis].saturating_add_signed(by[axis]).min(last)
-            }));
+            *pick = Some(moved(*pick, by, placement.size));
         }
     }
 }

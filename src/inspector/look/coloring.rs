@@ -158,13 +158,13 @@ pub fn linear([r, g, b, _]: [u8; 4]) -> Color32 {
     Color32::from_rgb(encoded(r), encoded(g), encoded(b))
 }
 
-/// The colour of a count that went up or down: stronger the further it went; see-through where it did not.
+/// The colour of a count that went up or down: deep for one, lighter the further it went; see-through where it did not.
 #[must_use]
 pub fn count_color(by: i8) -> Color32 {
     let strength = match by.unsigned_abs() {
         0 => return Color32::TRANSPARENT,
         1 => 0.0,
-        steps => (f32::from(steps - 1) * 0.22).min(0.75),
+        steps => (f32::from(steps - 1) * 0.45).min(0.9),
     };
     let base = if by > 0 { palette::UP } else { palette::DOWN };
     base.lerp_to_gamma(Color32::WHITE, strength)

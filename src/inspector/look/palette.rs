@@ -97,18 +97,22 @@ pub fn receiver(ink: u8) -> Color32 {
     }
 }
 
-/// How many fragments reached a pixel: dark for none, then lighter, twice as many a step.
+/// How many fragments reached a pixel: dark for none, clearly more for one, then lighter, about twice as many a step.
 #[must_use]
 pub fn overdraw(fragments: u8) -> Color32 {
     const RAMP: [(u8, u8, u8); 6] = [
-        (0x14, 0x17, 0x1d),
-        (0x1f, 0x3a, 0x5f),
-        (0x2a, 0x72, 0x9c),
-        (0x1f, 0xae, 0x84),
-        (0xf0, 0xe4, 0x42),
+        (0x35, 0x55, 0x9c),
+        (0x2a, 0x8c, 0xb0),
+        (0x2f, 0xb5, 0x8a),
+        (0xa4, 0xcf, 0x4a),
+        (0xf5, 0xe9, 0x52),
         (0xff, 0xff, 0xff),
     ];
-    let place = (f32::from(fragments) + 1.0).log2() / 8.0 * (RAMP.len() - 1) as f32;
+    if fragments == 0 {
+        return stencil(0);
+    }
+    // From one to 64.
+    let place = (f32::from(fragments).log2() / 6.0).min(1.0) * (RAMP.len() - 1) as f32;
     let index = (place as usize).min(RAMP.len() - 2);
     let [from, to] = [RAMP[index], RAMP[index + 1]].map(|(r, g, b)| Color32::from_rgb(r, g, b));
     from.lerp_to_gamma(to, place - index as f32)
@@ -205,6 +209,14 @@ mod tests {
         }
         let black_and_white = apart(EYES[0], Color32::BLACK, Color32::WHITE);
         assert!((black_and_white - 1.0).abs() < 1e-3, "{black_and_white}");
+    }
+
+    #[test]
+    fn how_often_a_pixel_was_drawn_is_seen_from_the_first_fragment_on() {
+        for [few, more] in [[0, 1], [1, 2], [2, 4], [4, 8], [8, 16], [16, 64]] {
+            let found = apart(EYES[0], overdraw(few), overdraw(more));
+            assert!(found >= 0.1, "{few} and {more}: {found:.3}");
+        }
     }
 
     #[test]

@@ -1,11 +1,40 @@
 //! Small widgets that several panels are made of.
 
 use super::theme;
-use egui::{Align2, CornerRadius, Response, RichText, Stroke, Ui, pos2, vec2};
+use egui::{Align2, CornerRadius, Response, RichText, Stroke, StrokeKind, Ui, pos2, vec2};
+
+/// One of several buttons side by side.
+#[derive(Debug, Clone, Copy)]
+pub struct Segment<'a> {
+    /// Its words.
+    pub label: &'a str,
+    /// What it does, or why it can't be pressed.
+    pub explanation: &'a str,
+    /// It can be pressed.
+    pub is_enabled: bool,
+    /// It is not chosen, but what it stands for is seen.
+    pub is_seen: bool,
+    /// What was changed of what it stands for, marked by a dot; empty where nothing was.
+    pub changed: &'a str,
+}
+
+impl<'a> Segment<'a> {
+    /// One that can be pressed.
+    #[must_use]
+    pub fn new(label: &'a str, explanation: &'a str) -> Segment<'a> {
+        Segment { label, explanation, is_enabled: true, is_seen: false, changed: "" }
+    }
+}
 
 /// Buttons side by side in one frame, of which one is chosen: label and explanation of each.
 /// Returns the one that was clicked.
 pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
+    let all: Vec<Segment> = labels.iter().map(|(label, explanation)| Segment::new(label, explanation)).collect();
+    segments_of(ui, &all, chosen)
+}
+
+/// As [`segments`], where some can't be pressed.
+pub fn segments_of(ui: &mut Ui, segments: &[Segment], chosen: Option<usize>) -> Option<usize> {
     let mut clicked = None;
     let frame = egui::Frame::new()
         .fill(theme::of(ui).raised)
@@ -15,17 +44,40 @@ pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> 
         // Laid out left to right whatever surrounds them.
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
-            for (index, (label, explanation)) in labels.iter().enumerate() {
+            for (index, segment) in segments.iter().enumerate() {
                 let is_chosen = chosen == Some(index);
-                let color = if is_chosen { theme::of(ui).text } else { theme::of(ui).dim };
+                let color = match (segment.is_enabled, is_chosen || segment.is_seen) {
+                    (false, _) => theme::of(ui).faint,
+                    (true, true) => theme::of(ui).text,
+                    (true, false) => theme::of(ui).dim,
+                };
                 let fill = if is_chosen { theme::of(ui).selected_row } else { theme::of(ui).raised };
-                let text = RichText::new(*label).color(color);
+                let text = RichText::new(segment.label).color(color);
                 let button = egui::Button::selectable(is_chosen, text)
                     .fill(fill)
                     .stroke(Stroke::NONE)
                     .corner_radius(CornerRadius::same(3))
                     .min_size(vec2(0.0, theme::ROW_HEIGHT - 2.0));
-                if ui.add(button).on_hover_text(*explanation).clicked() {
+                let button = ui.add_enabled(segment.is_enabled, button);
+                let button = button.on_hover_text(segment.explanation).on_disabled_hover_text(segment.explanation);
+                if !segment.changed.is_empty() {
+                    let name = format!("{}, changed: {}", segment.label, segment.changed);
+                    let at = button.rect.right_top() + vec2(-5.0, 5.0);
+                    ui.painter().circle_filled(at, 2.5, theme::of(ui).lit);
+                    let place = egui::Rect::from_center_size(at, vec2(8.0, 8.0));
+                    let mark = ui.interact(place, button.id.with("changed"), egui::Sense::hover());
+                    mark.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
+                    mark.on_hover_text(name.as_str());
+                }
+                if segment.is_seen {
+                    let [from, to] = [button.rect.left() + 8.0, button.rect.right() - 8.0];
+                    ui.painter().hline(from..=to, button.rect.bottom() - 2.0, Stroke::new(1.5, theme::of(ui).dim));
+                }
+                if button.has_focus() {
+                    let outline = Stroke::new(1.0, theme::of(ui).focus);
+                    ui.painter().rect_stroke(button.rect, CornerRadius::same(3), outline, StrokeKind::Inside);
+                }
+                if button.clicked() {
                     clicked = Some(index);
                 }
             }
@@ -34,12 +86,59 @@ pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> 
     clicked
 }
 
-/// A widget of the pass tree keeps the arrows: they step, and do not move the focus.
+/// The name of a setting: brighter where it was changed.
+pub fn setting_name(ui: &mut Ui, name: &str, is_changed: bool) -> Response {
+    let ink = if is_changed { theme::of(ui).text } else { theme::of(ui).dim };
+    ui.label(theme::note(name).color(ink))
+}
+
+/// Width of a button that takes one change back, points.
+const RESET_WIDTH: f32 = 14.0;
+
+/// The start of a setting's row: where it was changed a mark, which takes the change back when pressed. It has its room
+/// all the same, so that nothing moves.
+pub fn reset(ui: &mut Ui, name: &str, is_changed: bool, before: &str) -> bool {
+    let size = vec2(RESET_WIDTH, ui.spacing().interact_size.y);
+    if !is_changed {
+        ui.allocate_exact_size(size, egui::Sense::hover());
+        return false;
+    }
+    let button = egui::Button::new(theme::number("↺").size(15.0)).frame_when_inactive(false).small().min_size(size);
+    let button = ui.add(button).accessible_name(format!("Reset {name}"));
+    button.on_hover_text(format!("Changed. Back to {before}")).clicked()
+}
+
+/// A widget that arrows move itself: while it has the focus they do not step.
 pub fn keep_arrows(ui: &Ui, response: &Response) {
     if response.has_focus() {
         let arrows =
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..egui::EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+        ui.data_mut(|data| data.insert_temp(own_arrows(), response.id));
+    }
+}
+
+/// Do arrows move the widget with the focus itself?
+#[must_use]
+pub fn has_own_arrows(ctx: &egui::Context, focus: Option<egui::Id>) -> bool {
+    focus.is_some() && focus == ctx.data(|data| data.get_temp(own_arrows()))
+}
+
+/// Where it is noted which one that is.
+fn own_arrows() -> egui::Id {
+    egui::Id::unique("moved by arrows itself")
+}
+
+/// What stands at the right end of a row, in the order in which it is read and Tab goes.
+pub fn at_right(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+    let id = ui.scope_id().with(name);
+    let known: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(0.0);
+    ui.add_space((ui.available_width() - known).max(0.0));
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let width = ui.scope_builder(egui::UiBuilder::new().layout(layout), contents).response.rect.width();
+    if (width - known).abs() > 0.5 {
+        ui.data_mut(|data| data.insert_temp(id, width));
+        ui.ctx().request_discard("what stands at the right has another width");
     }
 }
 

@@ -45,6 +45,7 @@ impl Model {
     /// where it still lies inside.
     pub fn set_capture(&mut self, capture: Arc<Capture>) {
         self.activity.is_waiting = false;
+        self.activity.succeeded();
         let before = self.frame.capture.take();
         self.select_in(before.as_deref(), &capture);
         self.answers.new_frame();
@@ -67,7 +68,7 @@ impl Model {
     /// Where truth is looked at, that of the frame before is shown until that of this one is known.
     fn keep_truth(&mut self, before: Option<&Capture>, now: &Capture) {
         let is_alike = |before: &&Capture| before.scene == now.scene && before.size == now.size;
-        match before.filter(is_alike).filter(|_| self.view.kind.needs_truth()) {
+        match before.filter(is_alike).filter(|_| self.view.wants_truth()) {
             None => self.view.older_truth = None,
             Some(before) if has_truth(before) => {
                 let lights = before.lights.iter().map(|light| light.truth.clone()).collect();

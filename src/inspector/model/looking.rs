@@ -14,6 +14,7 @@ use crate::reading::format;
 use crate::reading::moment::Moment;
 use crate::reading::outcomes::TestOutcomes;
 use crate::reading::shown::{PictureKind, Shown};
+use crate::reading::steps;
 use crate::technique::{Choice, Technique};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -105,11 +106,13 @@ impl With {
     }
 }
 
-/// `step 2 · volumes`.
+/// `step 2 · volumes`, `the mask of light 1`.
 #[must_use]
 pub fn step_words(capture: &Capture, step: usize) -> String {
-    let name = capture.steps.get(step).map_or("", |step| step.name.as_str());
-    format!("step {} · {name}", step + 1)
+    match steps::number(capture, step) {
+        Some(_) => format!("step {}", steps::title(capture, step)),
+        None => steps::words(capture, step),
+    }
 }
 
 /// How the picture is looked at.
@@ -165,9 +168,11 @@ impl Model {
     /// There is nothing before it, or it is not known.
     pub fn shown_before(&self, capture: &Capture) -> Result<Shown, NoBefore> {
         let at = self.moment();
-        let mut shown = self.view.shown(capture, before(capture, at)?).ok_or(NoBefore::First)?;
+        let before = before(capture, at)?;
+        let kind = self.view.kind_at(capture, at).ok_or(NoBefore::First)?;
+        let mut shown = self.view.shown_as(capture, before, kind).ok_or(NoBefore::First)?;
         let of = shown.title.split(" after ").next().unwrap_or_default().to_owned();
-        shown.title = format!("{of} before {}", at.words());
+        shown.title = format!("{of} before {}", at.words(capture));
         Ok(shown)
     }
 
@@ -196,12 +201,13 @@ impl Model {
             With::Step(step) if step >= capture.steps.len() => {
                 return Err(format!("This frame has no step {}: choose another.", step + 1));
             }
-            With::Step(step) => self.view.shown(capture, step),
+            With::Step(step) => self.view.shown_as(capture, step.into(), shown.kind),
             With::Technique(technique) => {
                 let request = self.request_of(technique).ok_or("A folder holds one technique only: choose a step.")?;
                 match self.answers.want(CaptureOf { request: Box::new(request) }) {
                     Reply { ready: Some(other), .. } => {
-                        self.view.shown(&other, same_step(capture, self.selection.step, &other))
+                        let step = same_step(capture, self.selection.step, &other);
+                        self.view.shown_as(&other, step.into(), shown.kind)
                     }
                     Reply { failed: Some(reason), .. } => {
                         return Err(format!("{} can't be shown: {reason}", technique.name()));
@@ -225,7 +231,7 @@ impl Model {
 
     /// Wants to know that where the picture of it is wished for.
     pub fn want_tests_shown(&self) -> Option<Reply<TestOutcomes>> {
-        (self.view.kind == PictureKind::Overdraw).then(|| self.want_tests())
+        (self.view.kind == Some(PictureKind::Overdraw)).then(|| self.want_tests())
     }
 
     /// The counts to show a pixel of: of the light whose picture is shown, or else of the step's.

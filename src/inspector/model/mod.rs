@@ -20,16 +20,19 @@ pub mod selection;
 pub mod undo;
 pub mod walk;
 
-use crate::ask::{Answers, Kind, TruthOf};
+use crate::ask::{Answers, Kind, ReportOf, TruthOf};
 use crate::inspector::action::{Dialog, Panel};
 use crate::inspector::look::texture::PictureCache;
 use crate::reading::shown::{PictureKind, PictureView, available, has_truth};
+use crate::report::MeasuredReport;
 use animation::Animation;
 use frame::ShownFrame;
 use looking::Modes;
 use memory::ThemeChoice;
 use scene::OpenScene;
 use selection::Selection;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use undo::Undo;
 use walk::Walk;
 
@@ -60,6 +63,8 @@ pub struct Model {
     pub theme: ThemeChoice,
     /// What was opened, the last first.
     pub recent: Vec<String>,
+    /// What was measured of scenes that were open before, by name.
+    reports: BTreeMap<String, (ReportOf, Arc<MeasuredReport>)>,
     /// Changes that can be taken back.
     pub undo: Undo,
     /// How the scene is to be run that was asked for by taking a change back.
@@ -81,10 +86,20 @@ pub struct Activity {
     pub is_waiting: bool,
     /// Errors that were not dismissed yet.
     pub errors: Vec<String>,
+    /// Those of them that say why a scene could not be opened or run.
+    failures: BTreeSet<String>,
     /// The file that is open changed: it can be loaded again.
     pub changed_file: Option<String>,
     /// What was exported last.
     pub exported: Option<String>,
+}
+
+impl Activity {
+    /// A scene was opened or run: that it could not be before is past.
+    pub fn succeeded(&mut self) {
+        let failures = std::mem::take(&mut self.failures);
+        self.errors.retain(|error| !failures.contains(error));
+    }
 }
 
 /// What one panel wishes of another: done in the same or the next frame.
@@ -96,6 +111,8 @@ pub struct Requests {
     pub tour: Option<usize>,
     /// The Scene tab brings the selected triangle to the middle.
     pub triangle_in_scene: bool,
+    /// The Shadow map tab brings the texel that the picked pixel reads to the middle: of this light's map.
+    pub texel_under: Option<usize>,
     /// The menu of overlays opens.
     pub overlay_menu: bool,
     /// The search field of the passes opens.
@@ -122,15 +139,27 @@ impl Model {
         self.view.choose(kind);
     }
 
+    /// The kind of picture that is shown at the selected moment.
+    #[must_use]
+    pub fn kind(&self) -> Option<PictureKind> {
+        self.view.kind_at(self.frame.capture.as_ref()?, self.moment())
+    }
+
     /// Wants the truth where its picture is wished for and it is not known.
     pub fn want_truth(&self) {
-        let is_missing =
-            self.frame.capture.as_ref().is_some_and(|capture| {
-                !has_truth(capture) && available(capture, self.moment()).contains(&self.view.kind)
-            });
-        if self.view.kind.needs_truth() && is_missing {
+        let is_missing = self.frame.capture.as_ref().is_some_and(|capture| {
+            let kinds = available(capture, self.moment());
+            !has_truth(capture) && self.view.kind.is_some_and(|kind| kinds.contains(&kind))
+        });
+        if self.view.wants_truth() && is_missing {
             self.answers.want(TruthOf {});
         }
+    }
+
+    /// Shows why a scene could not be opened or run, until one is.
+    pub fn push_failure(&mut self, error: String) {
+        self.activity.failures.insert(error.clone());
+        self.push_error(error);
     }
 
     /// Shows an error with its mend until it is dismissed; what was shown before stays.

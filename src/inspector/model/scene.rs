@@ -1,11 +1,12 @@
 //! The open scene, and the run that the settings describe.
 
 use super::{Model, undo};
-use crate::ask::RunRequest;
+use crate::ask::{ReportOf, RunRequest};
 use crate::inspector::action::Action;
 use crate::scene::Scene;
 use crate::technique::{Choice, Technique};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The scene that is open.
 #[derive(Debug, Clone)]
@@ -20,6 +21,8 @@ pub struct OpenScene {
     pub objects: Vec<String>,
     /// What the next run will be.
     pub draft: RunRequest,
+    /// What it was when the scene was opened.
+    pub opened: RunRequest,
     /// The settings of techniques used before, to come back to.
     pub choices: BTreeMap<Technique, Choice>,
     /// Why the draft can't be run.
@@ -29,7 +32,12 @@ pub struct OpenScene {
 impl Model {
     /// Another scene is open; `None` for a capture folder, which can't be run again.
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>, source: Option<String>) {
+        let before = self.scene.take();
+        if let (Some(before), Some((question, report))) = (&before, self.answers.current::<ReportOf>()) {
+            self.reports.insert(before.name.clone(), (question.clone(), Arc::clone(report)));
+        }
         self.frame.plan = None;
+        self.activity.succeeded();
         self.activity.changed_file = None;
         self.animation = Default::default();
         if let Some(source) = &source {
@@ -49,9 +57,19 @@ impl Model {
             objects: scene.objects.iter().map(|object| object.name.clone()).collect(),
             choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
             problem: draft.check().err(),
+            opened: draft.clone(),
             draft,
         });
         self.activity.is_waiting = self.scene.is_some();
+        // One that is loaded again may be another one by now.
+        let name = self
+            .scene
+            .as_ref()
+            .map(|scene| scene.name.clone())
+            .filter(|name| before.is_none_or(|before| before.name != *name));
+        if let Some((question, report)) = name.and_then(|name| self.reports.get(&name)) {
+            self.answers.tell(question.clone(), Ok(Arc::clone(report)));
+        }
         self.note_for_undo();
     }
 

@@ -7,6 +7,7 @@ use crate::capture::{Capture, Step, StepDraws};
 use crate::history::Event;
 use crate::reading::moment::Moment;
 use crate::reading::shown::{PictureKind, Zoom};
+use crate::reading::steps;
 use std::sync::Arc;
 
 /// Seconds a step is shown while playing.
@@ -51,6 +52,8 @@ pub struct Selection {
     pub triangle: Option<TriangleKey>,
     /// Pixels that read the texel which the Shadow map tab marks.
     pub readers: Arc<Vec<[u32; 2]>>,
+    /// The light whose map the Shadow map tab shows, while it is open.
+    pub map_light: Option<usize>,
 }
 
 impl Selection {
@@ -76,10 +79,17 @@ fn key(event: &Event) -> Option<TriangleKey> {
 }
 
 impl Model {
-    /// How many steps there are.
+    /// How many steps make the frame.
     #[must_use]
     pub fn steps(&self) -> usize {
-        self.frame.capture.as_ref().map_or(0, |capture| capture.steps.len())
+        self.frame.capture.as_ref().map_or(0, |capture| steps::count(capture))
+    }
+
+    /// The steps of the frame before and after the selected one.
+    #[must_use]
+    pub fn neighbours(&self) -> [Option<usize>; 2] {
+        let of = |find: fn(&Capture, usize) -> Option<usize>| find(self.frame.capture.as_ref()?, self.selection.step);
+        [of(steps::previous), of(steps::next)]
     }
 
     /// What is selected.
@@ -140,9 +150,13 @@ impl Model {
         self.selection.playing = None;
     }
 
-    /// Goes `by` steps on, or back where negative.
+    /// Goes `by` steps on, or back where negative; masks are passed over.
     pub fn step_by(&mut self, by: isize) {
-        self.select_step(self.selection.step.saturating_add_signed(by));
+        for _ in 0..by.unsigned_abs() {
+            let [before, after] = self.neighbours();
+            let Some(step) = (if by > 0 { after } else { before }) else { break };
+            self.select_step(step);
+        }
     }
 
     /// Goes `by` draws on through the whole frame, or back where negative.
@@ -171,7 +185,7 @@ impl Model {
     /// Starts to play at time `now`, from the start if the end is reached; or stops.
     pub fn toggle_play(&mut self, now: f64) {
         if self.selection.playing.take().is_none() && self.steps() > 1 {
-            if self.selection.step + 1 >= self.steps() {
+            if self.neighbours()[1].is_none() {
                 self.select_step(0);
             }
             self.selection.playing = Some(now + SECONDS_A_STEP);
@@ -182,10 +196,18 @@ impl Model {
     pub fn play(&mut self, now: f64) -> Option<f64> {
         if now >= self.selection.playing? {
             self.step_by(1);
-            let at_end = self.selection.step + 1 >= self.steps();
-            self.selection.playing = (!at_end).then_some(now + SECONDS_A_STEP);
+            self.selection.playing = self.neighbours()[1].map(|_| now + SECONDS_A_STEP);
         }
         self.selection.playing.map(|next| (next - now).max(0.0))
+    }
+
+    /// Moves the pick of the shown picture by so many pixels; without one, from the middle.
+    pub fn move_pick(&mut self, by: [i32; 2]) {
+        let Some(capture) = self.frame.capture.clone() else { return };
+        let Some(shown) = self.shown(&capture) else { return };
+        let Some(size) = shown.images.first().map(|image| image.size()) else { return };
+        let pick = self.selection.pick_of(shown.kind);
+        *pick = Some(moved(*pick, by, size));
     }
 
     /// Picks a pixel and brings it to the middle, large enough that `side` texels around it take
@@ -202,7 +224,7 @@ impl Model {
 }
 
 /// The step of `now` that means what step `index` of `before` meant: the last stays the last,
-/// a pass of the same name and light is the same.
+/// a pass of the same name and light is the same. Where none is, the last: the whole frame.
 #[must_use]
 pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
     let last = now.steps.len().saturating_sub(1);
@@ -211,5 +233,12 @@ pub fn same_step(before: &Capture, index: usize, now: &Capture) -> usize {
     if now.steps.get(index).is_some_and(is_same) {
         return index;
     }
-    now.steps.iter().position(is_same).unwrap_or(index.min(last))
+    now.steps.iter().position(is_same).unwrap_or(last)
+}
+
+/// A pick moved within a picture of this size; without one, from its middle.
+#[must_use]
+pub fn moved(pick: Option<[u32; 2]>, by: [i32; 2], size: [u32; 2]) -> [u32; 2] {
+    let from = pick.unwrap_or(size.map(|side| side / 2));
+    [0, 1].map(|axis| from[axis].saturating_add_signed(by[axis]).min(size[axis].saturating_sub(1)))
 }

@@ -3,8 +3,10 @@
 
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
+use crate::inspector::panels::pixel::map;
 use crate::inspector::tours::TOURS;
 use crate::reading::explain_facts::{Known, facts};
+use crate::reading::steps;
 use egui::{Label, RichText, Ui};
 
 /// Draws the tab.
@@ -15,17 +17,20 @@ pub fn ui(ui: &mut Ui, own: &mut Explain, model: &mut Model) {
     };
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         if let Some(step) = capture.steps.get(model.selection.step) {
-            theme::heading(ui, &format!("{} · {}", model.selection.step + 1, step.name));
+            theme::heading(ui, &steps::title(&capture, model.selection.step));
             ui.add(Label::new(step.purpose.as_str()).wrap());
             ui.add_space(8.0);
         }
         let history = model.history_of_frame();
+        let light = capture.steps.get(model.selection.step).and_then(|step| step.light).unwrap_or(0);
+        let map = model.selection.pick.and_then(|at| map::decision(model, &capture, light, at));
         let known = Known {
             capture: &capture,
             step: model.selection.step,
             lights: model.scene.as_ref().map_or(&[], |scene| &scene.draft.lights),
             pick: model.selection.pick,
             history: history.as_deref(),
+            map: map.as_ref(),
         };
         // Counting a picture is not free: it is done once for each step and pixel.
         let told = own.of(model.frame.number, &known);
@@ -68,13 +73,20 @@ pub struct Explain {
     facts: std::rc::Rc<Vec<crate::reading::explain_facts::Fact>>,
 }
 
-/// Facts change with these: frame, step, pixel, of which pixel the history is, and whether there is a truth.
-type Key = (u64, usize, Option<[u32; 2]>, Option<[u32; 2]>, bool);
+/// Facts change with these: frame, step, pixel, of which pixel the history is, and whether there are a truth and a
+/// texel.
+type Key = (u64, usize, Option<[u32; 2]>, Option<[u32; 2]>, [bool; 2]);
 
 impl Explain {
     fn of(&mut self, frame: u64, known: &Known) -> std::rc::Rc<Vec<crate::reading::explain_facts::Fact>> {
         let has_truth = known.capture.lights.iter().any(|light| light.truth.is_some());
-        let key = (frame, known.step, known.pick, known.history.map(|history| history.pixel), has_truth);
+        let key = (
+            frame,
+            known.step,
+            known.pick,
+            known.history.map(|history| history.pixel),
+            [has_truth, known.map.is_some()],
+        );
         if self.of != Some(key) {
             self.of = Some(key);
             self.facts = std::rc::Rc::new(facts(known));

@@ -6,6 +6,7 @@ use crate::inspector::model::Model;
 use crate::plan::words::{self, Api};
 use crate::plan::{Draw, FramePlan, Pass};
 use crate::reading::format;
+use crate::reading::steps;
 use egui::{Label, Ui};
 
 /// The tab.
@@ -28,7 +29,7 @@ pub fn ui(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model) {
     };
     let Some(plan) = plan.as_ref() else { return };
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-        theme::heading(ui, &format!("{} · {}", step + 1, pass.name));
+        theme::heading(ui, &steps::title(&capture, step));
         attachments(ui, plan, pass);
         let draw = model.selection.draw.and_then(|draw| pass.draws.get(draw)).or_else(|| pass.draws.last());
         match draw {

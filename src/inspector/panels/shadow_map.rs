@@ -85,6 +85,7 @@ impl ShadowMapPanel {
 impl ShadowMapPanel {
     /// The tab is hidden: pixels stay marked only where a texel is picked.
     pub fn hide(&self, model: &mut Model) {
+        model.selection.map_light = None;
         if self.pick.is_none() {
             model.selection.readers = Arc::default();
         }
@@ -113,11 +114,15 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
         };
         return empty(ui, rect, words);
     };
+    if let Some(light) = model.requests.texel_under {
+        own.light = light;
+    }
     if !lights.contains(&own.light) {
         own.light = *first;
     }
-    own.view.kind = PictureKind::Map;
+    own.view.kind = Some(PictureKind::Map);
     own.view.light = own.light;
+    model.selection.map_light = Some(own.light);
     let reply = model.answers.want(ReadersOf { light: own.light });
     let is_waited_for = reply.ready.is_none() && reply.failed.is_none();
     let readers = reply.ready;
@@ -129,6 +134,9 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
         own.view.face = FaceChoice::One(of_pick.map_or(0, |texel| texel.face));
         // The first, until it is known which one the picked pixel reads.
         own.is_any_face = is_waited_for;
+    }
+    if let Some(texel) = of_pick.filter(|_| model.requests.texel_under.take().is_some()) {
+        show_texel(own, texel);
     }
     tools(ui, own, &capture, &lights);
     let rect = ui.available_rect_before_wrap();
@@ -241,6 +249,13 @@ fn show_face(own: &mut ShadowMapPanel, face: usize) {
     own.pick = None;
 }
 
+/// Brings a texel to the middle, so large that it shows its number.
+fn show_texel(own: &mut ShadowMapPanel, texel: MapTexel) {
+    show_face(own, texel.face);
+    own.view.zoom = Zoom::Pixels(canvas::NUMBERS_FROM + 4.0);
+    own.view.center = texel.at.map(|place| f64::from(place) + 0.5);
+}
+
 /// Draws the shown face; the texel under the pointer.
 fn face(
     ui: &mut Ui,
@@ -255,7 +270,8 @@ fn face(
     let shown = Some(shown).filter(|shown| shown.kind == PictureKind::Map && shown.images.len() == 1)?;
     let range = own.view.depth_range.unwrap_or_else(|| full_range(textures, &shown));
     let coloring = Coloring::of_shown(&shown, range);
-    let canvas = Canvas { name: "Shadow map canvas", view: &mut own.view, pick: &mut own.pick, textures };
+    let canvas =
+        Canvas { name: "Shadow map canvas", view: &mut own.view, pick: &mut own.pick, textures, has_arrows: true };
     let (placement, over) = canvas::ui(ui, canvas, rect, &shown, coloring, &[]);
     if let Some(texel) = linked.filter(|texel| texel.face == own.face()) {
         mark_texel(ui, rect, placement, texel.at);
@@ -378,9 +394,7 @@ fn facts(ui: &mut Ui, own: &mut ShadowMapPanel, capture: &Capture, links: &Links
     if let Some(texel) = links.of_pick {
         let text = "Show the picked pixel's texel";
         if ui.button(text).on_hover_text("Brings the texel that the picked pixel reads to the middle").clicked() {
-            show_face(own, texel.face);
-            own.view.zoom = Zoom::Pixels(canvas::NUMBERS_FROM + 4.0);
-            own.view.center = texel.at.map(|place| f64::from(place) + 0.5);
+            show_texel(own, texel);
         }
     }
 }

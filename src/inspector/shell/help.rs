@@ -3,7 +3,7 @@
 use crate::inspector::action::Dialog;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::inspector::shell::keys::{BINDINGS, PICTURE, Scope};
+use crate::inspector::shell::keys::{BINDINGS, Binding, PICTURE, Scope};
 use crate::inspector::shell::walk;
 use egui::{Context, Id, Ui};
 
@@ -37,14 +37,19 @@ pub fn ui(ctx: &Context, model: &mut Model) {
 fn contents(ui: &mut Ui) {
     theme::heading(ui, "Keys");
     section(ui, "Anywhere", of_scope(Scope::Anywhere));
-    section(ui, "While the passes, or nothing, have the focus", of_scope(Scope::Passes));
+    section(ui, "Through the frame", of_scope(Scope::Steps));
     section(ui, "How the picture is looked at", of_scope(Scope::Picture));
-    section(ui, "On the picture", PICTURE.into_iter());
+    section(ui, "On the picture", PICTURE.into_iter().chain(of_scope(Scope::Free)));
     section(ui, "While walking (Tab over the picture, or Walk)", walk::KEYS.iter().map(|key| (key.keys, key.does)));
 }
 
 fn of_scope(scope: Scope) -> impl Iterator<Item = (&'static str, &'static str)> {
-    BINDINGS.iter().filter(move |binding| binding.scope == scope).map(|binding| (binding.keys, binding.does))
+    let has_words = |binding: &&Binding| !binding.keys.is_empty();
+    BINDINGS
+        .iter()
+        .filter(has_words)
+        .filter(move |binding| binding.scope == scope)
+        .map(|binding| (binding.keys, binding.does))
 }
 
 fn section(ui: &mut Ui, title: &str, rows: impl Iterator<Item = (&'static str, &'static str)>) {

@@ -1,14 +1,16 @@
 //! The keys: one table, that handling and help both read.
 //!
-//! Commands act anywhere, or only while nothing or a widget of the pass tree has the focus; a text
-//! field or the picture keeps its keys. Keys are consumed before widgets see them. The keys of the
-//! picture and of walking are handled where they act; their words are here, so that the help window
+//! The stepping keys always step: whatever has the focus, but for a text field and for what is itself moved by
+//! arrows, as a handle or a slider is. Keys are consumed before widgets see them. What the mouse does on the
+//! picture and the keys of walking are handled where they act; their words are here, so that the help window
 //! lists all.
 
 use crate::inspector::action::{Action, Dialog, ExportKind};
+use crate::inspector::canvas;
+use crate::inspector::look::widgets;
 use crate::inspector::model::looking::Phase;
 use crate::inspector::model::{Model, StepSearch};
-use egui::{Context, Key, Modifiers};
+use egui::{Context, EventFilter, Id, Key, Modifiers};
 
 /// What a key does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,6 +57,10 @@ pub enum Command {
     Overlays,
     /// Swaps the sides of a comparison.
     Flip,
+    /// Moves the pick by so many pixels right and down.
+    MovePick(i32, i32),
+    /// No pixel is picked any longer.
+    Unpick,
 }
 
 /// Where a key acts.
@@ -62,10 +68,12 @@ pub enum Command {
 pub enum Scope {
     /// Wherever the focus is, but for a text field.
     Anywhere,
-    /// While nothing or the tree of passes has the focus.
-    Passes,
+    /// As those, but for what is moved by arrows itself.
+    Steps,
     /// Wherever the focus is, but for a text field and an open menu.
     Picture,
+    /// While the picture or nothing has the focus: a focused button is pressed by it, or left.
+    Free,
 }
 
 /// A key and what it does.
@@ -97,16 +105,31 @@ const fn binding(
 }
 
 const REDO: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+const FAR: Modifiers = REDO;
+
+/// Told among what one does on the picture, all at once.
+const fn move_pick(modifiers: Modifiers, key: Key, [right, down]: [i32; 2]) -> Binding {
+    binding(modifiers, key, Scope::Steps, Command::MovePick(right, down), "", "")
+}
 
 /// All of them. Of two with the same key the one with more modifiers stands first.
-pub const BINDINGS: [Binding; 24] = [
-    binding(Modifiers::NONE, Key::ArrowLeft, Scope::Passes, Command::PreviousPass, "Left", "the pass before"),
-    binding(Modifiers::NONE, Key::ArrowRight, Scope::Passes, Command::NextPass, "Right", "the next pass"),
-    binding(Modifiers::NONE, Key::ArrowUp, Scope::Passes, Command::PreviousDraw, "Up", "the draw before"),
-    binding(Modifiers::NONE, Key::ArrowDown, Scope::Passes, Command::NextDraw, "Down", "the next draw"),
-    binding(Modifiers::NONE, Key::Home, Scope::Passes, Command::FirstPass, "Home", "the first pass"),
-    binding(Modifiers::NONE, Key::End, Scope::Passes, Command::LastPass, "End", "the last pass"),
-    binding(Modifiers::NONE, Key::Space, Scope::Passes, Command::Play, "Space", "play through the frame, or stop"),
+pub const BINDINGS: [Binding; 33] = [
+    move_pick(FAR, Key::ArrowLeft, [-10, 0]),
+    move_pick(FAR, Key::ArrowRight, [10, 0]),
+    move_pick(FAR, Key::ArrowUp, [0, -10]),
+    move_pick(FAR, Key::ArrowDown, [0, 10]),
+    move_pick(Modifiers::SHIFT, Key::ArrowLeft, [-1, 0]),
+    move_pick(Modifiers::SHIFT, Key::ArrowRight, [1, 0]),
+    move_pick(Modifiers::SHIFT, Key::ArrowUp, [0, -1]),
+    move_pick(Modifiers::SHIFT, Key::ArrowDown, [0, 1]),
+    binding(Modifiers::NONE, Key::Escape, Scope::Free, Command::Unpick, "Esc", "no pixel is picked"),
+    binding(Modifiers::NONE, Key::ArrowLeft, Scope::Steps, Command::PreviousPass, "Left", "the pass before"),
+    binding(Modifiers::NONE, Key::ArrowRight, Scope::Steps, Command::NextPass, "Right", "the next pass"),
+    binding(Modifiers::NONE, Key::ArrowUp, Scope::Steps, Command::PreviousDraw, "Up", "the draw before"),
+    binding(Modifiers::NONE, Key::ArrowDown, Scope::Steps, Command::NextDraw, "Down", "the next draw"),
+    binding(Modifiers::NONE, Key::Home, Scope::Steps, Command::FirstPass, "Home", "the first pass"),
+    binding(Modifiers::NONE, Key::End, Scope::Steps, Command::LastPass, "End", "the last pass"),
+    binding(Modifiers::NONE, Key::Space, Scope::Free, Command::Play, "Space", "play through the frame, or stop"),
     binding(Modifiers::COMMAND, Key::G, Scope::Anywhere, Command::GoTo, "Ctrl-G", "go to a step by its number"),
     binding(Modifiers::COMMAND, Key::F, Scope::Anywhere, Command::Find, "Ctrl-F", "find a pass"),
     binding(Modifiers::COMMAND, Key::O, Scope::Anywhere, Command::Open, "Ctrl-O", "open a scene, a model or a capture"),
@@ -121,41 +144,52 @@ pub const BINDINGS: [Binding; 24] = [
         "undo a change of scene or technique",
     ),
     binding(Modifiers::COMMAND, Key::S, Scope::Anywhere, Command::Export, "Ctrl-S", "export the shown picture"),
-    binding(Modifiers::NONE, Key::T, Scope::Passes, Command::Animate, "T", "run the scene's animation, or stop it"),
-    binding(Modifiers::NONE, Key::Period, Scope::Passes, Command::AnimateStep, ".", "the animation, a frame on"),
+    binding(Modifiers::NONE, Key::T, Scope::Picture, Command::Animate, "T", "run the scene's animation, or stop it"),
+    binding(Modifiers::NONE, Key::Period, Scope::Picture, Command::AnimateStep, ".", "the animation, a frame on"),
     binding(Modifiers::COMMAND, Key::L, Scope::Anywhere, Command::Theme, "Ctrl-L", "light or dark theme"),
     binding(Modifiers::NONE, Key::B, Scope::Picture, Command::Before, "B", "the picture before the step, or after it"),
     binding(Modifiers::NONE, Key::D, Scope::Picture, Command::Diff, "D", "what the step changed"),
     binding(Modifiers::NONE, Key::O, Scope::Picture, Command::Overlays, "O", "the menu of overlays"),
     binding(Modifiers::NONE, Key::X, Scope::Picture, Command::Flip, "X", "swap the sides of a comparison"),
     binding(Modifiers::NONE, Key::F1, Scope::Anywhere, Command::Help, "F1", "this help"),
-    binding(Modifiers::NONE, Key::H, Scope::Passes, Command::Help, "H", "this help"),
-    binding(Modifiers::NONE, Key::Questionmark, Scope::Passes, Command::Help, "?", "this help"),
+    binding(Modifiers::NONE, Key::H, Scope::Picture, Command::Help, "H", "this help"),
+    binding(Modifiers::NONE, Key::Questionmark, Scope::Picture, Command::Help, "?", "this help"),
 ];
 
-/// Keys of the picture while it has the focus, and what the mouse does on it: key, what it does.
+/// What is done on the picture by the mouse, and to the pick by keys: key, what it does.
 pub const PICTURE: [(&str, &str); 6] = [
     ("Right click, right drag", "pick a pixel: its history is told beside"),
     ("Wheel", "zoom at the pointer"),
     ("Left drag", "move the picture"),
-    ("Arrow keys", "move the pick by a pixel"),
+    ("Shift-arrow keys", "move the pick by a pixel; with Ctrl too, by ten"),
     ("Double click on an event", "go to the step that made it"),
     ("Tab, Shift-Tab", "from widget to widget; Enter or Space presses it"),
 ];
 
-/// Acts on the keys of this frame. `tree_widgets` are those of the passes, which leave the stepping keys alone.
-pub fn handle(ctx: &Context, model: &mut Model, tree_widgets: &[egui::Id], actions: &mut Vec<Action>) {
+/// What had the focus in the frame before. Escape takes the focus away before any key is looked at.
+#[derive(Debug, Default)]
+pub struct FocusBefore {
+    widget: Option<Id>,
+    is_typing: bool,
+}
+
+/// Acts on the keys of this frame.
+pub fn handle(ctx: &Context, before: &FocusBefore, model: &mut Model, actions: &mut Vec<Action>) {
     if matches!(model.dialog, Some(Dialog::Open | Dialog::Export(_))) {
         return;
     }
     let focus = ctx.memory(egui::Memory::focused);
-    let is_elsewhere = focus.is_some_and(|id| !tree_widgets.contains(&id)) || egui::Popup::is_any_open(ctx);
+    let is_in_menu = egui::Popup::is_any_open(ctx);
     let is_typing = ctx.text_edit_focused();
+    let is_free = |focus: Option<Id>| focus.is_none_or(|id| id == canvas::picture_id());
     for binding in &BINDINGS {
         let acts = match binding.scope {
             Scope::Anywhere => !is_typing || binding.modifiers == Modifiers::NONE || !edits_text(binding.command),
-            Scope::Passes => !is_elsewhere,
-            Scope::Picture => !is_typing && !egui::Popup::is_any_open(ctx),
+            Scope::Steps => !is_typing && !is_in_menu && !widgets::has_own_arrows(ctx, focus),
+            Scope::Picture => !is_typing && !is_in_menu,
+            Scope::Free => {
+                is_free(focus) && is_free(before.widget) && !before.is_typing && !is_in_menu && model.dialog.is_none()
+            }
         };
         if !acts {
             continue;
@@ -166,6 +200,17 @@ pub fn handle(ctx: &Context, model: &mut Model, tree_widgets: &[egui::Id], actio
             act(ctx, model, binding.command, presses, actions);
         }
     }
+}
+
+/// What has the focus at the end of a frame. Arrows do not take it away from a widget: they step.
+pub fn remember(ctx: &Context) -> FocusBefore {
+    let widget = ctx.memory(egui::Memory::focused);
+    let is_typing = ctx.text_edit_focused();
+    if let Some(id) = widget.filter(|_| !is_typing && !egui::Popup::is_any_open(ctx)) {
+        let arrows = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
+        ctx.memory_mut(|memory| memory.set_focus_lock_filter(id, arrows));
+    }
+    FocusBefore { widget, is_typing }
 }
 
 /// A text field has these keys for its own text.
@@ -200,6 +245,8 @@ pub fn act(ctx: &Context, model: &mut Model, command: Command, presses: usize, a
         Command::Before => toggle_phase(model, Phase::Before),
         Command::Diff => toggle_phase(model, Phase::Diff),
         Command::Overlays => model.requests.overlay_menu = true,
+        Command::MovePick(right, down) => model.move_pick([right * presses as i32, down * presses as i32]),
+        Command::Unpick => model.selection.pick = None,
         Command::Flip => {
             if let Some(compare) = &mut model.modes.compare {
                 compare.flipped = !compare.flipped;

@@ -2,15 +2,19 @@
 
 use crate::inspector::action::{Action, Dialog};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::segments;
+use crate::inspector::look::widgets::{Segment, at_right, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::memory::ThemeChoice;
+use crate::inspector::model::scene::OpenScene;
 use crate::inspector::shell::export;
 use crate::technique::Technique;
-use egui::{Margin, RichText, Ui};
+use egui::containers::menu::MenuButton;
+use egui::{Margin, RichText, Ui, vec2};
 
 /// Room for a button a technique, and the tools to their right, points.
-const WIDE: f32 = 960.0;
+const WIDE: f32 = 930.0;
+/// Width of what is open: whatever that is called, the techniques stay where they are.
+const NAME_WIDTH: f32 = 112.0;
 
 /// Draws the bar.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
@@ -25,8 +29,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             recent(ui, model, actions);
             ui.add_space(8.0);
             techniques(ui, model, actions);
-            let right = egui::Layout::right_to_left(egui::Align::Center);
-            ui.with_layout(right, |ui| tools(ui, model, actions));
+            at_right(ui, "tools", |ui| tools(ui, model, actions));
         });
     });
 }
@@ -34,7 +37,10 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
 /// What is open, and what was: a menu.
 fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
     let Some(name) = open_name(model) else { return };
-    let menu = ui.menu_button(RichText::new(&name).color(theme::of(ui).text), |ui| {
+    let text = RichText::new(&name).color(theme::of(ui).text);
+    let size = vec2(NAME_WIDTH, ui.spacing().interact_size.y);
+    let button = egui::Button::new(text).truncate().min_size(size);
+    let entries = |ui: &mut Ui| {
         ui.label(theme::note("Opened before"));
         if model.recent.is_empty() {
             ui.label("nothing yet");
@@ -45,32 +51,35 @@ fn recent(ui: &mut Ui, model: &Model, actions: &mut Vec<Action>) {
                 ui.close();
             }
         }
+    };
+    let place = ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        MenuButton::from_button(button).ui(ui, entries).0
     });
-    menu.response.accessible_name(format!("What is open: {name}")).on_hover_text("What is open, and what was");
+    place.inner.accessible_name(format!("What is open: {name}")).on_hover_text("What is open, and what was");
 }
 
-/// Right to left: help, theme, export, redo, undo.
+/// Undo, redo, export, theme, help.
 fn tools(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
-    if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
-        model.dialog = Some(Dialog::Help);
+    let undo = ui.add_enabled(model.undo.can_undo(), egui::Button::new("Undo"));
+    if undo.on_hover_text("Take the last change of scene or technique back (Ctrl-Z)").clicked() {
+        model.take_back(actions);
     }
-    let other = match model.theme.other() {
-        ThemeChoice::Dark => "Dark",
-        ThemeChoice::Light => "Light",
-    };
-    let theme = ui.button(other).on_hover_text(format!("Change to the {} theme (Ctrl-L)", other.to_lowercase()));
-    if theme.clicked() {
-        model.theme = model.theme.other();
-    }
-    let menu = ui.menu_button("Export", |ui| export::menu(ui, model));
-    menu.response.on_hover_text("Save the picture, its values, the capture or the scene (Ctrl-S)");
     let redo = ui.add_enabled(model.undo.can_redo(), egui::Button::new("Redo"));
     if redo.on_hover_text("Make the change again (Ctrl-Shift-Z)").clicked() {
         model.make_again(actions);
     }
-    let undo = ui.add_enabled(model.undo.can_undo(), egui::Button::new("Undo"));
-    if undo.on_hover_text("Take the last change of scene or technique back (Ctrl-Z)").clicked() {
-        model.take_back(actions);
+    let menu = ui.menu_button("Export", |ui| export::menu(ui, model));
+    menu.response.on_hover_text("Save the picture, its values, the capture or the scene (Ctrl-S)");
+    // "Light" alone would be one of the scene's.
+    let other = match model.theme.other() {
+        ThemeChoice::Dark => "dark",
+        ThemeChoice::Light => "light",
+    };
+    if ui.button("Theme").on_hover_text(format!("Change to the {other} theme (Ctrl-L)")).clicked() {
+        model.theme = model.theme.other();
+    }
+    if ui.button("Help").on_hover_text("All keys (F1)").clicked() {
+        model.dialog = Some(Dialog::Help);
     }
 }
 
@@ -110,9 +119,28 @@ fn techniques(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         combo.response.accessible_name("Technique");
         picked.filter(|index| chosen != Some(*index))
     } else {
-        segments(ui, &labels, chosen)
+        let changes = Technique::ALL.map(|technique| changes(scene, technique));
+        let segment = |((label, explanation), changed)| Segment { changed, ..Segment::new(label, explanation) };
+        let all: Vec<Segment> = labels.into_iter().zip(changes.iter().map(String::as_str)).map(segment).collect();
+        segments_of(ui, &all, chosen)
     };
     if let Some(index) = picked {
         model.choose_technique(Technique::ALL[index], actions);
     }
+}
+
+/// The settings of a technique that are not its own: `casters light-facing`.
+fn changes(scene: &OpenScene, technique: Technique) -> String {
+    let choice = if scene.draft.choice.technique() == technique {
+        Some(&scene.draft.choice)
+    } else {
+        scene.choices.get(&technique)
+    };
+    let Some(choice) = choice else { return String::new() };
+    let specs = technique.settings().iter();
+    let changed = specs.filter_map(|spec| {
+        let value = choice.settings().get(spec.key).filter(|value| *value != spec.default)?;
+        Some(format!("{} {value}", spec.key))
+    });
+    changed.collect::<Vec<_>>().join(", ")
 }

@@ -9,8 +9,9 @@ use crate::accuracy::Finding;
 use crate::capture::Capture;
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::at_right;
 use crate::inspector::model::Model;
-use crate::inspector::tours::{Go, TOURS, Tour};
+use crate::inspector::tours::{Go, TOURS, Tour, tour_of};
 use crate::technique::Technique;
 use egui::{Label, Margin, RichText, Ui};
 
@@ -43,7 +44,7 @@ impl Tours {
 
     /// Goes to a stop of the tour of a technique.
     pub fn go_to_stop_of(&mut self, model: &mut Model, technique: Technique, stop: usize, actions: &mut Vec<Action>) {
-        if let Some(tour) = TOURS.iter().position(|tour| tour.technique == technique) {
+        if let Some((tour, _)) = tour_of(technique) {
             self.go_to_stop(model, tour, stop, actions);
         }
     }
@@ -108,6 +109,8 @@ impl Tours {
         }
         self.at = Some(TourState { is_pending: false, ..at });
         model.modes.overlays.clear();
+        // A stop that names no picture shows what its step writes.
+        model.view.follow_steps();
         for go in stop.go {
             do_stop(model, *go, &capture);
         }
@@ -162,7 +165,7 @@ fn do_stop(model: &mut Model, go: Go, capture: &Capture) {
 /// How many stops the tour of a technique has.
 #[must_use]
 pub fn stops_of(technique: Technique) -> usize {
-    TOURS.iter().find(|tour| tour.technique == technique).map_or(0, |tour| tour.stops.len())
+    tour_of(technique).map_or(0, |(_, tour)| tour.stops.len())
 }
 
 fn scene_of(go: &[Go]) -> Option<&'static str> {
@@ -222,16 +225,16 @@ fn stop(ui: &mut Ui, tour: &Tour, at: &TourState, trouble: Option<&str>) -> Opti
     ui.horizontal(|ui| {
         theme::heading(ui, stop.title);
         ui.label(theme::note(format!("tour of {}, stop {} of {count}", tour.technique.name(), at.stop + 1)));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.button("End tour").on_hover_text("Leave the panels as they are").clicked() {
-                to = Some(None);
+        at_right(ui, "tour buttons", |ui| {
+            if ui.add_enabled(at.stop > 0, egui::Button::new("Stop before")).clicked() {
+                to = Some(at.stop.checked_sub(1));
             }
             let is_last = at.stop + 1 == count;
             if ui.add_enabled(!is_last, egui::Button::new("Next stop")).clicked() {
                 to = Some(Some(at.stop + 1));
             }
-            if ui.add_enabled(at.stop > 0, egui::Button::new("Stop before")).clicked() {
-                to = Some(at.stop.checked_sub(1));
+            if ui.button("End tour").on_hover_text("Leave the panels as they are").clicked() {
+                to = Some(None);
             }
         });
     });

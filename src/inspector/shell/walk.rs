@@ -162,12 +162,13 @@ fn act(ctx: &Context, model: &mut Model, command: WalkCommand, actions: &mut Vec
 
 /// Over the picture: silhouettes, then volumes, then the shadow alone, then nothing.
 fn next_overlay(model: &mut Model) {
+    let kind_now = model.kind();
     let on = &mut model.modes.overlays;
     let has = |overlay| on.contains(&overlay);
-    let (lines, kind) = match (has(Overlay::Silhouettes), has(Overlay::Volumes), model.view.kind) {
+    let (lines, kind) = match (has(Overlay::Silhouettes), has(Overlay::Volumes), kind_now) {
         (true, _, _) => (Some(Overlay::Volumes), PictureKind::Color),
         (_, true, _) => (None, PictureKind::Mask),
-        (_, _, PictureKind::Mask) => (None, PictureKind::Color),
+        (_, _, Some(PictureKind::Mask)) => (None, PictureKind::Color),
         _ => (Some(Overlay::Silhouettes), PictureKind::Color),
     };
     on.remove(&Overlay::Silhouettes);

@@ -53,7 +53,7 @@ impl Volume {
 
     pub fn draw(&self, part: &NeededPart, raster: RasterState) -> Draw {
         let what = match (part.part, part.turned) {
-            (Part::Side, _) if part.hugs => "hugging sides",
+            (Part::Side, _) if part.hugs => "grazing sides",
             (Part::Side, _) => "sides",
             (Part::LightCap, false) => "light cap",
             (Part::LightCap, true) => "turned light cap",

@@ -2,7 +2,7 @@
 //! known of meshes and flags.
 
 use super::fields::{Applied, DiagnosisPanel};
-use crate::diagnosis::{CauseFound, Diagnosis, Mend, Proof, RegionFound};
+use crate::diagnosis::{CauseFound, Diagnosis, Mend, Proof, RegionFound, Staying};
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -21,6 +21,10 @@ pub fn ui(
     before_and_after(ui, own, model, actions);
     if let Some(advice) = &diagnosis.advice {
         wrapped(ui, RichText::new(&advice.sentence).color(theme::of(ui).text));
+        if let Some(staying) = &advice.staying {
+            let words = format!("Stay with {}, apply all", diagnosis.technique.name());
+            apply_button(ui, own, model, &staying.mend, &words, actions);
+        }
         apply_button(ui, own, model, &advice.mend, "Apply all", actions);
         ui.add_space(8.0);
     }
@@ -30,7 +34,7 @@ pub fn ui(
             wrapped(ui, theme::note("No known cause fits: its history, on the right, tells how a pixel came about."));
         }
         for (index, found) in region.causes.iter().enumerate() {
-            cause(ui, own, model, found, index == 0, actions);
+            cause(ui, own, model, (diagnosis, found), index == 0, actions);
         }
     }
     meshes_and_flags(ui, diagnosis);
@@ -55,7 +59,7 @@ fn cause(
     ui: &mut Ui,
     own: &mut DiagnosisPanel,
     model: &mut Model,
-    found: &CauseFound,
+    (diagnosis, found): (&Diagnosis, &CauseFound),
     is_first: bool,
     actions: &mut Vec<Action>,
 ) {
@@ -71,6 +75,12 @@ fn cause(
     wrapped(ui, theme::note(&found.evidence).color(theme::of(ui).text));
     if is_first {
         wrapped(ui, theme::note(found.cause.meaning()));
+    }
+    // Who has chosen this technique is offered first what keeps it.
+    if let Some(Staying { mend, pixels_left }) = &found.staying {
+        let left = format::counted(*pixels_left, "pixel");
+        let words = format!("Stay with {}, {left} left", diagnosis.technique.name());
+        apply_button(ui, own, model, mend, &words, actions);
     }
     if let Some(mend) = &found.mend {
         apply_button(ui, own, model, mend, "Apply the mend", actions);

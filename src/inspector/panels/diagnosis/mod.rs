@@ -24,8 +24,9 @@ use std::sync::Arc;
 /// Width of the list of regions, points, and the most it may take of the panel.
 const LIST_WIDTH: f32 = 320.0;
 const LIST_SHARE: f32 = 0.5;
-/// Height of a region's row: two lines, points.
-const ROW: f32 = 40.0;
+/// Where the words of a region's row begin, and its height without its title, points.
+const INDENT: f32 = 28.0;
+const BELOW_TITLE: f32 = 26.0;
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mut Vec<Action>) {
@@ -132,29 +133,25 @@ fn region_row(
     index: usize,
 ) {
     let is_selected = own.selected == index;
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let (title, because) = (region.title(), because(diagnosis, region));
     let pixels = format::counted(region.pixels, "pixel");
-    let name = format!("{} · {title}: {pixels}, {because}", index + 1);
+    let numbered = format!("{} · {title}", index + 1);
+    // The last words of a title tell rows apart: they go on in a second line.
+    let font = TextStyle::Body.resolve(ui.style());
+    let room = (ui.available_width() - INDENT - 8.0).max(1.0);
+    let lines = ui.painter().layout(numbered.clone(), font, theme::of(ui).text, room);
+    let height = lines.size().y + BELOW_TITLE;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
+    let name = format!("{numbered}: {pixels}, {because}");
     response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, &name));
     theme::row_background(ui, rect, is_selected, &response);
-    let left = rect.left() + 12.0;
-    let painter = ui.painter();
-    let swatch = egui::Rect::from_min_size(pos2(left, rect.top() + 8.0), vec2(10.0, 10.0));
-    painter.rect_filled(swatch, 2.0, color(region.kind));
-    let font = TextStyle::Small.resolve(ui.style());
-    let count = painter.text(
-        pos2(rect.right() - 8.0, rect.top() + 13.0),
-        egui::Align2::RIGHT_CENTER,
-        &pixels,
-        font,
-        theme::of(ui).dim,
-    );
-    let title_at = pos2(left + 16.0, rect.top() + 5.0);
-    let numbered = format!("{} · {title}", index + 1);
-    theme::line(ui, title_at, count.left() - title_at.x - 8.0, &numbered, TextStyle::Body, theme::of(ui).text);
-    let second = pos2(left + 16.0, rect.top() + 22.0);
-    theme::line(ui, second, rect.right() - second.x - 8.0, &because, TextStyle::Small, theme::of(ui).dim);
+    let left = rect.left() + INDENT;
+    let swatch = egui::Rect::from_min_size(rect.min + vec2(12.0, 8.0), vec2(10.0, 10.0));
+    ui.painter().rect_filled(swatch, 2.0, color(region.kind));
+    let below = pos2(left, rect.top() + 6.0 + lines.size().y);
+    ui.painter().galley(pos2(left, rect.top() + 5.0), lines, theme::of(ui).text);
+    let second = format!("{pixels} · {because}");
+    theme::line(ui, below, rect.right() - left - 8.0, &second, TextStyle::Small, theme::of(ui).dim);
     let hover = "Click to go to a pixel of it, to what happened there, and to the step that decided it.";
     if response.on_hover_text(hover).clicked() {
         own.selected = index;

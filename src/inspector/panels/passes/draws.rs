@@ -6,7 +6,6 @@ use crate::ask::Reply;
 use crate::capture::{Capture, DrawState, DrawSummary, FrameTarget, Image, Snapshot, StepDraws};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets;
 use crate::inspector::model::Model;
 use crate::plan::LeftOut;
 use crate::reading::format;
@@ -37,7 +36,7 @@ pub fn of_step(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<C
     let listed = if own.all_draws == Some(model.selection.step) { draws.len() } else { short };
     let fetched = model.want_draws();
     for draw in 0..listed {
-        row(ui, own, model, (capture, &fetched), draw);
+        row(ui, model, (capture, &fetched), draw);
         if model.selection.draw == Some(draw) {
             note(ui, model, capture, &fetched);
         }
@@ -57,13 +56,7 @@ pub fn of_step(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<C
 }
 
 /// One draw: it can be selected, and says so while its state is being fetched.
-fn row(
-    ui: &mut Ui,
-    own: &mut Passes,
-    model: &mut Model,
-    (capture, fetched): (&Arc<Capture>, &Reply<StepDraws>),
-    index: usize,
-) {
+fn row(ui: &mut Ui, model: &mut Model, (capture, fetched): (&Arc<Capture>, &Reply<StepDraws>), index: usize) {
     let draw = &capture.steps[model.selection.step].draws[index];
     let is_selected = model.selection.draw == Some(index);
     let is_missing = is_selected && !model.selected().is_held(capture);
@@ -76,8 +69,6 @@ fn row(
         None => draw.name.clone(),
     };
     response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &name));
-    own.widgets.push(response.id);
-    widgets::keep_arrows(ui, &response);
     if is_selected && model.selection.wants_scroll {
         response.scroll_to_me(None);
     }

@@ -1,7 +1,6 @@
 //! What the panel remembers.
 
 use crate::inspector::model::StepSearch;
-use egui::Id;
 use std::collections::BTreeSet;
 
 /// The panel.
@@ -17,6 +16,4 @@ pub struct Passes {
     pub folded: BTreeSet<[usize; 2]>,
     /// Which frame that is of, by how many scenes were opened.
     pub folded_of: u64,
-    /// Its widgets: they leave the stepping keys alone.
-    pub widgets: Vec<Id>,
 }

@@ -10,18 +10,20 @@ pub mod transport;
 use crate::capture::{Capture, FrameTarget, Image, Snapshot, Step};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets;
 use crate::inspector::model::{Model, StepSearch};
 use crate::reading::counts;
 use crate::reading::format;
+use crate::reading::steps;
 use egui::{CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 pub use fields::Passes;
 use std::sync::Arc;
 use thumbnail::{changed_aspect, colored_layer, paint_row_background, paint_thumbnail};
 
+/// What is said of a mask in its row.
+const BESIDE: &str = "beside the frame";
+
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
-    own.widgets.clear();
     if let Some(search) = model.requests.search.take() {
         own.search = Some(search);
         own.search_wants_focus = true;
@@ -66,7 +68,7 @@ fn tree(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>
         if let Some(groups) = &groups {
             let Some(levels) = groups.above(ui, own, index) else { continue };
             recorded::indented(ui, levels, |ui| {
-                pass_row(ui, own, model, capture, index);
+                pass_row(ui, model, capture, index);
                 if index == model.selection.step {
                     draws::of_step(ui, own, model, capture);
                 }
@@ -75,9 +77,9 @@ fn tree(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>
         }
         if group.replace(step.light) != Some(step.light) {
             let last = capture.steps[index..].iter().take_while(|other| other.light == step.light).count();
-            group_heading(ui, own, model, capture, step.light, index + last - 1);
+            group_heading(ui, model, capture, step.light, index + last - 1);
         }
-        pass_row(ui, own, model, capture, index);
+        pass_row(ui, model, capture, index);
         if index == model.selection.step {
             draws::of_step(ui, own, model, capture);
         }
@@ -89,14 +91,7 @@ fn tree(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>
 }
 
 /// What the passes below belong to; pressed it selects `last`, the last of them: the state after all.
-fn group_heading(
-    ui: &mut Ui,
-    own: &mut Passes,
-    model: &mut Model,
-    capture: &Capture,
-    light: Option<usize>,
-    last: usize,
-) {
+fn group_heading(ui: &mut Ui, model: &mut Model, capture: &Capture, light: Option<usize>, last: usize) {
     ui.add_space(8.0);
     let text = match light {
         None => "Scene".to_owned(),
@@ -107,8 +102,6 @@ fn group_heading(
     };
     let heading = ui.add(egui::Label::new(theme::note(&text)).selectable(false).sense(Sense::click()));
     heading.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, false, &text));
-    own.widgets.push(heading.id);
-    widgets::keep_arrows(ui, &heading);
     if heading.has_focus() {
         let outline = Stroke::new(1.0, theme::of(ui).focus);
         ui.painter().rect_stroke(heading.rect.expand(2.0), CornerRadius::same(2), outline, StrokeKind::Outside);
@@ -130,14 +123,12 @@ fn kind_of(position: glam::DVec4) -> &'static str {
 }
 
 /// One pass: thumbnail of what it changed, number and name, what it drew, its time.
-fn pass_row(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capture>, index: usize) {
+fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize) {
     let step = &capture.steps[index];
     let is_selected = index == model.selection.step && model.selection.draw.is_none();
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::PASS_ROW_HEIGHT), Sense::click());
-    let title = format!("{} · {}", index + 1, step.name);
+    let title = steps::title(capture, index);
     response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, is_selected, &title));
-    own.widgets.push(response.id);
-    widgets::keep_arrows(ui, &response);
     if is_selected && model.selection.wants_scroll {
         response.scroll_to_me(None);
     }
@@ -164,23 +155,26 @@ fn pass_row(ui: &mut Ui, own: &mut Passes, model: &mut Model, capture: &Arc<Capt
     );
     let left = thumbnail.right() + 8.0;
     let room = time_rect.left() - left - 4.0;
-    theme::line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, theme::of(ui).text);
+    // Absence from the frame is seen: what stands beside it is dim.
+    let is_beside = steps::is_beside(capture, index);
+    let ink = if is_beside { theme::of(ui).dim } else { theme::of(ui).text };
+    theme::line(ui, pos2(left, rect.top() + 6.0), room, &title, TextStyle::Body, ink);
     let is_touched = model.history_of_frame().is_some_and(|one| one.is_touched_by(index));
     if is_touched {
-        pick_mark(ui, pos2(rect.right() - 14.0, rect.top() + 31.0), index);
+        pick_mark(ui, pos2(rect.right() - 14.0, rect.top() + 31.0), &steps::words(capture, index));
     }
     let room = rect.right() - if is_touched { 26.0 } else { 8.0 } - left;
     let is_in_group = model.frame.plan.as_ref().is_some_and(|plan| !recorded::groups_of(plan, index).is_empty());
     let light = step.light.filter(|_| is_in_group).map(|light| format!("{} · ", format::light(light)));
-    let summary = light.unwrap_or_default() + &summary(step);
+    let summary = light.unwrap_or_default() + &if is_beside { BESIDE.to_owned() } else { summary(step) };
     theme::line(ui, pos2(left, rect.top() + 23.0), room, &summary, TextStyle::Small, theme::of(ui).dim);
 }
 
 /// The crosshair of the pick, small: the pass did something to the picked pixel.
-fn pick_mark(ui: &Ui, at: egui::Pos2, index: usize) {
+fn pick_mark(ui: &Ui, at: egui::Pos2, step: &str) {
     let place = Rect::from_center_size(at, egui::Vec2::splat(12.0));
-    let response = ui.interact(place, ui.scope_id().with(("pick mark", index)), Sense::hover());
-    let name = format!("pass {} touched the picked pixel", index + 1);
+    let response = ui.interact(place, ui.scope_id().with(("pick mark", step)), Sense::hover());
+    let name = format!("{step} touched the picked pixel");
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     let stroke = Stroke::new(1.2, theme::of(ui).text);
     ui.painter().rect_stroke(

@@ -4,7 +4,6 @@
 use super::fields::Passes;
 use crate::capture::{Differs, DrawSummary};
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets;
 use crate::inspector::model::Model;
 use crate::plan::{FramePlan, May, Program};
 use crate::reading::format;
@@ -88,8 +87,6 @@ fn heading(ui: &mut Ui, own: &mut Passes, name: &str, group: [usize; 2]) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW_HEIGHT), Sense::click());
     let label = format!("Debug group {name}");
     response.widget_info(|| WidgetInfo::selected(Role::TreeItem, true, !is_folded, &label));
-    own.widgets.push(response.id);
-    widgets::keep_arrows(ui, &response);
     theme::row_background(ui, rect, false, &response);
     let sign = if is_folded { "▶" } else { "▼" };
     let colors = theme::of(ui);

@@ -1,24 +1,26 @@
 //! Step controls: back, forth, play, draw by draw, a scrubber, and the search fields of Ctrl-G and Ctrl-F.
 
 use super::fields::Passes;
+use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets;
 use crate::inspector::model::{Model, StepSearch};
 use crate::reading::format;
+use crate::reading::steps;
 use egui::{Key, Ui, vec2};
 
 /// Draws the controls above the passes.
 pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
-    let steps = model.steps();
-    let mut ids = Vec::new();
+    let Some(capture) = model.frame.capture.clone() else { return };
+    let count = model.steps();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let back = ui.add_enabled(model.selection.step > 0, egui::Button::new(symbol("◀")));
+        let [before, after] = model.neighbours();
+        let back = ui.add_enabled(before.is_some(), egui::Button::new(symbol("◀")));
         let back = back.accessible_name("Previous step").on_hover_text("Previous step (left arrow)");
-        let forth = ui.add_enabled(model.selection.step + 1 < steps, egui::Button::new(symbol("▶")));
+        let forth = ui.add_enabled(after.is_some(), egui::Button::new(symbol("▶")));
         let forth = forth.accessible_name("Next step").on_hover_text("Next step (right arrow)");
         let (sign, word) = if model.selection.playing.is_some() { ("■", "Pause") } else { ("▷", "Play") };
-        let play = ui.add_enabled(steps > 1, egui::Button::new((symbol(sign), word)));
+        let play = ui.add_enabled(count > 1, egui::Button::new((symbol(sign), word)));
         let play = play.accessible_name(word).on_hover_text("Step through the frame (Space)");
         if back.clicked() {
             model.step_by(-1);
@@ -29,31 +31,29 @@ pub fn ui(ui: &mut Ui, own: &mut Passes, model: &mut Model) {
         if play.clicked() {
             model.toggle_play(ui.input(|input| input.time));
         }
-        ids.extend([back.id, forth.id, play.id]);
-        at_the_right(ui, format!("step {} of {steps}", model.selection.step + 1));
+        at_the_right(
+            ui,
+            match steps::number(&capture, model.selection.step) {
+                Some(number) => format!("step {number} of {count}"),
+                None => "beside the frame".to_owned(),
+            },
+        );
     });
-    ids.extend(draw_controls(ui, model));
-    for id in &ids {
-        if let Some(response) = ui.ctx().read_response(*id) {
-            widgets::keep_arrows(ui, &response);
-        }
-    }
-    if steps > 1 {
-        ids.push(scrubber(ui, model, steps));
+    draw_controls(ui, model, &capture);
+    if count > 1 {
+        scrubber(ui, model, &capture);
     }
     search(ui, own, model);
-    own.widgets.extend(ids);
 }
 
 /// Back and forth through the draws of the whole frame, and which one is selected.
-fn draw_controls(ui: &mut Ui, model: &mut Model) -> [egui::Id; 2] {
-    let Some(capture) = model.frame.capture.clone() else { return [egui::Id::NULL; 2] };
+fn draw_controls(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let at = model.selected();
-    let row = ui.horizontal(|ui| {
+    ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let back = ui.add_enabled(at.previous(&capture).is_some(), egui::Button::new(symbol("▲")));
+        let back = ui.add_enabled(at.previous(capture).is_some(), egui::Button::new(symbol("▲")));
         let back = back.accessible_name("Previous draw").on_hover_text("Previous draw (up arrow)");
-        let forth = ui.add_enabled(at.next(&capture).is_some(), egui::Button::new(symbol("▼")));
+        let forth = ui.add_enabled(at.next(capture).is_some(), egui::Button::new(symbol("▼")));
         let forth = forth.accessible_name("Next draw").on_hover_text("Next draw (down arrow)");
         if back.clicked() {
             model.draw_by(-1);
@@ -68,9 +68,7 @@ fn draw_controls(ui: &mut Ui, model: &mut Model) -> [egui::Id; 2] {
             None => format!("after its {}", format::counted(draws as u64, "draw")),
         };
         at_the_right(ui, words);
-        [back.id, forth.id]
     });
-    row.inner
 }
 
 /// Words in what is left of a row, cut short where that is little.
@@ -85,16 +83,17 @@ fn symbol(text: &str) -> egui::RichText {
     theme::number(text)
 }
 
-fn scrubber(ui: &mut Ui, model: &mut Model, steps: usize) -> egui::Id {
+fn scrubber(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     ui.spacing_mut().slider_width = ui.available_width();
-    let mut number = model.selection.step + 1;
-    let slider = egui::Slider::new(&mut number, 1..=steps).show_value(false).trailing_fill(true);
+    // A mask lies between two of them.
+    let reached = steps::numbered(capture).take_while(|step| *step <= model.selection.step).count();
+    let mut number = reached.max(1);
+    let slider = egui::Slider::new(&mut number, 1..=steps::count(capture)).show_value(false).trailing_fill(true);
     let response = ui.add(slider).accessible_name("Step scrubber");
     if response.changed() {
         model.selection.playing = None;
-        model.select_step(number - 1);
+        model.select_step(steps::of_number(capture, number));
     }
-    response.id
 }
 
 /// The field of Ctrl-G or Ctrl-F while it is open: Enter goes, Escape closes.
@@ -125,7 +124,8 @@ fn go(model: &mut Model, search: &StepSearch) {
     match search {
         StepSearch::GoTo(text) => {
             if let Ok(number) = text.trim().parse::<usize>() {
-                model.select_step(number.saturating_sub(1));
+                let Some(capture) = model.frame.capture.clone() else { return };
+                model.select_step(steps::of_number(&capture, number));
             }
         }
         StepSearch::Find(words) => {

@@ -1,4 +1,5 @@
-//! Lights that are in view, as handles over the picture: dragged in the plane parallel to it.
+//! Lights as handles over the picture: dragged in the plane parallel to it. One that is before the eye and out of view
+//! has its handle at the border, where it would come in.
 
 use crate::inspector::action::Action;
 use crate::inspector::canvas::handles::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
@@ -12,16 +13,18 @@ use glam::DVec3;
 
 /// Side of what can be grabbed, points.
 const GRAB: f32 = 20.0;
+/// How far a handle at the border is from it, points.
+const INSET: f32 = 18.0;
 /// How far before the eye the handle of a directional light is put, metres: any distance shows its direction.
 const SUN: f64 = 10.0;
 
 /// The switch in the picture's toolbar.
-pub fn button(ui: &mut Ui, is_on: &mut bool, model: &Model) {
+pub fn button(ui: &mut Ui, is_off: &mut bool, model: &Model) {
     if model.scene.is_some() {
-        let word = theme::switch_word(ui, "Gizmos", *is_on);
-        let button = ui.add(egui::Button::selectable(*is_on, word));
-        if button.on_hover_text("Handles of the lights that are in view: drag them, or use the arrow keys").clicked() {
-            *is_on ^= true;
+        let word = theme::switch_word(ui, "Gizmos", !*is_off);
+        let button = ui.add(egui::Button::selectable(!*is_off, word));
+        if button.on_hover_text("Handles of the lights: drag them, or use the arrow keys").clicked() {
+            *is_off ^= true;
         }
     }
 }
@@ -43,15 +46,20 @@ pub fn ui(ui: &Ui, model: &mut Model, rect: Rect, shown: &Shown, placement: Plac
         let Some(texel) = pick_ray::texel_of(capture, point.extend(1.0)) else { continue };
         let at = pos2(texel[0] as f32, texel[1] as f32).to_vec2() * placement.scale + placement.origin.to_vec2();
         let at = at.to_pos2();
-        if !whole.is_positive() || !whole.contains(at) {
+        if whole.width().min(whole.height()) < 4.0 * INSET {
             continue;
         }
+        let inside = whole.shrink(INSET).clamp(at);
+        let outwards = (!whole.contains(at)).then(|| (at - inside).normalized());
+        let at = if outwards.is_some() { inside } else { at };
         let id = ui.scope_id().with(("light in the picture", index));
         let name = format!("{} in the picture", Grip::Light(index).name());
         let response = grabbed(ui, id, Rect::from_center_size(at, Vec2::splat(GRAB)), &name);
         let is_held = response.hovered() || response.dragged() || response.has_focus();
-        let response = response.on_hover_text(format!("{}: drag it, or use the arrow keys", Grip::Light(index).name()));
-        sign(ui, whole, at, is_held);
+        let away = outwards.map_or("", |_| ", out of view this way");
+        let name = Grip::Light(index).name();
+        let response = response.on_hover_text(format!("{name}{away}: drag it, or use the arrow keys"));
+        sign(ui, whole, at, is_held, outwards);
         let mut by = response.drag_delta() / placement.scale;
         if let Some([right, up]) = arrows(ui, &response) {
             by += Vec2::new(right as f32, -up as f32) * placement.size[1] as f32;
@@ -70,8 +78,8 @@ pub fn ui(ui: &Ui, model: &mut Model, rect: Rect, shown: &Shown, placement: Plac
     }
 }
 
-/// A sun, dark under light so that it shows on any picture.
-fn sign(ui: &Ui, whole: Rect, at: Pos2, is_held: bool) {
+/// A sun, dark under light so that it shows on any picture; of a light out of view, with an arrow the way it is.
+fn sign(ui: &Ui, whole: Rect, at: Pos2, is_held: bool, outwards: Option<Vec2>) {
     let painter = ui.painter_at(whole);
     let colors = theme::of(ui);
     let ink = theme::DARK.lit;
@@ -81,6 +89,12 @@ fn sign(ui: &Ui, whole: Rect, at: Pos2, is_held: bool) {
             painter.line_segment([at + ray * 8.0, at + ray * 11.0], Stroke::new(width, color));
         }
         painter.circle_stroke(at, 5.0, Stroke::new(width, color));
+        if let Some(way) = outwards {
+            let tip = at + way * INSET;
+            for side in [way.rot90(), -way.rot90()] {
+                painter.line_segment([tip, tip - way * 5.0 + side * 5.0], Stroke::new(width, color));
+            }
+        }
     }
     painter.circle_filled(at, 4.5, ink);
     if is_held {

@@ -7,6 +7,7 @@ use super::modes_legend;
 use crate::inspector::look::palette;
 use crate::inspector::look::texture::Shares;
 use crate::inspector::look::theme;
+use crate::inspector::look::widgets::keep_arrows;
 use crate::inspector::model::Model;
 use crate::reading::change::Change;
 use crate::reading::counts;
@@ -221,7 +222,9 @@ fn handles(ui: &mut Ui, model: &mut Model, range: [f64; 2], full: [f64; 2]) {
     let [mut low, mut high] = range;
     let limits = full[0].min(low)..=full[1].max(high);
     let slider = egui::RangeSlider::new(&mut low, &mut high, limits).show_value(false).smart_aim(false);
-    if ui.add(slider).accessible_name("Depth range").changed() {
+    let slider = ui.add(slider).accessible_name("Depth range");
+    keep_arrows(ui, &slider);
+    if slider.changed() {
         model.view.depth_range = Some([low, high]);
     }
 }

@@ -20,7 +20,7 @@ use crate::inspector::canvas::magnifier;
 use crate::inspector::canvas::{self, Canvas, Sheet, marks};
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::segments;
+use crate::inspector::look::widgets::{Segment, at_right, segments, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{Compare, With};
 use crate::inspector::model::looking::{NoBefore, Phase, has_phases};
@@ -43,8 +43,8 @@ pub struct PicturePanel {
     overlays: Overlays,
     /// What changed, made once.
     changes: ChangeCache,
-    /// Lights in view are handles.
-    has_gizmos: bool,
+    /// Lights are no handles.
+    hides_gizmos: bool,
     /// Where the divider was last: 0 at the picture's left border, 1 at its right one.
     seam: Option<f32>,
     /// The legend of the error picture counts, and does not only say what colours mean.
@@ -82,7 +82,7 @@ pub fn ui(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, actions: &mut 
         legend::ui(ui, &mut own.counts_findings, model, corners, &shown, range);
     }
     truth_note::ui(ui, model, corners, &shown);
-    if model.view.kind == PictureKind::Overdraw && shown.kind != PictureKind::Overdraw {
+    if model.view.kind == Some(PictureKind::Overdraw) && shown.kind != PictureKind::Overdraw {
         overlays::counting_note(ui, model, corners);
     }
     walking::banner(ui, model, rect);
@@ -105,6 +105,7 @@ fn single(
         view: &mut model.view,
         pick: model.selection.pick_of(shown.kind),
         textures: &mut model.textures,
+        has_arrows: false,
     };
     let (placement, hover) = canvas::ui(ui, canvas, rect, shown, coloring, &sheets);
     model.selection.hover = hover.map(|at| Hover { image: 0, at });
@@ -118,7 +119,7 @@ fn single(
         }
     }
     outline::ui(ui, model, rect, shown, placement);
-    if own.has_gizmos {
+    if !own.hides_gizmos {
         gizmos::ui(ui, model, rect, shown, placement, actions);
     }
     let corners = walking::under_banner(model, rect);
@@ -190,7 +191,7 @@ pub fn layers(
 /// What the sides of a comparison are called: the compared one, and the one that is shown.
 pub fn compared_names(model: &Model, capture: &Capture, compare: &Compare) -> [String; 2] {
     let now = match compare.with {
-        With::Step(_) => model.moment().words(),
+        With::Step(_) => model.moment().words(capture),
         With::Technique(_) => capture.technique.clone(),
     };
     [compare.with.words(capture), now]
@@ -248,7 +249,7 @@ fn toolbar(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Cap
         let shown = model.shown(capture);
         ui.horizontal(|ui| {
             kinds(ui, model, capture);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| zoom(ui, own, model, capture));
+            at_right(ui, "zoom", |ui| zoom(ui, own, model, capture));
         });
         let mut has_place = true;
         // As high as segments are, whether there are any or not.
@@ -287,18 +288,27 @@ fn options(ui: &mut Ui, model: &mut Model, capture: &Capture, shown: Option<&Sho
     }
 }
 
-/// A button for each kind of picture that exists at this step.
+/// A button for what each step writes, and one for each kind of picture. One that this step has none of keeps its
+/// place, so that nothing moves from step to step.
 fn kinds(ui: &mut Ui, model: &mut Model, capture: &Capture) {
-    let kinds = available(capture, model.moment());
-    let labels: Vec<(&str, &str)> = kinds.iter().map(|kind| (kind.name(capture), kind.meaning(capture))).collect();
-    // What was chosen, even while its truth is not known yet.
-    let is_made_later = model.view.kind.needs_truth() || model.view.kind == PictureKind::Overdraw;
-    let is_asked_for = is_made_later && kinds.contains(&model.view.kind);
-    let shown = || model.shown(capture).map(|shown| shown.kind);
-    let current = if is_asked_for { Some(model.view.kind) } else { shown() };
-    let chosen = kinds.iter().position(|kind| Some(*kind) == current);
-    if let Some(index) = segments(ui, &labels, chosen) {
-        model.choose_picture(kinds[index]);
+    let available = available(capture, model.moment());
+    let kinds: Vec<PictureKind> =
+        PictureKind::ALL.into_iter().filter(|kind| !kind.is_of_some_frames() || available.contains(kind)).collect();
+    let shown = model.kind();
+    let auto = Segment::new("Auto", "What each step writes: colour, stencil, depth, or a light's map");
+    let of_kind = |kind: &PictureKind| {
+        let is_enabled = available.contains(kind);
+        let explanation = if is_enabled { kind.meaning(capture) } else { kind.why_missing(capture) };
+        let is_seen = shown == Some(*kind) && model.view.kind != Some(*kind);
+        Segment { is_enabled, is_seen, ..Segment::new(kind.name(capture), explanation) }
+    };
+    let segments: Vec<Segment> = std::iter::once(auto).chain(kinds.iter().map(of_kind)).collect();
+    let chosen =
+        model.view.kind.map_or(Some(0), |chosen| kinds.iter().position(|kind| *kind == chosen).map(|at| at + 1));
+    match segments_of(ui, &segments, chosen) {
+        Some(0) => model.view.follow_steps(),
+        Some(index) => model.choose_picture(kinds[index - 1]),
+        None => {}
     }
 }
 
@@ -377,15 +387,16 @@ fn depth_mode(ui: &mut Ui, model: &mut Model) {
     }
 }
 
-/// Right to left: Fit, 1:1, the other buttons, and the zoom in per cent where it moves none of them.
+/// The zoom in per cent where it moves no button, then the buttons.
 fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Capture) {
     let size = model.shown(capture).and_then(|shown| Some(shown.images.first()?.size()));
     let Some(size) = size else { return };
-    let fits = model.view.zoom == Zoom::Fit;
-    let word = theme::switch_word(ui, "Fit", fits);
-    if ui.add(egui::Button::selectable(fits, word)).on_hover_text("The whole picture").clicked() {
-        model.view.zoom = Zoom::Fit;
+    if let Zoom::Pixels(pixels) = model.view.zoom {
+        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
     }
+    walking::button(ui, model);
+    gizmos::button(ui, &mut own.hides_gizmos, model);
+    let fits = model.view.zoom == Zoom::Fit;
     let is_exact = model.view.zoom == Zoom::Pixels(1.0);
     let word = theme::switch_word(ui, "1:1", is_exact);
     if ui.add(egui::Button::selectable(is_exact, word)).on_hover_text("One screen pixel a texel").clicked() {
@@ -394,9 +405,8 @@ fn zoom(ui: &mut Ui, own: &mut PicturePanel, model: &mut Model, capture: &Captur
         }
         model.view.zoom = Zoom::Pixels(1.0);
     }
-    gizmos::button(ui, &mut own.has_gizmos, model);
-    walking::button(ui, model);
-    if let Zoom::Pixels(pixels) = model.view.zoom {
-        ui.label(theme::number(format!("{:.0} %", pixels * 100.0)).color(theme::of(ui).dim));
+    let word = theme::switch_word(ui, "Fit", fits);
+    if ui.add(egui::Button::selectable(fits, word)).on_hover_text("The whole picture").clicked() {
+        model.view.zoom = Zoom::Fit;
     }
 }

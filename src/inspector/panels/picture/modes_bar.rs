@@ -4,37 +4,40 @@
 use super::overlays;
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::segments;
+use crate::inspector::look::widgets::{Segment, at_right, segments_of};
 use crate::inspector::model::Model;
 use crate::inspector::model::looking::{self, Compare, Phase, With, has_phases, step_words};
 use crate::reading::change::ChangeCache;
 use crate::reading::shown::{PictureKind, Shown};
 use crate::technique::Technique;
-use egui::{Align, Button, Layout, Rect, Ui, UiBuilder, vec2};
+use egui::{Button, Rect, Ui, UiBuilder, vec2};
 
 /// Width of the note on a comparison, points.
 const NOTE_WIDTH: f32 = 232.0;
 
 /// Draws the tools that go with `shown`: those that are always there first, so that they keep their place.
 pub fn ui(ui: &mut Ui, model: &mut Model, shown: Option<&Shown>) {
-    let kind = shown.map_or(model.view.kind, |shown| shown.kind);
+    let kind = shown.map(|shown| shown.kind).or_else(|| model.kind());
     let is_single = shown.is_none_or(|shown| shown.images.len() == 1);
     ui.add_enabled_ui(is_single, |ui| {
         toggle(ui, model);
         overlays::menu(ui, model);
     });
     phases(ui, model, kind);
-    if kind == PictureKind::Stencil {
+    if kind == Some(PictureKind::Stencil) {
         bits(ui, model);
     }
 }
 
-fn phases(ui: &mut Ui, model: &mut Model, kind: PictureKind) {
-    if !has_phases(kind) {
-        return;
-    }
-    let chosen = Phase::ALL.iter().position(|phase| *phase == model.modes.phase);
-    if let Some(index) = segments(ui, &Phase::LABELS, chosen) {
+/// They keep their place where a picture has no before and after.
+fn phases(ui: &mut Ui, model: &mut Model, kind: Option<PictureKind>) {
+    let is_enabled = kind.is_some_and(has_phases);
+    let segment = |(label, explanation): (&'static str, &'static str)| {
+        let explanation = if is_enabled { explanation } else { "Of colour, stencil and depth only" };
+        Segment { is_enabled, ..Segment::new(label, explanation) }
+    };
+    let chosen = Phase::ALL.iter().position(|phase| *phase == model.modes.phase).filter(|_| is_enabled);
+    if let Some(index) = segments_of(ui, &Phase::LABELS.map(segment), chosen) {
         model.modes.phase = Phase::ALL[index];
     }
 }
@@ -64,15 +67,13 @@ fn toggle(ui: &mut Ui, model: &mut Model) {
 /// What is compared with, flush right; drawn while comparing.
 pub fn compare_row(ui: &mut Ui, model: &mut Model, capture: &Capture) {
     let Some(mut compare) = model.modes.compare else { return };
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| compared_with(ui, model, capture, &mut compare));
+    at_right(ui, "compare with", |ui| compared_with(ui, model, capture, &mut compare));
     model.modes.compare = Some(compare);
 }
 
-/// Right to left: swaps the sides, and what is compared with.
+/// What is compared with, and a button that swaps the sides.
 fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Compare) {
-    if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
-        compare.flipped = !compare.flipped;
-    }
+    ui.label(theme::note("with"));
     let combo = egui::ComboBox::new("compare with", "").width(148.0).truncate();
     let combo = combo.selected_text(compare.with.words(capture)).height(420.0).show_ui(ui, |ui| {
         for step in 0..capture.steps.len() {
@@ -96,7 +97,9 @@ fn compared_with(ui: &mut Ui, model: &Model, capture: &Capture, compare: &mut Co
         }
     });
     combo.response.accessible_name("Compare with");
-    ui.label(theme::note("with"));
+    if ui.button("Flip").on_hover_text("Swap the sides (X)").clicked() {
+        compare.flipped = !compare.flipped;
+    }
 }
 
 /// In the upper left corner of `rect`: how many texels differ, or why nothing is compared.

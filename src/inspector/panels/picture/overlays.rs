@@ -3,6 +3,7 @@
 
 use crate::anatomy::Anatomy;
 use crate::ask::AnatomyOf;
+use crate::capture::TestCounts;
 use crate::capture::{Capture, Image};
 use crate::inspector::action::Overlay;
 use crate::inspector::canvas::Sheet;
@@ -295,11 +296,16 @@ fn tests(ui: &mut Ui, model: &Model) {
         ui.add(egui::Label::new(theme::note(text)).wrap());
         return;
     };
-    theme::heading(ui, &format!("Tests of {}", model.selected().words()));
+    if let Some(capture) = &model.frame.capture {
+        theme::heading(ui, &format!("Tests of {}", model.selected().words(capture)));
+    }
     for (outcome, name, hover) in OUTCOMES {
         let pixels = known.pixels[usize::from(outcome)];
         if pixels > 0 {
             super::legend_entry::entry(ui, palette::outcome(outcome), name, pixels).on_hover_text(hover);
+            if outcome == TestCounts::UNKNOWN {
+                ui.add(egui::Label::new(theme::note(hover)).wrap());
+            }
         }
     }
 }

@@ -14,7 +14,7 @@ const WIDTH: f32 = 264.0;
 /// Draws the note into the upper left corner of `rect`; `shown` is what is shown meanwhile.
 pub fn ui(ui: &mut Ui, model: &mut Model, rect: Rect, shown: &Shown) {
     let is_known = model.frame.capture.as_ref().is_some_and(|capture| has_truth(capture));
-    if !model.view.kind.needs_truth() || is_known {
+    if !model.view.wants_truth() || is_known {
         return;
     }
     let width = WIDTH.min(rect.width() - 24.0 - legend::room(rect, shown)).max(96.0);

@@ -209,7 +209,7 @@ fn head(ui: &mut Ui, has_stencil: bool) {
 
 fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory, event: &Event, height: f32) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-    let cells = Cells::of(history, event, &capture.depth);
+    let cells = Cells::of(history, event, capture);
     let is_selected = model.selection.has_event(event);
     response.widget_info(|| WidgetInfo::selected(Role::Row, true, is_selected, cells.name()));
     if response.clicked() {
@@ -240,7 +240,7 @@ fn row(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHistory
         }
     });
     let line = line(history, event, &capture.depth);
-    response.on_hover_text(format!("pass {}, {}: {line}. Double-click to go there.", event.pass + 1, event.pass_name));
+    response.on_hover_text(format!("{}, {}: {line}. Double-click to go there.", cells.pass, event.pass_name));
 }
 
 /// Of the menu of a row, and of the selected event.
@@ -271,7 +271,8 @@ fn paint(ui: &Ui, rect: Rect, cells: &Cells, has_stencil: bool, ink: Color32) {
     let middle = rect.center().y;
     let number = theme::number_font(theme::SMALL_SIZE);
     let words = FontId::proportional(theme::SMALL_SIZE);
-    painter.text(pos2(columns.pass, middle), Align2::RIGHT_CENTER, &cells.pass, number.clone(), theme::of(ui).dim);
+    let number_of_pass = cells.number.map_or_else(|| "–".to_owned(), |number| number.to_string());
+    painter.text(pos2(columns.pass, middle), Align2::RIGHT_CENTER, number_of_pass, number.clone(), theme::of(ui).dim);
     if let Some(color) = cells.part.and_then(|part| theme::of(ui).part(part)) {
         let swatch = Rect::from_center_size(pos2(columns.pass + 10.0, middle), vec2(8.0, 8.0));
         painter.rect_filled(swatch, CornerRadius::same(2), color);
@@ -328,7 +329,7 @@ fn selected(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHi
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.add(egui::Label::new(theme::note(line(history, event, &capture.depth)).color(theme::of(ui).text)).wrap());
-        let text = theme::note(format!("Go to {}, {}", moment_of(event).words(), event.pass_name));
+        let text = theme::note(format!("Go to {}, {}", moment_of(event).words(capture), event.pass_name));
         if moment_of(event) != model.selected() && ui.button(text).clicked() {
             go_to(model, event);
         }

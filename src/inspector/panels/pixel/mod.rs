@@ -2,6 +2,7 @@
 
 pub mod history_rows;
 pub mod ladder;
+pub mod map;
 pub mod room;
 pub mod run;
 pub mod told;
@@ -14,12 +15,15 @@ use crate::inspector::look::palette;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::inspector::panels::picture::error_legend;
+use crate::inspector::tours::tour_of;
 use crate::reading::counts;
 use crate::reading::depth::{DepthMeasure, FIXED_BITS};
 use crate::reading::format;
 use crate::reading::layers::MapContent;
+use crate::reading::map_decision::MapDecision;
 use crate::reading::shown::{PictureKind, has_truth};
-use crate::reading::verdict::{explained, verdict};
+use crate::reading::verdict::{by_map, explained, verdict};
+use crate::technique::Technique;
 use egui::{Color32, RichText, Ui};
 
 pub use told::Pixel;
@@ -34,7 +38,7 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
         ui.add(egui::Label::new(theme::note("Open a scene to look at its pixels.")).wrap());
         return;
     };
-    let Some(at) = model.selection.pick else { return how_to_pick(ui) };
+    let Some(at) = model.selection.pick else { return how_to_pick(ui, model) };
     let told = own.told(model);
     let size = ui.available_size();
     let is_tight = room::is_tight(size);
@@ -45,12 +49,17 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
             ui.spacing_mut().item_spacing.y = 2.0;
         }
         let bottom = ui.cursor().top() + size.y;
-        sentence(ui, own, model, &told, (&capture, at));
+        let light = light_in_question(model, &capture, at);
+        let map = map::decision(model, &capture, light, at);
+        sentence(ui, own, model, &told, (&capture, at), map.as_ref());
         ui.add_space(gap);
         values(ui, model, &capture, at, is_tight);
         if !capture.lights.is_empty() {
             ui.add_space(gap);
             lights(ui, &capture, at);
+            if let Some(decision) = &map {
+                map::ui(ui, model, &capture, decision);
+            }
         }
         ui.add_space(gap);
         run::ui(ui, model, &capture, at);
@@ -61,16 +70,35 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
         // the pointer.
         let end = history_rows::ui(ui, own, model, &told, (&capture, at), rows);
         ui.add_space(gap);
-        let light = light_in_question(model, &capture, at);
         ladder::ui(ui, own, model, &told, (&capture, light), bottom - end - gap);
     });
 }
 
-fn how_to_pick(ui: &mut Ui) {
+/// The tour to begin with: `auto` counts as z-pass does wherever it can, and that one tells what is counted.
+fn first_tour(technique: Technique) -> Technique {
+    if technique == Technique::Auto { Technique::ZPass } else { technique }
+}
+
+/// Nothing is picked: how to, and where who is new here may begin.
+fn how_to_pick(ui: &mut Ui, model: &mut Model) {
     theme::heading(ui, "No pixel is picked.");
-    let text = "Right-click a pixel of the picture, or drag with the right button. The arrow keys move the pick while \
-                the picture has the focus, ten pixels at a time with Shift.";
+    let text = "Right-click a pixel of the picture, or drag with the right button: why it is dark or lit is told here. \
+                Shift and the arrow keys move the pick, Esc takes it away.";
     ui.add(egui::Label::new(theme::note(text)).wrap());
+    let current = model.scene.as_ref().map(|scene| scene.draft.choice.technique());
+    let Some((index, tour)) = current.map(first_tour).and_then(tour_of) else { return };
+    ui.add_space(12.0);
+    theme::card(ui).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        theme::heading(ui, "New here?");
+        let words = format!("{}: {} stops with {}.", tour.promise, tour.stops.len(), tour.technique.name());
+        ui.add(egui::Label::new(theme::note(words)).wrap());
+        ui.add_space(4.0);
+        let hover = "Goes through the technique stop by stop, and moves the panels for you";
+        if ui.button("Take the tour").on_hover_text(hover).clicked() {
+            model.requests.tour = Some(index);
+        }
+    });
 }
 
 /// The light that the sentence is about: the selected step's, or the first that is blocked.
@@ -82,7 +110,14 @@ fn light_in_question(model: &Model, capture: &Capture, at: [u32; 2]) -> usize {
 
 /// While the history of a pixel is on its way the last sentence stays, so that it does not change
 /// twice.
-fn sentence(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, (capture, at): (&Capture, [u32; 2])) {
+fn sentence(
+    ui: &mut Ui,
+    own: &mut Pixel,
+    model: &Model,
+    told: &Told,
+    (capture, at): (&Capture, [u32; 2]),
+    map: Option<&MapDecision>,
+) {
     let light = light_in_question(model, capture, at);
     // One that is wrong explains nothing.
     let history = told.history.as_ref().filter(|_| told.is_of_pick && told.wrong.is_empty());
@@ -96,6 +131,7 @@ fn sentence(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, (capture, 
         }
     });
     own.sentence = Some(verdict.clone());
+    let verdict = map.map_or(verdict.clone(), |decision| by_map(verdict, decision));
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         theme::heading(ui, &verdict.title);
@@ -105,7 +141,7 @@ fn sentence(ui: &mut Ui, own: &mut Pixel, model: &Model, told: &Told, (capture, 
 
 /// A name and a value, or two of them in a row where `is_tight`.
 fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight: bool) {
-    theme::heading(ui, &format!("After {}", model.moment().words()));
+    theme::heading(ui, &format!("After {}", model.moment().words(capture)));
     let row_height = ui.spacing().interact_size.y.min(20.0);
     let grid = |name| egui::Grid::new(name).min_row_height(row_height);
     let in_row = if is_tight { 2 } else { 1 };
@@ -119,7 +155,7 @@ fn values(ui: &mut Ui, model: &Model, capture: &Capture, at: [u32; 2], is_tight:
         }
     });
     let has_count = model.moment().frame(capture).is_some() && model.counts_to_show(capture).is_some();
-    let texel = model.selection.map_pick.filter(|_| model.view.kind == PictureKind::Map);
+    let texel = model.selection.map_pick.filter(|_| model.kind() == Some(PictureKind::Map));
     if has_count || texel.is_some() {
         // Some of these are long.
         grid("pixel further values").num_columns(2).spacing(spacing).show(ui, |ui| {

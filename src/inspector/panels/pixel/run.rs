@@ -8,6 +8,7 @@ use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::layers::MapContent;
+use crate::reading::steps;
 use egui::{Color32, CornerRadius, RichText, Ui};
 
 /// Letters of a pass's name where it has the most room.
@@ -50,11 +51,11 @@ pub fn ui(ui: &mut Ui, model: &mut Model, capture: &Capture, at: [u32; 2]) {
     grid.min_row_height(row_height).show(ui, |ui| {
         head(ui, has);
         let mut before: Option<&Values> = None;
-        for (index, step) in capture.steps.iter().enumerate() {
-            if pass_cell(ui, index, &step.name, longest, index == model.selection.step) {
+        for (index, run) in runs.iter().enumerate() {
+            if pass_cell(ui, capture, index, longest, index == model.selection.step) {
                 selected = Some(index);
             }
-            match &runs[index] {
+            match run {
                 Some(now) => {
                     row(ui, now, before, has);
                     before = Some(now);
@@ -85,15 +86,17 @@ fn head(ui: &mut Ui, [has_stencil, has_count]: [bool; 2]) {
 }
 
 /// Number and name of a pass, shortened to so many letters; true when it is clicked.
-fn pass_cell(ui: &mut Ui, index: usize, name: &str, longest: usize, is_selected: bool) -> bool {
+fn pass_cell(ui: &mut Ui, capture: &Capture, index: usize, longest: usize, is_selected: bool) -> bool {
+    let name = &capture.steps[index].name;
     let color = if is_selected { theme::of(ui).text } else { theme::of(ui).dim };
     let short: String = match name.char_indices().nth(longest) {
         Some(_) => name.chars().take(longest - 1).chain(['…']).collect(),
-        None => name.to_owned(),
+        None => name.clone(),
     };
-    let text = RichText::new(format!("{} {short}", index + 1)).size(theme::SMALL_SIZE).color(color);
+    let number = steps::number(capture, index).map_or_else(|| "–".to_owned(), |number| number.to_string());
+    let text = RichText::new(format!("{number} {short}")).size(theme::SMALL_SIZE).color(color);
     let button = egui::Button::selectable(is_selected, text).corner_radius(CornerRadius::same(2));
-    ui.add(button).on_hover_text(format!("Go to step {}, {name}", index + 1)).clicked()
+    ui.add(button).on_hover_text(format!("Go to {}, {name}", steps::words(capture, index))).clicked()
 }
 
 fn values(capture: &Capture, step: usize, frame: &FrameSnapshot, at: [u32; 2]) -> Values {

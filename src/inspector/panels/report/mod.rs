@@ -24,6 +24,9 @@ const TABLE_WIDTH: std::ops::RangeInclusive<f32> = 296.0..=480.0;
 /// Height of the plot above the table, points.
 const STACKED_PLOT_HEIGHT: f32 = 240.0;
 
+/// So many steps have to be done before it is said how long the rest takes.
+const LEAST_STEPS: usize = 8;
+
 /// The tab: its plot, laid out once for each size.
 #[derive(Debug, Default)]
 pub struct ReportPanel {
@@ -114,7 +117,12 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
             let bar = egui::ProgressBar::new(share).desired_width(width).desired_height(8.0);
             ui.add(bar).accessible_name("Measuring");
             let count = |value: usize| format::count(value as u64);
-            ui.label(theme::note(format!("{} of {} · {what}", count(done), count(of))));
+            ui.label(theme::note(format!(
+                "{} of {} · {what}{}",
+                count(done),
+                count(of),
+                time_left(reply.waits_for, done, of)
+            )));
         }
         None => {
             let is_new = measured.is_none_or(|measured| measured.report.rows.is_empty());
@@ -142,6 +150,16 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
     });
 }
 
+/// How long it takes from now on, as far as that follows from the time that it took up to here; empty where it does not.
+fn time_left(seconds: f64, done: usize, of: usize) -> String {
+    if done < LEAST_STEPS || seconds <= 0.0 || done > of {
+        return String::new();
+    }
+    let left = seconds / done as f64 * (of - done) as f64;
+    let left = if left < 90.0 { format!("{left:.0} s") } else { format!("{:.0} min", left / 60.0) };
+    format!(" · about {left} left")
+}
+
 fn explanation(measured: Option<&MeasuredReport>, can_run: bool) -> String {
     match measured {
         Some(MeasuredReport { report, left_out }) => {
@@ -162,5 +180,18 @@ fn explanation(measured: Option<&MeasuredReport>, can_run: bool) -> String {
                 .to_owned()
         }
         None => "Open a scene to measure what each technique costs on it, and how often it is wrong.".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_follows_from_the_time_it_took() {
+        assert_eq!(time_left(20.0, 10, 40), " · about 60 s left");
+        assert_eq!(time_left(20.0, 10, 190), " · about 6 min left");
+        assert_eq!(time_left(20.0, 2, 40), "", "too early to tell");
+        assert_eq!(time_left(0.0, 10, 40), "", "not known how long it took");
     }
 }

@@ -7,12 +7,12 @@ use super::{gizmos, rays};
 use crate::anatomy::Anatomy;
 use crate::inspector::action::Action;
 use crate::inspector::look::theme;
-use crate::inspector::look::widgets::plate;
+use crate::inspector::look::widgets::{keep_arrows, plate};
 use crate::inspector::model::Model;
 use crate::viewport::Drawing;
 use egui::{
-    Align2, CornerRadius, EventFilter, Key, PointerButton, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
-    UiBuilder, WidgetInfo, vec2,
+    Align2, CornerRadius, Key, PointerButton, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder,
+    WidgetInfo, vec2,
 };
 use std::sync::Arc;
 
@@ -112,8 +112,7 @@ fn navigate(ui: &Ui, view: &mut SceneView, pane: Pane, response: &Response) {
     if !response.has_focus() {
         return;
     }
-    let arrows = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+    keep_arrows(ui, response);
     let (right, up, scale) = ui.input(|input| {
         let presses = |key| input.num_presses(key) as i32;
         let closer = presses(Key::Plus) + presses(Key::Equals) - presses(Key::Minus);

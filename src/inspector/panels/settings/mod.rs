@@ -6,7 +6,7 @@ pub mod scene;
 
 use crate::ask::MeshesOf;
 use crate::inspector::action::Action;
-use crate::inspector::look::theme;
+use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::Model;
 use crate::technique::{Choice, SettingSpec, SettingValues, Technique};
 use egui::{DragValue, RichText, Ui};
@@ -32,7 +32,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         techniques(ui, model, actions);
         let mut changed = technique_settings(ui, model);
         if let Some(scene) = &mut model.scene {
-            changed |= scene::ui(ui, &mut scene.draft, &scene.objects, scene.animated);
+            changed |= scene::ui(ui, scene);
         }
         if changed {
             model.run_draft(actions);
@@ -72,11 +72,18 @@ fn technique_settings(ui: &mut Ui, model: &mut Model) -> bool {
     let Some(scene) = &mut model.scene else { return false };
     let mut changed = false;
     ui.add_space(8.0);
-    egui::Grid::new("technique settings").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+    egui::Grid::new("technique settings").num_columns(3).min_col_width(0.0).spacing([6.0, 4.0]).show(ui, |ui| {
         for spec in scene.draft.choice.technique().settings() {
             let off = scene.draft.choice.without_effect(spec.key);
-            let ink = if off.is_some() { theme::of(ui).faint } else { theme::of(ui).dim };
-            let label = ui.label(theme::note(spec.key).color(ink)).on_hover_text(hover(spec, off));
+            let is_changed = scene.draft.choice.settings().get(spec.key).is_some_and(|value| value != spec.default);
+            if widgets::reset(ui, spec.key, is_changed, spec.default) {
+                changed |= scene.draft.choice.set(spec.key, spec.default).is_ok();
+            }
+            let label = match off {
+                Some(_) => ui.label(theme::note(spec.key).color(theme::of(ui).faint)),
+                None => widgets::setting_name(ui, spec.key, is_changed),
+            };
+            let label = label.on_hover_text(hover(spec, off));
             let value = ui.add_enabled_ui(off.is_none(), |ui| setting(ui, &scene.draft.choice, spec, label.id, off));
             if let Some(value) = value.inner {
                 changed |= scene.draft.choice.set(spec.key, &value).is_ok();

@@ -1,9 +1,11 @@
-//! The settings of what is seen: lights and camera by number, the picture's size, the moment.
+//! The settings of what is seen: lights and camera by number, the picture's size, the moment. Each is held against what
+//! it was when the scene was opened, and goes back to it.
 
 use crate::ask::RunRequest;
-use crate::inspector::look::theme;
+use crate::inspector::look::{theme, widgets};
+use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
-use crate::scene::Light;
+use crate::scene::{Camera, Light};
 use egui::{DragValue, Ui};
 use glam::DVec3;
 
@@ -11,19 +13,44 @@ use glam::DVec3;
 const MOST_PIXELS: u32 = 8192;
 
 /// Draws the settings into the panel; true when one changed.
-pub fn ui(ui: &mut Ui, draft: &mut RunRequest, objects: &[String], animated: bool) -> bool {
+pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
+    let OpenScene { draft, opened, objects, animated, .. } = scene;
     let mut changed = false;
-    for (index, light) in draft.lights.iter_mut().enumerate() {
+    for (index, (light, before)) in draft.lights.iter_mut().zip(&opened.lights).enumerate() {
         ui.add_space(12.0);
-        changed |= light_settings(ui, index, light);
+        changed |= light_settings(ui, index, light, before);
     }
     ui.add_space(12.0);
-    changed |= camera(ui, draft);
+    changed |= camera(ui, &mut draft.camera, &opened.camera);
     ui.add_space(12.0);
-    changed |= picture(ui, draft, animated);
+    changed |= picture(ui, draft, opened, *animated);
     ui.add_space(12.0);
     changed |= objects_on(ui, draft, objects);
     changed
+}
+
+/// One setting in a row: the way back where it was changed, its name, its widget; true when it changes.
+fn row<T: PartialEq + Clone>(
+    ui: &mut Ui,
+    (name, label): (&str, &str),
+    value: &mut T,
+    before: &T,
+    widget: impl FnOnce(&mut Ui, &mut T) -> bool,
+) -> bool {
+    let is_changed = value != before;
+    let goes_back = widgets::reset(ui, name, is_changed, "what the scene was opened with");
+    if goes_back {
+        value.clone_from(before);
+    }
+    widgets::setting_name(ui, label, is_changed);
+    let changed = widget(ui, value) || goes_back;
+    ui.end_row();
+    changed
+}
+
+/// The rows of a heading.
+fn grid(ui: &mut Ui, name: impl egui::AsIdSalt, rows: impl FnOnce(&mut Ui) -> bool) -> bool {
+    egui::Grid::new(name).num_columns(3).min_col_width(0.0).spacing([6.0, 4.0]).show(ui, rows).inner
 }
 
 /// Which objects are there.
@@ -45,96 +72,101 @@ fn objects_on(ui: &mut Ui, draft: &mut RunRequest, objects: &[String]) -> bool {
     changed
 }
 
-fn light_settings(ui: &mut Ui, index: usize, light: &mut Light) -> bool {
+fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) -> bool {
     let name = format::light(index);
+    let of = |what: &str| format!("{name} {what}");
     theme::heading(ui, &format!("Light {}", index + 1));
-    let mut changed = false;
-    egui::Grid::new(("light settings", index)).num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
-        ui.label(theme::note("kind"));
-        changed |= light_kind(ui, &name, light);
-        ui.end_row();
+    grid(ui, ("light settings", index), |ui| {
+        let mut changed = row(ui, (&of("kind"), "kind"), &mut light.position.w, &before.position.w, |ui, w| {
+            light_kind(ui, &of("kind"), w)
+        });
         let place = if light.is_directional() { "towards" } else { "position" };
         let mut position = light.position.truncate();
-        changed |= vector(ui, &format!("{name} {place}"), place, &mut position);
-        light.position = position.extend(light.position.w);
-        ui.end_row();
-        ui.label(theme::note("colour"));
-        let picker = ui.color_edit_button_rgb(&mut light.color).accessible_name(format!("{name} colour"));
-        changed |= picker.on_hover_text("Linear red, green and blue").changed();
-        ui.end_row();
-        ui.label(theme::note("intensity"));
-        let intensity = DragValue::new(&mut light.intensity).range(0.0..=1000.0).speed(0.01);
-        changed |= ui.add(intensity).accessible_name(format!("{name} intensity")).changed();
-        ui.end_row();
-    });
-    changed
-}
-
-/// Point or directional. The numbers stay: they are a place, or the way towards the light.
-fn light_kind(ui: &mut Ui, name: &str, light: &mut Light) -> bool {
-    let mut is_directional = light.is_directional();
-    let before = is_directional;
-    let combo = egui::ComboBox::from_id_salt(("kind", name));
-    let combo = combo.selected_text(if is_directional { "directional" } else { "point" }).show_ui(ui, |ui| {
-        ui.selectable_value(&mut is_directional, false, "point");
-        ui.selectable_value(&mut is_directional, true, "directional");
-    });
-    combo.response.accessible_name(format!("{name} kind"));
-    light.position.w = if is_directional { 0.0 } else { 1.0 };
-    is_directional != before
-}
-
-fn camera(ui: &mut Ui, draft: &mut RunRequest) -> bool {
-    theme::heading(ui, "Camera");
-    let camera = &mut draft.camera;
-    let mut changed = false;
-    egui::Grid::new("camera settings").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
-        changed |= vector(ui, "camera eye", "eye", &mut camera.eye);
-        ui.end_row();
-        changed |= vector(ui, "camera target", "target", &mut camera.target);
-        ui.end_row();
-        changed |= vector(ui, "camera up", "up", &mut camera.up);
-        ui.end_row();
-        ui.label(theme::note("field of view"));
-        let fov = DragValue::new(&mut camera.fov_y_degrees).range(1.0..=179.0).speed(0.2).suffix("°");
-        changed |= ui.add(fov.update_while_editing(false)).accessible_name("Field of view").changed();
-        ui.end_row();
-        ui.label(theme::note("near plane"));
-        let near = DragValue::new(&mut camera.near).range(1e-6..=1e6).speed(0.001).max_decimals(6).suffix(" m");
-        changed |= ui.add(near.update_while_editing(false)).accessible_name("Near plane").changed();
-        ui.end_row();
-    });
-    changed
-}
-
-fn picture(ui: &mut Ui, draft: &mut RunRequest, animated: bool) -> bool {
-    theme::heading(ui, "Picture");
-    let mut changed = false;
-    egui::Grid::new("picture settings").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
-        ui.label(theme::note("size"));
-        ui.horizontal(|ui| {
-            for (index, name) in ["Picture width", "Picture height"].into_iter().enumerate() {
-                let side = DragValue::new(&mut draft.size[index]).range(1..=MOST_PIXELS).update_while_editing(false);
-                changed |= ui.add(side).accessible_name(name).changed();
-            }
+        changed |= row(ui, (&of(place), place), &mut position, &before.position.truncate(), |ui, position| {
+            vector(ui, &of(place), position)
         });
-        ui.end_row();
-        if animated {
-            ui.label(theme::note("time"));
-            let time = DragValue::new(&mut draft.time).speed(0.02).suffix(" s").update_while_editing(false);
-            changed |= ui.add(time).accessible_name("Scene time").changed();
-            ui.end_row();
-        }
+        light.position = position.extend(light.position.w);
+        changed |= row(ui, (&of("colour"), "colour"), &mut light.color, &before.color, |ui, color| {
+            let picker = ui.color_edit_button_rgb(color).accessible_name(of("colour"));
+            picker.on_hover_text("Linear red, green and blue").changed()
+        });
+        changed |=
+            row(ui, (&of("intensity"), "intensity"), &mut light.intensity, &before.intensity, |ui, intensity| {
+                let widget = DragValue::new(intensity).range(0.0..=1000.0).speed(0.01);
+                ui.add(widget).accessible_name(of("intensity")).changed()
+            });
+        changed
+    })
+}
+
+/// Point or directional, by the light's homogeneous coordinate. The numbers stay: they are a place, or the way towards
+/// the light.
+fn light_kind(ui: &mut Ui, name: &str, w: &mut f64) -> bool {
+    let before = *w;
+    let combo = egui::ComboBox::from_id_salt(("kind", name));
+    let combo = combo.selected_text(if before == 0.0 { "directional" } else { "point" }).show_ui(ui, |ui| {
+        ui.selectable_value(w, 1.0, "point");
+        ui.selectable_value(w, 0.0, "directional");
     });
-    changed
+    combo.response.accessible_name(name);
+    *w != before
+}
+
+fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
+    theme::heading(ui, "Camera");
+    grid(ui, "camera settings", |ui| {
+        let mut changed = false;
+        let vectors = [
+            ("camera eye", "eye", &mut camera.eye, &before.eye),
+            ("camera target", "target", &mut camera.target, &before.target),
+            ("camera up", "up", &mut camera.up, &before.up),
+        ];
+        for (name, label, value, before) in vectors {
+            changed |= row(ui, (name, label), value, before, |ui, value| vector(ui, name, value));
+        }
+        let name = ("field of view", "field of view");
+        changed |= row(ui, name, &mut camera.fov_y_degrees, &before.fov_y_degrees, |ui, fov| {
+            let widget = DragValue::new(fov).range(1.0..=179.0).speed(0.2).suffix("°").update_while_editing(false);
+            ui.add(widget).accessible_name("Field of view").changed()
+        });
+        changed |= row(ui, ("near plane", "near plane"), &mut camera.near, &before.near, |ui, near| {
+            let widget = DragValue::new(near).range(1e-6..=1e6).speed(0.001).max_decimals(6).suffix(" m");
+            ui.add(widget.update_while_editing(false)).accessible_name("Near plane").changed()
+        });
+        changed
+    })
+}
+
+fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: bool) -> bool {
+    theme::heading(ui, "Picture");
+    grid(ui, "picture settings", |ui| {
+        let mut changed = row(ui, ("picture size", "size"), &mut draft.size, &opened.size, |ui, size| {
+            let mut changed = false;
+            ui.horizontal(|ui| {
+                for (side, name) in size.iter_mut().zip(["Picture width", "Picture height"]) {
+                    let widget = DragValue::new(side).range(1..=MOST_PIXELS).update_while_editing(false);
+                    changed |= ui.add(widget).accessible_name(name).changed();
+                }
+            });
+            changed
+        });
+        if animated {
+            changed |= row(ui, ("scene time", "time"), &mut draft.time, &opened.time, |ui, time| {
+                let widget = DragValue::new(time).speed(0.02).suffix(" s").update_while_editing(false);
+                ui.add(widget).accessible_name("Scene time").changed()
+            });
+        }
+        changed
+    })
 }
 
 /// Three numbers in a row.
-fn vector(ui: &mut Ui, name: &str, label: &str, value: &mut DVec3) -> bool {
+fn vector(ui: &mut Ui, name: &str, value: &mut DVec3) -> bool {
     let mut changed = false;
-    ui.label(theme::note(label));
     ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
+        // Three long numbers have room beside their name.
+        ui.spacing_mut().item_spacing.x = 3.0;
+        ui.spacing_mut().button_padding.x = 4.0;
         for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
             let widget = DragValue::new(number).speed(0.02).max_decimals(4).update_while_editing(false);
             changed |= ui.add(widget).accessible_name(format!("{name} {axis}")).changed();

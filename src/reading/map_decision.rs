@@ -1,0 +1,137 @@
+//! Which texels of a light's shadow map decided a pixel: what each stores against the pixel's own depth, as
+//! `arriving_by_map.wgsl` compares them, and that in words.
+
+use crate::capture::Capture;
+use crate::reading::depth::DepthMeasure;
+use crate::reading::format;
+use crate::reading::layers;
+use crate::reading::map_readers::{MapReaders, MapTexel};
+use crate::truth::{LIT, SHADOW};
+
+/// A texel that is compared with a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compared {
+    /// The texel.
+    pub texel: MapTexel,
+    /// What it stores, its bias included.
+    pub stored: f32,
+    /// The depth of the pixel's surface there.
+    pub depth: f32,
+    /// What it stores is a caster, and not what the map was cleared to.
+    pub is_caster: bool,
+    /// It holds nothing nearer to the light: the light passes.
+    pub is_lit: bool,
+}
+
+/// What the map of a light says of a pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapDecision {
+    /// Index of the light.
+    pub light: usize,
+    /// The texels that are compared, row by row: one, or those of a filter.
+    pub compared: Vec<Compared>,
+    /// The one in the middle of them.
+    pub middle: Compared,
+    /// What the face is called; empty where there is one only.
+    pub face: String,
+    /// What depths of this face stand for, where that is known.
+    pub measure: Option<DepthMeasure>,
+    /// The technique's own answer, where it is another one: the depths are too close to be told apart anew.
+    pub gpu_says: Option<&'static str>,
+}
+
+impl MapDecision {
+    /// Of a pixel under a light; `None` where it reads no texel.
+    #[must_use]
+    pub fn of(capture: &Capture, readers: &MapReaders, light: usize, pixel: [u32; 2]) -> Option<MapDecision> {
+        let map = capture.lights.get(light)?.map.as_ref()?;
+        let clear = capture.depth.mapping.clear_depth();
+        let compare = |(texel, depth): (MapTexel, f64)| {
+            let stored = map.faces.get(texel.face)?.depth_at(texel.at)?;
+            let depth = depth as f32;
+            let is_caster = stored != clear;
+            let is_nearest = if clear == 0.0 { depth >= stored } else { depth <= stored };
+            Some(Compared { texel, stored, depth, is_caster, is_lit: !is_caster || is_nearest })
+        };
+        let compared: Vec<Compared> = readers.compared(pixel).into_iter().filter_map(compare).collect();
+        let at = readers.texel_of(pixel)?;
+        let middle = *compared.iter().find(|one| one.texel == at)?;
+        let layers = layers::layers(capture, light);
+        let face = layers.get(at.face).filter(|_| layers.len() > 1).map_or_else(String::new, |face| face.name.clone());
+        let measure = DepthMeasure::of_map(capture, light, at.face);
+        let mut decision = MapDecision { light, compared, middle, face, measure, gpu_says: None };
+        let is_lit = 2 * decision.lit() >= decision.compared.len();
+        decision.gpu_says = match capture.lights.get(light)?.shadow.as_ref().and_then(|mask| mask.byte_at(pixel)) {
+            Some(LIT) if !is_lit => Some("lit"),
+            Some(SHADOW) if is_lit => Some("in shadow"),
+            _ => None,
+        };
+        Some(decision)
+    }
+
+    /// How many of the texels let the light pass.
+    #[must_use]
+    pub fn lit(&self) -> usize {
+        self.compared.iter().filter(|one| one.is_lit).count()
+    }
+
+    /// A depth as stored, and how far from the light that is.
+    #[must_use]
+    pub fn depth_words(&self, depth: f32) -> String {
+        let metres = self.measure.and_then(|measure| measure.value(depth)).map(format::metres);
+        metres.map_or_else(|| format::depth(depth), |metres| format!("{} ({metres})", format::depth(depth)))
+    }
+
+    /// What the middle texel stores, in words.
+    #[must_use]
+    pub fn stored_words(&self) -> String {
+        if self.middle.is_caster { self.depth_words(self.middle.stored) } else { "no caster".to_owned() }
+    }
+
+    /// Where the texel is: `412, 300 of face −x`.
+    #[must_use]
+    pub fn place_words(&self) -> String {
+        let [x, y] = self.middle.texel.at;
+        if self.face.is_empty() { format!("{x}, {y}") } else { format!("{x}, {y} of face {}", self.face) }
+    }
+
+    /// What follows from the comparison, in a few words.
+    #[must_use]
+    pub fn outcome(&self) -> String {
+        let all = self.compared.len();
+        match (all, self.lit()) {
+            _ if self.gpu_says.is_some() => "too close to tell anew".to_owned(),
+            (1, 0) => "stored is nearer to the light: shadow".to_owned(),
+            (1, _) if self.middle.is_caster => "stored is not nearer: lit".to_owned(),
+            (1, _) => "nothing is stored: lit".to_owned(),
+            (_, lit) => format!("{lit} of {all} hold nothing nearer: {lit}/{all} lit"),
+        }
+    }
+
+    /// Why the pixel is dark or lit, in a sentence.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let place = self.place_words();
+        let distance = |depth: f32| self.measure.and_then(|measure| measure.value(depth)).map(format::metres);
+        let told = match (self.middle.is_caster, distance(self.middle.stored), distance(self.middle.depth)) {
+            (false, _, _) => format!("Texel {place} holds no caster"),
+            (true, Some(stored), Some(own)) => {
+                format!("Texel {place} holds a caster {stored} from the light, and this surface is at {own}")
+            }
+            (true, _, _) => {
+                let [stored, own] = [self.middle.stored, self.middle.depth].map(format::depth);
+                format!("Texel {place} holds depth {stored}, and this surface has {own}")
+            }
+        };
+        let all = self.compared.len();
+        if let Some(says) = self.gpu_says {
+            return format!("{told}: too close to tell by depths computed anew; the GPU's own say {says}.");
+        }
+        let follows = match self.lit() {
+            lit if all > 1 => format!("of the {all} texels read, {lit} hold nothing nearer to the light"),
+            0 => "it is nearer, so the light pass adds nothing".to_owned(),
+            _ => "nothing nearer is stored, so the light pass adds the light".to_owned(),
+        };
+        format!("{told}: {follows}.")
+    }
+}
