@@ -9,6 +9,7 @@ mod diagnose;
 mod diagnosis;
 mod diff;
 mod draws;
+mod explain;
 mod help;
 mod history;
 mod import;

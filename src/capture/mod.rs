@@ -322,6 +322,14 @@ impl Capture {
         })
     }
 
+    /// What counts of shadow volumes count, of all lights together; `None` where that is not known.
+    #[must_use]
+    pub fn count_of(&self) -> Option<CountOf> {
+        let mut all = self.lights.iter().filter_map(|light| light.count_of);
+        let first = all.next()?;
+        Some(if all.all(|of| of == first) { first } else { CountOf::Mixed })
+    }
+
     /// Is the state after every draw of a step known? So it is of a step without draws.
     #[must_use]
     pub fn holds_draws(&self, step: usize) -> bool {

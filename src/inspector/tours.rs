@@ -271,7 +271,7 @@ pub const TOURS: [Tour; 10] = [
         stops: &[
             stop(
                 "What the light sees",
-                "The casters are drawn from the light, and only depth is kept: how far the first thing is in every direction. A point light looks in six directions, a cube of maps.",
+                "The casters are drawn from the light, and only depth is kept: how far the first thing is in every direction. A point light that has casters all around looks into a cube of six maps; where they fit into one view, as here, one map is enough.",
                 &[Scene("table"), First, Picture(PictureKind::Map), Go::Panel(Explain)],
             ),
             stop(

@@ -58,6 +58,16 @@ pub enum CountOf {
 }
 
 impl CountOf {
+    /// `bodies`, `surfaces`, `bodies and surfaces`.
+    #[must_use]
+    pub fn what(self) -> &'static str {
+        match self {
+            CountOf::Bodies => "bodies",
+            CountOf::Surfaces => "surfaces",
+            CountOf::Mixed => "bodies and surfaces",
+        }
+    }
+
     /// In a sentence, for whoever reads a count.
     #[must_use]
     pub fn meaning(self) -> &'static str {

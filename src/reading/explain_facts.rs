@@ -48,7 +48,7 @@ pub fn facts(known: &Known) -> Vec<Fact> {
     }
     if step.draws.iter().any(|draw| draw.part.is_of_volume()) {
         // Of another program's volumes sides and caps are not told apart.
-        let parts = known.capture.origin.is_none().then(|| triangles(step));
+        let parts = known.capture.origin.is_none().then(|| triangles(known, step));
         return std::iter::once(volumes(known)).chain(parts).collect();
     }
     if has(Part::PlanarShadow) {
@@ -153,21 +153,29 @@ fn volumes(known: &Known) -> Fact {
                     format::count(all)
                 ));
                 let most = counts[..128].iter().rposition(|count| *count > 0).unwrap_or(0);
-                here.push(format!("the deepest lies in {most} volumes at once"));
+                here.push(format!("the highest count is {most}"));
             }
             here.push("Pick a pixel (right click) to see the faces that made its count.".to_owned());
         }
     }
+    here.extend(light.and_then(|light| known.capture.lights.get(light)?.count_of).map(|of| of.meaning().to_owned()));
     fact(formula, here)
 }
 
-fn triangles(step: &Step) -> Fact {
+fn triangles(known: &Known, step: &Step) -> Fact {
     let of = |part: Part| step.draws.iter().filter(|draw| draw.part == part).map(|draw| draw.triangles).sum::<u64>();
     let [sides, light, dark] = [Part::Side, Part::LightCap, Part::DarkCap].map(of);
+    let is_sun = step.light.and_then(|light| known.lights.get(light)).is_some_and(Light::is_directional);
+    let is_finite = known.capture.settings.get("extrusion").is_some_and(|how| how.starts_with("finite"));
+    let dark_cap = match (is_sun, is_finite) {
+        (_, true) => "dark caps, the casting triangles carried to the far end",
+        (true, false) => "dark caps: the sides of a sun's volume meet in one point at infinity, so it needs none",
+        (false, false) => "dark caps, fans over the silhouettes at infinity",
+    };
     let here = vec![
-        format!("sides, two triangles a silhouette edge: {}", format::count(sides)),
-        format!("light caps, the triangles that face the light: {}", format::count(light)),
-        format!("dark caps, the same carried to infinity: {}", format::count(dark)),
+        format!("sides, between each silhouette edge and the same edge at the far end: {}", format::count(sides)),
+        format!("light caps, the casting triangles themselves: {}", format::count(light)),
+        format!("{dark_cap}: {}", format::count(dark)),
     ];
     fact("a closed volume = sides + light cap + dark cap", here)
 }
@@ -177,7 +185,16 @@ fn light(known: &Known, step: &Step) -> Fact {
     let mut here = Vec::new();
     if let Some(light) = known.lights.get(index) {
         let [red, green, blue] = light.color.map(|share| format::digits(f64::from(share * light.intensity)));
-        here.push(format!("{} adds ({red}, {green}, {blue}) × material × cosine of its angle", format::light(index)));
+        let diffuse = match known.capture.settings.get("diffuse").is_some_and(|how| how == "wrapped") {
+            true => "(1 + cosine of its angle) / 2",
+            false => "cosine of its angle",
+        };
+        let fading =
+            if light.range.is_some() && !light.is_directional() { " × what is left at its distance" } else { "" };
+        here.push(format!(
+            "{} adds ({red}, {green}, {blue}) × (material × {diffuse} + highlight){fading}",
+            format::light(index)
+        ));
     }
     if let Some(compared) = compared(known, index) {
         here.extend(compared.here);
@@ -185,21 +202,28 @@ fn light(known: &Known, step: &Step) -> Fact {
     }
     let before = known.step.checked_sub(1).and_then(|before| known.capture.frame_at(before));
     let stencil = before.and_then(|frame| frame.stencil.as_ref());
-    if let Some(stencil) = stencil {
-        let counts = stencil.image.histogram();
-        let all: u64 = counts.iter().sum();
-        here.push(format!(
-            "{} of {} pixels have the count 0 and are lit",
-            format::count(counts[0]),
-            format::count(all)
-        ));
-        if let Some((at, count)) = known.pick.and_then(|at| Some((at, stencil.image.byte_at(at)?))) {
-            let does = if count == 0 { "light is added" } else { "the stencil test keeps light away" };
-            here.push(format!("pixel {}, {}: its count is {count}, so {does}", at[0], at[1]));
-        }
-        return fact("light is added where count = 0", here);
+    // What the stencil test of the light pass lets through.
+    let test: Option<(&str, &str, fn(usize) -> bool)> = match known.capture.decided_by(index) {
+        DecidedBy::StencilCount { .. } => Some(("light is added where count = 0", "the count 0", |count| count == 0)),
+        DecidedBy::Flattened => Some((
+            "light is added where the stencil is even: a shadow adds 1 to its receiver's even mark",
+            "an even number",
+            |mark| mark % 2 == 0,
+        )),
+        _ => None,
+    };
+    let Some((stencil, (formula, what, is_lit))) = stencil.zip(test) else {
+        return fact("light is added where the technique lets it through", here);
+    };
+    let counts = stencil.image.histogram();
+    let lit: u64 = counts.iter().enumerate().filter(|(value, _)| is_lit(*value)).map(|(_, count)| count).sum();
+    let [lit, all] = [lit, counts.iter().sum()].map(format::count);
+    here.push(format!("{lit} of {all} pixels have {what}: the test lets light through"));
+    if let Some((at, value)) = known.pick.and_then(|at| Some((at, stencil.image.byte_at(at)?))) {
+        let does = if is_lit(value.into()) { "light is added" } else { "the stencil test keeps light away" };
+        here.push(format!("pixel {}, {}: its stencil is {value}, so {does}", at[0], at[1]));
     }
-    fact("light is added where the technique lets it through", here)
+    fact(formula, here)
 }
 
 /// How the light's shadow map decides, with the picked pixel's numbers; `None` where no map does.

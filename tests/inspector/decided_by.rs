@@ -11,7 +11,7 @@ use stencilscope::ask::HistoryOf;
 use stencilscope::ask::RunRequest;
 use stencilscope::capture::Capture;
 use stencilscope::inspector::Inspector;
-use stencilscope::plan::{DecidedBy, Side};
+use stencilscope::plan::{CountOf, DecidedBy, Side};
 use stencilscope::scene::{OpenSpec, Scene, open};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::{Choice, Technique};
@@ -84,6 +84,13 @@ fn every_technique_has_ladder_sum_and_legend_or_says_what_decided() {
         };
         assert_eq!((side, legend), (expected_side, expected_legend), "{name}");
         assert!(says(&harness, reason), "{name}: {reason}");
+        // Two tori, proven closed, over a floor that is not: who counts says what.
+        let counting = capture.lights[0].count_of.map(CountOf::what);
+        assert_eq!(counting.is_some(), side.is_some(), "{name}");
+        if let Some(counting) = counting {
+            assert!(says(&harness, &format!("along the view ray, counting {counting}")), "{name}: the ladder");
+            assert!(harness.query_by_label(&format!("of {counting}")).is_some(), "{name}: the legend");
+        }
     }
 }
 

@@ -72,7 +72,7 @@ fn each_pass_is_explained_with_the_scenes_own_numbers() {
     press(&mut harness, Key::ArrowRight);
     harness.get_by_label_contains("count = back faces behind the surface − front faces behind it");
     harness.get_by_label_contains("pixels have a count other than 0");
-    harness.get_by_label_contains("sides, two triangles a silhouette edge: ");
+    harness.get_by_label_contains("sides, between each silhouette edge");
     assert!(harness.query_all_by_label("Left out").count() > 0);
     press(&mut harness, Key::ArrowRight);
     harness.get_by_label("light is added where count = 0");

@@ -132,7 +132,13 @@ fn lines_receivers_and_names_come_from_the_frames_anatomy() {
     harness.get_by_label("Looking at the geometry …");
     harness.state_mut().inspector.tell(AnatomyOf {}, Ok(anatomy));
     harness.run_steps(3);
-    for text in ["silhouette; thick, ±2: twice", "side", "light cap", "dark cap", "receives shadows"] {
+    for text in [
+        "silhouette edge; thick, ±2: counted twice, as the triangles on both of its sides cast",
+        "side",
+        "light cap",
+        "dark cap",
+        "receives shadows",
+    ] {
         assert!(shows(&harness, text), "{text}");
     }
     let over = harness.render().expect("a picture");

@@ -81,6 +81,9 @@ fn stencil(ui: &mut Ui, model: &mut Model, shown: &Shown) {
     let histogram = model.textures.histogram(&shown.images[0]);
     let are_counts = model.frame.capture.as_ref().is_some_and(|capture| capture.counts_volumes());
     theme::heading(ui, if are_counts { "Stencil count" } else { "Stencil value" });
+    if let Some(of) = model.frame.capture.as_ref().and_then(|capture| capture.count_of()) {
+        ui.label(theme::note(format!("of {}", of.what()))).on_hover_text(of.meaning());
+    }
     // 0, 1, 2 … and then −1, −2 …: the order in which people think of them.
     let values = (0..=127).chain((128..=255).rev()).map(|value: u8| (value, histogram[usize::from(value)]));
     let (listed, rest) = most_frequent(values.filter(|(_, pixels)| *pixels > 0).collect(), MOST_VALUES);

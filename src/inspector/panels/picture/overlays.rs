@@ -250,7 +250,7 @@ fn contents(ui: &mut Ui, own: &Overlays, model: &Model) {
     let made = own.made.as_ref();
     let left_out = |lines: Option<&(Lines, PlacedLines)>| lines.map_or(0, |(lines, _)| lines.left_out);
     if on.contains(&Overlay::Silhouettes) {
-        line(ui, theme.lit, "silhouette; thick, ±2: twice");
+        line(ui, theme.lit, "silhouette edge; thick, ±2: counted twice, as the triangles on both of its sides cast");
     }
     if on.contains(&Overlay::Volumes) {
         let has_any = made.and_then(|made| made.volumes.as_ref()).is_none_or(|(lines, _)| !lines.lines.is_empty());
