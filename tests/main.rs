@@ -1,6 +1,7 @@
 //! Tests by behaviour, in one program: it links once, and what they share is used by all.
 
 mod accuracy;
+mod animate;
 mod auto;
 mod capture_folder;
 mod commands;

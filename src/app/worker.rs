@@ -8,8 +8,10 @@
 //!
 //! ```text
 //! worker.rs   orders, opening and running     worker/turns.rs   what takes many turns: a report, stress cases
+//! worker/film.rs   a film, a picture a turn
 //! ```
 
+mod film;
 mod turns;
 
 use super::news::{Exported, News};
@@ -101,6 +103,8 @@ struct Work {
     last: Option<RunFrame>,
     /// How long that took to capture.
     took: Duration,
+    /// A film that is being made.
+    film: Option<film::FilmRun>,
     /// Stress cases that are being run.
     stress: Option<turns::StressRun>,
     tell: Box<dyn Fn(News) + Send>,
@@ -132,6 +136,7 @@ impl Work {
             frames: 0,
             last: None,
             took: Duration::ZERO,
+            film: None,
             stress: None,
             tell,
         }
@@ -203,13 +208,16 @@ impl Work {
     /// Answers a question that is still asked: at once, or turn by turn.
     fn answer_in_turn(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
         if asked.progress.is_cancelled() {
-            if asked.ask.kind() == Kind::StressOf {
-                self.end_stress();
+            match asked.ask.kind() {
+                Kind::StressOf => self.end_stress(),
+                Kind::FilmOf => self.film = None,
+                _ => {}
             }
             return;
         }
         match asked.ask {
             Ask::StressOf(_) => self.stress_turn(of, asked, inbox),
+            Ask::FilmOf(_) => self.film_turn(of, asked, inbox),
             Ask::ReportOf(_) => self.report(of, asked, inbox),
             _ => self.answer(of, &asked),
         }

@@ -142,11 +142,39 @@ questions! {
         choices: Vec<Choice>,
         /// Timed frames of each.
         runs: usize } -> MeasuredReport;
+    /// A film of the frame, written into a file that may be replaced.
+    FilmOf { /// What it shows.
+        subject: FilmSubject,
+        /// The file.
+        path: String } -> Filmed;
     /// What stress cases came to.
     StressOf { /// Their names.
         cases: Vec<&'static str> } -> StressRows;
     /// How long the frame takes, with and without snapshots.
     TimingOf { } -> Timing;
+}
+
+/// What a film shows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FilmSubject {
+    /// A frame, pass by pass.
+    Steps(Arc<Capture>),
+    /// A light that goes once round the open scene.
+    LightRound {
+        /// How the scene is run.
+        request: Box<RunRequest>,
+        /// Index of the light.
+        light: usize,
+    },
+}
+
+/// A film that was written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Filmed {
+    /// How many pictures it has.
+    pub pictures: u32,
+    /// How large the file is.
+    pub bytes: u64,
 }
 
 impl ReportOf {
@@ -179,7 +207,7 @@ impl Kind {
     pub fn holds(self) -> Holds {
         match self {
             Kind::WallsOf | Kind::CaptureOf | Kind::MeshesOf | Kind::DiagnosisOf => Holds::Scene,
-            Kind::ReportOf | Kind::StressOf => Holds::Always,
+            Kind::ReportOf | Kind::FilmOf | Kind::StressOf => Holds::Always,
             _ => Holds::Frame,
         }
     }
@@ -194,7 +222,7 @@ impl Kind {
     /// Is it asked by a press of a button only, as it takes long?
     #[must_use]
     pub fn is_started_by_hand(self) -> bool {
-        matches!(self, Kind::DiagnosisOf | Kind::FaultsOf | Kind::ReportOf | Kind::StressOf)
+        matches!(self, Kind::DiagnosisOf | Kind::FaultsOf | Kind::ReportOf | Kind::FilmOf | Kind::StressOf)
     }
 
     /// Is it about the shown frame, and answered within about the time of one? Long work lets it come between.

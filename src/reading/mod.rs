@@ -6,6 +6,7 @@
 //! depth.rs     what a stored depth means         counts.rs    counts beyond eight bits change.rs   what a step changed
 //! verdict.rs   why a pixel is dark, a sentence   explain_facts.rs a step as a formula  meshes.rs   how meshes hang together
 //! history_row.rs, ladder_layout.rs  a pixel's events in rows, and along its view ray
+//! written.rs    what a step or a draw wrote, and its texels in their colours
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
 //! ```
 
@@ -27,6 +28,7 @@ pub mod pick_ray;
 pub mod projected;
 pub mod shown;
 pub mod verdict;
+pub mod written;
 
 pub use map_readers::{MapReaders, MapTexel};
 pub use meshes::ObjectMesh;

@@ -151,7 +151,7 @@ impl Session {
                 let RunFrame { capture, plan, .. } = of_frame()?;
                 ask.read_from(capture, Some(plan)).map_err(SessionError::Unanswered)?
             }
-            Ask::ReportOf(_) | Ask::StressOf(_) => {
+            Ask::ReportOf(_) | Ask::FilmOf(_) | Ask::StressOf(_) => {
                 return Err(SessionError::Unanswered(
                     "it takes many turns, between which other work may come".to_owned(),
                 ));

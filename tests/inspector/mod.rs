@@ -9,6 +9,7 @@ mod decided_by;
 mod diagnosis;
 mod draws;
 mod explain;
+mod films;
 mod gizmos;
 mod history;
 mod history_by_hand;
