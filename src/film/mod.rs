@@ -19,6 +19,7 @@ use crate::files::WholeFile;
 use crate::picture::Picture;
 use crate::picture::apng::{AnimatedPng, AnimationError, Colors, Format};
 use crate::picture::svg::SvgError;
+use crate::reading::steps as step_numbers;
 use crate::reading::written::{Content, Written};
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, SessionError};
@@ -81,7 +82,7 @@ fn choice_of(lights: usize) -> String {
 /// What a film shows.
 #[derive(Debug, Clone)]
 pub enum Shows {
-    /// A frame, pass by pass.
+    /// A frame, pass by pass; masks are beside it and left out.
     Steps(Arc<Capture>),
     /// A light that goes round.
     LightRound {
@@ -99,7 +100,7 @@ impl Shows {
     #[must_use]
     pub fn pictures(&self) -> u32 {
         match self {
-            Shows::Steps(capture) => capture.steps.len() as u32,
+            Shows::Steps(capture) => step_numbers::count(capture) as u32,
             Shows::LightRound { round, .. } => round.places(),
         }
     }
@@ -132,7 +133,10 @@ impl Shows {
 
     fn picture(&self, index: u32, render: &mut Render) -> Result<Picture, FilmError> {
         match self {
-            Shows::Steps(capture) => Ok(step_picture(capture, index as usize)?),
+            Shows::Steps(capture) => {
+                let step = step_numbers::numbered(capture).nth(index as usize).ok_or(FilmError::NoSteps)?;
+                Ok(step_picture(capture, step)?)
+            }
             Shows::LightRound { round, request, .. } => {
                 let capture = render(&round.scene(index), request)?;
                 let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));

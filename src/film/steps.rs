@@ -5,6 +5,7 @@ use crate::numbers;
 use crate::picture::Picture;
 use crate::picture::colors::{self, Rgb};
 use crate::picture::svg::{self, SvgError};
+use crate::reading::steps;
 use crate::reading::written::Written;
 
 /// Pixels of width for one of the bar's height, and how high it is at least and at most.
@@ -43,11 +44,10 @@ pub fn step_picture(capture: &Capture, index: usize) -> Result<Picture, SvgError
         let [left, top] = [0, 1].map(|side| (capture.size[side] - shown.size()[side]) / 2);
         all.paste(&shown, [left, top]);
     }
-    let step = capture.steps.get(index);
-    let light = step.and_then(|step| step.light).map(|light| format!("{} · ", numbers::light(light)));
+    let light =
+        capture.steps.get(index).and_then(|step| step.light).map(|light| format!("{} · ", numbers::light(light)));
     let right = light.unwrap_or_default() + written.map_or(NOTHING, |written| written.name);
-    let name = step.map_or_else(String::new, |step| format!("{} · {}", index + 1, step.name));
-    all.paste(&bar(capture.size[0], &name, &right)?, [0, capture.size[1]]);
+    all.paste(&bar(capture.size[0], &steps::title(capture, index), &right)?, [0, capture.size[1]]);
     Ok(all)
 }
 

@@ -2,6 +2,7 @@
 //! texel it read. Whoever shows a frame, the window or a page, takes it from here: nothing knows a widget.
 //!
 //! ```text
+//! steps.rs     what has a number, what is beside
 //! moment.rs    after a step, or after a draw     shown.rs     the picture of it        layers.rs   maps, textures
 //! depth.rs     what a stored depth means         counts.rs    counts beyond eight bits change.rs   what a step changed
 //! verdict.rs   why a pixel is dark, a sentence   explain_facts.rs a step as a formula  meshes.rs   how meshes hang together
@@ -27,6 +28,7 @@ pub mod outcomes;
 pub mod pick_ray;
 pub mod projected;
 pub mod shown;
+pub mod steps;
 pub mod verdict;
 pub mod written;
 
