@@ -7,6 +7,7 @@ mod cards;
 mod counts;
 mod decided_by;
 mod diagnosis;
+mod docking;
 mod draws;
 mod explain;
 mod films;
