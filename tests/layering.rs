@@ -146,7 +146,10 @@ const MAY_USE: [(&str, &[&str]); 33] = [
             "reading",
         ],
     ),
-    ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers", "math"]),
+    (
+        "testing",
+        &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers", "math", "reading"],
+    ),
     (
         "cli",
         &[

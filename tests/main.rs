@@ -21,6 +21,7 @@ mod memory;
 mod options;
 mod plan;
 mod ray_cast;
+mod readback;
 mod readme;
 mod recorded;
 mod report;
