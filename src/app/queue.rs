@@ -157,7 +157,9 @@ impl Inbox<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ask::{Ask, DiagnosisOf, DrawsOf, HistoryOf, ReportOf, StressOf, TimingOf, TruthOf, WallsOf};
+    use crate::ask::{
+        Ask, DiagnosisOf, DrawsOf, HistoryOf, ObjectChanges, ReportOf, StressOf, TimingOf, TruthOf, WallsOf,
+    };
     use crate::progress::Progress;
     use crate::technique::{Choice, Technique};
     use std::collections::BTreeSet;
@@ -189,7 +191,7 @@ mod tests {
     }
 
     fn walls() -> WallsOf {
-        WallsOf { off: BTreeSet::new(), time: 0.0 }
+        WallsOf { off: BTreeSet::new(), objects: ObjectChanges::default(), time: 0.0 }
     }
 
     #[test]

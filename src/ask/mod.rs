@@ -16,7 +16,7 @@ mod answers;
 mod run_request;
 
 pub use answers::{Answers, Asked, Reply};
-pub use run_request::{RunRequest, without};
+pub use run_request::{ObjectChanges, RunRequest, without};
 
 use crate::anatomy::Anatomy;
 use crate::capture::{Capture, FrameTruth, StepDraws, Timing};
@@ -108,6 +108,8 @@ questions! {
     /// What can't be walked through in the scene as it would be run.
     WallsOf { /// Objects that are switched off, by index.
         off: BTreeSet<usize>,
+        /// What is changed of the objects.
+        objects: ObjectChanges,
         /// The moment, seconds; 0 where nothing moves.
         time: f64 } -> Walls;
     /// The states after the draws of a step.

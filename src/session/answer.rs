@@ -100,8 +100,9 @@ impl Session {
         let of_frame = || frame.ok_or(SessionError::NoFrame);
         let of_scene = || scene.ok_or(SessionError::NoScene);
         Ok(match ask {
-            Ask::WallsOf(WallsOf { off, time }) => {
-                Answer::WallsOf(Arc::new(self.walls.walls(&without(of_scene()?, off).at(*time))))
+            Ask::WallsOf(WallsOf { off, objects, time }) => {
+                let scene = without(&objects.applied_to(of_scene()?), off).at(*time);
+                Answer::WallsOf(Arc::new(self.walls.walls(&scene)))
             }
             Ask::MeshesOf(_) => {
                 let mesh = |(object, topology)| ObjectMesh { object, topology };

@@ -16,6 +16,7 @@ mod history;
 mod history_by_hand;
 mod history_pictures;
 mod layers;
+mod making;
 mod mode_pictures;
 mod overlays;
 mod picture_modes;
@@ -65,6 +66,7 @@ fn run_request(technique: Technique) -> RunRequest {
         lights: scene.lights,
         time: 0.0,
         off: std::collections::BTreeSet::new(),
+        objects: Default::default(),
     }
 }
 

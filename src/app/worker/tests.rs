@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::ask::{
-    Answer, DiagnosisOf, DrawsOf, FilmOf, FilmSubject, HistoryOf, MeshesOf, Question, ReportOf, StressOf, TimingOf,
-    TruthOf, WallsOf,
+    Answer, DiagnosisOf, DrawsOf, FilmOf, FilmSubject, HistoryOf, MeshesOf, ObjectChanges, Question, ReportOf,
+    StressOf, TimingOf, TruthOf, WallsOf,
 };
 use crate::progress::Progress;
 use crate::report::MeasuredReport;
@@ -352,6 +352,7 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
         lights: scene.lights.clone(),
         time: 0.0,
         off,
+        objects: Default::default(),
     };
     assert!(worker.order(Order::Run { scene: 1, request: Box::new(request) }));
     let plan = wait(&news, |news| match news {
@@ -367,7 +368,8 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
 fn walls_are_those_of_the_scene_as_it_would_be_run() {
     let (worker, frame, news) = started();
     let mut scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
-    let walls = |off: std::ops::Range<usize>| WallsOf { off: off.collect(), time: 0.0 };
+    let walls =
+        |off: std::ops::Range<usize>| WallsOf { off: off.collect(), objects: ObjectChanges::default(), time: 0.0 };
     // Of a scene that is open no more nothing is told.
     ask_of(&worker, [0, frame], 1, walls(0..0));
     ask(&worker, frame, 2, history(0, 0));
@@ -398,6 +400,7 @@ fn a_scene_is_saved_as_it_is_run_and_what_is_there_is_asked_about() {
         lights: scene.lights.clone(),
         time: 0.0,
         off: std::collections::BTreeSet::from([1]),
+        objects: Default::default(),
     };
     let save = |replace| {
         let order = Order::SaveScene { scene: 1, request: Box::new(request.clone()), path: path.clone(), replace };
@@ -445,6 +448,7 @@ fn a_changed_file_is_loaded_again_with_the_camera_as_it_is() {
         lights: scene.lights.clone(),
         time: 0.0,
         off: std::collections::BTreeSet::new(),
+        objects: Default::default(),
     };
     assert!(worker.order(Order::Reload { request: Box::new(request) }));
     let (scene, request) = wait(&news, |news| match news {
@@ -536,4 +540,45 @@ fn a_film_that_can_not_be_made_says_why_with_the_mend() {
     let reason = answer::<FilmOf>(&news, 3).expect_err("another scene");
     assert!(reason.contains("export it again"), "{reason}");
     assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}
+
+/// What is made in the window is in the next frame, in the walls, and in the scene file, which opens as it was left.
+#[test]
+fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
+    let (worker, _, news) = started();
+    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
+    let moved = crate::scene::Pose { translate: glam::DVec3::new(0.0, 3.0, 0.0), ..scene.objects[1].pose };
+    request.objects.moved.insert(1, moved);
+    let mesh = crate::scene::shapes::cuboid([1.0; 3]).expect("a box");
+    request.objects.added.push(crate::scene::Object::of("new box", mesh).at([0.0, 2.0, 0.0]));
+    request.lights.push(crate::scene::Light::directional([0.4, 1.0, 0.3]));
+    request.off.insert(2);
+    let count = scene.objects.len();
+    assert!(worker.order(Order::Run { scene: 1, request: Box::new(request.clone()) }));
+    let plan = wait(&news, |news| match news {
+        News::Captured { run, .. } if run.plan.technique == "z-fail" => Some(run.plan),
+        _ => None,
+    });
+    let casters: std::collections::BTreeSet<&str> =
+        plan.passes.iter().flat_map(|pass| &pass.draws).filter_map(|draw| draw.caster.as_deref()).collect();
+    assert!(casters.contains("new box") && !casters.contains(scene.objects[2].name.as_str()), "{casters:?}");
+    assert_eq!(plan.lights.len(), scene.lights.len() + 1);
+    let changed = request.applied_to(&scene);
+    let (off, objects) = (request.off.clone(), request.objects.clone());
+    ask(&worker, 2, 7, WallsOf { off, objects, time: 0.0 });
+    assert_eq!(*answer::<WallsOf>(&news, 7).expect("walls"), WallCache::default().walls(&changed));
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("made.toml").display().to_string();
+    let save = Order::SaveScene { scene: 1, request: Box::new(request), path: path.clone(), replace: false };
+    assert!(worker.order(save));
+    wait(&news, |news| matches!(news, News::Exported(Exported::Done(_))).then_some(()));
+    let saved = crate::scene::open(&OpenSpec::new(path)).expect("a scene");
+    assert_eq!(saved.objects.len(), count, "one more, and one is off");
+    assert_eq!(
+        saved.objects.iter().map(|object| object.pose).collect::<Vec<_>>(),
+        changed.objects.iter().map(|object| object.pose).collect::<Vec<_>>()
+    );
+    assert_eq!(saved.objects.last().map(|object| object.name.as_str()), Some("new box"));
+    assert_eq!(saved.lights, changed.lights);
 }

@@ -3,7 +3,7 @@
 use super::{Model, undo};
 use crate::ask::RunRequest;
 use crate::inspector::action::Action;
-use crate::scene::Scene;
+use crate::scene::{Object, Scene};
 use crate::technique::{Choice, Technique};
 use std::collections::BTreeMap;
 
@@ -18,6 +18,10 @@ pub struct OpenScene {
     pub animated: bool,
     /// Names of its objects.
     pub objects: Vec<String>,
+    /// Its objects, as loaded.
+    pub loaded: Vec<Object>,
+    /// Index of the one that is moved by numbers, new ones after those of the scene.
+    pub edited: usize,
     /// What the next run will be.
     pub draft: RunRequest,
     /// The settings of techniques used before, to come back to.
@@ -47,6 +51,8 @@ impl Model {
             source,
             animated: scene.is_animated(),
             objects: scene.objects.iter().map(|object| object.name.clone()).collect(),
+            loaded: scene.objects.clone(),
+            edited: 0,
             choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
             problem: draft.check().err(),
             draft,
