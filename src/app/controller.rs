@@ -11,7 +11,7 @@ use super::reader::{Reader, Reading, Unread};
 use super::watch::Watch;
 use super::worker::{Start, Worker};
 use super::{AppError, ViewRequest};
-use crate::ask::{Asked, FilmOf, FilmSubject};
+use crate::ask::{Asked, FilmOf, FilmSubject, Kind};
 use crate::capture::Capture;
 use crate::import::SHIPPED;
 use crate::inspector::{Action, ExportData, Inspector, Remembered, SceneEntry};
@@ -54,6 +54,14 @@ pub struct Controller {
     first_is_error: bool,
     /// As stored last.
     remembered: Remembered,
+}
+
+impl Drop for Controller {
+    /// Long work stops: the program ends.
+    fn drop(&mut self) {
+        self.inspector.make_way();
+        self.inspector.cancel(Kind::FilmOf);
+    }
 }
 
 impl Controller {

@@ -3,7 +3,7 @@
 use crate::ask::{Asked, Kind, RunRequest};
 use crate::stress::{Case, Entrant};
 use std::collections::BTreeMap;
-use std::sync::mpsc::Receiver;
+use std::sync::mpsc::{Receiver, TryRecvError};
 
 /// What the window asks for.
 #[derive(Debug)]
@@ -134,6 +134,8 @@ pub struct Inbox<'a> {
     pub orders: &'a Receiver<Order>,
     /// Taken in, and not obeyed yet.
     pub queue: Queue,
+    /// The window is gone.
+    pub is_closed: bool,
 }
 
 impl Inbox<'_> {
@@ -150,7 +152,16 @@ impl Inbox<'_> {
     }
 
     fn take_in(&mut self) {
-        self.orders.try_iter().for_each(|order| self.queue.add(order));
+        loop {
+            match self.orders.try_recv() {
+                Ok(order) => self.queue.add(order),
+                Err(TryRecvError::Empty) => return,
+                Err(TryRecvError::Disconnected) => {
+                    self.is_closed = true;
+                    return;
+                }
+            }
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use crate::picture::apng::Colors;
 use crate::session::CaptureRequest;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 /// A film that is being made.
 pub(super) struct FilmRun {
@@ -17,10 +18,18 @@ pub(super) struct FilmRun {
 }
 
 impl Work {
+    /// The film that is being made; of the one before nothing is left.
+    pub(super) fn set_film(&mut self, film: Option<FilmRun>) {
+        self.film = film;
+        self.is_filming.store(self.film.is_some(), Ordering::Release);
+    }
+
     /// Makes the next picture of the film that is asked for, and puts the question back while any is left.
     pub(super) fn film_turn(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
         let had_session = self.session.is_some();
+        self.is_filming.store(true, Ordering::Release);
         let result = self.next_picture(of, &asked);
+        self.is_filming.store(self.film.is_some(), Ordering::Release);
         if self.session.is_some() != had_session {
             (self.tell)(News::Idle);
         }
@@ -34,7 +43,8 @@ impl Work {
 
     /// The film once it is whole; `None` where more is to come. Of one that fails nothing is left.
     fn next_picture(&mut self, of: [u64; 2], asked: &Asked) -> Result<Option<Filmed>, String> {
-        let mut run = match (self.film.take(), &asked.ask) {
+        let before = self.film.take();
+        let mut run = match (before, &asked.ask) {
             (Some(run), _) if run.ticket == asked.ticket => run,
             (_, Ask::FilmOf(question)) => {
                 let film = self.begin_film(of, question)?;

@@ -582,3 +582,16 @@ fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
     assert_eq!(saved.objects.last().map(|object| object.name.as_str()), Some("new box"));
     assert_eq!(saved.lights, changed.lights);
 }
+
+#[test]
+fn a_film_that_is_under_way_when_the_window_closes_leaves_nothing() {
+    let (worker, frame, _news) = started();
+    let folder = tempfile::tempdir().expect("a folder");
+    let progress = round(&worker, frame, 1, &folder.path().join("round.png"));
+    while progress.steps().0 == 0 {
+        thread::yield_now();
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "it is being written");
+    drop(worker);
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}

@@ -6,7 +6,7 @@ use crate::ask::RunRequest;
 use crate::inspector::look::theme;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
-use crate::scene::{Camera, Light, Mesh, MeshError, Object, Pose, shapes};
+use crate::scene::{Camera, Light, Material, Mesh, MeshError, Object, Pose, Shading, shapes};
 use egui::{CollapsingHeader, DragValue, Ui};
 use glam::DVec3;
 
@@ -21,12 +21,12 @@ const AROUND: u32 = 32;
 type Shape = fn() -> Result<Mesh, MeshError>;
 
 /// Shapes that can be added, a metre large, with their names.
-const SHAPES: [(&str, Shape); 5] = [
-    ("box", || shapes::cuboid([1.0; 3])),
-    ("sphere", || shapes::sphere(0.5, AROUND, AROUND / 2)),
-    ("torus", || shapes::torus(0.35, 0.15, AROUND, AROUND / 2)),
-    ("cylinder", || shapes::cylinder(0.5, 1.0, AROUND)),
-    ("board", || shapes::quad([1.0; 2])),
+const SHAPES: [(&str, Shading, Shape); 5] = [
+    ("box", Shading::Flat, || shapes::cuboid([1.0; 3])),
+    ("sphere", Shading::Phong, || shapes::sphere(0.5, AROUND, AROUND / 2)),
+    ("torus", Shading::Phong, || shapes::torus(0.35, 0.15, AROUND, AROUND / 2)),
+    ("cylinder", Shading::Flat, || shapes::cylinder(0.5, 1.0, AROUND)),
+    ("board", Shading::Flat, || shapes::quad([1.0; 2])),
 ];
 
 /// Draws the part of the panel; true when something changed.
@@ -48,15 +48,16 @@ fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let mut changed = false;
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::note("add"));
-        for (name, shape) in SHAPES {
+        for (name, shading, shape) in SHAPES {
             let button = ui.button(name).on_hover_text(format!("A {name} where the eye looks"));
             if button.clicked()
                 && let Ok(mesh) = shape()
             {
-                let pose = Pose { translate: target, scale: DVec3::splat(SIZE * far), ..Pose::default() };
+                let pose = Pose { translate: target, scale: DVec3::splat(rounded(SIZE * far)), ..Pose::default() };
                 let name = unused(name, scene);
                 scene.edited = scene.loaded.len() + scene.draft.objects.added.len();
-                scene.draft.objects.added.push(Object { pose, ..Object::of(name, mesh) });
+                let material = Material { shading, ..Material::default() };
+                scene.draft.objects.added.push(Object { pose, ..Object::new(name, mesh.into(), material) });
                 changed = true;
             }
         }
@@ -71,6 +72,13 @@ fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
         }
     });
     changed
+}
+
+/// To two digits, as one would type it.
+fn rounded(length: f64) -> f64 {
+    let digit = 10.0_f64.powf(length.log10().floor() - 1.0);
+    let rounded = (length / digit).round() * digit;
+    if rounded.is_normal() { rounded } else { 1.0 }
 }
 
 /// The name, or the name with the first number that no object has.
