@@ -1,26 +1,77 @@
 //! Files that are there whole or not at all, and the way from one to another.
 
-use std::io;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::path::{Component, Path, PathBuf};
+
+/// A file that is written beside its place, and is there once it is finished. One that never is leaves nothing, and what
+/// was there before stays.
+#[derive(Debug)]
+pub struct WholeFile {
+    file: File,
+    /// Where it is written; `None` where it is in its place already.
+    beside: Option<PathBuf>,
+    target: PathBuf,
+}
+
+impl WholeFile {
+    /// Begins one.
+    ///
+    /// # Errors
+    /// Nothing can be written there.
+    pub fn create(path: &Path) -> io::Result<WholeFile> {
+        // A link to a file stays a link: what it points to is replaced.
+        let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
+        // A device or a pipe has no place to be renamed into.
+        let is_in_place = target.exists() && !target.is_file();
+        let mut beside = target.clone().into_os_string();
+        beside.push(format!(".new-{}", std::process::id()));
+        let beside = (!is_in_place).then(|| PathBuf::from(beside));
+        let file = match &beside {
+            Some(beside) => File::create(beside)?,
+            None => File::options().write(true).open(&target)?,
+        };
+        Ok(WholeFile { file, beside, target })
+    }
+
+    /// Writes into it. What was written has to be flushed before it is finished.
+    ///
+    /// # Errors
+    /// The system has no more handles.
+    pub fn writer(&self) -> io::Result<BufWriter<File>> {
+        Ok(BufWriter::new(self.file.try_clone()?))
+    }
+
+    /// Puts it in its place.
+    ///
+    /// # Errors
+    /// It can't be moved there.
+    pub fn finish(mut self) -> io::Result<()> {
+        if let Some(beside) = &self.beside {
+            std::fs::rename(beside, &self.target)?;
+            self.beside = None;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for WholeFile {
+    fn drop(&mut self) {
+        if let Some(beside) = &self.beside {
+            // What failed is the error already.
+            let _ = std::fs::remove_file(beside);
+        }
+    }
+}
 
 /// Writes a file beside its place and renames it.
 ///
 /// # Errors
 /// The file can't be written; what was there before is still there then.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // A link to a file stays a link: what it points to is replaced.
-    let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.into());
-    let mut beside = target.clone().into_os_string();
-    beside.push(format!(".new-{}", std::process::id()));
-    if target.exists() && !target.is_file() {
-        // A device or a pipe has no place to be renamed into.
-        return std::fs::write(path, bytes);
-    }
-    let written = std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, &target));
-    written.inspect_err(|_| {
-        // What failed is the error already.
-        let _ = std::fs::remove_file(&beside);
-    })
+    let mut file = WholeFile::create(path)?;
+    file.file.write_all(bytes)?;
+    file.finish()
 }
 
 /// The path of a file as another file beside it would name it: relative, where there is a way.
@@ -45,6 +96,23 @@ fn relative(folder: &Path, file: &Path) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_is_there_once_it_is_finished_and_one_that_never_is_leaves_what_was_there() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a");
+        write_whole(&path, b"old").expect("written");
+        let mut file = WholeFile::create(&path).expect("begun");
+        file.file.write_all(b"new").expect("written");
+        drop(file);
+        let names = || std::fs::read_dir(folder.path()).expect("a folder").count();
+        assert_eq!((std::fs::read(&path).expect("a file"), names()), (b"old".to_vec(), 1));
+        let mut file = WholeFile::create(&path).expect("begun");
+        file.file.write_all(b"new").expect("written");
+        assert_eq!(std::fs::read(&path).expect("a file"), b"old");
+        file.finish().expect("in its place");
+        assert_eq!((std::fs::read(&path).expect("a file"), names()), (b"new".to_vec(), 1));
+    }
 
     #[test]
     fn a_way_goes_up_and_down() {

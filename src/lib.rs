@@ -64,6 +64,7 @@ pub mod cli;
 pub mod diagnosis;
 pub mod difference;
 mod files;
+pub mod film;
 pub mod geometry;
 mod gpu;
 pub mod history;

@@ -15,6 +15,12 @@ pub fn count(value: u64) -> String {
     text
 }
 
+/// Would eight bits take a count for zero, though it is not?
+#[must_use]
+pub fn reads_zero_in_eight_bits(count: f32) -> bool {
+    count != 0.0 && (count.round() as i64).rem_euclid(256) == 0
+}
+
 /// A share of 1 in per cent with two digits, without the sign; exactly `0` only where it is.
 #[must_use]
 pub fn per_hundred(fraction: f64) -> String {

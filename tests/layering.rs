@@ -5,13 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 32] = [
+const MAY_USE: [(&str, &[&str]); 33] = [
     ("named", &[]),
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
     ("files", &[]),
-    ("picture", &[]),
+    ("picture", &["numbers"]),
     ("viewport", &[]),
     ("scene", &["math", "files"]),
     ("truth", &["math", "scene", "progress"]),
@@ -44,7 +44,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
         ],
     ),
     ("anatomy", &["math", "scene", "geometry", "plan", "technique", "recorded"]),
-    ("report", &["technique", "capture", "numbers"]),
+    ("report", &["technique", "capture", "numbers", "picture"]),
     ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
     (
         "reading",
@@ -56,6 +56,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "history",
             "math",
             "numbers",
+            "picture",
             "plan",
             "scene",
             "technique",
@@ -103,6 +104,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "recorded",
         ],
     ),
+    ("film", &["scene", "capture", "reading", "picture", "numbers", "files", "session"]),
     (
         "inspector",
         &[
@@ -134,6 +136,7 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "capture",
             "import",
             "session",
+            "film",
             "inspector",
             "progress",
             "report",
@@ -143,12 +146,16 @@ const MAY_USE: [(&str, &[&str]); 32] = [
             "reading",
         ],
     ),
-    ("testing", &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers", "math"]),
+    (
+        "testing",
+        &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers", "math", "reading"],
+    ),
     (
         "cli",
         &[
             "recorded",
             "files",
+            "film",
             "numbers",
             "import",
             "scene",

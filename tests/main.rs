@@ -1,6 +1,7 @@
 //! Tests by behaviour, in one program: it links once, and what they share is used by all.
 
 mod accuracy;
+mod animate;
 mod auto;
 mod capture_folder;
 mod commands;
@@ -21,6 +22,7 @@ mod memory;
 mod options;
 mod plan;
 mod ray_cast;
+mod readback;
 mod readme;
 mod recorded;
 mod report;

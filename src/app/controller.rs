@@ -11,7 +11,7 @@ use super::reader::{Reader, Reading, Unread};
 use super::watch::Watch;
 use super::worker::{Start, Worker};
 use super::{AppError, ViewRequest};
-use crate::ask::Asked;
+use crate::ask::{Asked, FilmOf, FilmSubject, Kind};
 use crate::capture::Capture;
 use crate::import::SHIPPED;
 use crate::inspector::{Action, ExportData, Inspector, Remembered, SceneEntry};
@@ -20,6 +20,7 @@ use crate::scene::{TechniqueRequest, builtin};
 use crate::session::RunFrame;
 use crate::stress::Case;
 use crate::technique::Choice;
+use std::path::Path;
 use std::pin::Pin;
 use std::sync::Arc;
 
@@ -53,6 +54,14 @@ pub struct Controller {
     first_is_error: bool,
     /// As stored last.
     remembered: Remembered,
+}
+
+impl Drop for Controller {
+    /// Long work stops: the program ends.
+    fn drop(&mut self) {
+        self.inspector.make_way();
+        self.inspector.cancel(Kind::FilmOf);
+    }
 }
 
 impl Controller {
@@ -200,6 +209,7 @@ impl Controller {
             }
             Action::Export { kind, path, replace } => match self.inspector.export(kind) {
                 Some(ExportData::Scene(request)) => Order::SaveScene { scene: self.scene, request, path, replace },
+                Some(ExportData::Film(subject)) => return self.film(subject, path, replace),
                 Some(data) => {
                     let data = match (data, &self.run) {
                         // With all that is known of it by now.
@@ -230,6 +240,17 @@ impl Controller {
         if !self.worker.order(order) {
             let lost = "the worker thread is gone: close the window and start again";
             self.inspector.push_error(lost.to_owned());
+        }
+    }
+
+    /// Asks for a film, which is written beside other work.
+    fn film(&mut self, subject: FilmSubject, path: String, replace: bool) {
+        match export::check(Path::new(&path), replace) {
+            Some(problem) => self.end_export(problem),
+            None => {
+                self.inspector.end_export(Ok(format!("writing {path}")));
+                self.inspector.start(FilmOf { subject, path });
+            }
         }
     }
 
@@ -274,7 +295,7 @@ impl Controller {
     /// Asks with the system's dialog where to export to, beside the window.
     fn browse_export(&mut self, path: &str) {
         let dialog = rfd::AsyncFileDialog::new().set_title("Export");
-        let name = std::path::Path::new(path).file_name().map(|name| name.to_string_lossy().into_owned());
+        let name = Path::new(path).file_name().map(|name| name.to_string_lossy().into_owned());
         let dialog = dialog.set_file_name(name.unwrap_or_default());
         let tell = Arc::clone(&self.tell);
         let wait = move || {

@@ -72,7 +72,9 @@ fn write_file(data: &ExportData, path: &str, replace: bool) -> Exported {
         ExportData::Report(report) => {
             report_bytes(report, &file).and_then(|bytes| write_whole(&file, &bytes).map_err(|error| failed(&error)))
         }
-        ExportData::Capture(_) | ExportData::Scene(_) => Err("it is written elsewhere".to_owned()),
+        ExportData::Capture(_) | ExportData::Scene(_) | ExportData::Film(_) => {
+            Err("it is written elsewhere".to_owned())
+        }
     };
     match written {
         Ok(()) => Exported::Done(format!("wrote {path}")),

@@ -3,7 +3,7 @@
 use crate::ask::{Asked, Kind, RunRequest};
 use crate::stress::{Case, Entrant};
 use std::collections::BTreeMap;
-use std::sync::mpsc::Receiver;
+use std::sync::mpsc::{Receiver, TryRecvError};
 
 /// What the window asks for.
 #[derive(Debug)]
@@ -134,6 +134,8 @@ pub struct Inbox<'a> {
     pub orders: &'a Receiver<Order>,
     /// Taken in, and not obeyed yet.
     pub queue: Queue,
+    /// The window is gone.
+    pub is_closed: bool,
 }
 
 impl Inbox<'_> {
@@ -150,14 +152,25 @@ impl Inbox<'_> {
     }
 
     fn take_in(&mut self) {
-        self.orders.try_iter().for_each(|order| self.queue.add(order));
+        loop {
+            match self.orders.try_recv() {
+                Ok(order) => self.queue.add(order),
+                Err(TryRecvError::Empty) => return,
+                Err(TryRecvError::Disconnected) => {
+                    self.is_closed = true;
+                    return;
+                }
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ask::{Ask, DiagnosisOf, DrawsOf, HistoryOf, ReportOf, StressOf, TimingOf, TruthOf, WallsOf};
+    use crate::ask::{
+        Ask, DiagnosisOf, DrawsOf, HistoryOf, ObjectChanges, ReportOf, StressOf, TimingOf, TruthOf, WallsOf,
+    };
     use crate::progress::Progress;
     use crate::technique::{Choice, Technique};
     use std::collections::BTreeSet;
@@ -189,7 +202,7 @@ mod tests {
     }
 
     fn walls() -> WallsOf {
-        WallsOf { off: BTreeSet::new(), time: 0.0 }
+        WallsOf { off: BTreeSet::new(), objects: ObjectChanges::default(), time: 0.0 }
     }
 
     #[test]

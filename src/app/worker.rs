@@ -8,8 +8,10 @@
 //!
 //! ```text
 //! worker.rs   orders, opening and running     worker/turns.rs   what takes many turns: a report, stress cases
+//! worker/film.rs   a film, a picture a turn
 //! ```
 
+mod film;
 mod turns;
 
 use super::news::{Exported, News};
@@ -26,6 +28,7 @@ use crate::stress::{Case, Drives, Entrant};
 use crate::technique::{Choice, ChoiceError};
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -34,11 +37,29 @@ use std::time::{Duration, Instant};
 const LONGEST_TIMED: Duration = Duration::from_millis(250);
 /// How long nothing is asked for before the clock runs.
 const IDLE: Duration = Duration::from_millis(400);
+/// How long the program's end waits for the worker's.
+const LONGEST_END: Duration = Duration::from_secs(2);
 
 /// The way to the worker.
 #[derive(Debug)]
 pub struct Worker {
-    orders: Sender<Order>,
+    /// `None` once it is to end.
+    orders: Option<Sender<Order>>,
+    /// Nothing comes of it; it is closed where the thread has ended.
+    ended: Receiver<()>,
+    /// A film is being made, of which a part is on the disk.
+    is_filming: Arc<AtomicBool>,
+}
+
+impl Drop for Worker {
+    /// What is there in part is taken away before the program ends.
+    fn drop(&mut self) {
+        self.orders = None;
+        if self.is_filming.load(Ordering::Acquire) {
+            // It ends, or it has hung and is not waited for any longer.
+            let _ = self.ended.recv_timeout(LONGEST_END);
+        }
+    }
 }
 
 /// What a worker starts with.
@@ -63,20 +84,25 @@ impl Worker {
     /// The system gives no thread.
     pub fn start(start: Start, tell: impl Fn(News) + Send + 'static) -> Result<Worker, AppError> {
         let (orders, waiting) = channel();
+        let (alive, ended) = channel();
+        let is_filming = Arc::new(AtomicBool::new(false));
+        let films = Arc::clone(&is_filming);
         let run = move || {
-            let mut work = Work::new(start.adapter, &start.capture, Box::new(tell));
+            // Goes last: by then all else has gone.
+            let _alive: Sender<()> = alive;
+            let mut work = Work::new(start.adapter, &start.capture, Box::new(tell), films);
             work.begin(start.source, start.name, start.time);
             work.obey_all(&waiting);
         };
         let builder = thread::Builder::new().name("stencilscope worker".to_owned());
         builder.spawn(run).map_err(AppError::NoThread)?;
-        Ok(Worker { orders })
+        Ok(Worker { orders: Some(orders), ended, is_filming })
     }
 
     /// Gives an order; false if the worker is gone.
     #[must_use]
     pub fn order(&self, order: Order) -> bool {
-        self.orders.send(order).is_ok()
+        self.orders.as_ref().is_some_and(|orders| orders.send(order).is_ok())
     }
 }
 
@@ -101,6 +127,10 @@ struct Work {
     last: Option<RunFrame>,
     /// How long that took to capture.
     took: Duration,
+    /// A film that is being made.
+    film: Option<film::FilmRun>,
+    /// Tells that there is one.
+    is_filming: Arc<AtomicBool>,
     /// Stress cases that are being run.
     stress: Option<turns::StressRun>,
     tell: Box<dyn Fn(News) + Send>,
@@ -117,7 +147,12 @@ struct Brought {
 }
 
 impl Work {
-    fn new(adapter: Option<String>, capture: &CaptureRequest, tell: Box<dyn Fn(News) + Send>) -> Work {
+    fn new(
+        adapter: Option<String>,
+        capture: &CaptureRequest,
+        tell: Box<dyn Fn(News) + Send>,
+        is_filming: Arc<AtomicBool>,
+    ) -> Work {
         let CaptureRequest { choice, size, every, .. } = capture.clone();
         Work {
             adapter,
@@ -132,6 +167,8 @@ impl Work {
             frames: 0,
             last: None,
             took: Duration::ZERO,
+            film: None,
+            is_filming,
             stress: None,
             tell,
         }
@@ -154,10 +191,13 @@ impl Work {
 
     /// Obeys orders until the window is gone, and what waits for quiet in between.
     fn obey_all(&mut self, orders: &Receiver<Order>) {
-        let mut inbox = Inbox { orders, queue: Queue::default() };
+        let mut inbox = Inbox { orders, queue: Queue::default(), is_closed: false };
         let mut is_tidy = false;
         loop {
             if let Some(order) = inbox.next_now() {
+                if inbox.is_closed {
+                    return;
+                }
                 is_tidy = false;
                 self.obey(order, &mut inbox);
                 continue;
@@ -203,13 +243,16 @@ impl Work {
     /// Answers a question that is still asked: at once, or turn by turn.
     fn answer_in_turn(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
         if asked.progress.is_cancelled() {
-            if asked.ask.kind() == Kind::StressOf {
-                self.end_stress();
+            match asked.ask.kind() {
+                Kind::StressOf => self.end_stress(),
+                Kind::FilmOf => self.set_film(None),
+                _ => {}
             }
             return;
         }
         match asked.ask {
             Ask::StressOf(_) => self.stress_turn(of, asked, inbox),
+            Ask::FilmOf(_) => self.film_turn(of, asked, inbox),
             Ask::ReportOf(_) => self.report(of, asked, inbox),
             _ => self.answer(of, &asked),
         }

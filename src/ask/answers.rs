@@ -365,7 +365,7 @@ impl Answers {
     /// Is anything being found out that says how far it is?
     #[must_use]
     pub fn has_progress(&self) -> bool {
-        let tells = [Kind::TruthOf, Kind::DiagnosisOf, Kind::ReportOf, Kind::StressOf];
+        let tells = [Kind::TruthOf, Kind::DiagnosisOf, Kind::ReportOf, Kind::FilmOf, Kind::StressOf];
         tells.iter().any(|kind| self.slot(*kind).asked.is_some())
     }
 

@@ -16,7 +16,7 @@ mod answers;
 mod run_request;
 
 pub use answers::{Answers, Asked, Reply};
-pub use run_request::{RunRequest, without};
+pub use run_request::{ObjectChanges, RunRequest, without};
 
 use crate::anatomy::Anatomy;
 use crate::capture::{Capture, FrameTruth, StepDraws, Timing};
@@ -108,6 +108,8 @@ questions! {
     /// What can't be walked through in the scene as it would be run.
     WallsOf { /// Objects that are switched off, by index.
         off: BTreeSet<usize>,
+        /// What is changed of the objects.
+        objects: ObjectChanges,
         /// The moment, seconds; 0 where nothing moves.
         time: f64 } -> Walls;
     /// The states after the draws of a step.
@@ -142,11 +144,39 @@ questions! {
         choices: Vec<Choice>,
         /// Timed frames of each.
         runs: usize } -> MeasuredReport;
+    /// A film of the frame, written into a file that may be replaced.
+    FilmOf { /// What it shows.
+        subject: FilmSubject,
+        /// The file.
+        path: String } -> Filmed;
     /// What stress cases came to.
     StressOf { /// Their names.
         cases: Vec<&'static str> } -> StressRows;
     /// How long the frame takes, with and without snapshots.
     TimingOf { } -> Timing;
+}
+
+/// What a film shows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FilmSubject {
+    /// A frame, pass by pass.
+    Steps(Arc<Capture>),
+    /// A light that goes once round the open scene.
+    LightRound {
+        /// How the scene is run.
+        request: Box<RunRequest>,
+        /// Index of the light.
+        light: usize,
+    },
+}
+
+/// A film that was written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Filmed {
+    /// How many pictures it has.
+    pub pictures: u32,
+    /// How large the file is.
+    pub bytes: u64,
 }
 
 impl ReportOf {
@@ -179,7 +209,7 @@ impl Kind {
     pub fn holds(self) -> Holds {
         match self {
             Kind::WallsOf | Kind::CaptureOf | Kind::MeshesOf | Kind::DiagnosisOf | Kind::ReportOf => Holds::Scene,
-            Kind::StressOf => Holds::Always,
+            Kind::FilmOf | Kind::StressOf => Holds::Always,
             _ => Holds::Frame,
         }
     }
@@ -194,7 +224,7 @@ impl Kind {
     /// Is it asked by a press of a button only, as it takes long?
     #[must_use]
     pub fn is_started_by_hand(self) -> bool {
-        matches!(self, Kind::DiagnosisOf | Kind::FaultsOf | Kind::ReportOf | Kind::StressOf)
+        matches!(self, Kind::DiagnosisOf | Kind::FaultsOf | Kind::ReportOf | Kind::FilmOf | Kind::StressOf)
     }
 
     /// Is it about the shown frame, and answered within about the time of one? Long work lets it come between.

@@ -1,10 +1,13 @@
 //! How the open scene is to be run: all that can be changed of it without opening another.
 
-use crate::scene::{Camera, Light, Scene};
+use crate::scene::{Camera, Light, Object, Pose, Scene};
 use crate::technique::Choice;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// How a scene is to be run; its objects are those of the scene.
+/// Objects that a scene may get in addition: each is planned, drawn and casts.
+const MOST_ADDED: usize = 200;
+
+/// How a scene is to be run; its objects are those of the scene, but for what is changed of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunRequest {
     /// How shadows are made.
@@ -19,13 +22,56 @@ pub struct RunRequest {
     pub time: f64,
     /// Objects that are switched off, by index: neither drawn nor casting.
     pub off: BTreeSet<usize>,
+    /// What is changed of them.
+    pub objects: ObjectChanges,
+}
+
+/// What is changed of a scene's objects.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ObjectChanges {
+    /// Where objects of the scene are at its start, by index, in place of where they were loaded.
+    pub moved: BTreeMap<usize, Pose>,
+    /// Objects that are new. Their indexes come after those of the scene.
+    pub added: Vec<Object>,
+}
+
+impl ObjectChanges {
+    /// The scene with these changes.
+    #[must_use]
+    pub fn applied_to(&self, loaded: &Scene) -> Scene {
+        let mut scene = loaded.clone();
+        for (index, pose) in &self.moved {
+            if let Some(object) = scene.objects.get_mut(*index) {
+                object.pose = *pose;
+            }
+        }
+        scene.objects.extend(self.added.iter().cloned());
+        scene
+    }
+
+    /// Names what can't be run, in a few words with the mend.
+    fn check(&self) -> Result<(), String> {
+        if self.added.len() > MOST_ADDED {
+            return Err(format!("no more than {MOST_ADDED} objects can be added: delete some"));
+        }
+        let mut poses = self.moved.values().chain(self.added.iter().map(|object| &object.pose));
+        poses.try_for_each(|pose| pose.check().map_err(str::to_owned))
+    }
 }
 
 impl RunRequest {
     /// A scene as it is, at time 0.
     #[must_use]
     pub fn of(scene: &Scene, choice: Choice, size: [u32; 2]) -> RunRequest {
-        RunRequest { choice, size, camera: scene.camera, lights: scene.lights.clone(), time: 0.0, off: BTreeSet::new() }
+        RunRequest {
+            choice,
+            size,
+            camera: scene.camera,
+            lights: scene.lights.clone(),
+            time: 0.0,
+            off: BTreeSet::new(),
+            objects: ObjectChanges::default(),
+        }
     }
 
     /// Names what can't be run, in a few words with the mend.
@@ -37,6 +83,7 @@ impl RunRequest {
         for (index, light) in self.lights.iter().enumerate() {
             light.check().map_err(|reason| format!("light {}: {reason}", index + 1))?;
         }
+        self.objects.check()?;
         if self.size.contains(&0) {
             return Err("the picture needs at least one pixel each way".to_owned());
         }
@@ -46,10 +93,12 @@ impl RunRequest {
         Ok(())
     }
 
-    /// The scene with this camera, these lights, and without what is switched off; still at its start.
+    /// The scene with this camera, these lights, its objects changed, and without what is switched off; still at its
+    /// start.
     #[must_use]
     pub fn applied_to(&self, loaded: &Scene) -> Scene {
-        Scene { camera: self.camera, lights: self.lights.clone(), ..without(loaded, &self.off) }
+        let scene = without(&self.objects.applied_to(loaded), &self.off);
+        Scene { camera: self.camera, lights: self.lights.clone(), ..scene }
     }
 }
 

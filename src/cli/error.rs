@@ -26,6 +26,9 @@ pub enum CliError {
     /// The frame of another program can't be had.
     #[error(transparent)]
     Import(#[from] crate::import::ImportError),
+    /// The animation can't be made.
+    #[error(transparent)]
+    Film(#[from] crate::film::FilmError),
     /// The report can't take the form asked for.
     #[error(transparent)]
     Report(#[from] crate::report::ReportError),
@@ -93,6 +96,7 @@ impl CliError {
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Session(error) if error.is_missing_adapter() => 3,
+            CliError::Film(crate::film::FilmError::Session(error)) if error.is_missing_adapter() => 3,
             CliError::Import(error) if error.is_missing_package() => 3,
             CliError::ClosedOutput => 0,
             CliError::WrongHistory { .. }

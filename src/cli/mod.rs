@@ -4,6 +4,7 @@
 //! one error that ended it; `main` turns that into text. Results go to standard output, and
 //! nothing else does.
 
+mod animate;
 mod bench;
 mod bench_panels;
 mod capture;
@@ -34,9 +35,9 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// The commands that exist.
-const COMMANDS: [&str; 13] = [
-    "view", "capture", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import", "record", "bench",
-    "pictures", "help",
+const COMMANDS: [&str; 14] = [
+    "view", "capture", "animate", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import", "record",
+    "bench", "pictures", "help",
 ];
 
 /// An interactive visual debugger for stencil shadows and shadow maps
@@ -53,6 +54,8 @@ enum Command {
     View(Box<view::ViewArguments>),
     /// Render without a window and write every pass to a folder
     Capture(Box<capture::CaptureArguments>),
+    /// Show a frame pass by pass, or a light going round the scene, as an animated PNG
+    Animate(Box<animate::AnimateArguments>),
     /// Tell the history of a pixel, fragment by fragment
     Pixel(Box<pixel::PixelArguments>),
     /// Say where shadows are wrong, why, and what mends it, with the proof
@@ -96,6 +99,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
     match command_line.command {
         Command::View(arguments) => view::run(&arguments),
         Command::Capture(arguments) => capture::run(&arguments),
+        Command::Animate(arguments) => animate::run(&arguments),
         Command::Pixel(arguments) => pixel::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),

@@ -56,7 +56,8 @@ mod shots {
     use crate::ask::{DiagnosisOf, ReportOf, StressOf};
     use crate::cli::{CliError, output};
     use crate::inspector::{Inspector, Overlay, Panel, ThemeChoice};
-    use crate::picture::{Picture, film};
+    use crate::picture::Picture;
+    use crate::picture::apng::{AnimatedPng, AnimationError, Colors, Format};
     use crate::reading::shown::PictureKind;
     use crate::scene::{OpenSpec, open};
     use crate::session::{CaptureRequest, Every};
@@ -198,7 +199,8 @@ mod shots {
         Ok(())
     }
 
-    fn encoding(error: png::EncodingError) -> CliError {
+    fn encoding(error: impl Into<AnimationError>) -> CliError {
+        let error = error.into();
         CliError::Window(format!("a picture can't be encoded ({error})"))
     }
 
@@ -258,13 +260,17 @@ mod shots {
     fn tour(adapter: Option<&str>) -> Result<Vec<u8>, CliError> {
         let mut panels = opened("tori", Technique::ZFail, adapter, (TOUR_WINDOW, 1.0))?;
         let stops = Inspector::stops_of(Technique::ZFail);
-        let mut pictures = Vec::new();
+        let size = TOUR_WINDOW.map(|side| side as u32);
+        let format = Format { size, pictures: stops as u32, milliseconds: STOP_MS, colors: Colors::Exact };
+        let mut file = Vec::new();
+        let mut film = AnimatedPng::new(&mut file, format).map_err(encoding)?;
         for stop in 0..stops {
             let actions = panels.inspector().go_to_stop(Technique::ZFail, stop);
             panels.act(actions);
             panels.settle()?;
-            pictures.push(panels.picture()?);
+            film.add(&panels.picture()?).map_err(encoding)?;
         }
-        film(&pictures, STOP_MS).map_err(encoding)
+        film.finish().map_err(encoding)?;
+        Ok(file)
     }
 }

@@ -186,6 +186,10 @@ pub enum ExportKind {
     AsShown,
     /// The shown picture's values: NumPy.
     Data,
+    /// The frame pass by pass: animated PNG.
+    Steps,
+    /// A light once round the scene: animated PNG.
+    LightRound,
     /// The whole capture: a folder.
     Capture,
     /// The scene as it is now, with its technique: a scene file.
@@ -196,10 +200,12 @@ pub enum ExportKind {
 
 impl ExportKind {
     /// All, in the order of the menu.
-    pub const ALL: [ExportKind; 6] = [
+    pub const ALL: [ExportKind; 8] = [
         ExportKind::Picture,
         ExportKind::AsShown,
         ExportKind::Data,
+        ExportKind::Steps,
+        ExportKind::LightRound,
         ExportKind::Capture,
         ExportKind::Scene,
         ExportKind::Report,
@@ -212,6 +218,8 @@ impl ExportKind {
             ExportKind::Picture => "Shown picture (PNG)…",
             ExportKind::AsShown => "Picture with overlays (PNG)…",
             ExportKind::Data => "Shown values (.npy)…",
+            ExportKind::Steps => "Frame pass by pass (animated PNG)…",
+            ExportKind::LightRound => "Light going round (animated PNG)…",
             ExportKind::Capture => "Capture folder…",
             ExportKind::Scene => "Scene file (TOML)…",
             ExportKind::Report => "Report (table or plot)…",
@@ -227,6 +235,10 @@ impl ExportKind {
                 "The shown picture with overlays and the compared half, whole and a pixel a texel, not as zoomed here"
             }
             ExportKind::Data => "The shown picture's values as an array that NumPy reads",
+            ExportKind::Steps => "Each pass with what it writes, one after the other, over its name",
+            ExportKind::LightRound => {
+                "The shown light once round the scene's vertical axis, as the scene is run now; colours are rounded by at most 2 of 255"
+            }
             ExportKind::Capture => {
                 "Every buffer after every pass, with a manifest, to be opened again or scripted against"
             }

@@ -147,10 +147,11 @@ impl Inspector {
     /// Takes in the answer to what was asked with this ticket, or why there is none, with the mend. One to what is
     /// asked no more is dropped. `is_last`: nothing more of it comes.
     pub fn answer(&mut self, ticket: u64, result: Result<Answer, String>, is_last: bool) {
-        let is_known = result.is_ok();
-        match self.model.answers.answer(ticket, result, is_last) {
-            Some(kind) if is_known => self.model.take_in(kind),
-            Some(Kind::TruthOf) => self.model.view.older_truth = None,
+        let failure = result.as_ref().err().cloned();
+        match (self.model.answers.answer(ticket, result, is_last), failure) {
+            (Some(Kind::FilmOf), Some(reason)) => self.push_error(reason),
+            (Some(Kind::TruthOf), Some(_)) => self.model.view.older_truth = None,
+            (Some(kind), None) => self.model.take_in(kind),
             _ => {}
         }
     }

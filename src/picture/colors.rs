@@ -2,6 +2,9 @@
 //!
 //! Hues are Okabe and Ito's (2008), safe for the common kinds of colour blindness.
 
+use crate::numbers;
+use std::sync::LazyLock;
+
 /// sRGB.
 pub type Rgb = [u8; 3];
 
@@ -71,6 +74,42 @@ pub fn finding(value: u8) -> Rgb {
         .unwrap_or_else(|| stencil(value))
 }
 
+/// A count that is not zero, but a multiple of 256: eight bits would take it for zero.
+pub const READS_ZERO: Rgb = [0xff, 0x2b, 0xf2];
+
+/// The colour of a count: that of the stencil's palette, whose cycle goes on in its last turn beyond
+/// 127. What eight bits would take for zero has a colour that nothing else has.
+#[must_use]
+pub fn count(count: f32) -> Rgb {
+    if numbers::reads_zero_in_eight_bits(count) {
+        return READS_ZERO;
+    }
+    let whole = count.round() as i64;
+    stencil(match whole {
+        ..-128 => 128,
+        // −1 is 255.
+        -128..0 => (256 + whole) as u8,
+        0..128 => whole as u8,
+        // 121 is the first of the last turn of seven.
+        _ => (121 + (whole - 121) % 7) as u8,
+    })
+}
+
+/// sRGB bytes of linear ones (IEC 61966-2-1).
+static ENCODED: LazyLock<[u8; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|byte| {
+        let linear = byte as f32 / 255.0;
+        let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+        (encoded * 255.0).round() as u8
+    })
+});
+
+/// How a share of light, linear bytes, is shown on the screen.
+#[must_use]
+pub fn linear([red, green, blue]: Rgb) -> Rgb {
+    [red, green, blue].map(|share| ENCODED[usize::from(share)])
+}
+
 /// Grey for a place between near (0) and far (1): near is light.
 #[must_use]
 pub fn near_far(place: f32) -> Rgb {
@@ -89,6 +128,11 @@ pub fn between(from: Rgb, to: Rgb, share: f32) -> Rgb {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn half_of_the_light_is_brighter_than_half_of_the_byte() {
+        assert_eq!(linear([0, 255, 128]), [0, 255, 188]);
+    }
 
     #[test]
     fn a_mixture_begins_and_ends_at_its_colours() {

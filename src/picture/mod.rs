@@ -1,9 +1,12 @@
 //! Pictures for files: pixels that commands draw on the CPU, as PNG.
 //!
 //! A [`Picture`] is opaque sRGB, 8 bits a channel, row 0 at the top. The window draws with a GPU and
-//! shares only the [`colors`], which mean the same everywhere.
+//! shares only the [`colors`], which mean the same everywhere. Several make an animation ([`apng`]), and drawings become
+//! pixels ([`svg`]).
 
+pub mod apng;
 pub mod colors;
+pub mod svg;
 
 use colors::Rgb;
 
@@ -67,6 +70,43 @@ impl Picture {
         }
     }
 
+    /// As large as fits into `most`: made smaller by averaging, or enlarged so that a pixel becomes a square.
+    #[must_use]
+    pub fn fitted(&self, most: [u32; 2]) -> Picture {
+        let [width, height] = self.size.map(|side| side.max(1));
+        let times = (most[0] / width).min(most[1] / height);
+        if times >= 1 {
+            let size = [width * times, height * times];
+            return Picture::drawn(size, |[x, y]| self.at([x / times, y / times]).unwrap_or_default());
+        }
+        let by = (f64::from(most[0]) / f64::from(width)).min(f64::from(most[1]) / f64::from(height));
+        let size = [width, height].map(|side| ((f64::from(side) * by).round() as u32).max(1));
+        // A part of a pixel counts as much as it covers.
+        let covered = |place: u32, side: usize| {
+            let [from, to] =
+                [place, place + 1].map(|edge| f64::from(edge) * f64::from(self.size[side]) / f64::from(size[side]));
+            let pixels = from as u32..(to.ceil() as u32).min(self.size[side]);
+            pixels.map(move |at| (at, f64::from(at + 1).min(to) - f64::from(at).max(from)))
+        };
+        Picture::drawn(size, |[x, y]| {
+            let (mut sum, mut weight) = ([0.0; 3], 0.0);
+            for (row, high) in covered(y, 1) {
+                for (column, wide) in covered(x, 0) {
+                    let color = self.at([column, row]).unwrap_or_default().map(f64::from);
+                    sum = std::array::from_fn(|channel| sum[channel] + color[channel] * high * wide);
+                    weight += high * wide;
+                }
+            }
+            sum.map(|sum| (sum / weight).round() as u8)
+        })
+    }
+
+    /// Each pixel as `color` has it.
+    pub fn drawn(size: [u32; 2], color: impl Fn([u32; 2]) -> Rgb) -> Picture {
+        let places = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y]));
+        Picture { size, pixels: places.map(color).collect() }
+    }
+
     /// A frame around columns and rows `[left, top, right, bottom]` (ends included), `gap` pixels away
     /// and `width` wide; what lies outside the picture is left away.
     pub fn frame(&mut self, bounds: [u32; 4], gap: u32, width: u32, color: Rgb) {
@@ -128,46 +168,12 @@ impl Picture {
     }
 }
 
-/// Pictures of one size as one animated PNG, each shown for `milliseconds`, over and over.
-///
-/// # Errors
-/// No pictures, or of different sizes.
-pub fn film(pictures: &[Picture], milliseconds: u16) -> Result<Vec<u8>, png::EncodingError> {
-    let mut file = Vec::new();
-    let [width, height] = pictures.first().map_or([0, 0], Picture::size);
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.set_animated(pictures.len() as u32, 0)?;
-    encoder.set_frame_delay(milliseconds, 1000)?;
-    let mut writer = encoder.write_header()?;
-    for picture in pictures {
-        writer.write_image_data(picture.pixels.as_flattened())?;
-    }
-    writer.finish()?;
-    Ok(file)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const BLACK: Rgb = [0; 3];
     const RED: Rgb = [255, 0, 0];
-
-    #[test]
-    fn a_film_has_all_its_pictures_and_none_of_another_size() {
-        let pictures = [Picture::filled([2, 2], BLACK), Picture::filled([2, 2], RED)];
-        let file = film(&pictures, 500).expect("a film");
-        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a header");
-        assert_eq!(reader.info().animation_control().map(|film| film.num_frames), Some(2));
-        let mut last = vec![0; 12];
-        reader.next_frame(&mut last).expect("a picture");
-        reader.next_frame(&mut last).expect("a picture");
-        assert_eq!(last, [255, 0, 0].repeat(4));
-        assert!(film(&[Picture::filled([2, 2], BLACK), Picture::filled([1, 1], RED)], 500).is_err());
-        assert!(film(&[], 500).is_err());
-    }
 
     #[test]
     fn what_sticks_out_is_left_away() {
@@ -202,6 +208,17 @@ mod tests {
         let [width, height] = Picture::number_size(12, 2);
         assert!(written(12).iter().all(|[x, y]| (4..2 + width).contains(x) && (5..1 + height).contains(y)));
         assert_eq!(written(1).len(), 8 * 4, "eight dots of four pixels");
+    }
+
+    #[test]
+    fn a_picture_is_fitted_by_whole_squares_or_by_averages() {
+        let checked = Picture::drawn([4, 2], |[x, y]| if (x + y) % 2 == 0 { [200, 100, 0] } else { BLACK });
+        let large = checked.fitted([13, 7]);
+        assert_eq!((large.size(), large.at([2, 2]), large.at([3, 2])), ([12, 6], Some([200, 100, 0]), Some(BLACK)));
+        let small = checked.fitted([2, 9]);
+        assert_eq!((small.size(), small.at([1, 0])), ([2, 1], Some([100, 50, 0])));
+        assert_eq!(checked.fitted([3, 3]).size(), [3, 2], "neither side is lost");
+        assert_eq!(checked.fitted([4, 2]), checked);
     }
 
     #[test]

@@ -8,11 +8,7 @@ use std::sync::Arc;
 /// How many texels have each count, rounded.
 pub type Tally = BTreeMap<i64, u64>;
 
-/// Would eight bits take it for zero, though it is not?
-#[must_use]
-pub fn reads_zero_in_eight_bits(count: f32) -> bool {
-    count != 0.0 && (count.round() as i64).rem_euclid(256) == 0
-}
+pub use crate::numbers::reads_zero_in_eight_bits;
 
 /// What eight bits would hold of it.
 #[must_use]

@@ -78,7 +78,9 @@ impl MapContent {
         }
     }
 
-    pub(super) fn in_titles(self) -> &'static str {
+    /// What a light's map is called as a whole, in a sentence.
+    #[must_use]
+    pub fn whole(self) -> &'static str {
         match self {
             MapContent::Depth => "shadow map",
             MapContent::Textures => "textures",

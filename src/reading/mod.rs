@@ -8,6 +8,7 @@
 //! verdict.rs   why a pixel is dark, a sentence   explain_facts.rs a step as a formula  meshes.rs   how meshes hang together
 //! history_row.rs, ladder_layout.rs  a pixel's events in rows, and along its view ray
 //! map_decision.rs what a texel stores against a pixel's depth
+//! written.rs    what a step or a draw wrote, and its texels in their colours
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
 //! ```
 
@@ -31,6 +32,7 @@ pub mod projected;
 pub mod shown;
 pub mod steps;
 pub mod verdict;
+pub mod written;
 
 pub use map_readers::{MapReaders, MapTexel};
 pub use meshes::ObjectMesh;

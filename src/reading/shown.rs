@@ -366,7 +366,7 @@ impl PictureView {
         if let Some((_, layer, image)) = drawn {
             images[layer] = image.clone();
         }
-        let mut title = format!("{} of {}", content.in_titles(), format::light(light));
+        let mut title = format!("{} of {}", content.whole(), format::light(light));
         let has_many = images.len() > 1;
         let chosen = match self.face {
             FaceChoice::One(layer) if layer < images.len() => Some(layer),

@@ -11,7 +11,6 @@
 mod csv;
 mod page;
 pub mod plot;
-mod png;
 mod svg;
 mod table;
 
@@ -115,20 +114,12 @@ pub enum ReportError {
         /// The schema it names.
         found: u32,
     },
-    /// The plot's SVG was refused.
+    /// The plot's SVG was refused, or is too large.
     #[error("the plot can't be drawn as pixels: {0}; save it as .svg instead")]
-    Svg(#[from] resvg::usvg::Error),
-    /// More pixels than memory has room for.
-    #[error("a plot of {width}×{height} pixels is too large: save it as .svg instead")]
-    TooLarge {
-        /// Pixels across.
-        width: u32,
-        /// Pixels down.
-        height: u32,
-    },
+    Svg(#[from] crate::picture::svg::SvgError),
     /// The PNG encoder refused.
     #[error("the plot can't be written as PNG: {0}; save it as .svg instead")]
-    Png(#[from] ::png::EncodingError),
+    Png(#[from] png::EncodingError),
 }
 
 /// A report as it is in a JSON file.
@@ -241,7 +232,7 @@ impl Report {
     /// # Errors
     /// More charts than memory has room for.
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
-        png::png(&self.to_svg(), 2.0)
+        Ok(crate::picture::svg::picture(&self.to_svg(), 2.0)?.to_png()?)
     }
 }
 
@@ -257,7 +248,7 @@ impl plot::Plot {
     /// # Errors
     /// More charts than memory has room for.
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
-        png::png(&self.to_svg(), 2.0)
+        Ok(crate::picture::svg::picture(&self.to_svg(), 2.0)?.to_png()?)
     }
 }
 

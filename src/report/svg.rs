@@ -1,6 +1,7 @@
 //! The plot as SVG: for papers, web pages and READMEs, and what the PNG is made from.
 
 use super::plot::{Anchor, Chart, Ink, Key, Line, Mark, Plot, Rect, Spot, Style, Text};
+use crate::picture::svg::escaped;
 use std::fmt::Write;
 
 /// Faces that are there on common systems; the first is the one that PNGs are drawn with.
@@ -144,23 +145,6 @@ fn number(value: f64) -> String {
 fn points(points: &[[f64; 2]]) -> String {
     let pairs: Vec<String> = points.iter().map(|[x, y]| format!("{},{}", number(*x), number(*y))).collect();
     pairs.join(" ")
-}
-
-/// Text as XML: markup escaped, characters that XML can't hold replaced.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out += "&amp;",
-            '<' => out += "&lt;",
-            '>' => out += "&gt;",
-            '"' => out += "&quot;",
-            '\t' | '\n' | '\r' => out.push(c),
-            c if c < ' ' || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 #[cfg(test)]

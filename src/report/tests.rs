@@ -126,3 +126,23 @@ fn a_row_says_itself_in_words() {
     assert_eq!(report.rows[1].summary(), "z-fail: none wrong, 6.2 ms");
     assert!(report.rows[0].details().contains("12 wrong of 1\u{2009}000: 12 false shadow"));
 }
+
+#[test]
+fn the_plot_as_pixels_has_two_a_point_and_is_not_blank() {
+    let report = Report::new(adapter(), vec![row("tori", "z-fail", "", 0, 6.25), row("tori", "none", "", 9, 2.0)]);
+    let svg = report.to_svg();
+    let height: f32 = svg
+        .split("viewBox=\"0 0 760 ")
+        .nth(1)
+        .and_then(|rest| rest.split('"').next())
+        .expect("a height")
+        .parse()
+        .expect("a number");
+    let bytes = report.to_png().expect("a picture");
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut pixels).expect("pixels");
+    assert_eq!([info.width, info.height], [1520, (height * 2.0).ceil() as u32]);
+    let colors: std::collections::BTreeSet<&[u8]> = pixels.chunks_exact(3).collect();
+    assert!(colors.contains(&[255_u8; 3][..]) && colors.len() > 50, "{} colours", colors.len());
+}

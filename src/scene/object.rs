@@ -105,10 +105,30 @@ impl Default for Pose {
 }
 
 impl Pose {
+    /// Names what makes this pose unusable, in a few words for an error line.
+    ///
+    /// # Errors
+    /// Numbers that are not finite; a scale of zero.
+    pub fn check(&self) -> Result<(), &'static str> {
+        if !(self.translate.is_finite() && self.rotate_degrees.is_finite() && self.scale.is_finite()) {
+            Err("an object's place, turn and scale must be finite numbers")
+        } else if self.scale.to_array().contains(&0.0) {
+            Err("an object's scale must not be zero: it would have no volume")
+        } else {
+            Ok(())
+        }
+    }
+
     /// The matrix of this pose.
     #[must_use]
     pub fn world_from_object(&self) -> DMat4 {
         DMat4::from_scale_rotation_translation(self.scale, self.rotation(), self.translate)
+    }
+
+    /// In the same place, turned so that what was its z axis is up.
+    #[must_use]
+    pub fn with_z_up(&self) -> Pose {
+        self.turned_about(self.translate, DQuat::from_rotation_x(-TAU / 4.0))
     }
 
     fn rotation(&self) -> DQuat {

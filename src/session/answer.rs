@@ -100,8 +100,9 @@ impl Session {
         let of_frame = || frame.ok_or(SessionError::NoFrame);
         let of_scene = || scene.ok_or(SessionError::NoScene);
         Ok(match ask {
-            Ask::WallsOf(WallsOf { off, time }) => {
-                Answer::WallsOf(Arc::new(self.walls.walls(&without(of_scene()?, off).at(*time))))
+            Ask::WallsOf(WallsOf { off, objects, time }) => {
+                let scene = without(&objects.applied_to(of_scene()?), off).at(*time);
+                Answer::WallsOf(Arc::new(self.walls.walls(&scene)))
             }
             Ask::MeshesOf(_) => {
                 let mesh = |(object, topology)| ObjectMesh { object, topology };
@@ -151,7 +152,7 @@ impl Session {
                 let RunFrame { capture, plan, .. } = of_frame()?;
                 ask.read_from(capture, Some(plan)).map_err(SessionError::Unanswered)?
             }
-            Ask::ReportOf(_) | Ask::StressOf(_) => {
+            Ask::ReportOf(_) | Ask::FilmOf(_) | Ask::StressOf(_) => {
                 return Err(SessionError::Unanswered(
                     "it takes many turns, between which other work may come".to_owned(),
                 ));

@@ -37,6 +37,7 @@ fn panels(session: &mut Session, scene: &Scene, request: &CaptureRequest) -> (Ha
         lights: scene.lights.clone(),
         time: 0.0,
         off: BTreeSet::new(),
+        objects: Default::default(),
     };
     inspector.set_scene(scene, run);
     inspector.set_capture(Arc::new(capture.clone()));

@@ -17,6 +17,7 @@ fn over(name: &str, technique: Technique) -> Inspector {
         lights: scene.lights.clone(),
         time: 0.0,
         off: std::collections::BTreeSet::new(),
+        objects: Default::default(),
     };
     let mut inspector = Inspector::new(Vec::new());
     inspector.open_scene(&scene, draft, Some(name.to_owned()));

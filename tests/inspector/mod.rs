@@ -7,14 +7,17 @@ mod cards;
 mod counts;
 mod decided_by;
 mod diagnosis;
+mod docking;
 mod draws;
 mod explain;
+mod films;
 mod follows_steps;
 mod gizmos;
 mod history;
 mod history_by_hand;
 mod history_pictures;
 mod layers;
+mod making;
 mod mode_pictures;
 mod overlays;
 mod picture_modes;
@@ -64,6 +67,7 @@ fn run_request(technique: Technique) -> RunRequest {
         lights: scene.lights,
         time: 0.0,
         off: std::collections::BTreeSet::new(),
+        objects: Default::default(),
     }
 }
 

@@ -35,6 +35,7 @@ pub fn draft_of(scene: &Scene) -> RunRequest {
         lights: scene.lights.clone(),
         time: 0.0,
         off: std::collections::BTreeSet::new(),
+        objects: Default::default(),
     }
 }
 

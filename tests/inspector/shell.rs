@@ -201,6 +201,27 @@ fn what_was_opened_before_is_offered_and_opens() {
 }
 
 #[test]
+fn files_that_were_opened_before_are_listed_where_one_opens() {
+    let entry = SceneEntry { name: "tori".to_owned(), lesson: "a lesson".to_owned() };
+    let mut inspector = Inspector::new(vec![entry]);
+    for source in ["a.toml", "models/b.obj", "tori", "c.toml", "d.toml", "/far/e.toml"] {
+        inspector.open_scene(&scene(), run_request(Technique::ZFail), Some(source.to_owned()));
+    }
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    click_button(&mut harness, "Open…");
+    harness.get_by_label("Opened before");
+    assert!(harness.query_by_role_and_label(Role::Button, "a.toml").is_none(), "only the last ones");
+    assert_eq!(harness.query_all_by_role_and_label(Role::Button, "tori").count(), 1, "it is a built-in scene");
+    for name in ["b.obj", "c.toml", "d.toml", "e.toml", "Open this", "Browse…", "Cancel"] {
+        let place = harness.get_by_role_and_label(Role::Button, name).rect();
+        assert!(harness.ctx.content_rect().contains_rect(place), "{name}: {place}");
+    }
+    click_button(&mut harness, "b.obj");
+    assert_eq!(harness.state().actions.last(), Some(&Action::Open("models/b.obj".to_owned())));
+}
+
+#[test]
 fn a_changed_file_is_offered_for_reload_once() {
     let mut harness = harness(z_fail(SIZE));
     harness.state_mut().inspector.offer_reload("a.obj".to_owned());
@@ -293,9 +314,8 @@ fn a_moved_layout_is_remembered_and_a_broken_one_is_not_taken() {
     let remembered = harness.state().inspector.remembered();
     assert!(remembered.layout.is_some());
     press(&mut harness, Key::F1);
-    // By its name: the window of keys still moves while it finds its height.
-    harness.get_by_role_and_label(Role::Button, "Reset layout").click_accesskit();
-    harness.run_steps(4);
+    click_button(&mut harness, "Reset layout");
+    harness.run_steps(2);
     let reset = harness.get_by_role_and_label(Role::Tab, "Report").rect();
     assert!(reset.center().distance(from) < 2.0, "{reset:?} is where it was at first");
     assert_eq!(harness.state().inspector.remembered().layout, None);

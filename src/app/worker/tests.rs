@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::ask::{
-    Answer, DiagnosisOf, DrawsOf, HistoryOf, MeshesOf, Question, ReportOf, StressOf, TimingOf, TruthOf, WallsOf,
+    Answer, DiagnosisOf, DrawsOf, FilmOf, FilmSubject, HistoryOf, MeshesOf, ObjectChanges, Question, ReportOf,
+    StressOf, TimingOf, TruthOf, WallsOf,
 };
 use crate::progress::Progress;
 use crate::report::MeasuredReport;
@@ -364,6 +365,7 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
         lights: scene.lights.clone(),
         time: 0.0,
         off,
+        objects: Default::default(),
     };
     assert!(worker.order(Order::Run { scene: 1, request: Box::new(request) }));
     let plan = wait(&news, |news| match news {
@@ -379,7 +381,8 @@ fn objects_that_are_switched_off_are_neither_drawn_nor_do_they_cast() {
 fn walls_are_those_of_the_scene_as_it_would_be_run() {
     let (worker, frame, news) = started();
     let mut scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
-    let walls = |off: std::ops::Range<usize>| WallsOf { off: off.collect(), time: 0.0 };
+    let walls =
+        |off: std::ops::Range<usize>| WallsOf { off: off.collect(), objects: ObjectChanges::default(), time: 0.0 };
     // Of a scene that is open no more nothing is told.
     ask_of(&worker, [0, frame], 1, walls(0..0));
     ask(&worker, frame, 2, history(0, 0));
@@ -410,6 +413,7 @@ fn a_scene_is_saved_as_it_is_run_and_what_is_there_is_asked_about() {
         lights: scene.lights.clone(),
         time: 0.0,
         off: std::collections::BTreeSet::from([1]),
+        objects: Default::default(),
     };
     let save = |replace| {
         let order = Order::SaveScene { scene: 1, request: Box::new(request.clone()), path: path.clone(), replace };
@@ -457,6 +461,7 @@ fn a_changed_file_is_loaded_again_with_the_camera_as_it_is() {
         lights: scene.lights.clone(),
         time: 0.0,
         off: std::collections::BTreeSet::new(),
+        objects: Default::default(),
     };
     assert!(worker.order(Order::Reload { request: Box::new(request) }));
     let (scene, request) = wait(&news, |news| match news {
@@ -467,4 +472,139 @@ fn a_changed_file_is_loaded_again_with_the_camera_as_it_is() {
     assert_eq!(tall, 1.0, "two high about its middle");
     assert_eq!(request.camera.eye.x, 3.0);
     assert_eq!(request.choice.technique(), Technique::ZPass);
+}
+
+fn round(worker: &Worker, frame: u64, ticket: u64, path: &Path) -> Progress {
+    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let request = Box::new(RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]));
+    let subject = FilmSubject::LightRound { request, light: 0 };
+    ask(worker, frame, ticket, FilmOf { subject, path: path.display().to_string() })
+}
+
+#[test]
+fn a_film_lets_pictures_and_pixels_come_between_and_is_whole_in_the_end() {
+    let (worker, frame, news) = started();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("round.png");
+    let progress = round(&worker, frame, 1, &path);
+    while progress.steps().0 == 0 {
+        thread::yield_now();
+    }
+    ask(&worker, frame, 2, history(30, 20));
+    wait(&news, |news| match news {
+        News::Answered { ticket: 2, result: Ok(_) } => Some(()),
+        News::Answered { ticket: 1, .. } => panic!("the pixel comes first"),
+        _ => None,
+    });
+    // Another scene is opened meanwhile: the film is of the one that it was asked of.
+    assert!(worker.order(Order::Open("tori".to_owned())));
+    wait(&news, |news| match news {
+        News::Captured { .. } => Some(()),
+        News::Answered { ticket: 1, .. } => panic!("the picture comes first"),
+        _ => None,
+    });
+    assert!(!path.exists(), "it is not whole");
+    let filmed = answer::<FilmOf>(&news, 1).expect("a film");
+    assert_eq!((filmed.pictures, progress.steps()), (24, (24, 24)));
+    let file = std::fs::read(&path).expect("a file");
+    assert_eq!(file.len() as u64, filmed.bytes);
+    let reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a PNG");
+    assert_eq!(reader.info().animation_control().map(|all| (all.num_frames, all.num_plays)), Some((24, 0)));
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left beside it");
+}
+
+#[test]
+fn a_film_that_is_cancelled_leaves_nothing() {
+    let (worker, frame, news) = started();
+    let folder = tempfile::tempdir().expect("a folder");
+    let progress = round(&worker, frame, 1, &folder.path().join("round.png"));
+    while progress.steps().0 == 0 {
+        thread::yield_now();
+    }
+    progress.cancel();
+    ask(&worker, frame, 2, TruthOf {});
+    answer::<TruthOf>(&news, 2).expect("a truth");
+    ask(&worker, frame, 3, StressOf { cases: vec!["one-pixel"] });
+    // Stress cases come after films.
+    wait(&news, |news| matches!(news, News::AnswerEnded { ticket: 3 }).then_some(()));
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}
+
+#[test]
+fn a_film_that_can_not_be_made_says_why_with_the_mend() {
+    let (worker, frame, news) = started();
+    round(&worker, frame, 1, Path::new("/no such folder/round.png"));
+    let reason = answer::<FilmOf>(&news, 1).expect_err("no such folder");
+    assert!(
+        reason.contains("/no such folder/round.png: can't be written") && reason.contains("choose another"),
+        "{reason}"
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.png").display().to_string();
+    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
+    request.lights[0] = crate::scene::Light::directional([0.0, 1.0, 0.0]);
+    let subject = FilmSubject::LightRound { request: Box::new(request), light: 0 };
+    ask(&worker, frame, 2, FilmOf { subject: subject.clone(), path: path.clone() });
+    let reason = answer::<FilmOf>(&news, 2).expect_err("on the axis");
+    assert!(reason.contains("move it to a side"), "{reason}");
+    // Of a scene that is open no more.
+    ask_of(&worker, [0, frame], 3, FilmOf { subject, path });
+    let reason = answer::<FilmOf>(&news, 3).expect_err("another scene");
+    assert!(reason.contains("export it again"), "{reason}");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}
+
+/// What is made in the window is in the next frame, in the walls, and in the scene file, which opens as it was left.
+#[test]
+fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
+    let (worker, _, news) = started();
+    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
+    let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
+    let moved = crate::scene::Pose { translate: glam::DVec3::new(0.0, 3.0, 0.0), ..scene.objects[1].pose };
+    request.objects.moved.insert(1, moved);
+    let mesh = crate::scene::shapes::cuboid([1.0; 3]).expect("a box");
+    request.objects.added.push(crate::scene::Object::of("new box", mesh).at([0.0, 2.0, 0.0]));
+    request.lights.push(crate::scene::Light::directional([0.4, 1.0, 0.3]));
+    request.off.insert(2);
+    let count = scene.objects.len();
+    assert!(worker.order(Order::Run { scene: 1, request: Box::new(request.clone()) }));
+    let plan = wait(&news, |news| match news {
+        News::Captured { run, .. } if run.plan.technique == "z-fail" => Some(run.plan),
+        _ => None,
+    });
+    let casters: std::collections::BTreeSet<&str> =
+        plan.passes.iter().flat_map(|pass| &pass.draws).filter_map(|draw| draw.caster.as_deref()).collect();
+    assert!(casters.contains("new box") && !casters.contains(scene.objects[2].name.as_str()), "{casters:?}");
+    assert_eq!(plan.lights.len(), scene.lights.len() + 1);
+    let changed = request.applied_to(&scene);
+    let (off, objects) = (request.off.clone(), request.objects.clone());
+    ask(&worker, 2, 7, WallsOf { off, objects, time: 0.0 });
+    assert_eq!(*answer::<WallsOf>(&news, 7).expect("walls"), WallCache::default().walls(&changed));
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("made.toml").display().to_string();
+    let save = Order::SaveScene { scene: 1, request: Box::new(request), path: path.clone(), replace: false };
+    assert!(worker.order(save));
+    wait(&news, |news| matches!(news, News::Exported(Exported::Done(_))).then_some(()));
+    let saved = crate::scene::open(&OpenSpec::new(path)).expect("a scene");
+    assert_eq!(saved.objects.len(), count, "one more, and one is off");
+    assert_eq!(
+        saved.objects.iter().map(|object| object.pose).collect::<Vec<_>>(),
+        changed.objects.iter().map(|object| object.pose).collect::<Vec<_>>()
+    );
+    assert_eq!(saved.objects.last().map(|object| object.name.as_str()), Some("new box"));
+    assert_eq!(saved.lights, changed.lights);
+}
+
+#[test]
+fn a_film_that_is_under_way_when_the_window_closes_leaves_nothing() {
+    let (worker, frame, _news) = started();
+    let folder = tempfile::tempdir().expect("a folder");
+    let progress = round(&worker, frame, 1, &folder.path().join("round.png"));
+    while progress.steps().0 == 0 {
+        thread::yield_now();
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "it is being written");
+    drop(worker);
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
 }

@@ -3,13 +3,12 @@
 use crate::capture::Image;
 use crate::inspector::look::findings;
 use crate::inspector::look::palette;
+use crate::picture::colors;
 use crate::reading::change::{self, ChangeKind};
 use crate::reading::counts;
 use crate::reading::depth::DepthScale;
 use crate::reading::shown::{PictureKind, Shown};
 use egui::Color32;
-use egui::ecolor::gamma_u8_from_linear_f32;
-use std::sync::LazyLock;
 
 /// How much of what lies under an overlay of colours is hidden.
 pub const OVER: f32 = 0.62;
@@ -147,15 +146,10 @@ pub fn changed([r, g, b, a]: [u8; 4]) -> Color32 {
     if a == 0 { Color32::TRANSPARENT } else { Color32::from_rgb(r, g, b) }
 }
 
-/// sRGB bytes of linear ones.
-static ENCODED: LazyLock<[u8; 256]> =
-    LazyLock::new(|| std::array::from_fn(|linear| gamma_u8_from_linear_f32(linear as f32 / 255.0)));
-
 /// How a share of light, linear bytes, is shown on the screen.
 #[must_use]
 pub fn linear([r, g, b, _]: [u8; 4]) -> Color32 {
-    let encoded = |share: u8| ENCODED[usize::from(share)];
-    Color32::from_rgb(encoded(r), encoded(g), encoded(b))
+    palette::opaque(colors::linear([r, g, b]))
 }
 
 /// The colour of a count that went up or down: deep for one, lighter the further it went; see-through where it did not.
@@ -206,11 +200,6 @@ fn fitted(value: f64, columns: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn half_of_the_light_is_brighter_than_half_of_the_byte() {
-        assert_eq!(linear([0, 255, 128, 0]), Color32::from_rgb(0, 255, 188));
-    }
 
     #[test]
     fn numbers_fit_their_cell() {

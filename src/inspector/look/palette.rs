@@ -4,7 +4,6 @@
 //! itself is always shown too, in the legend and on large texels.
 
 use crate::picture::colors::{self, Rgb};
-use crate::reading::counts;
 use egui::Color32;
 
 /// Labels of a light, by value.
@@ -49,9 +48,6 @@ pub fn label(value: u8) -> Color32 {
 pub fn near_far(place: f32) -> Color32 {
     opaque(colors::near_far(place))
 }
-
-/// A count that is not zero, but a multiple of 256: eight bits would take it for zero.
-pub const READS_ZERO: Color32 = Color32::from_rgb(0xff, 0x2b, 0xf2);
 
 /// Nothing was drawn here: the depth buffer's clear value.
 pub const NO_SURFACE: Color32 = opaque(colors::NOTHING);
@@ -126,23 +122,10 @@ pub fn ink_on(background: Color32) -> Color32 {
     if light > 128.0 { Color32::from_gray(16) } else { Color32::from_gray(225) }
 }
 
-/// The colour of a count: that of the stencil's palette, whose cycle goes on in its last turn beyond
-/// 127. What eight bits would take for zero has a colour that nothing else has.
+/// The colour of a count.
 #[must_use]
 pub fn count(count: f32) -> Color32 {
-    let whole = count.round() as i64;
-    if counts::reads_zero_in_eight_bits(count) {
-        return READS_ZERO;
-    }
-    let value = match whole {
-        ..-128 => 128,
-        // −1 is 255.
-        -128..0 => (256 + whole) as u8,
-        0..128 => whole as u8,
-        // 121 is the first of the last turn of seven.
-        _ => (121 + (whole - 121) % 7) as u8,
-    };
-    stencil(value)
+    opaque(colors::count(count))
 }
 
 #[cfg(test)]
@@ -264,7 +247,7 @@ mod tests {
 
     #[test]
     fn what_eight_bits_take_for_zero_has_a_colour_of_its_own() {
-        assert!([256.0, 512.0, -256.0, 25_600.0].into_iter().all(|number| count(number) == READS_ZERO));
-        assert!((0..=255).all(|value| stencil(value) != READS_ZERO));
+        assert!([256.0, 512.0, -256.0, 25_600.0].into_iter().all(|number| count(number) == opaque(colors::READS_ZERO)));
+        assert!((0..=255).all(|value| stencil(value) != opaque(colors::READS_ZERO)));
     }
 }

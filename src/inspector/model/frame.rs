@@ -2,9 +2,10 @@
 //! is; its truth, its draws and its time are answers, and are put beside it here and nowhere else.
 
 use super::Model;
-use crate::ask::{DrawsOf, Kind, TestsOf, TimingOf, TruthOf};
+use crate::ask::{DrawsOf, FilmOf, Filmed, Kind, TestsOf, TimingOf, TruthOf};
 use crate::capture::{Capture, FrameTruth, Origin};
 use crate::plan::FramePlan;
+use crate::reading::format;
 use crate::reading::shown::has_truth;
 use std::sync::Arc;
 
@@ -88,6 +89,13 @@ impl Model {
 
     /// Takes an answer to a question of this kind into the frame, where it belongs there.
     pub fn take_in(&mut self, kind: Kind) {
+        if kind == Kind::FilmOf
+            && let Some((film, Filmed { pictures, bytes })) =
+                self.answers.last::<FilmOf>().map(|(film, filmed)| (film, **filmed))
+        {
+            let size = format::bytes(bytes);
+            self.activity.exported = Some(format!("wrote {} ({pictures} pictures, {size})", film.path));
+        }
         let Some(capture) = &self.frame.capture else { return };
         let known = match kind {
             Kind::TruthOf => self.answers.current::<TruthOf>().map(|(_, truth)| capture.with_truth(truth)),

@@ -3,7 +3,7 @@
 use super::{Model, undo};
 use crate::ask::{ReportOf, RunRequest};
 use crate::inspector::action::Action;
-use crate::scene::Scene;
+use crate::scene::{Object, Scene};
 use crate::technique::{Choice, Technique};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,6 +19,10 @@ pub struct OpenScene {
     pub animated: bool,
     /// Names of its objects.
     pub objects: Vec<String>,
+    /// Its objects, as loaded.
+    pub loaded: Vec<Object>,
+    /// Index of the one that is moved by numbers, new ones after those of the scene.
+    pub edited: usize,
     /// What the next run will be.
     pub draft: RunRequest,
     /// What it was when the scene was opened.
@@ -55,6 +59,8 @@ impl Model {
             source,
             animated: scene.is_animated(),
             objects: scene.objects.iter().map(|object| object.name.clone()).collect(),
+            loaded: scene.objects.clone(),
+            edited: 0,
             choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
             problem: draft.check().err(),
             opened: draft.clone(),

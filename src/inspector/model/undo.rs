@@ -89,6 +89,7 @@ impl Undo {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ask::ObjectChanges;
     use crate::scene::Camera;
     use crate::technique::{Choice, Technique};
     use glam::DVec3;
@@ -98,7 +99,8 @@ mod tests {
         let camera =
             Camera { eye: DVec3::Y, target: DVec3::ZERO, up: DVec3::X, fov_y_degrees: 45.0, near: 0.1, far: None };
         let choice = Choice::new(Technique::ZFail);
-        let request = RunRequest { choice, size: [width, 1], camera, lights: Vec::new(), time, off: BTreeSet::new() };
+        let (off, objects) = (BTreeSet::new(), ObjectChanges::default());
+        let request = RunRequest { choice, size: [width, 1], camera, lights: Vec::new(), time, off, objects };
         Moment { source: Some("tori".to_owned()), request }
     }
 

@@ -10,11 +10,11 @@ use crate::inspector::model::Model;
 use crate::inspector::panels::Panels;
 
 use crate::inspector::look::theme;
+use crate::inspector::shell::arrangement::{self, Drag};
 use egui::{Color32, CornerRadius, Id, Response, Role, Sense, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, EditAction, SimplificationOptions, TabState, Tile, TileId, Tiles, Tree, UiResponse,
 };
-use std::collections::BTreeSet;
 
 /// Widths of the side panels in points, where the window is wide enough.
 const LEFT_WIDTH: f32 = 264.0;
@@ -74,11 +74,9 @@ impl Dock {
     /// Puts the panels where they were. A layout that is not one of these panels is not taken.
     pub fn restore(&mut self, layout: Layout) {
         let Ok(tree) = serde_json::from_value::<Tree<Panel>>(layout) else { return };
-        let mut panels = Vec::new();
-        let is_whole = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
-        panels.sort_unstable();
-        if is_whole && panels == Panel::ALL {
+        if arrangement::is_whole(&tree) {
             self.tree = tree;
+            arrangement::mend(&mut self.tree, None);
             self.arranged_by_user = true;
         }
     }
@@ -106,9 +104,19 @@ impl Dock {
         if !has_map {
             panels.shadow_map.hide(model);
         }
-        let mut behavior = Panes { panels, model, actions, edited: false, theme: theme::of(ui) };
+        let (size, drag) = (ui.available_size(), Drag::under_way(&self.tree, ui));
+        let fitted = if self.arranged_by_user { arrangement::fit(&mut self.tree, size) } else { Vec::new() };
+        let mut behavior =
+            Panes { panels, model, actions, edited: false, dropped: false, resized: false, theme: theme::of(ui) };
         self.tree.ui(&mut behavior, ui);
-        self.arranged_by_user |= behavior.edited;
+        let Panes { edited, dropped, resized, .. } = behavior;
+        if !resized {
+            arrangement::put_back(&mut self.tree, fitted);
+        }
+        if dropped && let Some(drag) = drag {
+            drag.settle(&mut self.tree, size);
+        }
+        self.arranged_by_user |= edited;
     }
 
     fn keep_widths(&mut self, width: f32) {
@@ -131,26 +139,13 @@ impl Dock {
     }
 }
 
-/// Gathers the panels below a tile; false where a tile is missing or stands twice.
-fn visit(tiles: &Tiles<Panel>, tile: TileId, seen: &mut BTreeSet<u64>, panels: &mut Vec<Panel>) -> bool {
-    if !seen.insert(tile.0) {
-        return false;
-    }
-    match tiles.get(tile) {
-        None => false,
-        Some(Tile::Pane(panel)) => {
-            panels.push(*panel);
-            true
-        }
-        Some(Tile::Container(container)) => container.children().all(|child| visit(tiles, *child, seen, panels)),
-    }
-}
-
 struct Panes<'a> {
     panels: &'a mut Panels,
     model: &'a mut Model,
     actions: &'a mut Vec<Action>,
     edited: bool,
+    dropped: bool,
+    resized: bool,
     theme: &'static theme::Theme,
 }
 
@@ -160,6 +155,9 @@ impl Behavior<Panel> for Panes<'_> {
             Panel::Picture | Panel::Scene | Panel::ShadowMap => egui::Frame::new().fill(theme::of(ui).panel),
             _ => theme::panel_frame(ui),
         };
+        let place = ui.max_rect();
+        let whole = ui.interact(place, ui.scope_id().with("panel"), Sense::hover());
+        whole.widget_info(|| WidgetInfo::labeled(Role::TabPanel, true, panel.title()));
         frame.show(ui, |ui| {
             ui.set_min_size(ui.available_size());
             self.panels.ui(*panel, ui, self.model, self.actions);
@@ -212,10 +210,12 @@ impl Behavior<Panel> for Panes<'_> {
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
-        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+        arrangement::options()
     }
 
     fn on_edit(&mut self, action: EditAction) {
         self.edited |= action != EditAction::TabSelected;
+        self.dropped |= action == EditAction::TileDropped;
+        self.resized |= action == EditAction::TileResized;
     }
 }

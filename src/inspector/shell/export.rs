@@ -2,7 +2,7 @@
 //!
 //! The panel asks for a place; the app writes. A place that is taken is asked about once more.
 
-use crate::ask::{ReportOf, RunRequest};
+use crate::ask::{FilmOf, FilmSubject, ReportOf, RunRequest};
 use crate::capture::{Capture, Image};
 use crate::inspector::action::{Action, Dialog, ExportKind};
 use crate::inspector::look::coloring::Coloring;
@@ -12,6 +12,7 @@ use crate::inspector::model::Model;
 use crate::inspector::model::looking::{Phase, has_phases};
 use crate::inspector::panels::picture::as_shown::{self, Drawing};
 use crate::inspector::panels::picture::{self, PicturePanel};
+use crate::numbers;
 use crate::picture::Picture;
 use crate::report::Report;
 use egui::{Context, Id, Key, RichText, Ui};
@@ -34,6 +35,9 @@ impl ExportDialog {
     /// With a name that says what it is; none where there is nothing of this kind.
     #[must_use]
     pub fn new(kind: ExportKind, model: &Model) -> Option<ExportDialog> {
+        if is_film(kind) && model.answers.asked::<FilmOf>().is_some() {
+            return None;
+        }
         let name = match kind {
             ExportKind::Report => format!("{}-report.csv", measured(model)?.rows.first()?.scene),
             kind => ExportDialog::name_of_shown(kind, model)?,
@@ -58,6 +62,8 @@ impl ExportDialog {
             ExportKind::AsShown if model.shown(capture)?.images.len() > 1 => return None,
             ExportKind::AsShown => format!("{stem}-{}-as-shown.png", title()?),
             ExportKind::Data => format!("{stem}-{}.npy", model.shown(capture)?.title),
+            ExportKind::Steps => format!("{stem}-passes.png"),
+            ExportKind::LightRound => format!("{stem}-{}-round.png", numbers::light(turned(model)?)),
             ExportKind::Capture => format!("{stem}-capture"),
             ExportKind::Scene => format!("{}.toml", model.scene.as_ref()?.name),
             ExportKind::Report => return None,
@@ -76,6 +82,8 @@ pub enum ExportData {
     Data(Vec<Arc<Image>>),
     /// All of it.
     Capture(Arc<Capture>),
+    /// To be made, and written as it is made.
+    Film(FilmSubject),
     /// The scene as this runs it.
     Scene(Box<RunRequest>),
     /// What was measured.
@@ -92,6 +100,12 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
     match kind {
         ExportKind::Capture => return Some(ExportData::Capture(capture)),
         ExportKind::Scene => return Some(ExportData::Scene(Box::new(model.scene.as_ref()?.draft.clone()))),
+        ExportKind::Steps => return Some(ExportData::Film(FilmSubject::Steps(capture))),
+        ExportKind::LightRound => {
+            let light = turned(model)?;
+            let request = Box::new(model.scene.as_ref()?.draft.clone());
+            return Some(ExportData::Film(FilmSubject::LightRound { request, light }));
+        }
         ExportKind::Picture | ExportKind::AsShown | ExportKind::Data | ExportKind::Report => {}
     }
     let shown = model.shown(&capture)?;
@@ -111,6 +125,16 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
     }
     let images: Vec<Picture> = shown.images.iter().map(|image| texture::picture(image, coloring.0)).collect();
     Some(ExportData::Picture(side_by_side(&images)))
+}
+
+fn is_film(kind: ExportKind) -> bool {
+    matches!(kind, ExportKind::Steps | ExportKind::LightRound)
+}
+
+/// The light that goes round: the shown one; `None` where there is none that could.
+fn turned(model: &Model) -> Option<usize> {
+    let last = model.scene.as_ref()?.draft.lights.len().checked_sub(1)?;
+    Some(model.view.light.min(last))
 }
 
 /// What was measured; `None` while that is nothing, or not yet all.
@@ -139,6 +163,13 @@ pub fn menu(ui: &mut Ui, model: &mut Model) {
         let button = ui.add_enabled(dialog.is_some(), egui::Button::new(kind.name()));
         let button = button.on_hover_text(kind.explanation());
         let nothing = match kind {
+            kind if is_film(kind) && model.answers.asked::<FilmOf>().is_some() => {
+                "An animation is being written: wait for it, or cancel it in the status bar"
+            }
+            ExportKind::LightRound if model.origin().is_some() => {
+                "Another program drew this frame: there is no scene to light anew. Export it pass by pass"
+            }
+            ExportKind::LightRound => "There is no scene with a light that could go round: open one",
             ExportKind::AsShown => "Overlays lie over one picture: show one, and not all layers of a light's map",
             ExportKind::Report => "Nothing is measured yet, or not all: press Measure in the Report tab",
             _ => "There is nothing of this kind to export now",

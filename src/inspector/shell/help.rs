@@ -18,7 +18,9 @@ pub fn ui(ctx: &Context, model: &mut Model) {
     let modal = egui::Modal::new(Id::unique("help")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
         ui.set_width(520.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
-        let scroll = egui::ScrollArea::vertical().max_height((ctx.content_rect().height() - 140.0).max(80.0));
+        // At once as high as it will be: an area grows by a little a frame otherwise, and its buttons slide away.
+        let most = (ctx.content_rect().height() - 140.0).max(80.0);
+        let scroll = egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most);
         scroll.show(ui, contents);
         ui.add_space(8.0);
         ui.horizontal(|ui| {

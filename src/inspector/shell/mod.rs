@@ -1,5 +1,6 @@
 //! What stands around the tabs: bars, dialogs, keys, walking and tours.
 
+pub mod arrangement;
 pub mod dock;
 pub mod export;
 pub mod help;

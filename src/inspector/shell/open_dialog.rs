@@ -4,6 +4,10 @@ use crate::inspector::action::{Action, Dialog};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use egui::{Context, Id, Key, RichText, Ui, vec2};
+use std::path::Path;
+
+/// Files that were opened before and are listed.
+const MOST_RECENT: usize = 4;
 
 /// A built-in scene, or a frame of another program, in the dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,6 +34,11 @@ impl OpenDialog {
     pub fn new(scenes: Vec<SceneEntry>) -> OpenDialog {
         OpenDialog { scenes, ..OpenDialog::default() }
     }
+
+    /// Is it one of those that are listed?
+    fn names(&self, source: &str) -> bool {
+        self.scenes.iter().chain(&self.frames).any(|entry| entry.name == source)
+    }
 }
 
 /// Draws the dialog while it is open.
@@ -41,7 +50,7 @@ pub fn ui(ctx: &Context, own: &mut OpenDialog, model: &mut Model, actions: &mut 
     let modal = egui::Modal::new(Id::unique("open dialog")).frame(theme::dialog(ctx));
     let answer = modal.show(ctx, |ui| {
         ui.set_width(480.0_f32.min(ctx.content_rect().width() - 64.0).max(1.0));
-        contents(ui, own)
+        contents(ui, own, &model.recent)
     });
     match answer.inner {
         Answer::Waiting if !answer.should_close() => return,
@@ -61,11 +70,24 @@ enum Answer {
     Open(String),
 }
 
-fn contents(ui: &mut Ui, dialog: &mut OpenDialog) -> Answer {
+fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> Answer {
     let mut answer = Answer::Waiting;
     theme::heading(ui, "Open");
+    let files = recent.iter().filter(|source| !dialog.names(source)).take(MOST_RECENT);
+    for (place, file) in files.enumerate() {
+        if place == 0 {
+            ui.label(theme::note("Opened before"));
+        }
+        let path = Path::new(file);
+        let name = path.file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
+        let folder = path.parent().map_or_else(String::new, |folder| folder.display().to_string());
+        if scene_row(ui, &name, &folder) {
+            answer = Answer::Open(file.clone());
+        }
+    }
     // What is under the lists stays in sight.
-    let room = (ui.ctx().content_rect().height() - 340.0).clamp(60.0, 300.0);
+    let others = ui.min_rect().height() + 320.0;
+    let room = (ui.ctx().content_rect().height() - others).clamp(60.0, 300.0);
     let lists = [("A built-in scene", &dialog.scenes, room), ("A frame of another program", &dialog.frames, 120.0)];
     for (title, entries, height) in lists.into_iter().filter(|(_, entries, _)| !entries.is_empty()) {
         ui.label(theme::note(title));

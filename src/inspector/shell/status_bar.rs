@@ -1,6 +1,6 @@
 //! The bar at the bottom: the picture's facts, what the pointer is over, what a frame costs.
 
-use crate::ask::TimingOf;
+use crate::ask::{FilmOf, Kind, TimingOf};
 use crate::capture::Capture;
 use crate::inspector::look::coloring::{self, Coloring};
 use crate::inspector::look::theme;
@@ -12,7 +12,7 @@ use egui::{Margin, Ui};
 use std::sync::Arc;
 
 /// Draws the bar.
-pub fn ui(ui: &mut Ui, model: &Model) {
+pub fn ui(ui: &mut Ui, model: &mut Model) {
     let frame = egui::Frame::new().fill(theme::of(ui).background).inner_margin(Margin::symmetric(8, 2));
     egui::Panel::bottom("status bar").frame(frame).exact_size(26.0).show(ui, |ui| {
         ui.horizontal_centered(|ui| {
@@ -71,7 +71,7 @@ fn frame_values(ui: &mut Ui, capture: &Capture, model: &Model, at: [u32; 2]) {
 }
 
 /// Right to left: adapter, frame time, bytes, and what is being done.
-fn costs(ui: &mut Ui, model: &Model) {
+fn costs(ui: &mut Ui, model: &mut Model) {
     if let Some(capture) = &model.frame.capture {
         let adapter = &capture.adapter;
         let short_name = adapter.name.split(" (").next().unwrap_or_default();
@@ -87,12 +87,25 @@ fn costs(ui: &mut Ui, model: &Model) {
         ui.label(theme::note(format!("capture {}", format::bytes(model.frame.bytes))))
             .on_hover_text("Memory of all pictures of this capture");
     }
+    film(ui, model);
     if let Some(job) = &model.activity.job {
         ui.label(theme::note(job.clone()));
         spinner(ui);
     } else if let Some(done) = &model.activity.exported {
         ui.label(theme::note(done.as_str())).on_hover_text("The last export");
     }
+}
+
+/// How far an animation is that is being written; it can be stopped.
+fn film(ui: &mut Ui, model: &mut Model) {
+    let Some(progress) = model.answers.under_way::<FilmOf>().running else { return };
+    if ui.small_button("Cancel").on_hover_text("Stop writing the animation; nothing of it is left").clicked() {
+        model.answers.cancel(Kind::FilmOf);
+    }
+    let (done, of) = progress.steps();
+    let words = if of == 0 { "animation begins".to_owned() } else { format!("animation: {done} of {of} pictures") };
+    ui.label(theme::note(words));
+    spinner(ui);
 }
 
 /// A turning arc. It moves a few times a second only: on a software GPU every frame that is

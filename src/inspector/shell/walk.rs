@@ -5,7 +5,7 @@
 //! larger steps, not later. Walls are asked for whenever objects are switched off, move or are loaded anew;
 //! until they come the walls before count.
 
-use crate::ask::WallsOf;
+use crate::ask::{RunRequest, WallsOf};
 use crate::inspector::action::{Action, Overlay};
 use crate::inspector::canvas;
 use crate::inspector::model::Model;
@@ -226,7 +226,8 @@ fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
 fn walls(model: &Model) -> Option<Arc<Walls>> {
     let scene = model.scene.as_ref().filter(|_| model.walk.collides)?;
     let time = if scene.animated { scene.draft.time } else { 0.0 };
-    model.answers.want(WallsOf { off: scene.draft.off.clone(), time }).latest().cloned()
+    let RunRequest { off, objects, .. } = scene.draft.clone();
+    model.answers.want(WallsOf { off, objects, time }).latest().cloned()
 }
 
 fn way(command: WalkCommand) -> DVec3 {

@@ -3,13 +3,13 @@
 use super::fields::Passes;
 use super::{recorded, thumbnail};
 use crate::ask::Reply;
-use crate::capture::{Capture, DrawState, DrawSummary, FrameTarget, Image, Snapshot, StepDraws};
-use crate::inspector::look::coloring::Coloring;
+use crate::capture::{Capture, DrawState, DrawSummary, StepDraws};
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::plan::LeftOut;
 use crate::reading::format;
 use crate::reading::moment::Moment;
+use crate::reading::written::Written;
 use egui::{CornerRadius, Rect, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 
@@ -99,8 +99,9 @@ fn changes_nothing(draw: &DrawSummary) -> bool {
 fn paint_change(ui: &Ui, model: &mut Model, capture: &Capture, index: usize, row: Rect) {
     let size = vec2(THUMBNAIL_WIDTH, HEIGHT - 2.0 * THUMBNAIL[1]);
     let place = Rect::from_min_size(row.min + vec2(THUMBNAIL[0], THUMBNAIL[1]), size);
-    let changed = changed_picture(model, capture, index);
-    thumbnail::paint_thumbnail(ui, model, changed, place);
+    let written = Written::by_draw(capture, model.selection.step, index);
+    let colored = thumbnail::colored(model, written);
+    thumbnail::paint_thumbnail(ui, model, colored, place);
     if changes_nothing(&capture.steps[model.selection.step].draws[index]) {
         let font = TextStyle::Monospace.resolve(ui.style());
         ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, "=", font, theme::of(ui).faint);
@@ -130,20 +131,6 @@ fn paint_words(ui: &Ui, draw: &DrawSummary, is_selected: bool, (mark, right): (O
     };
     let room = right.left() - left - 8.0;
     theme::line(ui, pos2(left, row.center().y - 7.0), room, &draw.name, TextStyle::Small, color);
-}
-
-/// What a draw changed, as a picture with its colouring.
-fn changed_picture(model: &mut Model, capture: &Capture, index: usize) -> Option<(Arc<Image>, Coloring)> {
-    let after = capture.steps[model.selection.step].draws[index].after.as_ref()?;
-    let target = after.target.as_ref().filter(|target| !target.unchanged).map(|target| &target.image);
-    match &after.snapshot {
-        Snapshot::Map { light, face } => Some(thumbnail::colored_layer(model, capture, [*light, *face], target?)),
-        Snapshot::Frame(frame) => match frame.target {
-            FrameTarget::Picture => thumbnail::changed_aspect(model, capture, frame),
-            FrameTarget::Labels => Some((target?.clone(), Coloring::Labels)),
-            FrameTarget::Count => Some((target?.clone(), Coloring::Count)),
-        },
-    }
 }
 
 /// Under a selected draw whose state is not there and does not come: why.

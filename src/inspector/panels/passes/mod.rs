@@ -7,17 +7,16 @@ pub mod recorded;
 pub mod thumbnail;
 pub mod transport;
 
-use crate::capture::{Capture, FrameTarget, Image, Snapshot, Step};
-use crate::inspector::look::coloring::Coloring;
+use crate::capture::{Capture, Step};
 use crate::inspector::look::theme;
 use crate::inspector::model::{Model, StepSearch};
-use crate::reading::counts;
 use crate::reading::format;
 use crate::reading::steps;
+use crate::reading::written::Written;
 use egui::{CornerRadius, Margin, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 pub use fields::Passes;
 use std::sync::Arc;
-use thumbnail::{changed_aspect, colored_layer, paint_row_background, paint_thumbnail};
+use thumbnail::{colored, paint_row_background, paint_thumbnail};
 
 /// What is said of a mask in its row.
 const BESIDE: &str = "beside the frame";
@@ -142,8 +141,8 @@ fn pass_row(ui: &mut Ui, model: &mut Model, capture: &Arc<Capture>, index: usize
     }
     paint_row_background(ui, rect, is_selected, response.hovered(), response.has_focus());
     let thumbnail = Rect::from_min_size(rect.min + vec2(8.0, 6.0), vec2(52.0, 32.0));
-    let changed = changed_picture(model, capture, index);
-    paint_thumbnail(ui, model, changed, thumbnail);
+    let written = colored(model, Written::by_step(capture, index));
+    paint_thumbnail(ui, model, written, thumbnail);
     let time = format::milliseconds(step.gpu_ms);
     let font = TextStyle::Monospace.resolve(ui.style());
     let time_rect = ui.painter().text(
@@ -201,24 +200,6 @@ fn summary(step: &Step) -> String {
         count => format!(" · {count} differ"),
     };
     format!("{draws}{differing} · {}", format::counted(step.triangles(), "triangle"))
-}
-
-/// What a step changed, as a picture with its colouring.
-fn changed_picture(model: &mut Model, capture: &Capture, index: usize) -> Option<(Arc<Image>, Coloring)> {
-    let step = capture.steps.get(index)?;
-    match &step.snapshot {
-        Snapshot::Map { light, face } => {
-            let map = capture.lights.get(*light)?.map.as_ref()?;
-            Some(colored_layer(model, capture, [*light, *face], map.faces.get(*face)?))
-        }
-        Snapshot::Frame(frame) if frame.target == FrameTarget::Count => {
-            counts::finished_by(capture, index).map(|(_, count)| (count.clone(), Coloring::Count))
-        }
-        Snapshot::Frame(frame) if frame.target == FrameTarget::Labels => {
-            Some((capture.lights.get(step.light?)?.shadow.clone()?, Coloring::Labels))
-        }
-        Snapshot::Frame(frame) => changed_aspect(model, capture, frame),
-    }
 }
 
 /// "Why this pass", at the panel's foot.

@@ -1,11 +1,12 @@
 //! Rows of the tree: their background, and the small picture of what a step or draw changed.
 
-use crate::capture::{Capture, FrameSnapshot, Image, PixelFormat};
+use crate::capture::Image;
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::texture::TextureSize;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
-use crate::reading::depth::{DepthMeasure, DepthScale};
+use crate::reading::depth::DepthScale;
+use crate::reading::written::{Content, Written};
 use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
 use std::sync::Arc;
 
@@ -24,35 +25,21 @@ pub fn paint_row_background(ui: &Ui, rect: Rect, is_selected: bool, is_hovered: 
     }
 }
 
-/// A layer of a light's map with its colouring.
-pub fn colored_layer(
-    model: &mut Model,
-    capture: &Capture,
-    [light, face]: [usize; 2],
-    image: &Arc<Image>,
-) -> (Arc<Image>, Coloring) {
-    if image.format() == PixelFormat::Rgba8 {
-        return (image.clone(), Coloring::Linear);
-    }
-    let measure = DepthMeasure::of_map(capture, light, face).unwrap_or(DepthMeasure::Raw);
-    let range = model.textures.depth_range(image, measure).unwrap_or([0.0, 1.0]);
-    (image.clone(), Coloring::Depth(DepthScale { measure, range }))
-}
-
-/// What a step or a draw changed of the picture.
-pub fn changed_aspect(model: &mut Model, capture: &Capture, frame: &FrameSnapshot) -> Option<(Arc<Image>, Coloring)> {
-    if !frame.color.unchanged {
-        return Some((frame.color.image.clone(), Coloring::Srgb));
-    }
-    if let Some(stencil) = frame.stencil.as_ref().filter(|stencil| !stencil.unchanged) {
-        return Some((stencil.image.clone(), Coloring::Stencil));
-    }
-    if !frame.depth.unchanged {
-        let measure = DepthMeasure::of_camera(capture);
-        let range = model.textures.depth_range(&frame.depth.image, measure).unwrap_or([0.0, 1.0]);
-        return Some((frame.depth.image.clone(), Coloring::Depth(DepthScale { measure, range })));
-    }
-    None
+/// What a step or a draw wrote, with its colouring.
+pub fn colored(model: &mut Model, written: Option<Written>) -> Option<(Arc<Image>, Coloring)> {
+    let Written { image, content, .. } = written?;
+    let coloring = match content {
+        Content::Color => Coloring::Srgb,
+        Content::LetThrough => Coloring::Linear,
+        Content::Stencil => Coloring::Stencil,
+        Content::Count => Coloring::Count,
+        Content::Labels => Coloring::Labels,
+        Content::Depth(measure) => {
+            let range = model.textures.depth_range(&image, measure).unwrap_or([0.0, 1.0]);
+            Coloring::Depth(DepthScale { measure, range })
+        }
+    };
+    Some((image, coloring))
 }
 
 /// A small picture in its frame; the frame alone where there is none.

@@ -1,6 +1,7 @@
 //! The settings: technique with its settings, lights, camera, picture. Every change asks for a run.
 
 pub mod animation;
+pub mod making;
 pub mod meshes;
 pub mod scene;
 
@@ -33,6 +34,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         let mut changed = technique_settings(ui, model);
         if let Some(scene) = &mut model.scene {
             changed |= scene::ui(ui, scene);
+            changed |= making::ui(ui, scene);
         }
         if changed {
             model.run_draft(actions);

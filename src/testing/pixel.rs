@@ -1,191 +1,18 @@
-//! Readback tests of shadows: render a scene or a plan, then assert on stencil, count, depth, colour, label
-//! and history of a pixel, and on what a shadow map holds there. A failed assertion panics with the
-//! pixel's history, so that the log of a CI run says what happened to it.
-//!
-//! Runs without a window on whatever adapter there is; Debian's `mesa-vulkan-drivers` brings a
-//! software one whose results are the same on every machine.
-//!
-//! ```
-//! use stencilscope::scene::builtin::Builtin;
-//! use stencilscope::technique::{Choice, Technique};
-//! use stencilscope::testing::{Label, Rendered};
-//!
-//! let scene = Builtin::named("tetrahedron").expect("a name").scene()?;
-//! let mut frame = Rendered::new(&scene, Choice::new(Technique::ZFail), [320, 240])?;
-//!
-//! // The middle of the picture shows the tetrahedron, 3.4 m away; volumes cancel out there.
-//! frame.at([160, 120]).stencil_after("volumes", 0).distance(3.395, 0.01);
-//!
-//! // Inside its shadow: the side it is entered through, then the far end.
-//! let shadowed = frame.first_labelled(0, Label::Shadow).expect("a shadow");
-//! frame.at(shadowed).label(0, Label::Shadow).agrees();
-//! assert!(frame.at(shadowed).history().events.iter().any(|event| event.is_of_volume()));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
-//! Scenes of your own are quickly made with [`SceneBuilder`](crate::scene::SceneBuilder), and a plan with one thing
-//! changed is rendered by [`Rendered::of_plan`].
+//! Assertions on a pixel.
 
+use super::Label;
+use super::places::{MapTexel, View, texel_of};
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
-use crate::history::PixelHistory;
-use crate::math::projection;
+use crate::history::{Event, PixelHistory};
 use crate::numbers;
-use crate::plan::FramePlan;
-use crate::scene::Scene;
-use crate::session::{CaptureRequest, Session, SessionError};
-use crate::technique::Choice;
-use crate::truth;
-use glam::{DVec2, DVec3, DVec4};
-
-/// What a technique says of a light at a pixel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Label {
-    /// The light reaches the surface.
-    Lit,
-    /// Something lies between.
-    Shadow,
-    /// No surface is here.
-    Background,
-    /// The light is on the surface's other side, or its range ends before it.
-    FacesAway,
-}
-
-impl Label {
-    /// As stored in masks.
-    #[must_use]
-    pub fn byte(self) -> u8 {
-        match self {
-            Label::Lit => truth::LIT,
-            Label::Shadow => truth::SHADOW,
-            Label::Background => truth::BACKGROUND,
-            Label::FacesAway => truth::FACES_AWAY,
-        }
-    }
-
-    /// The label that is stored so.
-    #[must_use]
-    pub fn from_byte(byte: u8) -> Option<Label> {
-        [Label::Lit, Label::Shadow, Label::Background, Label::FacesAway].into_iter().find(|label| label.byte() == byte)
-    }
-}
-
-/// A rendered scene, to be asked about its pixels.
-#[derive(Debug)]
-pub struct Rendered {
-    session: Session,
-    plan: FramePlan,
-    capture: Capture,
-}
-
-impl Rendered {
-    /// Renders `scene` on the best adapter there is, with a picture of `size` pixels.
-    ///
-    /// # Errors
-    /// No adapter, with what to install; a scene or setting that can't be drawn.
-    pub fn new(scene: &Scene, choice: Choice, size: [u32; 2]) -> Result<Rendered, SessionError> {
-        Rendered::on(Session::new(None)?, scene, &CaptureRequest::new(choice, size))
-    }
-
-    /// The same on a session of your own, which [`Rendered::into_session`] gives back.
-    ///
-    /// # Errors
-    /// A scene or setting that can't be drawn; a lost GPU.
-    pub fn on(mut session: Session, scene: &Scene, request: &CaptureRequest) -> Result<Rendered, SessionError> {
-        let (capture, plan) = session.capture_with_plan(scene, request)?;
-        Ok(Rendered { session, plan, capture })
-    }
-
-    /// Runs a plan as it is, such as a good one with one thing changed, or that of a technique of your own.
-    ///
-    /// ```
-    /// use stencilscope::plan::Part;
-    /// use stencilscope::scene::builtin::Builtin;
-    /// use stencilscope::session::{CaptureRequest, Session};
-    /// use stencilscope::technique::{Choice, Technique};
-    /// use stencilscope::testing::{Label, Rendered};
-    ///
-    /// let scene = Builtin::named("tetrahedron").expect("a name").scene()?;
-    /// let request = CaptureRequest::new(Choice::new(Technique::ZFail), [320, 240]);
-    /// let mut session = Session::new(None)?;
-    /// let mut plan = session.plan(&scene, &request)?;
-    ///
-    /// // Without light caps the volume is open, and the tetrahedron itself is in shadow.
-    /// plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != Part::LightCap));
-    /// let mut broken = Rendered::of_plan(session, &scene, plan)?;
-    /// broken.at([160, 120]).label(0, Label::Shadow).agrees();
-    ///
-    /// let mut whole = Rendered::on(broken.into_session(), &scene, &request)?;
-    /// whole.at([160, 120]).label(0, Label::Lit).agrees();
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// A plan that can't run, a lost GPU.
-    pub fn of_plan(mut session: Session, scene: &Scene, plan: FramePlan) -> Result<Rendered, SessionError> {
-        let capture = session.capture_plan(scene, &plan)?;
-        Ok(Rendered { session, plan, capture })
-    }
-
-    /// The session, for the next scene.
-    #[must_use]
-    pub fn into_session(self) -> Session {
-        self.session
-    }
-
-    /// Everything that the frame left.
-    #[must_use]
-    pub fn capture(&self) -> &Capture {
-        &self.capture
-    }
-
-    /// The frame as data.
-    #[must_use]
-    pub fn plan(&self) -> &FramePlan {
-        &self.plan
-    }
-
-    /// A pixel to assert on: column and row from the top left.
-    ///
-    /// # Panics
-    /// If it is outside the picture, or the GPU is lost.
-    #[track_caller]
-    pub fn at(&mut self, pixel: [u32; 2]) -> Pixel<'_> {
-        match self.session.history(&self.plan, &self.capture, pixel) {
-            Ok(history) => Pixel { capture: &self.capture, history },
-            Err(error) => panic!("{error}"),
-        }
-    }
-
-    /// The first pixel, row by row, that has a label under a light.
-    #[must_use]
-    pub fn first_labelled(&self, light: usize, label: Label) -> Option<[u32; 2]> {
-        let labels = self.capture.lights.get(light)?.shadow.as_ref()?;
-        let find = |(y, row): (u32, &[u8])| {
-            let x = row.iter().position(|byte| *byte == label.byte())?;
-            Some([x as u32, y])
-        };
-        (0..).zip(labels.rows()).find_map(find)
-    }
-}
-
-/// The texel of a light's shadow map that a pixel's surface falls in.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MapTexel {
-    /// Which face of the map.
-    pub face: usize,
-    /// Column and row from the top left.
-    pub texel: [u32; 2],
-    /// The depth that it holds, as stored.
-    pub stored: f32,
-    /// The depth that the surface has there, before any bias.
-    pub surface: f64,
-}
+use glam::{DVec2, DVec3};
+use std::collections::BTreeSet;
 
 /// A pixel of a rendered scene. Assertions give it back, so that they can be chained.
 #[derive(Debug)]
 pub struct Pixel<'a> {
-    capture: &'a Capture,
-    history: PixelHistory,
+    pub(super) capture: &'a Capture,
+    pub(super) history: PixelHistory,
 }
 
 impl Pixel<'_> {
@@ -219,7 +46,7 @@ impl Pixel<'_> {
     /// Asserts on the stencil after the first pass of a name, such as `volumes`.
     ///
     /// # Panics
-    /// If it is another, or there is no such pass.
+    /// If it is another, there is no such pass, or several lights have one: see [`Pixel::stencil_of`].
     #[track_caller]
     pub fn stencil_after(&self, pass: &str, expected: u8) -> &Self {
         self.stencil_at(self.pass_of(pass, None), expected)
@@ -350,19 +177,7 @@ impl Pixel<'_> {
     /// ```
     #[must_use]
     pub fn map_texel(&self, light: usize) -> Option<MapTexel> {
-        let map = self.capture.lights.get(light)?.map.as_ref().filter(|map| !map.holds_colors())?;
-        let in_light = map.light_from_world * self.surface()?.extend(1.0);
-        let on_face = |(face, clip_from_light): (usize, &glam::DMat4)| {
-            let clip: DVec4 = *clip_from_light * in_light;
-            let image = map.faces.get(face)?;
-            let [width, height] = image.size().map(f64::from);
-            // Row 0 is at the top.
-            let at = (clip.truncate().truncate() / clip.w * DVec2::new(0.5, -0.5) + 0.5) * DVec2::new(width, height);
-            let is_inside = clip.w > 0.0 && at.cmpge(DVec2::ZERO).all() && at.cmplt(DVec2::new(width, height)).all();
-            let texel = is_inside.then_some([at.x as u32, at.y as u32])?;
-            Some(MapTexel { face, texel, stored: image.depth_at(texel)?, surface: clip.z / clip.w })
-        };
-        map.clip_from_light.iter().enumerate().find_map(on_face)
+        texel_of(self.capture, light, self.surface()?)
     }
 
     /// Asserts on the depth that a light's shadow map holds where the visible surface falls into it, bit for bit; see
@@ -377,6 +192,46 @@ impl Pixel<'_> {
             Some(found) if found.stored.to_bits() == expected.to_bits() => self,
             Some(MapTexel { face, texel: [x, y], stored, .. }) => {
                 self.fail(&format!("the map of {name} holds {stored:?} at {x},{y} of face {face}, not {expected:?}"))
+            }
+            None => self.fail(&format!("no shadow map of {name} shows the surface")),
+        }
+    }
+
+    /// Asserts on how much nearer to a light what its shadow map holds is than the visible surface, in metres along the
+    /// map's axis: 0 where that is the surface itself, more where something is before it. See [`MapTexel::gap`]. A map
+    /// is no larger than its casters: beside them it holds nothing, and shows no surface.
+    ///
+    /// ```
+    /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
+    /// use stencilscope::technique::{Choice, Technique};
+    /// use stencilscope::testing::Rendered;
+    ///
+    /// let scene = SceneBuilder::new("a board over a floor")
+    ///     .object(Object::of("floor", shapes::quad([8.0; 2])?))
+    ///     .object(Object::of("board", shapes::quad([1.0; 2])?).at([0.0, 1.0, 0.0]))
+    ///     .light(Light::directional([0.0, 1.0, 0.0]))
+    ///     .seen_from([0.0, 4.0, 4.0], [0.0; 3])
+    ///     .build();
+    /// let mut frame = Rendered::new(&scene, Choice::new(Technique::ShadowMap), [65, 65])?;
+    /// // Under the board, and on it.
+    /// frame.at_point([0.1, 0.0, 0.4]).map_gap(0, 1.0, 0.01);
+    /// frame.at_point([0.1, 1.0, 0.1]).map_gap(0, 0.0, 0.01);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If it is farther than `tolerance` from `expected`, the map holds nothing there, or does not show the surface.
+    #[track_caller]
+    pub fn map_gap(&self, light: usize, expected: f64, tolerance: f64) -> &Self {
+        let name = numbers::light(light);
+        match self.map_texel(light) {
+            Some(MapTexel { gap: Some(gap), .. }) if (gap - expected).abs() <= tolerance => self,
+            Some(MapTexel { gap: Some(gap), face, texel: [x, y], .. }) => self.fail(&format!(
+                "at {x},{y} of face {face} the map of {name} holds what is {gap} m nearer to the light than the surface, \
+                 not {expected} m (give or take {tolerance})"
+            )),
+            Some(MapTexel { face, texel: [x, y], .. }) => {
+                self.fail(&format!("the map of {name} holds nothing at {x},{y} of face {face}"))
             }
             None => self.fail(&format!("no shadow map of {name} shows the surface")),
         }
@@ -437,16 +292,47 @@ impl Pixel<'_> {
     /// Asserts on the events of passes of one name, such as `volumes`.
     ///
     /// # Panics
-    /// As [`Pixel::events`]; if there is no such pass.
+    /// As [`Pixel::events`]; if there is no such pass, or several lights have one: see [`Pixel::events_of_light`].
     #[track_caller]
     pub fn events_of(&self, pass: &str, expected: &[&str]) -> &Self {
         self.pass_of(pass, None);
-        self.compare_events(expected, |name| name == pass)
+        self.compare_events(expected, |event| event.pass_name == pass)
+    }
+
+    /// Asserts on the events of a light's passes of one name.
+    ///
+    /// ```
+    /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
+    /// use stencilscope::technique::{Choice, Technique};
+    /// use stencilscope::testing::Rendered;
+    ///
+    /// // A board over a floor, under two suns of which the second shines past it.
+    /// let scene = SceneBuilder::new("two suns")
+    ///     .object(Object::of("floor", shapes::quad([8.0; 2])?))
+    ///     .object(Object::of("board", shapes::quad([1.0; 2])?).at([0.0, 1.0, 0.0]).unseen())
+    ///     .lights([Light::directional([0.0, 1.0, 0.0]), Light::directional([3.0, 1.0, 0.0])])
+    ///     .seen_from([0.0, 5.0, 0.0], [0.0; 3])
+    ///     .build();
+    /// let mut frame = Rendered::new(&scene, Choice::new(Technique::ZFail), [65, 65])?;
+    /// let middle = frame.at([32, 32]);
+    /// // The first light is blocked, the second adds to the floor.
+    /// middle.events_of_light(0, "light", &["light: floor, front, fails stencil"]);
+    /// middle.events_of_light(1, "light", &["light: floor, front, passes, stencil 0 to 1"]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Panics
+    /// As [`Pixel::events`]; if the light has no such pass.
+    #[track_caller]
+    pub fn events_of_light(&self, light: usize, pass: &str, expected: &[&str]) -> &Self {
+        self.pass_of(pass, Some(light));
+        let of_light = |index: usize| self.capture.steps.get(index).and_then(|step| step.light) == Some(light);
+        self.compare_events(expected, |event| event.pass_name == pass && of_light(event.pass))
     }
 
     #[track_caller]
-    fn compare_events(&self, expected: &[&str], is_asked: impl Fn(&str) -> bool) -> &Self {
-        let events = self.history.events.iter().filter(|event| is_asked(&event.pass_name));
+    fn compare_events(&self, expected: &[&str], is_asked: impl Fn(&Event) -> bool) -> &Self {
+        let events = self.history.events.iter().filter(|event| is_asked(event));
         let found: Vec<String> = events.map(|event| self.history.brief(event)).collect();
         if found != expected {
             self.fail(&format!("events are\n  {}\nnot\n  {}", found.join("\n  "), expected.join("\n  ")));
@@ -476,33 +362,73 @@ impl Pixel<'_> {
         }
     }
 
+    /// Asserts that nothing hides a point that falls into the pixel.
+    #[track_caller]
+    pub(super) fn reveals(&self, point: DVec3) {
+        let view = View::of(self.capture);
+        let (_, distance) = view.pixel_and_distance(point);
+        let [x, y] = self.history.pixel;
+        let Some(found) = self.surface_distance([x, y]) else { return };
+        // Over a flat surface it is one over the distance that changes evenly: by so much from here to the next pixel.
+        let next = |neighbours: [[u32; 2]; 2]| {
+            let steps =
+                neighbours.into_iter().filter_map(|at| Some((1.0 / self.surface_distance(at)? - 1.0 / found).abs()));
+            steps.reduce(f64::min).unwrap_or(0.0)
+        };
+        let [left, above] = [x, y].map(|at| at.wrapping_sub(1));
+        let slope = next([[left, y], [x + 1, y]]) + next([[x, above], [x, y + 1]]);
+        let farthest_within = 1.0 / (1.0 / found - slope).max(f64::MIN_POSITIVE);
+        if farthest_within + view.pixel_width(distance) < distance {
+            self.fail(&format!("the point {point} is {distance} m away, behind a surface {found} m away"));
+        }
+    }
+
+    /// How far the visible surface of a pixel is; `None` where there is none.
+    fn surface_distance(&self, pixel: [u32; 2]) -> Option<f64> {
+        let last = self.capture.frame_at(self.capture.steps.len().saturating_sub(1))?;
+        self.capture.depth.distance(last.depth.image.depth_at(pixel)?)
+    }
+
     /// The world position of the visible surface at the pixel's centre; `None` where there is none.
     fn surface(&self) -> Option<DVec3> {
-        let (camera, curve) = (&self.capture.camera, &self.capture.depth);
-        let last = self.capture.frame_at(self.capture.steps.len().saturating_sub(1))?;
-        let distance = curve.distance(last.depth.image.depth_at(self.history.pixel)?)?;
-        let [width, height] = self.capture.size.map(f64::from);
+        let distance = self.surface_distance(self.history.pixel)?;
         let [x, y] = self.history.pixel.map(|at| f64::from(at) + 0.5);
-        let up = (camera.fov_y_degrees / 2.0).to_radians().tan();
-        let in_view = DVec3::new((2.0 * x / width - 1.0) * up * width / height, (1.0 - 2.0 * y / height) * up, -1.0);
-        let world_from_view = projection::view_from_world_rotation(camera.target - camera.eye, camera.up).transpose();
-        Some(camera.eye + world_from_view * (in_view * distance))
+        Some(View::of(self.capture).point(DVec2::new(x, y), distance))
     }
 
     /// Index of the first pass of the picture that has this name, and is of this light where one is given.
     #[track_caller]
     fn pass_of(&self, name: &str, light: Option<usize>) -> usize {
-        let is_of_light = |step: &Step| light.is_none() || step.light == light;
-        let is_it = |step: &Step| step.name == name && is_of_light(step) && matches!(step.snapshot, Snapshot::Frame(_));
-        self.capture.steps.iter().position(is_it).unwrap_or_else(|| {
-            let is_shown = |step: &&Step| match &step.snapshot {
-                Snapshot::Frame(frame) => frame.target != FrameTarget::Labels && is_of_light(step),
-                Snapshot::Map { .. } => false,
-            };
-            let names: Vec<&str> = self.capture.steps.iter().filter(is_shown).map(|step| step.name.as_str()).collect();
-            let of = light.map_or_else(String::new, |light| format!(" of {}", numbers::light(light)));
-            self.fail(&format!("no pass{of} is called `{name}`: there are {}", names.join(", ")))
-        })
+        let is_meant = |step: &&Step| light.is_none() || step.light == light;
+        let is_of_picture = |step: &Step| matches!(step.snapshot, Snapshot::Frame(_));
+        let steps = &self.capture.steps;
+        let lights: BTreeSet<Option<usize>> = steps
+            .iter()
+            .filter(|step| step.name == name && is_of_picture(step) && is_meant(step))
+            .map(|step| step.light)
+            .collect();
+        if lights.len() > 1 {
+            self.fail(&format!(
+                "several lights have a pass `{name}`: name the light (`stencil_of`, `events_of_light`)"
+            ));
+        }
+        match steps.iter().position(|step| step.name == name && is_of_picture(step) && is_meant(&step)) {
+            Some(index) => index,
+            None => {
+                let is_shown = |step: &&Step| match &step.snapshot {
+                    Snapshot::Frame(frame) => frame.target != FrameTarget::Labels && is_meant(step),
+                    Snapshot::Map { .. } => false,
+                };
+                let called = |step: &Step| match step.light.filter(|_| self.capture.lights.len() > 1) {
+                    Some(of) if light.is_none() => format!("{} of {}", step.name, numbers::light(of)),
+                    _ => step.name.clone(),
+                };
+                let names: Vec<String> = steps.iter().filter(is_shown).map(called).collect();
+                let of = light.map_or_else(String::new, |light| format!(" of {}", numbers::light(light)));
+                let there = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+                self.fail(&format!("no pass{of} is called `{name}`: there are {there}"))
+            }
+        }
     }
 
     /// Panics, and tells what happened to the pixel.

@@ -1,0 +1,82 @@
+//! A film, a picture a turn: everything that is asked for comes between two of them.
+
+use super::Work;
+use crate::app::news::News;
+use crate::app::queue::{Inbox, Order};
+use crate::ask::{Answer, Ask, Asked, FilmOf, FilmSubject, Filmed};
+use crate::film::{Film, LightRound, PLACES, Shows};
+use crate::picture::apng::Colors;
+use crate::session::CaptureRequest;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// A film that is being made.
+pub(super) struct FilmRun {
+    ticket: u64,
+    film: Film,
+}
+
+impl Work {
+    /// The film that is being made; of the one before nothing is left.
+    pub(super) fn set_film(&mut self, film: Option<FilmRun>) {
+        self.film = film;
+        self.is_filming.store(self.film.is_some(), Ordering::Release);
+    }
+
+    /// Makes the next picture of the film that is asked for, and puts the question back while any is left.
+    pub(super) fn film_turn(&mut self, of: [u64; 2], asked: Asked, inbox: &mut Inbox) {
+        let had_session = self.session.is_some();
+        self.is_filming.store(true, Ordering::Release);
+        let result = self.next_picture(of, &asked);
+        self.is_filming.store(self.film.is_some(), Ordering::Release);
+        if self.session.is_some() != had_session {
+            (self.tell)(News::Idle);
+        }
+        let result = match result {
+            Ok(None) => return inbox.queue.put_back(Order::Answer { scene: of[0], frame: of[1], asked }),
+            Ok(Some(filmed)) => Ok(Answer::FilmOf(Arc::new(filmed))),
+            Err(reason) => Err(reason),
+        };
+        (self.tell)(News::Answered { ticket: asked.ticket, result });
+    }
+
+    /// The film once it is whole; `None` where more is to come. Of one that fails nothing is left.
+    fn next_picture(&mut self, of: [u64; 2], asked: &Asked) -> Result<Option<Filmed>, String> {
+        let before = self.film.take();
+        let mut run = match (before, &asked.ask) {
+            (Some(run), _) if run.ticket == asked.ticket => run,
+            (_, Ask::FilmOf(question)) => {
+                let film = self.begin_film(of, question)?;
+                asked.progress.start(film.pictures() as usize);
+                FilmRun { ticket: asked.ticket, film }
+            }
+            _ => return Err("it is no film".to_owned()),
+        };
+        let is_more = run.film.shoot(&mut |scene, request| self.session()?.capture(scene, request));
+        if is_more.map_err(|error| error.to_string())? {
+            asked.progress.advance();
+            self.film = Some(run);
+            return Ok(None);
+        }
+        let pictures = run.film.pictures();
+        let bytes = run.film.finish().map_err(|error| error.to_string())?;
+        Ok(Some(Filmed { pictures, bytes }))
+    }
+
+    fn begin_film(&self, of: [u64; 2], question: &FilmOf) -> Result<Film, String> {
+        let shows = match &question.subject {
+            FilmSubject::Steps(capture) => Shows::Steps(Arc::clone(capture)),
+            FilmSubject::LightRound { request, light } => {
+                let open = self.open.as_ref().filter(|_| of[0] == self.scenes);
+                let open = open.ok_or("another scene is open by now: export it again")?;
+                let scene = request.applied_to(open).at(request.time);
+                let round = LightRound::new(scene, *light, PLACES).map_err(|error| error.to_string())?;
+                let request = CaptureRequest::new(request.choice.clone(), request.size);
+                Shows::LightRound { round: Box::new(round), request: Box::new(request), colors: Colors::Rounded }
+            }
+        };
+        let milliseconds = shows.milliseconds();
+        Film::begin(shows, Path::new(&question.path), milliseconds).map_err(|error| error.to_string())
+    }
+}

@@ -1,0 +1,156 @@
+//! `stencilscope animate`: a frame pass by pass, or a light that goes round the scene, as an animated PNG.
+
+use super::options::{FrameOptions, SceneOptions, Subject};
+use super::progress::with_bar;
+use super::{CliError, output};
+use crate::film::{Film, LightRound, PLACES, Shows};
+use crate::picture::apng::Colors;
+use crate::progress::Progress;
+use crate::reading::format;
+use crate::scene::Scene;
+use crate::session::{CaptureRequest, Session};
+use clap::Args;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Fewer places are no way round, and more make files that nobody opens.
+const FEWEST_PLACES: u32 = 2;
+const MOST_PLACES: u32 = 3600;
+/// What viewers show faster is shown at a speed of their own.
+const LEAST_MILLISECONDS: u16 = 20;
+const MOST_MILLISECONDS: u16 = 60_000;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A frame pass by pass:      stencilscope animate tori -t z-fail --steps --size 640x480 -o steps.png\n\
+    A light round the scene:   stencilscope animate tori --light-round --size 640x480 -o round.png\n\n\
+    Browsers and most chats show animated PNG. Passes keep every value's colour; --light-round rounds colours, by at\n\
+    most 2 of 255 a channel, unless --exact is given."
+)]
+pub struct AnimateArguments {
+    /// A built-in scene, a scene file (.toml), a model (.obj) or a capture folder
+    scene: String,
+    /// The file to make
+    #[arg(short, long, value_name = "FILE.png")]
+    output: String,
+    /// Replace the file if it is there
+    #[arg(long)]
+    overwrite: bool,
+    /// The frame, pass by pass, each with what it writes [default]
+    #[arg(long, conflicts_with = "light_round")]
+    steps: bool,
+    /// A light once round the scene's vertical axis, in N pictures [default N: 24]
+    #[arg(long, value_name = "N", num_args = 0..=1, value_parser = places)]
+    light_round: Option<Option<u32>>,
+    /// Which light goes round, counted from 1
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..), requires = "light_round")]
+    which_light: u16,
+    /// Keep colours to the bit: a larger file
+    #[arg(long, requires = "light_round")]
+    exact: bool,
+    /// How long each picture is shown [default: 1500 a pass, 100 a place of the light]
+    #[arg(long, value_name = "MILLISECONDS", value_parser = milliseconds, allow_hyphen_values = true)]
+    delay: Option<u16>,
+    #[command(flatten)]
+    scene_options: SceneOptions,
+    #[command(flatten)]
+    frame: FrameOptions,
+}
+
+fn places(text: &str) -> Result<u32, String> {
+    let places = text.parse().ok().filter(|places| (FEWEST_PLACES..=MOST_PLACES).contains(places));
+    places.ok_or_else(|| format!("give a whole number of pictures from {FEWEST_PLACES} to {MOST_PLACES}"))
+}
+
+fn milliseconds(text: &str) -> Result<u16, String> {
+    let range = LEAST_MILLISECONDS..=MOST_MILLISECONDS;
+    let milliseconds = text.parse().ok().filter(|milliseconds| range.contains(milliseconds));
+    milliseconds
+        .ok_or_else(|| format!("give a whole number of milliseconds from {LEAST_MILLISECONDS} to {MOST_MILLISECONDS}"))
+}
+
+/// Makes the animation and says what it is.
+///
+/// # Errors
+/// A scene, option or file that can't be used; no GPU; a frame that can't be made.
+pub fn run(arguments: &AnimateArguments) -> Result<(), CliError> {
+    check_target(&arguments.output, arguments.overwrite)?;
+    let refused = "an animation shows whole passes";
+    arguments.frame.refuse_draws(refused)?;
+    arguments.frame.refuse_external_capture(refused)?;
+    let subject = Subject::new(&arguments.scene, &arguments.scene_options, &arguments.frame)?;
+    let mut session = Gpu { adapter: arguments.frame.adapter.as_deref(), session: None };
+    let (name, shows) = match arguments.light_round {
+        None => {
+            let capture = steps(subject, &mut session)?;
+            (format!("{}, {}", capture.scene, capture.technique), Shows::Steps(capture))
+        }
+        Some(places) => {
+            let (scene, request) = made(&arguments.scene, &subject)?;
+            let name = format!("{}, {}", scene.name, request.choice.technique().name());
+            let light = usize::from(arguments.which_light) - 1;
+            let round = Box::new(LightRound::new(scene.clone(), light, places.unwrap_or(PLACES))?);
+            let colors = if arguments.exact { Colors::Exact } else { Colors::Rounded };
+            (name, Shows::LightRound { round, request: Box::new(request.clone()), colors })
+        }
+    };
+    let [width, height] = shows.size();
+    let (pictures, delay) = (shows.pictures(), arguments.delay.unwrap_or(shows.milliseconds()));
+    let mut film = Film::begin(shows, Path::new(&arguments.output), delay)?;
+    with_bar("pictures", &Progress::default(), |progress| -> Result<(), CliError> {
+        progress.start(pictures as usize);
+        while film.shoot(&mut |scene, request| session.get()?.capture(scene, request))? {
+            progress.advance();
+        }
+        Ok(())
+    })?;
+    let bytes = format::bytes(film.finish()?);
+    let output = &arguments.output;
+    output::print(&format!("{output}: {name}, {width}x{height}, {pictures} pictures of {delay} ms, {bytes}\n"))
+}
+
+/// Checks, before long work, that the file may be made.
+fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
+    let name = file.escape_debug();
+    let ending = Path::new(file).extension().unwrap_or_default().to_ascii_lowercase();
+    if ending != "png" && ending != "apng" {
+        return Err(CliError::Usage(format!("`{name}`: animations are PNG files: give it a name that ends in .png")));
+    }
+    output::check_target(file)?;
+    if Path::new(file).exists() && !overwrite {
+        return Err(CliError::Usage(format!("`{name}` is there already: choose another file, or add --overwrite")));
+    }
+    Ok(())
+}
+
+/// A GPU that is opened on first use: a folder's frame needs none.
+struct Gpu<'a> {
+    adapter: Option<&'a str>,
+    session: Option<Session>,
+}
+
+impl Gpu<'_> {
+    fn get(&mut self) -> Result<&mut Session, crate::session::SessionError> {
+        match &mut self.session {
+            Some(session) => Ok(session),
+            none => Ok(none.insert(Session::new(self.adapter)?)),
+        }
+    }
+}
+
+fn steps(subject: Subject, gpu: &mut Gpu) -> Result<Arc<crate::capture::Capture>, CliError> {
+    match subject {
+        Subject::Folder(frame) => Ok(frame.capture),
+        scene @ Subject::Scene(_) => Ok(scene.frame(gpu.get()?)?.capture),
+    }
+}
+
+/// What the frame is made from.
+fn made<'a>(name: &str, subject: &'a Subject) -> Result<(&'a Scene, &'a CaptureRequest), CliError> {
+    match subject {
+        Subject::Scene(scene) => Ok((&scene.scene, &scene.request)),
+        Subject::Folder(frame) => {
+            frame.made().map_err(|reason| CliError::Usage(format!("`{name}`: {reason}: --steps shows it pass by pass")))
+        }
+    }
+}

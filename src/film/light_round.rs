@@ -1,0 +1,122 @@
+//! A light that goes once round a scene: about the vertical axis through the middle of what casts shadows.
+
+use super::FilmError;
+use crate::numbers;
+use crate::scene::{Object, Scene};
+use glam::{DQuat, DVec3};
+use std::f64::consts::TAU;
+
+/// A light nearer to the axis than this share of its distance does not move visibly.
+const ON_AXIS: f64 = 1e-6;
+
+/// Places of a light on its way round.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightRound {
+    scene: Scene,
+    light: usize,
+    middle: DVec3,
+    places: u32,
+}
+
+impl LightRound {
+    /// Of a light of a scene that stands still, in `places` steps of the same angle; the first is where the light is.
+    ///
+    /// # Errors
+    /// The scene has no such light; it is on the axis that it would go round.
+    pub fn new(scene: Scene, light: usize, places: u32) -> Result<LightRound, FilmError> {
+        let lights = scene.lights.len();
+        let Some(turned) = scene.lights.get(light) else { return Err(FilmError::NoLight { light, lights }) };
+        let middle = middle(&scene.objects);
+        // Of a directional light only the direction counts.
+        let way = turned.position.truncate() - if turned.is_directional() { DVec3::ZERO } else { middle };
+        if way.with_y(0.0).length() <= ON_AXIS * way.length() {
+            return Err(FilmError::OnAxis { light: numbers::light(light) });
+        }
+        Ok(LightRound { scene, light, middle, places })
+    }
+
+    /// How many places there are.
+    #[must_use]
+    pub fn places(&self) -> u32 {
+        self.places
+    }
+
+    /// The scene with the light at a place, counted from 0.
+    #[must_use]
+    pub fn scene(&self, place: u32) -> Scene {
+        let mut scene = self.scene.clone();
+        let Some(light) = scene.lights.get_mut(self.light).filter(|_| place > 0) else { return scene };
+        let turn = DQuat::from_rotation_y(TAU * f64::from(place) / f64::from(self.places.max(1)));
+        let middle = if light.is_directional() { DVec3::ZERO } else { self.middle };
+        let turned = middle + turn * (light.position.truncate() - middle);
+        light.position = turned.extend(light.position.w);
+        scene
+    }
+}
+
+/// The middle of the box around what casts shadows and is no flat ground; around everything where nothing else is.
+fn middle(objects: &[Object]) -> DVec3 {
+    let boxes: Vec<(&Object, DVec3, DVec3)> = objects
+        .iter()
+        .filter_map(|object| {
+            let positions = object.world_positions();
+            let low = positions.iter().copied().reduce(DVec3::min)?;
+            Some((object, low, positions.iter().copied().fold(low, DVec3::max)))
+        })
+        .collect();
+    let around = |is_meant: &dyn Fn(&Object, DVec3) -> bool| {
+        let meant = boxes.iter().filter(|(object, low, high)| is_meant(object, *high - *low));
+        meant.map(|(_, low, high)| (*low, *high)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    };
+    let stands = |object: &Object, extents: DVec3| object.casts && extents.y > ON_AXIS * extents.max_element();
+    around(&stands).or_else(|| around(&|_, _| true)).map_or(DVec3::ZERO, |(low, high)| low / 2.0 + high / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Light, SceneBuilder, shapes};
+
+    /// A floor far to one side, and a box whose middle is above (1, 0, 2).
+    fn scene(lights: impl IntoIterator<Item = Light>) -> Scene {
+        SceneBuilder::new("a box")
+            .object(Object::of("floor", shapes::quad([40.0; 2]).expect("a quad")).at([15.0, 0.0, 0.0]))
+            .object(Object::of("box", shapes::cuboid([1.0; 3]).expect("a box")).at([1.0, 3.0, 2.0]))
+            .lights(lights)
+            .seen_from([0.0, 5.0, 9.0], [0.0; 3])
+            .build()
+    }
+
+    #[test]
+    fn a_point_light_goes_once_round_the_box_level_and_as_far_from_it() {
+        let scene = scene([Light::point([4.0, 5.0, 2.0])]);
+        let round = LightRound::new(scene.clone(), 0, 4).expect("a way round");
+        let places: Vec<DVec3> = (0..4).map(|place| round.scene(place).lights[0].position.truncate()).collect();
+        let expected = [[4.0, 5.0, 2.0], [1.0, 5.0, -1.0], [-2.0, 5.0, 2.0], [1.0, 5.0, 5.0]].map(DVec3::from_array);
+        for (place, expected) in places.iter().zip(expected) {
+            assert!(place.distance(expected) < 1e-12, "{place} is not {expected}");
+        }
+        assert_eq!(round.scene(0), scene, "to the bit");
+    }
+
+    #[test]
+    fn a_direction_turns_and_other_lights_stay() {
+        let scene = scene([Light::point([4.0, 5.0, 2.0]), Light::directional([1.0, 2.0, 0.0])]);
+        let round = LightRound::new(scene.clone(), 1, 4).expect("a way round");
+        let turned = round.scene(1);
+        assert_eq!(turned.lights[0], scene.lights[0]);
+        let away = turned.lights[1].position - DVec3::new(0.0, 2.0, -1.0).extend(0.0);
+        assert!(away.length() < 1e-12 && turned.lights[1].is_directional(), "{:?}", turned.lights[1]);
+    }
+
+    #[test]
+    fn a_light_on_the_axis_and_one_that_is_not_there_are_refused_with_the_mend() {
+        let refused =
+            |light: Light, index: usize| LightRound::new(scene([light]), index, 4).expect_err("refused").to_string();
+        let above = refused(Light::point([1.0, 9.0, 2.0]), 0);
+        assert!(above.contains("light 1 is above the middle") && above.contains("move it"), "{above}");
+        assert!(refused(Light::directional([0.0, 1.0, 0.0]), 0).contains("move it"));
+        let missing = refused(Light::point([4.0, 5.0, 2.0]), 1);
+        assert!(missing.contains("no light 2") && missing.contains("choose light 1"), "{missing}");
+    }
+}

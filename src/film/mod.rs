@@ -1,0 +1,213 @@
+//! Films of a frame: its passes one after the other, or a light that goes once round the scene. An animated PNG each,
+//! whose pictures are written as they are made.
+//!
+//! ```text
+//! steps.rs        a pass: what it writes, over its name      light_round.rs   places of a light on its way round
+//! ```
+//!
+//! Animated PNG and not GIF: it keeps colours and counts as they are, where GIF has 256 colours, and the PNG encoder
+//! that pictures are written with writes it. A whoever-shows-it that knows only PNG shows the first picture.
+
+mod light_round;
+mod steps;
+
+pub use light_round::LightRound;
+pub use steps::step_picture;
+
+use crate::capture::Capture;
+use crate::files::WholeFile;
+use crate::picture::Picture;
+use crate::picture::apng::{AnimatedPng, AnimationError, Colors, Format};
+use crate::picture::svg::SvgError;
+use crate::reading::steps as step_numbers;
+use crate::reading::written::{Content, Written};
+use crate::scene::Scene;
+use crate::session::{CaptureRequest, SessionError};
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// How long a pass is shown unless said otherwise, milliseconds.
+pub const STEP_MILLISECONDS: u16 = 1500;
+/// How long a place of the light is shown unless said otherwise, milliseconds.
+pub const PLACE_MILLISECONDS: u16 = 100;
+/// Places of the light unless said otherwise.
+pub const PLACES: u32 = 24;
+
+/// Why there is no film.
+#[derive(Debug, thiserror::Error)]
+pub enum FilmError {
+    /// The scene has fewer lights.
+    #[error("there is no light {}: {}", light + 1, choice_of(*lights))]
+    NoLight {
+        /// Index of the light that was asked for.
+        light: usize,
+        /// How many there are.
+        lights: usize,
+    },
+    /// A light that would go round itself.
+    #[error("{light} is above the middle of the scene, so going round it changes nothing: move it to a side")]
+    OnAxis {
+        /// Its name.
+        light: String,
+    },
+    /// A frame without passes.
+    #[error("the frame has no passes, so there is nothing to show: capture it again")]
+    NoSteps,
+    /// Words can't be drawn.
+    #[error("a caption can't be drawn: {0}")]
+    Caption(#[from] SvgError),
+    /// A picture of it can't be rendered.
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    /// The file can't be written.
+    #[error("{}: can't be written ({source}): choose another file", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: AnimationError,
+    },
+}
+
+fn choice_of(lights: usize) -> String {
+    match lights {
+        0 => "the scene has none, so add one".to_owned(),
+        1 => "choose light 1".to_owned(),
+        lights => format!("choose one from 1 to {lights}"),
+    }
+}
+
+/// What a film shows.
+#[derive(Debug, Clone)]
+pub enum Shows {
+    /// A frame, pass by pass; masks are beside it and left out.
+    Steps(Arc<Capture>),
+    /// A light that goes round.
+    LightRound {
+        /// Where it goes.
+        round: Box<LightRound>,
+        /// How each place is rendered.
+        request: Box<CaptureRequest>,
+        /// How colours are kept.
+        colors: Colors,
+    },
+}
+
+impl Shows {
+    /// How many pictures that takes.
+    #[must_use]
+    pub fn pictures(&self) -> u32 {
+        match self {
+            Shows::Steps(capture) => step_numbers::count(capture) as u32,
+            Shows::LightRound { round, .. } => round.places(),
+        }
+    }
+
+    /// Width and height of each.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        match self {
+            Shows::Steps(capture) => steps::size(capture),
+            Shows::LightRound { request, .. } => request.size,
+        }
+    }
+
+    /// How long each is shown unless said otherwise.
+    #[must_use]
+    pub fn milliseconds(&self) -> u16 {
+        match self {
+            Shows::Steps(_) => STEP_MILLISECONDS,
+            Shows::LightRound { .. } => PLACE_MILLISECONDS,
+        }
+    }
+
+    fn colors(&self) -> Colors {
+        match self {
+            // A value has to be read off its colour.
+            Shows::Steps(_) => Colors::Exact,
+            Shows::LightRound { colors, .. } => *colors,
+        }
+    }
+
+    fn picture(&self, index: u32, render: &mut Render) -> Result<Picture, FilmError> {
+        match self {
+            Shows::Steps(capture) => {
+                let step = step_numbers::numbered(capture).nth(index as usize).ok_or(FilmError::NoSteps)?;
+                Ok(step_picture(capture, step)?)
+            }
+            Shows::LightRound { round, request, .. } => {
+                let capture = render(&round.scene(index), request)?;
+                let last = capture.steps.len().checked_sub(1).and_then(|last| capture.frame_at(last));
+                let image = last.map(|frame| Arc::clone(&frame.color.image)).ok_or(FilmError::NoSteps)?;
+                Ok(Written { image, content: Content::Color, name: "colour" }.picture())
+            }
+        }
+    }
+}
+
+/// Renders a scene.
+pub type Render<'a> = dyn FnMut(&Scene, &CaptureRequest) -> Result<Capture, SessionError> + 'a;
+
+/// A film that is being made. One that is dropped before its end leaves nothing.
+#[derive(Debug)]
+pub struct Film {
+    shows: Shows,
+    next: u32,
+    // Closed before the file is taken away.
+    animation: AnimatedPng<BufWriter<File>>,
+    file: WholeFile,
+    path: PathBuf,
+}
+
+impl Film {
+    /// Begins one, in place of what is at `path`.
+    ///
+    /// # Errors
+    /// Nothing to show; nothing can be written there.
+    pub fn begin(shows: Shows, path: &Path, milliseconds: u16) -> Result<Film, FilmError> {
+        let format = Format { size: shows.size(), pictures: shows.pictures(), milliseconds, colors: shows.colors() };
+        if format.pictures == 0 {
+            return Err(FilmError::NoSteps);
+        }
+        let failed = |source| FilmError::Write { path: path.to_owned(), source };
+        let of_system = |error: std::io::Error| failed(AnimationError::Png(error.into()));
+        let file = WholeFile::create(path).map_err(of_system)?;
+        let animation = AnimatedPng::new(file.writer().map_err(of_system)?, format).map_err(failed)?;
+        Ok(Film { shows, next: 0, animation, file, path: path.to_owned() })
+    }
+
+    /// How many pictures it will have.
+    #[must_use]
+    pub fn pictures(&self) -> u32 {
+        self.shows.pictures()
+    }
+
+    /// Makes the next picture; false where there is none left.
+    ///
+    /// # Errors
+    /// It can't be rendered or written.
+    pub fn shoot(&mut self, render: &mut Render) -> Result<bool, FilmError> {
+        if self.next == self.pictures() {
+            return Ok(false);
+        }
+        let picture = self.shows.picture(self.next, render)?;
+        self.animation.add(&picture).map_err(|source| FilmError::Write { path: self.path.clone(), source })?;
+        self.next += 1;
+        Ok(true)
+    }
+
+    /// Puts the film in its place, and tells how many bytes it has.
+    ///
+    /// # Errors
+    /// It can't be written; pictures are missing.
+    pub fn finish(self) -> Result<u64, FilmError> {
+        let Film { animation, file, path, .. } = self;
+        let failed = |source| FilmError::Write { path: path.clone(), source };
+        let of_system = |error: std::io::Error| failed(AnimationError::Png(error.into()));
+        animation.finish().map_err(failed)?;
+        file.finish().map_err(of_system)?;
+        Ok(std::fs::metadata(&path).map_err(of_system)?.len())
+    }
+}

@@ -1,0 +1,132 @@
+//! A pass of a film: what it writes, as its thumbnail has it, over a bar with its number and name.
+
+use crate::capture::Capture;
+use crate::numbers;
+use crate::picture::Picture;
+use crate::picture::colors::{self, Rgb};
+use crate::picture::svg::{self, SvgError};
+use crate::reading::steps;
+use crate::reading::written::Written;
+
+/// Pixels of width for one of the bar's height, and how high it is at least and at most.
+const WIDTH_A_HEIGHT: u32 = 24;
+const HEIGHTS: [u32; 2] = [20, 56];
+/// Size of the letters, and room beside them, in heights of the bar.
+const LETTERS: f32 = 0.54;
+const BESIDE: f32 = 0.4;
+/// Where letters stand, in heights of the bar from its top.
+const BASELINE: f32 = 0.68;
+const TEXT: Rgb = [0xd9, 0xdc, 0xe3];
+const DIM: Rgb = [0x8b, 0x92, 0xa1];
+/// Shown of a pass that writes nothing.
+const NOTHING: &str = "writes nothing";
+
+/// Width and height of every picture of a frame's passes: the bar is below.
+#[must_use]
+pub fn size(capture: &Capture) -> [u32; 2] {
+    let [width, height] = capture.size;
+    [width, height + bar_height(width)]
+}
+
+fn bar_height(width: u32) -> u32 {
+    (width / WIDTH_A_HEIGHT).clamp(HEIGHTS[0], HEIGHTS[1])
+}
+
+/// What a pass writes, a pixel a texel; maps as large as fits in.
+///
+/// # Errors
+/// The caption can't be drawn.
+pub fn step_picture(capture: &Capture, index: usize) -> Result<Picture, SvgError> {
+    let mut all = Picture::filled(size(capture), colors::BACKGROUND);
+    let written = Written::by_step(capture, index);
+    if let Some(written) = &written {
+        let shown = written.picture().fitted(capture.size);
+        let [left, top] = [0, 1].map(|side| (capture.size[side] - shown.size()[side]) / 2);
+        all.paste(&shown, [left, top]);
+    }
+    let light =
+        capture.steps.get(index).and_then(|step| step.light).map(|light| format!("{} · ", numbers::light(light)));
+    let right = light.unwrap_or_default() + written.map_or(NOTHING, |written| written.name);
+    all.paste(&bar(capture.size[0], &steps::title(capture, index), &right)?, [0, capture.size[1]]);
+    Ok(all)
+}
+
+/// Words at the left, as many as there is room for, and dim ones at the right, which go where there is no room.
+fn bar(width: u32, left: &str, right: &str) -> Result<Picture, SvgError> {
+    let height = bar_height(width);
+    let beside = height as f32 * BESIDE;
+    let room = width as f32 - 2.0 * beside;
+    let drawn_width = |words: &str| svg::width(&document(width, height, &text(words, 0.0, height, TEXT)));
+    let right_width = drawn_width(right)?;
+    // What a pass is called is more than what it writes.
+    let right = if right_width + beside > room / 2.0 { "" } else { right };
+    let room = if right.is_empty() { room } else { room - right_width - beside };
+    let letters: Vec<char> = left.chars().collect();
+    let (mut kept, mut words) = (letters.len(), left.to_owned());
+    let mut drawn = drawn_width(&words)?;
+    while drawn > room && kept > 0 {
+        // As many as the room's share of the width; at least one goes.
+        kept = ((kept as f32 * room / drawn) as usize).min(kept - 1);
+        words = letters[..kept].iter().collect::<String>() + "…";
+        drawn = drawn_width(&words)?;
+    }
+    let right_at = width as f32 - beside - right_width;
+    let paper = format!("<rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>", css(colors::BACKGROUND));
+    let words = text(&words, beside, height, TEXT) + &text(right, right_at, height, DIM);
+    svg::picture(&document(width, height, &(paper + &words)), 1.0)
+}
+
+fn document(width: u32, height: u32, contents: &str) -> String {
+    format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\">{contents}</svg>")
+}
+
+fn css([red, green, blue]: Rgb) -> String {
+    format!("rgb({red},{green},{blue})")
+}
+
+fn text(words: &str, left: f32, height: u32, color: Rgb) -> String {
+    let [size, baseline] = [LETTERS, BASELINE].map(|share| height as f32 * share);
+    let (words, color) = (svg::escaped(words), css(color));
+    format!(
+        "<text x=\"{left}\" y=\"{baseline}\" font-size=\"{size}\" fill=\"{color}\" \
+         xml:space=\"preserve\">{words}</text>"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns that have ink, from the first to the last; `None` without any.
+    fn inked(bar: &Picture) -> Option<[u32; 2]> {
+        let [width, height] = bar.size();
+        let has_ink = |x: &u32| (0..height).any(|y| bar.at([*x, y]) != Some(colors::BACKGROUND));
+        Some([(0..width).find(has_ink)?, (0..width).rfind(has_ink)?])
+    }
+
+    #[test]
+    fn words_stand_at_both_ends_and_stay_within_the_bar() {
+        let both = bar(320, "2 · volumes", "stencil").expect("a bar");
+        assert_eq!(both.size(), [320, 20]);
+        let [first, last] = inked(&both).expect("ink");
+        assert!((6..14).contains(&first) && (304..314).contains(&last), "{first} to {last}");
+    }
+
+    #[test]
+    fn of_a_long_name_as_much_is_shown_as_there_is_room_for_and_never_under_the_other_words() {
+        let [long, longer] = [40, 4000].map(|times| bar(320, &"shadow ".repeat(times), "stencil").expect("a bar"));
+        assert_eq!(long, longer);
+        let words = inked(&bar(320, "", "stencil").expect("a bar")).expect("ink");
+        let gap = (words[0] - 6..words[0]).filter(|x| (0..20).any(|y| long.at([*x, y]) != Some(colors::BACKGROUND)));
+        assert_eq!(gap.count(), 0, "before column {}", words[0]);
+    }
+
+    #[test]
+    fn a_bar_without_room_or_words_is_drawn_all_the_same() {
+        for (width, left, right) in [(1, "1 · a", "colour"), (8, "", ""), (64, "<&>\u{1}", "colour"), (64, "測", "色")]
+        {
+            assert_eq!(bar(width, left, right).expect("a bar").size(), [width, 20]);
+        }
+        assert_eq!(inked(&bar(64, "", "").expect("a bar")), None);
+    }
+}

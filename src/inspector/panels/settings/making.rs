@@ -1,0 +1,220 @@
+//! Making scenes: lights and objects are added, moved and deleted, and the eye turns to one of them.
+//!
+//! All of it is part of how the scene is run, so that it can be undone, and is in the scene file that is exported.
+
+use crate::ask::RunRequest;
+use crate::inspector::look::theme;
+use crate::inspector::model::scene::OpenScene;
+use crate::reading::format;
+use crate::scene::{Camera, Light, Material, Mesh, MeshError, Object, Pose, Shading, shapes};
+use egui::{CollapsingHeader, DragValue, Ui};
+use glam::DVec3;
+
+/// What is added is so large, in distances from the eye to its target.
+const SIZE: f64 = 0.2;
+/// What the eye is turned to fills so much of the picture's height.
+const FILLED: f64 = 0.6;
+/// Corners around what is round.
+const AROUND: u32 = 32;
+
+/// Makes a shape.
+type Shape = fn() -> Result<Mesh, MeshError>;
+
+/// Shapes that can be added, a metre large, with their names.
+const SHAPES: [(&str, Shading, Shape); 5] = [
+    ("box", Shading::Flat, || shapes::cuboid([1.0; 3])),
+    ("sphere", Shading::Phong, || shapes::sphere(0.5, AROUND, AROUND / 2)),
+    ("torus", Shading::Phong, || shapes::torus(0.35, 0.15, AROUND, AROUND / 2)),
+    ("cylinder", Shading::Flat, || shapes::cylinder(0.5, 1.0, AROUND)),
+    ("board", Shading::Flat, || shapes::quad([1.0; 2])),
+];
+
+/// Draws the part of the panel; true when something changed.
+pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
+    ui.add_space(8.0);
+    let header = CollapsingHeader::new("Make: add, move, delete").id_salt("make");
+    let made = header.show(ui, |ui| {
+        let added = add(ui, scene);
+        let deleted = delete_lights(ui, &mut scene.draft);
+        added | deleted | edited(ui, scene)
+    });
+    made.body_returned.unwrap_or(false)
+}
+
+/// Buttons that add: what is new stands where the eye looks, lights above it.
+fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
+    let Camera { eye, target, .. } = scene.draft.camera;
+    let far = eye.distance(target);
+    let mut changed = false;
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::note("add"));
+        for (name, shading, shape) in SHAPES {
+            let button = ui.button(name).on_hover_text(format!("A {name} where the eye looks"));
+            if button.clicked()
+                && let Ok(mesh) = shape()
+            {
+                let pose = Pose { translate: target, scale: DVec3::splat(rounded(SIZE * far)), ..Pose::default() };
+                let name = unused(name, scene);
+                scene.edited = scene.loaded.len() + scene.draft.objects.added.len();
+                let material = Material { shading, ..Material::default() };
+                scene.draft.objects.added.push(Object { pose, ..Object::new(name, mesh.into(), material) });
+                changed = true;
+            }
+        }
+        let light = |ui: &mut Ui, name: &str, what: &str| ui.button(name).on_hover_text(what).clicked();
+        if light(ui, "point light", "A light above what the eye looks at") {
+            scene.draft.lights.push(Light::point(target + DVec3::Y * far));
+            changed = true;
+        }
+        if light(ui, "sun", "A light from far away, a little from the side") {
+            scene.draft.lights.push(Light::directional([0.4, 1.0, 0.3]));
+            changed = true;
+        }
+    });
+    changed
+}
+
+/// To two digits, as one would type it.
+fn rounded(length: f64) -> f64 {
+    let digit = 10.0_f64.powf(length.log10().floor() - 1.0);
+    let rounded = (length / digit).round() * digit;
+    if rounded.is_normal() { rounded } else { 1.0 }
+}
+
+/// The name, or the name with the first number that no object has.
+fn unused(name: &str, scene: &OpenScene) -> String {
+    let added = scene.draft.objects.added.iter().map(|object| &object.name);
+    let taken: Vec<&String> = scene.objects.iter().chain(added).collect();
+    let numbered = (2..).map(|number| format!("{name} {number}"));
+    let mut names = std::iter::once(name.to_owned()).chain(numbered);
+    names.find(|name| !taken.contains(&name)).unwrap_or_default()
+}
+
+fn delete_lights(ui: &mut Ui, draft: &mut RunRequest) -> bool {
+    let mut deleted = None;
+    ui.horizontal_wrapped(|ui| {
+        for index in 0..draft.lights.len() {
+            let button = ui.button(format!("Delete {}", format::light(index)));
+            if button.on_hover_text("Undo brings it back").clicked() {
+                deleted = Some(index);
+            }
+        }
+    });
+    deleted.map(|index| draft.lights.remove(index)).is_some()
+}
+
+/// One object, which is chosen: where it is, and what can be done with it.
+fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
+    let all = 0..scene.loaded.len() + scene.draft.objects.added.len();
+    let on: Vec<(usize, Object)> = all
+        .filter(|index| !scene.draft.off.contains(index))
+        .filter_map(|index| Some((index, object_at(scene, index)?)))
+        .collect();
+    let Some((index, object)) = on.iter().find(|(index, _)| *index == scene.edited).or(on.last()) else { return false };
+    let combo = egui::ComboBox::from_id_salt("edited object").selected_text(&object.name).show_ui(ui, |ui| {
+        for (index, object) in &on {
+            ui.selectable_value(&mut scene.edited, *index, &object.name);
+        }
+    });
+    combo.response.accessible_name("Object");
+    let mut pose = object.pose;
+    let mut changed = pose_settings(ui, &mut pose);
+    if changed {
+        place(scene, *index, pose);
+    }
+    ui.horizontal_wrapped(|ui| {
+        let look =
+            ui.button("Look at it").on_hover_text("The eye turns to it, and comes so near that all of it is seen");
+        changed |= look.clicked() && look_at(&mut scene.draft.camera, object);
+        let up = ui.button("Z is up").on_hover_text("Turns it so that its z axis is up, as other programs have it");
+        if up.clicked() {
+            place(scene, *index, object.pose.with_z_up());
+            changed = true;
+        }
+        if ui.button("Delete").on_hover_text("Undo brings it back").clicked() {
+            delete(scene, *index);
+            changed = true;
+        }
+    });
+    changed
+}
+
+/// The object of an index as it is now.
+fn object_at(scene: &OpenScene, index: usize) -> Option<Object> {
+    let objects = &scene.draft.objects;
+    match scene.loaded.get(index) {
+        Some(object) => {
+            let pose = objects.moved.get(&index).copied().unwrap_or(object.pose);
+            Some(Object { pose, ..object.clone() })
+        }
+        None => objects.added.get(index - scene.loaded.len()).cloned(),
+    }
+}
+
+fn place(scene: &mut OpenScene, index: usize, pose: Pose) {
+    let (objects, count) = (&mut scene.draft.objects, scene.loaded.len());
+    match scene.loaded.get(index) {
+        // Where it was loaded: not moved.
+        Some(object) if object.pose == pose => drop(objects.moved.remove(&index)),
+        Some(_) => drop(objects.moved.insert(index, pose)),
+        None => objects.added.get_mut(index - count).into_iter().for_each(|object| object.pose = pose),
+    }
+}
+
+/// One of the scene is switched off; one that was added here is gone, and those after it come nearer.
+fn delete(scene: &mut OpenScene, index: usize) {
+    let (draft, count) = (&mut scene.draft, scene.loaded.len());
+    if index < count {
+        draft.off.insert(index);
+        return;
+    }
+    draft.objects.added.remove(index - count);
+    let off = std::mem::take(&mut draft.off);
+    draft.off = off.into_iter().filter(|off| *off != index).map(|off| off - usize::from(off > index)).collect();
+}
+
+fn pose_settings(ui: &mut Ui, pose: &mut Pose) -> bool {
+    let mut changed = false;
+    egui::Grid::new("edited pose").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+        let rows = [
+            ("position", &mut pose.translate, 0.02, ""),
+            ("turn", &mut pose.rotate_degrees, 0.5, "°"),
+            ("scale", &mut pose.scale, 0.01, ""),
+        ];
+        for (label, value, speed, unit) in rows {
+            ui.label(theme::note(label));
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 4.0;
+                for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
+                    let before = *number;
+                    let widget = DragValue::new(number).speed(speed).max_decimals(4).suffix(unit);
+                    let response = ui.add(widget.update_while_editing(false));
+                    changed |= response.accessible_name(format!("object {label} {axis}")).changed();
+                    // A drag goes over zero, which would flatten the object.
+                    if label == "scale" && *number == 0.0 {
+                        *number = before;
+                    }
+                }
+            });
+            ui.end_row();
+        }
+    });
+    changed
+}
+
+/// Turns the eye to an object, from where it looks now; false where it has no size.
+fn look_at(camera: &mut Camera, object: &Object) -> bool {
+    let positions = object.world_positions();
+    let Some(low) = positions.iter().copied().reduce(DVec3::min) else { return false };
+    let high = positions.iter().copied().fold(low, DVec3::max);
+    let middle = low / 2.0 + high / 2.0;
+    let radius = positions.iter().map(|point| point.distance(middle)).fold(0.0, f64::max);
+    let away = (camera.eye - camera.target).try_normalize();
+    let Some(away) = away.filter(|_| radius > 0.0 && radius.is_finite()) else { return false };
+    let distance = radius / (FILLED * (camera.fov_y_degrees / 2.0).to_radians().sin());
+    camera.target = middle;
+    camera.eye = middle + away * distance;
+    // The near plane does not cut it.
+    camera.near = camera.near.min((distance - radius) * 0.5);
+    true
+}

@@ -1,0 +1,98 @@
+//! SVG as pixels, with the one face that is built in: the same picture everywhere.
+
+use super::Picture;
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::fontdb::Database;
+use resvg::usvg::{self, Options, Tree};
+use std::sync::{Arc, LazyLock};
+
+/// Most pixels along a side.
+const MOST_PIXELS: f32 = 16_384.0;
+
+/// Why there are no pixels.
+#[derive(Debug, thiserror::Error)]
+pub enum SvgError {
+    /// It was refused.
+    #[error(transparent)]
+    Svg(#[from] usvg::Error),
+    /// More pixels than memory has room for.
+    #[error("{width}×{height} pixels are too many")]
+    TooLarge {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+    },
+}
+
+/// The face and its family.
+static FACE: LazyLock<(String, Arc<Database>)> = LazyLock::new(|| {
+    let mut fonts = Database::new();
+    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+    let family = fonts.faces().next().and_then(|face| face.families.first()).map(|(name, _)| name.clone());
+    let family = family.unwrap_or_default();
+    fonts.set_sans_serif_family(family.clone());
+    (family, Arc::new(fonts))
+});
+
+fn tree(svg: &str) -> Result<Tree, SvgError> {
+    let (family, fonts) = &*FACE;
+    let options = Options { font_family: family.clone(), fontdb: Arc::clone(fonts), ..Options::default() };
+    Ok(Tree::from_str(svg, &options)?)
+}
+
+/// An SVG with `scale` pixels a point. What it leaves open is black.
+///
+/// # Errors
+/// No SVG, or too many pixels.
+pub fn picture(svg: &str, scale: f32) -> Result<Picture, SvgError> {
+    let tree = tree(svg)?;
+    let size = [tree.size().width(), tree.size().height()].map(|side| (side * scale).ceil());
+    let [width, height] = size.map(|side| side as u32);
+    let too_large = SvgError::TooLarge { width, height };
+    if size.iter().any(|side| *side > MOST_PIXELS) {
+        return Err(too_large);
+    }
+    let mut pixels = Pixmap::new(width, height).ok_or(too_large)?;
+    resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
+    let pixels = pixels.pixels().iter().map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect();
+    Ok(Picture { size: [width, height], pixels })
+}
+
+/// How wide what an SVG shows is, points.
+///
+/// # Errors
+/// No SVG.
+pub fn width(svg: &str) -> Result<f32, SvgError> {
+    Ok(tree(svg)?.root().abs_bounding_box().width())
+}
+
+/// Text as XML: markup escaped, characters that XML can't hold replaced.
+#[must_use]
+pub fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out += "&amp;",
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '"' => out += "&quot;",
+            '\t' | '\n' | '\r' => out.push(c),
+            c if c < ' ' || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_svg_or_too_large_is_an_error() {
+        assert!(matches!(picture("<html/>", 1.0), Err(SvgError::Svg(_))));
+        let wide = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"20000\" height=\"9\"/>";
+        assert!(matches!(picture(wide, 1.0), Err(SvgError::TooLarge { width: 20_000, height: 9 })));
+    }
+}

@@ -1,0 +1,131 @@
+//! What a step or a draw wrote: the picture that stands for it where there is room for one, as in the list of passes
+//! and in animations of a frame.
+
+use super::counts;
+use super::depth::{DepthMeasure, DepthScale};
+use super::layers::MapContent;
+use crate::capture::{Capture, FrameSnapshot, FrameTarget, Image, PixelFormat, Snapshot};
+use crate::picture::Picture;
+use crate::picture::colors::{self, Rgb};
+use std::sync::Arc;
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Written {
+    /// After it.
+    pub image: Arc<Image>,
+    /// What its texels are.
+    pub content: Content,
+    /// In a word or two: `stencil`.
+    pub name: &'static str,
+}
+
+/// What the texels of a picture are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Content {
+    /// sRGB bytes.
+    Color,
+    /// Linear shares of light that come through.
+    LetThrough,
+    /// Stencil values.
+    Stencil,
+    /// Signed counts in floats.
+    Count,
+    /// Labels of a light.
+    Labels,
+    /// Stored depths.
+    Depth(DepthMeasure),
+}
+
+impl Written {
+    fn new(image: &Arc<Image>, content: Content) -> Written {
+        let name = match content {
+            Content::Color => "colour",
+            Content::LetThrough => "light that comes through",
+            Content::Stencil => "stencil",
+            Content::Count => "count",
+            Content::Labels => "mask",
+            Content::Depth(_) => "depth",
+        };
+        Written { image: Arc::clone(image), content, name }
+    }
+
+    /// By a step: its map, its finished count, its mask, or the first of colour, stencil and depth that it changed.
+    #[must_use]
+    pub fn by_step(capture: &Capture, index: usize) -> Option<Written> {
+        let step = capture.steps.get(index)?;
+        match &step.snapshot {
+            Snapshot::Map { light, face } => {
+                let map = capture.lights.get(*light)?.map.as_ref()?;
+                Some(Written::layer(capture, [*light, *face], map.faces.get(*face)?))
+            }
+            Snapshot::Frame(frame) => match frame.target {
+                FrameTarget::Picture => Written::aspect(capture, frame),
+                FrameTarget::Count => {
+                    counts::finished_by(capture, index).map(|(_, count)| Written::new(count, Content::Count))
+                }
+                FrameTarget::Labels => {
+                    Some(Written::new(capture.lights.get(step.light?)?.shadow.as_ref()?, Content::Labels))
+                }
+            },
+        }
+    }
+
+    /// By a draw; `None` too where the state after it is not known.
+    #[must_use]
+    pub fn by_draw(capture: &Capture, step: usize, draw: usize) -> Option<Written> {
+        let after = capture.steps.get(step)?.draws.get(draw)?.after.as_ref()?;
+        let target = after.target.as_ref().filter(|target| !target.unchanged).map(|target| &target.image);
+        match &after.snapshot {
+            Snapshot::Map { light, face } => Some(Written::layer(capture, [*light, *face], target?)),
+            Snapshot::Frame(frame) => match frame.target {
+                FrameTarget::Picture => Written::aspect(capture, frame),
+                FrameTarget::Labels => Some(Written::new(target?, Content::Labels)),
+                FrameTarget::Count => Some(Written::new(target?, Content::Count)),
+            },
+        }
+    }
+
+    /// A layer of a light's map.
+    fn layer(capture: &Capture, [light, face]: [usize; 2], image: &Arc<Image>) -> Written {
+        let content = match image.format() {
+            PixelFormat::Rgba8 => Content::LetThrough,
+            _ => Content::Depth(DepthMeasure::of_map(capture, light, face).unwrap_or(DepthMeasure::Raw)),
+        };
+        let name = MapContent::of(capture, light).map_or("map", MapContent::whole);
+        Written { name, ..Written::new(image, content) }
+    }
+
+    fn aspect(capture: &Capture, frame: &FrameSnapshot) -> Option<Written> {
+        let stencil = frame.stencil.as_ref().filter(|stencil| !stencil.unchanged);
+        if !frame.color.unchanged {
+            Some(Written::new(&frame.color.image, Content::Color))
+        } else if let Some(stencil) = stencil {
+            Some(Written::new(&stencil.image, Content::Stencil))
+        } else {
+            let content = Content::Depth(DepthMeasure::of_camera(capture));
+            (!frame.depth.unchanged).then(|| Written::new(&frame.depth.image, content))
+        }
+    }
+
+    /// Its texels in their colours; depths over their whole range.
+    #[must_use]
+    pub fn picture(&self) -> Picture {
+        let image = &self.image;
+        let in_color = |color: &dyn Fn([u32; 2]) -> Option<Rgb>| {
+            Picture::drawn(image.size(), |at| color(at).unwrap_or(colors::NOTHING))
+        };
+        let rgb = |at| image.rgba_at(at).map(|[red, green, blue, _]| [red, green, blue]);
+        match self.content {
+            Content::Color => in_color(&rgb),
+            Content::LetThrough => in_color(&|at| rgb(at).map(colors::linear)),
+            Content::Stencil => in_color(&|at| image.byte_at(at).map(colors::stencil)),
+            Content::Count => in_color(&|at| image.count_at(at).map(colors::count)),
+            Content::Labels => in_color(&|at| image.byte_at(at).map(colors::label)),
+            Content::Depth(measure) => {
+                let scale = DepthScale { measure, range: measure.range_of(image).unwrap_or([0.0, 1.0]) };
+                in_color(&|at| scale.place(image.depth_at(at)?).map(colors::near_far))
+            }
+        }
+    }
+}

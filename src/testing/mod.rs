@@ -1,0 +1,246 @@
+//! Readback tests of shadows: render a scene or a plan, then assert on stencil, count, depth, colour, label
+//! and history of a pixel, and on what a shadow map holds there. A failed assertion panics with the
+//! pixel's history, so that the log of a CI run says what happened to it.
+//!
+//! Runs without a window on whatever adapter there is; Debian's `mesa-vulkan-drivers` brings a
+//! software one whose results are the same on every machine.
+//!
+//! ```
+//! use stencilscope::scene::builtin::Builtin;
+//! use stencilscope::technique::{Choice, Technique};
+//! use stencilscope::testing::{Label, Rendered};
+//!
+//! let scene = Builtin::named("tetrahedron").expect("a name").scene()?;
+//! let mut frame = Rendered::new(&scene, Choice::new(Technique::ZFail), [320, 240])?;
+//!
+//! // The middle of the picture shows the tetrahedron, 3.4 m away; volumes cancel out there.
+//! frame.at([160, 120]).stencil_after("volumes", 0).distance(3.395, 0.01);
+//!
+//! // Inside its shadow: the side it is entered through, then the far end.
+//! let shadowed = frame.first_labelled(0, Label::Shadow).expect("a shadow");
+//! frame.at(shadowed).label(0, Label::Shadow).agrees();
+//! assert!(frame.at(shadowed).history().events.iter().any(|event| event.is_of_volume()));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A point of the scene is found in the picture with [`Rendered::at_point`], and in a light's map with
+//! [`Rendered::map_texel_of`]. With several lights, say which one is meant: [`Pixel::stencil_of`],
+//! [`Pixel::events_of_light`].
+//!
+//! Scenes of your own are quickly made with [`SceneBuilder`](crate::scene::SceneBuilder), and a plan with one thing
+//! changed is rendered by [`Rendered::of_plan`].
+
+mod pixel;
+mod places;
+
+pub use pixel::Pixel;
+pub use places::MapTexel;
+
+use crate::capture::Capture;
+use crate::plan::FramePlan;
+use crate::scene::Scene;
+use crate::session::{CaptureRequest, Session, SessionError};
+use crate::technique::Choice;
+use crate::truth;
+use glam::{DVec2, DVec3};
+use places::View;
+
+/// What a technique says of a light at a pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Label {
+    /// The light reaches the surface.
+    Lit,
+    /// Something lies between.
+    Shadow,
+    /// No surface is here.
+    Background,
+    /// The light is on the surface's other side, or its range ends before it.
+    FacesAway,
+}
+
+impl Label {
+    /// As stored in masks.
+    #[must_use]
+    pub fn byte(self) -> u8 {
+        match self {
+            Label::Lit => truth::LIT,
+            Label::Shadow => truth::SHADOW,
+            Label::Background => truth::BACKGROUND,
+            Label::FacesAway => truth::FACES_AWAY,
+        }
+    }
+
+    /// The label that is stored so.
+    #[must_use]
+    pub fn from_byte(byte: u8) -> Option<Label> {
+        [Label::Lit, Label::Shadow, Label::Background, Label::FacesAway].into_iter().find(|label| label.byte() == byte)
+    }
+}
+
+/// A rendered scene, to be asked about its pixels.
+#[derive(Debug)]
+pub struct Rendered {
+    session: Session,
+    plan: FramePlan,
+    capture: Capture,
+}
+
+impl Rendered {
+    /// Renders `scene` on the best adapter there is, with a picture of `size` pixels.
+    ///
+    /// # Errors
+    /// No adapter, with what to install; a scene or setting that can't be drawn.
+    pub fn new(scene: &Scene, choice: Choice, size: [u32; 2]) -> Result<Rendered, SessionError> {
+        Rendered::on(Session::new(None)?, scene, &CaptureRequest::new(choice, size))
+    }
+
+    /// The same on a session of your own, which [`Rendered::into_session`] gives back.
+    ///
+    /// # Errors
+    /// A scene or setting that can't be drawn; a lost GPU.
+    pub fn on(mut session: Session, scene: &Scene, request: &CaptureRequest) -> Result<Rendered, SessionError> {
+        let (capture, plan) = session.capture_with_plan(scene, request)?;
+        Ok(Rendered { session, plan, capture })
+    }
+
+    /// Runs a plan as it is, such as a good one with one thing changed, or that of a technique of your own.
+    ///
+    /// ```
+    /// use stencilscope::plan::Part;
+    /// use stencilscope::scene::builtin::Builtin;
+    /// use stencilscope::session::{CaptureRequest, Session};
+    /// use stencilscope::technique::{Choice, Technique};
+    /// use stencilscope::testing::{Label, Rendered};
+    ///
+    /// let scene = Builtin::named("tetrahedron").expect("a name").scene()?;
+    /// let request = CaptureRequest::new(Choice::new(Technique::ZFail), [320, 240]);
+    /// let mut session = Session::new(None)?;
+    /// let mut plan = session.plan(&scene, &request)?;
+    ///
+    /// // Without light caps the volume is open, and the tetrahedron itself is in shadow.
+    /// plan.passes.iter_mut().for_each(|pass| pass.draws.retain(|draw| draw.part != Part::LightCap));
+    /// let mut broken = Rendered::of_plan(session, &scene, plan)?;
+    /// broken.at([160, 120]).label(0, Label::Shadow).agrees();
+    ///
+    /// let mut whole = Rendered::on(broken.into_session(), &scene, &request)?;
+    /// whole.at([160, 120]).label(0, Label::Lit).agrees();
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A plan that can't run, a lost GPU.
+    pub fn of_plan(mut session: Session, scene: &Scene, plan: FramePlan) -> Result<Rendered, SessionError> {
+        let capture = session.capture_plan(scene, &plan)?;
+        Ok(Rendered { session, plan, capture })
+    }
+
+    /// The session, for the next scene.
+    #[must_use]
+    pub fn into_session(self) -> Session {
+        self.session
+    }
+
+    /// Everything that the frame left.
+    #[must_use]
+    pub fn capture(&self) -> &Capture {
+        &self.capture
+    }
+
+    /// The frame as data.
+    #[must_use]
+    pub fn plan(&self) -> &FramePlan {
+        &self.plan
+    }
+
+    /// A pixel to assert on: column and row from the top left.
+    ///
+    /// # Panics
+    /// If it is outside the picture, or the GPU is lost.
+    #[track_caller]
+    pub fn at(&mut self, pixel: [u32; 2]) -> Pixel<'_> {
+        match self.session.history(&self.plan, &self.capture, pixel) {
+            Ok(history) => Pixel { capture: &self.capture, history },
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// The pixel that shows a point of the world, or what hides it: column and row from the top left; `None` where the
+    /// point is outside of the picture, or nearer than the near plane.
+    #[must_use]
+    pub fn pixel_of(&self, point: impl Into<DVec3>) -> Option<[u32; 2]> {
+        let (view, camera) = (View::of(&self.capture), &self.capture.camera);
+        let (at, distance) = view.pixel_and_distance(point.into());
+        let is_inside = at.cmpge(DVec2::ZERO).all() && at.cmplt(view.size).all();
+        let is_in_reach = distance >= camera.near && camera.far.is_none_or(|far| distance <= far);
+        (is_inside && is_in_reach).then_some([at.x as u32, at.y as u32])
+    }
+
+    /// The pixel that shows a point of the world, to assert on.
+    ///
+    /// ```
+    /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
+    /// use stencilscope::technique::{Choice, Technique};
+    /// use stencilscope::testing::{Label, Rendered};
+    ///
+    /// let scene = SceneBuilder::new("a board over a floor")
+    ///     .object(Object::of("floor", shapes::quad([8.0; 2])?))
+    ///     .object(Object::of("board", shapes::quad([1.0; 2])?).at([0.0, 1.0, 0.0]).unseen())
+    ///     .light(Light::directional([0.0, 1.0, 0.0]))
+    ///     .seen_from([0.0, 5.0, 0.0], [0.0; 3])
+    ///     .build();
+    /// let mut frame = Rendered::new(&scene, Choice::new(Technique::ZFail), [65, 65])?;
+    /// // Under the board, and beside it.
+    /// frame.at_point([0.3, 0.0, 0.3]).label(0, Label::Shadow);
+    /// frame.at_point([0.7, 0.0, 0.3]).label(0, Label::Lit);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If it is outside of the picture, or hidden by what is before it.
+    #[track_caller]
+    pub fn at_point(&mut self, point: impl Into<DVec3>) -> Pixel<'_> {
+        let point = point.into();
+        let Some(pixel) = self.pixel_of(point) else {
+            panic!("{}: the point {point} is outside of the picture", self.capture.scene)
+        };
+        let shown = self.at(pixel);
+        shown.reveals(point);
+        shown
+    }
+
+    /// Where a point of the world falls into a light's shadow map; `None` where there is no such map, or it does not
+    /// show the point.
+    ///
+    /// ```
+    /// use stencilscope::scene::{Light, Object, SceneBuilder, shapes};
+    /// use stencilscope::technique::{Choice, Technique};
+    /// use stencilscope::testing::Rendered;
+    ///
+    /// let scene = SceneBuilder::new("a board over a floor")
+    ///     .object(Object::of("floor", shapes::quad([8.0; 2])?))
+    ///     .object(Object::of("board", shapes::quad([1.0; 2])?).at([0.0, 1.0, 0.0]).unseen())
+    ///     .light(Light::point([0.0, 4.0, 0.0]))
+    ///     .seen_from([0.0, 5.0, 0.0], [0.0; 3])
+    ///     .build();
+    /// let frame = Rendered::new(&scene, Choice::new(Technique::ShadowMap), [65, 65])?;
+    /// // The map holds the board, a metre nearer to the light than this point of the floor.
+    /// let texel = frame.map_texel_of(0, [0.1, 0.0, 0.1]).expect("the map shows it");
+    /// assert!((texel.gap.expect("metres") - 1.0).abs() < 1e-3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn map_texel_of(&self, light: usize, point: impl Into<DVec3>) -> Option<MapTexel> {
+        places::texel_of(&self.capture, light, point.into())
+    }
+
+    /// The first pixel, row by row, that has a label under a light.
+    #[must_use]
+    pub fn first_labelled(&self, light: usize, label: Label) -> Option<[u32; 2]> {
+        let labels = self.capture.lights.get(light)?.shadow.as_ref()?;
+        let find = |(y, row): (u32, &[u8])| {
+            let x = row.iter().position(|byte| *byte == label.byte())?;
+            Some([x as u32, y])
+        };
+        (0..).zip(labels.rows()).find_map(find)
+    }
+}

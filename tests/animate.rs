@@ -1,0 +1,210 @@
+//! `animate` from outside: its files are decoded again and held against captures, pixel by pixel.
+
+use crate::commands::{assert_fails, folder, run, text};
+use crate::common::{names, request, session};
+use glam::DVec3;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+use stencilscope::capture::{Capture, disk};
+use stencilscope::film::LightRound;
+use stencilscope::glam;
+use stencilscope::picture::{Picture, apng, colors};
+use stencilscope::reading::steps;
+use stencilscope::scene::{Scene, builtin::Builtin};
+use stencilscope::technique::Technique;
+
+/// A file as a viewer shows it.
+struct Film {
+    pictures: Vec<Picture>,
+    /// How long each is shown, milliseconds.
+    delays: Vec<u32>,
+    /// How often all are shown; 0: for ever.
+    plays: u32,
+}
+
+impl Film {
+    fn open(path: &Path) -> Film {
+        let file = BufReader::new(File::open(path).expect("a file"));
+        let mut reader = png::Decoder::new(file).read_info().expect("a PNG");
+        let control = *reader.info().animation_control().expect("an animation");
+        let mut canvas = Picture::filled([reader.info().width, reader.info().height], [0; 3]);
+        let (mut pictures, mut delays) = (Vec::new(), Vec::new());
+        for _ in 0..control.num_frames {
+            let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+            reader.next_frame(&mut bytes).expect("a picture");
+            let place = *reader.info().frame_control().expect("its place");
+            let pixels = bytes.as_chunks::<3>().0;
+            let part = |[x, y]: [u32; 2]| pixels[(y * place.width + x) as usize];
+            canvas.paste(&Picture::drawn([place.width, place.height], part), [place.x_offset, place.y_offset]);
+            pictures.push(canvas.clone());
+            delays.push(u32::from(place.delay_num) * 1000 / u32::from(place.delay_den));
+        }
+        Film { pictures, delays, plays: control.num_plays }
+    }
+}
+
+/// Runs the program, which must succeed, and gives its standard output.
+#[track_caller]
+fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+    text(&output.stdout)
+}
+
+/// The picture without the bar below it.
+fn without_bar(picture: &Picture, size: [u32; 2]) -> Picture {
+    Picture::drawn(size, |at| picture.at(at).expect("a pixel"))
+}
+
+/// What a capture has at a pixel of the picture after a step.
+fn color_of(capture: &Capture, step: usize, at: [u32; 2]) -> colors::Rgb {
+    let [red, green, blue, _] =
+        capture.frame_at(step).and_then(|frame| frame.color.image.rgba_at(at)).expect("a colour");
+    [red, green, blue]
+}
+
+/// The finished picture.
+fn finished(capture: &Capture) -> Picture {
+    Picture::drawn(capture.size, |at| color_of(capture, capture.steps.len() - 1, at))
+}
+
+fn table() -> Scene {
+    Builtin::named("table").and_then(|table| table.scene().ok()).expect("a scene")
+}
+
+#[test]
+fn a_frame_is_shown_pass_by_pass_each_with_the_pixels_that_its_capture_has() {
+    let folder = folder();
+    let frame = ["-t", "z-fail", "--size", "96x64"];
+    let said = done(folder.path(), &[&["animate", "tori", "--steps", "-o", "steps.png"], &frame[..]].concat());
+    assert!(said.starts_with("steps.png: tori, z-fail, 96x84, 3 pictures of 1500 ms, "), "{said}");
+    done(folder.path(), &[&["capture", "tori", "-o", "capture"], &frame[..]].concat());
+    let capture = disk::read(&folder.path().join("capture")).expect("a capture");
+    let film = Film::open(&folder.path().join("steps.png"));
+    assert_eq!((film.pictures.len(), film.plays, film.delays), (3, 0, vec![1500; 3]));
+    let names: Vec<&str> = capture.steps.iter().map(|step| step.name.as_str()).collect();
+    assert_eq!(names, ["ambient", "volumes", "mask", "light"]);
+    let counts = &capture.frame_at(1).and_then(|frame| frame.stencil.as_ref()).expect("a stencil").image;
+    let expected = [
+        Picture::drawn(capture.size, |at| color_of(&capture, 0, at)),
+        Picture::drawn(capture.size, |at| colors::stencil(counts.byte_at(at).expect("a value"))),
+        finished(&capture),
+    ];
+    // A mask is beside the frame.
+    for ((found, expected), name) in film.pictures.iter().zip(expected).zip(["ambient", "volumes", "light"]) {
+        assert_eq!(without_bar(found, capture.size), expected, "{name}");
+    }
+    // The bars have words, and not the same ones.
+    let bar = |picture: &Picture| Picture::drawn([96, 20], |[x, y]| picture.at([x, y + 64]).expect("a pixel"));
+    let bars: Vec<Picture> = film.pictures.iter().map(bar).collect();
+    assert!((1..3).all(|index| bars[index] != bars[index - 1]));
+    assert_eq!(bars[0].at([0, 0]), Some(colors::BACKGROUND));
+}
+
+#[test]
+fn a_folder_is_shown_as_it_is_and_a_map_as_large_as_fits_in() {
+    let folder = folder();
+    let frame = ["-t", "shadow-map", "--set", "size=32", "--size", "96x64"];
+    done(folder.path(), &[&["capture", "table", "-o", "capture"], &frame[..]].concat());
+    done(folder.path(), &["animate", "capture", "-o", "steps.png", "--delay", "40"]);
+    let film = Film::open(&folder.path().join("steps.png"));
+    let capture = disk::read(&folder.path().join("capture")).expect("a capture");
+    let steps = steps::count(&capture);
+    assert_eq!((film.pictures.len(), film.delays), (steps, vec![40; steps]));
+    // A texel is two pixels wide and high, in the middle of the picture: 32 columns are free on each side of it.
+    let map = without_bar(&film.pictures[0], [96, 64]);
+    let in_texel = |texel: [u32; 2], [x, y]: [u32; 2]| map.at([16 + texel[0] * 2 + x, texel[1] * 2 + y]);
+    for texel in (0..32).flat_map(|y| (0..32).map(move |x| [x, y])) {
+        assert_eq!(in_texel(texel, [0, 0]), in_texel(texel, [1, 1]), "{texel:?}");
+    }
+    assert_eq!([map.at([15, 30]), map.at([80, 30])], [Some(colors::BACKGROUND); 2]);
+    assert_eq!(without_bar(film.pictures.last().expect("a picture"), [96, 64]), finished(&capture));
+    // The folder has its scene, which can be lit anew.
+    done(folder.path(), &["animate", "capture", "--light-round", "3", "-o", "round.png", "--exact"]);
+    assert_eq!(Film::open(&folder.path().join("round.png")).pictures[0], finished(&capture));
+}
+
+#[test]
+fn a_light_goes_once_round_and_every_picture_is_the_frame_of_its_place() {
+    let folder = folder();
+    let frame = ["animate", "table", "-t", "z-fail", "--size", "96x64", "--light-round", "5"];
+    done(folder.path(), &[&frame[..], &["-o", "exact.png", "--exact"]].concat());
+    let said = done(folder.path(), &[&frame[..], &["-o", "round.png"]].concat());
+    assert!(said.starts_with("round.png: table, z-fail, 96x64, 5 pictures of 100 ms, "), "{said}");
+    let [exact, rounded] = ["exact.png", "round.png"].map(|name| Film::open(&folder.path().join(name)));
+    assert_eq!((exact.plays, exact.delays), (0, vec![100; 5]));
+    let round = LightRound::new(table(), 0, 5).expect("a way round");
+    let mut session = session();
+    for (place, (exact, rounded)) in (0..5).zip(exact.pictures.iter().zip(&rounded.pictures)) {
+        let capture = session.capture(&round.scene(place), &request(Technique::ZFail, [96, 64])).expect("a frame");
+        assert_eq!(*exact, finished(&capture), "place {place}");
+        let kept = Picture::drawn([96, 64], |at| apng::Colors::Rounded.kept(exact.at(at).expect("a pixel")));
+        assert_eq!(*rounded, kept, "place {place}");
+    }
+    assert!((1..5).all(|place| exact.pictures[place] != exact.pictures[place - 1]), "it moves");
+}
+
+/// From the last place to the first it is as far as between any others.
+#[test]
+fn the_way_round_is_closed() {
+    let round = LightRound::new(table(), 0, 24).expect("a way round");
+    let at = |place: u32| -> DVec3 { round.scene(place).lights[0].position.truncate() };
+    let steps: Vec<f64> = (0..24).map(|place| at(place).distance(at((place + 1) % 24))).collect();
+    assert!(steps[0] > 0.1 && steps.iter().all(|step| (step - steps[0]).abs() < 1e-9), "{steps:?}");
+}
+
+#[test]
+fn another_programs_frame_is_shown_pass_by_pass_and_its_light_can_not_be_moved() {
+    let folder = folder();
+    done(folder.path(), &["animate", "ogre", "--steps", "-o", "ogre.png"]);
+    let film = Film::open(&folder.path().join("ogre.png"));
+    assert_eq!((film.pictures.len(), film.pictures[0].size()), (3, [320, 260]));
+    assert_fails(
+        &["animate", "ogre", "--light-round", "-o", "ogre.png"],
+        2,
+        &["`ogre`", "another program drew this frame", "--steps shows it pass by pass"],
+    );
+}
+
+#[test]
+fn a_file_that_is_there_is_replaced_only_where_that_is_wished() {
+    let folder = folder();
+    let arguments = ["animate", "ogre", "-o", "a.png"];
+    std::fs::write(folder.path().join("a.png"), "mine").expect("written");
+    let output = run(folder.path(), &arguments);
+    let line = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{line}");
+    assert!(line.contains("`a.png` is there already") && line.contains("--overwrite"), "{line}");
+    assert_eq!(std::fs::read(folder.path().join("a.png")).expect("a file"), b"mine");
+    let before = names(folder.path());
+    done(folder.path(), &[&arguments[..], &["--overwrite"]].concat());
+    assert_eq!(Film::open(&folder.path().join("a.png")).pictures.len(), 3);
+    assert_eq!(names(folder.path()), before, "nothing is left beside it");
+}
+
+#[test]
+fn what_makes_no_animation_is_refused_in_one_line_with_the_mend() {
+    let round = ["--light-round"];
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["-o", "a.gif"], &["`a.gif`", "ends in .png"]),
+        (&["-o", "models"], &["`models`", "ends in .png"]),
+        (&["-o", "nowhere/a.png"], &["nowhere/a.png", "can't be written", "choose another"]),
+        (&["-o", "a.png", "--delay", "nan"], &["nan", "whole number of milliseconds from 20 to 60000"]),
+        (&["-o", "a.png", "--delay", "-5"], &["-5", "from 20 to 60000"]),
+        (&["-o", "a.png", "--light-round", "0"], &["0", "pictures from 2 to 3600"]),
+        (&["-o", "a.png", "--light-round", "2.5"], &["2.5", "whole number of pictures"]),
+        (&["-o", "a.png", "--steps", "--light-round"], &["--steps", "--light-round"]),
+        (&["-o", "a.png", "--which-light", "0"], &["--which-light"]),
+        (&["-o", "a.png", "--exact"], &["--light-round"]),
+        (&["-o", "a.png", "--every", "draw"], &["--every draw", "leave it out"]),
+        (&["-o", "a.png", "--external-capture"], &["--external-capture", "leave it out"]),
+        (&["-o", "a.png", "--which-light", "2", round[0]], &["no light 2", "choose light 1"]),
+        (&["-o", "a.png", "--sun", "0,1,0", round[0]], &["light 1 is above the middle", "move it to a side"]),
+    ];
+    for (options, words) in cases {
+        assert_fails(&[&["animate", "table"], *options].concat(), 2, words);
+    }
+    assert_fails(&["animate", "table"], 2, &["--output"]);
+    assert_fails(&["animat", "table"], 2, &["did you mean `animate`?"]);
+}

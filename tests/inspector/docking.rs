@@ -1,0 +1,175 @@
+//! Docking: wherever a tab is dropped, every panel stays, under its own name, large enough to be used.
+
+use super::by_hand::z_fail;
+use super::{SIZE, Seen, harness, harness_of, inspector, press};
+use crate::common::random::Random;
+use egui::accesskit::Role;
+use egui::{Key, Pos2, Rect, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use stencilscope::inspector::{Inspector, Panel, Remembered};
+
+/// A panel may be made no smaller by hand or by a drop, points.
+const LEAST: [f32; 2] = [96.0, 48.0];
+
+fn titles() -> Vec<String> {
+    let mut titles: Vec<String> = Panel::ALL.iter().map(|panel| panel.title().to_owned()).collect();
+    titles.sort_unstable();
+    titles
+}
+
+/// Titles and places of all tabs, those that are scrolled away too.
+fn tabs(harness: &Harness<Seen>) -> Vec<(String, Rect)> {
+    let name = |node: &egui_kittest::Node| node.accesskit_node().label().unwrap_or_default();
+    harness.query_all_by_role(Role::Tab).map(|node| (name(&node), node.rect())).collect()
+}
+
+/// Names and places of the panels that are shown.
+fn shown(harness: &Harness<Seen>) -> Vec<(String, Rect)> {
+    let name = |node: &egui_kittest::Node| node.accesskit_node().label().unwrap_or_default();
+    harness.query_all_by_role(Role::TabPanel).map(|node| (name(&node), node.rect())).collect()
+}
+
+fn drag(harness: &mut Harness<Seen>, from: Pos2, to: Pos2) {
+    harness.drag_at(from);
+    harness.run_steps(2);
+    harness.hover_at(from + (to - from) * 0.5);
+    harness.run_steps(2);
+    harness.hover_at(to);
+    harness.run_steps(3);
+    harness.drop_at(to);
+    harness.run_steps(4);
+}
+
+#[track_caller]
+fn assert_usable(harness: &Harness<Seen>, told: &str) {
+    let mut names: Vec<String> = tabs(harness).into_iter().map(|(name, _)| name).collect();
+    names.sort_unstable();
+    assert_eq!(names, titles(), "{told}");
+    let window = harness.ctx.content_rect();
+    let panels = shown(harness);
+    assert!(!panels.is_empty(), "{told}");
+    for (name, place) in &panels {
+        let is_large = place.width() >= LEAST[0] && place.height() >= LEAST[1];
+        assert!(is_large && window.contains_rect(*place), "{name} is at {place} of {window}: {told}");
+    }
+    for (index, (name, place)) in panels.iter().enumerate() {
+        let others = panels[..index].iter().filter(|(_, other)| place.shrink(1.0).intersects(other.shrink(1.0)));
+        assert_eq!(others.count(), 0, "{name} lies over another: {told}");
+    }
+}
+
+#[test]
+fn a_dropped_panel_shares_the_place_where_it_is_dropped() {
+    let mut harness = harness(z_fail(SIZE));
+    let place = |harness: &Harness<Seen>, name: &str| {
+        shown(harness).into_iter().find(|(of, _)| of == name).map(|(_, place)| place).expect("it is shown")
+    };
+    let before = place(&harness, "Pixel");
+    let from = harness.get_by_role_and_label(Role::Tab, "State").rect().center();
+    // Into the lower half of the group it is of.
+    drag(&mut harness, from, pos2(before.center().x, before.bottom() - before.height() / 4.0));
+    assert_usable(&harness, "State below Pixel");
+    let [pixel, state] = ["Pixel", "State"].map(|name| place(&harness, name));
+    assert!(state.top() > pixel.bottom() && (state.height() - pixel.height()).abs() < 4.0, "{pixel}, {state}");
+    // To the left edge of the window.
+    let from = harness.get_by_role_and_label(Role::Tab, "Report").rect().center();
+    let passes = place(&harness, "Passes");
+    drag(&mut harness, from, pos2(passes.left() + 2.0, passes.center().y));
+    assert_usable(&harness, "Report beside Passes");
+    assert!(place(&harness, "Report").width() > 120.0, "{}", place(&harness, "Report"));
+}
+
+#[test]
+fn wherever_tabs_are_dropped_and_borders_are_dragged_every_panel_stays_and_can_be_used() {
+    for seed in 0..8 {
+        let mut random = Random::new(seed);
+        let mut harness = harness(z_fail(SIZE));
+        let window = harness.ctx.content_rect();
+        for turn in 0..25 {
+            let mut within = |rect: Rect| {
+                let [x, y] = [random.unit(), random.unit()].map(|unit| unit as f32);
+                rect.lerp_inside(vec2(x, y))
+            };
+            let to = within(window.shrink(1.0));
+            let panels = shown(&harness);
+            let in_view: Vec<(String, Rect)> =
+                tabs(&harness).into_iter().filter(|(_, place)| window.contains_rect(*place)).collect();
+            let told = if turn % 5 == 3 {
+                // A whole group, by the end of its bar of tabs.
+                let (name, place) = &panels[random.below(panels.len() as u32) as usize];
+                drag(&mut harness, place.right_top() + vec2(-4.0, -14.0), to);
+                format!("seed {seed}, turn {turn}: the group of {name} to {to}")
+            } else if turn % 5 == 4 {
+                // A border: between a panel and what is beside or below it.
+                let (name, place) = &panels[random.below(panels.len() as u32) as usize];
+                let border = if turn % 2 == 0 { place.right_center() } else { place.center_bottom() } + vec2(0.5, 0.5);
+                drag(&mut harness, border, to);
+                format!("seed {seed}, turn {turn}: a border of {name} to {to}")
+            } else {
+                let (name, place) = &in_view[random.below(in_view.len() as u32) as usize];
+                drag(&mut harness, place.center(), to);
+                format!("seed {seed}, turn {turn}: {name} to {to}")
+            };
+            assert_usable(&harness, &told);
+        }
+        // A small window for a while changes nothing for good, and the next run finds all where it was.
+        let before = (harness.state().inspector.remembered(), shown(&harness));
+        harness.set_size(vec2(560.0, 420.0));
+        harness.run_steps(3);
+        harness.set_size(window.size());
+        harness.run_steps(3);
+        assert_eq!((harness.state().inspector.remembered(), shown(&harness)), before, "seed {seed}");
+        let mut again = inspector(z_fail(SIZE));
+        again.recall(before.0);
+        let mut places = [shown(&harness_of(again, [1280.0, 800.0])), before.1];
+        places.iter_mut().for_each(|places| places.sort_by(|a, b| a.0.cmp(&b.0)));
+        let names = |places: &[(String, Rect)]| places.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+        assert_eq!(names(&places[0]), names(&places[1]), "seed {seed}");
+        for ((name, place), (_, expected)) in places[0].iter().zip(&places[1]) {
+            assert!((place.center() - expected.center()).length() < 1.5, "seed {seed}: {name}: {place}, {expected}");
+        }
+    }
+}
+
+/// As a program before this one stored it: a panel a point wide, and a group in a tab.
+#[test]
+fn a_layout_that_was_broken_before_is_mended_when_it_is_opened() {
+    let pane = |panel: &str| serde_json::json!({ "Pane": panel });
+    let tabs = |children: &[u64]| serde_json::json!({ "Container": { "Tabs": { "children": children, "active": children[0] } } });
+    let row = |children: &[u64], shares: serde_json::Value| {
+        serde_json::json!({ "Container": { "Linear": {
+            "children": children, "dir": "Horizontal", "shares": { "shares": shares } } } })
+    };
+    let stored = serde_json::json!({
+        "id": 1, "root": 20, "height": null, "width": null,
+        "tiles": { "next_tile_id": 40, "invisible": [], "tiles": {
+            "1": pane("Passes"), "2": pane("Settings"), "3": pane("Picture"), "4": pane("Scene"),
+            "5": pane("ShadowMap"), "6": pane("Pixel"), "7": pane("State"), "8": pane("Explain"),
+            "9": pane("Report"), "10": pane("Diagnosis"), "11": pane("Stress"),
+            "20": row(&[21, 22, 23], serde_json::json!({ "21": 264.0, "22": 700.0, "23": 1.0 })),
+            "21": tabs(&[1, 2]), "22": tabs(&[30, 5, 6]), "23": tabs(&[7, 8, 9, 10, 11]),
+            "30": row(&[31, 32], serde_json::json!({})), "31": tabs(&[3]), "32": tabs(&[4]),
+        } }
+    });
+    let mut inspector: Inspector = inspector(z_fail(SIZE));
+    inspector.recall(Remembered { layout: Some(stored), ..Remembered::default() });
+    let harness = harness_of(inspector, [1280.0, 800.0]);
+    assert!(harness.state().inspector.remembered().layout.is_some(), "it is taken");
+    assert_usable(&harness, "mended");
+}
+
+#[test]
+fn the_window_of_keys_stands_still_and_the_layout_is_reset_where_the_pointer_was() {
+    for size in [[1280.0, 800.0], [1920.0, 1080.0], [640.0, 400.0]] {
+        let mut harness = harness_of(inspector(z_fail(SIZE)), size);
+        press(&mut harness, Key::F1);
+        let reset = |harness: &Harness<Seen>| harness.get_by_role_and_label(Role::Button, "Reset layout").rect();
+        let first = reset(&harness);
+        for _ in 0..40 {
+            harness.run_steps(1);
+            assert_eq!(reset(&harness), first, "{size:?}");
+        }
+        assert!(harness.ctx.content_rect().contains_rect(first), "{first} of {size:?}");
+    }
+}

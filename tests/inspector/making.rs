@@ -1,0 +1,177 @@
+//! Scenes made in the window: what is added, moved and deleted is how the scene is run next, and can be undone.
+
+use super::by_hand::z_fail;
+use super::{SIZE, Seen, click, click_button, harness_of, run_request};
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use glam::DVec3;
+use std::sync::Arc;
+use stencilscope::ask::RunRequest;
+use stencilscope::glam;
+use stencilscope::inspector::{Action, Inspector};
+use stencilscope::scene::{Light, Object, Scene, SceneBuilder, shapes};
+use stencilscope::technique::{Choice, Technique};
+
+/// A floor and a box, seen from two metres away.
+fn scene() -> Scene {
+    SceneBuilder::new("a box")
+        .object(Object::of("floor", shapes::quad([8.0; 2]).expect("a quad")))
+        .object(Object::of("box", shapes::cuboid([1.0; 3]).expect("a box")).at([3.0, 1.0, 0.0]))
+        .light(Light::point([0.0, 4.0, 0.0]))
+        .seen_from([0.0, 0.5, 2.0], [0.0, 0.5, 0.0])
+        .build()
+}
+
+fn opened() -> Harness<'static, Seen> {
+    let mut inspector = Inspector::new(Vec::new());
+    let request = RunRequest::of(&scene(), Choice::new(Technique::ZFail), SIZE);
+    inspector.open_scene(&scene(), request, Some("a box".to_owned()));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
+    click(&mut harness, "Scene settings");
+    click(&mut harness, "Make: add, move, delete");
+    harness.run_steps(12);
+    harness
+}
+
+fn last_run(harness: &Harness<Seen>) -> RunRequest {
+    let run = harness.state().actions.iter().rev().find_map(|action| match action {
+        Action::Run(request) => Some(RunRequest::clone(request)),
+        _ => None,
+    });
+    run.expect("a run was asked for")
+}
+
+fn undo(harness: &mut Harness<Seen>) {
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(2);
+}
+
+/// Chooses the object that is edited.
+fn choose(harness: &mut Harness<Seen>, name: &str) {
+    harness.get_by_role_and_label(Role::ComboBox, "Object").click();
+    harness.run_steps(3);
+    harness.get_all_by_role_and_label(Role::Button, name).last().expect("an entry").click_accesskit();
+    harness.run_steps(3);
+}
+
+fn set(harness: &mut Harness<Seen>, name: &str, value: f64) {
+    harness.get_by_role_and_label(Role::SpinButton, name).set_value_accesskit(value);
+    harness.run_steps(2);
+}
+
+#[test]
+fn shapes_are_added_where_the_eye_looks_under_names_of_their_own() {
+    let mut harness = opened();
+    click_button(&mut harness, "torus");
+    let added = last_run(&harness).objects.added;
+    assert_eq!((added[0].name.as_str(), added[0].pose.translate), ("torus", DVec3::new(0.0, 0.5, 0.0)));
+    assert!(added[0].casts && added[0].receives && added[0].visible);
+    let high =
+        added[0].world_positions().iter().map(|point| point.distance(added[0].pose.translate)).fold(0.0, f64::max);
+    assert!((0.1..0.5).contains(&high), "{high} m of the two metres to it");
+    // The scene has a box already.
+    click_button(&mut harness, "sphere");
+    harness.get_all_by_role_and_label(Role::Button, "box").next().expect("the button that adds").click();
+    harness.run_steps(2);
+    let names: Vec<String> = last_run(&harness).objects.added.into_iter().map(|object| object.name).collect();
+    assert_eq!(names, ["torus", "sphere", "box 2"]);
+    undo(&mut harness);
+    undo(&mut harness);
+    assert_eq!(last_run(&harness).objects.added.len(), 1);
+}
+
+#[test]
+fn lights_are_added_and_deleted() {
+    let mut harness = opened();
+    click_button(&mut harness, "point light");
+    click_button(&mut harness, "sun");
+    let lights = last_run(&harness).lights;
+    assert_eq!((lights.len(), lights[1].is_directional(), lights[2].is_directional()), (3, false, true));
+    assert_eq!(lights[1].position.truncate(), DVec3::new(0.0, 2.5, 0.0), "above what the eye looks at");
+    click_button(&mut harness, "Delete light 1");
+    assert_eq!(last_run(&harness).lights, lights[1..]);
+    undo(&mut harness);
+    assert_eq!(last_run(&harness).lights, lights);
+    for _ in 0..3 {
+        click_button(&mut harness, "Delete light 1");
+    }
+    assert!(last_run(&harness).lights.is_empty());
+}
+
+#[test]
+fn objects_of_the_scene_and_new_ones_are_moved_turned_and_scaled() {
+    let mut harness = opened();
+    choose(&mut harness, "floor");
+    set(&mut harness, "object position y", -0.5);
+    set(&mut harness, "object turn z", 10.0);
+    let run = last_run(&harness);
+    let pose = run.objects.moved[&0];
+    assert_eq!((pose.translate.y, pose.rotate_degrees.z, pose.scale), (-0.5, 10.0, DVec3::ONE));
+    assert_eq!(run.applied_to(&scene()).objects[0].pose, pose);
+    set(&mut harness, "object scale x", 0.0);
+    assert_eq!(last_run(&harness).objects.moved[&0].scale, DVec3::ONE, "it would be flat");
+    set(&mut harness, "object turn z", 0.0);
+    set(&mut harness, "object position y", 0.0);
+    assert!(last_run(&harness).objects.moved.is_empty(), "it is where it was loaded");
+    click_button(&mut harness, "cylinder");
+    set(&mut harness, "object scale y", 2.0);
+    assert_eq!(last_run(&harness).objects.added[0].pose.scale.y, 2.0);
+    click_button(&mut harness, "Z is up");
+    let turned = last_run(&harness).objects.added[0].pose;
+    let up = turned.world_from_object().transform_vector3(DVec3::Z).normalize();
+    assert!(up.distance(DVec3::Y) < 1e-12, "{up}");
+}
+
+#[test]
+fn a_deleted_object_is_gone_and_those_after_it_keep_what_was_changed() {
+    let mut harness = opened();
+    for name in ["torus", "sphere", "cylinder"] {
+        click_button(&mut harness, name);
+    }
+    let delete = |harness: &mut Harness<Seen>, name: &str| {
+        choose(harness, name);
+        click_button(harness, "Delete");
+    };
+    delete(&mut harness, "torus");
+    let names = |harness: &Harness<Seen>| -> Vec<String> {
+        last_run(harness).applied_to(&scene()).objects.into_iter().map(|object| object.name).collect()
+    };
+    assert_eq!(names(&harness), ["floor", "box", "sphere", "cylinder"]);
+    delete(&mut harness, "floor");
+    assert_eq!(names(&harness), ["box", "sphere", "cylinder"]);
+    undo(&mut harness);
+    undo(&mut harness);
+    assert_eq!(names(&harness), ["floor", "box", "torus", "sphere", "cylinder"]);
+}
+
+#[test]
+fn the_eye_turns_to_an_object_and_sees_all_of_it() {
+    let mut harness = opened();
+    choose(&mut harness, "box");
+    click_button(&mut harness, "Look at it");
+    let camera = last_run(&harness).camera;
+    assert_eq!(camera.target, DVec3::new(3.0, 1.0, 0.0));
+    let away = (camera.eye - camera.target).normalize();
+    assert!(away.distance(DVec3::Z) < 1e-12, "from where it looked before: {away}");
+    let half = (camera.fov_y_degrees / 2.0).to_radians().tan();
+    for corner in scene().objects[1].world_positions() {
+        let from_eye = corner - camera.eye;
+        let share = from_eye.y.abs().max(from_eye.x.abs()) / -from_eye.z / half;
+        assert!(share < 0.9 && -from_eye.z > camera.near, "{corner}: {share}");
+    }
+}
+
+#[test]
+fn what_can_not_be_run_says_why() {
+    let mut request = RunRequest { objects: Default::default(), ..run_request(Technique::ZFail) };
+    let mesh = Arc::new(shapes::cuboid([1.0; 3]).expect("a box"));
+    request.objects.added.push(Object::of("a", mesh.clone()).scaled([1.0, 0.0, 1.0]));
+    assert!(request.check().expect_err("flat").contains("must not be zero"));
+    request.objects.added = vec![Object::of("a", mesh.clone()).at([f64::NAN, 0.0, 0.0])];
+    assert!(request.check().expect_err("nowhere").contains("finite numbers"));
+    request.objects.added = vec![Object::of("a", mesh); 201];
+    assert!(request.check().expect_err("too many").contains("delete some"));
+}
