@@ -44,6 +44,9 @@
 //!   that without trust, and what comes out is [`import::RawFrame`].
 //! - **A panel**: a file in `inspector/panels/`, a field and an arm in `inspector/panels/mod.rs`, a name in
 //!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. What it says of a frame comes from [`reading`].
+//! - **A film**: [`film`] makes the pictures of an animated PNG, `picture/apng.rs` writes it as they come, for
+//!   `cli/animate.rs` and for the window's worker (`app/worker/film.rs`, a picture a turn).
+//! - **A docking**: `inspector/shell/arrangement.rs` says what it may come to.
 //! - **The Scene tab**: `inspector/panels/scene/stage.rs` makes faces and lines of a frame's [`anatomy`], and `viewport.rs`
 //!   draws them with a depth buffer on the GPU that draws the window, whichever device has made the frame.
 //!

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Animated PNG and not GIF: it keeps colours and counts as they are, where GIF has 256 colours, and the PNG encoder
-//! that pictures are written with writes it. A whoever-shows-it that knows only PNG shows the first picture.
+//! that pictures are written with writes it. A program that knows PNG alone shows the first picture.
 
 mod light_round;
 mod steps;
