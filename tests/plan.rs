@@ -131,3 +131,16 @@ fn of_one_pass_only_that_one_is_split_and_nothing_runs_after_it() {
     }
     assert_eq!(plan.split_pass_at_draws(99), plan);
 }
+
+/// Files count from 0, sentences from 1: a light has its one name wherever a plan is told.
+#[test]
+fn a_light_has_one_name_in_the_plans_text() {
+    let scene =
+        stencilscope::scene::builtin::Builtin::named("two-lights").expect("two-lights").scene().expect("a scene");
+    let request = crate::common::request(Technique::ZFail, [64, 48]);
+    let text = crate::common::session().plan(&scene, &request).expect("a plan").to_string();
+    assert!(!text.contains("light 0"), "{text}");
+    for line in ["light 1: point", "light 2: directional", ": volumes of light 1, seen", ": light of light 2, seen"] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+}

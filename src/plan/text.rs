@@ -4,8 +4,8 @@
 //! in full.
 
 use super::{
-    AttachmentId, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, MapLookup, Pass, Program,
-    RasterState, StencilFace, Viewport, Visibility,
+    AttachmentId, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, LightId, MapLookup, Pass,
+    Program, RasterState, StencilFace, Viewport, Visibility,
 };
 use std::fmt::{self, Display, Formatter};
 
@@ -35,7 +35,7 @@ impl Display for FramePlan {
         for (index, light) in self.lights.iter().enumerate() {
             let kind = if light.relative_position[3] == 0.0 { "directional" } else { "point" };
             let faces = light.map.as_ref().map_or(0, |map| map.faces.len());
-            writeln!(f, "light {}: {kind}, {faces} map face(s)", index + 1)?;
+            writeln!(f, "{}: {kind}, {faces} map face(s)", LightId(index).name())?;
             if let Some(lookup) = light.map.as_ref().and_then(|map| map.lookup) {
                 let MapLookup { bias_normal, bias_receiver_plane, filter_width, .. } = lookup;
                 let along = if bias_receiver_plane { ", along the surface's plane" } else { "" };
@@ -54,7 +54,7 @@ impl Display for FramePlan {
 
 impl FramePlan {
     fn fmt_pass(&self, f: &mut Formatter<'_>, index: usize, pass: &Pass) -> fmt::Result {
-        let light = pass.light.map_or(String::new(), |light| format!(" of light {}", light.0));
+        let light = pass.light.map_or(String::new(), |light| format!(" of {}", light.name()));
         let untimed = if pass.timed { "" } else { ", not timed" };
         writeln!(f, "pass {index}: {}{light}, seen from {}{untimed}", pass.name, self.views[pass.view.0].name)?;
         writeln!(f, "  {}", pass.purpose)?;

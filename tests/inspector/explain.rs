@@ -77,7 +77,8 @@ fn each_pass_is_explained_with_the_scenes_own_numbers() {
     assert!(harness.query_all_by_label("Left out").count() > 0);
     press(&mut harness, Key::ArrowRight);
     harness.get_by_label("light is added where count = 0");
-    click(&mut harness, "Passes");
+    harness.get_by_role_and_label(Role::Tab, "Passes").click();
+    harness.run_steps(2);
     click(&mut harness, "mask");
     assert!(harness.query_all_by_label_contains(" in shadow, ").count() > 0);
 }
