@@ -25,7 +25,7 @@ const MOST_MILLISECONDS: u16 = 60_000;
     after_help = "A frame pass by pass:      stencilscope animate tori -t z-fail --steps --size 640x480 -o steps.png\n\
     A light round the scene:   stencilscope animate tori --light-round --size 640x480 -o round.png\n\n\
     Browsers and most chats show animated PNG. Passes keep every value's colour; --light-round rounds colours, by at\n\
-    most 2 of 255 a channel, unless --exact is given."
+    most 1 of 255 a channel, unless --exact is given."
 )]
 pub struct AnimateArguments {
     /// A built-in scene, a scene file (.toml), a model (.obj) or a capture folder
