@@ -43,7 +43,8 @@ pub struct AnimateArguments {
     #[arg(long, value_name = "N", num_args = 0..=1, value_parser = places)]
     light_round: Option<Option<u32>>,
     /// Which light goes round, counted from 1
-    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..), requires = "light_round")]
+    #[arg(long, value_name = "K", default_value_t = 1, requires = "light_round",
+        value_parser = clap::value_parser!(u16).range(1..))]
     which_light: u16,
     /// Keep colours to the bit: a larger file
     #[arg(long, requires = "light_round")]
