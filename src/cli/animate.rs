@@ -25,7 +25,7 @@ const MOST_MILLISECONDS: u16 = 60_000;
     after_help = "A frame pass by pass:      stencilscope animate tori -t z-fail --steps --size 640x480 -o steps.png\n\
     A light round the scene:   stencilscope animate tori --light-round --size 640x480 -o round.png\n\n\
     Browsers and most chats show animated PNG. Passes keep every value's colour; --light-round rounds colours, by at\n\
-    most 2 of 255 a channel, unless --exact is given."
+    most 1 of 255 a channel, unless --exact is given."
 )]
 pub struct AnimateArguments {
     /// A built-in scene, a scene file (.toml), a model (.obj) or a capture folder
@@ -43,7 +43,8 @@ pub struct AnimateArguments {
     #[arg(long, value_name = "N", num_args = 0..=1, value_parser = places)]
     light_round: Option<Option<u32>>,
     /// Which light goes round, counted from 1
-    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..), requires = "light_round")]
+    #[arg(long, value_name = "K", default_value_t = 1, requires = "light_round",
+        value_parser = clap::value_parser!(u16).range(1..))]
     which_light: u16,
     /// Keep colours to the bit: a larger file
     #[arg(long, requires = "light_round")]

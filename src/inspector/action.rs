@@ -237,7 +237,8 @@ impl ExportKind {
             ExportKind::Data => "The shown picture's values as an array that NumPy reads",
             ExportKind::Steps => "Each pass with what it writes, one after the other, over its name",
             ExportKind::LightRound => {
-                "The shown light once round the scene's vertical axis, as the scene is run now; colours are rounded by at most 2 of 255"
+                "The shown light once round the scene's vertical axis, as the scene is run now; colours are rounded by \
+                 at most 1 of 255"
             }
             ExportKind::Capture => {
                 "Every buffer after every pass, with a manifest, to be opened again or scripted against"

@@ -8,14 +8,14 @@ use super::colors::Rgb;
 use std::io::Write;
 
 /// The most that a channel of a rounded picture is away from what it was.
-pub const ROUNDED_BY: u8 = 2;
+pub const ROUNDED_BY: u8 = 1;
 
 /// How colours are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colors {
     /// To the bit.
     Exact,
-    /// Each channel to within [`ROUNDED_BY`] of 255: gently shaded surfaces take less than half of the room.
+    /// Each channel to within [`ROUNDED_BY`] of 255: gently shaded surfaces take some two thirds of the room.
     Rounded,
 }
 

@@ -73,18 +73,19 @@ enum Answer {
 fn contents(ui: &mut Ui, dialog: &mut OpenDialog, recent: &[String]) -> Answer {
     let mut answer = Answer::Waiting;
     theme::heading(ui, "Open");
-    let files = recent.iter().filter(|source| !dialog.names(source)).take(MOST_RECENT);
-    for (place, file) in files.enumerate() {
-        if place == 0 {
-            ui.label(theme::note("Opened before"));
-        }
+    let files: Vec<&String> = recent.iter().filter(|source| !dialog.names(source)).take(MOST_RECENT).collect();
+    if !files.is_empty() {
+        ui.label(theme::note("Opened before"));
+    }
+    for file in &files {
         let path = Path::new(file);
-        let name = path.file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
+        let name = path.file_name().map_or_else(|| file.to_string(), |name| name.to_string_lossy().into_owned());
         let folder = path.parent().map_or_else(String::new, |folder| folder.display().to_string());
         if scene_row(ui, &name, &folder) {
-            answer = Answer::Open(file.clone());
+            answer = Answer::Open(file.to_string());
         }
     }
+    ui.add_space(if files.is_empty() { 0.0 } else { 8.0 });
     // What is under the lists stays in sight.
     let others = ui.min_rect().height() + 320.0;
     let room = (ui.ctx().content_rect().height() - others).clamp(60.0, 300.0);
