@@ -219,3 +219,12 @@ fn a_map_pass_shows_the_face_after_the_draw() {
     assert_eq!(depth(&harness), Some(0.125));
     harness.get_by_label_contains("shadow map of light 1, face −x after draw 1 of step 1");
 }
+
+#[test]
+fn sides_that_graze_their_caster_are_called_so() {
+    let scene = stencilscope::scene::open(&stencilscope::scene::OpenSpec::new("tori")).expect("a built-in scene");
+    let request = crate::common::request(stencilscope::technique::Technique::Auto, [64, 36]);
+    let capture = crate::common::session().capture(&scene, &request).expect("a capture");
+    let names: Vec<&str> = capture.steps[1].draws.iter().map(|draw| draw.name.as_str()).collect();
+    assert!(names.contains(&"grazing sides of blue torus"), "{names:?}");
+}

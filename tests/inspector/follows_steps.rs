@@ -49,6 +49,15 @@ fn no_two_steps_show_the_same_picture() {
 }
 
 #[test]
+fn a_step_that_the_next_frame_does_not_have_gives_way_to_the_whole_frame() {
+    let mut harness = harness(z_fail(SIZE));
+    harness.state_mut().inspector.select_step(1);
+    harness.state_mut().inspector.set_capture(Arc::new(cube_map()));
+    harness.run_steps(2);
+    assert_eq!((harness.state().inspector.step(), kind(&harness)), (3, PictureKind::Color), "no map pass instead");
+}
+
+#[test]
 fn a_mask_is_looked_at_by_its_row_and_stepped_away_from() {
     let mut harness = harness(z_fail(SIZE));
     harness.get_by_label("3 · light");

@@ -1,6 +1,6 @@
 //! Settings by their widgets: a word or a number, what has no effect, and the meshes.
 
-use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, scene, z_fail};
+use super::{SIZE, Seen, click, click_button, harness, harness_of, inspector, run_request, scene, z_fail};
 use crate::common;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -134,7 +134,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
 fn meshes_of_another_scene_are_not_known_yet() {
     let mut inspector = inspector(z_fail(SIZE));
     inspector.tell(MeshesOf {}, Ok(Arc::new(vec![object("floor", &common::square("floor", 0.0, 1.0).mesh)])));
-    inspector.set_scene(&scene(), super::run_request(Technique::ZFail));
+    inspector.set_scene(&scene(), run_request(Technique::ZFail));
     let mut harness = harness_of(inspector, [1280.0, 1200.0]);
     click(&mut harness, "Scene settings");
     harness.get_by_label("They are looked at once the first frame is captured.");
@@ -152,6 +152,20 @@ fn what_was_changed_is_marked_and_goes_back_by_itself() {
     click_button(&mut harness, "Reset field of view");
     assert_eq!(last_run(&harness).camera, scene().camera);
     assert!(harness.query_by_label_contains("Reset ").is_none());
+}
+
+#[test]
+fn what_is_only_looked_at_is_not_changed() {
+    let mut scene = scene();
+    scene.lights[0].color = [1.0, 0.95, 0.85];
+    let mut inspector = inspector(z_fail(SIZE));
+    let request = RunRequest { lights: scene.lights.clone(), ..run_request(Technique::ZFail) };
+    inspector.set_scene(&scene, request.clone());
+    let mut harness = harness_of(inspector, [1280.0, 2000.0]);
+    click(&mut harness, "Scene settings");
+    harness.run_steps(3);
+    assert_eq!(harness.state().inspector.draft().as_deref(), Some(&request));
+    assert!(harness.query_by_label("Reset light 1 colour").is_none());
 }
 
 #[test]

@@ -203,6 +203,17 @@ mod tests {
     }
 
     #[test]
+    fn one_up_and_two_up_are_told_apart_and_so_are_one_down_and_two_down() {
+        use crate::inspector::look::coloring::count_color;
+        for eyes in EYES {
+            for [one, two] in [[1, 2], [-1, -2], [2, 3], [-2, -3]] {
+                let found = apart(eyes, count_color(one), count_color(two));
+                assert!(found >= 0.08, "{one} and {two}: {found:.3}");
+            }
+        }
+    }
+
+    #[test]
     fn small_counts_and_minus_one_have_the_colours_of_the_design() {
         assert_eq!(stencil(0), Color32::from_rgb(0x14, 0x17, 0x1d));
         assert_eq!(stencil(1), Color32::from_rgb(0x56, 0xb4, 0xe9));

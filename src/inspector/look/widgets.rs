@@ -26,6 +26,9 @@ impl<'a> Segment<'a> {
     }
 }
 
+/// Between the words of joined buttons and their borders, points.
+const SEGMENT_PADDING: f32 = 7.0;
+
 /// Buttons side by side in one frame, of which one is chosen: label and explanation of each.
 /// Returns the one that was clicked.
 pub fn segments(ui: &mut Ui, labels: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
@@ -44,6 +47,8 @@ pub fn segments_of(ui: &mut Ui, segments: &[Segment], chosen: Option<usize>) -> 
         // Laid out left to right whatever surrounds them.
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
+            // So that all kinds of picture have room in a window of 1280 points.
+            ui.spacing_mut().button_padding.x = SEGMENT_PADDING;
             for (index, segment) in segments.iter().enumerate() {
                 let is_chosen = chosen == Some(index);
                 let color = match (segment.is_enabled, is_chosen || segment.is_seen) {
@@ -103,8 +108,12 @@ pub fn reset(ui: &mut Ui, name: &str, is_changed: bool, before: &str) -> bool {
         ui.allocate_exact_size(size, egui::Sense::hover());
         return false;
     }
-    let button = egui::Button::new(theme::number("↺").size(15.0)).frame_when_inactive(false).small().min_size(size);
-    let button = ui.add(button).accessible_name(format!("Reset {name}"));
+    let button = egui::Button::new(theme::number("↺").size(15.0)).frame_when_inactive(false);
+    let place = ui.scope(|ui| {
+        ui.spacing_mut().button_padding = egui::Vec2::ZERO;
+        ui.add_sized(size, button)
+    });
+    let button = place.inner.accessible_name(format!("Reset {name}"));
     button.on_hover_text(format!("Changed. Back to {before}")).clicked()
 }
 

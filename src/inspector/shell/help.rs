@@ -40,7 +40,7 @@ fn contents(ui: &mut Ui) {
     theme::heading(ui, "Keys");
     section(ui, "Anywhere", of_scope(Scope::Anywhere));
     section(ui, "Through the frame", of_scope(Scope::Steps));
-    section(ui, "How the picture is looked at", of_scope(Scope::Picture));
+    section(ui, "While no text is typed", of_scope(Scope::Picture));
     section(ui, "On the picture", PICTURE.into_iter().chain(of_scope(Scope::Free)));
     section(ui, "While walking (Tab over the picture, or Walk)", walk::KEYS.iter().map(|key| (key.keys, key.does)));
 }

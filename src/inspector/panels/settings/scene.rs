@@ -87,8 +87,14 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
         });
         light.position = position.extend(light.position.w);
         changed |= row(ui, (&of("colour"), "colour"), &mut light.color, &before.color, |ui, color| {
-            let picker = ui.color_edit_button_rgb(color).accessible_name(of("colour"));
-            picker.on_hover_text("Linear red, green and blue").changed()
+            // The widget rounds what it only shows.
+            let mut edited = *color;
+            let picker = ui.color_edit_button_rgb(&mut edited).accessible_name(of("colour"));
+            let is_edited = picker.on_hover_text("Linear red, green and blue").changed();
+            if is_edited {
+                *color = edited;
+            }
+            is_edited
         });
         changed |=
             row(ui, (&of("intensity"), "intensity"), &mut light.intensity, &before.intensity, |ui, intensity| {
