@@ -28,6 +28,8 @@ pub(crate) struct Facts<'a> {
     pub tracer: &'a Tracer,
     /// Parallel to the scene's objects.
     pub meshes: &'a [MeshFacts],
+    /// Which of its triangles cast: by light, parallel to the scene's objects.
+    pub casting: &'a [Vec<Casters>],
 }
 
 /// A region with a close look at some of its pixels.
@@ -128,9 +130,9 @@ impl<'a> Facts<'a> {
         if is_reversed { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less }
     }
 
-    /// Does a casting triangle cast as the settings say?
-    pub fn casts(&self, met: &Met) -> bool {
-        match self.volumes().map_or(Casters::All, |settings| settings.casters.fixed()) {
+    /// Does a triangle of a caster cast for a light, as settings and meshes decide?
+    pub fn casts(&self, light: usize, met: &Met) -> bool {
+        match self.casting[light][met.place.object] {
             Casters::LightFacing => met.faces_light,
             Casters::LightBackFacing => !met.faces_light,
             Casters::All => true,
@@ -205,7 +207,7 @@ impl Sample {
         }
         let mut found = Vec::new();
         for object in facts.scene.objects.iter().filter(|object| object.casts) {
-            let is_of = |met: &&Met| facts.tracer.name(met.place) == object.name && facts.casts(met);
+            let is_of = |met: &&Met| facts.tracer.name(met.place) == object.name && facts.casts(light, met);
             let expected = self.between.iter().filter(is_of).count() as i32;
             let counted = self.counted(light, &object.name);
             if counted != expected {

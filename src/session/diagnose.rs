@@ -10,7 +10,7 @@ use crate::diagnosis::mesh_facts::MeshFacts;
 use crate::diagnosis::regions::{self, Key, Region};
 use crate::diagnosis::rules::{self, map, planar, projective};
 use crate::diagnosis::{Cause, CauseFound, Diagnosis, FlagFound, Mend, ObjectChange, RegionFound, RegionKind, Rest};
-use crate::geometry::light_frame;
+use crate::geometry::{Caster, Casters, light_frame};
 use crate::plan::{FramePlan, Part};
 use crate::progress::Progress;
 use crate::scene::{Light, Object, Scene};
@@ -54,6 +54,7 @@ impl Session {
         let judged = judged(&plan, &traced, &labels_of(&capture), Some(&capture));
         let run = Run { scene: given, choice, plan, capture, judged };
         let meshes = self.mesh_facts(&run.scene);
+        let casting = self.casting(&run.scene, &run.choice);
         let size = request.size;
         let facts = Facts {
             scene: &run.scene,
@@ -62,6 +63,7 @@ impl Session {
             capture: &run.capture,
             tracer: &traced.tracer,
             meshes: &meshes,
+            casting: &casting,
         };
         let mut found = wrong_regions(&facts, &run);
         let told = found.len().min(Diagnosis::MOST_REGIONS);
@@ -137,6 +139,17 @@ impl Session {
         }
         mend.edit(&mut plan, &fresh);
         Ok((given, choice, plan))
+    }
+
+    /// Which triangles of each object cast, by light.
+    fn casting(&mut self, scene: &Scene, choice: &Choice) -> Vec<Vec<Casters>> {
+        let worlds: Vec<_> = scene.objects.iter().map(Object::world_positions).collect();
+        let mut of_light = |light: &Light| {
+            let objects = scene.objects.iter().zip(&worlds);
+            let casters = objects.map(|(object, world)| Caster { mesh: &object.mesh, pose: &object.pose, world });
+            casters.map(|caster| technique::casting(choice, &mut self.geometry, caster, light.homogeneous())).collect()
+        };
+        scene.lights.iter().map(&mut of_light).collect()
     }
 
     fn mesh_facts(&mut self, scene: &Scene) -> Vec<MeshFacts> {

@@ -307,7 +307,9 @@ pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light
 
 /// Which triangles of an object cast; for `by-topology`, with what decided it.
 fn who_casts(frame: &mut Frame, light: LightId, index: usize, options: &VolumeSettings) -> Casters {
-    let WhoCasts::ByTopology = options.casters else { return options.casters.fixed() };
+    if let WhoCasts::Always(casters) = options.casters {
+        return casters;
+    }
     let (position, placed) = (frame.light_position(light), &frame.placed[index]);
     let object = placed.object;
     let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed.world };

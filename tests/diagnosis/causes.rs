@@ -70,6 +70,17 @@ fn two_causes_at_once_are_both_named() {
     assert!(missed.is_empty(), "{}", missed.join("\n"));
 }
 
+/// A closed slat counts one, and so it is told.
+#[test]
+fn a_body_that_the_near_plane_cuts_is_one_volume() {
+    let scene = builtin::Builtin::named("inside").expect("inside").scene().expect("a scene");
+    let choice = set(Technique::ZPass, &[]);
+    let provoked = Provocation { cause: Cause::NearPlaneCut, scene, choice, fault: None };
+    let told = told(&diagnose(&mut session(), &provoked));
+    assert!(told.contains("cuts 1 shadow volume of slat"), "{told}");
+    assert!(!told.contains("shadow volumes of slat"), "{told}");
+}
+
 #[test]
 fn a_right_frame_has_no_cause() {
     let mut session = session();

@@ -34,7 +34,7 @@ fn suspects<'f>(facts: &'f Facts, case: &Case) -> Vec<Suspect<'f>> {
         if case.is_missing() {
             for name in facts.names(&sample.between) {
                 let of_it: Vec<_> = sample.between.iter().filter(|met| facts.tracer.name(met.place) == name).collect();
-                if !of_it.iter().any(|met| facts.casts(met)) {
+                if !of_it.iter().any(|met| facts.casts(light, met)) {
                     let what = format!(
                         "{} between light and surface, and none of them looks {way} the light",
                         if of_it.len() == 1 {

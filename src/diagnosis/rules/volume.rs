@@ -32,7 +32,7 @@ fn begins_at_zero(facts: &Facts, light: usize) -> bool {
 /// Casters whose volumes hold a point, with how many volumes those are.
 fn holding(facts: &Facts, light: usize, point: DVec3) -> (BTreeSet<String>, u64) {
     let mut met = facts.tracer.between_points(light, point);
-    met.retain(|met| facts.casts(met));
+    met.retain(|met| facts.casts(light, met));
     (facts.names(&met), met.len() as u64)
 }
 
@@ -257,7 +257,7 @@ fn finite_extrusion(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let ((caster, reach, needed), shown_by) = case.shown(|sample| {
         let seen = sample.seen?;
         let distance = facts.tracer.light_distance(light, seen.point);
-        let mut casting = sample.between.iter().filter(|met| facts.casts(met)).peekable();
+        let mut casting = sample.between.iter().filter(|met| facts.casts(light, met)).peekable();
         casting.peek()?;
         // How far the volume goes on behind the caster, and how far it would have to.
         let reaches = casting.map(|met| {

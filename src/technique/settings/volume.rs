@@ -89,17 +89,6 @@ pub enum WhoCasts {
     ByTopology,
 }
 
-impl WhoCasts {
-    /// Without a look at any mesh: all where that would decide.
-    #[must_use]
-    pub fn fixed(self) -> Casters {
-        match self {
-            WhoCasts::Always(casters) => casters,
-            WhoCasts::ByTopology => Casters::All,
-        }
-    }
-}
-
 impl VolumeSettings {
     /// What `auto` decides itself: it has no such settings, and triangles cast by topology unless that is forbidden.
     #[must_use]

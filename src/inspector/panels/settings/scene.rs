@@ -16,9 +16,11 @@ const MOST_PIXELS: u32 = 8192;
 pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let OpenScene { draft, opened, objects, animated, .. } = scene;
     let mut changed = false;
-    for (index, (light, before)) in draft.lights.iter_mut().zip(&opened.lights).enumerate() {
+    for (index, light) in draft.lights.iter_mut().enumerate() {
         ui.add_space(12.0);
-        changed |= light_settings(ui, index, light, before);
+        // One that was added here is as it was opened.
+        let before = opened.lights.get(index).unwrap_or(light).clone();
+        changed |= light_settings(ui, index, light, &before);
     }
     ui.add_space(12.0);
     changed |= camera(ui, &mut draft.camera, &opened.camera);
