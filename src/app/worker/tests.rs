@@ -212,7 +212,7 @@ fn what_was_set_for_one_scene_is_not_set_for_the_next() {
     assert_eq!(captured(&news).1["casters"], "light-facing");
     assert!(worker.order(Order::Open("tori".to_owned())));
     let (technique, settings, _) = captured(&news);
-    assert_eq!((technique.as_str(), settings["casters"].as_str()), ("z-fail", "all"), "the technique stays");
+    assert_eq!((technique.as_str(), settings["casters"].as_str()), ("z-fail", "by-topology"), "the technique stays");
 }
 
 #[test]
