@@ -54,6 +54,20 @@ fn what_the_light_pass_says_of_a_pixel_is_what_its_label_says() {
     assert!(lit > 1000 && dark > 1000, "{lit} lit, {dark} dark");
 }
 
+/// Shadows that are blended over the picture come after the light, which asks nothing, whatever an earlier light marked.
+#[test]
+fn light_that_asks_no_stencil_is_not_said_to() {
+    let mut session = session();
+    let scene = Builtin::named("two-lights").expect("two-lights").scene().expect("a scene");
+    let mut request = request(Technique::Planar, SIZE);
+    request.choice.set("blend", "twice").expect("a setting");
+    let capture = session.capture(&scene, &request).expect("a capture");
+    for (index, _) in capture.steps.iter().enumerate().filter(|(_, step)| step.name == "light") {
+        let told = of_step(&scene, &capture, index, Some([80, 60])).remove(0);
+        assert_eq!(told.formula, "light is added where the technique lets it through");
+    }
+}
+
 /// A box under a point light: one cap of the faces that the light sees, sides along its outline, a fan at infinity.
 #[test]
 fn a_box_has_the_parts_of_the_textbooks_volume() {

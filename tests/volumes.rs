@@ -160,7 +160,8 @@ fn a_body_counts_one_where_it_is_proven_closed() {
             _ => vec![corners],
         })
     };
-    let cases: [(Vec<Object>, &[(&str, &str)], CountOf, f32); 5] = [
+    type Case<'a> = (Vec<Object>, &'a [(&'a str, &'a str)], CountOf, f32);
+    let cases: [Case; 5] = [
         (vec![whole()], &[], CountOf::Bodies, 1.0),
         (vec![whole()], &[("casters", "all")], CountOf::Surfaces, 2.0),
         // By hand nothing is proven.

@@ -202,19 +202,20 @@ fn light(known: &Known, step: &Step) -> Fact {
     }
     let before = known.step.checked_sub(1).and_then(|before| known.capture.frame_at(before));
     let stencil = before.and_then(|frame| frame.stencil.as_ref());
+    // Shadows that are blended come after the light, which then asks nothing.
+    let has_shadows =
+        |step: &Step| step.light == Some(index) && step.draws.iter().any(|draw| draw.part == Part::PlanarShadow);
+    let is_flattened = known.capture.steps[..known.step].iter().any(has_shadows);
     // What the stencil test of the light pass lets through.
-    let test: Option<(&str, &str, fn(usize) -> bool)> = match known.capture.decided_by(index) {
-        DecidedBy::StencilCount { .. } => Some(("light is added where count = 0", "the count 0", |count| count == 0)),
-        DecidedBy::Flattened => Some((
-            "light is added where the stencil is even: a shadow adds 1 to its receiver's even mark",
-            "an even number",
-            |mark| mark % 2 == 0,
-        )),
-        _ => None,
+    let (formula, what) = match known.capture.decided_by(index) {
+        DecidedBy::StencilCount { .. } => ("light is added where count = 0", "the count 0"),
+        DecidedBy::Flattened if is_flattened => {
+            ("light is added where the stencil is even: a shadow adds 1 to its receiver's even mark", "an even number")
+        }
+        _ => ("light is added where the technique lets it through", ""),
     };
-    let Some((stencil, (formula, what, is_lit))) = stencil.zip(test) else {
-        return fact("light is added where the technique lets it through", here);
-    };
+    let Some(stencil) = stencil.filter(|_| !what.is_empty()) else { return fact(formula, here) };
+    let is_lit = |value: usize| if is_flattened { value.is_multiple_of(2) } else { value == 0 };
     let counts = stencil.image.histogram();
     let lit: u64 = counts.iter().enumerate().filter(|(value, _)| is_lit(*value)).map(|(_, count)| count).sum();
     let [lit, all] = [lit, counts.iter().sum()].map(format::count);
