@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A file that is written beside its place, and is there once it is finished. One that never is leaves nothing, and what
 /// was there before stays.
@@ -13,6 +14,9 @@ pub struct WholeFile {
     beside: Option<PathBuf>,
     target: PathBuf,
 }
+
+/// How many were begun.
+static BEGUN: AtomicU64 = AtomicU64::new(0);
 
 impl WholeFile {
     /// Begins one.
@@ -25,7 +29,9 @@ impl WholeFile {
         // A device or a pipe has no place to be renamed into.
         let is_in_place = target.exists() && !target.is_file();
         let mut beside = target.clone().into_os_string();
-        beside.push(format!(".new-{}", std::process::id()));
+        // Two that write to one place at a time are two files until they are done.
+        let number = BEGUN.fetch_add(1, Ordering::Relaxed);
+        beside.push(format!(".new-{}-{number}", std::process::id()));
         let beside = (!is_in_place).then(|| PathBuf::from(beside));
         let file = match &beside {
             Some(beside) => File::create(beside)?,
@@ -96,6 +102,20 @@ fn relative(folder: &Path, file: &Path) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A film takes minutes: what is written to its place meanwhile is whole, and so is the film.
+    #[test]
+    fn two_that_write_to_one_place_do_not_meet() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a");
+        let mut slow = WholeFile::create(&path).expect("begun");
+        slow.file.write_all(b"slow").expect("written");
+        drop(WholeFile::create(&path).expect("begun, and called off"));
+        write_whole(&path, b"quick").expect("written");
+        assert_eq!(std::fs::read(&path).expect("there"), b"quick");
+        slow.finish().expect("finished");
+        assert_eq!(std::fs::read(&path).expect("there"), b"slow");
+    }
 
     #[test]
     fn a_file_is_there_once_it_is_finished_and_one_that_never_is_leaves_what_was_there() {

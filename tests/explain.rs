@@ -1,9 +1,11 @@
 //! What Explain says of a step, held against plan, labels and counts of the frame.
 
 use crate::common::{request, session};
+use std::sync::Arc;
 use stencilscope::capture::{Capture, Snapshot, Step};
 use stencilscope::plan::CountOf;
 use stencilscope::reading::explain_facts::{Fact, Known, facts};
+use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::scene::Scene;
 use stencilscope::scene::builtin::{self, Builtin};
 use stencilscope::technique::Technique;
@@ -119,4 +121,23 @@ fn the_lights_formula_is_the_one_in_use() {
     assert!(wrapped.contains("material × (1 + cosine of its angle) / 2 + highlight"), "{wrapped}");
     scene.lights[0].range = Some(30.0);
     assert!(told(&scene, &[]).ends_with("× what is left at its distance"));
+}
+
+/// The Shadow map tab may show one light while the pixel is told of under another: its texel is no reason there.
+#[test]
+fn what_one_lights_map_stores_is_no_reason_under_another() {
+    use stencilscope::reading::map_readers::MapReaders;
+    use stencilscope::reading::verdict::{by_map, verdict};
+    let mut session = session();
+    let scene = Builtin::named("two-lights").expect("two-lights").scene().expect("a scene");
+    let (capture, plan) = session.capture_with_plan(&scene, &request(Technique::ShadowMap, SIZE)).expect("a capture");
+    let readers = MapReaders::new(&capture, Some(&Arc::new(plan)), 0).expect("readers");
+    let mut told = 0;
+    for at in (0..SIZE[1]).step_by(11).flat_map(|y| (0..SIZE[0]).step_by(13).map(move |x| [x, y])) {
+        let Some(decision) = MapDecision::of(&capture, &readers, 0, at) else { continue };
+        let of_other = verdict(&capture, 1, at);
+        assert_eq!(by_map(of_other.clone(), &decision, 1), of_other);
+        told += usize::from(by_map(verdict(&capture, 0, at), &decision, 0).reason == decision.sentence());
+    }
+    assert!(told > 20, "{told}");
 }

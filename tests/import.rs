@@ -161,7 +161,7 @@ fn a_picture_may_be_put_together_of_pieces() {
         })
         .path(),
     );
-    assert!(frame.is_err(), "no bytes are no picture");
+    assert!(frame.expect_err("no bytes are no picture").to_string().contains("has 0 bytes, not 32"));
     let folder = made(|document, _| {
         document["textures"][0]["size"] = json!([2, 4]);
         document["events"][0]["color_after"] = json!(5);
@@ -181,7 +181,7 @@ fn a_picture_may_be_put_together_of_pieces() {
 #[test]
 fn lies_are_refused_in_words() {
     type Lie = fn(&mut Value, &mut Vec<Vec<u8>>);
-    let cases: [(&str, Lie); 20] = [
+    let cases: [(&str, Lie); 21] = [
         ("format 2, not 1", |document, _| document["format"] = json!(2)),
         ("of the API `D3D11`", |document, _| document["api"] = json!("D3D11")),
         ("has 70000x2 texels", |document, _| document["textures"][0]["size"][0] = json!(70_000)),
@@ -214,6 +214,9 @@ fn lies_are_refused_in_words() {
             document["blobs"] = json!([[0, 11, 16], {"pieces": [0, 1]}]);
         }),
         ("there is no byte string 7", |document, _| document["blobs"] = json!([{"pieces": [7]}])),
+        ("byte string 0 is an empty piece", |document, _| {
+            document["blobs"] = json!([[0, 11, 0], {"pieces": [0, 0]}]);
+        }),
         ("has 18446744073709551615 bytes, not 16", |document, _| {
             document["blobs"] = json!([[0, 11, u64::MAX], {"pieces": [0, 0]}]);
             document["before"][0]["contents"] = json!(1);

@@ -248,7 +248,7 @@ impl Controller {
         match export::check(Path::new(&path), replace) {
             Some(problem) => self.end_export(problem),
             None => {
-                self.inspector.end_export(Ok(format!("writing {path}")));
+                self.inspector.begin_export();
                 self.inspector.start(FilmOf { subject, path });
             }
         }

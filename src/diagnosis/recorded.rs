@@ -188,10 +188,12 @@ impl FrameDiagnosis {
         for found in &helping {
             text += &format!("\n{}\n  {}\n  {}\n", found.title(), found.evidence, found.meaning());
         }
-        if self.wrong() > 0 && !others.is_empty() {
-            let is_joined = |fault| helping.iter().any(|found| found.together_with.contains(&fault));
-            let others = others.iter().filter(|found| !is_joined(found.fault));
-            let names: Vec<&str> = others.map(|found| found.fault.name()).collect();
+        let is_joined = |one: &FaultFound| {
+            helping.iter().any(|found| found.light == one.light && found.together_with.contains(&one.fault))
+        };
+        let names: Vec<&str> =
+            others.iter().filter(|found| !is_joined(found)).map(|found| found.fault.name()).collect();
+        if self.wrong() > 0 && !names.is_empty() {
             text += &format!("\ntried, and not it: {}\n", names.join(", "));
         }
         if self.wrong() > 0 && self.faults.iter().all(|found| found.proof == Proof::NotIt) {

@@ -13,6 +13,8 @@ use std::io::{Read, Seek, SeekFrom};
 pub const MOST_BYTES: u64 = 8 << 30;
 /// Bytes of pieces that are kept for the next picture.
 const MOST_RECENT: u64 = 256 << 20;
+/// Bytes of a piece that is kept.
+const LARGEST_PIECE: usize = 1 << 20;
 
 /// A file, or bytes in memory.
 trait Source: Read + Seek {}
@@ -23,6 +25,8 @@ impl<T: Read + Seek> Source for T {}
 pub struct Blobs {
     file: Box<dyn Source>,
     table: Vec<Blob>,
+    /// Of each byte string.
+    lengths: Vec<u64>,
     left: u64,
     /// Pieces that were read lately: the next picture has most of them too.
     recent: BTreeMap<usize, Vec<u8>>,
@@ -33,18 +37,28 @@ impl Blobs {
     /// Looks through the table.
     ///
     /// # Errors
-    /// A file that can't be read; a byte string that lies outside of it.
+    /// A file that can't be read; a byte string that lies outside of it, or is of pieces that can't be.
     pub fn new(file: impl Read + Seek + 'static, table: Vec<Blob>) -> Result<Self, ImportError> {
+        let broken = |what: String| ImportError::Folder(format!("data.bin: {what}"));
         let mut file = Box::new(file);
-        let length = file.seek(SeekFrom::End(0)).map_err(|error| ImportError::Folder(format!("data.bin: {error}")))?;
-        let lies_inside = |blob: &Blob| match blob {
-            Blob::Stored([at, packed, _]) => at.checked_add(*packed).is_some_and(|end| end <= length),
-            Blob::Joined { .. } => true,
+        let end = file.seek(SeekFrom::End(0)).map_err(|error| broken(error.to_string()))?;
+        let stored = |at: usize| match table.get(at) {
+            Some(Blob::Stored([_, _, 0])) => Err(broken(format!("byte string {at} is an empty piece"))),
+            Some(Blob::Stored([_, _, length])) => Ok(*length),
+            Some(Blob::Joined { .. }) => Err(broken(format!("byte string {at} is a piece that has pieces"))),
+            None => Err(broken(format!("there is no byte string {at}"))),
         };
-        if let Some(at) = table.iter().position(|entry| !lies_inside(entry)) {
-            return Err(ImportError::Folder(format!("data.bin: byte string {at} lies outside of it")));
-        }
-        Ok(Self { file, table, left: MOST_BYTES, recent: BTreeMap::new(), recent_bytes: 0 })
+        let length = |(at, blob): (usize, &Blob)| match blob {
+            Blob::Stored([start, packed, length]) => match start.checked_add(*packed).is_some_and(|last| last <= end) {
+                true => Ok(*length),
+                false => Err(broken(format!("byte string {at} lies outside of it"))),
+            },
+            Blob::Joined { pieces } => {
+                pieces.iter().try_fold(0_u64, |sum, piece| Ok(sum.saturating_add(stored(*piece)?)))
+            }
+        };
+        let lengths = table.iter().enumerate().map(length).collect::<Result<_, ImportError>>()?;
+        Ok(Self { file, table, lengths, left: MOST_BYTES, recent: BTreeMap::new(), recent_bytes: 0 })
     }
 
     /// Takes `bytes` from what may still be made.
@@ -67,13 +81,7 @@ impl Blobs {
     /// # Errors
     /// There is none of that number.
     pub fn length(&self, index: usize) -> Result<u64, ImportError> {
-        match self.entry(index)? {
-            Blob::Stored([_, _, length]) => Ok(*length),
-            Blob::Joined { pieces } => pieces
-                .iter()
-                .map(|piece| Ok(self.stored(*piece)?[2]))
-                .try_fold(0_u64, |sum, length| Ok(sum.saturating_add(length?))),
-        }
+        self.lengths.get(index).copied().ok_or_else(|| none_of(index))
     }
 
     /// A byte string.
@@ -82,26 +90,37 @@ impl Blobs {
     /// There is none of that number, it is not what the table says, or it is too long.
     pub fn read(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
         self.reserve(self.length(index)?)?;
-        let Blob::Joined { pieces } = self.entry(index)? else { return self.unpacked(index) };
+        let Some(Blob::Joined { pieces }) = self.table.get(index) else { return self.unpacked(index) };
         let mut bytes = Vec::new();
         for piece in pieces.clone() {
-            if !self.recent.contains_key(&piece) {
-                let unpacked = self.unpacked(piece)?;
-                if self.recent_bytes > MOST_RECENT {
-                    self.recent.clear();
-                    self.recent_bytes = 0;
-                }
-                self.recent_bytes += unpacked.len() as u64;
-                self.recent.insert(piece, unpacked);
+            if let Some(known) = self.recent.get(&piece) {
+                bytes.extend_from_slice(known);
+                continue;
             }
-            bytes.extend_from_slice(&self.recent[&piece]);
+            let unpacked = self.unpacked(piece)?;
+            bytes.extend_from_slice(&unpacked);
+            self.keep(piece, unpacked);
         }
         Ok(bytes)
     }
 
+    /// Keeps a piece for the next picture, if it is as small as pieces are.
+    fn keep(&mut self, piece: usize, bytes: Vec<u8>) {
+        if bytes.len() > LARGEST_PIECE {
+            return;
+        }
+        if self.recent_bytes + bytes.len() as u64 > MOST_RECENT {
+            self.recent.clear();
+            self.recent_bytes = 0;
+        }
+        self.recent_bytes += bytes.len() as u64;
+        self.recent.insert(piece, bytes);
+    }
+
     /// What is stored under a number.
     fn unpacked(&mut self, index: usize) -> Result<Vec<u8>, ImportError> {
-        let [at, packed, length] = self.stored(index)?;
+        let Some(Blob::Stored([at, packed, length])) = self.table.get(index) else { return Err(none_of(index)) };
+        let (at, packed, length) = (*at, *packed, *length);
         let broken =
             |what: &dyn std::fmt::Display| ImportError::Folder(format!("data.bin: byte string {index}: {what}"));
         self.file.seek(SeekFrom::Start(at)).map_err(|error| broken(&error))?;
@@ -114,16 +133,8 @@ impl Blobs {
         }
         Ok(bytes)
     }
+}
 
-    fn entry(&self, index: usize) -> Result<&Blob, ImportError> {
-        self.table.get(index).ok_or_else(|| ImportError::Folder(format!("there is no byte string {index}")))
-    }
-
-    /// Pieces have no pieces.
-    fn stored(&self, index: usize) -> Result<[u64; 3], ImportError> {
-        match self.entry(index)? {
-            Blob::Stored(stored) => Ok(*stored),
-            Blob::Joined { .. } => Err(ImportError::Folder(format!("byte string {index} is a piece that has pieces"))),
-        }
-    }
+fn none_of(index: usize) -> ImportError {
+    ImportError::Folder(format!("there is no byte string {index}"))
 }

@@ -63,7 +63,7 @@ class Store:
 
     def __init__(self):
         self.file = open(os.path.join(folder, "data.bin"), "wb")
-        self.known, self.table, self.last = {}, [], {}
+        self.known, self.table, self.joined = {}, [], {}
 
     def put(self, data):
         key = (len(data), hashlib.sha256(data).digest())
@@ -76,19 +76,13 @@ class Store:
             self.file.write(packed)
         return self.known[key]
 
-    def put_picture(self, target, data):
-        """What a target holds, piece by piece; nothing is looked at twice that is as it was."""
-        index, last, before = self.last.get(target, (None, b"", []))
-        if index is not None and data == last:
-            return index
-        pieces = []
-        for number, start in enumerate(range(0, len(data), self.PIECE)):
-            piece = data[start : start + self.PIECE]
-            is_same = number < len(before) and piece == last[start : start + self.PIECE]
-            pieces.append(before[number] if is_same else self.put(piece))
-        self.table.append({"pieces": pieces})
-        self.last[target] = len(self.table) - 1, data, pieces
-        return len(self.table) - 1
+    def put_picture(self, data):
+        """What a target holds, piece by piece: those of the picture before are there already."""
+        pieces = tuple(self.put(data[at : at + self.PIECE]) for at in range(0, len(data), self.PIECE))
+        if pieces not in self.joined:
+            self.joined[pieces] = len(self.table)
+            self.table.append({"pieces": pieces})
+        return self.joined[pieces]
 
 
 def resource(bound):
@@ -187,7 +181,7 @@ def contents(to):
         if replay.GetMinMax(one, where, rd.CompType.Typeless)[1].floatValue[0] > 0:
             limits.add("this driver does not let depth be read from `%s` on OpenGL ES" % textures[to["texture"]]["name"])
             return None
-    return store.put_picture(json.dumps(to), data) if len(data) else None
+    return store.put_picture(data) if len(data) else None
 
 
 def face(side):

@@ -307,15 +307,20 @@ impl Inspector {
         }
     }
 
+    /// An export is on its way: what it is and where it goes need not be asked any more.
+    pub fn begin_export(&mut self) {
+        self.export_dialog = None;
+        if matches!(self.model.dialog, Some(Dialog::Export(_))) {
+            self.model.dialog = None;
+        }
+    }
+
     /// An export is done, in words, or failed, with the mend.
     pub fn end_export(&mut self, result: Result<String, String>) {
         match (result, &mut self.export_dialog) {
             (Ok(done), _) => {
                 self.model.activity.exported = Some(done);
-                self.export_dialog = None;
-                if matches!(self.model.dialog, Some(Dialog::Export(_))) {
-                    self.model.dialog = None;
-                }
+                self.begin_export();
             }
             (Err(reason), Some(dialog)) => dialog.error = Some(reason),
             (Err(reason), None) => self.push_error(reason),

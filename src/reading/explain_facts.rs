@@ -244,7 +244,7 @@ fn compared(known: &Known, light: usize) -> Option<Fact> {
                 map.outcome()
             ),
         ],
-        (Some([x, y]), None) => vec![format!("pixel {x}, {y} reads no texel of it")],
+        (Some([x, y]), None) => vec![format!("pixel {x}, {y}: no texel of it is known that decides")],
         (None, _) => vec!["Pick a pixel (right click) to see the texel that decides it.".to_owned()],
     };
     Some(fact(formula, here))

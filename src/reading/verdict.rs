@@ -50,11 +50,11 @@ pub fn explained(verdict: Verdict, history: &PixelHistory, light: usize) -> Verd
     Verdict { reason, ..verdict }
 }
 
-/// The verdict with what the light's shadow map stores, where that decided it.
+/// The verdict of a light with what its shadow map stores, where that decided it; what another light's stores says nothing.
 #[must_use]
-pub fn by_map(verdict: Verdict, decision: &MapDecision) -> Verdict {
+pub fn by_map(verdict: Verdict, decision: &MapDecision, light: usize) -> Verdict {
     match verdict.by_history {
-        ByHistory::Map => Verdict { reason: decision.sentence(), ..verdict },
+        ByHistory::Map if decision.light == light => Verdict { reason: decision.sentence(), ..verdict },
         _ => verdict,
     }
 }

@@ -9,7 +9,7 @@ use stencilscope::capture::disk::{Contents, read_whole, write};
 use stencilscope::capture::{Capture, Differs};
 use stencilscope::diagnosis::Proof;
 use stencilscope::diagnosis::recorded::FrameFault;
-use stencilscope::import::{Converted, convert, read};
+use stencilscope::import::{Converted, RawFrame, RawKind, convert, read};
 use stencilscope::plan::{Blob, DecidedBy, FramePlan, LightId, RasterState, Side, StartContent, lint};
 use stencilscope::progress::Progress;
 use stencilscope::session::{FrameSource, RunFrame, Session};
@@ -226,6 +226,20 @@ fn what_is_wrong_is_named_first_and_proven_by_a_changed_plan() {
         let nearer = volumes(plan).filter(|raster| raster.depth_compare == wgpu::CompareFunction::Greater);
         nearer.for_each(|raster| raster.depth_compare = wgpu::CompareFunction::GreaterEqual);
     });
+}
+
+/// Depth that is clamped ends nothing: rays go on beyond the far plane, as the picture does.
+#[test]
+fn a_far_plane_that_cuts_no_surface_ends_no_ray() {
+    let mut frame = read(&recording("ogre-far")).expect("a recording");
+    let far = |frame: &RawFrame| convert(frame, "far").expect("a frame").capture.depth.far;
+    assert!(far(&frame).is_some_and(|far| (340.0..360.0).contains(&far)));
+    for event in &mut frame.events {
+        if let RawKind::Draw(draw) = &mut event.kind {
+            (draw.shape.depth_clip, draw.shape.depth_clamp) = (false, true);
+        }
+    }
+    assert_eq!(far(&frame), None);
 }
 
 /// Which objects are meant to cast is nothing that a frame says.

@@ -42,7 +42,10 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
         Some([a, b]) => {
             // Where depth is 1, or 0 where it is reversed.
             let far = if is_reversed { -b / a } else { b / (1.0 - a) };
-            let far = Some(far).filter(|far| far.is_finite() && *far > 0.0);
+            // Depth that is clamped shows what lies beyond, too.
+            let is_clipped = picture().flat_map(|pass| &pass.draws).filter(|draw| draw.part == Part::Surface);
+            let is_clipped = is_clipped.filter(|draw| draw.raster.depth_write).all(|draw| !draw.raster.unclipped_depth);
+            let far = Some(far).filter(|far| far.is_finite() && *far > 0.0 && is_clipped);
             Some(DepthCurve { mapping: mapping(far.is_some()), offset: a, scale: b, far })
         }
         None => None,

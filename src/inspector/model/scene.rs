@@ -33,12 +33,31 @@ pub struct OpenScene {
     pub problem: Option<String>,
 }
 
+impl OpenScene {
+    /// What it is known by: what opened it, or its name.
+    fn key(&self) -> String {
+        self.source.clone().unwrap_or_else(|| self.name.clone())
+    }
+
+    /// Are its lights and objects those that it was opened with?
+    fn is_as_opened(&self) -> bool {
+        let RunRequest { lights, off, objects, .. } = &self.draft;
+        (lights, off, objects) == (&self.opened.lights, &self.opened.off, &self.opened.objects)
+    }
+}
+
 impl Model {
     /// Another scene is open; `None` for a capture folder, which can't be run again.
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>, source: Option<String>) {
         let before = self.scene.take();
         if let (Some(before), Some((question, report))) = (&before, self.answers.current::<ReportOf>()) {
-            self.reports.insert(before.name.clone(), (question.clone(), Arc::clone(report)));
+            // Of one that was changed, or is loaded again, the numbers would be another scene's.
+            let key = scene.as_ref().map(|(scene, _)| source.clone().unwrap_or_else(|| scene.name.clone()));
+            if before.is_as_opened() && Some(before.key()) != key {
+                self.reports.insert(before.key(), (question.clone(), Arc::clone(report)));
+            } else {
+                self.reports.remove(&before.key());
+            }
         }
         self.frame.plan = None;
         self.activity.succeeded();
@@ -67,13 +86,16 @@ impl Model {
             draft,
         });
         self.activity.is_waiting = self.scene.is_some();
-        // One that is loaded again may be another one by now.
-        let name = self
-            .scene
-            .as_ref()
-            .map(|scene| scene.name.clone())
-            .filter(|name| before.is_none_or(|before| before.name != *name));
-        if let Some((question, report)) = name.and_then(|name| self.reports.get(&name)) {
+        if let Some((before, scene)) = before.as_ref().zip(self.scene.as_ref())
+            && before.key() == scene.key()
+        {
+            // One that is loaded again may be another one by now; so are its objects' indexes.
+            self.reports.remove(&scene.key());
+            if before.objects != scene.objects {
+                self.undo = Default::default();
+            }
+        }
+        if let Some((question, report)) = self.scene.as_ref().and_then(|scene| self.reports.get(&scene.key())) {
             self.answers.tell(question.clone(), Ok(Arc::clone(report)));
         }
         self.note_for_undo();

@@ -73,9 +73,9 @@ pub struct Explain {
     facts: std::rc::Rc<Vec<crate::reading::explain_facts::Fact>>,
 }
 
-/// Facts change with these: frame, step, pixel, of which pixel the history is, and whether there are a truth and a
-/// texel.
-type Key = (u64, usize, Option<[u32; 2]>, Option<[u32; 2]>, [bool; 2]);
+/// Facts change with these: frame, step, pixel, of which pixel the history is, whether there is a truth, and under which
+/// light a texel is known.
+type Key = (u64, usize, Option<[u32; 2]>, Option<[u32; 2]>, (bool, Option<usize>));
 
 impl Explain {
     fn of(&mut self, frame: u64, known: &Known) -> std::rc::Rc<Vec<crate::reading::explain_facts::Fact>> {
@@ -85,7 +85,7 @@ impl Explain {
             known.step,
             known.pick,
             known.history.map(|history| history.pixel),
-            [has_truth, known.map.is_some()],
+            (has_truth, known.map.map(|map| map.light)),
         );
         if self.of != Some(key) {
             self.of = Some(key);

@@ -135,8 +135,9 @@ pub fn ui(ui: &mut Ui, own: &mut ShadowMapPanel, model: &mut Model) {
         // The first, until it is known which one the picked pixel reads.
         own.is_any_face = is_waited_for;
     }
-    if let Some(texel) = of_pick.filter(|_| model.requests.texel_under.take().is_some()) {
-        show_texel(own, texel);
+    // Once it is known which texel that is, or nothing is picked any more.
+    if (!is_waited_for || model.selection.pick.is_none()) && model.requests.texel_under.take().is_some() {
+        of_pick.into_iter().for_each(|texel| show_texel(own, texel));
     }
     tools(ui, own, &capture, &lights);
     let rect = ui.available_rect_before_wrap();

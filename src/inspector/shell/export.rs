@@ -90,6 +90,12 @@ pub enum ExportData {
     Report(Box<Report>),
 }
 
+/// The scene as it is set, where it can be run so.
+fn runnable(model: &Model) -> Option<RunRequest> {
+    let scene = model.scene.as_ref()?;
+    scene.problem.is_none().then(|| scene.draft.clone())
+}
+
 /// What `kind` means now; none where there is nothing of it.
 #[must_use]
 pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Option<ExportData> {
@@ -99,11 +105,11 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
     let capture = model.frame.capture.clone()?;
     match kind {
         ExportKind::Capture => return Some(ExportData::Capture(capture)),
-        ExportKind::Scene => return Some(ExportData::Scene(Box::new(model.scene.as_ref()?.draft.clone()))),
+        ExportKind::Scene => return Some(ExportData::Scene(Box::new(runnable(model)?))),
         ExportKind::Steps => return Some(ExportData::Film(FilmSubject::Steps(capture))),
         ExportKind::LightRound => {
             let light = turned(model)?;
-            let request = Box::new(model.scene.as_ref()?.draft.clone());
+            let request = Box::new(runnable(model)?);
             return Some(ExportData::Film(FilmSubject::LightRound { request, light }));
         }
         ExportKind::Picture | ExportKind::AsShown | ExportKind::Data | ExportKind::Report => {}

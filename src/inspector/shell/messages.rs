@@ -42,7 +42,11 @@ fn reload(ui: &mut Ui, model: &mut Model, file: &str, actions: &mut Vec<Action>)
     egui::Panel::top("reload").frame(frame).show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.label(format!("{file} changed on disk."));
-            if ui.button("Load it again").on_hover_text("Technique, camera and lights stay as they are").clicked() {
+            if ui
+                .button("Load it again")
+                .on_hover_text("Technique and camera stay as they are; objects and lights are the file's")
+                .clicked()
+            {
                 actions.push(Action::Reload);
                 model.activity.changed_file = None;
             }

@@ -131,7 +131,7 @@ fn sentence(
         }
     });
     own.sentence = Some(verdict.clone());
-    let verdict = map.map_or(verdict.clone(), |decision| by_map(verdict, decision));
+    let verdict = map.map_or(verdict.clone(), |decision| by_map(verdict, decision, light));
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         theme::heading(ui, &verdict.title);

@@ -16,10 +16,11 @@ const MOST_PIXELS: u32 = 8192;
 pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let OpenScene { draft, opened, objects, animated, .. } = scene;
     let mut changed = false;
+    let is_as_many = draft.lights.len() == opened.lights.len();
     for (index, light) in draft.lights.iter_mut().enumerate() {
         ui.add_space(12.0);
-        // One that was added here is as it was opened.
-        let before = opened.lights.get(index).unwrap_or(light).clone();
+        // Where lights were added or deleted, nobody knows which was which: each is as it is.
+        let before = opened.lights.get(index).filter(|_| is_as_many).unwrap_or(light).clone();
         changed |= light_settings(ui, index, light, &before);
     }
     ui.add_space(12.0);
