@@ -275,10 +275,12 @@ impl fmt::Display for Flattened {
         }
         if *failed_stencil > 0 {
             let what = amount(*failed_stencil, "flattened triangle");
-            let (cover, fail) = if *failed_stencil == 1 { ("covers", "fails") } else { ("cover", "fail") };
-            let mark =
-                if *is_marked { "which has the mark of another receiver" } else { "which is marked as no receiver" };
-            return write!(f, "{what} {cover} the surface, {mark}, and {fail} the stencil test");
+            let verb = if *failed_stencil == 1 { "is" } else { "are" };
+            let why = match is_marked {
+                true => "of another receiver: this surface has a mark of its own",
+                false => "over the surface, which is no receiver",
+            };
+            return write!(f, "{what} {verb} {why}, and the stencil test keeps shadow off it");
         }
         write!(f, "{} over it left no fragment", amount(*hidden, "flattened triangle"))
     }
@@ -343,9 +345,13 @@ mod tests {
     fn a_flattened_triangle_that_fails_says_which_test() {
         let marked = Flattened { failed_depth: 2, failed_stencil: 7, is_marked: true, ..Flattened::default() };
         assert_eq!(marked.to_string(), "2 flattened triangles over the surface fail the depth test against it");
-        let elsewhere = Flattened { failed_depth: 0, failed_stencil: 1, is_marked: false, ..marked };
+        let elsewhere = Flattened { failed_depth: 0, failed_stencil: 1, is_marked: false, ..marked.clone() };
         let expected =
-            "1 flattened triangle covers the surface, which is marked as no receiver, and fails the stencil test";
+            "1 flattened triangle is over the surface, which is no receiver, and the stencil test keeps shadow off it";
         assert_eq!(elsewhere.to_string(), expected);
+        let of_another = Flattened { failed_depth: 0, ..marked };
+        let expected = "7 flattened triangles are of another receiver: this surface has a mark of its own, and the \
+                        stencil test keeps shadow off it";
+        assert_eq!(of_another.to_string(), expected);
     }
 }

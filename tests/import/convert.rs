@@ -286,6 +286,17 @@ fn a_frame_that_its_program_drew_wrong_is_found_named_and_proven() {
     assert!(compared < 76_800 && far.lights.iter().all(|(error, _)| error.wrong_surface == 0), "{}", far.to_text());
 }
 
+/// Our light raises the count where it was added, so that no pixel is lit twice: that counts no volume.
+#[test]
+fn light_that_steps_where_it_is_added_is_no_volume() {
+    let (plan, capture) = converted(&mut session(), "own");
+    let names: Vec<&str> = plan.passes.iter().map(|pass| pass.name.as_str()).collect();
+    assert_eq!(names.iter().filter(|name| **name == "volumes").count(), 1, "{names:?}");
+    assert_eq!(capture.lights.len(), 1);
+    let of_light = plan.passes.iter().rev().find(|pass| pass.name == "light").expect("a light pass");
+    assert_eq!(of_light.recorded.as_ref().expect("recorded").groups, ["light"]);
+}
+
 /// Vulkan's clip space is wgpu's: nothing is rounded on the way.
 #[test]
 fn our_own_frame_on_vulkan_is_computed_anew_to_the_last_bit() {

@@ -55,6 +55,9 @@ pub(super) fn role(draw: &RawDraw, place: Place) -> Role {
     let writes: Vec<RawStencilOperation> = writing.filter(|op| *op != RawStencilOperation::Keep).collect();
     let counts = writes.iter().any(|operation| steps(*operation) != 0);
     let tests = faces.iter().any(|face| !matches!(face.compare, RawCompare::Always | RawCompare::Never));
+    // What is drawn where a test lets it, and steps there so that nothing is drawn twice, is light and no volume.
+    let draws = draw.blend.as_ref().is_some_and(|blend| blend.write.contains(&true));
+    let counts = counts && !(tests && draws);
     let writes_depth = draw.depth.is_some_and(|depth| depth.write);
     match (counts, tests, writes.is_empty()) {
         (true, ..) => Role::Counts,
