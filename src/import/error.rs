@@ -112,6 +112,14 @@ pub enum ImportError {
         /// The last line that it wrote.
         last: String,
     },
+    /// The script's process was ended by a signal: RenderDoc, its drivers, or somebody else.
+    #[error("RenderDoc's part was ended by signal {signal}{and_said}; run it again, and report this if it stays")]
+    Crashed {
+        /// Its number: 11 is SIGSEGV, 6 is SIGABRT, 9 is SIGKILL.
+        signal: i32,
+        /// The last line that it wrote, after a colon.
+        and_said: String,
+    },
     /// What the script left does not hold together.
     #[error("what RenderDoc's part wrote can't be used ({0}): please report it")]
     Folder(String),

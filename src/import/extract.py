@@ -91,7 +91,7 @@ def resource(bound):
 
 
 def opened():
-    """The file and its replay."""
+    """The file, its replay, and the first adapter's name."""
     codes = rd.ResultCode if hasattr(rd, "ResultCode") else rd.ReplayStatus
     kinds = {
         codes.FileNotFound: "missing",
@@ -111,12 +111,14 @@ def opened():
 
     rd.InitialiseReplay(rd.GlobalEnvironment(), [])
     file = rd.OpenCaptureFile()
+    # Waits for the thread that asks the drivers: it sets environment variables, which others must not read meanwhile.
+    gpus = file.GetAvailableGPUs()
     check(file.OpenFile(capture_file, "", None), "corrupt")
     if file.LocalReplaySupport() != rd.ReplaySupport.Supported:
         fail("replay", file.DriverName() + " captures are not replayed on this system")
     result, replay = file.OpenCapture(rd.ReplayOptions(), None)
     check(result, "replay")
-    return file, replay
+    return file, replay, gpus[0].name if len(gpus) else ""
 
 
 def leaves(actions, groups):
@@ -327,7 +329,7 @@ def draw(action):
 
 try:
     store = Store()
-    file, replay = opened()
+    file, replay, adapter = opened()
     is_gl = replay.GetAPIProperties().pipelineType == rd.GraphicsAPI.OpenGL
     if not is_gl and replay.GetAPIProperties().pipelineType != rd.GraphicsAPI.Vulkan:
         fail("api", file.DriverName())
@@ -381,12 +383,11 @@ try:
             event["draw"] = draw(action)
         events.append(event)
         say("progress", done + 1, len(actions))
-    gpus = file.GetAvailableGPUs()
     frame = {
         "format": 1,
         "recorder": "RenderDoc " + rd.GetVersionString(),
         "api": file.DriverName(),
-        "adapter": gpus[0].name if len(gpus) else "",
+        "adapter": adapter,
         "textures": textures,
         "before": before,
         "events": events,

@@ -71,7 +71,10 @@ def main():
     found = shutil.which(program[0])
     if found is None:
         fail("program", "there is no such program")
-    rd.InitialiseReplay(rd.GlobalEnvironment(), [])
+    environment = rd.GlobalEnvironment()
+    # The thread that does it sets environment variables, while `ExecuteAndInject` reads them: that crashed, now and then.
+    environment.enumerateGPUs = False
+    rd.InitialiseReplay(environment, [])
     options = rd.GetDefaultCaptureOptions()
     words = " ".join(shlex.quote(word) for word in program[1:])
     program_file, captures = os.path.abspath(found), os.path.join(folder, "capture")

@@ -44,9 +44,10 @@ pub enum Ended {
         words: String,
         last: String,
     },
-    /// It has ended without a word but this last line.
+    /// It has ended without a word but this last line, by a signal or by itself.
     Silent {
         last: String,
+        signal: Option<i32>,
     },
 }
 
@@ -110,8 +111,11 @@ impl Run {
     /// Why there is none.
     pub fn finish(&mut self, progress: &Progress) -> Result<String, Ended> {
         let result = self.wait(progress);
-        self.end();
-        result
+        let signal = self.end();
+        match result {
+            Err(Ended::Silent { last, .. }) => Err(Ended::Silent { last, signal }),
+            result => result,
+        }
     }
 
     fn wait(&self, progress: &Progress) -> Result<String, Ended> {
@@ -128,7 +132,7 @@ impl Run {
                     _ => {}
                 },
                 Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Err(Ended::Silent { last: self.last() }),
+                Err(RecvTimeoutError::Disconnected) => return Err(Ended::Silent { last: self.last(), signal: None }),
             }
             if progress.is_cancelled() {
                 return Err(Ended::Cancelled);
@@ -148,10 +152,11 @@ impl Run {
         self.last.lock().map(|last| last.clone()).unwrap_or_default()
     }
 
-    fn end(&mut self) {
+    /// The signal that has ended it, which is ours where nothing else had.
+    fn end(&mut self) -> Option<i32> {
         // Once the child is waited for, its number may be that of another process.
         if std::mem::replace(&mut self.has_ended, true) {
-            return;
+            return None;
         }
         // What has ended already needs no more ending: errors say nothing new.
         #[cfg(unix)]
@@ -160,7 +165,11 @@ impl Run {
             rustix::process::Signal::KILL,
         );
         let _ = self.child.kill();
-        let _ = self.child.wait();
+        let status = self.child.wait().ok()?;
+        #[cfg(unix)]
+        return std::os::unix::process::ExitStatusExt::signal(&status);
+        #[cfg(not(unix))]
+        return None;
     }
 }
 
@@ -302,8 +311,12 @@ fn common_error(ended: Ended, options: &Options) -> ImportError {
             ImportError::Write { file: std::env::temp_dir(), source: std::io::Error::other(words) }
         }
         Ended::Said { words, .. } => ImportError::Script { last: words },
-        Ended::Silent { last } if last.is_empty() => ImportError::Script { last: "without a word".to_owned() },
-        Ended::Silent { last } => ImportError::Script { last },
+        Ended::Silent { last, signal: Some(signal) } => {
+            let and_said = if last.is_empty() { String::new() } else { format!(": {last}") };
+            ImportError::Crashed { signal, and_said }
+        }
+        Ended::Silent { last, .. } if last.is_empty() => ImportError::Script { last: "without a word".to_owned() },
+        Ended::Silent { last, .. } => ImportError::Script { last },
     }
 }
 

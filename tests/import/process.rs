@@ -77,6 +77,8 @@ fn each_failure_has_its_own_words() {
     }
     assert_fails("echo boom >&2; exit 1", &IMPORT, 2, &["(boom)"]);
     assert_fails("exit 0", &IMPORT, 2, &["without a word"]);
+    assert_fails("kill -SEGV $$", &IMPORT, 2, &["ended by signal 11; run it again"]);
+    assert_fails("echo boom >&2; kill -ABRT $$", &RECORD, 2, &["ended by signal 6: boom; run it again"]);
     assert_fails("printf 'err\\nor\\001s %0500d' 7 >&2", &IMPORT, 2, &["(ors 000"]);
     assert_fails("head -c 3000000 /dev/urandom; head -c 3000000 /dev/urandom >&2", &IMPORT, 2, &["RenderDoc's part"]);
 }
