@@ -21,7 +21,7 @@ fn through(layer: u32, relative: vec3f) -> vec4f {
     }
     let place = clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5;
     // Outside its picture nothing is on the way; a small picture's edge is not clear.
-    if any(place < vec2f(0.0)) || any(place > vec2f(1.0)) {
+    if light.repeats_edge == 0u && (any(place < vec2f(0.0)) || any(place > vec2f(1.0))) {
         return vec4f(1.0);
     }
     return textureSampleLevel(silhouettes, smooth_sampler, place, layer, 0.0);

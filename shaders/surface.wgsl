@@ -31,6 +31,8 @@ struct Light {
     filter_width: u32,
     // Projected silhouettes reach behind the light.
     projects_backwards: u32,
+    // Beyond their pictures their last texels go on.
+    repeats_edge: u32,
     clip_from_relative: array<mat4x4f, 64>,
 }
 

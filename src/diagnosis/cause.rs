@@ -20,6 +20,8 @@ named_enum! {
         FarClip = "far-clip",
         /// Volumes end before the receiver.
         FiniteExtrusion = "finite-extrusion",
+        /// Far vertices of finite volumes are carried from the world's origin and not from the light.
+        LightNotAdded = "light-not-added",
         /// A caster's mesh has edges of one triangle, and only its light-facing triangles cast.
         OpenMesh = "open-mesh",
         /// A caster's mesh has edges of more than two triangles, and only light-facing triangles cast.
@@ -36,6 +38,10 @@ named_enum! {
         Clamped = "clamped",
         /// A count of a multiple of 256 reads as none.
         Wrap256 = "wrap-256",
+        /// Fewer bits than eight are counted in, and a count of a multiple of what they hold reads as none.
+        FewBits = "few-bits",
+        /// One bit tells odd from even, and an even count reads as none.
+        Parity = "parity",
         /// A count stops at 0, as what takes away came before what adds.
         OperationOrder = "operation-order",
         /// A light cap's depths are not those of the surface that it lies on.
@@ -64,6 +70,8 @@ named_enum! {
         ReverseProjection = "reverse-projection",
         /// A silhouette falls on what lies between the light and its caster.
         Between = "between",
+        /// The last texels of a silhouette's picture go on beyond it.
+        EdgeSmear = "edge-smear",
         /// A silhouette is not projected onto its own caster.
         SelfShadow = "self-shadow",
         /// Single precision cannot tell the two sides apart.
@@ -105,6 +113,10 @@ impl Cause {
                 "A far plane cuts surfaces or shadow volumes away, and what is cut away is not seen or not counted. Use \
                  an infinite depth mapping; clamped depth saves the volumes."
             }
+            Cause::LightNotAdded => {
+                "Far vertices are the way from light to vertex times a number, and the light's own place is not added \
+                 back: the volumes lean towards the world's origin. Carry them from the light."
+            }
             Cause::FiniteExtrusion => "The shadow volumes end before they reach the surface. Extrude them to infinity.",
             Cause::OpenMesh => {
                 "The mesh has holes, so its light-facing triangles do not bound a volume as those of a closed mesh do. \
@@ -135,6 +147,14 @@ impl Cause {
             }
             Cause::Wrap256 => {
                 "Exactly a multiple of 256 volumes overlap here, which eight bits hold as 0. Count in a float."
+            }
+            Cause::FewBits => {
+                "As many volumes overlap here as the bits of the stencil's mask hold as 0. Count in all eight bits, or \
+                 in a float."
+            }
+            Cause::Parity => {
+                "Each face turns one bit over, which tells an odd count from an even one: where two volumes overlap, \
+                 the surface reads as lit. Count up and down, and let counts wrap."
             }
             Cause::OperationOrder => {
                 "Counts stop at 0, and what takes away is drawn before what adds. Let counts wrap: then the order \
@@ -188,6 +208,10 @@ impl Cause {
             Cause::Between => {
                 "A silhouette is projected with no regard to distance, and falls on what stands before its caster. Use \
                  a shadow volume or a map."
+            }
+            Cause::EdgeSmear => {
+                "Beyond the silhouette's picture its last texels go on for ever, and the silhouette touches them. Keep \
+                 a clear border around it."
             }
             Cause::SelfShadow => {
                 "A silhouette is not projected onto its own caster, which cannot shadow itself. Use a shadow volume or \

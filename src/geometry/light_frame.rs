@@ -129,11 +129,26 @@ fn orthographic(casters: &[[DVec3; 3]], towards: DVec3, border: f64, is_reversed
     frame(origin, rotation, vec![clip])
 }
 
-/// Clip space from world space of a picture that a caster's silhouette fills, with room around it
-/// so that the picture's edge stays clear. `None` where a part of it is behind the light or level
+/// How much of the light's view a silhouette's picture has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SilhouetteView {
+    /// The caster's silhouette, with a ring of room around it or without.
+    Fitted {
+        /// With a ring, so that the picture's edge stays clear.
+        has_border: bool,
+    },
+    /// This much to each side of the direction of the caster's middle: of a lamp's view the tangent of half the angle, of a
+    /// sun's half the width in world units.
+    Fixed {
+        /// That much.
+        half: f64,
+    },
+}
+
+/// Clip space from world space of a picture of a caster's silhouette. `None` where a part of it is behind the light or level
 /// with it. All that is ahead of the light is at one depth.
 #[must_use]
-pub fn fit_silhouette(caster: &[DVec3], light: DVec4) -> Option<DMat4> {
+pub fn fit_silhouette(caster: &[DVec3], light: DVec4, view: SilhouetteView) -> Option<DMat4> {
     let from_light: Vec<DVec3> = caster.iter().map(|point| *point * light.w - light.truncate()).collect();
     let forward = from_light.iter().sum::<DVec3>().try_normalize()?;
     // Across the axis that the direction has least of.
@@ -156,7 +171,11 @@ pub fn fit_silhouette(caster: &[DVec3], light: DVec4) -> Option<DMat4> {
             slopes(side).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), s| (low.min(s), high.max(s)));
         let (middle, half) =
             if light.w == 0.0 { ((low + high) / 2.0, (high - low) / 2.0) } else { (0.0, high.max(-low)) };
-        let scale = SILHOUETTE_FILL / half.max(f64::MIN_POSITIVE);
+        let scale = match view {
+            SilhouetteView::Fitted { has_border: true } => SILHOUETTE_FILL / half.max(f64::MIN_POSITIVE),
+            SilhouetteView::Fitted { has_border: false } => 1.0 / half.max(f64::MIN_POSITIVE),
+            SilhouetteView::Fixed { half } => 1.0 / half.max(f64::MIN_POSITIVE),
+        };
         side.extend(-side.dot(origin) - middle * f64::from(light.w == 0.0)) * scale
     };
     let rows = [row(right), row(up), distance * 0.5, distance];
@@ -285,11 +304,13 @@ mod tests {
         assert!(lower.z < 0.0, "receivers beyond the box lie behind every caster");
     }
 
+    const FITTED: SilhouetteView = SilhouetteView::Fitted { has_border: true };
+
     #[test]
     fn a_silhouette_fills_its_picture_but_for_the_border() {
         let caster: Vec<DVec3> = quad(DVec3::new(1.0, 0.5, -2.0), 0.5).into_iter().flatten().collect();
         for light in [DVec4::new(0.0, 5.0, 1.0, 1.0), DVec4::new(0.3, 1.0, -0.2, 0.0)] {
-            let clip_from_world = fit_silhouette(&caster, light).expect("a picture");
+            let clip_from_world = fit_silhouette(&caster, light, FITTED).expect("a picture");
             let seen: Vec<DVec4> = caster.iter().map(|point| clip_from_world * point.extend(1.0)).collect();
             for axis in 0..2 {
                 let widest = seen.iter().map(|clip| (clip[axis] / clip.w).abs()).fold(0.0, f64::max);
@@ -301,7 +322,7 @@ mod tests {
             let shadow = clip_from_world * (caster[0] + away * 3.0).extend(1.0);
             assert!((shadow.truncate() / shadow.w - seen[0].truncate() / seen[0].w).length() < 1e-12);
         }
-        assert_eq!(fit_silhouette(&caster, DVec4::new(1.0, 0.5, -2.0, 1.0)), None, "the light is within it");
+        assert_eq!(fit_silhouette(&caster, DVec4::new(1.0, 0.5, -2.0, 1.0), FITTED), None, "the light is within it");
     }
 
     #[test]

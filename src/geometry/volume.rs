@@ -36,6 +36,9 @@ pub enum Extrusion {
     /// one, with `s` the length of the caster's bounding box's diagonal. What lies beyond is lit:
     /// a point light close to its caster moves vertices hardly at all.
     Finite(f64),
+    /// A known mistake: where [`Extrusion::Finite`] has `L + (K + 1)·(V − L)`, the light is not added back, and far
+    /// vertices are carried from the world's origin. A directional light has no place to add: the same as that.
+    FromOrigin(f64),
 }
 
 /// What closes a volume away from the light.
@@ -63,7 +66,9 @@ impl Extruder {
     #[must_use]
     pub fn new(world: &[DVec3], light: DVec4, extrusion: Extrusion) -> Extruder {
         let size = match (extrusion, light.w == 0.0) {
-            (Extrusion::Finite(_), true) => AxisBox::around(world.iter().copied()).diagonal(),
+            (Extrusion::Finite(_) | Extrusion::FromOrigin(_), true) => {
+                AxisBox::around(world.iter().copied()).diagonal()
+            }
             _ => 0.0,
         };
         Extruder { light, extrusion, size }
@@ -88,12 +93,13 @@ impl Extruder {
         let light = self.light.truncate();
         match self.extrusion {
             Extrusion::Infinite => (position * self.light.w - light).extend(0.0),
-            Extrusion::Finite(factor) if self.light.w == 0.0 => {
+            Extrusion::Finite(factor) | Extrusion::FromOrigin(factor) if self.light.w == 0.0 => {
                 // The largest component first: a light's direction may have any length.
                 let direction = (light / light.abs().max_element()).normalize();
                 (position - direction * (factor * self.size)).extend(1.0)
             }
             Extrusion::Finite(factor) => (position + (position - light) * factor).extend(1.0),
+            Extrusion::FromOrigin(factor) => ((position - light) * (factor + 1.0)).extend(1.0),
         }
     }
 

@@ -54,6 +54,8 @@ struct LightUniform {
     bias_receiver_plane: u32,
     filter_width: u32,
     projects_backwards: u32,
+    repeats_edge: u32,
+    padding: [u32; 3],
     clip_from_relative: [[f32; 16]; PlanMap::MOST_FACES],
 }
 
@@ -168,6 +170,8 @@ fn light_uniform(index: usize, light: &PlanLight, wraps: bool) -> LightUniform {
         bias_receiver_plane: lookup.map_or(0, |lookup| u32::from(lookup.bias_receiver_plane)),
         filter_width: lookup.map_or(1, |lookup| lookup.filter_width),
         projects_backwards: u32::from(light.map.as_ref().is_some_and(|map| map.projects_backwards)),
+        repeats_edge: u32::from(light.map.as_ref().is_some_and(|map| map.repeats_edge)),
+        padding: [0; 3],
         clip_from_relative,
     }
 }

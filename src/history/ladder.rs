@@ -4,7 +4,7 @@
 
 use super::{Count, Event, PixelHistory};
 use crate::math::depth::DepthCurve;
-use crate::plan::Side;
+use crate::plan::{CountBits, Side};
 use std::collections::BTreeMap;
 
 /// The faces of one light's volumes along the ray of a pixel.
@@ -14,8 +14,13 @@ pub struct Ladder {
     pub surface: Option<f64>,
     /// Where faces count: behind the surface from infinity inwards, else from the eye outwards.
     pub side: Side,
-    /// What the count began with: volumes that contain the near plane, where that was counted.
+    /// What the count began with: what it was cleared to, and the volumes that contain the near plane, where that was
+    /// counted.
     pub start: i32,
+    /// What it was cleared to alone.
+    pub cleared_to: i32,
+    /// The bits that a stencil keeps of the count.
+    pub bits: CountBits,
     /// What it ended with.
     pub count: i32,
     /// The same as the light pass tests it: in a stencil eight bits of it.
@@ -52,7 +57,9 @@ impl PixelHistory {
     pub fn ladder(&self, light: usize, curve: &DepthCurve) -> Option<Ladder> {
         let of_light = |event: &&Event| event.light == Some(light) && event.is_of_volume();
         let near = || self.events.iter().filter(of_light).filter(|event| !event.is_from_camera);
-        let start = near().map(Event::counted).sum();
+        let cleared_to = self.cleared_to(light);
+        let start = cleared_to + near().map(Event::counted).sum::<i32>();
+        let bits = self.counts_in.get(light).copied().flatten().unwrap_or(CountBits::EIGHT);
         let faces = || self.events.iter().enumerate().filter(|(_, event)| of_light(event) && event.is_from_camera);
         let first = faces().map(|(_, event)| event).next().or_else(|| near().next())?;
         // In two passes every face is drawn twice, and counts in one of them: there it is a rung.
@@ -84,6 +91,15 @@ impl PixelHistory {
         } else {
             rungs.iter_mut().for_each(&mut run)
         }
-        Some(Ladder { surface: curve.distance(first.before.depth), side, start, count, tested, rungs })
+        Some(Ladder {
+            surface: curve.distance(first.before.depth),
+            side,
+            start,
+            cleared_to,
+            bits,
+            count,
+            tested,
+            rungs,
+        })
     }
 }

@@ -28,7 +28,7 @@ pub use story::operation_name;
 pub use why::{Count, Counted, Faces, Flattened, LightPass, Why};
 
 use crate::capture::{Capture, FrameTarget, Snapshot};
-use crate::plan::{Clip, FramePlan, Part, Side, Visibility};
+use crate::plan::{Clip, CountBits, FramePlan, Part, Side, Visibility};
 use crate::stencil_machine::Stored;
 use wgpu::StencilOperation;
 
@@ -60,8 +60,8 @@ pub struct PixelHistory {
     /// Events without a fragment that there must be: clears that the plan asks for, and triangles
     /// that geometry says were culled or clipped.
     pub without_fragment: u32,
-    /// For each light: does the technique count its shadow volumes?
-    pub counts_volumes: Vec<bool>,
+    /// For each light whose shadow volumes the technique counts: in which bits of the stencil.
+    pub counts_in: Vec<Option<CountBits>>,
     /// Where the log and geometry contradict each other.
     pub contradictions: Vec<Disagreement>,
 }
@@ -235,11 +235,24 @@ impl Event {
     }
 
     /// How much it added to the count of shadow volumes, in the stencil or in a float: a step round
-    /// the end of eight bits counts as one.
+    /// the end of the bits that are written counts as one, and so does a bit turned over.
     #[must_use]
     pub fn counted(&self) -> i32 {
-        let in_stencil = self.after.stencil.wrapping_sub(self.before.stencil) as i8;
-        i32::from(in_stencil) + (self.after.count - self.before.count) as i32
+        let in_float = (self.after.count - self.before.count) as i32;
+        let in_stencil = match self.operation().and_then(step_of) {
+            _ if self.after.stencil == self.before.stencil => 0,
+            Some(step) => step,
+            None => i32::from(self.after.stencil.wrapping_sub(self.before.stencil) as i8),
+        };
+        in_stencil + in_float
+    }
+
+    /// What was done to the stencil, where a fragment was tested against one.
+    fn operation(&self) -> Option<StencilOperation> {
+        match self.triangle()?.fate {
+            Fate::Tested { operation, .. } => operation,
+            _ => None,
+        }
     }
 
     /// It changed what the pixel holds, or reached its colour: faces of shadow volumes have none.
@@ -252,13 +265,9 @@ impl Event {
     /// What it was to add to the count: also where the count stopped at 0 or 255 and did not change.
     #[must_use]
     pub fn step(&self) -> i32 {
-        use StencilOperation::{DecrementClamp, DecrementWrap, IncrementClamp, IncrementWrap};
-        let fate = self.triangle().map(|one| one.fate);
-        let Some(Fate::Tested { operation: Some(operation), .. }) = fate else { return self.counted() };
-        match operation {
-            IncrementClamp | IncrementWrap => 1,
-            DecrementClamp | DecrementWrap => -1,
-            _ => 0,
+        match self.operation() {
+            None => self.counted(),
+            Some(operation) => step_of(operation).unwrap_or(0),
         }
     }
 
@@ -269,7 +278,28 @@ impl Event {
     }
 }
 
+/// What an operation adds to a count; one that turns bits over adds as well, and parity is what is kept of the sum.
+fn step_of(operation: StencilOperation) -> Option<i32> {
+    use StencilOperation::{DecrementClamp, DecrementWrap, IncrementClamp, IncrementWrap, Invert};
+    match operation {
+        IncrementClamp | IncrementWrap | Invert => Some(1),
+        DecrementClamp | DecrementWrap => Some(-1),
+        _ => None,
+    }
+}
+
 impl PixelHistory {
+    /// What a light's count was cleared to, where it was.
+    pub(crate) fn cleared_to(&self, light: usize) -> i32 {
+        let clears = self.events.iter().filter(|event| event.light == Some(light));
+        let cleared = clears.filter_map(|event| match event.kind {
+            EventKind::ClearStencil => Some(i32::from(event.after.stencil)),
+            EventKind::ClearCount => Some(event.after.count as i32),
+            _ => None,
+        });
+        cleared.last().unwrap_or(0)
+    }
+
     /// Do the events make what the GPU stored, after every pass and bit for bit, and are they whole
     /// and in order? If not, it is a bug of ours; [`PixelHistory::disagreements`] tells where.
     #[must_use]

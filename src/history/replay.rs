@@ -3,8 +3,8 @@
 use super::{Disagreement, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent, captured_after};
 use crate::capture::{Capture, FrameTarget};
 use crate::plan::{
-    AttachmentRole, ColorWrite, Coverage, Covering, Draw, Face, FragmentLog, FramePlan, LightId, Part, Pass, Program,
-    StartContent, ViewId, Visibility,
+    AttachmentRole, ColorWrite, CountBits, Coverage, Covering, Draw, Face, FragmentLog, FramePlan, LightId, Part, Pass,
+    Program, StartContent, ViewId, Visibility,
 };
 use crate::stencil_machine::{self, Fragment};
 use wgpu::CompareFunction;
@@ -56,7 +56,7 @@ impl PixelHistory {
             labels: capture.lights.iter().map(|light| light.shadow.as_ref()?.byte_at(pixel)).collect(),
             counted: log.counted,
             without_fragment: clears(plan) + hidden,
-            counts_volumes: counts_volumes(plan),
+            counts_in: counts_in(plan),
             contradictions: replay.contradictions,
         }
     }
@@ -189,12 +189,12 @@ fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
     }
 }
 
-/// For each light, whether any pass draws parts of its shadow volumes, over this pixel or elsewhere.
-fn counts_volumes(plan: &FramePlan) -> Vec<bool> {
-    let is_volume = |draw: &Draw| draw.part.is_of_volume();
+/// For each light, the bits that parts of its shadow volumes write, if any pass draws some, over this pixel or elsewhere.
+fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
     let counts = |light: usize| {
         let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
-        passes.flat_map(|pass| &pass.draws).any(is_volume)
+        let mut draws = passes.flat_map(|pass| &pass.draws).filter(|draw| draw.part.is_of_volume());
+        draws.next().map(|draw| CountBits::of_mask(draw.raster.stencil.write_mask))
     };
     (0..plan.lights.len()).map(counts).collect()
 }

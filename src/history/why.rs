@@ -3,7 +3,7 @@
 use super::{Event, EventKind, Fate, PixelHistory, Test, TriangleEvent};
 use crate::capture::FrameTarget;
 use crate::numbers;
-use crate::plan::{Part, Side, Visibility};
+use crate::plan::{CountBits, Part, Side, Visibility};
 use crate::truth::{BACKGROUND, FACES_AWAY};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -26,10 +26,14 @@ pub struct Counted {
     pub side: Side,
     /// Those that counted.
     pub faces: Faces,
+    /// What the count was cleared to: the volumes around the eye, where z-pass is told to begin with them.
+    pub cleared_to: i32,
     /// Volumes that contain the near plane, where that was asked.
     pub near: Option<i32>,
-    /// What all that counted add up to, the near plane's too.
+    /// What all that counted add up to, with what the count was cleared to and the near plane's.
     pub sum: i32,
+    /// What a stencil keeps of that.
+    pub bits: CountBits,
     /// What was left, as the light pass reads it.
     pub count: Count,
 }
@@ -91,15 +95,15 @@ impl PixelHistory {
         let of_light = |event: &&Event| event.light == Some(light) && event.target != FrameTarget::Labels;
         let events = || self.events.iter().filter(of_light);
         let flattened: Vec<&Event> = events().filter(|event| part(event) == Some(Part::PlanarShadow)).collect();
-        let counts = self.counts_volumes.get(light).copied().unwrap_or(false);
-        if !counts && flattened.is_empty() {
+        let bits = self.counts_in.get(light).copied().flatten();
+        if bits.is_none() && flattened.is_empty() {
             return None;
         }
         let label = self.labels.get(light).copied().flatten();
         if label == Some(BACKGROUND) {
             return Some(Why::Background);
         }
-        let counted = counts.then(|| self.counted(light));
+        let counted = bits.map(|bits| self.counted(light, bits));
         let pass = match self.light_pass(light, counted.as_ref()) {
             LightPass::Adds if label == Some(FACES_AWAY) => LightPass::FacesAway,
             pass => pass,
@@ -110,7 +114,7 @@ impl PixelHistory {
         })
     }
 
-    fn counted(&self, light: usize) -> Counted {
+    fn counted(&self, light: usize, bits: CountBits) -> Counted {
         let faces = || self.events.iter().filter(|event| event.light == Some(light) && event.is_of_volume());
         let mut counted = Faces::default();
         for event in faces().filter(|event| event.is_from_camera && event.step() != 0) {
@@ -120,11 +124,14 @@ impl PixelHistory {
             counted.stopped += u32::from(event.counted() == 0);
         }
         let near = faces().filter(|event| !event.is_from_camera);
+        let cleared_to = self.cleared_to(light);
         Counted {
             side: self.counted_side(light).unwrap_or(Side::InFront),
             faces: counted,
+            cleared_to,
             near: near.clone().next().map(|_| near.map(Event::counted).sum()),
-            sum: faces().map(Event::counted).sum(),
+            sum: cleared_to + faces().map(Event::counted).sum::<i32>(),
+            bits,
             count: self.counted_at(light),
         }
     }
@@ -198,7 +205,10 @@ impl fmt::Display for Why {
 
 impl fmt::Display for Counted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Counted { side, faces, near, sum, count } = self;
+        let Counted { side, faces, cleared_to, near, sum, bits, count } = self;
+        if *cleared_to != 0 {
+            write!(f, "the count begins at {cleared_to}; ")?;
+        }
         if let Some(near) = near {
             // More back than front faces in it leave less than none.
             let sign = if *near < 0 { "−" } else { "" };
@@ -234,10 +244,10 @@ impl fmt::Display for Counted {
             )?;
         }
         match count {
-            Count::Stencil(byte)
-                if i64::from(*sum).rem_euclid(256) == i64::from(*byte) && !(-128..=255).contains(sum) =>
-            {
-                write!(f, "; together {sum}, which eight bits hold as {byte}")
+            Count::Stencil(byte) if bits.hold_otherwise(*sum, *byte) => {
+                let sign = if *sum < 0 { "−" } else { "" };
+                let verb = if bits.modulus() == 2 { "holds" } else { "hold" };
+                write!(f, "; together {sign}{}, which {bits} {verb} as {byte}", sum.unsigned_abs())
             }
             Count::Stencil(byte) if *sum > 127 => write!(f, "; count {byte}"),
             count => write!(f, "; count {count}"),
@@ -309,7 +319,7 @@ mod tests {
 
     fn counted(faces: Faces, near: Option<i32>, sum: i32, count: Count) -> Counted {
         let side = if near.is_none() { Side::Behind } else { Side::InFront };
-        Counted { side, faces, near, sum, count }
+        Counted { side, faces, cleared_to: 0, near, sum, bits: CountBits::EIGHT, count }
     }
 
     #[test]

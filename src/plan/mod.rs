@@ -13,6 +13,7 @@
 //! ```
 
 mod buffers;
+mod count_bits;
 mod coverage;
 mod decided_by;
 mod decision;
@@ -29,6 +30,7 @@ mod unseen;
 pub mod words;
 
 pub use buffers::{Blob, DrawMesh, SurfaceData};
+pub use count_bits::CountBits;
 pub use coverage::{Clip, Coverage, Covering, Face, FragmentLog, LoggedFragment};
 pub use decided_by::{CountOf, DecidedBy, Side};
 pub use decision::Decision;
@@ -183,6 +185,9 @@ pub struct PlanMap {
     pub lookup: Option<MapLookup>,
     /// Projected colours reach behind the light too.
     pub projects_backwards: bool,
+    /// Beyond its picture its last texels go on, as a lookup clamped to the edge has them; else all of the light arrives.
+    #[serde(default)]
+    pub repeats_edge: bool,
     /// Its texture stays from frame to frame while what draws it is the same.
     pub is_kept: bool,
 }

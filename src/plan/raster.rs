@@ -101,6 +101,13 @@ impl RasterState {
         self
     }
 
+    /// The same, with these bits of the stencil written and no others, and only they are tested.
+    #[must_use]
+    pub fn writing(mut self, mask: u8) -> RasterState {
+        (self.stencil.read_mask, self.stencil.write_mask) = (mask.into(), mask.into());
+        self
+    }
+
     /// Turned round for depth where greater is farther: tests and biases change sign.
     #[must_use]
     pub fn for_standard_depth(mut self) -> RasterState {

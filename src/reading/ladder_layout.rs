@@ -192,6 +192,7 @@ fn middle_distance(ladder: &Ladder) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::history::{Count, Rung};
+    use crate::plan::CountBits;
 
     /// With room for all.
     fn placed(ladder: &Ladder, near: f64, selected: Option<usize>, open: &[Range<usize>]) -> Vec<Placed> {
@@ -200,8 +201,16 @@ mod tests {
 
     /// Rungs at distances, each with what it added, counted from infinity.
     fn ladder(surface: Option<f64>, rungs: &[(f64, i32)]) -> Ladder {
-        let mut ladder =
-            Ladder { surface, side: Side::Behind, start: 0, count: 0, tested: Count::Stencil(0), rungs: Vec::new() };
+        let mut ladder = Ladder {
+            surface,
+            side: Side::Behind,
+            start: 0,
+            cleared_to: 0,
+            bits: CountBits::EIGHT,
+            count: 0,
+            tested: Count::Stencil(0),
+            rungs: Vec::new(),
+        };
         let rung = |(event, (distance, added)): (usize, &(f64, i32))| Rung {
             event,
             distance: *distance,

@@ -5,10 +5,11 @@
 
 use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot};
 use crate::history::PixelHistory;
-use crate::plan::{DecidedBy, Side};
+use crate::plan::{CountBits, DecidedBy, Side};
 use crate::reading::counts;
 use crate::reading::format;
 use crate::reading::map_decision::MapDecision;
+use crate::technique::VolumeSettings;
 use crate::truth::{BACKGROUND, FACES_AWAY, LIT};
 
 /// A sentence with what stands behind it.
@@ -134,7 +135,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
     let in_float = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at));
     let decides = capture.decided_by(light).counts_in_floats();
     if let Some(count) = in_float.filter(|_| decides) {
-        return counted_in_float(count, is_dark, side.preposition(), title);
+        return counted_in_float(VolumeSettings::read(&capture.settings), count, is_dark, side.preposition(), title);
     }
     let Some(count) = tested_count(capture, light, at) else {
         return Verdict {
@@ -143,6 +144,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
             by_history: ByHistory::Replaced,
         };
     };
+    let settings = VolumeSettings::read(&capture.settings);
     let shown = crate::numbers::signed(count);
     let title = format!("{title}: its stencil count is {shown}.");
     let side = side.preposition();
@@ -156,9 +158,11 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
         ),
         (false, 0) if in_float.is_some_and(|count| count != 0.0) => {
             let count = in_float.unwrap_or_default();
-            format!("{count} volumes contain the surface, which eight bits read as 0: the light pass adds the light.")
+            let bits = CountBits::of_mask(settings.mask().into());
+            let verb = if bits.modulus() == 2 { "reads" } else { "read" };
+            format!("{count} volumes contain the surface, which {bits} {verb} as 0: the light pass adds the light.")
         }
-        (false, 0) => format!("The volume faces {side} the surface cancel out, so the light pass adds the light."),
+        (false, 0) => cancels_out(settings, side),
         // Label and count disagree: say so, and do not explain it away.
         (_, count) => format!("The mask does not match the count {count} that the light pass tested."),
     };
@@ -171,8 +175,14 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
     Verdict { title, reason, by_history }
 }
 
+/// A count of none, and what it is the sum of.
+fn cancels_out(settings: VolumeSettings, side: &str) -> String {
+    let began = if settings.starts_at_eye { "What the count began with and the" } else { "The" };
+    format!("{began} volume faces {side} the surface cancel out, so the light pass adds the light.")
+}
+
 /// A count that is kept in a float has a sign, and no limits.
-fn counted_in_float(count: f32, is_dark: bool, side: &str, title: &str) -> Verdict {
+fn counted_in_float(settings: VolumeSettings, count: f32, is_dark: bool, side: &str, title: &str) -> Verdict {
     let shown = counts::text(count);
     let title = format!("{title}: its count is {shown}.");
     let reason = match is_dark {
@@ -187,9 +197,7 @@ fn counted_in_float(count: f32, is_dark: bool, side: &str, title: &str) -> Verdi
             "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it adds \
              nothing."
         ),
-        false if count == 0.0 => {
-            format!("The volume faces {side} the surface cancel out, so the light pass adds the light.")
-        }
+        false if count == 0.0 => cancels_out(settings, side),
         // Label and count disagree: say so, and do not explain it away.
         _ => format!("The mask does not match the count {shown} that the light pass read."),
     };

@@ -106,7 +106,7 @@ pub use frame::{Drawn, Frame, Job, Piece, Placed, StencilUse};
 pub use named::Technique;
 pub use plan::plan;
 pub use settings::{
-    CommonSettings, MapSettings, PlanarSettings, SettingSpec, SettingValues, TextureSettings, Values, VolumeSettings,
-    WhoCasts,
+    CommonSettings, CountsBy, MapSettings, PlanarSettings, SettingSpec, SettingValues, TextureSettings, Values,
+    VolumeSettings, WhoCasts,
 };
 pub use volume::casting;

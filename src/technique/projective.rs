@@ -11,7 +11,8 @@ use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::settings::TextureSettings;
 use super::silhouettes::{self, LayerPass};
-use crate::geometry::light_frame;
+use crate::geometry::light_frame::{self, SilhouetteView};
+use crate::math::AxisBox;
 use crate::plan::{DecidedBy, Decision, FramePlan, LeftOut, LightId, PlanMap, Visibility};
 use glam::DMat4;
 
@@ -91,6 +92,14 @@ fn casting_objects(frame: &mut Frame) -> Vec<usize> {
     objects
 }
 
+/// Half of what a lamp's picture has that is not fitted.
+const TANGENT_OF_45_DEGREES: f64 = 1.0;
+
+/// The diagonal of the box around all objects.
+fn size_of_scene(frame: &Frame) -> f64 {
+    AxisBox::around(frame.placed.iter().flat_map(|placed| placed.world.iter().copied())).diagonal()
+}
+
 fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize], settings: &TextureSettings) {
     let mut matrices = vec![DMat4::IDENTITY; layers.len()];
     let mut passes = Vec::new();
@@ -101,9 +110,13 @@ fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize], settings
             frame.plan.left_out.push(LeftOut::named(Decision::Silhouette, &name, light.name(), because));
             continue;
         }
-        let Some(clip_from_world) =
-            light_frame::fit_silhouette(&frame.placed[*object].world, frame.light_position(light))
-        else {
+        let position = frame.light_position(light);
+        let view = match settings.fits {
+            true => SilhouetteView::Fitted { has_border: !settings.repeats_edge },
+            false if position.w == 0.0 => SilhouetteView::Fixed { half: size_of_scene(frame) / 2.0 },
+            false => SilhouetteView::Fixed { half: TANGENT_OF_45_DEGREES },
+        };
+        let Some(clip_from_world) = light_frame::fit_silhouette(&frame.placed[*object].world, position, view) else {
             let because = "it reaches behind the light or into its plane, so no picture holds it: it casts nothing";
             frame.plan.left_out.push(LeftOut::named(Decision::Silhouette, &name, light.name(), because));
             continue;
@@ -116,9 +129,11 @@ fn add_silhouettes(frame: &mut Frame, light: LightId, layers: &[usize], settings
     if passes.is_empty() {
         return;
     }
-    let purpose = "Draws the caster as the light sees it, in a frame that fits it: not how far it is, but how much \
-                   light it lets through.";
+    let frame_of_it = if settings.fits { "a frame that fits it" } else { "a frame that is alike for all casters" };
+    let purpose = format!(
+        "Draws the caster as the light sees it, in {frame_of_it}: not how far it is, but how much light it lets through."
+    );
     let names = layers.iter().map(|object| frame.placed[*object].object.name.clone()).collect();
-    silhouettes::add_map(frame, light, settings, (names, matrices), passes, purpose);
+    silhouettes::add_map(frame, light, settings, (names, matrices), passes, &purpose);
     frame.plan.lights[light.0].decided_by = DecidedBy::Silhouettes;
 }

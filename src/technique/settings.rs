@@ -15,7 +15,7 @@ pub use face::{SettingSpec, SettingValues, Values};
 pub(super) use maps::SIZE;
 pub use maps::{MapSettings, TextureSettings};
 pub use planar::PlanarSettings;
-pub use volume::{VolumeSettings, WhoCasts};
+pub use volume::{CountsBy, VolumeSettings, WhoCasts};
 
 use super::named::Technique;
 
@@ -30,7 +30,8 @@ impl Technique {
             Technique::None | Technique::RayTraced | Technique::Auto => &COMMON,
             Technique::Planar => &planar::SETTINGS,
             Technique::PlanarTexture => &maps::PLANAR_TEXTURE,
-            Technique::ZPass | Technique::ZFail | Technique::ZPassPlus => &volume::VOLUME,
+            Technique::ZPass => &volume::Z_PASS,
+            Technique::ZFail | Technique::ZPassPlus => &volume::VOLUME,
             Technique::ShadowMap => &maps::SHADOW_MAP,
             Technique::Projective => &maps::PROJECTIVE,
         }

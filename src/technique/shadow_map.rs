@@ -132,6 +132,7 @@ fn add_map(frame: &mut Frame, light: LightId, settings: &MapSettings) {
             filter_width: settings.filter_width,
         }),
         projects_backwards: false,
+        repeats_edge: false,
         is_kept: settings.keeps,
     });
 }

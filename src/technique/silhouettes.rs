@@ -73,6 +73,7 @@ pub fn add_map(
         layer_names,
         lookup: None,
         projects_backwards: settings.projects_backwards,
+        repeats_edge: settings.repeats_edge,
         is_kept: settings.keeps,
     });
 }

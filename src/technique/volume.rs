@@ -14,12 +14,13 @@
 
 mod counting;
 mod drawn;
+mod eye_count;
 mod near_count;
 
 use super::casters::{self, Darkened};
 use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
-use super::settings::{VolumeSettings, WhoCasts};
+use super::settings::{CountsBy, VolumeSettings, WhoCasts};
 use super::{Choice, PlanError};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
 use crate::plan::{CountOf, DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Side, Visibility};
@@ -192,18 +193,23 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
     if usual == Counting::InFrontPlus {
         near_count::pass(frame, light, settings, &volumes);
     }
-    for step in Step::all(settings.two_pass) {
+    let start = settings.starts_at_eye.then(|| eye_count::at(frame, light, &volumes) as u8);
+    for step in Step::all(settings) {
         let draws: Vec<Draw> = volumes.iter().flat_map(|volume| volume.draws(settings, *step)).collect();
         if draws.is_empty() && !decides.keeps_empty_pass() {
             frame.leave_out(Decision::VolumePass, light.name(), "no caster's volume is needed");
             continue;
         }
-        frame.stencil_pass(light, step.name(), &counting::purpose(counted, light, *step), draws);
+        frame.stencil_pass(light, step.name(), &counting::purpose(counted, light, *step, settings, start), draws);
+        if *step == Step::all(settings)[0] {
+            frame.begin_stencil_at(start.unwrap_or(0));
+        }
     }
-    frame.mask_pass(light, &[Drawn::shadow(), Drawn::lit().where_stencil(0xff, 0)]);
+    let mask = settings.mask().into();
+    frame.mask_pass(light, &[Drawn::shadow(), Drawn::lit().where_stencil(mask, 0)]);
     let purpose = "Adds the light where the count is zero, and raises the count there, so that no pixel is lit twice. \
                    Everywhere else the surface is inside a shadow volume and stays dark.";
-    frame.light_pass(light, purpose, &Drawn::light_once_where_zero(0xff));
+    frame.light_pass(light, purpose, &Drawn::light_once_where_zero(mask));
 }
 
 /// What a count of these counts; `None` if there are none.
@@ -227,7 +233,7 @@ fn counted_by(volumes: &[Volume], usual: Counting) -> Option<Counting> {
 /// draw, and stops nowhere.
 fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options: &VolumeSettings, volumes: &[Volume]) {
     frame.add_count(light);
-    if options.two_pass || options.clamp {
+    if options.two_pass || options.operations != CountsBy::Wrapping {
         let because = "a float target adds and takes away in one draw, and has no limits to stop at";
         frame.leave_out(Decision::TwoPasses, light.name(), because);
     }
@@ -235,8 +241,16 @@ fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options
         near_count::pass(frame, light, options, volumes);
     }
     let draws = volumes.iter().flat_map(|volume| volume.float_draws(options)).collect();
-    let purpose = counting::purpose(counted_by(volumes, counting), light, Step::BothFaces);
+    let start = options.starts_at_eye.then(|| eye_count::at(frame, light, volumes));
+    let purpose = counting::purpose(
+        counted_by(volumes, counting),
+        light,
+        Step::BothFaces,
+        options,
+        start.map(|start| start as u8),
+    );
     frame.count_pass(light, Step::BothFaces.name(), &purpose, draws);
+    frame.begin_count_at(light, start.unwrap_or(0));
     frame.mask_pass(light, &[Drawn::lit_by(Visibility::Count)]);
     let purpose = "Adds the light where the count is zero. Everywhere else the surface is inside a shadow volume and \
                    stays dark.";
@@ -245,7 +259,7 @@ fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options
 
 /// All volumes of a light, and whether they may count beyond eight bits although nobody asked for that.
 fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides: &impl Decides) -> (Vec<Volume>, bool) {
-    let (mut volumes, mut counted) = (Vec::new(), Vec::new());
+    let mut volumes = Vec::new();
     for index in 0..frame.placed.len() {
         let object = frame.placed[index].object;
         if !object.casts || object.mesh.triangles().is_empty() {
@@ -276,15 +290,14 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
             frame.leave_out(Decision::Caster, &object.name, because);
             continue;
         }
-        let mut needed = needed_parts(frame, form, &parts, object);
+        let mut needed = needed_parts(frame, form, &parts, object, options.caps);
         needed.retain(|part| !part.triangles.is_empty());
         let mesh = frame.add_mesh(mesh);
         let is_body = options.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
-        volumes.push(Volume { caster: object.name.clone(), counting: form.counting, is_body, mesh, parts, needed });
-        counted.push(index);
+        let (caster, counting) = (object.name.clone(), form.counting);
+        volumes.push(Volume { object: index, caster, counting, is_body, mesh, parts, needed });
     }
-    let pairs = volumes.iter().zip(&counted);
-    let mut casting = pairs.flat_map(|(volume, index): (&Volume, &usize)| volume.casting_triangles(frame, *index));
+    let mut casting = volumes.iter().flat_map(|volume: &Volume| volume.casting_triangles(frame));
     let may_overflow = decides.may_overflow(&mut casting);
     drop(casting);
     if may_overflow {

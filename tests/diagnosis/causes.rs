@@ -5,7 +5,7 @@ use super::{SMALL, diagnose, faults, first, session, told};
 use std::collections::BTreeSet;
 use stencilscope::diagnosis::{Cause, Diagnosis, MeshTrouble, Proof};
 use stencilscope::plan::Part;
-use stencilscope::scene::builtin;
+use stencilscope::scene::{Light, builtin};
 use stencilscope::session::{CaptureRequest, Session};
 use stencilscope::technique::Technique;
 
@@ -68,6 +68,62 @@ fn two_causes_at_once_are_both_named() {
         }
     }
     assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+/// What a setting makes wrong, a setting mends.
+#[test]
+fn caps_that_a_setting_leaves_out_and_a_wrong_order_are_mended_by_it() {
+    let mut session = session();
+    let clamped_in_turn = [("operations", "clamp"), ("faces", "two-pass"), ("order", "subtract-first")];
+    let cases: [(Cause, &[(&str, &str)], &str); 4] = [
+        (Cause::MissingDarkCap, &[("caps", "light")], "set caps = both"),
+        (Cause::MissingLightCap, &[("caps", "dark")], "set caps = both"),
+        (Cause::OperationOrder, &clamped_in_turn, "set operations = wrap"),
+        (Cause::MissingLightCap, &[("caps", "none")], "set caps = both"),
+    ];
+    for (cause, settings, mend) in cases {
+        let provoked = |seed| {
+            let of = if settings == [("caps", "none")] { Cause::MissingDarkCap } else { cause };
+            Provocation { choice: set(Technique::ZFail, settings), fault: None, ..provoke(of, seed) }
+        };
+        let found = (0..SEEDS).map(|seed| diagnose(&mut session, &provoked(seed))).find(|found| found.is_bad());
+        let found = found.expect("a wrong pixel");
+        assert!(proven(&found).contains(&cause), "{cause}: {}", told(&found));
+        assert!(told(&found).contains(mend), "{cause}: {}", told(&found));
+    }
+}
+
+/// A picture that does not fit its caster has no texels for all of it.
+#[test]
+fn a_silhouette_that_does_not_fit_its_picture_is_outside_the_map() {
+    let mut session = session();
+    let provoked = |seed| {
+        let mut provoked = provoke(Cause::Aliasing, seed);
+        provoked.choice = set(Technique::Projective, &[("fit", "off"), ("size", "2048")]);
+        // So near that it covers more than ninety degrees.
+        let caster = provoked.scene.objects[1].pose.translate;
+        provoked.scene.lights = vec![Light::point(caster + glam::DVec3::new(0.05, 0.25, 0.0))];
+        provoked
+    };
+    let found = (0..SEEDS).map(|seed| diagnose(&mut session, &provoked(seed))).find(|found| found.is_bad());
+    let found = found.expect("a wrong pixel");
+    assert_eq!(first(&found), Some(Cause::OutsideMap), "{}", told(&found));
+    assert!(told(&found).contains("set fit = on"), "{}", told(&found));
+}
+
+/// One number for all pixels is right where the near plane is in what the eye is in.
+#[test]
+fn counting_from_the_eyes_own_count_is_right_until_the_near_plane_is_cut() {
+    let mut session = session();
+    let starting = set(Technique::ZPass, &[("start", "eye-count")]);
+    let eye = Provocation { choice: starting.clone(), ..provoke(Cause::EyeInVolume, 1) };
+    let zero = diagnose(&mut session, &provoke(Cause::EyeInVolume, 1));
+    let found = diagnose(&mut session, &eye);
+    assert!(zero.is_bad() && !found.is_bad(), "{}\n{}", told(&zero), told(&found));
+    let cut = (0..SEEDS).map(|seed| Provocation { choice: starting.clone(), ..provoke(Cause::NearPlaneCut, seed) });
+    let found = cut.map(|cut| diagnose(&mut session, &cut)).find(|found| found.is_bad()).expect("a wrong pixel");
+    assert_eq!(first(&found), Some(Cause::NearPlaneCut), "{}", told(&found));
+    assert!(told(&found).contains("the count begins with"), "{}", told(&found));
 }
 
 /// A closed slat counts one, and so it is told.

@@ -22,8 +22,8 @@ pub struct Provocation {
 }
 
 /// The causes of wrong pixels that can be provoked.
-pub const CAUSES: [Cause; 31] = {
-    let mut causes = [Cause::EyeInVolume; 31];
+pub const CAUSES: [Cause; 35] = {
+    let mut causes = [Cause::EyeInVolume; 35];
     let mut index = 0;
     while index < causes.len() {
         causes[index] = Cause::ALL[index];
@@ -187,6 +187,20 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             (before_many(dice), set(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]), None)
         }
         Cause::Wrap256 => (under_panes(dice, 256), set(Technique::ZFail, &[]), None),
+        Cause::LightNotAdded => (
+            dice.any_scene(),
+            set(Technique::ZFail, &[("extrusion", "finite:100"), ("far-vertices", "from-origin")]),
+            None,
+        ),
+        Cause::FewBits => {
+            let bits = dice.one_of(3);
+            let count = [2, 4, 16][bits];
+            (under_panes(dice, count), set(Technique::ZFail, &[("stencil-bits", ["1", "2", "4"][bits])]), None)
+        }
+        Cause::Parity => (under_panes(dice, 2), set(Technique::ZFail, &[("operations", "invert")]), None),
+        Cause::EdgeSmear => {
+            (lone_sphere(dice), set(Technique::Projective, &[("size", "2048"), ("border", "off")]), None)
+        }
         Cause::OperationOrder => (dice.any_scene(), set(Technique::ZFail, &[("operations", "clamp")]), None),
         Cause::CapFighting => (dice.any_scene(), set(Technique::ZFail, &[]), Some(faults::turned_caps())),
         Cause::DoubleBlend => (flat_scene(dice), set(Technique::Planar, &[("blend", "twice")]), None),

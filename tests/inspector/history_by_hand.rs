@@ -2,7 +2,7 @@
 
 use stencilscope::capture::FrameTarget;
 use stencilscope::history::{CapturedAfter, Event, EventKind, Fate, Held, PixelHistory, Test, TriangleEvent};
-use stencilscope::plan::{Clip, Part, Visibility};
+use stencilscope::plan::{Clip, CountBits, Part, Visibility};
 use stencilscope::stencil_machine::Stored;
 use wgpu::StencilOperation;
 
@@ -111,7 +111,7 @@ pub fn history(at: [u32; 2], faces: &[Face]) -> PixelHistory {
         captured_after: making.after,
         counted: faces.iter().filter(|(_, _, distance)| *distance >= NEAR).count() as u32 + 3,
         labels: Vec::new(),
-        counts_volumes: vec![true],
+        counts_in: vec![Some(CountBits::EIGHT)],
         without_fragment: 2 + faces.iter().filter(|(_, _, distance)| *distance < NEAR).count() as u32,
         contradictions: Vec::new(),
         events: making.events,

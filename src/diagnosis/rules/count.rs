@@ -4,8 +4,10 @@ use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount};
 use crate::diagnosis::mend::Mend;
 use crate::history::{Count, Why};
+use crate::plan::CountBits;
+use crate::technique::CountsBy;
 
-pub(crate) const RULES: &[Rule] = &[clamped, wrap_256, operation_order];
+pub(crate) const RULES: &[Rule] = &[clamped, wrap_256, few_bits, parity, operation_order];
 
 /// The first step of a light's count that was lost at a limit: what the count was, and how many were lost.
 fn first_lost(sample: &Sample, light: usize) -> Option<(u8, u64)> {
@@ -45,7 +47,7 @@ fn clamped(_: &Facts, case: &Case) -> Option<Suspicion> {
     Suspicion::new(Cause::Clamped, evidence, mends, shown_by)
 }
 
-fn operation_order(_: &Facts, case: &Case) -> Option<Suspicion> {
+fn operation_order(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
     let ((lost, count, stored), shown_by) = case.shown(|sample| {
         let (limit, lost) = first_lost(sample, light)?;
@@ -57,16 +59,57 @@ fn operation_order(_: &Facts, case: &Case) -> Option<Suspicion> {
         if lost == 1 { "takes" } else { "take" },
         if lost == 1 { "was" } else { "were" },
     );
-    Suspicion::new(Cause::OperationOrder, evidence, vec![Mend::setting("operations", "wrap")], shown_by)
+    let mut mends = vec![Mend::setting("operations", "wrap")];
+    // Where passes stand in the wrong order, that alone is to be turned round.
+    if facts.volumes().is_some_and(|settings| settings.two_pass && settings.takes_away_first) {
+        mends.push(Mend::setting("order", "add-first"));
+    }
+    Suspicion::new(Cause::OperationOrder, evidence, mends, shown_by)
 }
 
-fn wrap_256(_: &Facts, case: &Case) -> Option<Suspicion> {
+fn wrap_256(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let is_whole = facts.volumes().is_none_or(|settings| settings.mask() == u8::MAX);
     let light = case.light();
     let (count, shown_by) = case.shown(|sample| {
         let count = true_count(sample, light);
         let reads_none = stored(sample, light)? == 0 && first_lost(sample, light).is_none();
-        (count != 0 && count % 256 == 0 && reads_none).then_some(count)
+        (count != 0 && count % 256 == 0 && is_whole && reads_none).then_some(count)
     })?;
     let evidence = format!("{count} volume faces are left here, a multiple of 256: eight bits hold 0");
     Suspicion::new(Cause::Wrap256, evidence, vec![Mend::setting("counter", "float")], shown_by)
+}
+
+/// Fewer bits than a stencil has, by its masks.
+fn few_bits(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let settings = facts.volumes().filter(|settings| settings.operations != CountsBy::Inverting)?;
+    let bits = CountBits::of_mask(settings.mask().into());
+    if bits == CountBits::EIGHT {
+        return None;
+    }
+    let light = case.light();
+    let (count, shown_by) = case.shown(|sample| {
+        let count = true_count(sample, light);
+        let reads_none = stored(sample, light)? == 0 && first_lost(sample, light).is_none();
+        (count != 0 && count % bits.modulus() == 0 && reads_none).then_some(count)
+    })?;
+    let evidence = format!(
+        "{count} are left here, a multiple of {}: {bits} {} 0",
+        bits.modulus(),
+        if bits.modulus() == 2 { "holds" } else { "hold" }
+    );
+    let mends = vec![Mend::setting("stencil-bits", "8"), Mend::setting("counter", "float")];
+    Suspicion::new(Cause::FewBits, evidence, mends, shown_by)
+}
+
+fn parity(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    facts.volumes().filter(|settings| settings.operations == CountsBy::Inverting)?;
+    let light = case.light();
+    let (count, shown_by) = case.shown(|sample| {
+        let count = sample.between.iter().filter(|met| facts.casts(light, met)).count();
+        (count != 0 && count % 2 == 0 && stored(sample, light)? == 0).then_some(count)
+    })?;
+    let evidence =
+        format!("{count} volumes contain the surface, an even number: as many turns of one bit leave it at 0");
+    let mends = vec![Mend::setting("operations", "wrap")];
+    Suspicion::new(Cause::Parity, evidence, mends, shown_by)
 }

@@ -10,8 +10,9 @@ use crate::numbers;
 use crate::plan::{Decision, LeftOut, Part};
 use crate::technique::Technique;
 use crate::truth::SeenSurface;
+use glam::DVec2;
 
-pub(crate) const RULES: &[Rule] = &[reverse_projection, between, self_shadow, aliasing, no_fit];
+pub(crate) const RULES: &[Rule] = &[reverse_projection, between, edge_smear, self_shadow, aliasing, no_fit];
 
 /// Why a silhouette's answer is wrong at a surface point, with the caster and a distance that tells.
 pub(crate) fn look(
@@ -39,7 +40,8 @@ pub(crate) fn look(
             Some(match (behind, below) {
                 (Some(met), _) => (Cause::ReverseProjection, Some(met.place.object), met.towards_light - distance),
                 (None, Some(met)) => (Cause::Between, Some(met.place.object), -met.towards_light),
-                (None, None) => (Cause::Aliasing, None, 0.0),
+                (None, None) => smearing(facts, light, seen)
+                    .map_or((Cause::Aliasing, None, 0.0), |(object, far)| (Cause::EdgeSmear, Some(object), far)),
             })
         }
         RegionKind::Wrong(Finding::MissingShadow) => {
@@ -47,12 +49,40 @@ pub(crate) fn look(
             let other = between.iter().find(|met| met.place.object != seen.place.object);
             Some(match other {
                 None => (Cause::SelfShadow, Some(seen.place.object), between.first()?.towards_light),
+                Some(met) if place_in_picture(facts, light, met.place.object, seen).is_some_and(is_outside) => {
+                    (Cause::OutsideMap, Some(met.place.object), met.towards_light)
+                }
                 Some(met) if drawn(met.place.object) => (Cause::Aliasing, Some(met.place.object), met.towards_light),
                 Some(met) => (Cause::OutsideMap, Some(met.place.object), met.towards_light),
             })
         }
         _ => None,
     }
+}
+
+/// Where a surface point is in the picture of a caster's silhouette: from −1 to 1 across it. `None` behind the light.
+fn place_in_picture(facts: &Facts, light: usize, caster: usize, seen: &SeenSurface) -> Option<DVec2> {
+    let map = facts.plan.lights.get(light)?.map.as_ref()?;
+    let name = &facts.scene.objects.get(caster)?.name;
+    let layer = map.layer_names.iter().position(|of| of == name).filter(|layer| map.faces[*layer].is_some())?;
+    let clip = *map.clip_from_light.get(layer)? * seen.point.extend(1.0);
+    (clip.w > 0.0).then(|| clip.truncate().truncate() / clip.w)
+}
+
+fn is_outside(place: DVec2) -> bool {
+    place.abs().max_element() > 1.0
+}
+
+/// The caster of whose picture the last texel or what goes on beyond it is here, with the place across it; the nearest.
+fn smearing(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<(usize, f64)> {
+    facts.plan.lights.get(light)?.map.as_ref().filter(|map| map.repeats_edge)?;
+    let last_texel = 1.0 - 2.0 / facts.texels();
+    let others = (0..facts.scene.objects.len()).filter(|object| *object != seen.place.object);
+    let places = others.filter_map(|object| {
+        let place = place_in_picture(facts, light, object, seen)?.abs().max_element();
+        (place >= last_texel).then_some((object, place))
+    });
+    places.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// The caster's name and the distance of the first sample that shows a cause, and how many do.
@@ -82,6 +112,15 @@ fn between(facts: &Facts, case: &Case) -> Option<Suspicion> {
     Suspicion::new(Cause::Between, evidence, vec![Mend::technique(Technique::ZFail)], shown_by)
 }
 
+fn edge_smear(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let ((caster, place), shown_by) = shown(facts, case, Cause::EdgeSmear)?;
+    let evidence = format!(
+        "the surface is at {} of half the width of {caster}'s picture, whose last texels go on from 1 outwards",
+        numbers::digits(place)
+    );
+    Suspicion::new(Cause::EdgeSmear, evidence, vec![Mend::setting("border", "on")], shown_by)
+}
+
 fn self_shadow(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let ((caster, far), shown_by) = shown(facts, case, Cause::SelfShadow)?;
     let evidence = format!(
@@ -100,6 +139,17 @@ fn aliasing(facts: &Facts, case: &Case) -> Option<Suspicion> {
 
 fn no_fit(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let ((caster, _), shown_by) = shown(facts, case, Cause::OutsideMap)?;
+    let size_of_it = case.shown(|sample| {
+        let object = facts.object(&caster)?.0;
+        Some(place_in_picture(facts, case.light(), object, &sample.seen?)?.abs().max_element()).filter(|far| *far > 1.0)
+    });
+    if let Some((place, shown_by)) = size_of_it {
+        let evidence = format!(
+            "the surface is at {} of half the width of {caster}'s picture, which ends at 1",
+            numbers::digits(place)
+        );
+        return Suspicion::new(Cause::OutsideMap, evidence, vec![Mend::setting("fit", "on")], shown_by);
+    }
     let is_its = |left: &&LeftOut| left.names(Decision::Silhouette, &caster);
     let because = facts.plan.left_out.iter().find(is_its).map(|left| left.because.clone());
     let evidence =

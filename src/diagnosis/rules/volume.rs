@@ -20,13 +20,25 @@ pub(crate) const RULES: &[Rule] = &[
     missing_light_cap,
     far_clip,
     finite_extrusion,
+    light_not_added,
     cap_fighting,
 ];
 
-/// Counting in front of surfaces begins at the near plane with 0, whatever is there.
-fn begins_at_zero(facts: &Facts, light: usize) -> bool {
+/// Counting in front of surfaces begins at the near plane with one number, whatever is there.
+fn begins_with_one_number(facts: &Facts, light: usize) -> bool {
     let has_near_count = facts.passes(light).any(Pass::counts_at_near_plane);
     matches!(facts.technique(), Technique::ZPass | Technique::ZPassPlus) && !has_near_count
+}
+
+/// Is that number the count of volumes around the eye?
+fn starts_at_eye(facts: &Facts) -> bool {
+    facts.volumes().is_some_and(|settings| settings.starts_at_eye)
+}
+
+/// What draws the caps again: the setting that leaves them out, or the plan itself.
+fn draw_caps(facts: &Facts, light_or_dark: usize, edit: PlanEdit) -> Mend {
+    let is_set = facts.volumes().is_some_and(|settings| !settings.caps[light_or_dark]);
+    if is_set { Mend::setting("caps", "both") } else { Mend::plan(edit) }
 }
 
 /// Casters whose volumes hold a point, with how many volumes those are.
@@ -38,7 +50,7 @@ fn holding(facts: &Facts, light: usize, point: DVec3) -> (BTreeSet<String>, u64)
 
 fn eye_in_volume(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
-    if !begins_at_zero(facts, light) {
+    if !begins_with_one_number(facts, light) || starts_at_eye(facts) {
         return None;
     }
     let (eye_in, volumes) = holding(facts, light, facts.scene.camera.eye);
@@ -57,10 +69,22 @@ fn eye_in_volume(facts: &Facts, case: &Case) -> Option<Suspicion> {
 
 fn near_plane_cut(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
-    if !begins_at_zero(facts, light) {
+    if !begins_with_one_number(facts, light) {
         return None;
     }
-    let (eye_in, _) = holding(facts, light, facts.scene.camera.eye);
+    let (eye_in, start) = holding(facts, light, facts.scene.camera.eye);
+    if starts_at_eye(facts) {
+        let (count, shown_by) = case.shown(|sample| {
+            let (_, count) = holding(facts, light, facts.tracer.near_point(sample.center()));
+            (count != start).then_some(count)
+        })?;
+        let evidence = format!(
+            "the count begins with {} around the eye, and the near plane, {} ahead, is in {count} here",
+            amount(start, "shadow volume"),
+            numbers::metres(facts.scene.camera.near),
+        );
+        return Suspicion::new(Cause::NearPlaneCut, evidence, vec![Mend::technique(Technique::ZFail)], shown_by);
+    }
     let ((near_in, count), shown_by) = case.shown(|sample| {
         let (near_in, count) = holding(facts, light, facts.tracer.near_point(sample.center()));
         (count > 0 && near_in.intersection(&eye_in).next().is_none()).then_some((near_in, count))
@@ -95,7 +119,7 @@ fn meeting_near_clip(facts: &Facts, light: usize) -> Vec<String> {
 
 fn near_plane_crack(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
-    if facts.technique() != Technique::ZPassPlus || begins_at_zero(facts, light) {
+    if facts.technique() != Technique::ZPassPlus || begins_with_one_number(facts, light) {
         return None;
     }
     let near = facts.scene.camera.near;
@@ -154,7 +178,7 @@ fn missing_dark_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
          {} between light and surface",
         lie(expected)
     );
-    Suspicion::new(Cause::MissingDarkCap, evidence, vec![Mend::plan(PlanEdit::DrawDarkCaps)], shown_by)
+    Suspicion::new(Cause::MissingDarkCap, evidence, vec![draw_caps(facts, 1, PlanEdit::DrawDarkCaps)], shown_by)
 }
 
 fn missing_light_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
@@ -175,7 +199,12 @@ fn missing_light_cap(facts: &Facts, case: &Case) -> Option<Suspicion> {
              where {} between light and surface",
             lie(expected)
         );
-        return Suspicion::new(Cause::MissingLightCap, evidence, vec![Mend::plan(PlanEdit::DrawLightCaps)], shown_by);
+        return Suspicion::new(
+            Cause::MissingLightCap,
+            evidence,
+            vec![draw_caps(facts, 0, PlanEdit::DrawLightCaps)],
+            shown_by,
+        );
     }
     let is_untested = |caster: &str| {
         let never = wgpu::CompareFunction::Never;
@@ -278,6 +307,23 @@ fn finite_extrusion(facts: &Facts, case: &Case) -> Option<Suspicion> {
         numbers::metres(needed)
     );
     Suspicion::new(Cause::FiniteExtrusion, evidence, vec![Mend::setting("extrusion", "infinite")], shown_by)
+}
+
+fn light_not_added(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let Extrusion::FromOrigin(factor) = facts.volumes()?.extrusion else { return None };
+    let position = facts.tracer.light_position(case.light());
+    if position.w == 0.0 {
+        return None;
+    }
+    let light = position.truncate() / position.w;
+    let (caster, shown_by) = case.shown(|sample| Some(sample.miscounted(facts, case.light()).into_iter().next()?.0))?;
+    let evidence = format!(
+        "far vertices of {caster} are {} times the way from the light, from the world's origin on: they lie {} from \
+         their place, as far as the light lies from the origin",
+        numbers::digits(factor + 1.0),
+        numbers::metres(light.length())
+    );
+    Suspicion::new(Cause::LightNotAdded, evidence, vec![Mend::setting("far-vertices", "from-light")], shown_by)
 }
 
 /// The diagonal of an object's bounding box, world space.

@@ -47,6 +47,23 @@ impl Frame<'_> {
         }
     }
 
+    /// The pass just added begins with this in the stencil, where that is not what it holds anyway.
+    pub fn begin_stencil_at(&mut self, start: u8) {
+        let target = self.plan.passes.last_mut().and_then(|pass| pass.depth_stencil.as_mut());
+        if let Some(target) = target.filter(|_| start != 0) {
+            target.clear_stencil = Some(start);
+        }
+    }
+
+    /// The pass just added begins to count at this, where it begins a count.
+    pub fn begin_count_at(&mut self, light: LightId, start: u32) {
+        let count = self.plan.lights[light.0].count;
+        let target = self.plan.passes.last_mut().and_then(|pass| pass.color.as_mut());
+        if let Some(clear) = target.filter(|target| Some(target.attachment) == count).and_then(|t| t.clear.as_mut()) {
+            clear[0] = f64::from(start);
+        }
+    }
+
     /// A timed pass of a light, seen by the camera. The first one of a light clears what another has left
     /// in the stencil.
     fn push_pass(&mut self, light: LightId, name: &str, purpose: &str, color: Option<ColorTarget>, draws: Vec<Draw>) {

@@ -109,11 +109,24 @@ const PASSES: Words<bool> = words(
 const REVERSE: Words<bool> =
     words("reverse", &["off", "on"], &[false, true], "silhouettes also fall on what is behind the light");
 
+const FIT: Words<bool> = words(
+    "fit",
+    &["on", "off"],
+    &[true, false],
+    "the picture fits the caster; or it has 90° of a lamp's view, or as much of a sun's as the scene is large",
+);
+const BORDER: Words<bool> = words(
+    "border",
+    &["on", "off"],
+    &[true, false],
+    "a ring of clear texels round the silhouette and beyond; without it the last texels go on for ever",
+);
+
 /// In the order in which they are shown.
 pub(super) const PLANAR_TEXTURE: [SettingSpec; 7] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
 /// In the order in which they are shown.
-pub(super) const PROJECTIVE: [SettingSpec; 9] =
-    with_own([SILHOUETTE_SIZE.spec, PASSES.spec, REVERSE.spec, REDRAW.spec]);
+pub(super) const PROJECTIVE: [SettingSpec; 11] =
+    with_own([SILHOUETTE_SIZE.spec, PASSES.spec, REVERSE.spec, FIT.spec, BORDER.spec, REDRAW.spec]);
 
 /// What techniques are told that keep what light passes, as types.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -126,6 +139,10 @@ pub struct TextureSettings {
     pub is_single_pass: bool,
     /// Silhouettes also fall on what is behind the light.
     pub projects_backwards: bool,
+    /// The picture is as large as the caster's silhouette.
+    pub fits: bool,
+    /// Beyond the picture its last texels go on, and no clear ring keeps them empty.
+    pub repeats_edge: bool,
 }
 
 impl TextureSettings {
@@ -138,6 +155,8 @@ impl TextureSettings {
             keeps: REDRAW.read(values),
             is_single_pass,
             projects_backwards,
+            fits: true,
+            repeats_edge: false,
         }
     }
 
@@ -149,6 +168,8 @@ impl TextureSettings {
             keeps: REDRAW.read(values),
             is_single_pass: PASSES.read(values),
             projects_backwards: REVERSE.read(values),
+            fits: FIT.read(values),
+            repeats_edge: !BORDER.read(values),
         }
     }
 }

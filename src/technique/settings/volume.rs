@@ -29,8 +29,42 @@ const FACES: Words<bool> = words(
     &[false, true],
     "front and back faces in one draw, or in passes of their own",
 );
-const OPERATIONS: Words<bool> =
-    words("operations", &["wrap", "clamp"], &[false, true], "what counts do beyond 0 and 255");
+const ORDER: Words<bool> = words(
+    "order",
+    &["add-first", "subtract-first"],
+    &[false, true],
+    "which of the two passes comes first: the faces that add, or those that take away",
+);
+const OPERATIONS: Words<CountsBy> = words(
+    "operations",
+    &["wrap", "clamp", "invert"],
+    &[CountsBy::Wrapping, CountsBy::Clamping, CountsBy::Inverting],
+    "what a face does: steps that wrap round the ends of the count or stop there, or one bit turned over (parity)",
+);
+const BITS: Words<u8> = words(
+    "stencil-bits",
+    &["8", "4", "2", "1"],
+    &[0xff, 0xf, 0x3, 0x1],
+    "how many bits of the stencil are counted in, by its masks: counts are kept modulo 2 to that power",
+);
+const CAPS: Words<[bool; 2]> = words(
+    "caps",
+    &["both", "light", "dark", "none"],
+    &[[true, true], [true, false], [false, true], [false, false]],
+    "which of the caps that the count needs are drawn",
+);
+const START: Words<bool> = words(
+    "start",
+    &["zero", "eye-count"],
+    &[false, true],
+    "what the count begins with: nothing, or the volumes around the eye as the clear value",
+);
+const FAR_VERTICES: Words<bool> = words(
+    "far-vertices",
+    &["from-light", "from-origin"],
+    &[false, true],
+    "where a finite volume's far vertices are carried from: the light, or the origin as the light is not added back",
+);
 const COUNTER: Words<bool> = words(
     "counter",
     &["stencil", "float"],
@@ -50,16 +84,28 @@ const SILHOUETTE: Words<SilhouetteBy> = words(
     "how shared edges are found: built once, or searched each time",
 );
 
-/// In the order in which they are shown.
-pub(super) const VOLUME: [SettingSpec; 12] = with_own([
+const OWN: [SettingSpec; 12] = [
     CASTERS.spec,
     EXTRUSION.spec,
+    FAR_VERTICES.spec,
+    CAPS.spec,
     FACES.spec,
+    ORDER.spec,
     OPERATIONS.spec,
+    BITS.spec,
     COUNTER.spec,
     LIGHT_CAPS.spec,
     SILHOUETTE.spec,
-]);
+    START.spec,
+];
+
+/// In the order in which they are shown.
+pub(super) const Z_PASS: [SettingSpec; 17] = with_own(OWN);
+/// The same without the start: what counts from infinity, or asks at the near plane, has no other.
+pub(super) const VOLUME: [SettingSpec; 16] = with_own({
+    let [own @ .., _] = OWN;
+    own
+});
 
 /// What a technique that counts volumes is told, as types.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,14 +116,33 @@ pub struct VolumeSettings {
     pub extrusion: Extrusion,
     /// Front and back faces in passes of their own.
     pub two_pass: bool,
-    /// Counts stop at 0 and 255.
-    pub clamp: bool,
+    /// What takes away comes before what adds, where they are passes of their own.
+    pub takes_away_first: bool,
+    /// What a face does to the stencil.
+    pub operations: CountsBy,
+    /// The bits of the stencil that are counted in.
+    pub bits: u8,
+    /// Of the caps that are needed, light caps and dark caps are drawn.
+    pub caps: [bool; 2],
+    /// The count begins with the volumes around the eye.
+    pub starts_at_eye: bool,
     /// In a float target instead of the stencil.
     pub counts_in_float: bool,
     /// Light caps never pass the depth test, whatever is in front of them.
     pub light_caps_never_pass: bool,
     /// How shared edges are found.
     pub silhouette: SilhouetteBy,
+}
+
+/// What a volume's face does to the stencil.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CountsBy {
+    /// One up or down, round the ends.
+    Wrapping,
+    /// One up or down, not beyond 0 and 255.
+    Clamping,
+    /// One bit is turned over: it tells odd from even.
+    Inverting,
 }
 
 /// Which triangles cast, or what decides it.
@@ -103,21 +168,50 @@ impl VolumeSettings {
     pub fn read(values: &Values) -> VolumeSettings {
         VolumeSettings {
             casters: CASTERS.read(values),
-            extrusion: EXTRUSION.read(values).map_or(Extrusion::Infinite, Extrusion::Finite),
+            extrusion: match (EXTRUSION.read(values), FAR_VERTICES.read(values)) {
+                (None, _) => Extrusion::Infinite,
+                (Some(factor), false) => Extrusion::Finite(factor),
+                (Some(factor), true) => Extrusion::FromOrigin(factor),
+            },
             two_pass: FACES.read(values),
-            clamp: OPERATIONS.read(values),
+            takes_away_first: ORDER.read(values),
+            operations: OPERATIONS.read(values),
+            bits: BITS.read(values),
+            caps: CAPS.read(values),
+            starts_at_eye: START.read(values),
             counts_in_float: COUNTER.read(values),
             light_caps_never_pass: LIGHT_CAPS.read(values),
             silhouette: SILHOUETTE.read(values),
         }
     }
 
+    /// The bits that faces write and the light pass reads: parity is in one.
+    #[must_use]
+    pub fn mask(&self) -> u8 {
+        if self.operations == CountsBy::Inverting { 1 } else { self.bits }
+    }
+
     /// Why a setting does nothing as the others are.
     pub(in crate::technique) fn without_effect(&self, key: &str) -> Option<&'static str> {
+        let is = |spec: SettingSpec| key == spec.key;
+        if is(FAR_VERTICES.spec) && self.extrusion == Extrusion::Infinite {
+            return Some("No effect: carried without end, a vertex is a direction, and no place is added to it");
+        }
+        if self.counts_in_float {
+            return match key {
+                _ if is(FACES.spec) || is(ORDER.spec) => {
+                    Some("No effect: a float target adds and takes away in one draw")
+                }
+                _ if is(OPERATIONS.spec) => Some("No effect: a float target has no limits to wrap or stop at"),
+                _ if is(BITS.spec) => Some("No effect: a float target has no bits that a mask could leave out"),
+                _ => None,
+            };
+        }
         match key {
-            _ if !self.counts_in_float => None,
-            key if key == FACES.spec.key => Some("No effect: a float target adds and takes away in one draw"),
-            key if key == OPERATIONS.spec.key => Some("No effect: a float target has no limits to wrap or stop at"),
+            _ if is(ORDER.spec) && !self.two_pass => Some("No effect: faces = two-sided draws both in one pass"),
+            _ if is(BITS.spec) && self.operations == CountsBy::Inverting => {
+                Some("No effect: parity is kept in one bit")
+            }
             _ => None,
         }
     }

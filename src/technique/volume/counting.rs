@@ -2,7 +2,7 @@
 
 use crate::plan::{ColorWrite, LightId, Part, RasterState, Side, StencilFace};
 use crate::technique::Technique;
-use crate::technique::settings::VolumeSettings;
+use crate::technique::settings::{CountsBy, VolumeSettings};
 use std::ops::Range;
 use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 
@@ -66,10 +66,14 @@ pub enum Step {
 }
 
 impl Step {
-    /// The passes of one light, in order. What adds comes first: a clamped count then only fails
-    /// beyond 255.
-    pub fn all(two_pass: bool) -> &'static [Step] {
-        if two_pass { &[Step::Adding, Step::TakingAway] } else { &[Step::BothFaces] }
+    /// The passes of one light, in order. What adds comes first, unless the other order is asked for: a clamped
+    /// count then only fails beyond 255.
+    pub fn all(options: &VolumeSettings) -> &'static [Step] {
+        match (options.two_pass, options.takes_away_first) {
+            (false, _) => &[Step::BothFaces],
+            (true, false) => &[Step::Adding, Step::TakingAway],
+            (true, true) => &[Step::TakingAway, Step::Adding],
+        }
     }
 
     pub fn name(self) -> &'static str {
@@ -117,7 +121,8 @@ impl Counting {
             Step::TakingAway => (!adds_in_front, adds_in_front),
         };
         let keep = |counts: bool, operation| if counts { operation } else { StencilOperation::Keep };
-        state.with_faces(self.face(keep(front_counts, front)), self.face(keep(back_counts, back)), 0)
+        let (front, back) = (self.face(keep(front_counts, front)), self.face(keep(back_counts, back)));
+        state.with_faces(front, back, 0).writing(options.mask())
     }
 
     /// The state for counting in a float target, and what a front face adds there (of a turned part: a
@@ -152,44 +157,73 @@ fn depth_bias(part: &NeededPart) -> DepthBiasState {
     DepthBiasState { constant, ..DepthBiasState::default() }
 }
 
-/// What a pass is for; `None` counts each volume in its own way.
-pub fn purpose(counting: Option<Counting>, light: LightId, step: Step) -> String {
+/// What a pass is for; `None` counts each volume in its own way. `start` is what the count begins with.
+pub fn purpose(
+    counting: Option<Counting>,
+    light: LightId,
+    step: Step,
+    options: &VolumeSettings,
+    start: Option<u8>,
+) -> String {
     let light = light.name();
-    let (what, [adds, takes], left) = match counting {
-        Some(Counting::InFront) => (
-            format!("the shadow volumes of {light} in front of each surface"),
-            ["a front face nearer than the surface adds 1", "a back face nearer than it takes 1 away"],
-            "What is left contains the surface, if the eye itself is in none.",
-        ),
-        Some(Counting::InFrontPlus) => (
-            format!("the shadow volumes of {light} in front of each surface"),
-            ["a front face nearer than the surface adds 1", "a back face nearer than it takes 1 away"],
-            "With what the near plane began with, what is left contains the surface, wherever the eye is.",
-        ),
-        Some(Counting::Behind) => (
-            format!("the shadow volumes of {light} behind each surface"),
-            ["a back face hidden by the surface adds 1", "a hidden front face takes 1 away"],
-            "What is left contains the surface, wherever the eye is.",
-        ),
-        None => (
-            format!(
-                "the shadow volumes of {light}, behind each surface where they may hold the eye, else in front of it"
-            ),
-            ["in front, a front face adds 1 and a back face takes 1 away", "behind, it is the other way round"],
-            "Either way, what is left contains the surface, wherever the eye is.",
+    let what = match counting {
+        Some(Counting::InFront | Counting::InFrontPlus) => {
+            format!("the shadow volumes of {light} in front of each surface")
+        }
+        Some(Counting::Behind) => format!("the shadow volumes of {light} behind each surface"),
+        None => format!(
+            "the shadow volumes of {light}, behind each surface where they may hold the eye, else in front of it"
         ),
     };
-    match step {
-        Step::BothFaces => format!("Counts {what}: {adds}, {takes}. {left}"),
-        Step::Adding => format!("Counts {what}, first half: {adds}. The other faces follow in a pass of their own."),
-        Step::TakingAway => format!("Counts {what}, second half: {takes}. {left}"),
+    if options.operations == CountsBy::Inverting && !options.counts_in_float {
+        let counts = if counting == Some(Counting::Behind) { "hidden by the surface" } else { "nearer than it" };
+        let turn = format!("every face {counts} turns one bit over");
+        let left = "It ends as 1 where an odd number of volumes contains the surface, and an even one reads as none.";
+        return match step {
+            Step::BothFaces => format!("Counts {what}, odd or even: {turn}. {left}"),
+            Step::Adding | Step::TakingAway => {
+                format!("Counts {what}, odd or even: {turn}, those of one side in this pass. {left}")
+            }
+        };
+    }
+    let [adds, takes] = match counting {
+        Some(Counting::InFront | Counting::InFrontPlus) => {
+            ["a front face nearer than the surface adds 1", "a back face nearer than it takes 1 away"]
+        }
+        Some(Counting::Behind) => ["a back face hidden by the surface adds 1", "a hidden front face takes 1 away"],
+        None => ["in front, a front face adds 1 and a back face takes 1 away", "behind, it is the other way round"],
+    };
+    let left = match (counting, start) {
+        (Some(Counting::InFront), None) => {
+            "What is left contains the surface, if the eye itself is in none.".to_owned()
+        }
+        (Some(Counting::InFront), Some(start)) => format!(
+            "It begins at {start}, for the volumes around the eye: what is left contains the surface, if the near \
+             plane cuts none."
+        ),
+        (Some(Counting::InFrontPlus), _) => {
+            "With what the near plane began with, what is left contains the surface, wherever the eye is.".to_owned()
+        }
+        (Some(Counting::Behind), _) => "What is left contains the surface, wherever the eye is.".to_owned(),
+        (None, _) => "Either way, what is left contains the surface, wherever the eye is.".to_owned(),
+    };
+    let is_last = match step {
+        Step::BothFaces => return format!("Counts {what}: {adds}, {takes}. {left}"),
+        Step::Adding => options.takes_away_first,
+        Step::TakingAway => !options.takes_away_first,
+    };
+    let does = if step == Step::Adding { adds } else { takes };
+    match is_last {
+        false => format!("Counts {what}, first half: {does}. The other faces follow in a pass of their own."),
+        true => format!("Counts {what}, second half: {does}. {left}"),
     }
 }
 
 /// What adds 1 and what takes 1 away.
 pub fn operations(options: &VolumeSettings) -> (StencilOperation, StencilOperation) {
-    match options.clamp {
-        false => (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap),
-        true => (StencilOperation::IncrementClamp, StencilOperation::DecrementClamp),
+    match options.operations {
+        CountsBy::Wrapping => (StencilOperation::IncrementWrap, StencilOperation::DecrementWrap),
+        CountsBy::Clamping => (StencilOperation::IncrementClamp, StencilOperation::DecrementClamp),
+        CountsBy::Inverting => (StencilOperation::Invert, StencilOperation::Invert),
     }
 }

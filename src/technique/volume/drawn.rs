@@ -12,6 +12,8 @@ use glam::DVec3;
 
 /// A caster's volume, ready to be drawn.
 pub struct Volume {
+    /// Its caster's index among what is placed, and its name.
+    pub object: usize,
     pub caster: String,
     pub counting: Counting,
     /// A body that is proven closed, of which one side casts.
@@ -30,9 +32,9 @@ impl Volume {
         parts.into_iter().filter(|part| !part.triangles.is_empty())
     }
 
-    /// The casting triangles in world space: `object` is the caster's index.
-    pub fn casting_triangles(&self, frame: &Frame, object: usize) -> impl Iterator<Item = [DVec3; 3]> {
-        let world = &frame.placed[object].world;
+    /// The casting triangles in world space.
+    pub fn casting_triangles(&self, frame: &Frame) -> impl Iterator<Item = [DVec3; 3]> {
+        let world = &frame.placed[self.object].world;
         let corners = frame.plan.meshes[self.mesh.0].indices.data();
         let casting = self.parts.light_cap.start * 3..self.parts.light_cap_turned.end * 3;
         corners[casting].chunks_exact(3).map(|corners| [0, 1, 2].map(|corner| world[corners[corner] as usize]))
@@ -104,16 +106,22 @@ pub fn make(
     (mesh, parts)
 }
 
-/// The parts that count in a form; what is left out is said.
-pub fn needed_parts(frame: &mut Frame, form: Form, parts: &VolumeParts, caster: &Object) -> Vec<NeededPart> {
+/// The parts that count in a form, but for caps that are not to be drawn; what is left out is said.
+pub fn needed_parts(
+    frame: &mut Frame,
+    form: Form,
+    parts: &VolumeParts,
+    caster: &Object,
+    [draws_light_caps, draws_dark_caps]: [bool; 2],
+) -> Vec<NeededPart> {
     let run = NeededPart::new;
     let hugging = NeededPart { hugs: true, ..run(Part::Side, false, &parts.hugging_sides) };
     let mut needed = vec![run(Part::Side, false, &parts.sides), hugging];
-    if form.light_cap {
+    if form.light_cap && draws_light_caps {
         needed.push(run(Part::LightCap, false, &parts.light_cap));
         needed.push(run(Part::LightCap, true, &parts.light_cap_turned));
     }
-    if !form.dark_cap {
+    if !(form.dark_cap && draws_dark_caps) {
         return needed;
     }
     match &parts.dark_cap {

@@ -76,5 +76,5 @@ fn raster(options: &VolumeSettings) -> RasterState {
     let color = if options.counts_in_float { ColorWrite::Add } else { ColorWrite::None };
     let state =
         RasterState { depth_compare: CompareFunction::Always, depth_write: false, color, ..RasterState::surface() };
-    if options.counts_in_float { state } else { state.with_stencil(count, 0) }
+    if options.counts_in_float { state } else { state.with_stencil(count, 0).writing(options.mask()) }
 }

@@ -83,18 +83,21 @@ fn direction(ladder: &Ladder) -> String {
     };
     let start = match ladder.start {
         0 => String::new(),
+        start if ladder.cleared_to != 0 => format!(", starting at {}, which the count was cleared to", signed(start)),
         start => format!(", starting at {}: the volumes that hold the near plane", signed(start)),
     };
     let all = ladder.rungs.len() as u64;
     let counted = ladder.rungs.iter().filter(|rung| rung.added != 0).count();
     let faces = format::counted(all, "face");
-    format!("{way}{start}. {counted} of {faces} count: {} in all{}.", signed(ladder.count), in_eight_bits(ladder))
+    format!("{way}{start}. {counted} of {faces} count: {} in all{}.", signed(ladder.count), in_its_bits(ladder))
 }
 
-/// What the light pass reads where eight bits do not hold the count.
-fn in_eight_bits(ladder: &Ladder) -> String {
+/// What the light pass reads where the bits of the stencil do not hold the count.
+fn in_its_bits(ladder: &Ladder) -> String {
     match ladder.tested {
-        Count::Stencil(byte) if !(-128..=255).contains(&ladder.count) => format!(", in eight bits {byte}"),
+        Count::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => {
+            format!(", in {} {byte}", ladder.bits)
+        }
         Count::Stencil(_) | Count::Float(_) => String::new(),
     }
 }
@@ -345,7 +348,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
             number(columns.distance, ladder.surface.map(short_metres).unwrap_or_default(), theme::of(ui).text);
             // What the light pass asks about.
             let count = match ladder.tested {
-                Count::Stencil(byte) if !(-128..=255).contains(&ladder.count) => byte.to_string(),
+                Count::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => byte.to_string(),
                 _ => signed(ladder.count),
             };
             let size = theme::TEXT_SIZE;

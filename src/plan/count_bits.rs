@@ -1,0 +1,60 @@
+//! The bits of the stencil that a count is kept in.
+
+use std::fmt;
+
+/// The lowest bits of a stencil, as the masks of a plan leave them to a count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct CountBits(u8);
+
+impl CountBits {
+    /// All of them.
+    pub const EIGHT: CountBits = CountBits(8);
+
+    /// Those that a write mask has, from the lowest on; all where it has gaps, as no count then fits.
+    #[must_use]
+    pub fn of_mask(mask: u32) -> CountBits {
+        let ones = (mask as u8).trailing_ones() as u8;
+        if (1..8).contains(&ones) && mask == (1 << ones) - 1 { CountBits(ones) } else { CountBits::EIGHT }
+    }
+
+    /// How many different counts they hold.
+    #[must_use]
+    pub fn modulus(self) -> i32 {
+        1 << self.0
+    }
+
+    /// Do they hold a sum as this byte although it is another number? Of eight bits, the upper half reads as negative.
+    #[must_use]
+    pub fn hold_otherwise(self, sum: i32, byte: u8) -> bool {
+        let least = if self == CountBits::EIGHT { -128 } else { 0 };
+        sum.rem_euclid(self.modulus()) == i32::from(byte) && !(least..self.modulus()).contains(&sum)
+    }
+}
+
+/// `eight bits`.
+impl fmt::Display for CountBits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const NAMES: [&str; 8] =
+            ["one bit", "two bits", "three bits", "four bits", "five bits", "six bits", "seven bits", "eight bits"];
+        f.write_str(NAMES[usize::from(self.0) - 1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks_are_bits_and_bits_hold_sums_modulo_a_power_of_two() {
+        let cases = [(0xff, "eight bits", 256), (0xf, "four bits", 16), (0x3, "two bits", 4), (1, "one bit", 2)];
+        for (mask, name, modulus) in cases {
+            let bits = CountBits::of_mask(mask);
+            assert_eq!((bits.to_string().as_str(), bits.modulus()), (name, modulus));
+            assert!(bits.hold_otherwise(modulus, 0) && !bits.hold_otherwise(1, 1) && !bits.hold_otherwise(modulus, 1));
+        }
+        assert!(!CountBits::EIGHT.hold_otherwise(-1, 255), "eight bits are read with a sign");
+        assert!(CountBits::of_mask(0xf).hold_otherwise(-1, 15));
+        assert_eq!(CountBits::of_mask(0xf0), CountBits::EIGHT, "no count is in these");
+        assert_eq!(CountBits::of_mask(0), CountBits::EIGHT);
+    }
+}

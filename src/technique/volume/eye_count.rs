@@ -1,0 +1,47 @@
+//! What z-pass begins with where it is told: the number of volumes around the eye, as the clear value.
+//!
+//! The eye is in the volume of every casting triangle that lies between it and the light (Everitt and Kilgard 2002,
+//! "Practical and Robust Stenciled Shadow Volumes for Hardware-Accelerated Rendering", on what came before z-fail).
+//! Exact for the eye, but pixels begin at the near plane: where that lies partly in a volume, no one number is right.
+
+use super::drawn::Volume;
+use crate::math::{Sign, side_of_triangle};
+use crate::plan::LightId;
+use crate::technique::frame::Frame;
+use glam::{DVec3, DVec4};
+
+/// How many of a light's volumes hold the eye; a volume's far end is not asked about.
+pub fn at(frame: &Frame, light: LightId, volumes: &[Volume]) -> u32 {
+    let (eye, light) = (frame.eye(), frame.light_position(light));
+    let casting = volumes.iter().flat_map(|volume| volume.casting_triangles(frame));
+    casting.filter(|corners| holds(*corners, light, eye)).count() as u32
+}
+
+/// Is a point in the volume of a triangle: beyond it, seen from the light? On a side plane it is not.
+fn holds(corners: [DVec3; 3], light: DVec4, point: DVec3) -> bool {
+    let [of_light, of_point] = [light, point.extend(1.0)].map(|place| side_of_triangle(corners, place));
+    let [a, b, c] = corners;
+    let [first, second, third] = [[a, b], [b, c], [c, a]].map(|[p, q]| side_of_triangle([point, p, q], light));
+    of_light.value() * of_point.value() < 0 && first != Sign::Zero && first == second && second == third
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHEET: [DVec3; 3] = [DVec3::new(-1.0, 1.0, -1.0), DVec3::new(1.0, 1.0, -1.0), DVec3::new(0.0, 1.0, 1.0)];
+
+    #[test]
+    fn a_point_is_held_beyond_the_triangle_and_within_its_outline() {
+        let turned = [SHEET[0], SHEET[2], SHEET[1]];
+        for light in [DVec4::new(0.0, 3.0, 0.0, 1.0), DVec4::new(0.0, 2.0, 0.0, 0.0)] {
+            for triangle in [SHEET, turned] {
+                assert!(holds(triangle, light, DVec3::ZERO));
+                assert!(!holds(triangle, light, DVec3::new(0.0, 2.0, 0.0)), "between light and triangle");
+                assert!(!holds(triangle, light, DVec3::new(4.0, 0.0, 0.0)), "beside it");
+            }
+        }
+        assert!(!holds(SHEET, DVec4::new(0.0, -3.0, 0.0, 1.0), DVec3::ZERO), "lit from below");
+        assert!(!holds(SHEET, DVec4::new(0.0, -1.0, 0.0, 0.0), DVec3::ZERO), "lit from below by a sun");
+    }
+}
