@@ -93,7 +93,7 @@ fn few_bits(facts: &Facts, case: &Case) -> Option<Suspicion> {
         (count != 0 && count % bits.modulus() == 0 && reads_none).then_some(count)
     })?;
     let evidence = format!(
-        "{count} are left here, a multiple of {}: {bits} {} 0",
+        "a count of {count} is left here, a multiple of {}: {bits} {} 0",
         bits.modulus(),
         if bits.modulus() == 2 { "holds" } else { "hold" }
     );

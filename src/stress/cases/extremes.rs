@@ -4,6 +4,7 @@ mod eyes;
 mod lights;
 mod meshes;
 mod receivers;
+mod wrong_forms;
 
 pub use eyes::under_a_roof;
 
@@ -11,7 +12,7 @@ use crate::stress::Case;
 
 /// All of them.
 pub fn all() -> impl Iterator<Item = &'static Case> {
-    [eyes::ALL, lights::ALL, meshes::ALL, receivers::ALL].into_iter().flatten()
+    [eyes::ALL, lights::ALL, meshes::ALL, receivers::ALL, wrong_forms::ALL].into_iter().flatten()
 }
 
 /// So many steps of the last bit away.

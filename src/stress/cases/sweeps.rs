@@ -202,7 +202,7 @@ const NESTED: Case = Case {
     name: "nested",
     lesson: "more and more volumes over the same pixels: eight bits read 256 as none",
     parameter: "volumes",
-    values: &[1.0, 2.0, 100.0, 255.0, 256.0, 257.0, 512.0, 600.0],
+    values: &[1.0, 2.0, 16.0, 100.0, 255.0, 256.0, 257.0, 512.0, 600.0],
     drives: Drives::Scene(|count| {
         // Panes between lamp and floor that all throw the same shadow: a rim has all of them, or none.
         let light = DVec3::new(0.1, 8.0, 0.2);
@@ -216,7 +216,7 @@ const NESTED: Case = Case {
         objects.extend(panes.collect::<Result<Vec<Object>, MeshError>>()?);
         Ok(scene([0.5, 3.5, 4.5], [0.0, 0.3, 0.0], Light::point(light), objects))
     }),
-    also: &[IN_FLOAT, CLAMPED, CLAMPED_IN_TURN],
+    also: &[IN_FLOAT, CLAMPED, CLAMPED_IN_TURN, CLAMPED_BACKWARDS, FOUR_BITS, PARITY],
     without: &[(Technique::Projective, "a silhouette of each of 600 casters does not fit into one texture array")],
     failures: &[
         WRAPS,
@@ -229,6 +229,21 @@ const NESTED: Case = Case {
         )
         .is_false()
         .at_most(0.15),
+        fails(
+            CLAMPED_BACKWARDS,
+            "clamp",
+            "all that takes away comes first and stops at 0: the classic order to get wrong",
+        )
+        .is_false()
+        .at_most(0.99),
+        fails(FOUR_BITS, "few-bits", "a multiple of 16 reads 0 in four bits")
+            .at(|count| count % 16.0 == 0.0)
+            .is_missing()
+            .at_most(0.05),
+        fails(PARITY, "parity", "one bit tells odd from even: an even count reads 0")
+            .at(|count| count % 2.0 == 0.0)
+            .is_missing()
+            .at_most(0.05),
     ],
     ..PLAIN
 };

@@ -19,6 +19,11 @@ pub const FINITE: Entrant = Entrant::with(Technique::ZFail, &[("extrusion", "fin
 pub const IN_FLOAT: Entrant = Entrant::with(Technique::ZFail, &[("counter", "float")]);
 pub const CLAMPED: Entrant = Entrant::with(Technique::ZFail, &[("operations", "clamp")]);
 pub const CLAMPED_IN_TURN: Entrant = Entrant::with(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass")]);
+pub const CLAMPED_BACKWARDS: Entrant =
+    Entrant::with(Technique::ZFail, &[("operations", "clamp"), ("faces", "two-pass"), ("order", "subtract-first")]);
+pub const PARITY: Entrant = Entrant::with(Technique::ZFail, &[("operations", "invert")]);
+pub const FOUR_BITS: Entrant = Entrant::with(Technique::ZFail, &[("stencil-bits", "4")]);
+pub const EYE_COUNT: Entrant = Entrant::with(Technique::ZPass, &[("start", "eye-count")]);
 pub const EDGE_LIST: Entrant = Entrant::with(Technique::ZFail, &[("silhouette", "edge-list")]);
 pub const LIGHT_FACING: Entrant = Entrant::with(Technique::ZFail, &[("casters", "light-facing")]);
 pub const ALL_CAST: Entrant = Entrant::with(Technique::ZFail, &[("casters", "all")]);

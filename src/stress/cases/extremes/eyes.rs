@@ -15,6 +15,7 @@ const EYE_IN_VOLUME: Case = Case {
     name: "eye-in-volume",
     lesson: "a roof over the eye: whoever counts from the eye on begins with a count that is not zero",
     drives: Drives::Scene(|_| under_a_roof()),
+    also: &[EYE_COUNT],
     failures: &[CUT_BY_NEAR.is_mixed().at_most(0.999)],
     ..PLAIN
 };

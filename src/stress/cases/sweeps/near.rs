@@ -35,9 +35,12 @@ pub const NEAR_PLANE: Case = Case {
         (Technique::PlanarTexture, "it does not know the near plane"),
         (Technique::Projective, "it does not know the near plane"),
     ],
+    also: &[EYE_COUNT],
     failures: &[
         CUT_BY_NEAR.at(|near| near > ROOF_BEGINS && near < 1.6).at_most(0.42),
         CUT_BY_NEAR.at(|near| near > ROOF_BEGINS).is_mixed().at_most(0.9),
+        CUT_BY_NEAR.at(|near| near > ROOF_BEGINS && near < 1.6).at_most(0.42).of(EYE_COUNT),
+        CUT_BY_NEAR.at(|near| near > ROOF_BEGINS).is_mixed().at_most(0.9).of(EYE_COUNT),
         CRACK.at(|near| near > ROOF_BEGINS && near < ROOF_ENDS),
         // The floor casts too, and the plane cuts it from 2 metres on: along one line, so it need not show.
         CRACK.at(|near| near > ROOF_ENDS).perhaps(),
@@ -83,6 +86,7 @@ pub const NEAR_IN_VOLUME: Case = Case {
         scene.camera.near = near;
         Ok(scene)
     }),
+    also: &[EYE_COUNT],
     failures: &[
         CUT_BY_NEAR.is_mixed().at_most(0.999),
         ROUNDED.at(|near| near < 5e-6).at_most(0.18),
