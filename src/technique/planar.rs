@@ -53,7 +53,7 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let receivers = receivers::all(&mut frame);
     for light in frame.light_ids() {
         frame.plan.lights[light.0].decided_by = DecidedBy::Flattened;
-        let marked = marked_receivers(&mut frame, &receivers, light);
+        let marked = shown_receivers(&mut frame, &receivers, light, options);
         if options.marks && options.blends_once {
             counted_shadows(&mut frame, &marked, light, options);
         } else {
@@ -119,8 +119,8 @@ fn blended_shadows(frame: &mut Frame, marked: &[Marked], light: LightId, options
 }
 
 /// The largest receivers whose lit side the eye sees: any other shows no shadow of this light.
-fn marked_receivers(frame: &mut Frame, all: &[FlatReceiver], light: LightId) -> Vec<Marked> {
-    let shown: Vec<_> = all.iter().filter(|receiver| receiver.shows_lit_side(frame, light)).collect();
+fn shown_receivers(frame: &mut Frame, all: &[FlatReceiver], light: LightId, options: PlanarSettings) -> Vec<Marked> {
+    let mut shown: Vec<_> = all.iter().filter(|receiver| receiver.shows_lit_side(frame, light)).collect();
     let name = light.name();
     if shown.is_empty() {
         frame.leave_out(Decision::PlanarShadows, &name, "no flat receiver shows its lit side");
@@ -128,6 +128,9 @@ fn marked_receivers(frame: &mut Frame, all: &[FlatReceiver], light: LightId) -> 
         let because = "light and eye are on different sides of them, so shading alone darkens them";
         let count = (all.len() - shown.len()) as u64;
         frame.plan.left_out.push(LeftOut::counted(Decision::DarkReceivers, count, &name, because));
+    }
+    if !options.marks {
+        receivers::leave_out_unmarked(frame, &mut shown, &name);
     }
     receivers::leave_out_small(frame, shown.len(), &name);
     // Marks are even and shadows one more: a byte would hold 127.

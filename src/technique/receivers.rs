@@ -4,6 +4,7 @@ use super::frame::Frame;
 use crate::geometry::planar;
 use crate::math::{Sign, side_of_triangle};
 use crate::plan::{Decision, LeftOut, LightId};
+use glam::DVec3;
 
 /// The largest are served; each costs a draw a caster.
 pub const MOST_RECEIVERS: usize = 64;
@@ -47,6 +48,38 @@ impl FlatReceiver {
             side != Sign::Zero && side == side_of_triangle(corners, light)
         })
     }
+}
+
+/// A smaller share of its object's surface is a facet of something round.
+const FACET: f64 = 1.0 / 20.0;
+
+/// Leaves out what can't be seen to receive, of those that show a light's shadows: facets of round objects, and the
+/// insides of closed ones. Without marks each would throw shadows over all that is in its plane.
+pub fn leave_out_unmarked(frame: &mut Frame, shown: &mut Vec<&FlatReceiver>, of: &str) {
+    let eye = frame.eye().extend(1.0);
+    let all = shown.len();
+    shown.retain(|one| {
+        let placed = &frame.placed[one.object];
+        let (world, triangles) = (&placed.world, placed.object.mesh.triangles());
+        let corners = triangles[one.receiver.triangles[0] as usize].map(|vertex| world[vertex as usize]);
+        let is_inside = side_of_triangle(corners, eye) != Sign::Positive
+            && frame.job.cache.topology(&placed.object.mesh).is_closed();
+        !is_inside && one.receiver.area >= FACET * area(world, triangles)
+    });
+    let count = (all - shown.len()) as u64;
+    if count > 0 {
+        let because = "without the stencil nothing keeps a shadow on them, and they are less than a twentieth of their \
+                       object's surface, facets of something round, or the inside of something closed";
+        frame.plan.left_out.push(LeftOut::counted(Decision::SmallReceivers, count, of, because));
+    }
+}
+
+fn area(world: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+    let of = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|vertex| world[vertex as usize]);
+        (b - a).cross(c - a).length() / 2.0
+    };
+    triangles.iter().map(of).sum()
 }
 
 /// Says how many receivers a light has more than fit.

@@ -37,6 +37,30 @@ fn without_the_stencil_a_shadow_runs_off_its_receiver() {
     assert_eq!(shadow(&mut session, "off"), 40 * 40);
 }
 
+/// Only what is flat by itself receives then: each facet of a torus would throw shadows over all of its plane.
+#[test]
+fn without_the_stencil_the_builtin_scenes_hang_shadows_over_their_edges_and_do_not_go_black() {
+    let mut session = session();
+    for (name, hangs_over) in [("table", true), ("rings", false)] {
+        let scene = stencilscope::scene::builtin::Builtin::named(name).expect(name).scene().expect("a scene");
+        let lit = capture(&mut session, &scene, Technique::None, &[]);
+        let plain = brightness(&lit);
+        let settings = [("stencil", "off"), ("z-fighting", "polygon-offset")];
+        let shadowed = capture(&mut session, &scene, Technique::Planar, &settings);
+        let labels = lit.lights[0].shadow.as_ref().expect("labels");
+        let background: Vec<bool> = labels.rows().flatten().map(|label| *label == 2).collect();
+        let darkened = |of: bool| {
+            let pairs = plain.iter().zip(brightness(&shadowed)).zip(&background).filter(|(_, is)| **is == of);
+            let (all, dark) = pairs
+                .fold((0, 0), |(all, dark), ((before, after), _)| (all + 1, dark + usize::from(after < before * 0.9)));
+            dark as f64 / f64::from(all)
+        };
+        let on_surfaces = darkened(false);
+        assert!((0.01..0.5).contains(&on_surfaces), "{name}: {on_surfaces}");
+        assert_eq!(darkened(true) > 0.01, hangs_over, "{name}: {}", darkened(true));
+    }
+}
+
 /// Two below the light a square throws one twice as large; two beyond it an anti-shadow as large.
 #[test]
 fn without_clipping_what_is_beyond_the_light_throws_an_anti_shadow() {

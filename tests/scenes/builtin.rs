@@ -79,7 +79,7 @@ fn builtin_scenes_are_well_formed() {
             .for_each(|object| assert_well_formed(&scene, object, open.contains(&object.name.as_str())));
     }
     let animated: Vec<&str> = ALL.iter().map(|one| one.name).filter(|name| named(name).is_animated()).collect();
-    assert_eq!(animated, ["tori", "tetrahedron", "teapot-like", "tiger-cage"]);
+    assert_eq!(animated, ["tori", "rings", "tetrahedron", "teapot-like", "tiger-cage"]);
 }
 
 fn assert_well_formed(scene: &Scene, object: &Object, is_open: bool) {

@@ -18,7 +18,7 @@ pub fn build() -> Result<Scene, MeshError> {
     let mut turning =
         Object::new("tetrahedron", tetrahedron.clone(), Material::matte(ORANGE)).at(DVec3::new(0.0, 0.0, -6.0));
     turning.pose.rotate_degrees = DVec3::new(14.0, 25.0, -9.0);
-    turning.motion = Motion { spin_degrees_per_second: DVec3::new(0.0, 30.0, 0.0), ..Motion::default() };
+    turning.motion = Motion { spin_degrees_per_second: DVec3::new(50.0, 50.0, 0.0), ..Motion::default() };
     Ok(SceneBuilder::new("tetrahedron")
         .ambient([0.11, 0.11, 0.125])
         .camera(Camera { fov_y_degrees: 52.0, ..Camera::looking([0.9, 0.5, -2.4], [-0.35, -0.3, -6.5]) })
