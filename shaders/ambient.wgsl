@@ -1,24 +1,30 @@
-// The material's colour under ambient light.
+// The material's colour under ambient light, and what it sends out by itself.
+
+struct Unlit {
+    @invariant @builtin(position) clip: vec4f,
+    // Relative to the eye.
+    @location(0) relative: vec3f,
+}
 
 @vertex
-fn vs_ambient(@location(0) relative: vec4f) -> @invariant @builtin(position) vec4f {
-    return clip_position(relative);
+fn vs_ambient(@location(0) relative: vec4f) -> Unlit {
+    return Unlit(clip_position(relative), relative.xyz);
 }
 
 @fragment
-fn fs_ambient() -> @location(0) vec4f {
-    return under_ambient_light();
+fn fs_ambient(at: Unlit) -> @location(0) vec4f {
+    return under_ambient_light(at);
 }
 
-fn under_ambient_light() -> vec4f {
-    return vec4f(draw.color * view.ambient.rgb, 1.0);
+fn under_ambient_light(at: Unlit) -> vec4f {
+    return vec4f(draw.color * in_checks(at.relative) * view.ambient.rgb + draw.emission, 1.0);
 }
 
 // Where depth is clamped nothing clips at the near plane: this does.
 @fragment
-fn fs_ambient_from_near(@builtin(position) place: vec4f) -> @location(0) vec4f {
-    if place.z < 0.0 {
+fn fs_ambient_from_near(at: Unlit) -> @location(0) vec4f {
+    if at.clip.z < 0.0 {
         discard;
     }
-    return under_ambient_light();
+    return under_ambient_light(at);
 }

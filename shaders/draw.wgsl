@@ -18,9 +18,23 @@ struct DrawConstants {
     count: f32,
     // Its own layer of the light's map, else NO_LAYER.
     layer: u32,
+    // Where the pattern of checks begins, and the side of each along X and Z: 0 for none.
+    checks_from: vec2f,
+    // What the surface sends out by itself.
+    emission: vec3f,
+    checks: f32,
 }
 
 const NO_LAYER: u32 = 0xffffffffu;
 
 // Storage, not uniform: see `uniforms.rs`.
 @group(1) @binding(0) var<storage, read> draw: DrawConstants;
+
+// How much of its colour a surface has at a place relative to the eye: a third in every other check.
+fn in_checks(relative: vec3f) -> f32 {
+    if draw.checks == 0.0 {
+        return 1.0;
+    }
+    let place = floor((relative.xz + draw.checks_from) / draw.checks);
+    return select(1.0, 1.0 / 3.0, (i32(place.x + place.y) & 1) != 0);
+}

@@ -14,7 +14,7 @@ fn added(surface: Surface) -> vec3f {
         return vec3f(0.0);
     }
     if draw.shading == GOURAUD {
-        return surface.lit;
+        return surface.lit * in_checks(surface.relative);
     }
-    return light_on(surface.relative, normalize(surface.normal));
+    return light_on(surface.relative, normalize(surface.normal), in_checks(surface.relative));
 }

@@ -69,7 +69,7 @@ fn vs_surface(@builtin(vertex_index) vertex_index: u32) -> Surface {
     let normal = normals[corner].xyz;
     out.normal = select(normal, -normal, (out.sides & SEES_BACK) != 0u);
     if draw.shading == GOURAUD {
-        out.lit = light_on(out.relative, out.normal);
+        out.lit = light_on(out.relative, out.normal, 1.0);
     }
     return out;
 }
@@ -83,15 +83,15 @@ fn faces_away(surface_sides: u32) -> bool {
     return (surface_sides & (1u << light.index)) != 0u;
 }
 
-// Diffuse, Lambert's or wrapped, and Blinn-Phong's highlight.
-fn light_on(relative: vec3f, normal: vec3f) -> vec3f {
+// Diffuse of this share of its colour, Lambert's or wrapped, and Blinn-Phong's highlight.
+fn light_on(relative: vec3f, normal: vec3f, share: f32) -> vec3f {
     let to_light = light.position.xyz - relative * light.position.w;
     let direction = normalize(to_light);
     let cosine = dot(normal, direction);
     let diffuse = select(max(cosine, 0.0), 0.5 * cosine + 0.5, light.wraps != 0u);
     let halfway = normalize(direction - normalize(relative));
     let gloss = select(0.0, draw.specular * pow(max(dot(normal, halfway), 0.0), draw.shininess), cosine > 0.0);
-    return light.color * falloff(length(to_light)) * (draw.color * diffuse + gloss);
+    return light.color * falloff(length(to_light)) * (draw.color * share * diffuse + gloss);
 }
 
 fn falloff(distance: f32) -> f32 {

@@ -36,7 +36,9 @@ struct DrawUniform {
     flat: [f32; 4],
     count: f32,
     layer: u32,
-    padding: [u32; 2],
+    checks_from: [f32; 2],
+    emission: [f32; 3],
+    checks: f32,
 }
 
 /// `Light` of `surface.wgsl`.
@@ -136,7 +138,9 @@ fn draw_uniform(draw: &Draw, map: Option<&PlanMap>) -> DrawUniform {
         count: draw.constants.count,
         // Of a layer that is left out, all of the light arrives.
         layer: draw.constants.layer.and_then(|layer| map?.held_layer(layer)).unwrap_or(NO_LAYER),
-        padding: [0; 2],
+        checks_from: draw.constants.checks_from,
+        emission: material.emission,
+        checks: material.checks,
         reversed_sum: if is_label { draw.triangles.start + draw.triangles.end - 1 } else { NOT_REVERSED },
     }
 }

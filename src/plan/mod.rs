@@ -485,6 +485,9 @@ pub struct DrawConstants {
     pub count: f32,
     /// The layer of the light's map that is the draw's own.
     pub layer: Option<u32>,
+    /// The eye's world X and Z, less whole pairs of the material's checks: where their pattern begins.
+    #[serde(default)]
+    pub checks_from: [f32; 2],
 }
 
 impl FramePlan {

@@ -14,6 +14,21 @@ pub enum Shading {
     Phong,
 }
 
+impl Shading {
+    /// All of them.
+    pub const ALL: [Shading; 3] = [Shading::Flat, Shading::Gouraud, Shading::Phong];
+
+    /// As in scene files and settings.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Shading::Flat => "flat",
+            Shading::Gouraud => "gouraud",
+            Shading::Phong => "phong",
+        }
+    }
+}
+
 /// Colour and gloss of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Material {
@@ -28,6 +43,13 @@ pub struct Material {
     /// 1 is opaque. Only projective textures look at it: labels count translucent casters as
     /// opaque.
     pub opacity: f32,
+    /// Linear RGB that it sends out by itself, whatever light falls on it; it lights nothing else.
+    #[serde(default)]
+    pub emission: [f32; 3],
+    /// The side of the squares of a checkerboard, along world X and Z in world units: every other one has a third of the
+    /// colour. 0 for none.
+    #[serde(default)]
+    pub checks: f32,
 }
 
 impl Material {
@@ -40,12 +62,20 @@ impl Material {
     /// A smooth surface with a highlight.
     #[must_use]
     pub fn glossy(color: [f32; 3]) -> Material {
-        Material { color, specular: 0.25, shininess: 40.0, shading: Shading::Phong, opacity: 1.0 }
+        Material { color, specular: 0.25, shininess: 40.0, shading: Shading::Phong, ..Material::default() }
     }
 }
 
 impl Default for Material {
     fn default() -> Material {
-        Material { color: [0.75; 3], specular: 0.0, shininess: 16.0, shading: Shading::Flat, opacity: 1.0 }
+        Material {
+            color: [0.75; 3],
+            specular: 0.0,
+            shininess: 16.0,
+            shading: Shading::Flat,
+            opacity: 1.0,
+            emission: [0.0; 3],
+            checks: 0.0,
+        }
     }
 }

@@ -20,7 +20,7 @@ pub use volume::{CountsBy, VolumeSettings, WhoCasts};
 use super::named::Technique;
 
 /// The settings of techniques that have none of their own.
-const COMMON: [SettingSpec; 5] = common::with_own([]);
+const COMMON: [SettingSpec; 6] = common::with_own([]);
 
 impl Technique {
     /// Its settings, in the order in which they are shown.

@@ -6,10 +6,10 @@ use crate::plan::{Blob, DrawMesh, SurfaceData};
 use crate::scene::{Light, Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec3};
 
-/// The surface of `object`, relative to the eye.
-pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene) -> DrawMesh {
+/// The surface of `object`, relative to the eye; shaded as its materials say unless told otherwise.
+pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene, shading: Option<Shading>) -> DrawMesh {
     let eye = scene.camera.eye;
-    let normals = corner_normals(object, world);
+    let normals = corner_normals(object, world, shading);
     DrawMesh {
         name: object.name.clone(),
         vertices: Blob::new(world.iter().map(|position| relative::point(*position, eye)).collect()),
@@ -33,7 +33,7 @@ fn sides(object: &Object, world: &[DVec3], scene: &Scene) -> Vec<u32> {
 }
 
 /// Unit world-space normals of all corners, on the side from where corners run counter-clockwise.
-fn corner_normals(object: &Object, world: &[DVec3]) -> Vec<[f32; 4]> {
+fn corner_normals(object: &Object, world: &[DVec3], told: Option<Shading>) -> Vec<[f32; 4]> {
     let mesh = &object.mesh;
     let face_normals: Vec<DVec3> = mesh.triangles().iter().map(|corners| scaled_normal(world, *corners)).collect();
     let averaged = averaged_normals(mesh, &face_normals);
@@ -43,7 +43,7 @@ fn corner_normals(object: &Object, world: &[DVec3]) -> Vec<[f32; 4]> {
     let normal_from_object = world_from_object.inverse().transpose() * orientation;
     let mut normals = Vec::with_capacity(mesh.triangles().len() * 3);
     for group in mesh.groups() {
-        let shading = group.material.unwrap_or(object.material).shading;
+        let shading = told.unwrap_or(group.material.unwrap_or(object.material).shading);
         for triangle in group.triangles.clone() {
             for corner in 0..3 {
                 let normal = match (shading, mesh.corner_normals()) {

@@ -5,6 +5,7 @@ mod glass;
 mod inside;
 mod panels;
 mod rings;
+mod spheres;
 mod steps;
 mod table;
 mod teapot_like;
@@ -81,6 +82,11 @@ pub const ALL: &[Builtin] = &[
         name: "two-lights",
         lesson: "a lamp and the sun, with shadows that cross: the steps repeat for each light",
         build: two_lights::build,
+    },
+    Builtin {
+        name: "spheres",
+        lesson: "a ball in 200, 450 and 16 200 triangles on a checkered floor: flat, Gouraud and Phong shading, and a lamp that glows",
+        build: spheres::build,
     },
     Builtin {
         name: "tiger-cage",

@@ -19,7 +19,8 @@ const AROUND: u32 = 56;
 /// The table's top is at height 0.
 pub fn build() -> Result<Scene, MeshError> {
     let table = Arc::new(shapes::cylinder(3.4, 0.16, 96)?);
-    let glazed = |color| Material { color, specular: 0.35, shininess: 50.0, shading: Shading::Phong, opacity: 1.0 };
+    let glazed =
+        |color| Material { color, specular: 0.35, shininess: 50.0, shading: Shading::Phong, ..Material::default() };
     let mut pot = Object::new("pot", Arc::new(pot()?), glazed(GLAZE)).at(DVec3::new(0.0, 0.02, 0.0));
     pot.pose.rotate_degrees.y = 24.0;
     pot.motion = Motion { spin_degrees_per_second: DVec3::new(0.0, 20.0, 0.0), ..Motion::default() };

@@ -98,8 +98,13 @@ impl Orbiting {
     fn object(&self, mesh: &Arc<Mesh>) -> Object {
         let (sin, cos) = self.azimuth_degrees.to_radians().sin_cos();
         let start = LIGHT + DVec3::new(self.radius * sin, self.height, self.radius * cos);
-        let material =
-            Material { color: self.color, specular: 0.3, shininess: 32.0, shading: Shading::Phong, opacity: 1.0 };
+        let material = Material {
+            color: self.color,
+            specular: 0.3,
+            shininess: 32.0,
+            shading: Shading::Phong,
+            ..Material::default()
+        };
         let mut object = Object::new(self.name, mesh.clone(), material).at(start);
         object.pose.rotate_degrees = self.rotate_degrees;
         let orbit = Orbit { center: LIGHT, axis: DVec3::Y, degrees_per_second: self.degrees_per_second };

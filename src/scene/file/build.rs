@@ -258,16 +258,14 @@ fn material(table: Option<&MaterialTable>, mesh: &Mesh) -> Result<Material, Prob
         shininess: table.shininess.as_ref().map_or(Ok(default.shininess), |value| within(value, 0.001, 10_000.0))?,
         shading: table.shading.as_ref().map_or(Ok(shading), shading_named)?,
         opacity: fraction(&table.opacity, default.opacity)?,
+        emission: table.emission.as_ref().map_or(Ok(default.emission), |rgb| color(rgb, 1000.0))?,
+        checks: table.checks.as_ref().map_or(Ok(default.checks), |value| within(value, 0.0, 1e6))?,
     })
 }
 
 fn shading_named(name: &Text) -> Result<Shading, Problem> {
-    match name.get_ref().as_str() {
-        "flat" => Ok(Shading::Flat),
-        "gouraud" => Ok(Shading::Gouraud),
-        "phong" => Ok(Shading::Phong),
-        _ => Err(unknown(name, "shading", &["flat", "gouraud", "phong"])),
-    }
+    let found = Shading::ALL.into_iter().find(|shading| shading.name() == name.get_ref());
+    found.ok_or_else(|| unknown(name, "shading", &Shading::ALL.map(Shading::name)))
 }
 
 fn scale(value: Option<&Triple>) -> Result<DVec3, Problem> {

@@ -3,7 +3,7 @@
 //! Numbers are written in the fewest digits that read back as the same bits, so that the scene that is
 //! read is the one that was written. Small meshes stand in the file itself; others become models.
 
-use crate::scene::{Group, Light, Material, Mesh, Motion, Object, Scene, Shading};
+use crate::scene::{Group, Light, Material, Mesh, Motion, Object, Scene};
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -138,6 +138,10 @@ struct MaterialTable {
     shininess: f64,
     shading: &'static str,
     opacity: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    emission: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    checks: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -173,7 +177,7 @@ fn motion(motion: &Motion) -> (Option<OrbitTable>, Option<SwingTable>) {
 fn object_table(object: &Object, mesh: MeshSource) -> ObjectTable<'_> {
     let (orbit, swing) = motion(&object.motion);
     let spin = object.motion.spin_degrees_per_second;
-    let Material { color, specular, shininess, shading, opacity } = object.material;
+    let Material { color, specular, shininess, shading, opacity, emission, checks } = object.material;
     ObjectTable {
         name: &object.name,
         translate: object.pose.translate.to_array(),
@@ -190,12 +194,10 @@ fn object_table(object: &Object, mesh: MeshSource) -> ObjectTable<'_> {
             color: color.map(short),
             specular: short(specular),
             shininess: short(shininess),
-            shading: match shading {
-                Shading::Flat => "flat",
-                Shading::Gouraud => "gouraud",
-                Shading::Phong => "phong",
-            },
+            shading: shading.name(),
             opacity: short(opacity),
+            emission: (emission != [0.0; 3]).then(|| emission.map(short)),
+            checks: (checks != 0.0).then(|| short(checks)),
         },
     }
 }

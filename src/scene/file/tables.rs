@@ -93,6 +93,8 @@ pub struct MaterialTable {
     pub shininess: Option<Number>,
     pub shading: Option<Text>,
     pub opacity: Option<Number>,
+    pub emission: Option<Triple>,
+    pub checks: Option<Number>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -28,6 +28,7 @@ pub fn material(from: &tobj::Material, shading: Shading) -> Material {
         shininess: from.shininess.map_or(default.shininess, |exponent| within(1.0, exponent, 1000.0)),
         opacity: from.dissolve.map_or(1.0, |opacity| within(0.0, opacity, 1.0)),
         shading,
+        ..default
     }
 }
 

@@ -9,6 +9,7 @@ use crate::plan::{
 };
 use crate::scene::Object;
 use crate::truth::{BACKGROUND as BACKGROUND_LABEL, LIT};
+use glam::DVec3;
 use wgpu::TextureFormat;
 
 /// Linear colour of pixels that show no surface.
@@ -230,7 +231,13 @@ impl Frame<'_> {
                 triangles: piece.triangles.clone(),
                 base_vertex: 0,
                 faces_inwards: false,
-                constants: DrawConstants { material, label: drawn.label, layer, ..DrawConstants::default() },
+                constants: DrawConstants {
+                    material,
+                    label: drawn.label,
+                    layer,
+                    checks_from: checks_from(self.eye(), material.checks),
+                    ..DrawConstants::default()
+                },
             })
         };
         pieces.iter().filter_map(draw).collect()
@@ -272,4 +279,10 @@ impl Frame<'_> {
         }
         misses
     }
+}
+
+/// [`DrawConstants::checks_from`]: small wherever the eye is, so that single precision holds it.
+fn checks_from(eye: DVec3, checks: f32) -> [f32; 2] {
+    let pair = f64::from(checks) * 2.0;
+    if pair > 0.0 { [eye.x, eye.z].map(|at| at.rem_euclid(pair) as f32) } else { [0.0; 2] }
 }

@@ -5,7 +5,7 @@ use crate::geometry::relative;
 use crate::math::depth::DepthCurve;
 use crate::math::projection;
 use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, MeshId, PlanLight, PlanView};
-use crate::scene::{Object, Scene};
+use crate::scene::{Material, Object, Scene, Shading};
 use crate::technique::{PlanError, surfaces};
 use glam::{DMat4, DVec3};
 use std::collections::HashSet;
@@ -78,8 +78,11 @@ impl Frame<'_> {
                 return Err(PlanError::Unusable { problem });
             }
             let drawn = object.visible && !object.mesh.triangles().is_empty();
-            let surface = drawn.then(|| self.add_mesh(surfaces::draw_mesh(object, &world, self.job.scene)));
-            self.pieces.extend(surface.into_iter().flat_map(|mesh| pieces_of(object, self.placed.len(), mesh)));
+            let surface =
+                drawn.then(|| self.add_mesh(surfaces::draw_mesh(object, &world, self.job.scene, self.common.shading)));
+            self.pieces.extend(
+                surface.into_iter().flat_map(|mesh| pieces_of(object, self.placed.len(), mesh, self.common.shading)),
+            );
             self.placed.push(Placed { object, world, surface });
         }
         Ok(())
@@ -98,14 +101,17 @@ impl Frame<'_> {
 }
 
 /// One piece a group.
-fn pieces_of(object: &Object, index: usize, mesh: MeshId) -> impl Iterator<Item = Piece> {
+fn pieces_of(object: &Object, index: usize, mesh: MeshId, shading: Option<Shading>) -> impl Iterator<Item = Piece> {
     object.mesh.groups().iter().map(move |group| Piece {
         name: match group.name.as_str() {
             "" => object.name.clone(),
             group => format!("{} · {group}", object.name),
         },
         object: index,
-        material: group.material.unwrap_or(object.material),
+        material: {
+            let material = group.material.unwrap_or(object.material);
+            Material { shading: shading.unwrap_or(material.shading), ..material }
+        },
         mesh,
         triangles: group.triangles.start as u32..group.triangles.end as u32,
         layer: None,

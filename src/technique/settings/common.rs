@@ -3,6 +3,7 @@
 use super::face::{Number, SettingSpec, SettingValues, Values, Words, number, words};
 use crate::math::depth::DepthMapping;
 use crate::plan::Decision;
+use crate::scene::Shading;
 
 const DEPTH: Words<DepthMapping> = words("depth", &DEPTH_NAMES, &DepthMapping::ALL, "how distance becomes depth");
 const DEPTH_NAMES: [&str; 5] = {
@@ -14,6 +15,12 @@ const EPSILON: Number =
     number("epsilon", [0.0, 0.1], "2.4e-7", "by how much standard-infinite-epsilon pulls infinity in");
 const DIFFUSE: Words<bool> =
     words("diffuse", &["lambert", "wrapped"], &[false, true], "how brightness falls off with the angle of light");
+const SHADING: Words<Option<Shading>> = words(
+    "shading",
+    &["as-given", "flat", "gouraud", "phong"],
+    &[None, Some(Shading::Flat), Some(Shading::Gouraud), Some(Shading::Phong)],
+    "where light is computed: as each material says, or for all alike once a triangle, a vertex or a pixel",
+);
 const LEAVE_OUT: SettingSpec = SettingSpec {
     key: "leave-out",
     values: SettingValues::SomeOf(&Decision::NAMES),
@@ -26,7 +33,7 @@ const OCCLUSION: Words<bool> = words(
     &[false, true],
     "a frame before the frame asks what shows; draws that show nothing are left out of the next",
 );
-const SPECS: [SettingSpec; 5] = [DEPTH.spec, EPSILON.spec, DIFFUSE.spec, LEAVE_OUT, OCCLUSION.spec];
+const SPECS: [SettingSpec; 6] = [DEPTH.spec, EPSILON.spec, DIFFUSE.spec, SHADING.spec, LEAVE_OUT, OCCLUSION.spec];
 
 /// A technique's settings: those that every technique has, and its `own`.
 pub(in crate::technique) const fn with_own<const OWN: usize, const ALL: usize>(
@@ -51,6 +58,8 @@ pub struct CommonSettings {
     pub epsilon: f64,
     /// Diffuse light wraps round the edge that Lambert's ends at.
     pub wraps_diffuse: bool,
+    /// How all surfaces are shaded; `None` for each as its material says.
+    pub shading: Option<Shading>,
     /// A frame before the frame asks what shows.
     pub asks_what_shows: bool,
     /// By decision that may be forbidden: it is not.
@@ -68,6 +77,7 @@ impl CommonSettings {
             depth: DEPTH.read(values),
             epsilon: EPSILON.read(values),
             wraps_diffuse: DIFFUSE.read(values),
+            shading: SHADING.read(values),
             asks_what_shows: OCCLUSION.read(values),
             allowed,
         }

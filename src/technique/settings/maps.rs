@@ -49,7 +49,7 @@ const FILTER: NumberOr = number_or(
 );
 
 /// In the order in which they are shown.
-pub(super) const SHADOW_MAP: [SettingSpec; 13] = with_own([
+pub(super) const SHADOW_MAP: [SettingSpec; 14] = with_own([
     MAP_SIZE.spec,
     CONSTANT.spec,
     SLOPE.spec,
@@ -123,9 +123,9 @@ const BORDER: Words<bool> = words(
 );
 
 /// In the order in which they are shown.
-pub(super) const PLANAR_TEXTURE: [SettingSpec; 7] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
+pub(super) const PLANAR_TEXTURE: [SettingSpec; 8] = with_own([TEXTURE_SIZE.spec, REDRAW.spec]);
 /// In the order in which they are shown.
-pub(super) const PROJECTIVE: [SettingSpec; 11] =
+pub(super) const PROJECTIVE: [SettingSpec; 12] =
     with_own([SILHOUETTE_SIZE.spec, PASSES.spec, REVERSE.spec, FIT.spec, BORDER.spec, REDRAW.spec]);
 
 /// What techniques are told that keep what light passes, as types.

@@ -33,7 +33,7 @@ const CACHE: Words<bool> =
     words("cache", &["on", "off"], &[true, false], "keeps flattened casters until plane, caster or light change");
 
 /// In the order in which they are shown.
-pub(super) const SETTINGS: [SettingSpec; 10] =
+pub(super) const SETTINGS: [SettingSpec; 11] =
     with_own([STENCIL.spec, BLEND.spec, CLIP.spec, Z_FIGHTING.spec, CACHE.spec]);
 
 /// What planar shadows are told, as types.

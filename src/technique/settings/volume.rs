@@ -100,9 +100,9 @@ const OWN: [SettingSpec; 12] = [
 ];
 
 /// In the order in which they are shown.
-pub(super) const Z_PASS: [SettingSpec; 17] = with_own(OWN);
+pub(super) const Z_PASS: [SettingSpec; 18] = with_own(OWN);
 /// The same without the start: what counts from infinity, or asks at the near plane, has no other.
-pub(super) const VOLUME: [SettingSpec; 16] = with_own({
+pub(super) const VOLUME: [SettingSpec; 17] = with_own({
     let [own @ .., _] = OWN;
     own
 });
