@@ -73,3 +73,48 @@ fn a_flat_ball_has_facets() {
     // Twelve segments in three rings face the eye, two triangles of one quad share a shade.
     assert!(flat <= 12 * 3 * 2 + 1 && gouraud > 100 && phong > 100, "{flat} {gouraud} {phong}");
 }
+
+/// One setting for all surfaces is what each material would say.
+#[test]
+fn the_setting_shades_all_objects_as_their_materials_would() {
+    let mut session = session();
+    for (name, shading) in [("flat", Shading::Flat), ("gouraud", Shading::Gouraud), ("phong", Shading::Phong)] {
+        let by_material = capture(&mut session, &ball(shading), Technique::None, &[]);
+        for other in Shading::ALL {
+            let told = capture(&mut session, &ball(other), Technique::None, &[("shading", name)]);
+            assert_eq!(brightness(&told), brightness(&by_material), "{other:?} told to be {name}");
+        }
+    }
+}
+
+/// Sent out whether lit or not, and darkened by no shadow.
+#[test]
+fn what_glows_is_as_bright_in_the_dark() {
+    let mut session = session();
+    let mut scene = from_above(Vec::new());
+    scene.ambient = [0.0; 3];
+    scene.lights[0].color = [0.0; 3];
+    scene.objects[0].material.emission = [0.25, 0.5, 1.0];
+    let found = capture(&mut session, &scene, Technique::ZFail, &[]);
+    assert_eq!(as_bright_as(&brightness(&found), 0.25), 40_000);
+}
+
+/// Ten by ten metres seen as 200 × 200 pixels: squares of one metre are twenty pixels, half of them a third as bright,
+/// wherever in the world the floor lies.
+#[test]
+fn a_checkerboard_has_as_many_dark_squares_as_light_ones_near_and_far_from_the_origin() {
+    let mut session = session();
+    for (offset, name) in [(0.0, "flat"), (0.0, "gouraud"), (1e6, "phong"), (1e6 + 1.0, "flat")] {
+        let mut scene = from_above(Vec::new());
+        scene.ambient = [1.0; 3];
+        scene.lights[0].color = [0.0; 3];
+        scene.objects[0].material.checks = 1.0;
+        for place in [&mut scene.camera.eye, &mut scene.camera.target, &mut scene.objects[0].pose.translate] {
+            place.x += offset;
+        }
+        let shades = brightness(&capture(&mut session, &scene, Technique::None, &[("shading", name)]));
+        assert_eq!([as_bright_as(&shades, 0.75), as_bright_as(&shades, 0.25)], [20_000, 20_000], "{offset}");
+        let edges = shades[..200].windows(2).filter(|pair| pair[0] != pair[1]).count();
+        assert!((9..=10).contains(&edges), "squares of twenty pixels: {edges} edges");
+    }
+}

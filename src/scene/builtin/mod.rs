@@ -85,7 +85,7 @@ pub const ALL: &[Builtin] = &[
     },
     Builtin {
         name: "spheres",
-        lesson: "a ball in 200, 450 and 16 200 triangles on a checkered floor: flat, Gouraud and Phong shading, and a lamp that glows",
+        lesson: "a ball in 200, 450 and 16 200 triangles on a checkerboard: flat, Gouraud and Phong shading under a lamp that glows",
         build: spheres::build,
     },
     Builtin {
