@@ -6,6 +6,7 @@ mod auto;
 mod capture_folder;
 mod commands;
 mod common;
+mod coordinates;
 mod diagnose;
 mod diagnosis;
 mod diff;

@@ -4,8 +4,10 @@ use super::options::{FrameOptions, SceneOptions, Subject, pixel};
 use super::{CliError, output};
 use crate::history::PixelDocument;
 use crate::plan::LightId;
+use crate::reading::coordinates::Place;
 use crate::session::{RunFrame, Session, SessionError};
 use clap::Args;
+use serde::Serialize;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
@@ -19,6 +21,9 @@ pub struct PixelArguments {
     scene_options: SceneOptions,
     #[command(flatten)]
     frame: FrameOptions,
+    /// Also the pixel's point in world, eye, clip, device and window coordinates, with the matrices between them
+    #[arg(long)]
+    coordinates: bool,
     /// Machine-readable, to a file or to standard output in place of the text
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     json: Option<Option<String>>,
@@ -52,7 +57,9 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         let took = start.elapsed().as_secs_f64() * 1e3;
         wrong += usize::from(!history.agrees());
         stories.push(history.story(&capture.depth));
-        documents.push(PixelDocument::new(&history, took));
+        let coordinates = arguments.coordinates.then(|| Place::of(&capture, *pixel));
+        stories.extend(coordinates.as_ref().map(Place::text));
+        documents.push(Document { history: PixelDocument::new(&history, took), coordinates });
     }
     match (&arguments.json, &documents[..]) {
         (None, _) => output::print(&stories.join("\n"))?,
@@ -62,7 +69,16 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     if wrong == 0 { Ok(()) } else { Err(CliError::WrongHistory { pixels: wrong }) }
 }
 
-fn json<T: serde::Serialize + ?Sized>(value: &T) -> Result<String, CliError> {
+/// A history, and where the pixel's point is, if that was asked for.
+#[derive(Debug, Serialize)]
+struct Document {
+    #[serde(flatten)]
+    history: PixelDocument,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    coordinates: Option<Place>,
+}
+
+fn json<T: Serialize + ?Sized>(value: &T) -> Result<String, CliError> {
     let text = serde_json::to_string_pretty(value);
     let failed = |error: serde_json::Error| CliError::Output { path: "the history".to_owned(), source: error.into() };
     Ok(text.map_err(failed)? + "\n")

@@ -102,10 +102,10 @@ impl DepthMeasure {
         self.between(f64::from(depth), f64::from(depth.next_up()), depth)
     }
 
-    /// One step of a fixed-point buffer of [`FIXED_BITS`] bits, which stores `floor((2^k − 1) · depth)`.
+    /// One step of a fixed-point buffer of `bits` bits, 31 at most, which stores `floor((2^k − 1) · depth)`.
     #[must_use]
-    pub fn fixed_step_at(self, depth: f32) -> Option<f64> {
-        let steps = f64::from((1_u32 << FIXED_BITS) - 1);
+    pub fn fixed_step_at(self, depth: f32, bits: u32) -> Option<f64> {
+        let steps = f64::from((1_u32 << bits) - 1);
         let stored = (f64::from(depth) * steps).floor();
         // The last step before 1 has none above it.
         let next = if stored < steps { stored + 1.0 } else { stored - 1.0 };
@@ -185,12 +185,12 @@ mod tests {
     fn steps_of_standard_depth_grow_with_the_square_of_distance() {
         let curve = DepthMapping::StandardInfinite.curve(0.1, 0.0, 0.0);
         let measure = DepthMeasure::Perspective { scale: curve.scale, offset: curve.offset, clear: 1.0 };
-        let step = |distance: f64| measure.fixed_step_at(curve.depth(distance) as f32).unwrap();
+        let step = |distance: f64| measure.fixed_step_at(curve.depth(distance) as f32, FIXED_BITS).unwrap();
         let expected = |distance: f64| distance * distance / 0.1 / f64::from(1 << FIXED_BITS);
         for distance in [1.0, 10.0, 100.0] {
             assert!((step(distance) / expected(distance) - 1.0).abs() < 0.01, "{distance}: {}", step(distance));
         }
-        assert_eq!(measure.fixed_step_at(1.0), None);
+        assert_eq!(measure.fixed_step_at(1.0, FIXED_BITS), None);
     }
 
     #[test]

@@ -13,6 +13,7 @@
 //! ```
 
 pub mod change;
+pub mod coordinates;
 pub mod counts;
 pub mod depth;
 pub mod explain_facts;

@@ -407,3 +407,14 @@ fn behind_the_surface_back_faces_add_and_before_it_front_faces() {
         assert_eq!(parts.contains("dark-cap"), technique == Technique::ZFail, "{parts:?}");
     }
 }
+
+#[test]
+fn coordinates_unfold_into_every_space_and_matrix() {
+    let mut harness = picked(DARK);
+    assert!(harness.query_by_label("NDC").is_none(), "folded at first");
+    harness.get_by_label("Coordinates").click();
+    harness.run_steps(20);
+    for label in ["world", "eye", "clip", "NDC", "window", "camera", "step, 24 bits", "clip from eye, then back:"] {
+        harness.get_by_label(label);
+    }
+}

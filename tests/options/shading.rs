@@ -99,7 +99,7 @@ fn what_glows_is_as_bright_in_the_dark() {
     assert_eq!(as_bright_as(&brightness(&found), 0.25), 40_000);
 }
 
-/// Ten by ten metres seen as 200 × 200 pixels: squares of one metre are twenty pixels, half of them a third as bright,
+/// Twenty by twenty metres seen as 200 × 200 pixels: squares of one metre are ten pixels, half of them a third as bright,
 /// wherever in the world the floor lies.
 #[test]
 fn a_checkerboard_has_as_many_dark_squares_as_light_ones_near_and_far_from_the_origin() {
@@ -115,6 +115,6 @@ fn a_checkerboard_has_as_many_dark_squares_as_light_ones_near_and_far_from_the_o
         let shades = brightness(&capture(&mut session, &scene, Technique::None, &[("shading", name)]));
         assert_eq!([as_bright_as(&shades, 0.75), as_bright_as(&shades, 0.25)], [20_000, 20_000], "{offset}");
         let edges = shades[..200].windows(2).filter(|pair| pair[0] != pair[1]).count();
-        assert!((9..=10).contains(&edges), "squares of twenty pixels: {edges} edges");
+        assert!((19..=20).contains(&edges), "squares of ten pixels: {edges} edges");
     }
 }

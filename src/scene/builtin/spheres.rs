@@ -19,7 +19,7 @@ pub fn build() -> Result<Scene, MeshError> {
     let mut objects = vec![Object::new("floor", Arc::new(shapes::quad([8.0, 6.0])?), floor)];
     for (index, [slices, stacks]) in FINENESS.into_iter().enumerate() {
         let ball = shapes::sphere(0.5, slices, stacks)?;
-        let name = format!("ball of {}", crate::numbers::count(ball.triangles().len() as u64));
+        let name = format!("ball of {}", ball.triangles().len());
         let material = Material { shading: Shading::Flat, specular: 0.35, shininess: 30.0, ..Material::matte(BALL) };
         objects.push(Object::new(name, Arc::new(ball), material).at(DVec3::new(1.3 * (index as f64 - 1.0), 0.55, 0.0)));
     }

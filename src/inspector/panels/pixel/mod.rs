@@ -1,5 +1,6 @@
 //! The picked pixel: one sentence, then its values at the selected step, then how they came to be.
 
+pub mod coordinates;
 pub mod history_rows;
 pub mod ladder;
 pub mod map;
@@ -61,6 +62,7 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
                 map::ui(ui, model, &capture, decision);
             }
         }
+        coordinates::ui(ui, &capture, at);
         ui.add_space(gap);
         run::ui(ui, model, &capture, at);
         ui.add_space(gap);
@@ -212,7 +214,7 @@ fn frame_values(ui: &mut Ui, pairs: &mut Pairs, capture: &Capture, frame: &Frame
         pairs.text(ui, "distance", &distance.map_or_else(|| "no surface".to_owned(), format::metres));
         let metres = |step: Option<f64>| step.map_or_else(|| "–".to_owned(), format::metres);
         pairs.text(ui, "one step", &metres(measure.step_at(depth)));
-        pairs.text(ui, &format!("in {FIXED_BITS} bits"), &metres(measure.fixed_step_at(depth)));
+        pairs.text(ui, &format!("in {FIXED_BITS} bits"), &metres(measure.fixed_step_at(depth, FIXED_BITS)));
     }
     match frame.stencil.as_ref().map(|stencil| stencil.image.byte_at(at)) {
         Some(Some(stencil)) => stencil_cells(ui, pairs, stencil),
