@@ -82,6 +82,8 @@ pub enum Panel {
     State,
     /// What the step is for, and tours.
     Explain,
+    /// The stencil test by itself.
+    Bench,
     /// Error against time.
     Report,
     /// What is wrong, and what mends it.
@@ -103,6 +105,7 @@ impl Panel {
             Panel::Pixel => "Pixel",
             Panel::State => "State",
             Panel::Explain => "Explain",
+            Panel::Bench => "Bench",
             Panel::Report => "Report",
             Panel::Diagnosis => "Diagnosis",
             Panel::Stress => "Stress",
@@ -110,7 +113,7 @@ impl Panel {
     }
 
     /// In the order of their declaration.
-    pub const ALL: [Panel; 11] = [
+    pub const ALL: [Panel; 12] = [
         Panel::Passes,
         Panel::Settings,
         Panel::Picture,
@@ -119,6 +122,7 @@ impl Panel {
         Panel::Pixel,
         Panel::State,
         Panel::Explain,
+        Panel::Bench,
         Panel::Report,
         Panel::Diagnosis,
         Panel::Stress,

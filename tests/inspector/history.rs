@@ -418,3 +418,22 @@ fn coordinates_unfold_into_every_space_and_matrix() {
         harness.get_by_label(label);
     }
 }
+
+/// The bench takes a draw's state, and answers as the stencil machine does.
+#[test]
+fn the_bench_pushes_fragments_through_the_selected_draws_tests() {
+    let mut harness = picked(DARK);
+    harness.get_by_role_and_label(Role::Tab, "Bench").click();
+    harness.run_steps(4);
+    harness.get_by_label("Push a back face").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains("1. back face at 0.25: the stencil test (always) passes, the depth test (0.25 > 0.5) fails; increment-wrap: stencil 0 to 1");
+    harness.get_by_label("Take the selected draw's state").click();
+    harness.run_steps(4);
+    harness.get_by_label("Push a front face").click();
+    harness.run_steps(4);
+    harness.get_by_label_contains("2. front face at 0.25");
+    harness.get_by_label("Start again").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label_contains("1. back face").is_none());
+}

@@ -100,7 +100,7 @@ fn a_setting_says_on_hover_what_it_does() {
     let mut harness = settings_of("z-fail");
     harness.get_by_role_and_label(Role::ComboBox, "operations").hover();
     harness.run_steps(8);
-    harness.get_by_label("What counts do beyond 0 and 255");
+    harness.get_by_label_contains("What a face does: steps that wrap round the ends of the count");
 }
 
 fn object(name: &str, mesh: &Mesh) -> ObjectMesh {
@@ -121,7 +121,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
             object("turned", &turned),
         ])),
     );
-    let mut harness = harness_of(inspector, [1280.0, 1200.0]);
+    let mut harness = harness_of(inspector, [1280.0, 1500.0]);
     click(&mut harness, "Scene settings");
     harness.get_by_label("closed");
     harness.get_by_label("closed, 3 inconsistently wound edges");

@@ -1,6 +1,7 @@
 //! The tabs, one file or folder each: what it remembers, and a function that draws it of that and of the model. A new one
 //! is a file here, a field and an arm below, and its name among [`Panel`]s.
 
+pub mod bench;
 pub mod diagnosis;
 pub mod explain;
 pub mod passes;
@@ -15,6 +16,7 @@ pub mod stress;
 
 use crate::inspector::action::{Action, Panel};
 use crate::inspector::model::Model;
+use bench::Bench;
 use diagnosis::DiagnosisPanel;
 use egui::Ui;
 use explain::Explain;
@@ -40,6 +42,7 @@ pub struct Panels {
     pixel: Pixel,
     raster_state: RasterStatePanel,
     explain: Explain,
+    bench: Bench,
     report: ReportPanel,
     diagnosis: DiagnosisPanel,
     stress: StressPanel,
@@ -63,6 +66,7 @@ impl Panels {
             Panel::Pixel => pixel::ui(ui, &mut self.pixel, model),
             Panel::State => raster_state::ui(ui, &mut self.raster_state, model),
             Panel::Explain => explain::ui(ui, &mut self.explain, model),
+            Panel::Bench => bench::ui(ui, &mut self.bench, model),
             Panel::Report => report::ui(ui, &mut self.report, model, actions),
             Panel::Diagnosis => diagnosis::ui(ui, &mut self.diagnosis, model, actions),
             Panel::Stress => stress::ui(ui, &mut self.stress, model, actions),

@@ -63,6 +63,27 @@ pub fn is_whole(tree: &Tree<Panel>) -> bool {
     is_tree && panels == Panel::ALL
 }
 
+/// Adds panels that are not there, as in a layout that a program before them stored: to the tabs that tell about a pixel,
+/// or to the first.
+pub fn complete(tree: &mut Tree<Panel>) {
+    let mut panels = Vec::new();
+    let is_tree = tree.root.is_some_and(|root| visit(&tree.tiles, root, &mut BTreeSet::new(), &mut panels));
+    if !is_tree {
+        return;
+    }
+    for panel in Panel::ALL.into_iter().filter(|panel| !panels.contains(panel)) {
+        let explain = tree.tiles.find_pane(&Panel::Explain);
+        let tabs = explain.and_then(|tile| tree.tiles.parent_of(tile));
+        let is_tabs = |tile: &TileId| matches!(tree.tiles.get(*tile), Some(Tile::Container(Container::Tabs(_))));
+        let first = || tree.tiles.tile_ids().filter(is_tabs).min_by_key(|tile| tile.0);
+        let Some(tabs) = tabs.filter(is_tabs).or_else(first) else { return };
+        let pane = tree.tiles.insert_pane(panel);
+        if let Some(Tile::Container(Container::Tabs(tabs))) = tree.tiles.get_mut(tabs) {
+            tabs.children.push(pane);
+        }
+    }
+}
+
 /// Gathers the panels below a tile; false where a tile is missing or stands twice.
 fn visit(tiles: &Tiles<Panel>, tile: TileId, seen: &mut BTreeSet<u64>, panels: &mut Vec<Panel>) -> bool {
     if !seen.insert(tile.0) {

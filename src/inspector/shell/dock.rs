@@ -53,7 +53,7 @@ impl Dock {
         let [picture, report, right] = [
             &[Panel::Picture, Panel::Scene, Panel::ShadowMap][..],
             &[Panel::Report, Panel::Diagnosis, Panel::Stress],
-            &[Panel::Pixel, Panel::State, Panel::Explain],
+            &[Panel::Pixel, Panel::State, Panel::Explain, Panel::Bench],
         ]
         .map(|panels| {
             let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
@@ -73,7 +73,8 @@ impl Dock {
 
     /// Puts the panels where they were. A layout that is not one of these panels is not taken.
     pub fn restore(&mut self, layout: Layout) {
-        let Ok(tree) = serde_json::from_value::<Tree<Panel>>(layout) else { return };
+        let Ok(mut tree) = serde_json::from_value::<Tree<Panel>>(layout) else { return };
+        arrangement::complete(&mut tree);
         if arrangement::is_whole(&tree) {
             self.tree = tree;
             arrangement::mend(&mut self.tree, None);
