@@ -15,6 +15,9 @@ use std::fmt::Write;
 /// Bits of depth buffers that are compared; the last is the 32-bit float that is stored here.
 const BITS: [u32; 3] = [8, 16, 24];
 
+/// Digits of numbers in text.
+const DIGITS: u32 = 6;
+
 /// A point in every space.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Coordinates {
@@ -176,7 +179,7 @@ impl Place {
             None => text += "no surface is here\n",
             Some(point) => {
                 for (name, values) in point.rows() {
-                    let _ = writeln!(text, "{name:7} {}", vector(values));
+                    let _ = writeln!(text, "{name:7} {}", vector(values, DIGITS));
                 }
             }
         }
@@ -187,7 +190,7 @@ impl Place {
         for step in &self.chain {
             let _ = writeln!(text, "{}, and its inverse:", step.name);
             for (row, back) in step.matrix.iter().zip(&step.inverse) {
-                let _ = writeln!(text, "  {}   {}", matrix_row(row), matrix_row(back));
+                let _ = writeln!(text, "  {}   {}", matrix_row(row, DIGITS), matrix_row(back, DIGITS));
             }
         }
         text
@@ -202,23 +205,24 @@ impl Coordinates {
     }
 }
 
-/// Numbers between commas, with six digits.
+/// Numbers between commas, with so many digits.
 #[must_use]
-pub fn vector(values: &[f64]) -> String {
-    let texts: Vec<String> = values.iter().map(|value| number(*value)).collect();
+pub fn vector(values: &[f64], digits: u32) -> String {
+    let texts: Vec<String> = values.iter().map(|value| number(*value, digits)).collect();
     texts.join(", ")
 }
 
 /// A row of a matrix in columns of one width.
 #[must_use]
-pub fn matrix_row(row: &[f64; 4]) -> String {
-    row.map(|value| format!("{:>12}", number(value))).concat()
+pub fn matrix_row(row: &[f64; 4], digits: u32) -> String {
+    let width = digits as usize + 5;
+    row.map(|value| format!("{:>width$}", number(value, digits))).concat()
 }
 
-/// Six digits, and no sign where nothing is left.
-fn number(value: f64) -> String {
+/// So many digits, and no sign where nothing is left.
+fn number(value: f64, shown: u32) -> String {
     let digits = if value == 0.0 || !value.is_finite() { 0.0 } else { value.abs().log10().floor() };
-    let decimals = (5.0 - digits).clamp(0.0, 9.0) as usize;
+    let decimals = (f64::from(shown) - 1.0 - digits).clamp(0.0, f64::from(shown) + 3.0) as usize;
     let text = format!("{value:.decimals$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text };
     if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
@@ -238,7 +242,7 @@ mod tests {
             (1234.5678, "1234.57"),
             (0.000123456789, "0.000123457"),
         ] {
-            assert_eq!(number(value), text);
+            assert_eq!(number(value, DIGITS), text);
         }
     }
 

@@ -140,15 +140,18 @@ fn pixel(ui: &mut Ui, own: &mut Bench) {
 fn state(ui: &mut Ui, state: &mut RasterState) {
     theme::heading(ui, "The draw's tests");
     let mut masks = state.face(true).1;
-    Grid::new("bench faces").num_columns(3).spacing([10.0, 4.0]).show(ui, |ui| {
+    // The names of the rows, and the rest for two columns.
+    let width = ((ui.available_width() - 84.0) / 2.0 - 8.0).clamp(60.0, 150.0);
+    Grid::new("bench faces").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
         for title in ["", "front faces", "back faces"] {
             ui.label(theme::note(title));
         }
         ui.end_row();
         let [front, back] = [&mut state.stencil.front, &mut state.stencil.back];
-        ui.label(theme::note("passes where reference is"));
-        compare(ui, "front function", &mut front.compare);
-        compare(ui, "back function", &mut back.compare);
+        ui.label(theme::note("function"))
+            .on_hover_text("Passes where the reference is so to what is stored, both masked");
+        compare(ui, "front function", width, &mut front.compare);
+        compare(ui, "back function", width, &mut back.compare);
         ui.end_row();
         let rows: [(&str, fn(&mut StencilFace) -> &mut StencilOperation); 3] = [
             ("stencil fails", |face| &mut face.fail_op),
@@ -157,8 +160,8 @@ fn state(ui: &mut Ui, state: &mut RasterState) {
         ];
         for (what, of) in rows {
             ui.label(theme::note(what));
-            operation(ui, &format!("front, {what}"), of(front));
-            operation(ui, &format!("back, {what}"), of(back));
+            operation(ui, &format!("front, {what}"), width, of(front));
+            operation(ui, &format!("back, {what}"), width, of(back));
             ui.end_row();
         }
     });
@@ -174,8 +177,8 @@ fn state(ui: &mut Ui, state: &mut RasterState) {
         }
     });
     ui.horizontal_wrapped(|ui| {
-        ui.label(theme::note("depth passes where the fragment's is"));
-        compare(ui, "depth function", &mut state.depth_compare);
+        ui.label(theme::note("depth"));
+        compare(ui, "depth function", 96.0, &mut state.depth_compare);
         ui.checkbox(&mut state.depth_write, "writes depth");
     });
 }
@@ -236,8 +239,8 @@ fn name(compare: CompareFunction) -> &'static str {
     COMPARES.iter().find(|(one, ..)| *one == compare).map_or("", |(_, name, _)| name)
 }
 
-fn compare(ui: &mut Ui, label: &str, value: &mut CompareFunction) {
-    let combo = ComboBox::from_id_salt(label).selected_text(name(*value)).width(96.0);
+fn compare(ui: &mut Ui, label: &str, width: f32, value: &mut CompareFunction) {
+    let combo = ComboBox::from_id_salt(label).selected_text(name(*value)).width(width).truncate();
     let shown = combo.show_ui(ui, |ui| {
         for (one, name, _) in COMPARES {
             ui.selectable_value(value, one, name);
@@ -246,8 +249,8 @@ fn compare(ui: &mut Ui, label: &str, value: &mut CompareFunction) {
     shown.response.on_hover_text(label).accessible_name(label);
 }
 
-fn operation(ui: &mut Ui, label: &str, value: &mut StencilOperation) {
-    let combo = ComboBox::from_id_salt(label).selected_text(operation_name(*value)).width(120.0);
+fn operation(ui: &mut Ui, label: &str, width: f32, value: &mut StencilOperation) {
+    let combo = ComboBox::from_id_salt(label).selected_text(operation_name(*value)).width(width).truncate();
     let shown = combo.show_ui(ui, |ui| {
         for one in OPERATIONS {
             ui.selectable_value(value, one, operation_name(one));

@@ -4,7 +4,10 @@ use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::reading::coordinates::{Place, Spherical, matrix_row, vector};
 use crate::reading::format;
-use egui::{CollapsingHeader, Grid, Ui};
+use egui::{CollapsingHeader, Grid, Label, Ui};
+
+/// Digits that a narrow panel has room for.
+const DIGITS: u32 = 4;
 
 /// Folded until somebody asks.
 pub fn ui(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
@@ -15,8 +18,8 @@ pub fn ui(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
         for step in &place.chain {
             ui.label(theme::note(format!("{}, then back:", step.name)));
             for rows in [&step.matrix, &step.inverse] {
-                let text: Vec<String> = rows.iter().map(matrix_row).collect();
-                ui.label(theme::number(text.join("\n")).color(theme::of(ui).text));
+                let text: Vec<String> = rows.iter().map(|row| matrix_row(row, DIGITS)).collect();
+                ui.add(Label::new(theme::number(text.join("\n")).color(theme::of(ui).text)).extend());
             }
         }
     });
@@ -31,7 +34,7 @@ fn points(ui: &mut Ui, place: &Place) {
         };
         match place.point {
             None => row("point", "no surface".to_owned()),
-            Some(point) => point.rows().into_iter().for_each(|(name, values)| row(name, vector(values))),
+            Some(point) => point.rows().into_iter().for_each(|(name, values)| row(name, vector(values, DIGITS))),
         }
         for step in &place.depth_steps {
             row(
