@@ -1,11 +1,11 @@
 //! The open scene, and the run that the settings describe.
 
 use super::{Model, undo};
-use crate::ask::{ReportOf, RunRequest};
+use crate::ask::{ObjectChanges, ReportOf, RunRequest};
 use crate::inspector::action::Action;
-use crate::scene::{Object, Scene};
+use crate::scene::{Light, Object, Scene};
 use crate::technique::{Choice, Technique};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The scene that is open.
@@ -27,6 +27,8 @@ pub struct OpenScene {
     pub draft: RunRequest,
     /// What it was when the scene was opened.
     pub opened: RunRequest,
+    /// Of each light of the draft its index among those that the scene was opened with; `None`: it was added.
+    pub lights_opened: Vec<Option<usize>>,
     /// The settings of techniques used before, to come back to.
     pub choices: BTreeMap<Technique, Choice>,
     /// Why the draft can't be run.
@@ -37,6 +39,24 @@ impl OpenScene {
     /// What it is known by: what opened it, or its name.
     fn key(&self) -> String {
         self.source.clone().unwrap_or_else(|| self.name.clone())
+    }
+
+    /// The light that the scene was opened with which is this one of the draft now.
+    #[must_use]
+    pub fn light_opened(&self, index: usize) -> Option<&Light> {
+        self.opened.lights.get(self.lights_opened.get(index).copied()??)
+    }
+
+    /// Adds a light to the draft.
+    pub fn add_light(&mut self, light: Light) {
+        self.draft.lights.push(light);
+        self.lights_opened.push(None);
+    }
+
+    /// Deletes a light of the draft.
+    pub fn delete_light(&mut self, index: usize) {
+        self.draft.lights.remove(index);
+        self.lights_opened.remove(index);
     }
 
     /// Are its lights and objects those that it was opened with?
@@ -82,7 +102,14 @@ impl Model {
             edited: 0,
             choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
             problem: draft.check().err(),
-            opened: draft.clone(),
+            // One that is loaded again is run as it was, and held against what its file has now.
+            opened: RunRequest {
+                lights: scene.lights.clone(),
+                off: BTreeSet::new(),
+                objects: ObjectChanges::default(),
+                ..draft.clone()
+            },
+            lights_opened: lights_opened(&draft.lights, &scene.lights, before.as_ref()),
             draft,
         });
         self.activity.is_waiting = self.scene.is_some();
@@ -133,7 +160,11 @@ impl Model {
     /// How the scene is run now is a step that can be taken back.
     fn note_for_undo(&mut self) {
         if let Some(scene) = self.scene.as_ref().filter(|_| self.restoring.is_none()) {
-            self.undo.note(undo::Moment { source: scene.source.clone(), request: scene.draft.clone() });
+            self.undo.note(undo::Moment {
+                source: scene.source.clone(),
+                request: scene.draft.clone(),
+                lights_opened: scene.lights_opened.clone(),
+            });
         }
     }
 
@@ -155,6 +186,7 @@ impl Model {
         match &mut self.scene {
             Some(scene) if scene.source == moment.source => {
                 scene.draft = moment.request;
+                scene.lights_opened = moment.lights_opened;
                 self.run_draft(actions);
             }
             _ => {
@@ -174,6 +206,7 @@ impl Model {
         {
             scene.choices.insert(moment.request.choice.technique(), moment.request.choice.clone());
             scene.draft = moment.request;
+            scene.lights_opened = moment.lights_opened;
             self.run_draft(actions);
         }
     }
@@ -182,4 +215,14 @@ impl Model {
     pub fn stop_restoring(&mut self) {
         self.restoring = None;
     }
+}
+
+/// As in [`OpenScene::lights_opened`], of a scene that is opened to be run with these lights.
+fn lights_opened(draft: &[Light], loaded: &[Light], before: Option<&OpenScene>) -> Vec<Option<usize>> {
+    if draft.len() == loaded.len() {
+        return (0..draft.len()).map(Some).collect();
+    }
+    // Loaded again, and run with those that were added or deleted before.
+    let known = before.map(|before| &before.lights_opened).filter(|known| known.len() == draft.len());
+    known.cloned().unwrap_or_else(|| vec![None; draft.len()])
 }

@@ -47,7 +47,7 @@ pub fn ui(
     if !is_shown(told, capture) || !capture.decided_by(light).counts_volumes() {
         return;
     }
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         theme::heading(ui, "Ladder");
         let of = capture.lights.get(light).and_then(|light| light.count_of);
         let counting = of.map_or_else(String::new, |of| format!(", counting {}", of.what()));

@@ -2,7 +2,6 @@
 //!
 //! All of it is part of how the scene is run, so that it can be undone, and is in the scene file that is exported.
 
-use crate::ask::RunRequest;
 use crate::inspector::look::theme;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
@@ -35,7 +34,7 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let header = CollapsingHeader::new("Make: add, move, delete").id_salt("make");
     let made = header.show(ui, |ui| {
         let added = add(ui, scene);
-        let deleted = delete_lights(ui, &mut scene.draft);
+        let deleted = delete_lights(ui, scene);
         added | deleted | edited(ui, scene)
     });
     made.body_returned.unwrap_or(false)
@@ -63,11 +62,11 @@ fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
         }
         let light = |ui: &mut Ui, name: &str, what: &str| ui.button(name).on_hover_text(what).clicked();
         if light(ui, "point light", "A light above what the eye looks at") {
-            scene.draft.lights.push(Light::point(target + DVec3::Y * far));
+            scene.add_light(Light::point(target + DVec3::Y * far));
             changed = true;
         }
         if light(ui, "sun", "A light from far away, a little from the side") {
-            scene.draft.lights.push(Light::directional([0.4, 1.0, 0.3]));
+            scene.add_light(Light::directional([0.4, 1.0, 0.3]));
             changed = true;
         }
     });
@@ -90,17 +89,17 @@ fn unused(name: &str, scene: &OpenScene) -> String {
     names.find(|name| !taken.contains(&name)).unwrap_or_default()
 }
 
-fn delete_lights(ui: &mut Ui, draft: &mut RunRequest) -> bool {
+fn delete_lights(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let mut deleted = None;
     ui.horizontal_wrapped(|ui| {
-        for index in 0..draft.lights.len() {
+        for index in 0..scene.draft.lights.len() {
             let button = ui.button(format!("Delete {}", format::light(index)));
             if button.on_hover_text("Undo brings it back").clicked() {
                 deleted = Some(index);
             }
         }
     });
-    deleted.map(|index| draft.lights.remove(index)).is_some()
+    deleted.map(|index| scene.delete_light(index)).is_some()
 }
 
 /// One object, which is chosen: where it is, and what can be done with it.
