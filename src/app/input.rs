@@ -2,8 +2,9 @@
 //!
 //! egui asks once a frame what lies under the pointer, where the pointer is at its end. Where frames are slow, a press
 //! and the drag that follows come in one: what is grabbed would be what the pointer came to, and a handle that was
-//! pressed would stay behind. So a frame ends before the pointer moves on from where a button went down or up, and
-//! before a key that follows a movement: it means what the pointer is over.
+//! pressed would stay behind, and a drag that ends in its first frame is none. So a frame ends before the pointer moves
+//! on from where a button went down or up, before the button of a movement goes up, and before a key that follows a
+//! movement: it means what the pointer is over.
 
 use egui::Event;
 
@@ -16,9 +17,9 @@ pub fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {
             has_moved = true;
             has_button
         }
-        Event::PointerButton { .. } => {
+        Event::PointerButton { pressed, .. } => {
             has_button = true;
-            false
+            std::mem::take(&mut has_moved) && !pressed
         }
         Event::Key { .. } => has_moved,
         _ => false,

@@ -178,3 +178,23 @@ fn a_light_behind_the_eye_has_its_handle_at_the_border_on_its_side_and_follows_t
     assert!(moved.truncate().dot(right) > 0.05 && moved.truncate().dot(ahead).abs() < 1e-9, "{moved}");
     assert_eq!(asked(&harness).lights[1], draft_of(&scene).lights[1]);
 }
+
+#[test]
+fn objects_are_dragged_in_the_scene_tab_where_that_is_wished() {
+    let mut harness = shown();
+    click(&mut harness, "Front");
+    let name = box_scene().objects[0].name.clone();
+    let handle = format!("{name} in the Front view");
+    assert!(harness.query_by_label(&handle).is_none(), "objects stay where they are unless they are to be moved");
+    click(&mut harness, "Move objects");
+    let before = harness.get_by_label(&handle).rect().center();
+    drag_handle(&mut harness, &handle, vec2(30.0, -20.0));
+    let pose = asked(&harness).objects.moved[&0];
+    let moved = pose.translate - box_scene().objects[0].pose.translate;
+    assert!(moved.x > 0.05 && moved.y > 0.02 && moved.z.abs() < 1e-9, "{moved}");
+    let after = harness.get_by_label(&handle).rect().center();
+    assert!((after - before - vec2(30.0, -20.0)).length() < 2.0, "it stays under the pointer: {before} to {after}");
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert!(asked(&harness).objects.moved.is_empty());
+}

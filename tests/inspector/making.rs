@@ -11,7 +11,7 @@ use std::sync::Arc;
 use stencilscope::ask::{MeshesOf, RunRequest};
 use stencilscope::glam;
 use stencilscope::inspector::{Action, Inspector};
-use stencilscope::scene::{Light, Object, Scene, SceneBuilder, shapes};
+use stencilscope::scene::{Light, Object, Scene, SceneBuilder, model_scene, shapes};
 use stencilscope::technique::{Choice, Technique};
 
 /// A floor and a box, seen from two metres away.
@@ -225,4 +225,30 @@ fn a_far_plane_is_set_and_taken_away() {
     assert_eq!(last_run(&harness).camera.far, Some(25.0));
     click_button(&mut harness, "Reset far plane");
     assert_eq!(last_run(&harness).camera.far, None);
+}
+
+#[test]
+fn a_model_with_z_up_is_turned_and_stands_on_its_floor_before_the_camera() {
+    let mesh = shapes::cuboid([1.0, 2.0, 6.0]).expect("a box");
+    let scene = model_scene("tower", mesh, true).expect("a model's scene");
+    let mut inspector = Inspector::new(Vec::new());
+    let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
+    inspector.open_scene(&scene, request.clone(), Some("tower.obj".to_owned()));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
+    click(&mut harness, "Scene settings");
+    click_button(&mut harness, "z up");
+    let run = last_run(&harness);
+    let turned = run.applied_to(&scene);
+    let ends = |object: &Object| {
+        let heights = object.world_positions().into_iter().map(|at| at.y);
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| [low.min(y), high.max(y)])
+    };
+    let [low, high] = ends(&turned.objects[0]);
+    assert!((high - low - 6.0).abs() < 1e-9, "its z axis is up");
+    let gap = |scene: &Scene| ends(&scene.objects[0])[0] - ends(&scene.objects[1])[1];
+    assert!((gap(&turned) - gap(&scene)).abs() < 1e-9 && gap(&scene) > 0.0, "as near above the floor as before");
+    assert!((run.camera.target.y - (low + high) / 2.0).abs() < 1e-9 && run.lights[0].position.y > high);
+    click_button(&mut harness, "y up");
+    assert_eq!(last_run(&harness), request);
 }

@@ -3,8 +3,9 @@
 use super::{Model, undo};
 use crate::ask::{ObjectChanges, ReportOf, RunRequest};
 use crate::inspector::action::Action;
-use crate::scene::{Light, Object, Scene};
+use crate::scene::{Light, Mesh, Object, Pose, Scene};
 use crate::technique::{Choice, Technique};
+use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -21,6 +22,8 @@ pub struct OpenScene {
     pub objects: Vec<String>,
     /// Its objects, as loaded.
     pub loaded: Vec<Object>,
+    /// The middles of their bounding boxes, object space.
+    pub middles: Vec<DVec3>,
     /// Index of the one that is moved by numbers, new ones after those of the scene.
     pub edited: usize,
     /// What the next run will be.
@@ -45,6 +48,42 @@ impl OpenScene {
     #[must_use]
     pub fn light_opened(&self, index: usize) -> Option<&Light> {
         self.opened.lights.get(self.lights_opened.get(index).copied()??)
+    }
+
+    /// The object of an index as the draft has it.
+    #[must_use]
+    pub fn object(&self, index: usize) -> Option<Object> {
+        let changes = &self.draft.objects;
+        match self.loaded.get(index) {
+            Some(object) => {
+                let pose = changes.moved.get(&index).copied().unwrap_or(object.pose);
+                Some(Object { pose, ..object.clone() })
+            }
+            None => changes.added.get(index - self.loaded.len()).cloned(),
+        }
+    }
+
+    /// How many objects it has, those that were added among them.
+    #[must_use]
+    pub fn object_count(&self) -> usize {
+        self.loaded.len() + self.draft.objects.added.len()
+    }
+
+    /// The middle of an object of the draft's, object space.
+    #[must_use]
+    pub fn middle_of(&self, index: usize, object: &Object) -> DVec3 {
+        self.middles.get(index).copied().unwrap_or_else(|| middle(&object.mesh))
+    }
+
+    /// Puts an object at a pose.
+    pub fn place(&mut self, index: usize, pose: Pose) {
+        let (changes, count) = (&mut self.draft.objects, self.loaded.len());
+        match self.loaded.get(index) {
+            // Where it was loaded: not moved.
+            Some(object) if object.pose == pose => drop(changes.moved.remove(&index)),
+            Some(_) => drop(changes.moved.insert(index, pose)),
+            None => changes.added.get_mut(index - count).into_iter().for_each(|object| object.pose = pose),
+        }
     }
 
     /// Adds a light to the draft.
@@ -99,6 +138,7 @@ impl Model {
             animated: scene.is_animated(),
             objects: scene.objects.iter().map(|object| object.name.clone()).collect(),
             loaded: scene.objects.clone(),
+            middles: scene.objects.iter().map(|object| middle(&object.mesh)).collect(),
             edited: 0,
             choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
             problem: draft.check().err(),
@@ -225,4 +265,11 @@ fn lights_opened(draft: &[Light], loaded: &[Light], before: Option<&OpenScene>) 
     // Loaded again, and run with those that were added or deleted before.
     let known = before.map(|before| &before.lights_opened).filter(|known| known.len() == draft.len());
     known.cloned().unwrap_or_else(|| vec![None; draft.len()])
+}
+
+/// The middle of a mesh's bounding box.
+fn middle(mesh: &Mesh) -> DVec3 {
+    let all = || mesh.positions().iter().copied();
+    let (low, high) = (all().reduce(DVec3::min), all().reduce(DVec3::max));
+    low.zip(high).map_or(DVec3::ZERO, |(low, high)| low / 2.0 + high / 2.0)
 }

@@ -4,6 +4,7 @@ pub mod animation;
 pub mod making;
 pub mod meshes;
 pub mod scene;
+pub mod up_axis;
 
 use crate::ask::MeshesOf;
 use crate::inspector::action::Action;
@@ -34,6 +35,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         techniques(ui, model, actions);
         let mut changed = technique_settings(ui, model);
         if let Some(scene) = &mut model.scene {
+            changed |= up_axis::ui(ui, scene);
             changed |= scene::ui(ui, scene);
             changed |= making::ui(ui, scene);
         }
