@@ -188,6 +188,8 @@ fn objects_are_dragged_in_the_scene_tab_where_that_is_wished() {
     assert!(harness.query_by_label(&handle).is_none(), "objects stay where they are unless they are to be moved");
     click(&mut harness, "Move objects");
     let before = harness.get_by_label(&handle).rect().center();
+    let target = "Camera target in the Front view";
+    assert!(harness.query_by_label(target).is_none(), "the camera looks at its middle");
     drag_handle(&mut harness, &handle, vec2(30.0, -20.0));
     let pose = asked(&harness).objects.moved[&0];
     let moved = pose.translate - box_scene().objects[0].pose.translate;

@@ -43,17 +43,21 @@ pub fn ui(
     let lights = (0..scene.draft.lights.len()).map(Grip::Light);
     let movable = 0..if view.gizmos && view.moves_objects { scene.object_count() } else { 0 };
     let objects = movable.filter(|index| !scene.draft.off.contains(index)).map(Grip::Object);
+    let objects: Vec<Grip> = objects.collect();
+    let spot = |scene: &OpenScene, grip| place(scene, grip, anchor).and_then(|at| lens.place(at));
+    let taken: Vec<Pos2> = objects.iter().filter_map(|grip| spot(scene, *grip)).collect();
     // The last one is on top.
-    let grips: Vec<Grip> = objects.chain([Grip::Target, Grip::Eye]).chain(lights).collect();
+    let grips: Vec<Grip> = [Grip::Target, Grip::Eye].into_iter().chain(objects).chain(lights).collect();
     let camera = scene.draft.camera;
     if let (Some(eye), Some(target)) = (lens.place(camera.eye), lens.place(camera.target)) {
         painter.extend(egui::Shape::dashed_line(&[eye, target], Stroke::new(1.0, theme::of(ui).dim), 2.0, 4.0));
     }
     for grip in grips {
-        let at = place(scene, grip, anchor).and_then(|at| lens.place(at)).filter(|at| rect.contains(*at));
-        let Some(at) = at else { continue };
+        let Some(at) = spot(scene, grip).filter(|at| rect.contains(*at)) else { continue };
         sign(ui, &painter, (grip, is_directional(&scene.draft, grip)), at, &here);
-        if view.gizmos {
+        // The camera looks at the middle of a model: who wishes to move that is not to move what it looks at.
+        let is_hidden = grip == Grip::Target && taken.iter().any(|other| other.distance(at) < GRAB / 2.0);
+        if view.gizmos && !is_hidden {
             changed |= handle(ui, view, scene, (grip, at), &here);
         }
         if view.shown.names {
