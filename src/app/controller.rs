@@ -161,6 +161,7 @@ impl Controller {
             News::AnsweredPart { ticket, answer } => self.inspector.answer(ticket, Ok(answer), false),
             News::AnswerEnded { ticket } => self.inspector.end_answer(ticket),
             News::Exported(exported) => self.end_export(exported),
+            News::Dropped(what) => self.inspector.push_error(what),
             News::Failed(reason) => self.inspector.push_failure(reason),
         }
     }

@@ -13,6 +13,7 @@ mod allocator;
 mod controller;
 mod export;
 pub mod headless;
+mod input;
 mod memory;
 mod news;
 mod queue;

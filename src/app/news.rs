@@ -63,6 +63,8 @@ pub enum News {
     },
     /// An export of the scene ended.
     Exported(Exported),
+    /// What a scene that was loaded again has no place for.
+    Dropped(String),
     /// Something failed; the text has the mend.
     Failed(String),
 }

@@ -1,5 +1,6 @@
 //! The system's window with what draws egui on it.
 
+use super::input::of_next_frame;
 use super::news::WindowNews;
 use super::{AppError, no_window};
 use crate::session::MEMORY_HINTS;
@@ -39,6 +40,8 @@ pub struct Surface {
     window: Arc<Window>,
     painter: Painter,
     input: egui_winit::State,
+    /// What mouse and keys did, and no frame took yet.
+    events: Vec<egui::Event>,
     /// Texture changes that were not drawn yet.
     textures: egui::TexturesDelta,
     title: String,
@@ -90,6 +93,7 @@ impl Surface {
             window,
             painter,
             input,
+            events: Vec::new(),
             textures,
             title: String::new(),
             hidden: false,
@@ -177,7 +181,12 @@ impl Surface {
         if self.hidden || size.width == 0 || size.height == 0 {
             return;
         }
-        let input = self.input.take_egui_input(&self.window);
+        let mut input = self.input.take_egui_input(&self.window);
+        self.events.append(&mut input.events);
+        input.events = of_next_frame(&mut self.events);
+        if !self.events.is_empty() {
+            self.window.request_redraw();
+        }
         let output = ctx.run_ui(input, ui);
         self.input.handle_platform_output_with_event_loop(&self.window, event_loop, output.platform_output);
         for command in output.viewport_output.values().flat_map(|output| &output.commands) {

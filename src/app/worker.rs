@@ -17,7 +17,7 @@ mod turns;
 use super::news::{Exported, News};
 use super::queue::{Inbox, Order, Queue};
 use super::{AppError, ViewSource, allocator};
-use crate::ask::{Ask, Asked, Holds, Kind, RunRequest};
+use crate::ask::{Ask, Asked, CarriedOver, Holds, Kind, RunRequest};
 use crate::capture::disk::{self, WholeFrame};
 use crate::import::Shipped;
 use crate::progress::Progress;
@@ -379,7 +379,8 @@ impl Work {
         self.last = Some(frame);
     }
 
-    /// The open scene from its file again: its objects and lights are the file's, camera and technique stay.
+    /// The open scene from its file again, run as it was: what is set of it stays where the file still has a place for
+    /// it, and what has none is told.
     fn reload(&mut self, request: &RunRequest) -> Result<(), String> {
         let Some(spec) = self.spec.clone() else { return Ok(()) };
         (self.tell)(News::Busy(format!("opening {}", spec.name)));
@@ -387,7 +388,15 @@ impl Work {
         scene.camera = request.camera;
         self.choice = request.choice.clone();
         self.size = request.size;
-        self.show_scene(Box::new(scene), request.time, Brought::default())
+        self.brought = Brought::default();
+        let Some(before) = self.open.take() else {
+            return self.show_scene(Box::new(scene), request.time, Brought::default());
+        };
+        let CarriedOver { request, dropped } = request.carried_over(&before, &scene);
+        let name = spec.name;
+        let told = dropped.into_iter().map(|what| News::Dropped(format!("{name} was loaded without {what}")));
+        told.for_each(&self.tell);
+        self.open_as(Box::new(scene), &request)
     }
 
     /// Writes the scene, changed as it is run, with its motions.
@@ -427,6 +436,11 @@ impl Work {
         let choice = self.brought.choice.clone().unwrap_or_else(|| self.choice.clone());
         let size = self.brought.size.unwrap_or(self.size);
         let request = RunRequest { time, ..RunRequest::of(&scene, choice, size) };
+        self.open_as(scene, &request)
+    }
+
+    /// The scene is open now, and run like this.
+    fn open_as(&mut self, scene: Box<Scene>, request: &RunRequest) -> Result<(), String> {
         self.scenes += 1;
         let source = self.spec.as_ref().map(|spec| spec.name.clone());
         let files = self.spec.as_ref().map_or_else(Vec::new, crate::scene::files_of);
@@ -439,7 +453,7 @@ impl Work {
             files,
             request: Box::new(request.clone()),
         });
-        self.run(&request)
+        self.run(request)
     }
 
     /// Opens a stress case's scene at a value, with its shadows made as `entrant` says.

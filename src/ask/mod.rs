@@ -16,7 +16,7 @@ mod answers;
 mod run_request;
 
 pub use answers::{Answers, Asked, Reply};
-pub use run_request::{ObjectChanges, RunRequest, without};
+pub use run_request::{CarriedOver, ObjectChanges, RunRequest, without};
 
 use crate::anatomy::Anatomy;
 use crate::capture::{Capture, FrameTruth, StepDraws, Timing};
@@ -26,7 +26,7 @@ use crate::history::PixelHistory;
 use crate::plan::FramePlan;
 use crate::reading::{MapReaders, ObjectMesh, TestOutcomes};
 use crate::report::MeasuredReport;
-use crate::scene::Walls;
+use crate::scene::{Mesh, Walls};
 use crate::stress::StressRows;
 use crate::technique::{Choice, ChoiceError};
 use std::collections::BTreeSet;
@@ -132,7 +132,8 @@ questions! {
     CaptureOf { /// How it is run.
         request: Box<RunRequest> } -> Capture;
     /// How each object's mesh hangs together.
-    MeshesOf { } -> Vec<ObjectMesh>;
+    MeshesOf { /// Objects that are new, after those of the scene, with their meshes.
+        added: Vec<(String, Arc<Mesh>)> } -> Vec<ObjectMesh>;
     /// The ground truth, and how the technique differs from it.
     TruthOf { } -> FrameTruth;
     /// Where the frame is wrong, why, and what mends it.

@@ -102,6 +102,75 @@ impl RunRequest {
     }
 }
 
+/// A run carried over to a scene that was loaded again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CarriedOver {
+    /// How the scene is run now.
+    pub request: RunRequest,
+    /// What of the run before has no place in it, in a few words each.
+    pub dropped: Vec<String>,
+}
+
+impl RunRequest {
+    /// This run of `before` for what the scene's file holds by now: what was changed of objects is changed of those
+    /// that have the same name, and of lights where the file did not add or delete some as well.
+    #[must_use]
+    pub fn carried_over(&self, before: &Scene, after: &Scene) -> CarriedOver {
+        let mut dropped = Vec::new();
+        let names = |scene: &Scene| scene.objects.iter().map(|object| object.name.clone()).collect::<Vec<_>>();
+        let (names_before, names_after) = (names(before), names(after));
+        // Objects of one name keep their order.
+        let place = |index: usize| {
+            let Some(name) = names_before.get(index) else {
+                return Ok(index - names_before.len() + names_after.len());
+            };
+            let earlier = names_before[..index].iter().filter(|other| *other == name).count();
+            let mut same = names_after.iter().enumerate().filter(|(_, other)| *other == name);
+            same.nth(earlier).map(|(index, _)| index).ok_or(name)
+        };
+        let mut note = |name: &String| {
+            let words = format!("what was set of {name}, which is not in it any longer");
+            if !dropped.contains(&words) {
+                dropped.push(words);
+            }
+        };
+        let mut off = BTreeSet::new();
+        for index in &self.off {
+            match place(*index) {
+                Ok(index) => off.extend([index]),
+                Err(name) => note(name),
+            }
+        }
+        let mut moved = BTreeMap::new();
+        for (index, pose) in &self.objects.moved {
+            match place(*index) {
+                Ok(index) => moved.extend([(index, *pose)]),
+                Err(name) => note(name),
+            }
+        }
+        let objects = ObjectChanges { moved, added: self.objects.added.clone() };
+        let lights = carried_lights(&self.lights, &before.lights, &after.lights).unwrap_or_else(|| {
+            dropped.push("what was set of its lights, of which it has another number by now".to_owned());
+            after.lights.clone()
+        });
+        CarriedOver { request: RunRequest { lights, off, objects, ..self.clone() }, dropped }
+    }
+}
+
+/// The lights of a run for the ones that were loaded again; `None` where both have other ones than before, and nobody
+/// knows which is which.
+fn carried_lights(own: &[Light], before: &[Light], after: &[Light]) -> Option<Vec<Light>> {
+    if own == before {
+        return Some(after.to_vec());
+    }
+    if before == after {
+        return Some(own.to_vec());
+    }
+    let is_as_many = own.len() == before.len() && before.len() == after.len();
+    let one = |((own, before), after): ((&Light, &Light), &Light)| if own == before { after } else { own }.clone();
+    is_as_many.then(|| own.iter().zip(before).zip(after).map(one).collect())
+}
+
 /// A scene without some of its objects, by index.
 #[must_use]
 pub fn without(scene: &Scene, off: &BTreeSet<usize>) -> Scene {
@@ -112,4 +181,59 @@ pub fn without(scene: &Scene, off: &BTreeSet<usize>) -> Scene {
         !off.contains(&(index - 1))
     });
     scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Material, shapes};
+    use glam::DVec3;
+    use std::sync::Arc;
+
+    fn scene(names: &[&str], heights: &[f64]) -> Scene {
+        let mesh = Arc::new(shapes::cuboid([1.0; 3]).expect("a box"));
+        let object = |name: &&str| Object::new(*name, Arc::clone(&mesh), Material::default());
+        let lights = heights.iter().map(|height| Light::point([0.0, *height, 0.0])).collect();
+        let mut scene = crate::scene::SceneBuilder::new("a test").objects(names.iter().map(object)).build();
+        scene.lights = lights;
+        scene
+    }
+
+    fn run(scene: &Scene) -> RunRequest {
+        RunRequest::of(scene, Choice::new(crate::technique::Technique::ZFail), [8, 8])
+    }
+
+    fn at(x: f64) -> Pose {
+        Pose { translate: DVec3::X * x, ..Pose::default() }
+    }
+
+    #[test]
+    fn what_was_set_of_objects_follows_their_names() {
+        let before = scene(&["floor", "box", "box", "lid"], &[1.0]);
+        let after = scene(&["box", "wall", "floor", "box"], &[1.0]);
+        let mut draft = run(&before);
+        draft.objects.added.push(before.objects[1].clone());
+        draft.objects.moved = BTreeMap::from([(0, at(1.0)), (2, at(2.0)), (3, at(3.0))]);
+        draft.off = BTreeSet::from([1, 3, 4]);
+        let CarriedOver { request, dropped } = draft.carried_over(&before, &after);
+        assert_eq!(request.objects.moved, BTreeMap::from([(2, at(1.0)), (3, at(2.0))]));
+        assert_eq!(request.objects.added, draft.objects.added);
+        assert_eq!(request.off, BTreeSet::from([0, 4]), "the first box, and the one that was added");
+        assert_eq!(dropped, ["what was set of lid, which is not in it any longer"]);
+    }
+
+    #[test]
+    fn lights_set_here_stay_and_others_are_the_file_s() {
+        let before = scene(&[], &[1.0, 2.0]);
+        let mut draft = run(&before);
+        draft.lights[1].position.x = 7.0;
+        let CarriedOver { request, dropped } = draft.carried_over(&before, &scene(&[], &[5.0, 6.0]));
+        assert_eq!(request.lights.iter().map(|light| light.position.y).collect::<Vec<_>>(), [5.0, 2.0]);
+        assert_eq!((request.lights[1].position.x, dropped.len()), (7.0, 0));
+        draft.lights.push(Light::point([0.0, 9.0, 0.0]));
+        assert_eq!(draft.carried_over(&before, &before).request.lights, draft.lights);
+        let other = scene(&[], &[3.0]);
+        let CarriedOver { request, dropped } = draft.carried_over(&before, &other);
+        assert_eq!((request.lights, dropped.len()), (other.lights, 1));
+    }
 }

@@ -109,6 +109,8 @@ impl Inspector {
         status_bar::ui(ui, model);
         tour::ui(ui, tours, model, &mut actions);
         dock.ui(ui, panels, model, &mut actions);
+        // Where the picture is not shown, no menu opens when it is one day.
+        model.requests.overlay_menu = false;
         open_dialog::ui(ui.ctx(), open_dialog, model, &mut actions);
         export::ui(ui.ctx(), export_dialog, model, &mut actions);
         help::ui(ui.ctx(), model);

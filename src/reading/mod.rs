@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! steps.rs     what has a number, what is beside moment.rs    after a step or a draw    shown.rs    the picture of it
-//! layers.rs    maps, textures
+//! layers.rs    maps, textures                left_out.rs what the frame did without
 //! depth.rs     what a stored depth means         counts.rs    counts beyond eight bits change.rs   what a step changed
 //! verdict.rs   why a pixel is dark, a sentence   explain_facts.rs a step as a formula  meshes.rs   how meshes hang together
 //! history_row.rs, ladder_layout.rs  a pixel's events in rows, and along its view ray
@@ -22,6 +22,7 @@ pub mod fragments;
 pub mod history_row;
 pub mod ladder_layout;
 pub mod layers;
+pub mod left_out;
 pub mod map_decision;
 pub mod map_readers;
 pub mod meshes;

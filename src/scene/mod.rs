@@ -33,6 +33,7 @@ pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
 pub use model_scene::model_scene;
 pub use object::{Motion, Object, Orbit, Pose, Swing};
 pub use open::{OpenSpec, files_of, open};
+pub use placement::Surroundings;
 pub use suggestion::{nearest, suggestion};
 
 use std::collections::BTreeMap;

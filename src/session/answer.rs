@@ -1,7 +1,7 @@
 //! Answers to questions about a frame that was run, or about the scene that it is of: one arm a question.
 
 use super::{CaptureRequest, Fault, Session, SessionError, median_ms};
-use crate::ask::{Answer, Ask, CaptureOf, DrawsOf, HistoryOf, TestsOf, WallsOf, without};
+use crate::ask::{Answer, Ask, CaptureOf, DrawsOf, HistoryOf, MeshesOf, TestsOf, WallsOf, without};
 use crate::capture::disk::{Contents, WholeFrame};
 use crate::capture::{Capture, Timing};
 use crate::plan::FramePlan;
@@ -104,9 +104,11 @@ impl Session {
                 let scene = without(&objects.applied_to(of_scene()?), off).at(*time);
                 Answer::WallsOf(Arc::new(self.walls.walls(&scene)))
             }
-            Ask::MeshesOf(_) => {
+            Ask::MeshesOf(MeshesOf { added }) => {
                 let mesh = |(object, topology)| ObjectMesh { object, topology };
-                Answer::MeshesOf(Arc::new(self.topologies(of_scene()?).into_iter().map(mesh).collect()))
+                let mut meshes: Vec<ObjectMesh> = self.topologies(of_scene()?).into_iter().map(mesh).collect();
+                meshes.extend(added.iter().map(|(name, of)| mesh((name.clone(), self.topology(of)))));
+                Answer::MeshesOf(Arc::new(meshes))
             }
             Ask::CaptureOf(CaptureOf { request }) => {
                 let scene = request.applied_to(of_scene()?).at(request.time);

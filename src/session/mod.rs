@@ -38,7 +38,7 @@ use crate::capture::{AdapterInfo, Capture, CapturedLight, CapturedMap, Timing};
 use crate::geometry::{GeometryCache, Topology};
 use crate::gpu::{Context, Executor, Memory, Output, Prepared};
 use crate::plan::{FramePlan, LeftOut};
-use crate::scene::{Object, Scene, WallCache};
+use crate::scene::{Mesh, Object, Scene, WallCache};
 use crate::technique::{self, Choice, ChoiceError, Job, PlanError};
 use crate::truth::TruthError;
 use std::sync::Arc;
@@ -239,8 +239,13 @@ impl Session {
 
     /// How the mesh of each object hangs together, with the object's name.
     pub fn topologies(&mut self, scene: &Scene) -> Vec<(String, Arc<Topology>)> {
-        let one = |object: &Object| (object.name.clone(), self.geometry.topology(&object.mesh));
+        let one = |object: &Object| (object.name.clone(), self.topology(&object.mesh));
         scene.objects.iter().map(one).collect()
+    }
+
+    /// How a mesh hangs together.
+    pub fn topology(&mut self, mesh: &Arc<Mesh>) -> Arc<Topology> {
+        self.geometry.topology(mesh)
     }
 
     /// Renders `scene` and keeps every attachment after every pass, or after every draw. Only the

@@ -173,3 +173,28 @@ fn the_window_of_keys_stands_still_and_the_layout_is_reset_where_the_pointer_was
         assert!(harness.ctx.content_rect().contains_rect(first), "{first} of {size:?}");
     }
 }
+
+#[test]
+fn in_a_wide_window_the_scene_is_beside_the_picture_until_the_user_arranges_panels() {
+    let panels = |harness: &Harness<Seen>| {
+        let is_there = |name| harness.query_by_role_and_label(Role::TabPanel, name).is_some();
+        [is_there("Picture"), is_there("Scene"), is_there("Shadow map")]
+    };
+    let mut harness = harness_of(inspector(z_fail(SIZE)), [2560.0, 1440.0]);
+    assert_eq!(panels(&harness), [true, true, false]);
+    let [picture, pixel] =
+        ["Picture", "Pixel"].map(|name| harness.get_by_role_and_label(Role::TabPanel, name).rect().width());
+    assert!(picture > 800.0 && (pixel - 332.0).abs() < 8.0, "{picture}, {pixel}");
+    harness.set_size(vec2(1440.0, 900.0));
+    harness.run_steps(3);
+    assert_eq!(panels(&harness), [true, false, false]);
+}
+
+#[test]
+fn a_tab_is_drawn_once_more_when_it_is_shown_as_it_knows_its_width_by_then() {
+    let mut harness = harness_of(inspector(z_fail(SIZE)), [1280.0, 800.0]);
+    harness.get_by_role_and_label(Role::Tab, "Explain").click();
+    harness.step();
+    let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
+    assert_eq!(delay, std::time::Duration::ZERO);
+}

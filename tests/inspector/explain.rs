@@ -5,7 +5,7 @@ use stencilscope::scene::OpenSpec;
 use stencilscope::session::{CaptureRequest, Session};
 
 /// The panels over a frame of a built-in scene, with its plan.
-fn over(name: &str, technique: Technique) -> Inspector {
+pub fn over(name: &str, technique: Technique) -> Inspector {
     let scene = stencilscope::scene::open(&OpenSpec::new(name)).expect("a built-in scene");
     let request = CaptureRequest::new(Choice::new(technique), [160, 120]);
     let mut session = Session::new(None).expect("an adapter");

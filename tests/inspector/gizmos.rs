@@ -130,7 +130,6 @@ fn a_light_in_view_is_dragged_over_the_picture() {
     let mut scene = box_scene();
     scene.lights = vec![Light::point(DVec3::new(0.5, 1.5, 1.0)), Light::point(DVec3::new(0.0, 1.0, 20.0))];
     let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
-    assert!(harness.query_by_label("Light 2 in the picture").is_none(), "it is behind the eye");
     let before = harness.get_by_label("Light 1 in the picture").rect().center();
     drag_handle(&mut harness, "Light 1 in the picture", vec2(50.0, 0.0));
     let request = asked(&harness);
@@ -159,4 +158,45 @@ fn a_light_out_of_view_has_its_handle_at_the_border_and_comes_in_by_it() {
     assert!(asked(&harness).lights[0].position.x < 40.0);
     click(&mut harness, "Gizmos");
     assert!(harness.query_by_label("Light 1 in the picture").is_none());
+}
+
+#[test]
+fn a_light_behind_the_eye_has_its_handle_at_the_border_on_its_side_and_follows_the_hand() {
+    let mut scene = box_scene();
+    let ahead = (scene.camera.target - scene.camera.eye).normalize();
+    let right = ahead.cross(DVec3::Y).normalize();
+    let behind = scene.camera.eye - ahead * 3.0;
+    scene.lights = vec![Light::point(behind - right), Light::point(behind)];
+    let mut harness = harness_of(over(&scene), [1280.0, 800.0]);
+    let handle = harness.get_by_label("Light 1 in the picture").rect().center();
+    let canvas = harness.get_by_label("Picture canvas").rect();
+    assert!(canvas.contains(handle) && handle.x - canvas.left() < canvas.right() - handle.x, "{handle} in {canvas}");
+    let other = harness.get_by_label("Light 2 in the picture").rect().center();
+    assert!(canvas.contains(other), "right behind the eye it has one too: {other}");
+    drag_handle(&mut harness, "Light 1 in the picture", vec2(50.0, 0.0));
+    let moved = asked(&harness).lights[0].position - scene.lights[0].position;
+    assert!(moved.truncate().dot(right) > 0.05 && moved.truncate().dot(ahead).abs() < 1e-9, "{moved}");
+    assert_eq!(asked(&harness).lights[1], draft_of(&scene).lights[1]);
+}
+
+#[test]
+fn objects_are_dragged_in_the_scene_tab_where_that_is_wished() {
+    let mut harness = shown();
+    click(&mut harness, "Front");
+    let name = box_scene().objects[0].name.clone();
+    let handle = format!("{name} in the Front view");
+    assert!(harness.query_by_label(&handle).is_none(), "objects stay where they are unless they are to be moved");
+    click(&mut harness, "Move objects");
+    let before = harness.get_by_label(&handle).rect().center();
+    let target = "Camera target in the Front view";
+    assert!(harness.query_by_label(target).is_none(), "the camera looks at its middle");
+    drag_handle(&mut harness, &handle, vec2(30.0, -20.0));
+    let pose = asked(&harness).objects.moved[&0];
+    let moved = pose.translate - box_scene().objects[0].pose.translate;
+    assert!(moved.x > 0.05 && moved.y > 0.02 && moved.z.abs() < 1e-9, "{moved}");
+    let after = harness.get_by_label(&handle).rect().center();
+    assert!((after - before - vec2(30.0, -20.0)).length() < 2.0, "it stays under the pointer: {before} to {after}");
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert!(asked(&harness).objects.moved.is_empty());
 }

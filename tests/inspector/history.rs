@@ -17,7 +17,7 @@ use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 
 /// Inside the volume: its count is 1.
-const DARK: [u32; 2] = [3, 4];
+pub const DARK: [u32; 2] = [3, 4];
 /// A panel that shows everything.
 const TALL: [f32; 2] = [1280.0, 2000.0];
 
@@ -27,7 +27,7 @@ fn picked(at: [u32; 2]) -> Harness<'static, Seen> {
     harness_of(inspector, TALL)
 }
 
-fn answer(harness: &mut Harness<Seen>, history: PixelHistory) {
+pub fn answer(harness: &mut Harness<Seen>, history: PixelHistory) {
     let asked = asks::<HistoryOf>(harness).pop();
     // An answer to what is asked no more is dropped.
     let is_asked = asked.is_some_and(|asked| asked.at == history.pixel);

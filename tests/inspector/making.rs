@@ -1,17 +1,17 @@
 //! Scenes made in the window: what is added, moved and deleted is how the scene is run next, and can be undone.
 
 use super::by_hand::z_fail;
-use super::{SIZE, Seen, click, click_button, harness_of, run_request};
+use super::{SIZE, Seen, asks, click, click_button, harness_of, run_request};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use std::sync::Arc;
-use stencilscope::ask::RunRequest;
+use stencilscope::ask::{MeshesOf, RunRequest};
 use stencilscope::glam;
 use stencilscope::inspector::{Action, Inspector};
-use stencilscope::scene::{Light, Object, Scene, SceneBuilder, shapes};
+use stencilscope::scene::{Light, Object, Scene, SceneBuilder, model_scene, shapes};
 use stencilscope::technique::{Choice, Technique};
 
 /// A floor and a box, seen from two metres away.
@@ -174,4 +174,81 @@ fn what_can_not_be_run_says_why() {
     assert!(request.check().expect_err("nowhere").contains("finite numbers"));
     request.objects.added = vec![Object::of("a", mesh); 201];
     assert!(request.check().expect_err("too many").contains("delete some"));
+}
+
+#[test]
+fn lights_go_back_to_what_they_were_opened_with_though_others_were_added_and_deleted() {
+    let mut inspector = Inspector::new(Vec::new());
+    let mut scene = scene();
+    scene.lights.push(Light::point([5.0, 6.0, 7.0]));
+    let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
+    inspector.open_scene(&scene, request, Some("a box".to_owned()));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
+    click(&mut harness, "Scene settings");
+    click(&mut harness, "Make: add, move, delete");
+    harness.run_steps(12);
+    set(&mut harness, "light 2 intensity", 3.0);
+    click_button(&mut harness, "point light");
+    click_button(&mut harness, "Delete light 1");
+    assert_eq!(last_run(&harness).lights.len(), 2);
+    assert!(harness.query_by_label_contains("Reset light 2").is_none(), "the one that was added is as it is");
+    click_button(&mut harness, "Reset light 1 intensity");
+    assert_eq!(last_run(&harness).lights[0], scene.lights[1]);
+    for _ in 0..3 {
+        undo(&mut harness);
+    }
+    assert_eq!(last_run(&harness).lights.len(), 2);
+    click_button(&mut harness, "Reset light 2 intensity");
+    assert_eq!(last_run(&harness).lights, scene.lights);
+}
+
+#[test]
+fn meshes_of_objects_that_are_added_are_asked_for_with_the_scene_s() {
+    let mut harness = opened();
+    click_button(&mut harness, "torus");
+    harness.run_steps(2);
+    let asked = asks::<MeshesOf>(&harness);
+    let last = asked.last().expect("meshes are asked for");
+    assert_eq!(last.added.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["torus"]);
+    set(&mut harness, "object position x", 0.7);
+    assert_eq!(asks::<MeshesOf>(&harness).len(), asked.len(), "where it is changes nothing of its mesh");
+}
+
+#[test]
+fn a_far_plane_is_set_and_taken_away() {
+    let mut harness = opened();
+    click(&mut harness, "Has a far plane");
+    let far = last_run(&harness).camera.far.expect("a far plane");
+    assert!(far > last_run(&harness).camera.near);
+    set(&mut harness, "Far plane", 25.0);
+    assert_eq!(last_run(&harness).camera.far, Some(25.0));
+    click_button(&mut harness, "Reset far plane");
+    assert_eq!(last_run(&harness).camera.far, None);
+}
+
+#[test]
+fn a_model_with_z_up_is_turned_and_stands_on_its_floor_before_the_camera() {
+    let mesh = shapes::cuboid([1.0, 2.0, 6.0]).expect("a box");
+    let scene = model_scene("tower", mesh, true).expect("a model's scene");
+    let mut inspector = Inspector::new(Vec::new());
+    let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
+    inspector.open_scene(&scene, request.clone(), Some("tower.obj".to_owned()));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
+    click(&mut harness, "Scene settings");
+    click_button(&mut harness, "z up");
+    let run = last_run(&harness);
+    let turned = run.applied_to(&scene);
+    let ends = |object: &Object| {
+        let heights = object.world_positions().into_iter().map(|at| at.y);
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| [low.min(y), high.max(y)])
+    };
+    let [low, high] = ends(&turned.objects[0]);
+    assert!((high - low - 6.0).abs() < 1e-9, "its z axis is up");
+    let gap = |scene: &Scene| ends(&scene.objects[0])[0] - ends(&scene.objects[1])[1];
+    assert!((gap(&turned) - gap(&scene)).abs() < 1e-9 && gap(&scene) > 0.0, "as near above the floor as before");
+    assert!((run.camera.target.y - (low + high) / 2.0).abs() < 1e-9 && run.lights[0].position.y > high);
+    click_button(&mut harness, "y up");
+    assert_eq!(last_run(&harness), request);
 }

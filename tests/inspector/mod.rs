@@ -25,6 +25,7 @@ mod pictures;
 mod random_input;
 mod recorded;
 mod report;
+mod room;
 mod scene_depth;
 mod scene_view;
 mod settings;

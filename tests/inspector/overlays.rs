@@ -145,3 +145,17 @@ fn lines_receivers_and_names_come_from_the_frames_anatomy() {
     let differing = plain.as_raw().chunks(4).zip(over.as_raw().chunks(4)).filter(|(a, b)| a != b).count();
     assert!(differing > 20_000, "{differing} pixels");
 }
+
+#[test]
+fn a_menu_asked_for_while_the_picture_is_hidden_does_not_open_with_it_later() {
+    let mut harness = harness_of(inspector(z_fail(SIZE)), [1280.0, 800.0]);
+    harness.get_by_role_and_label(Role::Tab, "Scene").click();
+    harness.run_steps(3);
+    press(&mut harness, Key::O);
+    harness.get_by_role_and_label(Role::Tab, "Picture").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Wireframe of volumes").is_none());
+    press(&mut harness, Key::O);
+    harness.run_steps(2);
+    harness.get_by_label("Wireframe of volumes");
+}

@@ -88,7 +88,7 @@ fn pictures_of_textures_silhouettes_and_counts_can_be_drawn() {
         for (name, view) in *views {
             for size in sizes(folder.is_some()) {
                 let mut inspector = inspector(&scene, &request, &capture, *pick);
-                inspector.tell(MeshesOf {}, Ok(Arc::new(meshes.clone())));
+                inspector.tell(MeshesOf { added: Vec::new() }, Ok(Arc::new(meshes.clone())));
                 let mut harness = harness_of(inspector, size.map(|side| (side + 2 * MARGIN) as f32));
                 view(&mut harness);
                 harness.run_steps(2);

@@ -114,7 +114,7 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let turned = common::mesh(&corners, &[[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
     inspector.tell(
-        MeshesOf {},
+        MeshesOf { added: Vec::new() },
         Ok(Arc::new(vec![
             object("box", &common::cuboid("box", [0.0; 3], [1.0; 3]).mesh),
             object("floor", &common::square("floor", 0.0, 1.0).mesh),
@@ -133,7 +133,10 @@ fn each_mesh_has_a_line_and_says_what_it_means() {
 #[test]
 fn meshes_of_another_scene_are_not_known_yet() {
     let mut inspector = inspector(z_fail(SIZE));
-    inspector.tell(MeshesOf {}, Ok(Arc::new(vec![object("floor", &common::square("floor", 0.0, 1.0).mesh)])));
+    inspector.tell(
+        MeshesOf { added: Vec::new() },
+        Ok(Arc::new(vec![object("floor", &common::square("floor", 0.0, 1.0).mesh)])),
+    );
     inspector.set_scene(&scene(), run_request(Technique::ZFail));
     let mut harness = harness_of(inspector, [1280.0, 1200.0]);
     click(&mut harness, "Scene settings");

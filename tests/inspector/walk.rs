@@ -194,6 +194,9 @@ fn tab_over_the_picture_begins_and_elsewhere_these_keys_do_nothing_of_it() {
     let step = harness.state().inspector.step();
     press(&mut harness, Key::Home);
     assert_eq!(harness.state().inspector.step(), step, "only the keys of walking act");
+    press(&mut harness, Key::Tab);
+    assert_eq!(harness.ctx.memory(egui::Memory::focused), None, "nor does Tab go on to a button");
+    harness.get_by_label(BANNER);
 }
 
 /// A room without a roof, 4 metres each way, and who stands in its middle; the wall to the right is the third

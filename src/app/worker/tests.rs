@@ -7,7 +7,7 @@ use crate::ask::{
 };
 use crate::progress::Progress;
 use crate::report::MeasuredReport;
-use crate::scene::WallCache;
+use crate::scene::{Light, WallCache};
 use crate::stress::Case;
 use crate::technique::Technique;
 
@@ -246,7 +246,7 @@ fn the_size_of_a_case_goes_with_it_but_what_is_changed_meanwhile_stays() {
 #[test]
 fn meshes_are_told_object_by_object() {
     let (worker, frame, news) = started();
-    ask(&worker, frame, 1, MeshesOf {});
+    ask(&worker, frame, 1, MeshesOf { added: Vec::new() });
     let meshes = answer::<MeshesOf>(&news, 1).expect("meshes");
     let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
     let names = scene.objects.iter().map(|object| object.name.clone());
@@ -429,7 +429,7 @@ fn a_scene_is_saved_as_it_is_run_and_what_is_there_is_asked_about() {
 }
 
 #[test]
-fn a_changed_file_is_loaded_again_with_the_camera_as_it_is() {
+fn a_changed_file_is_loaded_again_with_camera_and_lights_as_they_are() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("scene.toml");
     let text = |height: f64| {
@@ -458,7 +458,7 @@ fn a_changed_file_is_loaded_again_with_the_camera_as_it_is() {
         choice: Choice::new(Technique::ZPass),
         size: [64, 36],
         camera,
-        lights: scene.lights.clone(),
+        lights: scene.lights.iter().map(|light| Light { intensity: 0.25, ..light.clone() }).collect(),
         time: 0.0,
         off: std::collections::BTreeSet::new(),
         objects: Default::default(),
@@ -471,6 +471,7 @@ fn a_changed_file_is_loaded_again_with_the_camera_as_it_is() {
     let tall = scene.objects[0].mesh.positions().iter().map(|at| at.y).fold(f64::NEG_INFINITY, f64::max);
     assert_eq!(tall, 1.0, "two high about its middle");
     assert_eq!(request.camera.eye.x, 3.0);
+    assert_eq!(request.lights[0].intensity, 0.25, "as it was set, the file has it as before");
     assert_eq!(request.choice.technique(), Technique::ZPass);
 }
 
@@ -543,7 +544,7 @@ fn a_film_that_can_not_be_made_says_why_with_the_mend() {
     let path = folder.path().join("a.png").display().to_string();
     let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
     let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
-    request.lights[0] = crate::scene::Light::directional([0.0, 1.0, 0.0]);
+    request.lights[0] = Light::directional([0.0, 1.0, 0.0]);
     let subject = FilmSubject::LightRound { request: Box::new(request), light: 0 };
     ask(&worker, frame, 2, FilmOf { subject: subject.clone(), path: path.clone() });
     let reason = answer::<FilmOf>(&news, 2).expect_err("on the axis");
@@ -565,7 +566,7 @@ fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
     request.objects.moved.insert(1, moved);
     let mesh = crate::scene::shapes::cuboid([1.0; 3]).expect("a box");
     request.objects.added.push(crate::scene::Object::of("new box", mesh).at([0.0, 2.0, 0.0]));
-    request.lights.push(crate::scene::Light::directional([0.4, 1.0, 0.3]));
+    request.lights.push(Light::directional([0.4, 1.0, 0.3]));
     request.off.insert(2);
     let count = scene.objects.len();
     assert!(worker.order(Order::Run { scene: 1, request: Box::new(request.clone()) }));

@@ -18,6 +18,8 @@ pub enum Grip {
     Eye,
     /// What the camera looks at.
     Target,
+    /// An object, by index.
+    Object(usize),
 }
 
 impl Grip {
@@ -28,6 +30,7 @@ impl Grip {
             Grip::Light(index) => format::light_title(index),
             Grip::Eye => "Camera".to_owned(),
             Grip::Target => "Camera target".to_owned(),
+            Grip::Object(index) => format!("Object {}", index + 1),
         }
     }
 }

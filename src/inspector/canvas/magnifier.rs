@@ -6,7 +6,7 @@ use crate::inspector::canvas::placement::Placement;
 use crate::inspector::look::coloring::Coloring;
 use crate::inspector::look::theme;
 use crate::reading::shown::Shown;
-use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 
 /// Texels across and down; odd, so that the pick is in the middle.
 const CELLS: [i64; 2] = [7, 5];
@@ -16,14 +16,14 @@ const CELL: f32 = 26.0;
 /// Room between the inset and the picture's borders, points.
 const MARGIN: f32 = 12.0;
 
-/// Draws the inset around `pick` into the lower left corner of `rect`.
+/// Draws the inset around `pick` into a lower corner of `rect`.
 pub fn ui(ui: &Ui, pick: [u32; 2], rect: Rect, shown: &Shown, coloring: Coloring, placement: Placement) {
     let size = vec2(CELLS[0] as f32, CELLS[1] as f32) * CELL;
     let is_large = placement.pixels(ui.pixels_per_point()) >= canvas::NUMBERS_FROM;
     if is_large || rect.width() < size.x * 2.0 || rect.height() < size.y * 2.0 {
         return;
     }
-    let inset = Rect::from_min_size(pos2(rect.left() + MARGIN, rect.bottom() - MARGIN - size.y), size);
+    let inset = place(rect, size, placement.rect_of(pick).expand(canvas::CROSSHAIR));
     let painter = ui.painter_at(rect);
     painter.rect_filled(inset, CornerRadius::same(4), theme::of(ui).background);
     let image = &shown.images[0];
@@ -57,4 +57,29 @@ pub fn ui(ui: &Ui, pick: [u32; 2], rect: Rect, shown: &Shown, coloring: Coloring
         Stroke::new(1.0, theme::of(ui).faint),
         StrokeKind::Outside,
     );
+}
+
+/// In the lower left corner, or in the lower right one where `pick` would be under it.
+fn place(rect: Rect, size: Vec2, pick: Rect) -> Rect {
+    let left = Rect::from_min_size(pos2(rect.left() + MARGIN, rect.bottom() - MARGIN - size.y), size);
+    if left.intersects(pick) { left.translate(vec2(rect.right() - MARGIN - left.right(), 0.0)) } else { left }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pick_is_beside_the_inset_wherever_it_is() {
+        let rect = Rect::from_min_size(pos2(30.0, 50.0), vec2(500.0, 400.0));
+        let size = vec2(CELLS[0] as f32, CELLS[1] as f32) * CELL;
+        for x in 0..=50 {
+            for y in 0..=40 {
+                let at = rect.min + vec2(x as f32, y as f32) * 10.0;
+                let pick = Rect::from_center_size(at, vec2(1.0, 1.0)).expand(canvas::CROSSHAIR);
+                let inset = place(rect, size, pick);
+                assert!(rect.contains_rect(inset) && !inset.intersects(pick), "{at}");
+            }
+        }
+    }
 }

@@ -25,6 +25,8 @@ use std::sync::Arc;
 
 /// Screen pixels a texel from which on each texel shows its number.
 pub const NUMBERS_FROM: f32 = 24.0;
+/// How far the crosshair reaches beyond the middle of a small texel, points.
+pub const CROSSHAIR: f32 = 24.0;
 /// Marks are at least so large, points.
 const LEAST_MARK: f32 = 2.5;
 /// Marks that are drawn at most.

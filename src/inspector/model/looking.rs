@@ -191,6 +191,22 @@ impl Model {
         Some(RunRequest { choice, ..scene.draft.clone() })
     }
 
+    /// What stands beside the picture first: the step before it, or of a picture of the whole frame, which no step
+    /// changes, that of another technique.
+    #[must_use]
+    pub fn first_comparison(&self) -> Compare {
+        let compare = Compare::new(self.selection.step);
+        let shown = self.frame.capture.as_ref().and_then(|capture| self.shown(capture));
+        match (&self.scene, shown) {
+            (Some(scene), Some(shown)) if !has_phases(shown.kind) && shown.kind != PictureKind::Overdraw => {
+                let is_fail = scene.draft.choice.technique() == Technique::ZFail;
+                let other = if is_fail { Technique::ShadowMap } else { Technique::ZFail };
+                Compare { with: With::Technique(other), ..compare }
+            }
+            _ => compare,
+        }
+    }
+
     /// The picture that is compared with the shown one.
     ///
     /// # Errors

@@ -1,11 +1,12 @@
 //! The open scene, and the run that the settings describe.
 
 use super::{Model, undo};
-use crate::ask::{ReportOf, RunRequest};
+use crate::ask::{ObjectChanges, ReportOf, RunRequest};
 use crate::inspector::action::Action;
-use crate::scene::{Object, Scene};
+use crate::scene::{Light, Mesh, Object, Pose, Scene};
 use crate::technique::{Choice, Technique};
-use std::collections::BTreeMap;
+use glam::DVec3;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The scene that is open.
@@ -21,12 +22,16 @@ pub struct OpenScene {
     pub objects: Vec<String>,
     /// Its objects, as loaded.
     pub loaded: Vec<Object>,
+    /// The middles of their bounding boxes, object space.
+    pub middles: Vec<DVec3>,
     /// Index of the one that is moved by numbers, new ones after those of the scene.
     pub edited: usize,
     /// What the next run will be.
     pub draft: RunRequest,
     /// What it was when the scene was opened.
     pub opened: RunRequest,
+    /// Of each light of the draft its index among those that the scene was opened with; `None`: it was added.
+    pub lights_opened: Vec<Option<usize>>,
     /// The settings of techniques used before, to come back to.
     pub choices: BTreeMap<Technique, Choice>,
     /// Why the draft can't be run.
@@ -37,6 +42,60 @@ impl OpenScene {
     /// What it is known by: what opened it, or its name.
     fn key(&self) -> String {
         self.source.clone().unwrap_or_else(|| self.name.clone())
+    }
+
+    /// The light that the scene was opened with which is this one of the draft now.
+    #[must_use]
+    pub fn light_opened(&self, index: usize) -> Option<&Light> {
+        self.opened.lights.get(self.lights_opened.get(index).copied()??)
+    }
+
+    /// The object of an index as the draft has it.
+    #[must_use]
+    pub fn object(&self, index: usize) -> Option<Object> {
+        let changes = &self.draft.objects;
+        match self.loaded.get(index) {
+            Some(object) => {
+                let pose = changes.moved.get(&index).copied().unwrap_or(object.pose);
+                Some(Object { pose, ..object.clone() })
+            }
+            None => changes.added.get(index - self.loaded.len()).cloned(),
+        }
+    }
+
+    /// How many objects it has, those that were added among them.
+    #[must_use]
+    pub fn object_count(&self) -> usize {
+        self.loaded.len() + self.draft.objects.added.len()
+    }
+
+    /// The middle of an object of the draft's, object space.
+    #[must_use]
+    pub fn middle_of(&self, index: usize, object: &Object) -> DVec3 {
+        self.middles.get(index).copied().unwrap_or_else(|| middle(&object.mesh))
+    }
+
+    /// Puts an object at a pose.
+    pub fn place(&mut self, index: usize, pose: Pose) {
+        let (changes, count) = (&mut self.draft.objects, self.loaded.len());
+        match self.loaded.get(index) {
+            // Where it was loaded: not moved.
+            Some(object) if object.pose == pose => drop(changes.moved.remove(&index)),
+            Some(_) => drop(changes.moved.insert(index, pose)),
+            None => changes.added.get_mut(index - count).into_iter().for_each(|object| object.pose = pose),
+        }
+    }
+
+    /// Adds a light to the draft.
+    pub fn add_light(&mut self, light: Light) {
+        self.draft.lights.push(light);
+        self.lights_opened.push(None);
+    }
+
+    /// Deletes a light of the draft.
+    pub fn delete_light(&mut self, index: usize) {
+        self.draft.lights.remove(index);
+        self.lights_opened.remove(index);
     }
 
     /// Are its lights and objects those that it was opened with?
@@ -79,10 +138,18 @@ impl Model {
             animated: scene.is_animated(),
             objects: scene.objects.iter().map(|object| object.name.clone()).collect(),
             loaded: scene.objects.clone(),
+            middles: scene.objects.iter().map(|object| middle(&object.mesh)).collect(),
             edited: 0,
             choices: BTreeMap::from([(draft.choice.technique(), draft.choice.clone())]),
             problem: draft.check().err(),
-            opened: draft.clone(),
+            // One that is loaded again is run as it was, and held against what its file has now.
+            opened: RunRequest {
+                lights: scene.lights.clone(),
+                off: BTreeSet::new(),
+                objects: ObjectChanges::default(),
+                ..draft.clone()
+            },
+            lights_opened: lights_opened(&draft.lights, &scene.lights, before.as_ref()),
             draft,
         });
         self.activity.is_waiting = self.scene.is_some();
@@ -133,7 +200,11 @@ impl Model {
     /// How the scene is run now is a step that can be taken back.
     fn note_for_undo(&mut self) {
         if let Some(scene) = self.scene.as_ref().filter(|_| self.restoring.is_none()) {
-            self.undo.note(undo::Moment { source: scene.source.clone(), request: scene.draft.clone() });
+            self.undo.note(undo::Moment {
+                source: scene.source.clone(),
+                request: scene.draft.clone(),
+                lights_opened: scene.lights_opened.clone(),
+            });
         }
     }
 
@@ -155,6 +226,7 @@ impl Model {
         match &mut self.scene {
             Some(scene) if scene.source == moment.source => {
                 scene.draft = moment.request;
+                scene.lights_opened = moment.lights_opened;
                 self.run_draft(actions);
             }
             _ => {
@@ -174,6 +246,7 @@ impl Model {
         {
             scene.choices.insert(moment.request.choice.technique(), moment.request.choice.clone());
             scene.draft = moment.request;
+            scene.lights_opened = moment.lights_opened;
             self.run_draft(actions);
         }
     }
@@ -182,4 +255,21 @@ impl Model {
     pub fn stop_restoring(&mut self) {
         self.restoring = None;
     }
+}
+
+/// As in [`OpenScene::lights_opened`], of a scene that is opened to be run with these lights.
+fn lights_opened(draft: &[Light], loaded: &[Light], before: Option<&OpenScene>) -> Vec<Option<usize>> {
+    if draft.len() == loaded.len() {
+        return (0..draft.len()).map(Some).collect();
+    }
+    // Loaded again, and run with those that were added or deleted before.
+    let known = before.map(|before| &before.lights_opened).filter(|known| known.len() == draft.len());
+    known.cloned().unwrap_or_else(|| vec![None; draft.len()])
+}
+
+/// The middle of a mesh's bounding box.
+fn middle(mesh: &Mesh) -> DVec3 {
+    let all = || mesh.positions().iter().copied();
+    let (low, high) = (all().reduce(DVec3::min), all().reduce(DVec3::max));
+    low.zip(high).map_or(DVec3::ZERO, |(low, high)| low / 2.0 + high / 2.0)
 }

@@ -16,6 +16,8 @@ pub struct Moment {
     pub source: Option<String>,
     /// How it was run.
     pub request: RunRequest,
+    /// Which of its lights are those that the scene was opened with, by index.
+    pub lights_opened: Vec<Option<usize>>,
 }
 
 /// What can be undone and redone.
@@ -101,7 +103,7 @@ mod tests {
         let choice = Choice::new(Technique::ZFail);
         let (off, objects) = (BTreeSet::new(), ObjectChanges::default());
         let request = RunRequest { choice, size: [width, 1], camera, lights: Vec::new(), time, off, objects };
-        Moment { source: Some("tori".to_owned()), request }
+        Moment { source: Some("tori".to_owned()), request, lights_opened: Vec::new() }
     }
 
     fn widths(undo: &mut Undo) -> Vec<u32> {

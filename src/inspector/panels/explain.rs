@@ -6,6 +6,7 @@ use crate::inspector::model::Model;
 use crate::inspector::panels::pixel::map;
 use crate::inspector::tours::TOURS;
 use crate::reading::explain_facts::{Known, facts};
+use crate::reading::left_out::by_reason;
 use crate::reading::steps;
 use egui::{Label, RichText, Ui};
 
@@ -60,9 +61,12 @@ fn left_out(ui: &mut Ui, capture: &crate::capture::Capture) {
     if capture.left_out.is_empty() {
         ui.add(Label::new(theme::note("Nothing: this scene needs all that the technique has.")).wrap());
     }
-    for left in &capture.left_out {
-        ui.add(Label::new(left.to_string()).wrap());
-        ui.add(Label::new(theme::note(left.because.as_str())).wrap());
+    for (because, titles) in by_reason(&capture.left_out) {
+        for title in titles {
+            ui.add(Label::new(title).wrap());
+        }
+        ui.add(Label::new(theme::note(because)).wrap());
+        ui.add_space(4.0);
     }
 }
 

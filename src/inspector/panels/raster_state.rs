@@ -48,7 +48,7 @@ pub fn ui(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model) {
 fn attachments(ui: &mut Ui, plan: &FramePlan, pass: &Pass) {
     let name = |id: crate::plan::AttachmentId| plan.attachments.get(id.0).map_or("?", |attachment| &attachment.name);
     let kept = || "kept".to_owned();
-    egui::Grid::new("pass attachments").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+    egui::Grid::new("pass attachments").num_columns(2).spacing([12.0, 4.0]).min_row_height(0.0).show(ui, |ui| {
         let mut row = |what: &str, text: String| {
             ui.label(theme::note(what));
             ui.add(Label::new(text).wrap());

@@ -19,6 +19,8 @@ use egui_tiles::{
 /// Widths of the side panels in points, where the window is wide enough.
 const LEFT_WIDTH: f32 = 264.0;
 const RIGHT_WIDTH: f32 = 332.0;
+/// From this width on the scene is beside the picture, points: the picture is as large as in a window of usual width.
+const WIDE: f32 = 2200.0;
 /// What a side panel may take of the window at most.
 const SIDE_SHARE: f32 = 0.26;
 /// Height of the report in points, without and with something to show.
@@ -41,28 +43,40 @@ pub struct Dock {
     report: TileId,
     right: TileId,
     arranged_by_user: bool,
+    /// The scene is beside the picture.
+    is_wide: bool,
+    /// The tiles that were shown in the last frame.
+    shown: Vec<TileId>,
 }
 
 impl Dock {
     /// As first shown.
     #[must_use]
     pub fn new() -> Dock {
+        Dock::first(false)
+    }
+
+    /// As first shown in a window that is wide, so that the scene has room beside the picture, or is not.
+    fn first(is_wide: bool) -> Dock {
         let mut tiles = Tiles::default();
         let sides = [Panel::Passes, Panel::Settings].map(|panel| tiles.insert_pane(panel));
         let left = tiles.insert_tab_tile(sides.to_vec());
-        let [picture, report, right] = [
-            &[Panel::Picture, Panel::Scene, Panel::ShadowMap][..],
-            &[Panel::Report, Panel::Diagnosis, Panel::Stress],
-            &[Panel::Pixel, Panel::State, Panel::Explain, Panel::Bench],
-        ]
-        .map(|panels| {
+        let mut group = |panels: &[Panel]| {
             let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
             tiles.insert_tab_tile(panes)
-        });
+        };
+        let report = group(&[Panel::Report, Panel::Diagnosis, Panel::Stress]);
+        let right = group(&[Panel::Pixel, Panel::State, Panel::Explain, Panel::Bench]);
+        let picture = if is_wide {
+            let beside = [group(&[Panel::Picture]), group(&[Panel::Scene, Panel::ShadowMap])];
+            tiles.insert_horizontal_tile(beside.to_vec())
+        } else {
+            group(&[Panel::Picture, Panel::Scene, Panel::ShadowMap])
+        };
         let middle = tiles.insert_vertical_tile(vec![picture, report]);
         let row = tiles.insert_horizontal_tile(vec![left, middle, right]);
         let tree = Tree::new(Id::unique("inspector dock"), row, tiles);
-        Dock { tree, row, left, middle, picture, report, right, arranged_by_user: false }
+        Dock { tree, row, left, middle, picture, report, right, arranged_by_user: false, is_wide, shown: Vec::new() }
     }
 
     /// Where the panels are; `None` while they are where they were at first.
@@ -85,6 +99,10 @@ impl Dock {
     /// Draws all panels into what is left of the window.
     pub fn ui(&mut self, ui: &mut Ui, panels: &mut Panels, model: &mut Model, actions: &mut Vec<Action>) {
         if !self.arranged_by_user {
+            let is_wide = ui.available_width() >= WIDE;
+            if is_wide != self.is_wide {
+                *self = Dock::first(is_wide);
+            }
             self.keep_widths(ui.available_width());
             let is_shown = |panel| {
                 self.tree
@@ -104,6 +122,11 @@ impl Dock {
         let has_map = shown.iter().any(|id| matches!(self.tree.tiles.get(*id), Some(Tile::Pane(Panel::ShadowMap))));
         if !has_map {
             panels.shadow_map.hide(model);
+        }
+        // A panel knows whether it scrolls, and so its width, a frame after it is shown.
+        if self.shown != shown {
+            self.shown = shown;
+            ui.ctx().request_repaint();
         }
         let (size, drag) = (ui.available_size(), Drag::under_way(&self.tree, ui));
         let fitted = if self.arranged_by_user { arrangement::fit(&mut self.tree, size) } else { Vec::new() };

@@ -44,7 +44,7 @@ fn reload(ui: &mut Ui, model: &mut Model, file: &str, actions: &mut Vec<Action>)
             ui.label(format!("{file} changed on disk."));
             if ui
                 .button("Load it again")
-                .on_hover_text("Technique and camera stay as they are; objects and lights are the file's")
+                .on_hover_text("The file's scene, with all that was set here and still has a place in it")
                 .clicked()
             {
                 actions.push(Action::Reload);

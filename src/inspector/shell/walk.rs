@@ -117,6 +117,10 @@ pub fn handle(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) -> bo
     if !model.walk.is_on() {
         return true;
     }
+    // Nor does it go from widget to widget.
+    if ctx.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Tab)) {
+        ctx.memory_mut(|memory| memory.move_focus(FocusDirection::None));
+    }
     step(ctx, model, actions);
     true
 }

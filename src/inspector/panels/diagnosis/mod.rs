@@ -60,7 +60,7 @@ pub fn ui(ui: &mut Ui, own: &mut DiagnosisPanel, model: &mut Model, actions: &mu
 /// What can be done, and how far it is.
 fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Option<&Diagnosis>) {
     let can_run = model.scene.is_some() && model.frame.capture.is_some();
-    ui.horizontal_wrapped(|ui| match reply.steps() {
+    ui.horizontal(|ui| match reply.steps() {
         Some((done, of)) => {
             if ui.button("Cancel").on_hover_text("Stop diagnosing; what was found before stays").clicked() {
                 model.answers.cancel(Kind::DiagnosisOf);
@@ -68,7 +68,7 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<Diagnosis>, known: Opt
             let bar = egui::ProgressBar::new(done as f32 / of.max(1) as f32);
             let width = ui.available_width().min(180.0);
             ui.add(bar.desired_width(width).desired_height(8.0)).accessible_name("Diagnosing");
-            ui.label(theme::note("following rays, and running what may mend it"));
+            ui.add(egui::Label::new(theme::note("following rays, and running what may mend it")).wrap());
         }
         None => {
             let is_new = known.is_none();

@@ -11,12 +11,13 @@ use egui::{RichText, ScrollArea, Ui};
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, model: &mut Model) {
     let reply = model.answers.under_way::<FaultsOf>();
-    ui.horizontal_wrapped(|ui| match reply.steps() {
+    ui.horizontal(|ui| match reply.steps() {
         Some(_) => {
             if ui.button("Cancel").clicked() {
                 model.answers.cancel(Kind::FaultsOf);
             }
-            ui.label(theme::note("following rays, and running the frame with one thing changed"));
+            let words = "following rays, and running the frame with one thing changed";
+            ui.add(egui::Label::new(theme::note(words)).wrap());
         }
         None => {
             if ui.button("Diagnose").on_hover_text("Say where this frame is wrong and why, and prove it").clicked() {

@@ -8,6 +8,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::plan::LeftOut;
 use crate::reading::format;
+use crate::reading::left_out::by_reason;
 use crate::reading::moment::Moment;
 use crate::reading::written::Written;
 use egui::{CornerRadius, Rect, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
@@ -163,29 +164,14 @@ pub fn left_out(ui: &mut Ui, left_out: &[LeftOut]) {
     ui.add_space(8.0);
     ui.label(theme::note("Left out"));
     ui.add_space(2.0);
-    // One thing is decided again for every light, and for many objects with one reason: once is enough to read.
-    let mut reasons: Vec<(&str, Vec<(String, u32)>)> = Vec::new();
-    for entry in left_out {
-        let title = entry.to_string();
-        let place = reasons.iter().position(|(because, _)| *because == entry.because).unwrap_or(reasons.len());
-        if place == reasons.len() {
-            reasons.push((&entry.because, Vec::new()));
-        }
-        let titles = &mut reasons[place].1;
-        match titles.iter_mut().find(|(known, _)| *known == title) {
-            Some((_, times)) => *times += 1,
-            None => titles.push((title, 1)),
-        }
-    }
-    for (because, titles) in reasons {
+    for (because, titles) in by_reason(left_out) {
         ui.horizontal(|ui| {
             ui.add_space(8.0);
             ui.vertical(|ui| {
                 let small = |text: String, color| {
                     egui::Label::new(RichText::new(text).size(theme::SMALL_SIZE).color(color)).wrap()
                 };
-                for (title, times) in titles {
-                    let title = if times > 1 { format!("{title} ×{times}") } else { title };
+                for title in titles {
                     ui.add(small(title, theme::of(ui).dim));
                 }
                 ui.add(small(because.to_owned(), theme::of(ui).faint));

@@ -1,5 +1,5 @@
-//! Lights as handles over the picture: dragged in the plane parallel to it. One that is before the eye and out of view
-//! has its handle at the border, where it would come in.
+//! Lights as handles over the picture: dragged in the plane parallel to it. One that is out of view has its handle at the
+//! border: where it would come in, or, of one behind the eye, on its side.
 
 use crate::inspector::action::Action;
 use crate::inspector::canvas::handles::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
@@ -8,7 +8,7 @@ use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::pick_ray;
 use crate::reading::shown::{PictureKind, Shown};
-use egui::{Color32, Pos2, Rect, Stroke, Ui, Vec2, pos2};
+use egui::{Color32, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use glam::DVec3;
 
 /// Side of what can be grabbed, points.
@@ -43,12 +43,14 @@ pub fn ui(ui: &Ui, model: &mut Model, rect: Rect, shown: &Shown, placement: Plac
     let mut changed = false;
     for index in 0..draft.lights.len() {
         let point = place_of_light(&draft.lights[index], draft.time, anchor);
-        let Some(texel) = pick_ray::texel_of(capture, point.extend(1.0)) else { continue };
-        let at = pos2(texel[0] as f32, texel[1] as f32).to_vec2() * placement.scale + placement.origin.to_vec2();
-        let at = at.to_pos2();
         if whole.width().min(whole.height()) < 4.0 * INSET {
             continue;
         }
+        let before_eye = pick_ray::texel_of(capture, point.extend(1.0));
+        let at = match before_eye {
+            Some(texel) => placement.origin + vec2(texel[0] as f32, texel[1] as f32) * placement.scale,
+            None => beyond(whole, pick_ray::way_to(capture, point.extend(1.0))),
+        };
         let inside = whole.shrink(INSET).clamp(at);
         let outwards = (!whole.contains(at)).then(|| (at - inside).normalized());
         let at = if outwards.is_some() { inside } else { at };
@@ -56,7 +58,11 @@ pub fn ui(ui: &Ui, model: &mut Model, rect: Rect, shown: &Shown, placement: Plac
         let name = format!("{} in the picture", Grip::Light(index).name());
         let response = grabbed(ui, id, Rect::from_center_size(at, Vec2::splat(GRAB)), &name);
         let is_held = response.hovered() || response.dragged() || response.has_focus();
-        let away = outwards.map_or("", |_| ", out of view this way");
+        let away = match (before_eye, outwards) {
+            (None, _) => ", behind the eye",
+            (Some(_), Some(_)) => ", out of view this way",
+            (Some(_), None) => "",
+        };
         let name = Grip::Light(index).name();
         let response = response.on_hover_text(format!("{name}{away}: drag it, or use the arrow keys"));
         sign(ui, whole, at, is_held, outwards);
@@ -67,15 +73,23 @@ pub fn ui(ui: &Ui, model: &mut Model, rect: Rect, shown: &Shown, placement: Plac
         if by == Vec2::ZERO {
             continue;
         }
-        let to = [texel[0] + f64::from(by.x), texel[1] + f64::from(by.y)];
-        let depth = (point - camera.eye).dot(ahead);
-        let moved: DVec3 = camera.eye + pick_ray::ray_at(capture, to) * depth - point;
+        // In the plane parallel to the picture, behind the eye as far as before it.
+        let depth = (point - camera.eye).dot(ahead).abs().max(camera.near);
+        let ray = |x: f32, y: f32| pick_ray::ray_at(capture, [f64::from(x), f64::from(y)]);
+        let moved: DVec3 = (ray(by.x, by.y) - ray(0.0, 0.0)) * depth;
         draft.lights[index].position = moved_light(&draft.lights[index], draft.time, moved, anchor);
         changed = true;
     }
     if changed {
         model.run_draft(actions);
     }
+}
+
+/// A place outside a rectangle, from its middle in this direction.
+fn beyond(whole: Rect, way: [f64; 2]) -> Pos2 {
+    let way = vec2(way[0] as f32, way[1] as f32);
+    let sides = (whole.width() / 2.0 / way.x.abs()).min(whole.height() / 2.0 / way.y.abs());
+    whole.center() + way * (sides + INSET)
 }
 
 /// A sun, dark under light so that it shows on any picture; of a light out of view, with an arrow the way it is.

@@ -60,7 +60,7 @@ fn toggle(ui: &mut Ui, model: &mut Model) {
     let button = ui.add(Button::selectable(is_on, word));
     let button = button.on_disabled_hover_text("Several pictures at once: choose one of them to compare it");
     if button.on_hover_text("Another step or technique beside this picture, under a divider").clicked() {
-        model.modes.compare = if is_on { None } else { Some(Compare::new(model.selection.step)) };
+        model.modes.compare = if is_on { None } else { Some(model.first_comparison()) };
     }
 }
 

@@ -328,6 +328,7 @@ fn selected(ui: &mut Ui, model: &mut Model, capture: &Capture, history: &PixelHi
     let Some(event) = model.selected_in(history).and_then(|index| history.events.get(index)) else { return };
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
+        ui.spacing_mut().item_spacing.y = 4.0;
         ui.add(egui::Label::new(theme::note(line(history, event, &capture.depth)).color(theme::of(ui).text)).wrap());
         let text = theme::note(format!("Go to {}, {}", moment_of(event).words(capture), event.pass_name));
         if moment_of(event) != model.selected() && ui.button(text).clicked() {

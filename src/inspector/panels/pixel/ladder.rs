@@ -49,14 +49,15 @@ pub fn ui(
     }
     ui.horizontal(|ui| {
         theme::heading(ui, "Ladder");
-        let of = capture.lights.get(light).and_then(|light| light.count_of);
-        let counting = of.map_or_else(String::new, |of| format!(", counting {}", of.what()));
-        let words = ui.label(theme::note(format!("of {}, along the view ray{counting}", format::light(light))));
-        of.map(|of| words.on_hover_text(of.meaning()));
         let is_open = own.unfolded.contains_key(&light);
         if is_open && ui.small_button("Fold").on_hover_text("Fold faces again").clicked() {
             own.unfolded.remove(&light);
         }
+        let of = capture.lights.get(light).and_then(|light| light.count_of);
+        let counting = of.map_or_else(String::new, |of| format!(", counting {}", of.what()));
+        let words = theme::note(format!("of {}, along the view ray{counting}", format::light(light)));
+        let words = ui.add(egui::Label::new(words).wrap());
+        of.map(|of| words.on_hover_text(of.meaning()));
     });
     ui.scope(|ui| {
         if told.is_late {

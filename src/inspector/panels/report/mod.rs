@@ -99,7 +99,7 @@ fn plot_of(
 /// What can be done, and how far it is.
 fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measured: Option<&MeasuredReport>) {
     let can_run = model.scene.is_some();
-    ui.horizontal_wrapped(|ui| match &reply.running {
+    ui.horizontal(|ui| match &reply.running {
         Some(progress) => {
             if ui.button("Cancel").on_hover_text("Stop measuring; the rows so far stay").clicked() {
                 model.answers.cancel(Kind::ReportOf);
@@ -117,12 +117,9 @@ fn top_line(ui: &mut Ui, model: &mut Model, reply: &Reply<MeasuredReport>, measu
             let bar = egui::ProgressBar::new(share).desired_width(width).desired_height(8.0);
             ui.add(bar).accessible_name("Measuring");
             let count = |value: usize| format::count(value as u64);
-            ui.label(theme::note(format!(
-                "{} of {} · {what}{}",
-                count(done),
-                count(of),
-                time_left(reply.waits_for, done, of)
-            )));
+            let left = time_left(reply.waits_for, done, of);
+            let words = format!("{} of {} · {what}{left}", count(done), count(of));
+            ui.add(egui::Label::new(theme::note(words)).wrap());
         }
         None => {
             let is_new = measured.is_none_or(|measured| measured.report.rows.is_empty());

@@ -1,4 +1,5 @@
-//! Lights and camera as handles: dragged in the plane parallel to the view, or along an axis.
+//! Lights, camera and, where that is wished, objects as handles: dragged in the plane parallel to the view, or along an
+//! axis.
 //!
 //! Handles stand where the draft has things, so that they follow the hand before the next frame is
 //! there. What moves in the scene is shown at the draft's moment, and moved at its start.
@@ -12,9 +13,10 @@ use crate::inspector::action::Action;
 use crate::inspector::canvas::handles::{Anchor, Grip, arrows, grabbed, moved_light, place_of_light};
 use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::Model;
-use crate::scene::Light;
+use crate::inspector::model::scene::OpenScene;
+use crate::scene::{Light, Object, Pose};
 use egui::{Align2, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Side of what can be grabbed, points.
 const GRAB: f32 = 18.0;
@@ -33,24 +35,33 @@ pub fn ui(
 ) {
     let anchor = Anchor { middle: stage.middle, reach: 0.85 * stage.radius };
     let here = Here { pane, lens, rect, anchor };
-    let Some(draft) = model.scene.as_mut().map(|scene| &mut scene.draft) else {
+    let Some(scene) = model.scene.as_mut() else {
         return signs(ui, anatomy, view.shown.names, &here);
     };
     let painter = ui.painter_at(rect);
     let mut changed = false;
-    let lights = (0..draft.lights.len()).map(Grip::Light);
-    let grips: Vec<Grip> = [Grip::Target, Grip::Eye].into_iter().chain(lights).collect();
-    if let (Some(eye), Some(target)) = (lens.place(draft.camera.eye), lens.place(draft.camera.target)) {
+    let lights = (0..scene.draft.lights.len()).map(Grip::Light);
+    let movable = 0..if view.gizmos && view.moves_objects { scene.object_count() } else { 0 };
+    let objects = movable.filter(|index| !scene.draft.off.contains(index)).map(Grip::Object);
+    let objects: Vec<Grip> = objects.collect();
+    let spot = |scene: &OpenScene, grip| place(scene, grip, anchor).and_then(|at| lens.place(at));
+    let taken: Vec<Pos2> = objects.iter().filter_map(|grip| spot(scene, *grip)).collect();
+    // The last one is on top.
+    let grips: Vec<Grip> = [Grip::Target, Grip::Eye].into_iter().chain(objects).chain(lights).collect();
+    let camera = scene.draft.camera;
+    if let (Some(eye), Some(target)) = (lens.place(camera.eye), lens.place(camera.target)) {
         painter.extend(egui::Shape::dashed_line(&[eye, target], Stroke::new(1.0, theme::of(ui).dim), 2.0, 4.0));
     }
     for grip in grips {
-        let Some(at) = lens.place(place(draft, grip, anchor)).filter(|at| rect.contains(*at)) else { continue };
-        sign(ui, &painter, (grip, is_directional(draft, grip)), at, &here);
-        if view.gizmos {
-            changed |= handle(ui, view, draft, (grip, at), &here);
+        let Some(at) = spot(scene, grip).filter(|at| rect.contains(*at)) else { continue };
+        sign(ui, &painter, (grip, is_directional(&scene.draft, grip)), at, &here);
+        // The camera looks at the middle of a model: who wishes to move that is not to move what it looks at.
+        let is_hidden = grip == Grip::Target && taken.iter().any(|other| other.distance(at) < GRAB / 2.0);
+        if view.gizmos && !is_hidden {
+            changed |= handle(ui, view, scene, (grip, at), &here);
         }
         if view.shown.names {
-            name(ui, &painter, grip, at);
+            name(ui, &painter, &name_of(scene, grip), at);
         }
     }
     if changed {
@@ -69,13 +80,19 @@ fn signs(ui: &Ui, anatomy: &Anatomy, has_names: bool, here: &Here) {
         let Some(at) = here.lens.place(place).filter(|at| here.rect.contains(*at)) else { continue };
         sign(ui, &painter, (grip, is_directional), at, here);
         if has_names {
-            name(ui, &painter, grip, at);
+            name(ui, &painter, &grip.name(), at);
         }
     }
 }
 
-fn name(ui: &Ui, painter: &Painter, grip: Grip, at: Pos2) {
-    widgets::plate(painter, at + vec2(0.0, 10.0), Align2::CENTER_TOP, &grip.name(), false, theme::of(ui));
+fn name(ui: &Ui, painter: &Painter, name: &str, at: Pos2) {
+    widgets::plate(painter, at + vec2(0.0, 10.0), Align2::CENTER_TOP, name, false, theme::of(ui));
+}
+
+/// For people.
+fn name_of(scene: &OpenScene, grip: Grip) -> String {
+    let object = if let Grip::Object(index) = grip { scene.object(index) } else { None };
+    object.map_or_else(|| grip.name(), |object| object.name)
 }
 
 fn is_directional(draft: &RunRequest, grip: Grip) -> bool {
@@ -90,22 +107,49 @@ struct Here<'a> {
     anchor: Anchor,
 }
 
-fn place(draft: &RunRequest, grip: Grip, anchor: Anchor) -> DVec3 {
+/// Where a thing is at the draft's moment, world space.
+fn place(scene: &OpenScene, grip: Grip, anchor: Anchor) -> Option<DVec3> {
+    let draft = &scene.draft;
     match grip {
-        Grip::Light(index) => place_of_light(&draft.lights[index], draft.time, anchor),
-        Grip::Eye => draft.camera.eye,
-        Grip::Target => draft.camera.target,
+        Grip::Light(index) => draft.lights.get(index).map(|light| place_of_light(light, draft.time, anchor)),
+        Grip::Eye => Some(draft.camera.eye),
+        Grip::Target => Some(draft.camera.target),
+        Grip::Object(index) => {
+            let object = scene.object(index)?;
+            let pose = object.motion.apply(&object.pose, draft.time);
+            Some(pose.world_from_object().transform_point3(scene.middle_of(index, &object)))
+        }
     }
 }
 
-fn move_by(draft: &mut RunRequest, grip: Grip, by: DVec3, anchor: Anchor) {
+fn move_by(scene: &mut OpenScene, grip: Grip, by: DVec3, anchor: Anchor) {
+    let draft = &mut scene.draft;
     match grip {
         Grip::Light(index) => {
             draft.lights[index].position = moved_light(&draft.lights[index], draft.time, by, anchor);
         }
         Grip::Eye => draft.camera.eye += by,
         Grip::Target => draft.camera.target += by,
+        Grip::Object(index) => {
+            let time = draft.time;
+            if let Some(object) = scene.object(index) {
+                scene.place(index, moved_object(&object, time, by));
+            }
+        }
     }
+}
+
+/// An object's pose at the scene's start once it was moved at a moment.
+fn moved_object(object: &Object, time: f64, by: DVec3) -> Pose {
+    let pose = object.pose;
+    let moved = |by: DVec3| Pose { translate: pose.translate + by, ..pose };
+    if object.motion.is_still() {
+        return moved(by);
+    }
+    // Motions are rigid: what a step at the start comes to at the moment is a turned step.
+    let at = |by: DVec3| object.motion.apply(&moved(by), time).translate;
+    let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| at(axis) - at(DVec3::ZERO));
+    moved(DMat3::from_cols(x, y, z).transpose() * by)
 }
 
 /// What a thing looks like, whether it can be moved or not.
@@ -132,18 +176,26 @@ fn sign(ui: &Ui, painter: &Painter, (grip, is_directional): (Grip, bool), at: Po
             painter.circle_stroke(at, 4.0, Stroke::new(1.5, colors.dim));
             painter.circle_filled(at, 1.2, colors.dim);
         }
+        Grip::Object(_) => {
+            let body = Rect::from_center_size(at, Vec2::splat(8.0));
+            painter.rect(body, 1, colors.raised, Stroke::new(1.5, colors.text), egui::StrokeKind::Middle);
+        }
     }
 }
 
 /// The handle and, where it is the chosen one, its axes. True where it was moved.
-fn handle(ui: &Ui, view: &mut SceneView, draft: &mut RunRequest, (grip, at): (Grip, Pos2), here: &Here) -> bool {
+fn handle(ui: &Ui, view: &mut SceneView, scene: &mut OpenScene, (grip, at): (Grip, Pos2), here: &Here) -> bool {
     let in_view = format!("in the {} view", here.pane.name());
     let id = ui.scope_id().with(("gizmo", here.pane.name(), grip));
-    let (grab, name) = (Rect::from_center_size(at, Vec2::splat(GRAB)), format!("{} {in_view}", grip.name()));
+    let called = name_of(scene, grip);
+    let (grab, name) = (Rect::from_center_size(at, Vec2::splat(GRAB)), format!("{called} {in_view}"));
     let response = grabbed(ui, id, grab, &name);
-    let response = response.on_hover_text(format!("{}: drag it, or use the arrow keys", grip.name()));
+    let response = response.on_hover_text(format!("{called}: drag it, or use the arrow keys"));
     if response.drag_started() || response.clicked() || response.gained_focus() {
         view.grip = Some(grip);
+        if let Grip::Object(index) = grip {
+            scene.edited = index;
+        }
     }
     let painter = ui.painter_at(here.rect);
     if response.hovered() || response.has_focus() || view.grip == Some(grip) {
@@ -151,7 +203,7 @@ fn handle(ui: &Ui, view: &mut SceneView, draft: &mut RunRequest, (grip, at): (Gr
         painter.circle_stroke(at, GRAB / 2.0 + 2.0, Stroke::new(1.5, ink));
     }
     let lens = here.lens;
-    let point = place(draft, grip, here.anchor);
+    let Some(point) = place(scene, grip, here.anchor) else { return false };
     let mut by = DVec3::ZERO;
     if response.dragged() && response.drag_delta() != Vec2::ZERO {
         by += lens.moved(point, response.drag_delta());
@@ -160,7 +212,7 @@ fn handle(ui: &Ui, view: &mut SceneView, draft: &mut RunRequest, (grip, at): (Gr
         let step = f64::from(here.rect.height()) / lens.scale;
         by += (nearest_axis(lens.rotation.row(0)) * right + nearest_axis(lens.rotation.row(1)) * up) * step;
     }
-    if view.grip == Some(grip) && !is_directional(draft, grip) {
+    if view.grip == Some(grip) && !is_directional(&scene.draft, grip) {
         for (letter, axis) in AXES {
             let length = lens.moved(point, vec2(AXIS as f32, 0.0)).length();
             let Some([from, tip]) = lens.line([point, point + axis * length]) else { continue };
@@ -169,7 +221,7 @@ fn handle(ui: &Ui, view: &mut SceneView, draft: &mut RunRequest, (grip, at): (Gr
                 continue;
             }
             let grab = Rect::from_center_size(tip, Vec2::splat(GRAB));
-            let name = format!("{} along {letter} {in_view}", grip.name());
+            let name = format!("{called} along {letter} {in_view}");
             let response = grabbed(ui, id.with(letter), grab, &name);
             let ink = if response.hovered() || response.dragged() || response.has_focus() {
                 theme::of(ui).selected
@@ -188,7 +240,7 @@ fn handle(ui: &Ui, view: &mut SceneView, draft: &mut RunRequest, (grip, at): (Gr
         }
     }
     if by != DVec3::ZERO {
-        move_by(draft, grip, by, here.anchor);
+        move_by(scene, grip, by, here.anchor);
     }
     by != DVec3::ZERO
 }
@@ -203,10 +255,27 @@ fn nearest_axis(direction: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Motion, Orbit, Swing, shapes};
 
     #[test]
     fn arrow_keys_go_along_the_axis_that_is_nearest() {
         assert_eq!(nearest_axis(DVec3::new(0.3, 0.1, -0.9)), DVec3::NEG_Z);
         assert_eq!(nearest_axis(DVec3::new(0.8, 0.1, -0.3)), DVec3::X);
+    }
+
+    #[test]
+    fn an_object_that_moves_is_moved_where_it_is_seen() {
+        let orbit =
+            Orbit { center: DVec3::new(2.0, 0.0, 1.0), axis: DVec3::new(1.0, 2.0, 0.5), degrees_per_second: 30.0 };
+        let swing = Swing { pivot: DVec3::Y * 4.0, axis: DVec3::Z, degrees: 25.0, period_seconds: 3.0 };
+        let motion = Motion { orbit: Some(orbit), swing: Some(swing), ..Motion::default() };
+        let object = Object::of("box", shapes::cuboid([1.0; 3]).expect("a box")).at([1.0, 2.0, 3.0]);
+        let object = Object { motion, ..object };
+        let by = DVec3::new(0.3, -0.2, 0.7);
+        for time in [0.0, 1.3, 7.7] {
+            let at = |pose: &Pose| object.motion.apply(pose, time).translate;
+            let found = at(&moved_object(&object, time, by)) - at(&object.pose);
+            assert!((found - by).length() < 1e-9, "{time}: {found}");
+        }
     }
 }

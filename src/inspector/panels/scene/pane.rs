@@ -67,7 +67,11 @@ fn title(ui: &mut Ui, view: &mut SceneView, pane: Pane, rect: Rect) {
     ui.scope_builder(UiBuilder::new().max_rect(strip).id_salt(("view title", pane.name())), |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
-            ui.label(egui::RichText::new(pane.name()).color(theme::of(ui).text));
+            // It has to be read over whatever is drawn below it.
+            let ground = egui::Frame::new().fill(theme::of(ui).background.gamma_multiply(0.8)).corner_radius(2);
+            ground.inner_margin(egui::Margin::symmetric(4, 2)).show(ui, |ui| {
+                ui.label(egui::RichText::new(pane.name()).color(theme::of(ui).text));
+            });
             let shown = view.view_mut(pane);
             let combo = egui::ComboBox::from_id_salt(("projection", pane.name())).width(96.0);
             let combo = combo.selected_text(shown.projection.name()).show_ui(ui, |ui| {

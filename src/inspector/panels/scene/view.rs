@@ -72,6 +72,8 @@ pub struct SceneView {
     pub choice: Choice,
     /// Lights and camera have handles.
     pub gizmos: bool,
+    /// Objects have handles too.
+    pub moves_objects: bool,
     /// The handle whose axes are shown.
     pub grip: Option<Grip>,
     /// The history's selected triangle is to be in the middle.
@@ -90,6 +92,7 @@ impl Default for SceneView {
             shown: Toggles::default(),
             choice: Choice::default(),
             gizmos: true,
+            moves_objects: false,
             grip: None,
             wants_triangle: false,
             scenes_opened: 0,

@@ -2,7 +2,6 @@
 //!
 //! All of it is part of how the scene is run, so that it can be undone, and is in the scene file that is exported.
 
-use crate::ask::RunRequest;
 use crate::inspector::look::theme;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
@@ -35,7 +34,7 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let header = CollapsingHeader::new("Make: add, move, delete").id_salt("make");
     let made = header.show(ui, |ui| {
         let added = add(ui, scene);
-        let deleted = delete_lights(ui, &mut scene.draft);
+        let deleted = delete_lights(ui, scene);
         added | deleted | edited(ui, scene)
     });
     made.body_returned.unwrap_or(false)
@@ -55,7 +54,7 @@ fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
             {
                 let pose = Pose { translate: target, scale: DVec3::splat(rounded(SIZE * far)), ..Pose::default() };
                 let name = unused(name, scene);
-                scene.edited = scene.loaded.len() + scene.draft.objects.added.len();
+                scene.edited = scene.object_count();
                 let material = Material { shading, ..Material::default() };
                 scene.draft.objects.added.push(Object { pose, ..Object::new(name, mesh.into(), material) });
                 changed = true;
@@ -63,11 +62,11 @@ fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
         }
         let light = |ui: &mut Ui, name: &str, what: &str| ui.button(name).on_hover_text(what).clicked();
         if light(ui, "point light", "A light above what the eye looks at") {
-            scene.draft.lights.push(Light::point(target + DVec3::Y * far));
+            scene.add_light(Light::point(target + DVec3::Y * far));
             changed = true;
         }
         if light(ui, "sun", "A light from far away, a little from the side") {
-            scene.draft.lights.push(Light::directional([0.4, 1.0, 0.3]));
+            scene.add_light(Light::directional([0.4, 1.0, 0.3]));
             changed = true;
         }
     });
@@ -90,25 +89,25 @@ fn unused(name: &str, scene: &OpenScene) -> String {
     names.find(|name| !taken.contains(&name)).unwrap_or_default()
 }
 
-fn delete_lights(ui: &mut Ui, draft: &mut RunRequest) -> bool {
+fn delete_lights(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let mut deleted = None;
     ui.horizontal_wrapped(|ui| {
-        for index in 0..draft.lights.len() {
+        for index in 0..scene.draft.lights.len() {
             let button = ui.button(format!("Delete {}", format::light(index)));
             if button.on_hover_text("Undo brings it back").clicked() {
                 deleted = Some(index);
             }
         }
     });
-    deleted.map(|index| draft.lights.remove(index)).is_some()
+    deleted.map(|index| scene.delete_light(index)).is_some()
 }
 
 /// One object, which is chosen: where it is, and what can be done with it.
 fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
-    let all = 0..scene.loaded.len() + scene.draft.objects.added.len();
+    let all = 0..scene.object_count();
     let on: Vec<(usize, Object)> = all
         .filter(|index| !scene.draft.off.contains(index))
-        .filter_map(|index| Some((index, object_at(scene, index)?)))
+        .filter_map(|index| Some((index, scene.object(index)?)))
         .collect();
     let Some((index, object)) = on.iter().find(|(index, _)| *index == scene.edited).or(on.last()) else { return false };
     let combo = egui::ComboBox::from_id_salt("edited object").selected_text(&object.name).show_ui(ui, |ui| {
@@ -120,7 +119,7 @@ fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     let mut pose = object.pose;
     let mut changed = pose_settings(ui, &mut pose);
     if changed {
-        place(scene, *index, pose);
+        scene.place(*index, pose);
     }
     ui.horizontal_wrapped(|ui| {
         let look =
@@ -128,7 +127,7 @@ fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
         changed |= look.clicked() && look_at(&mut scene.draft.camera, object);
         let up = ui.button("Z is up").on_hover_text("Turns it so that its z axis is up, as other programs have it");
         if up.clicked() {
-            place(scene, *index, object.pose.with_z_up());
+            scene.place(*index, object.pose.with_z_up());
             changed = true;
         }
         if ui.button("Delete").on_hover_text("Undo brings it back").clicked() {
@@ -137,28 +136,6 @@ fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
         }
     });
     changed
-}
-
-/// The object of an index as it is now.
-fn object_at(scene: &OpenScene, index: usize) -> Option<Object> {
-    let objects = &scene.draft.objects;
-    match scene.loaded.get(index) {
-        Some(object) => {
-            let pose = objects.moved.get(&index).copied().unwrap_or(object.pose);
-            Some(Object { pose, ..object.clone() })
-        }
-        None => objects.added.get(index - scene.loaded.len()).cloned(),
-    }
-}
-
-fn place(scene: &mut OpenScene, index: usize, pose: Pose) {
-    let (objects, count) = (&mut scene.draft.objects, scene.loaded.len());
-    match scene.loaded.get(index) {
-        // Where it was loaded: not moved.
-        Some(object) if object.pose == pose => drop(objects.moved.remove(&index)),
-        Some(_) => drop(objects.moved.insert(index, pose)),
-        None => objects.added.get_mut(index - count).into_iter().for_each(|object| object.pose = pose),
-    }
 }
 
 /// One of the scene is switched off; one that was added here is gone, and those after it come nearer.

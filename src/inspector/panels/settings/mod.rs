@@ -4,6 +4,7 @@ pub mod animation;
 pub mod making;
 pub mod meshes;
 pub mod scene;
+pub mod up_axis;
 
 use crate::ask::MeshesOf;
 use crate::inspector::action::Action;
@@ -11,6 +12,7 @@ use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::Model;
 use crate::technique::{Choice, SettingSpec, SettingValues, Technique};
 use egui::{DragValue, RichText, Ui};
+use std::sync::Arc;
 
 /// Draws the panel.
 pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
@@ -33,6 +35,7 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
         techniques(ui, model, actions);
         let mut changed = technique_settings(ui, model);
         if let Some(scene) = &mut model.scene {
+            changed |= up_axis::ui(ui, scene);
             changed |= scene::ui(ui, scene);
             changed |= making::ui(ui, scene);
         }
@@ -45,7 +48,9 @@ pub fn ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<Action>) {
             ui.add(egui::Label::new(text).wrap());
         }
         ui.add_space(12.0);
-        let known = model.answers.want(MeshesOf {}).ready;
+        let objects = model.scene.iter().flat_map(|scene| &scene.draft.objects.added);
+        let added = objects.map(|object| (object.name.clone(), Arc::clone(&object.mesh))).collect();
+        let known = model.answers.want(MeshesOf { added }).ready;
         meshes::ui(ui, known.as_ref().map(|meshes| &meshes[..]));
         ui.add_space(16.0);
     });

@@ -11,18 +11,21 @@ use glam::DVec3;
 
 /// Largest side of a picture that the panel offers, pixels.
 const MOST_PIXELS: u32 = 8192;
+/// A far plane that is added is so many near planes away; it is at least so many, and at most so many metres.
+const FAR_OF_NEAR: f64 = 1000.0;
+const LEAST_FAR_OF_NEAR: f64 = 1.01;
+const MOST_FAR: f64 = 1e7;
 
 /// Draws the settings into the panel; true when one changed.
 pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
-    let OpenScene { draft, opened, objects, animated, .. } = scene;
     let mut changed = false;
-    let is_as_many = draft.lights.len() == opened.lights.len();
-    for (index, light) in draft.lights.iter_mut().enumerate() {
+    for index in 0..scene.draft.lights.len() {
         ui.add_space(12.0);
-        // Where lights were added or deleted, nobody knows which was which: each is as it is.
-        let before = opened.lights.get(index).filter(|_| is_as_many).unwrap_or(light).clone();
-        changed |= light_settings(ui, index, light, &before);
+        // One that was added is as it is.
+        let before = scene.light_opened(index).unwrap_or(&scene.draft.lights[index]).clone();
+        changed |= light_settings(ui, index, &mut scene.draft.lights[index], &before);
     }
+    let OpenScene { draft, opened, objects, animated, .. } = scene;
     ui.add_space(12.0);
     changed |= camera(ui, &mut draft.camera, &opened.camera);
     ui.add_space(12.0);
@@ -93,6 +96,9 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
             // The widget rounds what it only shows.
             let mut edited = *color;
             let picker = ui.color_edit_button_rgb(&mut edited).accessible_name(of("colour"));
+            // A pale colour is as light as a light panel.
+            let edge = egui::Stroke::new(1.0, theme::of(ui).line);
+            ui.painter().rect_stroke(picker.rect, egui::CornerRadius::same(4), edge, egui::StrokeKind::Inside);
             let is_edited = picker.on_hover_text("Linear red, green and blue").changed();
             if is_edited {
                 *color = edited;
@@ -142,8 +148,33 @@ fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
             let widget = DragValue::new(near).range(1e-6..=1e6).speed(0.001).max_decimals(6).suffix(" m");
             ui.add(widget.update_while_editing(false)).accessible_name("Near plane").changed()
         });
+        let near = camera.near;
+        changed |=
+            row(ui, ("far plane", "far plane"), &mut camera.far, &before.far, |ui, far| far_plane(ui, far, near));
         changed
     })
+}
+
+/// None, or how far away it is.
+fn far_plane(ui: &mut Ui, far: &mut Option<f64>, near: f64) -> bool {
+    ui.horizontal(|ui| {
+        let mut is_there = far.is_some();
+        let tick = ui.checkbox(&mut is_there, "").accessible_name("Has a far plane");
+        let mut changed = tick.on_hover_text("Only finite depth mappings look at it").changed();
+        if changed {
+            *far = is_there.then_some((near * FAR_OF_NEAR).min(MOST_FAR));
+        }
+        match far {
+            Some(far) => {
+                let widget = DragValue::new(far).range(near * LEAST_FAR_OF_NEAR..=MOST_FAR).speed(0.1);
+                let widget = widget.max_decimals(4).suffix(" m").update_while_editing(false);
+                changed |= ui.add(widget).accessible_name("Far plane").changed();
+            }
+            None => drop(ui.label(theme::note("none"))),
+        }
+        changed
+    })
+    .inner
 }
 
 fn picture(ui: &mut Ui, draft: &mut RunRequest, opened: &RunRequest, animated: bool) -> bool {

@@ -1,0 +1,99 @@
+//! What one frame takes of what mouse and keys did.
+//!
+//! egui asks once a frame what lies under the pointer, where the pointer is at its end. Where frames are slow, a press
+//! and the drag that follows come in one: what is grabbed would be what the pointer came to, and a handle that was
+//! pressed would stay behind, and a drag that ends in its first frame is none. So a frame ends before the pointer moves
+//! on from where a button went down or up, before the button of a movement goes up, and before a key that follows a
+//! movement: it means what the pointer is over.
+
+use egui::Event;
+
+/// Takes out of `events` those of the next frame; what is left is later.
+#[must_use]
+pub fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {
+    let (mut has_button, mut has_moved) = (false, false);
+    let end = events.iter().position(|event| match event {
+        Event::PointerMoved(_) => {
+            has_moved = true;
+            has_button
+        }
+        Event::PointerButton { pressed, .. } => {
+            has_button = true;
+            std::mem::take(&mut has_moved) && !pressed
+        }
+        Event::Key { .. } => has_moved,
+        _ => false,
+    });
+    let later = end.map_or_else(Vec::new, |end| events.split_off(end));
+    std::mem::replace(events, later)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::{Context, Id, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Sense, pos2, vec2};
+
+    fn button(pos: Pos2, pressed: bool) -> Event {
+        Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
+    }
+
+    /// How far a handle at 20,20 on a larger ground was dragged, and how far the ground, by all these at once.
+    fn dragged(mut events: Vec<Event>) -> [egui::Vec2; 2] {
+        let ctx = Context::default();
+        let mut by = [egui::Vec2::ZERO; 2];
+        let mut frame = |events: Vec<Event>| {
+            let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(200.0, 200.0)));
+            let input = RawInput { screen_rect, events, ..RawInput::default() };
+            ctx.run_ui(input, |ui| {
+                let rects = [Rect::from_center_size(pos2(20.0, 20.0), vec2(18.0, 18.0)), ui.max_rect()];
+                for index in [1, 0] {
+                    let response = ui.interact(rects[index], Id::unique(index), Sense::click_and_drag());
+                    by[index] += response.drag_delta();
+                }
+            })
+            .textures_delta
+            .clear();
+        };
+        frame(vec![Event::PointerMoved(pos2(20.0, 20.0))]);
+        while !events.is_empty() {
+            frame(of_next_frame(&mut events));
+        }
+        by
+    }
+
+    #[test]
+    fn a_drag_that_comes_at_once_moves_what_was_pressed() {
+        let [handle, ground] = dragged(vec![
+            button(pos2(20.0, 20.0), true),
+            Event::PointerMoved(pos2(60.0, 70.0)),
+            Event::PointerMoved(pos2(100.0, 120.0)),
+            button(pos2(100.0, 120.0), false),
+            Event::PointerMoved(pos2(180.0, 180.0)),
+        ]);
+        assert_eq!((handle, ground), (vec2(80.0, 100.0), vec2(0.0, 0.0)));
+    }
+
+    #[test]
+    fn nothing_is_lost_and_what_belongs_together_stays() {
+        let (here, there) = (pos2(1.0, 1.0), pos2(2.0, 2.0));
+        let key =
+            Event::Key { key: Key::Tab, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
+        let moved = Event::PointerMoved;
+        let all = vec![
+            moved(here),
+            moved(there),
+            button(there, true),
+            button(there, false),
+            moved(here),
+            moved(there),
+            key.clone(),
+            key.clone(),
+            moved(here),
+        ];
+        let mut left = all.clone();
+        let frames: Vec<Vec<Event>> =
+            std::iter::from_fn(|| (!left.is_empty()).then(|| of_next_frame(&mut left))).collect();
+        assert_eq!(frames.iter().map(Vec::len).collect::<Vec<_>>(), [4, 2, 3]);
+        assert_eq!(frames.concat(), all);
+    }
+}
