@@ -59,6 +59,7 @@ const MAY_USE: [(&str, &[&str]); 33] = [
             "picture",
             "plan",
             "scene",
+            "stencil_machine",
             "technique",
             "truth",
         ],

@@ -12,6 +12,7 @@
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
 //! ```
 
+pub mod bench;
 pub mod change;
 pub mod coordinates;
 pub mod counts;

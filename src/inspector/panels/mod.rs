@@ -16,7 +16,7 @@ pub mod stress;
 
 use crate::inspector::action::{Action, Panel};
 use crate::inspector::model::Model;
-use bench::Bench;
+use crate::reading::bench::Bench;
 use diagnosis::DiagnosisPanel;
 use egui::Ui;
 use explain::Explain;
