@@ -9,6 +9,7 @@ use super::PlanError;
 use super::casters::{self, Darkened};
 use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::lesson::{Lesson, cited};
 use super::settings::TextureSettings;
 use super::silhouettes::{self, LayerPass};
 use crate::geometry::light_frame;
@@ -18,6 +19,14 @@ use glam::DMat4;
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Throws a picture of each caster's silhouette over the scene like a slide: no depths are compared.",
+    lesson: Lesson {
+        text: "A picture of each caster's silhouette is thrown over the scene like a slide, and translucent casters \
+             let some light through. No depths are compared: what stands between light and caster is darkened \
+             too, and a caster can't darken itself.",
+        formula: "(s, t) = (x, y) / q of the point as the light sees it; light * what the silhouette lets through at \
+             (s, t)",
+        sources: &[cited::SEGAL],
+    },
     plan,
     // Sizes of pictures.
     report_rows: &[&[("size", "128")], &[("size", "512")], &[("size", "2048")]],

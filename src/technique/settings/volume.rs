@@ -1,5 +1,6 @@
 //! The settings of techniques that count shadow volumes.
 
+use super::super::lesson::{Lesson, cited};
 use super::common::{CommonSettings, with_own};
 use super::face::{NumberOr, SettingSpec, Values, Words, number_or, words};
 use crate::geometry::{Casters, Extrusion, SilhouetteBy};
@@ -15,6 +16,15 @@ const CASTERS: Words<WhoCasts> = words(
         WhoCasts::Always(Casters::LightBackFacing),
     ],
     "which triangles cast",
+    Lesson {
+        text: "`all` lets every triangle cast, turned towards the light: right for any mesh, at twice the volume of \
+             a closed one. `light-facing` suffices for a closed mesh with the light outside, and is wrong for \
+             others: holes and inner lights. `light-back-facing` keeps the other half. `by-topology` proves that \
+             `light-facing` suffices, or says what it could not prove.",
+        formula: "an edge bounds the shadow |m| times, with m the sum of +1 or -1 of each casting triangle at it, by \
+             the way in which the triangle, turned towards the light, runs along it",
+        sources: &[cited::ALDRIDGE, cited::KIM],
+    },
 );
 // Farther, single precision loses the silhouette; nearer than not at all makes no sense.
 const EXTRUSION: NumberOr = number_or(
@@ -22,32 +32,75 @@ const EXTRUSION: NumberOr = number_or(
     &["infinite"],
     ("finite:", [0.0, 1e6], false),
     "how far volumes reach: without end, or K times a vertex's distance from the light",
+    Lesson {
+        text: "With `infinite`, volumes end nowhere. `finite:K` ends volumes at K times a vertex's distance from \
+             the light, beyond the vertex: a light that comes close to its caster ends the shadow in mid-air.",
+        formula: "with the light L and the vertex V: infinite is the direction (V - L, 0); finite:K is the point (V + \
+             K(V - L), 1)",
+        sources: &[cited::CROW, cited::EVERITT_KILGARD],
+    },
 );
 const FACES: Words<bool> = words(
     "faces",
     &["two-sided", "two-pass"],
     &[false, true],
     "front and back faces in one draw, or in passes of their own",
+    Lesson {
+        text: "With `two-sided`, each face has its own stencil operation in one draw. `two-pass` draws front and \
+             back faces apart, as hardware without two-sided stencil had to.",
+        formula: "z-pass: +1 front, -1 back, where the depth test passes; z-fail: +1 back, -1 front, where it fails",
+        sources: &[cited::HEIDMANN, cited::EVERITT_KILGARD],
+    },
 );
-const OPERATIONS: Words<bool> =
-    words("operations", &["wrap", "clamp"], &[false, true], "what counts do beyond 0 and 255");
+const OPERATIONS: Words<bool> = words(
+    "operations",
+    &["wrap", "clamp"],
+    &[false, true],
+    "what counts do beyond 0 and 255",
+    Lesson {
+        text: "With `wrap`, counts go round, and the order of faces does not matter. `clamp` stops at 0 and 255 \
+             instead: counts that go below 0 on the way, or above 255, are lost, and what is drawn first decides.",
+        formula: "with the count c: wrap (c + 1) mod 256 and (c - 1) mod 256; clamp min(c + 1, 255) and max(c - 1, 0)",
+        sources: &[cited::EVERITT_KILGARD],
+    },
+);
 const COUNTER: Words<bool> = words(
     "counter",
     &["stencil", "float"],
     &[false, true],
     "where counts are kept: in eight bits, or signed in a float a pixel",
+    Lesson {
+        text: "`stencil` counts in eight bits. `float` counts signed, beyond eight bits, in a target of its own; it \
+             is what mends 256 nested volumes.",
+        formula: "stencil: the count mod 256; float: the count",
+        sources: &[],
+    },
 );
 const LIGHT_CAPS: Words<bool> = words(
     "light-caps",
     &["tested", "never"],
     &[false, true],
     "caps nearest the light pass the depth test, or never do",
+    Lesson {
+        text: "`never` lets light caps fail the depth test without asking: right while every caster is drawn, since \
+             its surface is there, wrong for casters that are not. `tested` asks, and a cap that coincides with \
+             its surface fails.",
+        formula: "tested: fails where the cap's depth is not nearer than what is stored, and it is equal to its \
+             surface's bit for bit; never: fails",
+        sources: &[cited::EVERITT_KILGARD],
+    },
 );
 const SILHOUETTE: Words<SilhouetteBy> = words(
     "silhouette",
     &["adjacency", "edge-list"],
     &[SilhouetteBy::Adjacency, SilhouetteBy::Search],
     "how shared edges are found: built once, or searched each time",
+    Lesson {
+        text: "`edge-list` searches all edges for each edge's other triangle: a quadratic search that `adjacency` \
+             does once.",
+        formula: "with n edges: adjacency n steps a frame; edge-list n^2",
+        sources: &[cited::LENGYEL],
+    },
 );
 
 /// In the order in which they are shown.
