@@ -68,7 +68,13 @@ pub fn mebibytes(bytes: u64) -> String {
 /// A length in metres with about four digits; very small and very large ones with a power of ten.
 #[must_use]
 pub fn metres(value: f64) -> String {
-    format!("{} m", digits(value))
+    length(value, "m")
+}
+
+/// The same in another unit.
+#[must_use]
+pub fn length(value: f64, unit: &str) -> String {
+    format!("{} {unit}", digits(value))
 }
 
 /// About four digits of a number.

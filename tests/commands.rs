@@ -127,6 +127,16 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
     assert_fails(&["bench", "--external-capture"], 2, &["--external-capture", "leave it out"]);
 }
 
+/// The unit of another program's frame is not known.
+#[test]
+fn a_recorded_frame_tells_distances_in_units() {
+    let folder = folder();
+    let output = run(folder.path(), &["pixel", "ogre", "--at", "200,150"]);
+    let story = text(&output.stdout);
+    assert!(output.status.success() && story.contains(" units away (depth"), "{story}");
+    assert!(!story.contains(" m:") && !story.contains(" m away"), "{story}");
+}
+
 /// The names and values that scripts rely on.
 #[test]
 fn pixel_tells_its_history_as_text_and_as_json() {

@@ -83,13 +83,11 @@ fn depth(known: &Known) -> Fact {
                 here.push(format!("pixel {x}, {y}: no surface is there, and depth stays {}", format::depth(stored)))
             }
             Some(distance) => {
-                let metres = format::metres(distance);
-                here.push(format!("pixel {x}, {y}: {offset} + {scale} / {metres} = {}", format::depth(stored)));
-                here.extend(
-                    measure
-                        .step_at(stored)
-                        .map(|step| format!("the next depth that can be stored is {} further", format::metres(step))),
-                );
+                let away = format::length(distance, curve.unit.name());
+                here.push(format!("pixel {x}, {y}: {offset} + {scale} / {away} = {}", format::depth(stored)));
+                here.extend(measure.step_at(stored).map(|step| {
+                    format!("the next depth that can be stored is {} further", format::length(step, curve.unit.name()))
+                }));
             }
         }
     } else {

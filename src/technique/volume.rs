@@ -232,10 +232,13 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
     frame.light_pass(light, purpose, &Drawn::light_once_where_zero(0xff));
 }
 
-/// What a count of these counts; `None` if there are none.
+/// What a count of these counts at a surface; `None` if there are none.
 fn what_counts(volumes: &[Volume]) -> Option<CountOf> {
     let bodies = volumes.iter().filter(|volume| volume.is_body).count();
-    match volumes.len() {
+    let others = volumes.iter().filter(|volume| !volume.is_body && !volume.darkens_nothing).count();
+    // Where nothing is darkened at all, what casts is told.
+    let all = if bodies + others == 0 { volumes.len() } else { bodies + others };
+    match all {
         0 => None,
         all if bodies == all => Some(CountOf::Bodies),
         _ if bodies == 0 => Some(CountOf::Surfaces),
@@ -306,7 +309,9 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
         needed.retain(|part| !part.triangles.is_empty());
         let mesh = frame.add_mesh(mesh);
         let is_body = options.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
-        volumes.push(Volume { caster: object.name.clone(), counting: form.counting, is_body, mesh, parts, needed });
+        let darkens_nothing = !is_body && !casters::can_darken(frame, index, light, Darkened::All);
+        let (caster, counting) = (object.name.clone(), form.counting);
+        volumes.push(Volume { caster, counting, is_body, darkens_nothing, mesh, parts, needed });
         counted.push(index);
     }
     let pairs = volumes.iter().zip(&counted);

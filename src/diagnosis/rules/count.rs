@@ -4,6 +4,7 @@ use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount};
 use crate::diagnosis::mend::Mend;
 use crate::history::{Count, Why};
+use crate::plan::CountOf;
 
 pub(crate) const RULES: &[Rule] = &[clamped, wrap_256, operation_order];
 
@@ -60,13 +61,15 @@ fn operation_order(_: &Facts, case: &Case) -> Option<Suspicion> {
     Suspicion::new(Cause::OperationOrder, evidence, vec![Mend::setting("operations", "wrap")], shown_by)
 }
 
-fn wrap_256(_: &Facts, case: &Case) -> Option<Suspicion> {
+fn wrap_256(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
     let (count, shown_by) = case.shown(|sample| {
         let count = true_count(sample, light);
         let reads_none = stored(sample, light)? == 0 && first_lost(sample, light).is_none();
         (count != 0 && count % 256 == 0 && reads_none).then_some(count)
     })?;
-    let evidence = format!("{count} volume faces are left here, a multiple of 256: eight bits hold 0");
+    let of = facts.capture.lights.get(light).and_then(|light| light.count_of);
+    let what = of.map_or("volumes", CountOf::what);
+    let evidence = format!("{count} {what} are counted here, a multiple of 256: eight bits hold 0");
     Suspicion::new(Cause::Wrap256, evidence, vec![Mend::setting("counter", "float")], shown_by)
 }
