@@ -55,6 +55,17 @@ pub struct DepthCurve {
     pub unit: LengthUnit,
 }
 
+impl LengthUnit {
+    /// Where there is room for a letter.
+    #[must_use]
+    pub fn letter(self) -> &'static str {
+        match self {
+            LengthUnit::Metre => "m",
+            LengthUnit::Unknown => "u",
+        }
+    }
+}
+
 impl DepthMapping {
     /// Is greater nearer?
     #[must_use]
