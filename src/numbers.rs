@@ -96,6 +96,13 @@ pub fn digits(value: f64) -> String {
     }
 }
 
+/// Seven digits of a number that others are computed from.
+#[must_use]
+pub fn precise(value: f64) -> String {
+    let digits = format!("{value:.6e}").parse().unwrap_or(value);
+    if digits != 0.0 && !(1e-6..1e9).contains(&f64::abs(digits)) { format!("{digits:e}") } else { digits.to_string() }
+}
+
 /// A stored depth in the fewest digits that read back as the same bits: neighbours differ.
 #[must_use]
 pub fn depth(value: f32) -> String {

@@ -64,8 +64,13 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
             false => (Drawn::lit(), frame.light_everywhere()),
         };
         frame.mask_pass(light, &[label]);
-        let purpose = "Adds the light as far as the receiver's texture lets it through. Surfaces that are not flat \
-                       have none, and are lit as if nothing stood between.";
+        let purpose = match has_textures {
+            true => {
+                "Adds the light as far as the receiver's texture lets it through. Surfaces that are not flat have none, \
+                 and are lit as if nothing stood between."
+            }
+            false => "Adds the light everywhere: no flat receiver has a shadow of it that shows.",
+        };
         frame.light_pass(light, purpose, &drawn);
     }
     Ok(frame.finish())

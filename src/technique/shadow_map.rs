@@ -88,8 +88,13 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
             false => (Drawn::lit(), frame.light_everywhere()),
         };
         frame.mask_pass(light, &[label]);
-        let purpose = "Adds the light, carrying every fragment into the light's map: where the map holds something \
-                       nearer to the light, the fragment is in shadow and gets nothing.";
+        let purpose = match has_map {
+            true => {
+                "Adds the light, carrying every fragment into the light's map: where the map holds something nearer to \
+                 the light, the fragment is in shadow and gets nothing."
+            }
+            false => "Adds the light everywhere: no caster can darken anything, and there is no map.",
+        };
         frame.light_pass(light, purpose, &drawn);
     }
     Ok(frame.finish())

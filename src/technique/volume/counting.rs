@@ -164,7 +164,7 @@ pub fn purpose(counting: Option<Counting>, light: LightId, step: Step) -> String
         Some(Counting::InFrontPlus) => (
             format!("the shadow volumes of {light} in front of each surface"),
             ["a front face nearer than the surface adds 1", "a back face nearer than it takes 1 away"],
-            "With what the near plane began with, what is left contains the surface, wherever the eye is.",
+            "With what the near plane began with, if anything, what is left contains the surface, wherever the eye is.",
         ),
         Some(Counting::Behind) => (
             format!("the shadow volumes of {light} behind each surface"),
