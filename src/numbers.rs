@@ -68,7 +68,13 @@ pub fn mebibytes(bytes: u64) -> String {
 /// A length in metres with about four digits; very small and very large ones with a power of ten.
 #[must_use]
 pub fn metres(value: f64) -> String {
-    format!("{} m", digits(value))
+    length(value, "m")
+}
+
+/// The same in another unit.
+#[must_use]
+pub fn length(value: f64, unit: &str) -> String {
+    format!("{} {unit}", digits(value))
 }
 
 /// About four digits of a number.
@@ -88,6 +94,13 @@ pub fn digits(value: f64) -> String {
     } else {
         format!("{value:.1}")
     }
+}
+
+/// Seven digits of a number that others are computed from.
+#[must_use]
+pub fn precise(value: f64) -> String {
+    let digits = format!("{value:.6e}").parse().unwrap_or(value);
+    if digits != 0.0 && !(1e-6..1e9).contains(&f64::abs(digits)) { format!("{digits:e}") } else { digits.to_string() }
 }
 
 /// A stored depth in the fewest digits that read back as the same bits: neighbours differ.

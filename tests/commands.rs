@@ -106,6 +106,13 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
     }
     assert_fails(&["capture", "tori"], 2, &["--output"]);
     assert_fails(&["captur", "tori"], 2, &["did you mean `capture`?"]);
+    let commands = "Commands are view, capture, animate, pixel";
+    let nothing = ["no command and no scene is called `wibble`", commands, "`stencilscope scenes` lists scenes"];
+    assert_fails(&["wibble"], 2, &nothing);
+    assert_fails(&["wibble", "tori", "--size", "16x9"], 2, &nothing);
+    assert_fails(&["ogr"], 2, &["did you mean `ogre`?", commands]);
+    assert_fails(&["tory"], 2, &["did you mean `tori`?"]);
+    assert_fails(&["missing.obj"], 2, &["missing.obj", "no such file"]);
     assert_fails(&["pixel", "tori"], 2, &["--at"]);
     assert_fails(&["pixel", "tori", "--at", "3,3", "--every", "draw"], 2, &["--every draw", "leave it out"]);
     assert_fails(&["pixel", "tori", "--at", "3"], 2, &["give X,Y"]);
@@ -118,6 +125,16 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
     assert_fails(&["bench", "nothing"], 2, &["choose capture"]);
     assert_fails(&["bench", "--every", "draw"], 2, &["--every draw", "leave it out"]);
     assert_fails(&["bench", "--external-capture"], 2, &["--external-capture", "leave it out"]);
+}
+
+/// The unit of another program's frame is not known.
+#[test]
+fn a_recorded_frame_tells_distances_in_units() {
+    let folder = folder();
+    let output = run(folder.path(), &["pixel", "ogre", "--at", "200,150"]);
+    let story = text(&output.stdout);
+    assert!(output.status.success() && story.contains(" units away (depth"), "{story}");
+    assert!(!story.contains(" m:") && !story.contains(" m away"), "{story}");
 }
 
 /// The names and values that scripts rely on.

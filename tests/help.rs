@@ -5,6 +5,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 use stencilscope::scene::{SceneError, file};
+use stencilscope::technique::Technique;
 
 /// The text of a key.
 fn help(key: &str) -> String {
@@ -84,6 +85,9 @@ fn every_key_that_a_scene_file_knows_is_explained() {
         let explained = section(&page, heading);
         for key in keys {
             assert_explained(&explained, &key, heading);
+            let alone = help(&key);
+            let place = if at.is_empty() { "At the top:".to_owned() } else { format!("In `{heading}`:") };
+            assert!(alone.contains(&place) && alone.contains(&format!("`{key}`")), "help {key}:\n{alone}");
             open.push([&at[..], &[key]].concat());
         }
     }
@@ -213,7 +217,38 @@ fn a_setting_is_explained_with_its_values_and_a_technique_with_its_settings() {
         assert_explained(section_of_decisions(&decisions), decision, "leave-out");
     }
     assert!(help("causes").contains("- `eye-in-volume`: "));
-    assert!(help("capture").contains("--overwrite"), "commands have help too");
+    let capture = help("capture");
+    assert!(capture.contains("--overwrite"), "commands have help too");
+    assert!(help("near").contains("- `near`: distance of the near plane"), "and keys of scene files");
+    let both = help("size");
+    assert!(both.contains("shadow-map: texels") && both.contains("In `mesh`:"), "a setting and a key:\n{both}");
+    assert!(help("inside").contains("built-in scene") && help("ogre").contains("recorded frame"));
+}
+
+#[test]
+fn help_says_formula_and_source_and_every_command_leads_to_it() {
+    let bias = help("bias-normal");
+    for words in ["Formula:", "k t sin a along the normal", "- Holbert (2011), \"Saying Goodbye to Shadow Acne\""] {
+        assert!(bias.contains(words), "`{words}` is not in\n{bias}");
+    }
+    assert!(help("z-pass-plus").contains("- Hornus, Hoberock, Lefebvre and Hart (2005), \"ZP+"));
+    assert!(help("counter").contains("no publication is known"));
+    let folder = folder();
+    let commands = ["view", "capture", "animate", "pixel", "diagnose", "diff", "report"];
+    let calls: Vec<Vec<&str>> =
+        commands.into_iter().map(|command| vec![command, "--help"]).chain([vec!["--help"]]).collect();
+    for call in calls {
+        let output = run(folder.path(), &call);
+        assert_eq!(output.status.code(), Some(0), "{call:?}");
+        let said = text(&output.stdout);
+        let words: BTreeSet<&str> = said.split([' ', ',', ':', '\n']).collect();
+        let settings = Technique::ALL.into_iter().flat_map(|of| of.settings()).map(|spec| spec.key);
+        let names = Technique::ALL.into_iter().map(Technique::name).chain(settings);
+        for name in names.chain(["tori", "tiger-cage", "ogre", "ogre-inside", "ogre-short"]) {
+            assert!(words.contains(name), "{call:?} does not name {name}");
+        }
+        assert!(said.contains("`stencilscope help KEY`"), "{call:?}");
+    }
 }
 
 /// The table below the list of values, which names every decision as well.
@@ -226,5 +261,7 @@ fn what_is_not_known_is_refused_with_the_nearest_name() {
     assert_fails(&["help", "z-fial"], 2, &["nothing is called `z-fial`", "did you mean `z-fail`?"]);
     assert_fails(&["help", "scene-fil"], 2, &["did you mean `scene-file`?"]);
     assert_fails(&["help", "capure"], 2, &["did you mean `capture`?"]);
+    assert_fails(&["help", "fov_y_degree"], 2, &["did you mean `fov_y_degrees`?"]);
+    assert_fails(&["help", "ogre-insid"], 2, &["did you mean `ogre-inside`?"]);
     assert_fails(&["help", "zzzz"], 2, &["`stencilscope help` lists what there is"]);
 }

@@ -32,6 +32,7 @@ mod stencil_machine;
 mod step_tests;
 mod stress;
 mod techniques;
+mod told;
 mod truth;
 mod volumes;
 mod whole_folder;

@@ -186,6 +186,23 @@ fn a_body_counts_one_where_it_is_proven_closed() {
     assert_eq!(capture(&mut session, &nothing, Technique::ZFail, &[]).lights[0].count_of, None);
 }
 
+/// A floor that casts is open; nothing that shows is below its own volume, so counts at surfaces are of bodies still.
+#[test]
+fn a_floor_with_nothing_below_it_makes_no_count_one_of_surfaces() {
+    let mut session = session();
+    let whole = || cuboid("whole", [-1.0, 1.0, -1.0], [1.0, 2.0, 1.0]);
+    let cellar = cuboid("cellar", [-1.0, -3.0, -1.0], [1.0, -2.0, 1.0]);
+    for technique in [Technique::ZFail, Technique::ZPass, Technique::ZPassPlus] {
+        let above = capture(&mut session, &from_above(vec![whole()]), technique, &[]);
+        assert_eq!(above.lights[0].count_of, Some(CountOf::Bodies), "{technique:?}");
+        assert_eq!(counts(&mut session, &from_above(vec![whole()]), technique, &[])[2..].iter().sum::<u64>(), 0);
+        let below = capture(&mut session, &from_above(vec![whole(), cellar.clone()]), technique, &[]);
+        assert_eq!(below.lights[0].count_of, Some(CountOf::Mixed), "{technique:?}");
+    }
+    let floor = capture(&mut session, &from_above(vec![]), Technique::ZFail, &[]);
+    assert_eq!(floor.lights[0].count_of, Some(CountOf::Surfaces), "it alone casts");
+}
+
 /// What by-topology took and why is in the plan.
 #[test]
 fn by_topology_says_what_it_proved_and_what_it_could_not() {

@@ -1,13 +1,14 @@
 //! `stencilscope help [KEY]`: commands, techniques, settings, scene files, capture folders, JSON, causes.
 //!
-//! What the program holds as data (names, values, defaults, summaries, meanings) is printed from there. What
-//! they teach is text under `assets/help/`, built into the program: whole pages, and two files with a section
-//! a technique and a setting.
+//! What the program holds as data is printed from there: names, values, defaults, and the lesson that stands beside each
+//! technique's and setting's definition. Whole pages are text under `assets/help/`, built into the program.
 
 use super::{CliError, CommandLine, output};
 use crate::diagnosis::Cause;
+use crate::import::SHIPPED;
+use crate::scene::builtin;
 use crate::scene::nearest;
-use crate::technique::{SettingSpec, Technique};
+use crate::technique::{Lesson, SettingSpec, Technique};
 use clap::{Args, CommandFactory};
 
 /// Pages by key, with what they explain.
@@ -22,12 +23,15 @@ const PAGES: [(&str, &str, &str); 3] = [
 ];
 /// The page of causes is made from the table of causes.
 const CAUSES: (&str, &str) = ("causes", "what `diagnose` may find, by name");
-const OF_TECHNIQUES: &str = include_str!("../../assets/help/techniques.md");
-const OF_SETTINGS: &str = include_str!("../../assets/help/settings.md");
+/// Where the keys of scene files are explained.
+const SCENE_FILE: &str = PAGES[0].2;
+/// Columns of what is printed.
+const WIDTH: usize = 100;
 
 #[derive(Debug, Args)]
 pub struct HelpArguments {
-    /// A command, a technique, a setting, `scene-file`, `capture-folder`, `json` or `causes` [default: all of them, by name]
+    /// A command, a technique, a setting, a scene, a key of scene files, `scene-file`, `capture-folder`, `json` or
+    /// `causes` [default: all of them, by name]
     key: Option<String>,
 }
 
@@ -46,20 +50,93 @@ fn page(key: &str) -> Option<String> {
     let whole = PAGES.iter().find(|(name, ..)| *name == key).map(|(.., text)| (*text).to_owned());
     let causes = || (key == CAUSES.0).then(causes);
     let technique = || Technique::from_name(key).map(technique);
-    whole.or_else(causes).or_else(technique).or_else(|| setting(key)).or_else(|| command(key))
+    // A setting and a key of scene files may have one name.
+    let keys = || Some([setting(key), scene_key(key)].into_iter().flatten().collect::<Vec<_>>().join("\n"));
+    let keys = || keys().filter(|text| !text.is_empty());
+    whole.or_else(causes).or_else(technique).or_else(keys).or_else(|| command(key)).or_else(|| scene(key))
 }
 
 fn overview() -> String {
+    CommandLine::command().render_help().to_string()
+}
+
+/// What stands below the commands: all that has a name.
+pub fn everything() -> String {
     let pages = PAGES.iter().map(|(name, of, _)| (*name, *of)).chain([CAUSES]);
-    let pages: String = pages.map(|(name, of)| format!("  {name:14}  {of}\n")).collect();
-    let techniques: String =
-        Technique::ALL.iter().map(|of| format!("  {:14}  {}\n", of.name(), of.summary())).collect();
-    let commands = CommandLine::command().render_help();
+    let line = |(name, of): (&str, &str)| format!("  {name:14}  {of}\n");
+    let pages: String = pages.map(line).collect();
+    let techniques: String = Technique::ALL.iter().map(|of| line((of.name(), of.summary()))).collect();
     format!(
-        "{commands}\n`stencilscope help KEY` explains a command, or one of these.\n\nPages:\n{pages}\nTechniques:\n{techniques}\n\
-         Settings:\n  {}\n",
-        settings().join(" ")
+        "`stencilscope help KEY` explains a command, a key of scene files, or one of these.\n\nPages:\n{pages}\n\
+         Techniques (`-t`):\n{techniques}\nSettings (`--set`):\n{}\n{}",
+        settings_of_techniques(),
+        scenes()
     )
+}
+
+/// What stands below the options of a command that takes a scene: what they may name.
+pub fn names() -> String {
+    let techniques = Technique::ALL.map(Technique::name).join(" ");
+    format!(
+        "{}\nTechniques (`-t`):\n{}\nSettings (`--set`):\n{}\n`stencilscope help KEY` explains a technique, a setting or \
+         a scene; `help scene-file` what a file may say.",
+        scenes(),
+        indented(&techniques),
+        settings_of_techniques()
+    )
+}
+
+fn scenes() -> String {
+    let scenes: Vec<&str> = builtin::ALL.iter().map(|builtin| builtin.name).collect();
+    let recordings: Vec<&str> = SHIPPED.iter().map(|shipped| shipped.name).collect();
+    format!(
+        "Scenes:\n{}\nRecorded frames of other programs (`view`, `pixel`, `diagnose`, `diff`):\n{}",
+        indented(&scenes.join(" ")),
+        indented(&recordings.join(" "))
+    )
+}
+
+/// Keys by the techniques that have them: those of all first.
+fn settings_of_techniques() -> String {
+    let mut rows: Vec<(Vec<&str>, Vec<&str>)> = Vec::new();
+    for key in settings() {
+        let has = |of: &&Technique| of.settings().iter().any(|spec| spec.key == key);
+        let of: Vec<&str> = Technique::ALL.iter().filter(has).map(|of| of.name()).collect();
+        match rows.iter_mut().find(|(techniques, _)| *techniques == of) {
+            Some((_, keys)) => keys.push(key),
+            None => rows.push((of, vec![key])),
+        }
+    }
+    let row = |(of, keys): &(Vec<&str>, Vec<&str>)| {
+        let all = of.len() == Technique::ALL.len();
+        let of = if all { "every technique".to_owned() } else { of.join(", ") };
+        indented(&format!("{of}: {}", keys.join(" ")))
+    };
+    rows.iter().map(row).collect()
+}
+
+fn indented(text: &str) -> String {
+    wrapped(text, WIDTH - 2).lines().map(|line| format!("  {line}\n")).collect()
+}
+
+/// Words in lines of at most `width` columns; rows of a table stay as they are.
+fn wrapped(text: &str, width: usize) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for line in text.lines() {
+        let mut begun = String::new();
+        for word in line.split(' ') {
+            let is_full = !line.starts_with('|') && begun.chars().count() + word.chars().count() >= width;
+            if is_full && !begun.is_empty() {
+                lines.push(std::mem::take(&mut begun));
+            }
+            if !begun.is_empty() {
+                begun.push(' ');
+            }
+            begun.push_str(word);
+        }
+        lines.push(begun);
+    }
+    lines.join("\n")
 }
 
 /// Every setting's key once, in the order of the techniques.
@@ -79,10 +156,20 @@ fn technique(technique: Technique) -> String {
     let settings: String =
         settings.map(|spec| format!("\n- `{}`: {}. {}", spec.key, spec.meaning, values(spec))).collect();
     format!(
-        "# {name}\n\n{}\n\n{}\n\nSettings (`--set KEY=VALUE`; `stencilscope help KEY`):\n{settings}\n",
+        "# {name}\n\n{}\n\n{}\nSettings (`--set KEY=VALUE`; `stencilscope help KEY`):\n{settings}\n",
         technique.summary(),
-        section(OF_TECHNIQUES, name).unwrap_or_default(),
+        lesson(&technique.description().lesson),
     )
+}
+
+/// A lesson with its formula and its sources.
+fn lesson(lesson: &Lesson) -> String {
+    let sources: String = match lesson.sources {
+        [] => "- this program; no publication is known\n".to_owned(),
+        sources => sources.iter().map(|source| format!("- {source}\n")).collect(),
+    };
+    let Lesson { text, formula, .. } = lesson;
+    format!("{}\n\nFormula:\n\n{}\nSource:\n\n{sources}", wrapped(text, WIDTH), indented(formula))
 }
 
 /// One setting, as each of the techniques has it that know it.
@@ -100,8 +187,11 @@ fn setting(key: &str) -> Option<String> {
         |(spec, of): &(&SettingSpec, Vec<&str>)| format!("- {}: {}. {}\n", of.join(", "), spec.meaning, values(spec));
     let lines: String = specs.iter().map(line).collect();
     (!specs.is_empty()).then(|| {
-        let lesson = section(OF_SETTINGS, key).unwrap_or_default();
-        format!("# {key}\n\nA setting (`--set {key}=VALUE`, or `{key}` in a scene file's `[technique.settings]`) of\n\n{lines}\n{lesson}\n")
+        let lesson = specs.first().map(|(spec, _)| lesson(&spec.lesson)).unwrap_or_default();
+        format!(
+            "# {key}\n\nA setting (`--set {key}=VALUE`, or `{key}` in a scene file's `[technique.settings]`) of\n\n\
+             {lines}\n{lesson}"
+        )
     })
 }
 
@@ -123,16 +213,70 @@ fn causes() -> String {
     format!("# Causes\n\nWhat `stencilscope diagnose` may find, and what to do.\n\n{lines}")
 }
 
-/// The text under a heading `## name`.
-fn section(text: &'static str, name: &str) -> Option<&'static str> {
-    let (_, after) = text.split_once(&format!("\n## {name}\n"))?;
-    Some(after.split("\n## ").next().unwrap_or(after).trim())
+fn scene(key: &str) -> Option<String> {
+    let builtin = builtin::ALL.iter().find(|builtin| builtin.name == key);
+    let builtin = builtin.map(|of| format!("# {key}\n\nA built-in scene (`stencilscope {key}`): {}.\n", of.lesson));
+    let shipped = SHIPPED.iter().find(|shipped| shipped.name == key);
+    let shipped = shipped.map(|of| {
+        format!("# {key}\n\nA recorded frame of another program (`stencilscope view {key}`): {}.\n", of.lesson)
+    });
+    builtin.or(shipped)
+}
+
+/// Tables of a scene file with their keys' explanations: what the page has under each heading.
+fn scene_tables() -> Vec<(&'static str, Vec<String>)> {
+    let sections = SCENE_FILE.split("\n## ").skip(1);
+    let table = |section: &'static str| {
+        let (heading, body) = section.split_once('\n').unwrap_or((section, ""));
+        let mut bullets: Vec<String> = Vec::new();
+        for line in body.lines() {
+            match (line.strip_prefix("- "), bullets.last_mut()) {
+                (Some(_), _) => bullets.push(line.to_owned()),
+                (None, Some(bullet)) if line.starts_with("  ") => *bullet = format!("{bullet}\n{line}"),
+                _ => {}
+            }
+        }
+        (heading, bullets)
+    };
+    sections.map(table).collect()
+}
+
+/// The keys that a bullet explains: those before its colon.
+fn keys_of(bullet: &str) -> Vec<&str> {
+    let head = bullet.split(": ").next().unwrap_or(bullet);
+    head.split('`').skip(1).step_by(2).collect()
+}
+
+/// A key of scene files, in each of the tables that have it.
+fn scene_key(key: &str) -> Option<String> {
+    let tables = scene_tables();
+    let of_table = |(heading, bullets): &(&str, Vec<String>)| {
+        let said: String =
+            bullets.iter().filter(|bullet| keys_of(bullet).contains(&key)).map(|said| format!("{said}\n")).collect();
+        let place = if *heading == "The file" { "At the top".to_owned() } else { format!("In `{heading}`") };
+        (!said.is_empty()).then(|| format!("{place}:\n\n{said}\n"))
+    };
+    let said: String = tables.iter().filter_map(of_table).collect();
+    let inner = tables.iter().find(|(heading, _)| *heading == key);
+    let inner = inner.map_or_else(String::new, |(_, bullets)| format!("Its keys:\n\n{}\n", bullets.join("\n")));
+    (!said.is_empty()).then(|| {
+        format!("# {key} (scene file)\n\nA key of scene files (`stencilscope help scene-file`).\n\n{said}{inner}")
+    })
+}
+
+/// All that has a page of its own.
+fn named() -> impl Iterator<Item = &'static str> {
+    let pages = PAGES.iter().map(|(name, ..)| *name).chain([CAUSES.0]);
+    let techniques = Technique::ALL.iter().map(|technique| technique.name());
+    let scenes = builtin::ALL.iter().map(|builtin| builtin.name).chain(SHIPPED.iter().map(|shipped| shipped.name));
+    pages.chain(techniques).chain(settings()).chain(super::COMMANDS).chain(scenes)
 }
 
 fn unknown(key: &str) -> CliError {
-    let pages = PAGES.iter().map(|(name, ..)| *name).chain([CAUSES.0]);
-    let techniques = Technique::ALL.iter().map(|technique| technique.name());
-    let known: Vec<&str> = pages.chain(techniques).chain(settings()).chain(super::COMMANDS).collect();
+    let tables = scene_tables();
+    let scene_keys = tables.iter().flat_map(|(_, bullets)| bullets).flat_map(|bullet| keys_of(bullet));
+    let mut known: Vec<&str> = named().collect();
+    known.extend(scene_keys);
     let hint = match nearest(key, &known) {
         Some(near) => format!("did you mean `{near}`?"),
         None => "`stencilscope help` lists what there is".to_owned(),
@@ -143,35 +287,59 @@ fn unknown(key: &str) -> CliError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::technique::SettingValues;
 
-    #[test]
-    fn every_technique_and_setting_has_its_lesson_and_no_lesson_is_of_something_else() {
-        let headings =
-            |text: &'static str| -> Vec<&str> { text.lines().filter_map(|line| line.strip_prefix("## ")).collect() };
-        assert_eq!(headings(OF_TECHNIQUES), Technique::ALL.map(Technique::name));
-        let mut taught = headings(OF_SETTINGS);
-        let mut keys = settings();
-        taught.sort_unstable();
-        keys.sort_unstable();
-        assert_eq!(taught, keys);
-        for (text, name) in
-            keys.iter().map(|key| (OF_SETTINGS, *key)).chain(Technique::ALL.map(|of| (OF_TECHNIQUES, of.name())))
-        {
-            assert!(section(text, name).is_some_and(|lesson| lesson.len() > 40), "{name}");
+    /// What every lesson must have.
+    fn assert_teaches(lesson: &Lesson, whose: &str) {
+        assert!(lesson.text.len() > 40 && lesson.formula.len() > 15, "{whose} teaches nothing");
+        for source in lesson.sources {
+            assert!((1700..=2026).contains(&source.year) && source.title.len() > 5, "{whose}: {source}");
         }
     }
 
     #[test]
+    fn every_lesson_says_each_word_that_can_be_chosen() {
+        for technique in Technique::ALL {
+            assert_teaches(&technique.description().lesson, technique.name());
+            for spec in technique.settings() {
+                assert_teaches(&spec.lesson, spec.key);
+                let words = match spec.values {
+                    SettingValues::OneOf(words)
+                    | SettingValues::WordOr { words, .. }
+                    | SettingValues::SomeOf(words) => words,
+                    SettingValues::Integer(..) | SettingValues::Number(..) => &[],
+                };
+                for word in words {
+                    assert!(spec.lesson.text.contains(&format!("`{word}`")), "{}: {word} is not taught", spec.key);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_key_teaches_one_thing_whichever_technique_has_it() {
+        for key in settings() {
+            let specs = Technique::ALL.iter().flat_map(|of| of.settings()).filter(|spec| spec.key == key);
+            let lessons: Vec<&Lesson> = specs.map(|spec| &spec.lesson).collect();
+            assert!(lessons.windows(2).all(|pair| pair[0] == pair[1]), "{key}");
+        }
+    }
+
+    #[test]
+    fn lines_fit_and_no_word_is_lost() {
+        let text = "one two three\n\n| a b | c d e f g h |";
+        assert_eq!(wrapped(text, 9), "one two\nthree\n\n| a b | c d e f g h |");
+    }
+
+    #[test]
     fn no_two_things_have_one_key() {
-        let pages = PAGES.iter().map(|(name, ..)| *name).chain([CAUSES.0]);
-        let all = pages.chain(Technique::ALL.map(Technique::name)).chain(settings()).chain(super::super::COMMANDS);
-        let mut keys: Vec<&str> = all.collect();
+        let mut keys: Vec<&str> = named().collect();
         let count = keys.len();
         keys.sort_unstable();
         keys.dedup();
         assert_eq!(keys.len(), count);
         for key in keys {
-            assert!(page(key).is_some_and(|text| text.len() > 100), "{key}");
+            assert!(page(key).is_some_and(|text| text.len() > 50), "{key}");
             assert!(overview().contains(key), "{key}");
         }
     }

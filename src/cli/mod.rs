@@ -29,7 +29,9 @@ mod view;
 
 pub use error::CliError;
 
-use crate::scene::builtin::Builtin;
+use crate::import::{SHIPPED, Shipped};
+use crate::scene::builtin::{self, Builtin};
+use crate::scene::nearest;
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::Path;
@@ -43,6 +45,7 @@ const COMMANDS: [&str; 14] = [
 /// An interactive visual debugger for stencil shadows and shadow maps
 #[derive(Debug, Parser)]
 #[command(name = "stencilscope", version, disable_help_subcommand = true, subcommand_required = true)]
+#[command(after_help = help::everything())]
 struct CommandLine {
     #[command(subcommand)]
     command: Command,
@@ -51,18 +54,25 @@ struct CommandLine {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Open the inspector window (the default command)
+    #[command(after_help = help::names())]
     View(Box<view::ViewArguments>),
     /// Render without a window and write every pass to a folder
+    #[command(after_help = help::names())]
     Capture(Box<capture::CaptureArguments>),
     /// Show a frame pass by pass, or a light going round the scene, as an animated PNG
+    #[command(after_help = help::names())]
     Animate(Box<animate::AnimateArguments>),
     /// Tell the history of a pixel, fragment by fragment
+    #[command(after_help = help::names())]
     Pixel(Box<pixel::PixelArguments>),
     /// Say where shadows are wrong, why, and what mends it, with the proof
+    #[command(after_help = help::names())]
     Diagnose(Box<diagnose::DiagnoseArguments>),
     /// Say where two captures, or two techniques of a scene, first differ
+    #[command(after_help = help::names())]
     Diff(Box<diff::DiffArguments>),
     /// Measure how wrong each technique is, and what it costs
+    #[command(after_help = help::names())]
     Report(Box<report::ReportArguments>),
     /// Drive every technique until it breaks
     Stress(Box<stress::StressArguments>),
@@ -85,12 +95,12 @@ enum Command {
 /// # Errors
 /// Whatever ended the command; [`CliError::exit_code`] says how bad it is.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
-    let arguments = with_command(arguments.into_iter().collect());
-    let first = arguments.get(1).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
-    let second = arguments.get(2).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
-    if let Some(near) = misspelled_command(&second).filter(|_| first == "view") {
-        return Err(CliError::Usage(format!("`{second}` is neither a command nor a scene: did you mean `{near}`?")));
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let word = arguments.get(1).map(|word| word.to_string_lossy().into_owned()).unwrap_or_default();
+    if is_nothing(&word) {
+        return Err(CliError::Usage(unknown(&word)));
     }
+    let arguments = with_command(arguments);
     let spoken = spoken(&arguments);
     let command_line = match CommandLine::try_parse_from(arguments) {
         Ok(command_line) => command_line,
@@ -142,14 +152,23 @@ fn with_command(mut arguments: Vec<OsString>) -> Vec<OsString> {
     arguments
 }
 
-/// The command that `word` must mean, if it names no scene and is nearly a command.
-fn misspelled_command(word: &str) -> Option<&'static str> {
-    /// Above this two words differ in a letter or two.
-    const NEARLY: f64 = 0.9;
-    let is_scene = Builtin::named(word).is_some() || Path::new(word).exists();
-    let rated = COMMANDS.into_iter().map(|command| (strsim::jaro_winkler(word, command), command));
-    let nearest = rated.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(likeness, _)| *likeness > NEARLY && !is_scene);
-    nearest.map(|(_, command)| command)
+/// Is a first word no command, no scene and no file? An ending says that a file is meant.
+fn is_nothing(word: &str) -> bool {
+    let is_scene = Builtin::named(word).is_some() || Shipped::named(word).is_some();
+    let is_file = word.contains(['/', '\\', '.']) || Path::new(word).exists();
+    !(word.is_empty() || word.starts_with('-') || COMMANDS.contains(&word) || is_scene || is_file)
+}
+
+/// What to say of such a word: the nearest name, and what there is.
+fn unknown(word: &str) -> String {
+    let scenes = builtin::ALL.iter().map(|builtin| builtin.name).chain(SHIPPED.iter().map(|shipped| shipped.name));
+    let known: Vec<&str> = COMMANDS.into_iter().chain(scenes).collect();
+    let near = nearest(word, &known).map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+    let commands = COMMANDS.join(", ");
+    let word = word.escape_debug();
+    format!(
+        "no command and no scene is called `{word}`: {near}Commands are {commands}; `stencilscope scenes` lists scenes"
+    )
 }
 
 #[cfg(test)]

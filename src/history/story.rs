@@ -53,7 +53,11 @@ impl PixelHistory {
     fn result(&self, curve: &DepthCurve) -> String {
         let Held { depth, stencil, .. } = self.computed;
         let surface = match curve.distance(depth) {
-            Some(distance) => format!("a surface {} away (depth {})", numbers::metres(distance), numbers::depth(depth)),
+            Some(distance) => format!(
+                "a surface {} away (depth {})",
+                numbers::length(distance, curve.unit.name()),
+                numbers::depth(depth)
+            ),
             None => format!("no surface (depth {})", numbers::depth(depth)),
         };
         let stencil = if self.has_stencil { format!(", stencil {}", numbers::signed(stencil)) } else { String::new() };
@@ -116,7 +120,9 @@ impl PixelHistory {
                 let who = who(one);
                 let side = if one.shows_outside() { "front" } else { "back" };
                 let distance = match curve.distance(one.depth).filter(|_| event.is_from_camera) {
-                    Some(distance) if distance >= 0.0 => format!(", at {}", numbers::metres(distance)),
+                    Some(distance) if distance >= 0.0 => {
+                        format!(", at {}", numbers::length(distance, curve.unit.name()))
+                    }
                     Some(_) => ", beyond the far plane".to_owned(),
                     None if event.is_from_camera => ", at infinity".to_owned(),
                     None => String::new(),

@@ -27,6 +27,7 @@ pub use model::memory::{Remembered, ThemeChoice};
 pub use panels::picture::as_shown::Drawing;
 pub use shell::export::ExportData;
 pub use shell::open_dialog::SceneEntry;
+pub use tours::{Go, Stop, TOURS, Tour};
 
 use crate::ask::{Answer, Answers, Kind, Question, RunRequest};
 use crate::capture::{Capture, Image};

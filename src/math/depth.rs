@@ -27,6 +27,18 @@ named_enum! {
     }
 }
 
+named_enum! {
+    /// What a distance is told in.
+    #[derive(Default)]
+    pub enum LengthUnit {
+        /// Scenes are in metres.
+        #[default]
+        Metre = "m",
+        /// Another program's unit, which no capture tells.
+        Unknown = "units",
+    }
+}
+
 /// A mapping with its numbers: `depth = offset + scale / distance`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DepthCurve {
@@ -34,10 +46,24 @@ pub struct DepthCurve {
     pub mapping: DepthMapping,
     /// What an infinite distance becomes.
     pub offset: f64,
-    /// In metres.
+    /// In its unit.
     pub scale: f64,
-    /// Distance of the far plane in metres; `None` where there is none.
+    /// Distance of the far plane; `None` where there is none.
     pub far: Option<f64>,
+    /// Of all distances.
+    #[serde(default)]
+    pub unit: LengthUnit,
+}
+
+impl LengthUnit {
+    /// Where there is room for a letter.
+    #[must_use]
+    pub fn letter(self) -> &'static str {
+        match self {
+            LengthUnit::Metre => "m",
+            LengthUnit::Unknown => "u",
+        }
+    }
 }
 
 impl DepthMapping {
@@ -75,7 +101,7 @@ impl DepthMapping {
             DepthMapping::StandardFinite | DepthMapping::StandardFiniteClamp => far / (far - near),
         };
         let scale = if self.is_reversed() { near } else { -near * offset };
-        DepthCurve { mapping: self, offset, scale, far: self.is_finite().then_some(far) }
+        DepthCurve { mapping: self, offset, scale, far: self.is_finite().then_some(far), unit: LengthUnit::Metre }
     }
 }
 
@@ -86,7 +112,7 @@ impl DepthCurve {
         DVec2::new(-self.offset, self.scale)
     }
 
-    /// Distance along the view axis, in metres; `None` for the depth of what was not drawn.
+    /// Distance along the view axis; `None` for the depth of what was not drawn.
     #[must_use]
     pub fn distance(&self, depth: f32) -> Option<f64> {
         (depth != self.mapping.clear_depth()).then(|| self.scale / (f64::from(depth) - self.offset))

@@ -49,7 +49,8 @@ pub enum Side {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CountOf {
-    /// Casters that are proven closed: of each, only triangles that face the light cast.
+    /// Casters that are proven closed: of each, only triangles that face the light cast. Others too, that have no
+    /// surface behind them.
     Bodies,
     /// Triangles, whichever way they face: both sides of a closed mesh cast.
     Surfaces,
@@ -73,8 +74,8 @@ impl CountOf {
     pub fn meaning(self) -> &'static str {
         match self {
             CountOf::Bodies => {
-                "A count is of bodies: every caster is proven closed, and counts 1 each time the way to the light goes \
-                 through it."
+                "A count is of bodies: every caster that can darken a surface here is proven closed, and counts 1 each \
+                 time the way to the light goes through it."
             }
             CountOf::Surfaces => {
                 "A count is of surfaces, not of bodies: each one on the way to the light counts 1, so that a closed body \

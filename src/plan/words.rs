@@ -4,6 +4,10 @@
 //! write there. The stencil's reference and masks hold for both faces in WebGPU; OpenGL and
 //! Direct3D get them for each face, equal unless another program had others.
 
+mod defaults;
+
+pub use defaults::defaults;
+
 use super::{ColorWrite, FaceMasks, Pass, RasterState, StencilFace};
 use wgpu::{CompareFunction, StencilOperation};
 

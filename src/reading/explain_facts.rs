@@ -6,11 +6,13 @@
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
 use crate::history::{EventKind, PixelHistory};
 use crate::plan::{DecidedBy, Part, Side};
+use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::map_decision::MapDecision;
 use crate::scene::Light;
-use crate::truth::LABEL_NAMES;
+use crate::truth::{LABEL_NAMES, LIT, SHADOW};
+use std::collections::BTreeSet;
 
 /// A rule, and what it comes to here.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -48,7 +50,8 @@ pub fn facts(known: &Known) -> Vec<Fact> {
     }
     if step.draws.iter().any(|draw| draw.part.is_of_volume()) {
         // Of another program's volumes sides and caps are not told apart.
-        let parts = known.capture.origin.is_none().then(|| triangles(known, step));
+        let has_sides = has(Part::Side);
+        let parts = (known.capture.origin.is_none() && has_sides).then(|| triangles(known, step));
         return std::iter::once(volumes(known)).chain(parts).collect();
     }
     if has(Part::PlanarShadow) {
@@ -73,8 +76,10 @@ fn fact(formula: &str, here: Vec<String>) -> Fact {
 /// `stored depth = offset + scale / distance`.
 fn depth(known: &Known) -> Fact {
     let curve = known.capture.depth;
-    let (offset, scale) = (format::digits(curve.offset), format::digits(curve.scale));
-    let mut here = vec![format!("{}: {offset} + {scale} / distance", curve.mapping.name())];
+    // With fewer digits the sum would not be what is stored.
+    let sign = if curve.scale < 0.0 { "−" } else { "+" };
+    let terms = format!("{} {sign} {}", format::precise(curve.offset), format::precise(curve.scale.abs()));
+    let mut here = vec![format!("{}: {terms} / distance", curve.mapping.name())];
     let stored = known.pick.and_then(|at| known.capture.frame_at(known.step)?.depth.image.depth_at(at));
     if let (Some([x, y]), Some(stored)) = (known.pick, stored) {
         let measure = DepthMeasure::of_camera(known.capture);
@@ -83,13 +88,11 @@ fn depth(known: &Known) -> Fact {
                 here.push(format!("pixel {x}, {y}: no surface is there, and depth stays {}", format::depth(stored)))
             }
             Some(distance) => {
-                let metres = format::metres(distance);
-                here.push(format!("pixel {x}, {y}: {offset} + {scale} / {metres} = {}", format::depth(stored)));
-                here.extend(
-                    measure
-                        .step_at(stored)
-                        .map(|step| format!("the next depth that can be stored is {} further", format::metres(step))),
-                );
+                let away = format::length(distance, curve.unit.name());
+                here.push(format!("pixel {x}, {y}: {terms} / {away} = {}", format::depth(stored)));
+                here.extend(measure.step_at(stored).map(|step| {
+                    format!("the next depth that can be stored is {} further", format::length(step, curve.unit.name()))
+                }));
             }
         }
     } else {
@@ -102,7 +105,15 @@ fn depth(known: &Known) -> Fact {
 fn volumes(known: &Known) -> Fact {
     let light = known.capture.steps.get(known.step).and_then(|step| step.light);
     let side = light.and_then(|light| known.capture.decided_by(light).counted_side());
+    let step = &known.capture.steps[known.step];
+    let of_light = |other: &&Step| other.light == light;
+    // Triangles between light and near plane have no sides: what z-pass-plus begins with.
+    let is_at_near_plane = !step.draws.iter().any(|draw| draw.part == Part::Side) && !step.draws.is_empty();
+    let is_last = !known.capture.steps[known.step + 1..].iter().filter(of_light).any(has_volumes);
     let formula = match side {
+        _ if is_at_near_plane => {
+            "count at the near plane = casting triangles between the light and the pixel's point of that plane"
+        }
         Some(Side::InFront) => "count = front faces before the surface − back faces before it, seen from the eye",
         Some(Side::Behind) => "count = back faces behind the surface − front faces behind it, seen from the eye",
         Some(Side::AsNeeded) | None => {
@@ -135,31 +146,63 @@ fn volumes(known: &Known) -> Fact {
                 "pixel {x}, {y}: {up} faces add 1, {down} take 1 away, {idle} do not count here: {up} − {down} = {}",
                 i64::from(up) - i64::from(down)
             ));
-            here.extend(last.map(|count| {
-                format!(
-                    "the stored count is {count} then, and the pixel is {}",
-                    if count == 0.0 { "lit" } else { "in shadow" }
-                )
+            // Of a surface that faces away, and of none, no count decides.
+            let label = light.and_then(|light| known.capture.lights.get(light)?.shadow.as_ref()?.byte_at([x, y]));
+            here.extend(last.map(|count| match label.filter(|_| is_last) {
+                Some(LIT) => format!("the stored count is {count} then, and the pixel is lit"),
+                Some(SHADOW) => format!("the stored count is {count} then, and the pixel is in shadow"),
+                _ => format!("the stored count is {count} then"),
             }));
         }
         _ => {
-            if let Some(stencil) = known.capture.frame_at(known.step).and_then(|frame| frame.stencil.as_ref()) {
-                let counts = stencil.image.histogram();
-                let all: u64 = counts.iter().sum();
-                let marked = all - counts[0];
-                here.push(format!(
-                    "{} of {} pixels have a count other than 0",
-                    format::count(marked),
-                    format::count(all)
-                ));
-                let most = counts[..128].iter().rposition(|count| *count > 0).unwrap_or(0);
-                here.push(format!("the highest count is {most}"));
-            }
+            here.extend(counted(known, light));
             here.push("Pick a pixel (right click) to see the faces that made its count.".to_owned());
         }
     }
     here.extend(light.and_then(|light| known.capture.lights.get(light)?.count_of).map(|of| of.meaning().to_owned()));
     fact(formula, here)
+}
+
+fn has_volumes(step: &Step) -> bool {
+    step.draws.iter().any(|draw| draw.part.is_of_volume())
+}
+
+/// What the whole picture's counts are after a step, in the stencil or in floats.
+fn counted(known: &Known, light: Option<usize>) -> Vec<String> {
+    let of_light = light.and_then(|light| known.capture.lights.get(light));
+    let in_floats = light.is_some_and(|light| known.capture.decided_by(light).counts_in_floats());
+    let told = |marked: u64, all: u64| {
+        format!("{} of {} pixels have a count other than 0", format::count(marked), format::count(all))
+    };
+    if in_floats {
+        // Floats are kept as the last pass leaves them.
+        let is_last =
+            !known.capture.steps[known.step + 1..].iter().any(|step| step.light == light && has_volumes(step));
+        let Some(count) = of_light.and_then(|light| light.count.as_ref()).filter(|_| is_last) else {
+            return Vec::new();
+        };
+        let tally = counts::tally(count);
+        let all: u64 = tally.values().sum();
+        let most = tally.keys().next_back().copied().unwrap_or(0);
+        let marked = all - tally.get(&0).copied().unwrap_or(0);
+        return vec![told(marked, all), format!("the highest count is {}", counts::text(most as f32))];
+    }
+    let Some(stencil) = known.capture.frame_at(known.step).and_then(|frame| frame.stencil.as_ref()) else {
+        return Vec::new();
+    };
+    let counts = stencil.image.histogram();
+    let all: u64 = counts.iter().sum();
+    let most = counts[..128].iter().rposition(|count| *count > 0).unwrap_or(0);
+    let beyond: u64 = counts[128..].iter().sum();
+    let highest = match beyond {
+        0 => format!("the highest count is {most}"),
+        // Eight bits tell 255 from −1 no more.
+        _ => format!(
+            "the highest count up to 127 is {most}; {} pixels hold 128 to 255, which may be less than 0",
+            format::count(beyond)
+        ),
+    };
+    vec![told(all - counts[0], all), highest]
 }
 
 fn triangles(known: &Known, step: &Step) -> Fact {
@@ -281,17 +324,22 @@ fn map(known: &Known, step: &Step) -> Fact {
     if let Some((map, image)) = map.and_then(|map| Some((map, map.faces.get(face)?))) {
         let [width, height] = image.size();
         here.push(format!("layer {} of {}: {width}×{height} texels", face + 1, map.faces.len()));
-        if map.faces.len() == 6 {
+        if map.faces.len() == 6 && known.capture.decided_by(light) == DecidedBy::Map {
             // A cube's face spans a right angle: at distance d it is 2 d wide.
-            let side = 2.0 / f64::from(width.max(1));
+            let millimetres = 2e3 / f64::from(width.max(1));
             here.push(format!(
-                "1 m from the light a texel is {} wide, 10 m away {}",
-                format::metres(side),
-                format::metres(side * 10.0)
+                "1 m from the light a texel is {} mm wide, 10 m away {} mm",
+                format::digits(millimetres),
+                format::digits(millimetres * 10.0)
             ));
         }
     }
-    fact("a texel keeps the depth nearest to the light; a point is in shadow where it is deeper than its texel", here)
+    let formula = match known.capture.decided_by(light) {
+        DecidedBy::ReceiverTextures => "light on the receiver = light × its texel: none of it where a caster was drawn",
+        DecidedBy::Silhouettes => "light behind the caster = light × its texel: what the caster lets through there",
+        _ => "a texel keeps the depth nearest to the light; a point is in shadow where it is deeper than its texel",
+    };
+    fact(formula, here)
 }
 
 fn flattened(known: &Known, step: &Step) -> Fact {
@@ -304,8 +352,14 @@ fn flattened(known: &Known, step: &Step) -> Fact {
             if light.is_directional() { ": a direction, as w = 0" } else { "" }
         ));
     }
-    let casters = step.draws.iter().filter(|draw| draw.part == Part::PlanarShadow).count();
-    here.push(format!("{} flattened onto the receiver's plane", format::counted(casters as u64, "caster")));
+    let flattened = || step.draws.iter().filter(|draw| draw.part == Part::PlanarShadow);
+    let casters: BTreeSet<&str> = flattened().filter_map(|draw| draw.caster.as_deref()).collect();
+    let [casters, draws] = [casters.len(), flattened().count()].map(|count| count as u64);
+    here.push(format!(
+        "{} flattened in {}, one for each receiver behind it",
+        format::counted(casters, "caster"),
+        format::counted(draws, "draw")
+    ));
     fact("shadow matrix = (P·L) I − L Pt, with the plane P = (n, d) and the light L = (x, y, z, w)", here)
 }
 

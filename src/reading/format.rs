@@ -1,6 +1,6 @@
 //! Numbers as text: thousands with a thin space, units always.
 
-pub use crate::numbers::{count, depth, digits, light, metres};
+pub use crate::numbers::{count, depth, digits, length, light, metres, precise};
 
 /// `count(value)` with the word in the right number: `1 draw`, `2 draws`.
 #[must_use]

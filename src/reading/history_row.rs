@@ -198,7 +198,9 @@ fn change(history: &PixelHistory, event: &Event, curve: &DepthCurve) -> (String,
     } else if count != after.count {
         (format!("{} → {}", float(count), float(after.count)), true)
     } else if depth != after.depth {
-        let distance = curve.distance(after.depth).map_or_else(|| "∞".to_owned(), numbers::metres);
+        let distance = curve
+            .distance(after.depth)
+            .map_or_else(|| "∞".to_owned(), |distance| numbers::length(distance, curve.unit.name()));
         (format!("→ {distance}"), true)
     } else if history.has_stencil {
         (signed(stencil), false)

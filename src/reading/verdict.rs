@@ -78,11 +78,19 @@ pub fn verdict(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
         },
         Some(FACES_AWAY) => Verdict {
             title: format!("Turned away from {name}."),
-            reason: format!(
-                "{} shines on the other side of this surface, so shading alone leaves it dark.{}",
-                capitalized(&name),
-                count_note(capture, light, at)
-            ),
+            reason: match capture.settings.get("diffuse").is_some_and(|how| how == "wrapped") {
+                false => format!(
+                    "{} shines on the other side of this surface, so shading alone leaves it dark.{}",
+                    capitalized(&name),
+                    count_note(capture, light, at)
+                ),
+                true => format!(
+                    "{} shines on the other side of this surface; wrapped, it reaches round to here unless a shadow keeps \
+                     it away.{}",
+                    capitalized(&name),
+                    count_note(capture, light, at)
+                ),
+            },
             by_history: ByHistory::Kept,
         },
         Some(label) => decided(capture, light, at, label != LIT),

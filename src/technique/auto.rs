@@ -19,6 +19,7 @@
 use super::casters::{self, Darkened};
 use super::description::{Description, Standing};
 use super::frame::{Frame, Job, StencilUse};
+use super::lesson::{Lesson, cited};
 use super::outside::{self, VIEW_PLANES, beyond};
 use super::settings::VolumeSettings;
 use super::volume::{Counting, Decides, Form};
@@ -33,6 +34,15 @@ use glam::{DVec3, DVec4};
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Counts each volume by z-pass or z-fail, whichever is cheaper while right, and leaves out what nothing needs.",
+    lesson: Lesson {
+        text: "The default. Each volume is counted by z-pass or by z-fail, whichever is cheaper while right, and \
+             whatever can't change the picture is left out; every decision is recorded with its reason in the \
+             plan's text, in `manifest.json` and in the window. `stencilscope help leave-out` lists what it may \
+             leave out. Where a ray of the light may meet more than 255 casting triangles it counts in floats.",
+        formula: "at a surface, front - back faces in front of it = back - front faces behind it: volumes are closed \
+             and the eye is in none, so both kinds share one buffer",
+        sources: &[cited::EVERITT_KILGARD, cited::LENGYEL, cited::MCGUIRE],
+    },
     plan,
     // With all that may be left out, without what a look at the frame shows to be hidden, and with nothing
     // left out.

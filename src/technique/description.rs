@@ -2,6 +2,7 @@
 
 use super::PlanError;
 use super::frame::Job;
+use super::lesson::Lesson;
 use crate::plan::FramePlan;
 
 /// Rows of a technique in a report: the settings that each changes.
@@ -15,6 +16,8 @@ pub(super) const ONE_ROW: ReportRows = &[&[]];
 pub struct Description {
     /// What it does, in one sentence.
     pub summary: &'static str,
+    /// What there is to know of it.
+    pub lesson: Lesson,
     /// Makes a frame's plan.
     pub(super) plan: fn(Job) -> Result<FramePlan, PlanError>,
     /// The settings that a report compares by default.

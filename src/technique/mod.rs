@@ -83,6 +83,7 @@ mod choice;
 mod description;
 mod error;
 mod frame;
+mod lesson;
 mod named;
 mod none;
 mod outside;
@@ -103,6 +104,7 @@ pub use choice::{Choice, ChoiceError};
 pub use description::{Description, ReportRows, Standing};
 pub use error::{MOST_LIGHTS, PlanError};
 pub use frame::{Drawn, Frame, Job, Piece, Placed, StencilUse};
+pub use lesson::{Lesson, Source};
 pub use named::Technique;
 pub use plan::plan;
 pub use settings::{

@@ -3,11 +3,17 @@
 use super::PlanError;
 use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::lesson::Lesson;
 use crate::plan::FramePlan;
 
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Every light reaches every surface that faces it: the picture to compare others with.",
+    lesson: Lesson {
+        text: "The picture to compare others with: everything that should be dark is wrong.",
+        formula: "colour = ambient + the sum of what each light gives",
+        sources: &[],
+    },
     plan,
     report_rows: ONE_ROW,
     standing: Standing::Apart { because: "there is nothing to darken" },

@@ -11,6 +11,7 @@
 use super::PlanError;
 use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::lesson::{Lesson, cited};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
 use super::settings::PlanarSettings;
 use crate::geometry::planar::{Flattened, Flattener};
@@ -28,6 +29,15 @@ const BLENDED: f32 = 0.4;
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Casters are flattened onto every flat receiver, and the stencil keeps their shadow on it.",
+    lesson: Lesson {
+        text: "Every flat piece of a mesh that receives is a receiver; other surfaces get no shadow. A pass marks \
+             the pixels of a receiver in the stencil, the next draws the casters, flattened by the light onto its \
+             plane, and raises marked pixels by one: odd means shadow, and no pixel is darkened twice. At most \
+             the 64 largest receivers are served, since each costs a draw for every caster.",
+        formula: "flattened point = (P.L) V - (P.V) L, for the receiver's plane P, the light L and the caster's point \
+             V; light is added where the stencil is even",
+        sources: &[cited::BLINN, cited::KILGARD],
+    },
     plan,
     // The defaults, and shadows that fight with their plane.
     report_rows: &[&[], &[("z-fighting", "none")]],

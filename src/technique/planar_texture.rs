@@ -9,6 +9,7 @@
 use super::PlanError;
 use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, Piece, StencilUse};
+use super::lesson::{Lesson, cited};
 use super::receivers::{self, FlatReceiver, MOST_RECEIVERS};
 use super::settings::TextureSettings;
 use super::silhouettes::{self, LayerPass};
@@ -22,6 +23,14 @@ use std::collections::HashSet;
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Draws the casters into a texture of every flat receiver, through the box that the light's pyramid becomes.",
+    lesson: Lesson {
+        text: "Each flat receiver has a texture of the light that arrives on it: the pyramid from the light to the \
+             receiver becomes a box, and the casters are drawn through it. Edges are as coarse as the texture, \
+             and surfaces that are not flat get no shadow.",
+        formula: "what is at L + q(c + u a + v b - L), with the light L and the receiver's corner c and sides a and b, \
+             falls on the texture at (u, v), whatever q",
+        sources: &[cited::HECKBERT_HERF],
+    },
     plan,
     // Sizes of textures.
     report_rows: &[
@@ -55,8 +64,13 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
             false => (Drawn::lit(), frame.light_everywhere()),
         };
         frame.mask_pass(light, &[label]);
-        let purpose = "Adds the light as far as the receiver's texture lets it through. Surfaces that are not flat \
-                       have none, and are lit as if nothing stood between.";
+        let purpose = match has_textures {
+            true => {
+                "Adds the light as far as the receiver's texture lets it through. Surfaces that are not flat have none, \
+                 and are lit as if nothing stood between."
+            }
+            false => "Adds the light everywhere: no flat receiver has a shadow of it that shows.",
+        };
         frame.light_pass(light, purpose, &drawn);
     }
     Ok(frame.finish())

@@ -9,6 +9,7 @@ use super::PlanError;
 use super::casters::{self, Darkened};
 use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::lesson::{Lesson, cited};
 use super::settings::TextureSettings;
 use super::silhouettes::{self, LayerPass};
 use crate::geometry::light_frame::{self, SilhouetteView};
@@ -19,6 +20,14 @@ use glam::DMat4;
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Throws a picture of each caster's silhouette over the scene like a slide: no depths are compared.",
+    lesson: Lesson {
+        text: "A picture of each caster's silhouette is thrown over the scene like a slide, and translucent casters \
+             let some light through. No depths are compared: what stands between light and caster is darkened \
+             too, and a caster can't darken itself.",
+        formula: "(s, t) = (x, y) / q of the point as the light sees it; light * what the silhouette lets through at \
+             (s, t)",
+        sources: &[cited::SEGAL],
+    },
     plan,
     // Sizes of pictures.
     report_rows: &[&[("size", "128")], &[("size", "512")], &[("size", "2048")]],
@@ -49,7 +58,10 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
         let how = if drawn_layers.is_empty() { Visibility::Everywhere } else { Visibility::Projected };
         if settings.is_single_pass || drawn_layers.is_empty() {
             frame.mask_pass(light, &[Drawn::lit_by(how)]);
-            let purpose = "Adds the light, as far as the silhouettes on its way let it through.";
+            let purpose = match how {
+                Visibility::Everywhere => "Adds the light everywhere: no silhouette is on its way.",
+                _ => "Adds the light, as far as the silhouettes on its way let it through.",
+            };
             frame.light_pass(light, purpose, &frame.light_by(how));
         } else {
             multi_pass(&mut frame, light, &layers, &drawn_layers);

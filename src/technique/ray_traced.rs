@@ -7,6 +7,7 @@
 use super::PlanError;
 use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Frame, Job, StencilUse};
+use super::lesson::{Lesson, cited};
 use crate::plan::{ColorTarget, CpuImage, DecidedBy, FramePlan, LightId, MakeImage, Pass, ViewId, Visibility};
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -31,6 +32,15 @@ impl MakeImage for LightRays {
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Follows rays from the eye and the light on the CPU: what the other techniques are measured against.",
+    lesson: Lesson {
+        text: "Rays are followed in double precision, every hit is decided by exact signs, and so no ray slips \
+             through an edge. It knows the scene alone: no volume, plan or shader. The other techniques are \
+             measured against it. A pixel counts as wrong where a technique differs from it, unless the truth \
+             itself changes within an eighth of a pixel, or another triangle is visible within 1/256, which is \
+             what rasterisers snap to.",
+        formula: "light is added where no casting triangle meets the segment from the light to the surface",
+        sources: &[cited::APPEL, cited::WHITTED, cited::SHEWCHUK],
+    },
     plan,
     report_rows: ONE_ROW,
     standing: Standing::Apart { because: "it is the truth" },

@@ -9,6 +9,7 @@ use super::PlanError;
 use super::casters::{self, Darkened};
 use super::description::{Description, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::lesson::{Lesson, cited};
 use super::settings::MapSettings;
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
@@ -37,6 +38,14 @@ struct MapTarget {
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Stores the depth of what the light sees, and darkens what lies behind it.",
+    lesson: Lesson {
+        text: "One face, or the six of a cube around a lamp. Any surface casts and receives; the price is \
+             resolution (stairs) and bias (too little: surfaces darken themselves; too much: shadows leave their \
+             casters). Casters behind which nothing could be darkened are left out of the map.",
+        formula: "light is added where the map holds nothing nearer to the light than the surface, the bias allowed \
+             for",
+        sources: &[cited::WILLIAMS, cited::REEVES],
+    },
     plan,
     // Sizes with the default bias, and with so little that surfaces darken themselves; other ways to
     // keep them from it; and a soft edge.
@@ -79,8 +88,13 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
             false => (Drawn::lit(), frame.light_everywhere()),
         };
         frame.mask_pass(light, &[label]);
-        let purpose = "Adds the light, carrying every fragment into the light's map: where the map holds something \
-                       nearer to the light, the fragment is in shadow and gets nothing.";
+        let purpose = match has_map {
+            true => {
+                "Adds the light, carrying every fragment into the light's map: where the map holds something nearer to \
+                 the light, the fragment is in shadow and gets nothing."
+            }
+            false => "Adds the light everywhere: no caster can darken anything, and there is no map.",
+        };
         frame.light_pass(light, purpose, &drawn);
     }
     Ok(frame.finish())

@@ -20,6 +20,7 @@ mod near_count;
 use super::casters::{self, Darkened};
 use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
+use super::lesson::{Lesson, cited};
 use super::settings::{CountsBy, VolumeSettings, WhoCasts};
 use super::{Choice, PlanError};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
@@ -33,6 +34,13 @@ use glam::{DVec3, DVec4};
 /// What is said of z-pass.
 pub(super) const Z_PASS: Description = Description {
     summary: "Counts the shadow volumes that the view ray is inside of when it reaches the surface, from the eye on.",
+    lesson: Lesson {
+        text: "Volume faces in front of the surface are counted, up when the view ray enters and down when it \
+             leaves. Right unless the eye is inside a volume, or the near plane cuts one: then faces are missing, \
+             and the count is off for every pixel behind.",
+        formula: "count = front faces - back faces, of those that pass the depth test; light is added where it is 0",
+        sources: &[cited::CROW, cited::HEIDMANN],
+    },
     plan,
     report_rows: ONE_ROW,
     standing: Standing::Rival {
@@ -44,6 +52,16 @@ pub(super) const Z_PASS: Description = Description {
 /// What is said of z-fail.
 pub(super) const Z_FAIL: Description = Description {
     summary: "Counts the same volumes from infinity back to the surface, so the eye may be inside one.",
+    lesson: Lesson {
+        text: "Faces behind the surface are counted, from infinity back, so volumes must be closed by caps at both \
+             ends. Takes any mesh: open, self-intersecting, inconsistently wound. Every triangle is turned \
+             towards the light by one exact sign, and each edge bounds the shadow as often as the turned \
+             triangles around it do not cancel, so volumes always close. Light caps are drawn in the surface's \
+             own vertex order, so that their depths are bit-equal to the surface's. Eight bits count to 255: \
+             where a multiple of 256 volumes contain a surface it reads as lit, and `counter=float` counts on.",
+        formula: "count = back faces - front faces, of those that fail the depth test; light is added where it is 0",
+        sources: &[cited::BILODEAU, cited::CARMACK, cited::EVERITT_KILGARD],
+    },
     // Also each way to count, cast and store depth that costs or saves something.
     report_rows: &[
         &[],
@@ -65,6 +83,14 @@ pub(super) const Z_FAIL: Description = Description {
 /// What is said of z-pass-plus.
 pub(super) const Z_PASS_PLUS: Description = Description {
     summary: "Counts the near plane's volumes from the light first, then as z-pass: the eye may be inside one.",
+    lesson: Lesson {
+        text: "The near plane's own count is drawn first, seen from the light through the near plane; then it \
+             counts as z-pass does. No caps, and the eye may be inside a volume. Cracks show where a caster \
+             crosses the near plane, and rounding where that plane is nearer than a millimetre.",
+        formula: "count = volumes that hold the pixel's point of the near plane + front faces - back faces, of those \
+             that pass the depth test",
+        sources: &[cited::HORNUS],
+    },
     standing: Standing::Rival {
         place: 3,
         right_because: "what the near plane begins with is counted too, so the eye may be in a volume",
@@ -212,10 +238,13 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
     frame.light_pass(light, purpose, &Drawn::light_once_where_zero(mask));
 }
 
-/// What a count of these counts; `None` if there are none.
+/// What a count of these counts at a surface; `None` if there are none.
 fn what_counts(volumes: &[Volume]) -> Option<CountOf> {
     let bodies = volumes.iter().filter(|volume| volume.is_body).count();
-    match volumes.len() {
+    let others = volumes.iter().filter(|volume| !volume.is_body && !volume.darkens_nothing).count();
+    // Where nothing is darkened at all, what casts is told.
+    let all = if bodies + others == 0 { volumes.len() } else { bodies + others };
+    match all {
         0 => None,
         all if bodies == all => Some(CountOf::Bodies),
         _ if bodies == 0 => Some(CountOf::Surfaces),
@@ -294,8 +323,9 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
         needed.retain(|part| !part.triangles.is_empty());
         let mesh = frame.add_mesh(mesh);
         let is_body = options.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
+        let darkens_nothing = !is_body && !casters::can_darken(frame, index, light, Darkened::All);
         let (caster, counting) = (object.name.clone(), form.counting);
-        volumes.push(Volume { object: index, caster, counting, is_body, mesh, parts, needed });
+        volumes.push(Volume { object: index, caster, counting, is_body, darkens_nothing, mesh, parts, needed });
     }
     let mut casting = volumes.iter().flat_map(|volume: &Volume| volume.casting_triangles(frame));
     let may_overflow = decides.may_overflow(&mut casting);

@@ -45,6 +45,45 @@ fn the_state_of_a_volume_pass_is_told_in_a_sentence_and_in_three_apis_words() {
 }
 
 #[test]
+fn what_an_api_has_unless_told_otherwise_is_marked_and_what_was_set_is_not() {
+    let mut inspector = over("tori", Technique::ZFail);
+    inspector.select_draw(1, 0);
+    let mut harness = harness_of(inspector, [1600.0, 1600.0]);
+    click(&mut harness, "State");
+    // A tab has its sizes a frame after it is shown.
+    harness.run_steps(3);
+    for (api, defaults, set) in [
+        (
+            "WebGPU",
+            &["cullMode: \"none\",", "stencilReadMask: 0xff,", "pass.setStencilReference(0);"][..],
+            &["depthCompare: \"greater\",", "depthWriteEnabled: false,", "writeMask: 0,"][..],
+        ),
+        (
+            "OpenGL",
+            &["glDisable(GL_CULL_FACE);", "glStencilFuncSeparate(GL_BACK, GL_ALWAYS, 0, 0xff);"],
+            &["glDepthMask(GL_FALSE);", "glStencilOpSeparate(GL_BACK, GL_KEEP, GL_INCR_WRAP, GL_KEEP);"],
+        ),
+        (
+            "Direct3D 12",
+            &["DepthBias = 0;", "BackFace.StencilPassOp = D3D12_STENCIL_OP_KEEP;"],
+            &["StencilEnable = TRUE;", "CullMode = D3D12_CULL_MODE_NONE;"],
+        ),
+    ] {
+        click_button(&mut harness, api);
+        harness.run_steps(2);
+        for line in defaults {
+            harness.get_by_label(&format!("{line} // default"));
+        }
+        for line in set {
+            harness.get_by_label(line);
+        }
+        harness.get_by_label_contains(&format!("lines differ from what {api} has unless told otherwise"));
+        let count = harness.query_all_by_label_contains(" // default").count();
+        assert!(count > 3, "{api}: {count} defaults");
+    }
+}
+
+#[test]
 fn a_capture_folder_tells_the_state_as_its_plan_has_it() {
     let mut inspector = over("tori", Technique::ZFail);
     let capture = Arc::clone(inspector.capture().expect("a capture"));

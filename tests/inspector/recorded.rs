@@ -5,7 +5,7 @@ use crate::common;
 use egui::accesskit::Role;
 use egui::{Key, PointerButton};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::Path;
 use std::sync::Arc;
 use stencilscope::capture::{Capture, Differs};
@@ -94,6 +94,20 @@ fn a_picked_pixel_has_its_history() {
     harness.get_by_label_contains("so the light pass skips it");
     let names = harness.query_all_by_label_contains("side of").count() + harness.query_all_by_label("side").count();
     assert!(names <= 1, "but for the column's title: which part of a volume a face is, is not known");
+    let depth = ogre.capture.depth;
+    let stored = ogre.capture.frame_at(ogre.capture.steps.len() - 1).and_then(|frame| frame.depth.image.depth_at(DARK));
+    let away = depth.distance(stored.expect("a depth")).expect("a surface");
+    let told = format!("{} units", stencilscope::reading::format::digits(away));
+    assert!(
+        harness.query_all_by_label_contains(&told).count() > 0,
+        "the distance, in a unit that nobody knows: {told}"
+    );
+    let in_metres: Vec<String> = (harness.query_all_by_label_contains(" m"))
+        .flat_map(|node| [node.accesskit_node().label(), node.accesskit_node().value()])
+        .flatten()
+        .filter(|words| words.ends_with(" m") || words.contains(" m,") || words.contains(" m:"))
+        .collect();
+    assert!(in_metres.is_empty(), "nothing is told in metres: {in_metres:?}");
     let rows = harness.query_all_by_role(Role::Row).count();
     assert!(rows >= 3, "{rows} rows");
     assert!(harness.query_by_label_contains("holds pictures and no geometry").is_none());

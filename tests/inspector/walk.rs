@@ -92,16 +92,19 @@ fn the_mouse_looks_around() {
 fn p_goes_through_techniques_and_i_through_sizes_of_the_map() {
     let mut harness = walking();
     let mut names = Vec::new();
-    for _ in 0..5 {
+    for _ in 0..6 {
         press(&mut harness, Key::P);
         names.push(runs(&harness).last().expect("a run").choice.technique());
     }
-    use Technique::{None, Planar, Projective, ShadowMap, ZFail};
-    assert_eq!(names, [ShadowMap, None, Planar, Projective, ZFail]);
+    use Technique::{None, Planar, Projective, ShadowMap, ZFail, ZPass};
+    assert_eq!(names, [ShadowMap, None, Planar, Projective, ZPass, ZFail]);
     let before = runs(&harness).len();
     press(&mut harness, Key::I);
     assert_eq!(runs(&harness).len(), before, "z-fail has no map");
+    let because = "I does nothing: z-fail has neither map nor texture. P goes to one that has";
+    harness.get_by_label(because);
     press(&mut harness, Key::P);
+    assert!(harness.query_by_label(because).is_none(), "the next key that does something takes its place");
     let size = |harness: &Harness<Seen>| runs(harness).last().expect("a run").choice.settings()["size"].clone();
     let sizes: Vec<String> = (0..5)
         .map(|_| {
@@ -157,6 +160,15 @@ fn l_makes_the_lamp_swing_and_stops_it() {
     answer(&mut harness);
     let before = runs(&harness).len();
     harness.run_steps(4);
+    assert_eq!(runs(&harness).len(), before);
+}
+
+#[test]
+fn l_says_where_nothing_swings() {
+    let mut harness = walking();
+    let before = runs(&harness).len();
+    press(&mut harness, Key::L);
+    harness.get_by_label("L does nothing: nothing moves in this scene");
     assert_eq!(runs(&harness).len(), before);
 }
 

@@ -236,6 +236,27 @@ fn planar_shadows_are_right_on_panels_and_not_enough_on_steps() {
     assert!(on_balls >= 100, "{on_balls}");
 }
 
+/// It is said to be regular: all its edges are alike, and its corners are 1 from its middle.
+#[test]
+fn the_tetrahedron_is_what_it_is_said_to_be() {
+    let lesson = Builtin::named("tetrahedron").expect("a name").lesson;
+    assert!(lesson.contains("regular tetrahedron") && !lesson.contains("unit"), "{lesson}");
+    let scene = named("tetrahedron");
+    let points = scene.objects.last().expect("it").mesh.positions();
+    let mut corners: Vec<DVec3> = Vec::new();
+    for point in points {
+        if corners.iter().all(|corner| corner.distance(*point) > 1e-9) {
+            corners.push(*point);
+        }
+    }
+    assert_eq!(corners.len(), 4);
+    let edge = (8.0_f64 / 3.0).sqrt();
+    for (index, corner) in corners.iter().enumerate() {
+        assert!((corner.length() - 1.0).abs() < 1e-9);
+        assert!(corners[..index].iter().all(|other| (corner.distance(*other) - edge).abs() < 1e-9));
+    }
+}
+
 /// The eye is in the volume of one slat, the near plane cuts those of its neighbours.
 #[test]
 fn inside_is_inside_one_volume_and_cuts_two_others() {

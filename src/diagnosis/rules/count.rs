@@ -4,7 +4,7 @@ use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount};
 use crate::diagnosis::mend::Mend;
 use crate::history::{Count, Why};
-use crate::plan::CountBits;
+use crate::plan::{CountBits, CountOf};
 use crate::technique::CountsBy;
 
 pub(crate) const RULES: &[Rule] = &[clamped, wrap_256, few_bits, parity, operation_order];
@@ -75,7 +75,9 @@ fn wrap_256(facts: &Facts, case: &Case) -> Option<Suspicion> {
         let reads_none = stored(sample, light)? == 0 && first_lost(sample, light).is_none();
         (count != 0 && count % 256 == 0 && is_whole && reads_none).then_some(count)
     })?;
-    let evidence = format!("{count} volume faces are left here, a multiple of 256: eight bits hold 0");
+    let of = facts.capture.lights.get(light).and_then(|light| light.count_of);
+    let what = of.map_or("volumes", CountOf::what);
+    let evidence = format!("{count} {what} are counted here, a multiple of 256: eight bits hold 0");
     Suspicion::new(Cause::Wrap256, evidence, vec![Mend::setting("counter", "float")], shown_by)
 }
 

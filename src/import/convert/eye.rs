@@ -4,7 +4,7 @@
 //! fitted over the vertices of the surfaces. The field of view can't be known, as clip space is view space stretched: it
 //! is taken as 90 degrees with square pixels, which keeps every straight line, every "between" and every silhouette.
 
-use crate::math::depth::{DepthCurve, DepthMapping};
+use crate::math::depth::{DepthCurve, DepthMapping, LengthUnit};
 use crate::plan::{Draw, FramePlan, Part, Pass};
 use crate::scene::Camera;
 use glam::{DMat4, DVec3};
@@ -46,7 +46,7 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
             let is_clipped = picture().flat_map(|pass| &pass.draws).filter(|draw| draw.part == Part::Surface);
             let is_clipped = is_clipped.filter(|draw| draw.raster.depth_write).all(|draw| !draw.raster.unclipped_depth);
             let far = Some(far).filter(|far| far.is_finite() && *far > 0.0 && is_clipped);
-            Some(DepthCurve { mapping: mapping(far.is_some()), offset: a, scale: b, far })
+            Some(DepthCurve { mapping: mapping(far.is_some()), offset: a, scale: b, far, unit: LengthUnit::Unknown })
         }
         None => None,
     }
@@ -56,7 +56,7 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
 pub(super) fn unknown(plan: &FramePlan) -> DepthCurve {
     let is_reversed = is_reversed(plan.passes.iter().flat_map(|pass| &pass.draws));
     let mapping = if is_reversed { DepthMapping::ReversedInfinite } else { DepthMapping::StandardInfinite };
-    mapping.curve(1.0, 0.0, 0.0)
+    DepthCurve { unit: LengthUnit::Unknown, ..mapping.curve(1.0, 0.0, 0.0) }
 }
 
 /// Is greater nearer? As most depth tests say.

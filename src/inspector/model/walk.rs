@@ -16,6 +16,8 @@ pub struct Walk {
     pub collides: bool,
     /// Metres a second.
     pub speed: f64,
+    /// Why the last key did nothing.
+    pub nothing_because: Option<String>,
     /// egui's time of the last step, seconds.
     pub last: Option<f64>,
     /// Mouse movement that no frame shows yet, points.
@@ -24,7 +26,7 @@ pub struct Walk {
 
 impl Default for Walk {
     fn default() -> Walk {
-        Walk { is_on: false, collides: true, speed: SPEED, last: None, turned: Vec2::ZERO }
+        Walk { is_on: false, collides: true, speed: SPEED, nothing_because: None, last: None, turned: Vec2::ZERO }
     }
 }
 

@@ -1,5 +1,5 @@
 //! The State tab: the whole state of the selected draw, in a sentence, in three APIs' words, and
-//! the matrices with the names of their spaces.
+//! the matrices with the names of their spaces. What an API has unless told otherwise is pale, and says so.
 
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
@@ -91,12 +91,23 @@ fn of_draw(ui: &mut Ui, own: &mut RasterStatePanel, model: &Model, pass: &Pass, 
         }
     });
     let lines = words::lines(&draw.raster, own.api);
+    let is_default = |line: &String| words::defaults(own.api).contains(&line.as_str());
     theme::card(ui).show(ui, |ui| {
         ui.set_width(ui.available_width());
         for line in &lines {
-            ui.add(Label::new(theme::number(line.as_str())).wrap().selectable(true));
+            // Said in words too: paler alone would be told by colour.
+            let text = if is_default(line) {
+                theme::number(format!("{line} // default")).color(theme::of(ui).faint)
+            } else {
+                theme::number(line.as_str()).color(theme::of(ui).text)
+            };
+            ui.add(Label::new(text).wrap().selectable(true));
         }
     });
+    let set = lines.iter().filter(|line| !is_default(line)).count();
+    let differ = if set == 1 { "1 line differs" } else { &format!("{set} lines differ") };
+    let note = format!("{differ} from what {} has unless told otherwise.", own.api.name());
+    ui.add(Label::new(theme::note(note)).wrap());
     if ui.button("Copy state").on_hover_text("To the clipboard, in these words").clicked() {
         ui.ctx().copy_text(lines.join("\n"));
     }

@@ -31,8 +31,14 @@ const RADIUS_OF_NEAR: f64 = 1.5;
 /// Sizes of shadow maps.
 const SIZES: [u32; 5] = [256, 512, 1024, 2048, 4096];
 /// What P goes through.
-const TECHNIQUES: [Technique; 5] =
-    [Technique::None, Technique::Planar, Technique::Projective, Technique::ZFail, Technique::ShadowMap];
+const TECHNIQUES: [Technique; 6] = [
+    Technique::None,
+    Technique::Planar,
+    Technique::Projective,
+    Technique::ZPass,
+    Technique::ZFail,
+    Technique::ShadowMap,
+];
 
 /// What a key does while one walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,7 +55,7 @@ pub enum WalkCommand {
     Faster,
     /// The next thing over the picture that makes shadows.
     Overlay,
-    /// The next size of the shadow map.
+    /// The next size of the map or the textures.
     MapSize,
     /// The lamp swings, or stops.
     Swing,
@@ -80,12 +86,12 @@ pub const KEYS: [WalkKey; 12] = [
     key(Key::S, "S", WalkCommand::Go(-1, 0), "walk back"),
     key(Key::A, "A", WalkCommand::Go(0, -1), "walk to the left"),
     key(Key::D, "D", WalkCommand::Go(0, 1), "walk to the right"),
-    key(Key::P, "P", WalkCommand::Technique, "no shadow, planar, projective, volume, shadow map"),
+    key(Key::P, "P", WalkCommand::Technique, "no shadow, planar, projective, z-pass, z-fail, shadow map"),
     key(Key::C, "C", WalkCommand::Collision, "walls stop, or do not"),
     key(Key::Comma, "<", WalkCommand::Slower, "slower"),
     key(Key::Period, ">", WalkCommand::Faster, "faster"),
     key(Key::V, "V", WalkCommand::Overlay, "silhouettes, volumes, shadow, or nothing over the picture"),
-    key(Key::I, "I", WalkCommand::MapSize, "the shadow map's size"),
+    key(Key::I, "I", WalkCommand::MapSize, "the size of the shadow map or the silhouettes"),
     key(Key::L, "L", WalkCommand::Swing, "the lamp swings, or stops"),
     key(Key::Escape, "Esc", WalkCommand::Leave, "stop walking, free the pointer"),
 ];
@@ -145,6 +151,7 @@ fn begins(ctx: &Context, model: &mut Model) -> bool {
 
 fn act(ctx: &Context, model: &mut Model, command: WalkCommand, actions: &mut Vec<Action>) {
     let [slowest, fastest] = SPEED_LIMITS;
+    model.walk.nothing_because = None;
     match command {
         // As long as it is held: see `step`.
         WalkCommand::Go(..) => {}
@@ -159,7 +166,10 @@ fn act(ctx: &Context, model: &mut Model, command: WalkCommand, actions: &mut Vec
         WalkCommand::Faster => model.walk.speed = (model.walk.speed * FASTER).min(fastest),
         WalkCommand::Overlay => next_overlay(model),
         WalkCommand::MapSize => next_size(model, actions),
-        WalkCommand::Swing => model.animation.toggle(),
+        WalkCommand::Swing if model.scene.as_ref().is_some_and(|scene| scene.animated) => model.animation.toggle(),
+        WalkCommand::Swing => {
+            model.walk.nothing_because = Some("L does nothing: nothing moves in this scene".to_owned())
+        }
         WalkCommand::Leave => model.stop_walking(ctx),
     }
 }
@@ -183,8 +193,12 @@ fn next_overlay(model: &mut Model) {
 
 fn next_size(model: &mut Model, actions: &mut Vec<Action>) {
     let Some(scene) = &mut model.scene else { return };
-    let now = scene.draft.choice.texels();
-    let Some(now) = now else { return };
+    let Some(now) = scene.draft.choice.texels() else {
+        let technique = scene.draft.choice.technique().name();
+        let because = format!("I does nothing: {technique} has neither map nor texture. P goes to one that has");
+        model.walk.nothing_because = Some(because);
+        return;
+    };
     let next = SIZES.into_iter().find(|size| *size > now).unwrap_or(SIZES[0]);
     match scene.draft.choice.set("size", &next.to_string()) {
         Ok(()) => model.run_draft(actions),

@@ -45,7 +45,7 @@ pub const ALL: &[Builtin] = &[
     },
     Builtin {
         name: "tetrahedron",
-        lesson: "a turning tetrahedron in a shaft: the smallest closed caster, and every side of its shadow volume",
+        lesson: "a turning regular tetrahedron in a shaft: the smallest closed caster, and every side of its shadow volume",
         build: tetrahedron::build,
     },
     Builtin {

@@ -10,8 +10,9 @@ use std::sync::Arc;
 const SHAFT: [f32; 3] = [0.30, 0.33, 0.40];
 const ORANGE: [f32; 3] = [0.78, 0.35, 0.02];
 
-/// Figures from the source that founded the scene: a unit tetrahedron (its corners are 1 from its
-/// middle) at (0, 0, −6) in the box ±2, ±2, ±10, a light at (1, 1, −4).
+/// Figures from the source that founded the scene: a tetrahedron at (0, 0, −6) in the box ±2, ±2, ±10, a light at
+/// (1, 1, −4). The source's has the corners (0, 0, 0), (1, 0, 0), (0, 1, 0) and (0, 0, 1); this one is regular, its
+/// corners 1 from its middle, so that no side is unlike the others as it turns.
 pub fn build() -> Result<Scene, MeshError> {
     let shaft = Object::new("shaft", Arc::new(shapes::room([4.0, 4.0, 20.0])?), Material::matte(SHAFT));
     let tetrahedron = Arc::new(shapes::tetrahedron(1.0)?);

@@ -1,37 +1,119 @@
 //! The settings that every technique has.
 
+use super::super::lesson::{Lesson, cited};
 use super::face::{Number, SettingSpec, SettingValues, Values, Words, number, words};
 use crate::math::depth::DepthMapping;
 use crate::plan::Decision;
 use crate::scene::Shading;
 
-const DEPTH: Words<DepthMapping> = words("depth", &DEPTH_NAMES, &DepthMapping::ALL, "how distance becomes depth");
+const DEPTH: Words<DepthMapping> = words(
+    "depth",
+    &DEPTH_NAMES,
+    &DepthMapping::ALL,
+    "how distance becomes depth",
+    Lesson {
+        text: "A far plane cuts volumes open, and what is cut away is not counted: compare `standard-finite` with \
+             `reversed-infinite`, and `standard-finite-clamp`, which mends it by clamping depth. Reversed depth \
+             is also the finest: floats are dense near 0, where the far end then lies. `standard-infinite` puts \
+             infinity at 1, `standard-infinite-epsilon` a little before it.",
+        formula: "with the distance d along the view, near plane n, far plane f and epsilon e: reversed-infinite n/d; \
+             standard-infinite 1 - n/d; standard-infinite-epsilon (1 - e)(1 - n/d); standard-finite and \
+             standard-finite-clamp f(d - n) / (d(f - n))",
+        sources: &[cited::EVERITT_KILGARD, cited::LENGYEL, cited::REED],
+    },
+);
 const DEPTH_NAMES: [&str; 5] = {
     let [a, b, c, d, e] = DepthMapping::ALL;
     [a.name(), b.name(), c.name(), d.name(), e.name()]
 };
 // Two to the power of −22.
-const EPSILON: Number =
-    number("epsilon", [0.0, 0.1], "2.4e-7", "by how much standard-infinite-epsilon pulls infinity in");
-const DIFFUSE: Words<bool> =
-    words("diffuse", &["lambert", "wrapped"], &[false, true], "how brightness falls off with the angle of light");
+const EPSILON: Number = number(
+    "epsilon",
+    [0.0, 0.1],
+    "2.4e-7",
+    "by how much standard-infinite-epsilon pulls infinity in",
+    Lesson {
+        text: "Infinity is stored as 1 minus this, so that rounding can't carry it beyond 1, where it would be \
+             clipped.",
+        formula: "depth at infinity = 1 - epsilon",
+        sources: &[cited::LENGYEL],
+    },
+);
+const DIFFUSE: Words<bool> = words(
+    "diffuse",
+    &["lambert", "wrapped"],
+    &[false, true],
+    "how brightness falls off with the angle of light",
+    Lesson {
+        text: "With `lambert`, light ends where the surface turns away from it, and so does the shadow's own edge. \
+             With `wrapped` it reaches round that edge, where a caster's own shadow then shows its triangles.",
+        formula: "with the angle a between the surface's normal and the light: lambert max(0, cos a); wrapped (cos a + \
+             1) / 2",
+        sources: &[cited::LAMBERT, cited::GREEN],
+    },
+);
 const SHADING: Words<Option<Shading>> = words(
     "shading",
     &["as-given", "flat", "gouraud", "phong"],
     &[None, Some(Shading::Flat), Some(Shading::Gouraud), Some(Shading::Phong)],
     "where light is computed: as each material says, or for all alike once a triangle, a vertex or a pixel",
+    Lesson {
+        text: "`as-given` is what the materials say. `flat` has one normal a triangle, and its edges show. `gouraud` \
+             computes light at the corners and mixes colours between them: a highlight in the middle of a triangle is \
+             lost. `phong` mixes normals and computes light at every pixel. Shadows are the same in all; scene `spheres` \
+             tells them apart.",
+        formula: "with weights a + b + c = 1 of a triangle's corners: flat light(n); gouraud a light(n1) + b light(n2) + c \
+             light(n3); phong light(a n1 + b n2 + c n3), its normal made unit length",
+        sources: &[cited::GOURAUD, cited::PHONG],
+    },
 );
 const LEAVE_OUT: SettingSpec = SettingSpec {
     key: "leave-out",
     values: SettingValues::SomeOf(&Decision::NAMES),
     default: "all",
     meaning: "what the frame may do without where that is proven to change nothing",
+    lesson: Lesson {
+        text: "What a frame costs when nothing is left out: `none`; `caps,view` allows these two alone. Labels and \
+             picture stay the same to the last bit either way. Under another `depth` than `reversed-infinite`, \
+             which cuts volumes or ties depths, only `light`, `stencil`, `clear`, `map-faces` and `scissor` are \
+             decided.\n\
+             \n\
+             | decision | what is left out | where |\n\
+             |---|---|---|\n\
+             | `light` | all passes of a light | all that is in view faces away from it |\n\
+             | `caster` | a volume | nothing that receives is behind the caster, as the light sees it |\n\
+             | `view` | a volume | it lies outside a side of the view, to infinity |\n\
+             | `umbra` | a volume, or part of one | a convex caster, or a convex part of the same one, holds all \
+             of it in its umbra |\n\
+             | `away-triangles` | half of a mesh's silhouettes and caps | it is proven closed, wound outwards, \
+             not meeting itself, with the light outside and no triangle edge-on to it |\n\
+             | `caps` | both caps: z-pass counts | the caster is outside the near-clip volume |\n\
+             | `light-cap`, `dark-cap` | one cap of z-fail's | the caster, or the far end, is out of view |\n\
+             | `surfaces` | surfaces | they are out of view |\n\
+             | `hidden-triangles` | triangles of surfaces | they are on the far side of a closed surface |\n\
+             | `unlit-triangles` | triangles of surfaces, in a light's pass | they face away from that light |\n\
+             | `stencil` | the stencil buffer | nothing counts or marks |\n\
+             | `clear` | a clear of the stencil | nothing was written |\n\
+             | `map-faces` | faces of a cube map | no caster shows in them |\n\
+             | `scissor` | pixels of a light's passes | they are beyond the `range` of a lamp that fades |",
+        formula: "caps are needed only in the near-clip volume, the hull of the near rectangle and the light: a caster \
+             wholly outside one of its planes has none",
+        sources: &[cited::LENGYEL, cited::MCGUIRE],
+    },
 };
 const OCCLUSION: Words<bool> = words(
     "occlusion",
     &["off", "queries"],
     &[false, true],
     "a frame before the frame asks what shows; draws that show nothing are left out of the next",
+    Lesson {
+        text: "With `queries`, a first frame counts the samples of every draw that does nothing where it fails its \
+             tests, and draws without any are left out: the rest leaves the same pixels. It pays where much is \
+             hidden. Counts of z-fail, which happen where tests fail, and maps that are kept are not asked about. \
+             `off` draws all.",
+        formula: "a draw is left out where it passed 0 samples",
+        sources: &[cited::BITTNER],
+    },
 );
 const SPECS: [SettingSpec; 6] = [DEPTH.spec, EPSILON.spec, DIFFUSE.spec, SHADING.spec, LEAVE_OUT, OCCLUSION.spec];
 

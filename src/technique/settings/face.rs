@@ -3,6 +3,7 @@
 //! A setting is a constant of the technique that has it: [`Words`], [`Number`] or [`NumberOr`]. Its values are
 //! written once, each word beside what it stands for, so that nothing else compares words.
 
+use super::super::lesson::Lesson;
 use std::collections::BTreeMap;
 
 /// Key and value of settings, as on the command line, in files and in a capture.
@@ -19,6 +20,8 @@ pub struct SettingSpec {
     pub default: &'static str,
     /// What it does, in a few words.
     pub meaning: &'static str,
+    /// What it teaches.
+    pub lesson: Lesson,
 }
 
 /// What a setting may be.
@@ -67,9 +70,10 @@ pub(in crate::technique) const fn words<T>(
     words: &'static [&'static str],
     values: &'static [T],
     meaning: &'static str,
+    lesson: Lesson,
 ) -> Words<T> {
     assert!(words.len() == values.len(), "each word stands for something");
-    Words { spec: SettingSpec { key, values: SettingValues::OneOf(words), default: words[0], meaning }, values }
+    Words { spec: SettingSpec { key, values: SettingValues::OneOf(words), default: words[0], meaning, lesson }, values }
 }
 
 impl<T: Copy + PartialEq> Words<T> {
@@ -98,8 +102,9 @@ pub(in crate::technique) const fn whole(
     [low, high]: [i64; 2],
     default: &'static str,
     meaning: &'static str,
+    lesson: Lesson,
 ) -> Number {
-    Number { spec: SettingSpec { key, values: SettingValues::Integer(low, high), default, meaning } }
+    Number { spec: SettingSpec { key, values: SettingValues::Integer(low, high), default, meaning, lesson } }
 }
 
 /// A number with or without a fraction.
@@ -108,8 +113,9 @@ pub(in crate::technique) const fn number(
     [low, high]: [f64; 2],
     default: &'static str,
     meaning: &'static str,
+    lesson: Lesson,
 ) -> Number {
-    Number { spec: SettingSpec { key, values: SettingValues::Number(low, high), default, meaning } }
+    Number { spec: SettingSpec { key, values: SettingValues::Number(low, high), default, meaning, lesson } }
 }
 
 impl Number {
@@ -129,9 +135,10 @@ pub(in crate::technique) const fn number_or(
     words: &'static [&'static str; 1],
     (prefix, [low, high], whole): (&'static str, [f64; 2], bool),
     meaning: &'static str,
+    lesson: Lesson,
 ) -> NumberOr {
     let values = SettingValues::WordOr { words, prefix, low, high, whole };
-    NumberOr { spec: SettingSpec { key, values, default: words[0], meaning } }
+    NumberOr { spec: SettingSpec { key, values, default: words[0], meaning, lesson } }
 }
 
 impl NumberOr {

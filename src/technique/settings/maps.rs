@@ -1,5 +1,6 @@
 //! The settings of techniques that draw maps and textures.
 
+use super::super::lesson::{Lesson, cited};
 use super::common::with_own;
 use super::face::{Number, NumberOr, SettingSpec, Values, Words, number, number_or, whole, words};
 use wgpu::Face;
@@ -8,7 +9,13 @@ use wgpu::Face;
 pub(in crate::technique) const SIZE: &str = "size";
 
 const fn size(default: &'static str, most: i64, meaning: &'static str) -> Number {
-    whole(SIZE, [1, most], default, meaning)
+    const LESSON: Lesson = Lesson {
+        text: "Texels along each side. Too few, and edges are stairs; twice as many cost four times the memory.",
+        formula: "t = 2 d tan(v/2) / N, the side of a texel at the distance d under the field of view v, with N texels \
+             a side",
+        sources: &[cited::WILLIAMS],
+    };
+    whole(SIZE, [1, most], default, meaning, LESSON)
 }
 
 const REDRAW: Words<bool> = words(
@@ -16,6 +23,13 @@ const REDRAW: Words<bool> = words(
     &["always", "changed"],
     &[false, true],
     "maps and textures are drawn in every frame, or only where what makes them has changed",
+    Lesson {
+        text: "With `changed`, maps and textures stay from frame to frame while nothing that makes them changes; \
+             with `always` they are drawn in every frame. They are made of places about the light, so they \
+             survive a moving eye.",
+        formula: "a map depends on light, casters and size, and not on the eye",
+        sources: &[cited::WILLIAMS],
+    },
 );
 const MAP_SIZE: Number = size("1024", 8192, "texels along each side of the map");
 // Rounding of positions to f32 differs by a few steps between the camera's and the light's view.
@@ -24,28 +38,75 @@ const CONSTANT: Number = whole(
     [-1_000_000, 1_000_000],
     "16",
     "steps of depth by which the map is pushed away from the light",
+    Lesson {
+        text: "Steps of depth: too few, and rounding alone makes surfaces darken themselves (acne).",
+        formula: "stored depth = depth - b r, away from the light, with the smallest step of depth r",
+        sources: &[cited::REEVES, cited::SEGAL_AKELEY],
+    },
 );
-const SLOPE: Number =
-    number("bias-slope", [-1000.0, 1000.0], "2.0", "the same in units of a triangle's depth slope across one texel");
-const NORMAL: Number =
-    number("bias-normal", [-100.0, 100.0], "0", "texels by which a lookup is moved along the surface's normal");
+const SLOPE: Number = number(
+    "bias-slope",
+    [-1000.0, 1000.0],
+    "2.0",
+    "the same in units of a triangle's depth slope across one texel",
+    Lesson {
+        text: "Depth slopes across a texel: a texel covers a piece of a slanted surface, and its depth is that of \
+             one point. With 0 every slanted surface is striped; far too much, and shadows leave their casters \
+             (peter-panning).",
+        formula: "offset = slope * max(|dz/dx|, |dz/dy|), a texel; a plane needs at least (sqrt 2 / 2) t tan a + r, \
+             with the texel's side t, the light's angle a to the normal and one step of depth r",
+        sources: &[cited::WILLIAMS, cited::SEGAL_AKELEY],
+    },
+);
+const NORMAL: Number = number(
+    "bias-normal",
+    [-100.0, 100.0],
+    "0",
+    "texels by which a lookup is moved along the surface's normal",
+    Lesson {
+        text: "Moves the lookup off the surface instead of pushing the map away: farther where the light grazes, \
+             not at all where it falls straight.",
+        formula: "moved by k t sin a along the normal, with the texel's side t and the light's angle a to the normal",
+        sources: &[cited::HOLBERT],
+    },
+);
 const RECEIVER_PLANE: Words<bool> = words(
     "bias-receiver-plane",
     &["off", "on"],
     &[false, true],
     "compares each texel with the surface's own plane there",
+    Lesson {
+        text: "With `on`, each texel is compared with the depth that the surface's own plane has there: the right \
+             bias for flat surfaces, at the cost of derivatives, which break at edges. With `off`, all are \
+             compared with one depth.",
+        formula: "compared depth = z + dz/du * (du) + dz/dv * (dv), with du and dv from the point to the texel's \
+             centre",
+        sources: &[cited::ISIDORO],
+    },
 );
 const CULL: Words<Option<Face>> = words(
     "cull",
     &["none", "back", "front"],
     &[None, Some(Face::Back), Some(Face::Front)],
     "which faces the map leaves out",
+    Lesson {
+        text: "With `front`, the map holds back faces, so front faces need no bias; thin casters and contacts then \
+             leak light. `back` leaves out the back faces, and `none` nothing.",
+        formula: "the map keeps the nearest depth of the faces that are left",
+        sources: &[cited::WANG_MOLNAR],
+    },
 );
 const FILTER: NumberOr = number_or(
     "filter",
     &["none"],
     ("pcf:", [1.0, 15.0], true),
     "how many texels along each side are compared and averaged",
+    Lesson {
+        text: "`pcf:K` compares K by K texels and averages: softer edges that look right, but labels are no righter \
+             than without. `none` compares one texel.",
+        formula: "light = (texels that are not nearer to the light than the surface) / K^2",
+        sources: &[cited::REEVES],
+    },
 );
 
 /// In the order in which they are shown.
@@ -105,21 +166,53 @@ const PASSES: Words<bool> = words(
     &["single", "multi"],
     &[true, false],
     "silhouettes are read while lighting, or darken the lit picture one by one",
+    Lesson {
+        text: "`multi` lights the scene first and darkens it by one silhouette after another: a silhouette takes \
+             away what ambient and other lights gave as well. With `single`, it takes away of its own light \
+             alone.",
+        formula: "with ambient A, lights L and what silhouettes let through T: single A + sum of L * (product of its \
+             T); multi (A + sum of L) * (product of all T)",
+        sources: &[cited::SEGAL],
+    },
 );
-const REVERSE: Words<bool> =
-    words("reverse", &["off", "on"], &[false, true], "silhouettes also fall on what is behind the light");
+const REVERSE: Words<bool> = words(
+    "reverse",
+    &["off", "on"],
+    &[false, true],
+    "silhouettes also fall on what is behind the light",
+    Lesson {
+        text: "With `on`, silhouettes fall on what is behind the light too, through the point that a projection \
+             turns round at; with `off`, not.",
+        formula: "(s, t) = (x, y) / q is the same for (x, y, q) and (-x, -y, -q): off, q > 0 is asked for",
+        sources: &[cited::SEGAL],
+    },
+);
 
 const FIT: Words<bool> = words(
     "fit",
     &["on", "off"],
     &[true, false],
     "the picture fits the caster; or it has 90° of a lamp's view, or as much of a sun's as the scene is large",
+    Lesson {
+        text: "With `on` the picture is as large as the caster's silhouette. With `off` it has 90 degrees of a lamp's view \
+             around the caster's middle, or as much of a sun's as the scene is large: a small caster gets few texels, and \
+             one that is wider is cut off, and beyond its picture all of the light arrives.",
+        formula: "x and y of the picture = slopes from the light's axis / the largest slope (on), or / tan 45 degrees (off)",
+        sources: &[cited::SEGAL],
+    },
 );
 const BORDER: Words<bool> = words(
     "border",
     &["on", "off"],
     &[true, false],
     "a ring of clear texels round the silhouette and beyond; without it the last texels go on for ever",
+    Lesson {
+        text: "With `on` a ring of clear texels surrounds the silhouette, and beyond the picture nothing is on light's way. \
+             With `off` the silhouette touches the picture's edge and lookups are clamped to it: its last texels go on \
+             for ever, as streaks of shadow.",
+        formula: "on: scale 0.98 / largest slope; off: 1 / largest slope, and a lookup at clamp(place, 0, 1)",
+        sources: &[cited::SEGAL],
+    },
 );
 
 /// In the order in which they are shown.

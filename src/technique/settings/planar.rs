@@ -1,5 +1,6 @@
 //! The settings of planar shadows.
 
+use super::super::lesson::{Lesson, cited};
 use super::common::with_own;
 use super::face::{SettingSpec, Values, Words, words};
 use crate::geometry::planar::Clip;
@@ -10,14 +11,42 @@ const NO_OFFSET: DepthBiasState = DepthBiasState { constant: 0, slope_scale: 0.0
 /// projected apart from the surface that lies in it.
 const OFFSET: DepthBiasState = DepthBiasState { constant: 64, slope_scale: 2.0, clamp: 0.0 };
 
-const STENCIL: Words<bool> = words("stencil", &["on", "off"], &[true, false], "keeps shadows on their receiver");
-const BLEND: Words<bool> =
-    words("blend", &["once", "twice"], &[true, false], "how often overlapping triangles darken a pixel");
+const STENCIL: Words<bool> = words(
+    "stencil",
+    &["on", "off"],
+    &[true, false],
+    "keeps shadows on their receiver",
+    Lesson {
+        text: "With `off`, the flattened casters are not kept on their receiver: shadows run off it, into the air. \
+             With `on`, each receiver's pixels have a mark of its own first.",
+        formula: "a receiver's mark is even; a flattened caster raises it by 1 where it is found; light is added where \
+             the stencil is even",
+        sources: &[cited::KILGARD],
+    },
+);
+const BLEND: Words<bool> = words(
+    "blend",
+    &["once", "twice"],
+    &[true, false],
+    "how often overlapping triangles darken a pixel",
+    Lesson {
+        text: "With `twice`, each layer of a flattened caster darkens what is below once more. With `once`, the \
+             first one takes the mark away that the next would need.",
+        formula: "once: the light, or none of it; twice: light * b^k under k layers, of which each leaves the share b",
+        sources: &[cited::KILGARD],
+    },
+);
 const CLIP: Words<Clip> = words(
     "clip",
     &["on", "off"],
     &[Clip::BetweenPlaneAndLight, Clip::Off],
     "drops what is beyond the light or below the receiver",
+    Lesson {
+        text: "With `off`, what is beyond the light or below the receiver throws a shadow too: the anti-shadow and \
+             the false shadow. `on` keeps what is between the two.",
+        formula: "with heights over the receiver's plane: a point casts where 0 < height < the light's height",
+        sources: &[cited::BLINN],
+    },
 );
 const Z_FIGHTING: Words<(CompareFunction, DepthBiasState)> = words(
     "z-fighting",
@@ -28,9 +57,28 @@ const Z_FIGHTING: Words<(CompareFunction, DepthBiasState)> = words(
         (CompareFunction::GreaterEqual, NO_OFFSET),
     ],
     "how a shadow wins over the surface it lies on",
+    Lesson {
+        text: "A flattened caster lies in its receiver's plane: depths tie, and rounding decides pixel by pixel. \
+             With `depth-off` marked pixels have no depth test; `polygon-offset` pulls the shadow towards the \
+             eye; `none` shows the fight.",
+        formula: "offset = slope * m + constant * r, with the triangle's depth slope m a pixel and the smallest step \
+             of depth r",
+        sources: &[cited::BLINN, cited::SEGAL_AKELEY],
+    },
 );
-const CACHE: Words<bool> =
-    words("cache", &["on", "off"], &[true, false], "keeps flattened casters until plane, caster or light change");
+const CACHE: Words<bool> = words(
+    "cache",
+    &["on", "off"],
+    &[true, false],
+    "keeps flattened casters until plane, caster or light change",
+    Lesson {
+        text: "With `off`, every frame flattens every caster anew: what a moving light costs. `on` keeps what was \
+             flattened until plane, caster or light change.",
+        formula: "flattened point = (P.L) V - (P.V) L, for the plane P, the light L and the point V: the same while \
+             none of the three changes",
+        sources: &[cited::BLINN],
+    },
+);
 
 /// In the order in which they are shown.
 pub(super) const SETTINGS: [SettingSpec; 11] =

@@ -1,5 +1,6 @@
 //! The settings of techniques that count shadow volumes.
 
+use super::super::lesson::{Lesson, cited};
 use super::common::{CommonSettings, with_own};
 use super::face::{NumberOr, SettingSpec, Values, Words, number_or, words};
 use crate::geometry::{Casters, Extrusion, SilhouetteBy};
@@ -15,6 +16,15 @@ const CASTERS: Words<WhoCasts> = words(
         WhoCasts::Always(Casters::LightBackFacing),
     ],
     "which triangles cast",
+    Lesson {
+        text: "`all` lets every triangle cast, turned towards the light: right for any mesh, at twice the volume of \
+             a closed one. `light-facing` suffices for a closed mesh with the light outside, and is wrong for \
+             others: holes and inner lights. `light-back-facing` keeps the other half. `by-topology` proves that \
+             `light-facing` suffices, or says what it could not prove.",
+        formula: "an edge bounds the shadow |m| times, with m the sum of +1 or -1 of each casting triangle at it, by \
+             the way in which the triangle, turned towards the light, runs along it",
+        sources: &[cited::ALDRIDGE, cited::KIM],
+    },
 );
 // Farther, single precision loses the silhouette; nearer than not at all makes no sense.
 const EXTRUSION: NumberOr = number_or(
@@ -22,66 +32,142 @@ const EXTRUSION: NumberOr = number_or(
     &["infinite"],
     ("finite:", [0.0, 1e6], false),
     "how far volumes reach: without end, or K times a vertex's distance from the light",
+    Lesson {
+        text: "With `infinite`, volumes end nowhere. `finite:K` ends volumes at K times a vertex's distance from \
+             the light, beyond the vertex: a light that comes close to its caster ends the shadow in mid-air.",
+        formula: "with the light L and the vertex V: infinite is the direction (V - L, 0); finite:K is the point (V + \
+             K(V - L), 1)",
+        sources: &[cited::CROW, cited::EVERITT_KILGARD],
+    },
 );
 const FACES: Words<bool> = words(
     "faces",
     &["two-sided", "two-pass"],
     &[false, true],
     "front and back faces in one draw, or in passes of their own",
-);
-const ORDER: Words<bool> = words(
-    "order",
-    &["add-first", "subtract-first"],
-    &[false, true],
-    "which of the two passes comes first: the faces that add, or those that take away",
+    Lesson {
+        text: "With `two-sided`, each face has its own stencil operation in one draw. `two-pass` draws front and \
+             back faces apart, as hardware without two-sided stencil had to.",
+        formula: "z-pass: +1 front, -1 back, where the depth test passes; z-fail: +1 back, -1 front, where it fails",
+        sources: &[cited::HEIDMANN, cited::EVERITT_KILGARD],
+    },
 );
 const OPERATIONS: Words<CountsBy> = words(
     "operations",
     &["wrap", "clamp", "invert"],
     &[CountsBy::Wrapping, CountsBy::Clamping, CountsBy::Inverting],
     "what a face does: steps that wrap round the ends of the count or stop there, or one bit turned over (parity)",
+    Lesson {
+        text: "With `wrap`, 255 and one more are 0, and 0 less one is 255: the order of faces makes no difference, and \
+             counts are right but for multiples of 256. With `clamp` they stop at 0 and 255, as before wrapping \
+             operations existed. With `invert` each face turns one bit over, which tells odd from even alone: two \
+             volumes over one surface read as none.",
+        formula: "wrap (count + 1) mod 256; clamp min(count + 1, 255); invert 1 - count",
+        sources: &[cited::HEIDMANN, cited::EVERITT_KILGARD],
+    },
+);
+const ORDER: Words<bool> = words(
+    "order",
+    &["add-first", "subtract-first"],
+    &[false, true],
+    "which of the two passes comes first: the faces that add, or those that take away",
+    Lesson {
+        text: "With `faces = two-pass` and counts that stop at 0 and 255, the order decides: `add-first` loses nothing below \
+             256, `subtract-first` loses every step that comes before its other half, which is the classic fault. With \
+             counts that wrap it makes no difference.",
+        formula: "clamped, from 0: 0 + 1 - 1 = 0, but 0 - 1 + 1 = 1",
+        sources: &[cited::HEIDMANN, cited::EVERITT_KILGARD],
+    },
 );
 const BITS: Words<u8> = words(
     "stencil-bits",
     &["8", "4", "2", "1"],
     &[0xff, 0xf, 0x3, 0x1],
     "how many bits of the stencil are counted in, by its masks: counts are kept modulo 2 to that power",
+    Lesson {
+        text: "A stencil of `8` bits is what all have today; `4`, `2` and `1` are left of it by its masks. A count of 16 reads as none in four bits, and one bit is parity. Masks cut off \
+             what is stored and not what is computed: a count of four bits does not stop at 15.",
+        formula: "stored = count mod 2^bits, with read and write mask 2^bits - 1",
+        sources: &[cited::SEGAL_AKELEY],
+    },
 );
 const CAPS: Words<[bool; 2]> = words(
     "caps",
     &["both", "light", "dark", "none"],
     &[[true, true], [true, false], [false, true], [false, false]],
     "which of the caps that the count needs are drawn",
+    Lesson {
+        text: "`both` draws what the count needs: of z-fail light cap and dark cap, of z-pass none but for casters that are \
+             not drawn or volumes that end. With `light` the far end is open, with `dark` the end at the caster, with \
+             `none` both: z-fail then miscounts every surface behind the open end.",
+        formula: "z-fail is right where each volume is closed: what a ray to infinity enters it leaves again",
+        sources: &[cited::CARMACK, cited::BILODEAU, cited::EVERITT_KILGARD],
+    },
 );
 const START: Words<bool> = words(
     "start",
     &["zero", "eye-count"],
     &[false, true],
     "what the count begins with: nothing, or the volumes around the eye as the clear value",
+    Lesson {
+        text: "`zero` is right where the eye is in no volume. `eye-count` clears the stencil to the number of volumes around \
+             the eye, found by exact tests on the CPU: right where the whole near plane is in those and no others, and \
+             wrong for part of the picture where the near plane cuts a volume. Z-fail needs neither.",
+        formula: "count(p) = start + front faces before p - back faces before p",
+        sources: &[cited::CROW, cited::EVERITT_KILGARD],
+    },
 );
 const FAR_VERTICES: Words<bool> = words(
     "far-vertices",
     &["from-light", "from-origin"],
     &[false, true],
     "where a finite volume's far vertices are carried from: the light, or the origin as the light is not added back",
+    Lesson {
+        text: "Far vertices of finite volumes are on the way from the light through each vertex, with `from-light`. \
+             `from-origin` forgets to \
+             add the light back after scaling that way: right only while the light is the world's origin, and the \
+             volumes lean towards the origin the more the farther it is.",
+        formula: "with light L, vertex V and factor K: from-light L + (K + 1)(V - L); from-origin (K + 1)(V - L)",
+        sources: &[],
+    },
 );
 const COUNTER: Words<bool> = words(
     "counter",
     &["stencil", "float"],
     &[false, true],
     "where counts are kept: in eight bits, or signed in a float a pixel",
+    Lesson {
+        text: "`stencil` counts in eight bits. `float` counts signed, beyond eight bits, in a target of its own; it \
+             is what mends 256 nested volumes.",
+        formula: "stencil: the count mod 256; float: the count",
+        sources: &[],
+    },
 );
 const LIGHT_CAPS: Words<bool> = words(
     "light-caps",
     &["tested", "never"],
     &[false, true],
     "caps nearest the light pass the depth test, or never do",
+    Lesson {
+        text: "`never` lets light caps fail the depth test without asking: right while every caster is drawn, since \
+             its surface is there, wrong for casters that are not. `tested` asks, and a cap that coincides with \
+             its surface fails.",
+        formula: "tested: fails where the cap's depth is not nearer than what is stored, and it is equal to its \
+             surface's bit for bit; never: fails",
+        sources: &[cited::EVERITT_KILGARD],
+    },
 );
 const SILHOUETTE: Words<SilhouetteBy> = words(
     "silhouette",
     &["adjacency", "edge-list"],
     &[SilhouetteBy::Adjacency, SilhouetteBy::Search],
     "how shared edges are found: built once, or searched each time",
+    Lesson {
+        text: "`edge-list` searches all edges for each edge's other triangle: a quadratic search that `adjacency` \
+             does once.",
+        formula: "with n edges: adjacency n steps a frame; edge-list n^2",
+        sources: &[cited::LENGYEL],
+    },
 );
 
 const OWN: [SettingSpec; 12] = [

@@ -202,7 +202,8 @@ pub fn purpose(
              plane cuts none."
         ),
         (Some(Counting::InFrontPlus), _) => {
-            "With what the near plane began with, what is left contains the surface, wherever the eye is.".to_owned()
+            "With what the near plane began with, if anything, what is left contains the surface, wherever the eye is."
+                .to_owned()
         }
         (Some(Counting::Behind), _) => "What is left contains the surface, wherever the eye is.".to_owned(),
         (None, _) => "Either way, what is left contains the surface, wherever the eye is.".to_owned(),

@@ -18,6 +18,8 @@ pub struct Volume {
     pub counting: Counting,
     /// A body that is proven closed, of which one side casts.
     pub is_body: bool,
+    /// No surface is behind it: at each its count is 0.
+    pub darkens_nothing: bool,
     pub mesh: MeshId,
     pub parts: VolumeParts,
     /// Which of its parts count in the volume pass.

@@ -198,7 +198,11 @@ fn depth(ui: &mut Ui, model: &mut Model, shown: &Shown, range: [f64; 2]) {
         modes_legend::depth_bars(ui, model, shown, range, full);
     }
     ramp(ui, is_raw);
-    let unit = |value: f64| if is_raw { format::digits(value) } else { format::metres(value) };
+    let curve = model.frame.capture.as_ref().map(|capture| capture.depth);
+    let unit = |value: f64| match curve {
+        Some(curve) if !is_raw => format::length(value, curve.unit.name()),
+        _ => format::digits(value),
+    };
     ui.horizontal(|ui| {
         ui.label(theme::number(unit(range[0])).color(theme::of(ui).text));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -379,7 +379,7 @@ fn layer_list(ui: &mut Ui, layers: &[layers::Layer], mut chosen: usize) -> Optio
 }
 
 fn depth_mode(ui: &mut Ui, model: &mut Model) {
-    let labels = [("Linear", "The distance in metres"), ("Raw", "As stored: 1 at the near plane, 0 at infinity")];
+    let labels = [("Linear", "The distance along the view"), ("Raw", "As stored: 1 at the near plane, 0 at infinity")];
     let chosen = usize::from(model.view.depth_mode == DepthMode::Raw);
     if let Some(index) = segments(ui, &labels, Some(chosen)) {
         model.view.depth_mode = if index == 0 { DepthMode::Linear } else { DepthMode::Raw };

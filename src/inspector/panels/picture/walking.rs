@@ -40,6 +40,7 @@ pub fn banner(ui: &mut Ui, model: &Model, rect: Rect) {
             theme::heading(ui, "Walking: Esc stops and frees the pointer");
             let walls = if model.walk.collides { "walls stop (C)" } else { "through walls (C)" };
             let words = format!("W S A D and the mouse · {walls} · {:.1} m/s (< >) · F1 lists all", model.walk.speed);
+            let words = model.walk.nothing_because.as_ref().unwrap_or(&words);
             ui.add(egui::Label::new(theme::note(words)).truncate());
         });
     });

@@ -182,7 +182,7 @@ fn drawn(
     for (mark, y) in &placed {
         let rect = row(*y);
         match mark {
-            Mark::Rung(index) => paint_rung(ui, history, &ladder.rungs[*index], rect),
+            Mark::Rung(index) => paint_rung(ui, capture, history, &ladder.rungs[*index], rect),
             Mark::More(from, to) => paint_more(ui, &ladder.rungs[*from..*to], rect),
             other => paint_end(ui, capture, history, ladder, *other, rect),
         }
@@ -202,7 +202,7 @@ fn rung(
     let Some(event) = history.events.get(rung.event) else { return };
     let response = ui.interact(rect, ui.scope_id().with(("rung", rung.event)), Sense::click());
     let is_selected = model.selection.has_event(event);
-    response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_selected, name(history, rung)));
+    response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_selected, name(capture, history, rung)));
     if response.clicked() {
         model.selection.select_event(event);
         own.scrolls_to_selected = true;
@@ -240,12 +240,12 @@ fn folded(rungs: &[Rung]) -> String {
 }
 
 /// A rung in words.
-fn name(history: &PixelHistory, rung: &Rung) -> String {
+fn name(capture: &Capture, history: &PixelHistory, rung: &Rung) -> String {
     let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return String::new() };
     let (part, of) = named(one);
     let counted = if rung.added == 0 { "not counted".to_owned() } else { added(rung.added) };
     let (triangle, side) = (one.triangle + 1, side(one));
-    let [distance, running] = [numbers::metres(rung.distance), signed(rung.running)];
+    let [distance, running] = [numbers::length(rung.distance, capture.depth.unit.name()), signed(rung.running)];
     format!("rung: {part} of {of}, triangle {triangle}, {side}, at {distance}: {counted}, count {running}")
 }
 
@@ -256,7 +256,7 @@ fn ray(ui: &Ui, columns: Columns, top: f32, placed: &[Placed]) {
     ui.painter().vline(columns.ray, top + first.1..=top + last.1, stroke);
 }
 
-fn paint_rung(ui: &Ui, history: &PixelHistory, rung: &Rung, rect: Rect) {
+fn paint_rung(ui: &Ui, capture: &Capture, history: &PixelHistory, rung: &Rung, rect: Rect) {
     let Some(one) = history.events.get(rung.event).and_then(|event| event.triangle()) else { return };
     let columns = Columns::of(rect);
     let (painter, y) = (ui.painter(), rect.center().y);
@@ -281,7 +281,7 @@ fn paint_rung(ui: &Ui, history: &PixelHistory, rung: &Rung, rect: Rect) {
     let number = theme::number_font(theme::SMALL_SIZE);
     let ink = if counts { theme::of(ui).dim } else { theme::of(ui).faint };
     let is_clipped = matches!(one.fate, Fate::Clipped(_) | Fate::Discarded(_) | Fate::Culled);
-    let distance = if is_clipped { "clipped".to_owned() } else { short_metres(rung.distance) };
+    let distance = if is_clipped { "clipped".to_owned() } else { short(capture, rung.distance) };
     painter.text(pos2(columns.distance, y), Align2::RIGHT_CENTER, distance, number.clone(), ink);
     if !counts {
         return;
@@ -296,14 +296,15 @@ fn paint_rung(ui: &Ui, history: &PixelHistory, rung: &Rung, rect: Rect) {
     painter.text(pos2(columns.count, y), Align2::RIGHT_CENTER, signed(rung.running), number, theme::of(ui).text);
 }
 
-/// Metres in as few digits as a column has room for.
-fn short_metres(distance: f64) -> String {
+/// A distance in as few digits as a column has room for. A unit that is not known has a letter's room.
+fn short(capture: &Capture, distance: f64) -> String {
+    let unit = capture.depth.unit.letter();
     match distance {
         _ if !distance.is_finite() => "∞".to_owned(),
-        ..0.1 => numbers::metres(distance),
-        ..100.0 => format!("{distance:.2} m"),
-        100.0..10_000.0 => format!("{distance:.0} m"),
-        _ => numbers::metres(distance),
+        ..0.1 => numbers::length(distance, unit),
+        ..100.0 => format!("{distance:.2} {unit}"),
+        100.0..10_000.0 => format!("{distance:.0} {unit}"),
+        _ => numbers::length(distance, unit),
     }
 }
 
@@ -335,7 +336,7 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
             let [from, to] = [columns.ray - 14.0, columns.ray + 14.0].map(|x| pos2(x, y));
             painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.5, theme::of(ui).dim), 4.0, 3.0));
             words("near plane", theme::of(ui).dim);
-            number(columns.distance, short_metres(capture.camera.near), theme::of(ui).dim);
+            number(columns.distance, short(capture, capture.camera.near), theme::of(ui).dim);
             if ladder.start != 0 && !ladder.is_from_infinity() {
                 number(columns.count, signed(ladder.start), theme::of(ui).text);
             }
@@ -346,7 +347,11 @@ fn paint_end(ui: &Ui, capture: &Capture, history: &PixelHistory, ladder: &Ladder
             let of = surface_name(history).unwrap_or("");
             let words = ["surface", of];
             theme::two_inks(ui, pos2(columns.name, y), columns.name_room, words, theme::of(ui).text);
-            number(columns.distance, ladder.surface.map(short_metres).unwrap_or_default(), theme::of(ui).text);
+            number(
+                columns.distance,
+                ladder.surface.map(|at| short(capture, at)).unwrap_or_default(),
+                theme::of(ui).text,
+            );
             // What the light pass asks about.
             let count = match ladder.tested {
                 Count::Stencil(byte) if ladder.bits.hold_otherwise(ladder.count, byte) => byte.to_string(),

@@ -211,10 +211,16 @@ fn frame_values(ui: &mut Ui, pairs: &mut Pairs, capture: &Capture, frame: &Frame
         pairs.text(ui, "depth", &format::depth(depth));
         let measure = DepthMeasure::of_camera(capture);
         let distance = measure.value(depth);
-        pairs.text(ui, "distance", &distance.map_or_else(|| "no surface".to_owned(), format::metres));
-        let metres = |step: Option<f64>| step.map_or_else(|| "–".to_owned(), format::metres);
-        pairs.text(ui, "one step", &metres(measure.step_at(depth)));
-        pairs.text(ui, &format!("in {FIXED_BITS} bits"), &metres(measure.fixed_step_at(depth, FIXED_BITS)));
+        pairs.text(
+            ui,
+            "distance",
+            &distance.map_or_else(|| "no surface".to_owned(), |away| format::length(away, capture.depth.unit.name())),
+        );
+        let length = |step: Option<f64>| {
+            step.map_or_else(|| "–".to_owned(), |step| format::length(step, capture.depth.unit.name()))
+        };
+        pairs.text(ui, "one step", &length(measure.step_at(depth)));
+        pairs.text(ui, &format!("in {FIXED_BITS} bits"), &length(measure.fixed_step_at(depth, FIXED_BITS)));
     }
     match frame.stencil.as_ref().map(|stencil| stencil.image.byte_at(at)) {
         Some(Some(stencil)) => stencil_cells(ui, pairs, stencil),

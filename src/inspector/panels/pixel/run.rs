@@ -115,7 +115,9 @@ fn values(capture: &Capture, step: usize, frame: &FrameSnapshot, at: [u32; 2]) -
 }
 
 fn distance(capture: &Capture, depth: f32) -> String {
-    DepthMeasure::of_camera(capture).value(depth).map_or_else(|| "–".to_owned(), format::metres)
+    DepthMeasure::of_camera(capture)
+        .value(depth)
+        .map_or_else(|| "–".to_owned(), |away| format::length(away, capture.depth.unit.name()))
 }
 
 fn row(ui: &mut Ui, now: &Values, before: Option<&Values>, [has_stencil, has_count]: [bool; 2]) {

@@ -1,0 +1,141 @@
+//! The frames that are held, and what their GPU left.
+
+use crate::common::request;
+use std::sync::Arc;
+use stencilscope::capture::{Capture, Step};
+use stencilscope::history::PixelHistory;
+use stencilscope::plan::{FramePlan, Pass};
+use stencilscope::reading::map_readers::MapReaders;
+use stencilscope::scene::builtin;
+use stencilscope::scene::{OpenSpec, Scene, open};
+use stencilscope::session::Session;
+use stencilscope::technique::{SettingSpec, SettingValues, Technique};
+
+const SIZE: [u32; 2] = [80, 60];
+/// Its frame takes as long as ten others: it is held with the defaults of a few techniques.
+const LARGE: &str = "tiger-cage";
+
+/// A frame to hold.
+pub struct Job {
+    scene: &'static str,
+    technique: Technique,
+    settings: Vec<(&'static str, String)>,
+}
+
+impl std::fmt::Display for Job {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} by {}", self.scene, self.technique.name())?;
+        self.settings.iter().try_for_each(|(key, value)| write!(f, " {key}={value}"))
+    }
+}
+
+/// Values of a setting beside its default.
+fn values(technique: Technique, spec: &SettingSpec) -> Vec<String> {
+    let inside = |low: f64, high: f64| [3.0, 64.0, 1.0, 0.05].into_iter().find(|n| (low..=high).contains(n));
+    let values: Vec<String> = match spec.values {
+        SettingValues::OneOf(words) => words.iter().map(|word| (*word).to_owned()).collect(),
+        // Each of them where they are decided about, else none of them.
+        SettingValues::SomeOf(words) if technique == Technique::Auto => {
+            words.iter().map(|word| (*word).to_owned()).chain(["none".to_owned()]).collect()
+        }
+        SettingValues::SomeOf(_) => vec!["none".to_owned()],
+        SettingValues::Integer(low, high) => vec![64.clamp(low, high).to_string()],
+        SettingValues::Number(low, high) => inside(low, high).map(|n| n.to_string()).into_iter().collect(),
+        SettingValues::WordOr { words, prefix, low, high, .. } => {
+            let number = inside(low, high).map(|n| format!("{prefix}{n}"));
+            words.iter().map(|word| (*word).to_owned()).chain(number).collect()
+        }
+    };
+    values.into_iter().filter(|value| value != spec.default).collect()
+}
+
+/// Every technique in every scene, and every value of its settings in one: the next, each time.
+pub fn jobs() -> Vec<Job> {
+    let scenes: Vec<&str> = builtin::ALL.iter().map(|builtin| builtin.name).collect();
+    let quick: Vec<&str> = scenes.iter().copied().filter(|name| *name != LARGE).collect();
+    let mut jobs = Vec::new();
+    for technique in Technique::ALL {
+        for scene in &scenes {
+            let is_slow = *scene == LARGE && technique != Technique::Auto;
+            if !is_slow {
+                jobs.push(Job { scene, technique, settings: Vec::new() });
+            }
+        }
+        for spec in technique.settings() {
+            for value in values(technique, spec) {
+                let scene = quick[jobs.len() % quick.len()];
+                // What it changes only beside another.
+                let beside = (spec.key == "epsilon").then(|| ("depth", "standard-infinite-epsilon".to_owned()));
+                jobs.push(Job { scene, technique, settings: beside.into_iter().chain([(spec.key, value)]).collect() });
+            }
+        }
+    }
+    // Counts beyond eight bits, and both passes of faces in floats.
+    let gate =
+        |key, value: &str| Job { scene: "gate", technique: Technique::ZFail, settings: vec![(key, value.to_owned())] };
+    jobs.extend([gate("counter", "float"), gate("operations", "clamp"), gate("faces", "two-pass")]);
+    let inside =
+        |technique, key, value: &str| Job { scene: "inside", technique, settings: vec![(key, value.to_owned())] };
+    jobs.push(inside(Technique::ZPassPlus, "counter", "float"));
+    jobs.push(inside(Technique::ZPass, "faces", "two-pass"));
+    jobs
+}
+
+/// A frame with what is known of some of its pixels.
+pub struct Frame {
+    pub scene: Scene,
+    pub capture: Capture,
+    pub plan: Arc<FramePlan>,
+    pub pixels: Vec<(PixelHistory, [u32; 2])>,
+    pub readers: Vec<Option<MapReaders>>,
+}
+
+impl Frame {
+    pub fn of(session: &mut Session, job: &Job) -> Frame {
+        let scene = open(&OpenSpec::new(job.scene)).expect("a built-in scene");
+        let mut request = request(job.technique, SIZE);
+        for (key, value) in &job.settings {
+            request.choice.set(key, value).unwrap_or_else(|error| panic!("{job}: {error}"));
+        }
+        let (capture, plan) =
+            session.capture_with_plan(&scene, &request).unwrap_or_else(|error| panic!("{job}: {error}"));
+        let pixels = pixels(&capture);
+        let pixels =
+            pixels.into_iter().map(|at| (session.history(&plan, &capture, at).expect("a history"), at)).collect();
+        let plan = Arc::new(plan);
+        let readers = (0..capture.lights.len()).map(|light| MapReaders::new(&capture, Some(&plan), light)).collect();
+        Frame { scene, capture, plan, pixels, readers }
+    }
+
+    pub fn step(&self, index: usize) -> (&Step, &Pass) {
+        (&self.capture.steps[index], &self.plan.passes[index])
+    }
+
+    /// The stencil after a step; 0 before the first.
+    pub fn stencil(&self, step: Option<usize>, at: [u32; 2]) -> Option<u8> {
+        match step {
+            None => Some(0),
+            Some(step) => self.capture.frame_at(step)?.stencil.as_ref()?.image.byte_at(at),
+        }
+    }
+
+    pub fn label(&self, light: usize, at: [u32; 2]) -> Option<u8> {
+        self.capture.lights[light].shadow.as_ref()?.byte_at(at)
+    }
+}
+
+/// One of each label of each light, and the picture's middle.
+fn pixels(capture: &Capture) -> Vec<[u32; 2]> {
+    let mut pixels = vec![[SIZE[0] / 2, SIZE[1] / 2]];
+    for shadow in capture.lights.iter().filter_map(|light| light.shadow.as_ref()) {
+        for label in 0..4 {
+            // Not along the picture's border, and not always the first.
+            let all = (5..SIZE[1]).step_by(7).flat_map(|y| (3..SIZE[0]).step_by(5).map(move |x| [x, y]));
+            let of_label: Vec<[u32; 2]> = all.filter(|at| shadow.byte_at(*at) == Some(label)).collect();
+            pixels.extend(of_label.get(of_label.len() / 3));
+        }
+    }
+    pixels.sort_unstable();
+    pixels.dedup();
+    pixels
+}

@@ -1,0 +1,42 @@
+//! Patterns of sentences: text with gaps.
+
+/// What stands in the gaps `{}` of a pattern; `None` where the text is another one.
+pub fn gaps<'a>(pattern: &str, text: &'a str) -> Option<Vec<&'a str>> {
+    let mut pieces = pattern.split("{}");
+    let mut rest = text.strip_prefix(pieces.next()?)?;
+    let pieces: Vec<&str> = pieces.collect();
+    let mut found = Vec::new();
+    for (index, piece) in pieces.iter().enumerate() {
+        let is_last = index + 1 == pieces.len();
+        let at = if is_last { rest.strip_suffix(piece).map(str::len) } else { rest.find(piece) }?;
+        found.push(&rest[..at]);
+        rest = &rest[at + piece.len()..];
+    }
+    rest.is_empty().then_some(found)
+}
+
+/// A number as it is written for people.
+pub fn number(text: &str) -> f64 {
+    let plain: String = text.chars().filter(|c| *c != '\u{2009}').map(|c| if c == '−' { '-' } else { c }).collect();
+    let plain = plain.split(' ').next().unwrap_or_default();
+    if plain == "∞" { f64::INFINITY } else { plain.parse().unwrap_or(f64::NAN) }
+}
+
+/// Are a number and the digits that it is told in the same? Four digits are told.
+pub fn is_near(told: &str, value: f64) -> bool {
+    let told = number(told);
+    told == value
+        || (told - value).abs() <= 6e-2_f64.min(1e-3 * value.abs().max(1e-3))
+        || (value.abs() < 1e-3 && (told / value - 1.0).abs() < 0.06)
+        || (value.abs() >= 1e5 && (told / value - 1.0).abs() < 0.06)
+}
+
+#[test]
+fn gaps_are_what_stands_between() {
+    assert_eq!(gaps("{} of {} pixels", "3 of 4 pixels"), Some(vec!["3", "4"]));
+    assert_eq!(gaps("none", "none"), Some(vec![]));
+    assert_eq!(gaps("none", "none at all"), None);
+    assert_eq!(gaps("a {} c", "a b d"), None);
+    assert_eq!((number("1\u{2009}234"), number("−2"), number("0.5 m")), (1234.0, -2.0, 0.5));
+    assert!(is_near("13.482 m", 13.48231) && !is_near("13.482 m", 13.52));
+}

@@ -1,0 +1,284 @@
+//! What each pass is for, held against its raster state, its programs and its targets.
+
+use super::Held;
+use super::frames::Frame;
+use super::patterns::gaps;
+use stencilscope::plan::{Draw, Part, Pass, Program, Visibility};
+use stencilscope::technique::Technique;
+use wgpu::{CompareFunction, StencilOperation as Operation};
+
+type Check = fn(&Frame, &Pass, &[&str]) -> bool;
+
+/// On which side of the surface a draw's faces count, and by how much: of the outside of the volume, and of its inside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Steps {
+    pub is_in_front: bool,
+    pub outside: i32,
+    pub inside: i32,
+}
+
+/// `None` where it counts nowhere.
+pub fn steps(draw: &Draw) -> Option<Steps> {
+    let by = |operation| match operation {
+        Operation::IncrementWrap | Operation::IncrementClamp => 1,
+        Operation::DecrementWrap | Operation::DecrementClamp => -1,
+        _ => 0,
+    };
+    let raster = &draw.raster;
+    let (is_in_front, front, back) = if draw.program == Program::Count {
+        let nearer = matches!(raster.depth_compare, CompareFunction::Greater | CompareFunction::GreaterEqual);
+        let standard = matches!(raster.depth_compare, CompareFunction::Less | CompareFunction::LessEqual);
+        assert!(nearer || standard, "{:?}", raster.depth_compare);
+        let count = draw.constants.count as i32;
+        // Of strict tests one is "nearer", the other its complement holds ties.
+        let is_strict = matches!(raster.depth_compare, CompareFunction::Greater | CompareFunction::Less);
+        (is_strict, count, -count)
+    } else {
+        let [front, back] = [true, false].map(|is_front| *raster.face(is_front).0);
+        let passing = [by(front.pass_op), by(back.pass_op)];
+        let failing = [by(front.depth_fail_op), by(back.depth_fail_op)];
+        match (passing, failing) {
+            ([0, 0], [0, 0]) => return None,
+            ([front, back], [0, 0]) => (true, front, back),
+            ([0, 0], [front, back]) => (false, front, back),
+            _ => panic!("{} counts on both sides", draw.name),
+        }
+    };
+    let (outside, inside) = if draw.faces_inwards { (back, front) } else { (front, back) };
+    Some(Steps { is_in_front, outside, inside })
+}
+
+fn counting(pass: &Pass) -> Vec<Steps> {
+    pass.draws.iter().filter(|draw| draw.part.is_of_volume()).filter_map(steps).collect()
+}
+
+/// Do all that count do so here, up for one side and down for the other?
+fn count_all(pass: &Pass, is_in_front: bool, up: bool, down: bool) -> bool {
+    let wished = |one: &Steps| {
+        let [up_by, down_by] = if is_in_front { [one.outside, one.inside] } else { [one.inside, one.outside] };
+        one.is_in_front == is_in_front && (up_by, down_by) == (i32::from(up), -i32::from(down))
+    };
+    counting(pass).iter().all(wished)
+}
+
+fn is_light(pass: &Pass, light: &str) -> bool {
+    pass.light.is_some_and(|own| format!("light {}", own.0 + 1) == light)
+}
+
+/// All draws that light and test the stencil: for 0 in these bits.
+fn tests_zero(pass: &Pass, bits: u32) -> bool {
+    let tested = |draw: &&Draw| draw.raster.stencil.is_enabled();
+    pass.draws.iter().filter(tested).all(|draw| {
+        let (face, masks) = draw.raster.face(true);
+        face.compare == CompareFunction::Equal && u32::from(masks.read) & 0xff == bits && masks.reference == 0
+    })
+}
+
+fn asks(pass: &Pass, how: Visibility) -> bool {
+    pass.draws.iter().all(|draw| [Program::Light(how), Program::Light(Visibility::Everywhere)].contains(&draw.program))
+}
+
+fn is_even_marked(pass: &Pass) -> bool {
+    let marks: Vec<u8> = pass.draws.iter().map(|draw| draw.raster.stencil_reference).collect();
+    let mut own = marks.clone();
+    own.dedup();
+    pass.draws.iter().all(|draw| draw.part == Part::Receiver)
+        && own.len() == marks.len()
+        && marks.iter().all(|mark| mark % 2 == 0)
+}
+
+fn sees_from_the_light(frame: &Frame, pass: &Pass) -> bool {
+    pass.view.0 != 0
+        && pass.draws.iter().all(|draw| draw.part == Part::Map)
+        && frame.plan.lights[pass.light.expect("a light").0].map.is_some()
+}
+
+fn holds_depth(frame: &Frame, pass: &Pass) -> bool {
+    let map = frame.plan.lights[pass.light.expect("a light").0].map.as_ref();
+    sees_from_the_light(frame, pass) && map.is_some_and(|map| map.lookup.is_some()) && pass.color.is_none()
+}
+
+fn holds_color(frame: &Frame, pass: &Pass) -> bool {
+    let map = frame.plan.lights[pass.light.expect("a light").0].map.as_ref();
+    sees_from_the_light(frame, pass) && map.is_some_and(|map| map.lookup.is_none()) && pass.color.is_some()
+}
+
+/// Is the light's map there where its pass says that it is read?
+fn has_map(frame: &Frame, pass: &Pass) -> bool {
+    frame.plan.lights[pass.light.expect("a light").0].map.is_some()
+}
+
+const PURPOSES: &[(&str, Check)] = &[
+    (
+        "Draws every surface in ambient light only, and leaves in the depth buffer how far the nearest one is: all later passes ask about that surface.",
+        |_, pass, _| {
+            let is_ambient = |draw: &Draw| matches!(draw.program, Program::Ambient { .. }) && draw.raster.depth_write;
+            pass.light.is_none() && pass.draws.iter().all(is_ambient)
+        },
+    ),
+    (
+        "Counts the shadow volumes of {} in front of each surface: a front face nearer than the surface adds 1, a back face nearer than it takes 1 away. What is left contains the surface, if the eye itself is in none.",
+        |frame, pass, told| {
+            is_light(pass, told[0])
+                && count_all(pass, true, true, true)
+                && frame.plan.technique != Technique::ZPassPlus.name()
+        },
+    ),
+    (
+        "Counts the shadow volumes of {} in front of each surface: a front face nearer than the surface adds 1, a back face nearer than it takes 1 away. With what the near plane began with, if anything, what is left contains the surface, wherever the eye is.",
+        |frame, pass, told| {
+            // Without a pass of it, the near plane is in the shadow of nothing.
+            let is_plus = frame.plan.technique == Technique::ZPassPlus.name();
+            is_light(pass, told[0]) && count_all(pass, true, true, true) && is_plus
+        },
+    ),
+    (
+        "Counts the shadow volumes of {} behind each surface: a back face hidden by the surface adds 1, a hidden front face takes 1 away. What is left contains the surface, wherever the eye is.",
+        |_, pass, told| is_light(pass, told[0]) && count_all(pass, false, true, true),
+    ),
+    (
+        "Counts the shadow volumes of {}, behind each surface where they may hold the eye, else in front of it: in front, a front face adds 1 and a back face takes 1 away, behind, it is the other way round. Either way, what is left contains the surface, wherever the eye is.",
+        |_, pass, told| {
+            let counting = counting(pass);
+            let [front, behind] = [true, false].map(|side| counting.iter().any(|one| one.is_in_front == side));
+            let is_right = |one: &Steps| (one.outside, one.inside) == if one.is_in_front { (1, -1) } else { (-1, 1) };
+            is_light(pass, told[0]) && front && behind && counting.iter().all(is_right)
+        },
+    ),
+    (
+        "Counts the shadow volumes of {} in front of each surface, first half: a front face nearer than the surface adds 1. The other faces follow in a pass of their own.",
+        |_, pass, told| is_light(pass, told[0]) && count_all(pass, true, true, false),
+    ),
+    (
+        "Counts the shadow volumes of {} in front of each surface, second half: a back face nearer than it takes 1 away. {}",
+        |_, pass, told| {
+            is_light(pass, told[0]) && count_all(pass, true, false, true) && told[1].contains("contains the surface")
+        },
+    ),
+    (
+        "Counts the shadow volumes of {} behind each surface, first half: a back face hidden by the surface adds 1. The other faces follow in a pass of their own.",
+        |_, pass, told| is_light(pass, told[0]) && count_all(pass, false, true, false),
+    ),
+    (
+        "Counts the shadow volumes of {} behind each surface, second half: a hidden front face takes 1 away. What is left contains the surface, wherever the eye is.",
+        |_, pass, told| is_light(pass, told[0]) && count_all(pass, false, false, true),
+    ),
+    (
+        "Counts how many shadow volumes of {} contain each point of the near plane: every casting triangle between it and the light adds 1, drawn as the light sees it through the near rectangle.",
+        |_, pass, told| is_light(pass, told[0]) && pass.counts_at_near_plane() && pass.view.0 != 0,
+    ),
+    (
+        "Writes what this technique says of the light at every pixel: lit, in shadow, or facing away. It is not part of the frame; it is how techniques are compared.",
+        |_, pass, _| {
+            let labels = |draw: &Draw| matches!(draw.program, Program::Label(_) | Program::FlatLabel);
+            !pass.timed && pass.draws.iter().all(labels)
+        },
+    ),
+    (
+        "Adds the light where the count is zero, and raises the count there, so that no pixel is lit twice. Everywhere else the surface is inside a shadow volume and stays dark.",
+        |_, pass, _| {
+            let raises = |draw: &Draw| {
+                !draw.raster.stencil.is_enabled() || draw.raster.face(true).0.pass_op == Operation::IncrementClamp
+            };
+            tests_zero(pass, 0xff) && pass.draws.iter().all(raises) && asks(pass, Visibility::Everywhere)
+        },
+    ),
+    (
+        "Adds the light where the count is zero. Everywhere else the surface is inside a shadow volume and stays dark.",
+        |_, pass, _| asks(pass, Visibility::Count),
+    ),
+    ("Adds the light everywhere: nothing asks whether something stands between.", |_, pass, _| {
+        asks(pass, Visibility::Everywhere)
+    }),
+    (
+        "Marks the visible pixels of each flat receiver with an even number of its own, so that no shadow can leave its receiver.",
+        |_, pass, _| is_even_marked(pass),
+    ),
+    (
+        "Draws every caster, flattened onto each receiver's plane. Where the stencil still has the receiver's mark it goes up by one: overlapping triangles can't darken a pixel twice.",
+        |_, pass, _| {
+            pass.draws.iter().all(|draw| {
+                let (face, masks) = draw.raster.face(true);
+                let once = face.compare == CompareFunction::Equal && face.pass_op == Operation::IncrementClamp;
+                draw.part == Part::PlanarShadow && once && masks.reference % 2 == 0
+            })
+        },
+    ),
+    (
+        "Adds the light where the stencil is even: odd numbers are shadows. It makes lit numbers odd, so that no pixel is lit twice.",
+        |_, pass, _| tests_zero(pass, 1) && asks(pass, Visibility::Everywhere),
+    ),
+    ("Adds the light everywhere: shadows are blended over it afterwards.", |frame, pass, _| {
+        let at = frame.plan.passes.iter().position(|one| std::ptr::eq(one, pass)).expect("a pass of it");
+        let flattens = |pass: &Pass| pass.draws.iter().any(|draw| draw.part == Part::PlanarShadow);
+        let before = frame.plan.passes[..at].iter().any(|one| one.light == pass.light && flattens(one));
+        asks(pass, Visibility::Everywhere) && !before
+    }),
+    (
+        "Draws every caster, flattened onto each receiver's plane, and darkens what is there: once for every triangle that covers a pixel, and what other lights gave as well.",
+        |_, pass, _| pass.draws.iter().all(|draw| draw.part == Part::PlanarShadow && draw.program == Program::Flat),
+    ),
+    (
+        "Draws the casters between this receiver and the light through the box that the light's pyramid over the receiver becomes: their picture is the shadow on it.",
+        |frame, pass, _| holds_color(frame, pass),
+    ),
+    (
+        "Adds the light as far as the receiver's texture lets it through. Surfaces that are not flat have none, and are lit as if nothing stood between.",
+        |frame, pass, _| has_map(frame, pass) && asks(pass, Visibility::ReceiverTexture),
+    ),
+    ("Adds the light everywhere: no flat receiver has a shadow of it that shows.", |frame, pass, _| {
+        !has_map(frame, pass) && asks(pass, Visibility::Everywhere)
+    }),
+    (
+        "Draws the casters as the light sees them and keeps only how far they are: what lies behind them, seen from the light, is in shadow.",
+        |frame, pass, _| holds_depth(frame, pass),
+    ),
+    (
+        "Adds the light, carrying every fragment into the light's map: where the map holds something nearer to the light, the fragment is in shadow and gets nothing.",
+        |frame, pass, _| has_map(frame, pass) && asks(pass, Visibility::Map),
+    ),
+    ("Adds the light everywhere: no caster can darken anything, and there is no map.", |frame, pass, _| {
+        !has_map(frame, pass) && asks(pass, Visibility::Everywhere)
+    }),
+    (
+        "Draws the caster as the light sees it, in a frame that fits it: not how far it is, but how much light it lets through.",
+        |frame, pass, _| holds_color(frame, pass),
+    ),
+    ("Adds the light, as far as the silhouettes on its way let it through.", |_, pass, _| {
+        asks(pass, Visibility::Projected)
+    }),
+    ("Adds the light everywhere: no silhouette is on its way.", |_, pass, _| asks(pass, Visibility::Everywhere)),
+    ("Adds the light everywhere: silhouettes darken it afterwards.", |_, pass, _| asks(pass, Visibility::Everywhere)),
+    (
+        "Draws what is visible again and darkens it where this silhouette falls, with what ambient and other lights gave as well.",
+        |_, pass, _| pass.draws.iter().all(|draw| draw.program == Program::Through),
+    ),
+    (
+        "Follows a ray from the eye through every pixel to the surface it meets, and one from the light to that point: whatever lies between keeps the light away. This is done on the CPU.",
+        |_, pass, _| pass.image.is_some() && pass.draws.is_empty(),
+    ),
+    ("Adds the light where its rays arrived.", |_, pass, _| asks(pass, Visibility::Labels)),
+];
+
+pub fn patterns() -> Vec<&'static str> {
+    // In no built-in scene does a light without casters that darken reach this.
+    let rare = ["no caster can darken anything", "no flat receiver has a shadow", "no silhouette is on its way"];
+    PURPOSES
+        .iter()
+        .map(|(pattern, _)| *pattern)
+        .filter(|pattern| !rare.iter().any(|words| pattern.contains(words)))
+        .collect()
+}
+
+pub fn check(frame: &Frame, held: &mut Held) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for pass in &frame.plan.passes {
+        let known = PURPOSES.iter().find_map(|(pattern, check)| Some((pattern, check, gaps(pattern, &pass.purpose)?)));
+        match known {
+            Some((pattern, check, told)) if check(frame, pass, &told) => drop(held.insert(pattern)),
+            Some(_) => wrong.push(format!("the purpose of {} is not so: {}", pass.name, pass.purpose)),
+            None => wrong.push(format!("no check knows the purpose of {}: {}", pass.name, pass.purpose)),
+        }
+    }
+    wrong
+}
