@@ -5,12 +5,13 @@
 
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
 use crate::history::{EventKind, PixelHistory};
-use crate::plan::{DecidedBy, Part, Side};
+use crate::plan::{CountBits, DecidedBy, Part, Side};
 use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
 use crate::reading::format;
 use crate::reading::map_decision::MapDecision;
 use crate::scene::Light;
+use crate::technique::{CountsBy, VolumeSettings};
 use crate::truth::{LABEL_NAMES, LIT, SHADOW};
 use std::collections::BTreeSet;
 
@@ -130,22 +131,26 @@ fn volumes(known: &Known) -> Fact {
                 if !triangle.part.is_of_volume() {
                     continue;
                 }
-                let (before, after) = (
-                    f32::from(event.before.stencil) + event.before.count,
-                    f32::from(event.after.stencil) + event.after.count,
-                );
-                last = Some(after);
-                // Eight bits go round: a step from 0 to 255 is one down.
-                match (after - before) as i32 {
+                last = Some(f32::from(event.after.stencil) + event.after.count);
+                match event.counted() {
                     0 => idle += 1,
-                    1 | -255 => up += 1,
+                    1.. => up += 1,
                     _ => down += 1,
                 }
             }
-            here.push(format!(
-                "pixel {x}, {y}: {up} faces add 1, {down} take 1 away, {idle} do not count here: {up} − {down} = {}",
-                i64::from(up) - i64::from(down)
-            ));
+            let settings = VolumeSettings::read(&known.capture.settings);
+            let in_float = light.is_some_and(|light| known.capture.decided_by(light).counts_in_floats());
+            here.push(match settings.operations {
+                CountsBy::Inverting if !in_float => {
+                    format!("pixel {x}, {y}: {up} faces turn the bit over, {idle} do not count here")
+                }
+                _ => format!(
+                    "pixel {x}, {y}: {up} faces add 1, {down} take 1 away, {idle} do not count here: {up} − {down} = \
+                     {}{}",
+                    i64::from(up) - i64::from(down),
+                    if in_float { String::new() } else { kept_in(&settings) }
+                ),
+            });
             // Of a surface that faces away, and of none, no count decides.
             let label = light.and_then(|light| known.capture.lights.get(light)?.shadow.as_ref()?.byte_at([x, y]));
             here.extend(last.map(|count| match label.filter(|_| is_last) {
@@ -249,15 +254,19 @@ fn light(known: &Known, step: &Step) -> Fact {
     let has_shadows =
         |step: &Step| step.light == Some(index) && step.draws.iter().any(|draw| draw.part == Part::PlanarShadow);
     let is_flattened = known.capture.steps[..known.step].iter().any(has_shadows);
+    let settings = VolumeSettings::read(&known.capture.settings);
     // What the stencil test of the light pass lets through.
     let (formula, what) = match known.capture.decided_by(index) {
-        DecidedBy::StencilCount { .. } => ("light is added where count = 0", "the count 0"),
-        DecidedBy::Flattened if is_flattened => {
-            ("light is added where the stencil is even: a shadow adds 1 to its receiver's even mark", "an even number")
+        DecidedBy::StencilCount { .. } => {
+            (format!("light is added where count = 0{}", kept_in(&settings)), "the count 0")
         }
-        _ => ("light is added where the technique lets it through", ""),
+        DecidedBy::Flattened if is_flattened => {
+            let formula = "light is added where the stencil is even: a shadow adds 1 to its receiver's even mark";
+            (formula.to_owned(), "an even number")
+        }
+        _ => ("light is added where the technique lets it through".to_owned(), ""),
     };
-    let Some(stencil) = stencil.filter(|_| !what.is_empty()) else { return fact(formula, here) };
+    let Some(stencil) = stencil.filter(|_| !what.is_empty()) else { return fact(&formula, here) };
     let is_lit = |value: usize| if is_flattened { value.is_multiple_of(2) } else { value == 0 };
     let counts = stencil.image.histogram();
     let lit: u64 = counts.iter().enumerate().filter(|(value, _)| is_lit(*value)).map(|(_, count)| count).sum();
@@ -267,7 +276,15 @@ fn light(known: &Known, step: &Step) -> Fact {
         let does = if is_lit(value.into()) { "light is added" } else { "the stencil test keeps light away" };
         here.push(format!("pixel {}, {}: its stencil is {value}, so {does}", at[0], at[1]));
     }
-    fact(formula, here)
+    fact(&formula, here)
+}
+
+/// In which bits a count is kept, where that is not in all eight.
+fn kept_in(settings: &VolumeSettings) -> String {
+    match CountBits::of_mask(settings.mask().into()) {
+        CountBits::EIGHT => String::new(),
+        bits => format!(", kept in {bits}"),
+    }
 }
 
 /// How the light's shadow map decides, with the picked pixel's numbers; `None` where no map does.

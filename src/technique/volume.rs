@@ -24,7 +24,7 @@ use super::lesson::{Lesson, cited};
 use super::settings::{CountsBy, VolumeSettings, WhoCasts};
 use super::{Choice, PlanError};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
-use crate::plan::{CountOf, DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Side, Visibility};
+use crate::plan::{CountBits, CountOf, DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Side, Visibility};
 use crate::scene::Scene;
 use counting::Step;
 pub use counting::{Counting, Form};
@@ -233,9 +233,15 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
     }
     let mask = settings.mask().into();
     frame.mask_pass(light, &[Drawn::shadow(), Drawn::lit().where_stencil(mask, 0)]);
-    let purpose = "Adds the light where the count is zero, and raises the count there, so that no pixel is lit twice. \
-                   Everywhere else the surface is inside a shadow volume and stays dark.";
-    frame.light_pass(light, purpose, &Drawn::light_once_where_zero(mask));
+    let kept = match CountBits::of_mask(mask) {
+        CountBits::EIGHT => String::new(),
+        bits => format!(" in {bits}"),
+    };
+    let purpose = format!(
+        "Adds the light where the count is zero{kept}, and raises the count there, so that no pixel is lit twice. \
+         Everywhere else the surface is inside a shadow volume and stays dark."
+    );
+    frame.light_pass(light, &purpose, &Drawn::light_once_where_zero(mask));
 }
 
 /// What a count of these counts at a surface; `None` if there are none.

@@ -161,6 +161,7 @@ const FORMULAS: &[(&str, Check)] = &[
     }),
     ("a closed volume = sides + light cap + dark cap", |here, _| here.draws(Part::Side).next().is_some()),
     ("light is added where count = 0", |here, _| asks_stencil(here, 0xff)),
+    ("light is added where count = 0, kept in {}", |here, told| asks_stencil(here, mask_of(told[0]))),
     ("light is added where the stencil is even: a shadow adds 1 to its receiver's even mark", |here, _| {
         asks_stencil(here, 1)
     }),
@@ -204,6 +205,43 @@ const FORMULAS: &[(&str, Check)] = &[
         here.draws(Part::Receiver).next().is_some()
     }),
 ];
+
+/// The faces of a pass at a pixel: those that add and take away, and what the count holds after them.
+fn adds_up(here: &Here, told: &[&str], modulus: f64) -> bool {
+    let at = at(told[0], told[1]);
+    let [up, down, idle, up_again, down_again, sum] = [2, 3, 4, 5, 6, 7].map(|gap| number(told[gap]));
+    let history = here.history.expect("a history");
+    // Triangle by triangle, as the machine of the history took them; and in the end as the GPU stored it.
+    let (mut ups, mut downs, mut rest) = (0.0, 0.0, 0.0);
+    for event in history.events.iter().filter(|event| event.pass == here.step) {
+        match &event.kind {
+            EventKind::Triangle(one) if one.part.is_of_volume() => {
+                *match event.counted() {
+                    0 => &mut rest,
+                    1.. => &mut ups,
+                    _ => &mut downs,
+                } += 1.0
+            }
+            _ => {}
+        }
+    }
+    let change = f64::from(here.stored(at) - here.before(at));
+    let in_floats = here.decided_by().counts_in_floats();
+    let near = if in_floats && sum != change { near_count(here, at) } else { 0.0 };
+    let stored = if in_floats { sum == change - near } else { (sum - change).rem_euclid(modulus) == 0.0 };
+    // What a first pass of floats leaves is not kept.
+    let stored = stored || (in_floats && here.volume_passes_follow());
+    (up, down, idle) == (ups, downs, rest) && (up, down) == (up_again, down_again) && sum == up - down && stored
+}
+
+fn mask_of(bits: &str) -> u8 {
+    match bits {
+        "one bit" => 1,
+        "two bits" => 3,
+        "four bits" => 15,
+        _ => panic!("no mask has {bits}"),
+    }
+}
 
 fn asks_stencil(here: &Here, bits: u8) -> bool {
     here.frame.step(here.step).1.draws.iter().filter(|draw| draw.raster.stencil.is_enabled()).all(|draw| {
@@ -265,31 +303,20 @@ const LINES: &[(&str, Check)] = &[
     }),
     ("{}: {} + {} / distance", |here, told| is_curve(here, told, 1.0)),
     ("{}: {} − {} / distance", |here, told| is_curve(here, told, -1.0)),
-    ("pixel {}, {}: {} faces add 1, {} take 1 away, {} do not count here: {} − {} = {}", |here, told| {
-        let at = at(told[0], told[1]);
-        let [up, down, idle, up_again, down_again, sum] = [2, 3, 4, 5, 6, 7].map(|gap| number(told[gap]));
+    ("pixel {}, {}: {} faces turn the bit over, {} do not count here", |here, told| {
         let history = here.history.expect("a history");
-        // Triangle by triangle, as the machine of the history took them; and in the end as the GPU stored it.
-        let (mut ups, mut downs, mut rest) = (0.0, 0.0, 0.0);
-        for event in history.events.iter().filter(|event| event.pass == here.step) {
-            match &event.kind {
-                EventKind::Triangle(one) if one.part.is_of_volume() => {
-                    *match event.counted() {
-                        0 => &mut rest,
-                        1.. => &mut ups,
-                        _ => &mut downs,
-                    } += 1.0
-                }
-                _ => {}
-            }
-        }
-        let change = f64::from(here.stored(at) - here.before(at));
-        let in_floats = here.decided_by().counts_in_floats();
-        let near = if in_floats && sum != change { near_count(here, at) } else { 0.0 };
-        let stored = if in_floats { sum == change - near } else { (sum - change).rem_euclid(256.0) == 0.0 };
-        // What a first pass of floats leaves is not kept.
-        let stored = stored || (in_floats && here.volume_passes_follow());
-        (up, down, idle) == (ups, downs, rest) && (up, down) == (up_again, down_again) && sum == up - down && stored
+        let of_step = history.events.iter().filter(|event| event.pass == here.step);
+        let faces = of_step.filter(|event| event.triangle().is_some_and(|one| one.part.is_of_volume()));
+        let (turning, idle): (Vec<_>, Vec<_>) = faces.partition(|event| event.before.stencil != event.after.stencil);
+        let change = here.stored(at(told[0], told[1])) - here.before(at(told[0], told[1]));
+        let is_odd = turning.len() % 2 == 1;
+        [number(told[2]), number(told[3])] == [turning.len() as f64, idle.len() as f64] && is_odd == (change != 0.0)
+    }),
+    ("pixel {}, {}: {} faces add 1, {} take 1 away, {} do not count here: {} − {} = {}, kept in {}", |here, told| {
+        adds_up(here, &told[..8], f64::from(mask_of(told[8])) + 1.0)
+    }),
+    ("pixel {}, {}: {} faces add 1, {} take 1 away, {} do not count here: {} − {} = {}", |here, told| {
+        adds_up(here, told, 256.0)
     }),
     ("the stored count is {} then, and the pixel is {}", |here, told| {
         let pick = here.pick.expect("a pick");
@@ -358,7 +385,11 @@ const LINES: &[(&str, Check)] = &[
             };
         let is_even = told[2] == "an even number";
         let lit = bytes.iter().filter(|byte| if is_even { **byte % 2 == 0 } else { **byte == 0 }).count();
-        let asks = if is_even { asks_stencil(here, 1) } else { told[2] == "the count 0" && asks_stencil(here, 0xff) };
+        let asks = if is_even {
+            asks_stencil(here, 1)
+        } else {
+            told[2] == "the count 0" && [0xff, 0xf, 3, 1].iter().any(|mask| asks_stencil(here, *mask))
+        };
         asks && [number(told[0]), number(told[1])] == [lit as f64, bytes.len() as f64]
     }),
     ("pixel {}, {}: its stencil is {}, so {}", |here, told| {

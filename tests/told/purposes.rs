@@ -74,6 +74,26 @@ fn tests_zero(pass: &Pass, bits: u32) -> bool {
     })
 }
 
+/// The lowest bits of a stencil, by name.
+fn mask_of(bits: &str) -> u8 {
+    match bits {
+        "one bit" => 1,
+        "two bits" => 3,
+        "four bits" => 15,
+        _ => panic!("no mask has {bits}"),
+    }
+}
+
+/// Does a volume's draw invert one bit on this side of the surface, and nothing on the other?
+fn turns_over(draw: &Draw, is_in_front: bool) -> bool {
+    [true, false].into_iter().all(|is_front| {
+        let (face, masks) = draw.raster.face(is_front);
+        let [here, there] =
+            if is_in_front { [face.pass_op, face.depth_fail_op] } else { [face.depth_fail_op, face.pass_op] };
+        (here, there, masks.write) == (Operation::Invert, Operation::Keep, 1)
+    })
+}
+
 fn asks(pass: &Pass, how: Visibility) -> bool {
     pass.draws.iter().all(|draw| [Program::Light(how), Program::Light(Visibility::Everywhere)].contains(&draw.program))
 }
@@ -182,6 +202,45 @@ const PURPOSES: &[(&str, Check)] = &[
             };
             tests_zero(pass, 0xff) && pass.draws.iter().all(raises) && asks(pass, Visibility::Everywhere)
         },
+    ),
+    (
+        "Adds the light where the count is zero in {}, and raises the count there, so that no pixel is lit twice. Everywhere else the surface is inside a shadow volume and stays dark.",
+        |frame, pass, told| {
+            let mask = mask_of(told[0]);
+            let writes =
+                frame.plan.passes.iter().filter(|other| other.light == pass.light).flat_map(|other| &other.draws);
+            let mut writes = writes.filter(|draw| draw.part.is_of_volume());
+            tests_zero(pass, mask.into())
+                && writes.all(|draw| draw.raster.face(true).1.write == mask)
+                && asks(pass, Visibility::Everywhere)
+        },
+    ),
+    (
+        "Counts the shadow volumes of {} in front of each surface: a front face nearer than the surface adds 1, a back face nearer than it takes 1 away. It begins at {}, for the volumes around the eye: what is left contains the surface, if the near plane cuts none.",
+        |_, pass, told| {
+            let start: u8 = told[1].parse().expect("a number");
+            let cleared = pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil).unwrap_or(0);
+            is_light(pass, told[0]) && count_all(pass, true, true, true) && start == cleared
+        },
+    ),
+    (
+        "Counts the shadow volumes of {} in front of each surface, odd or even: every face nearer than it turns one bit over. It ends as 1 where an odd number of volumes contains the surface, and an even one reads as none.",
+        |_, pass, told| is_light(pass, told[0]) && pass.draws.iter().all(|draw| turns_over(draw, true)),
+    ),
+    (
+        "Counts the shadow volumes of {} behind each surface, odd or even: every face hidden by the surface turns one bit over. It ends as 1 where an odd number of volumes contains the surface, and an even one reads as none.",
+        |_, pass, told| is_light(pass, told[0]) && pass.draws.iter().all(|draw| turns_over(draw, false)),
+    ),
+    (
+        "Counts how many shadow volumes of {} contain each point of the near plane: every casting triangle between it and the light turns the bit over, drawn as the light sees it through the near rectangle.",
+        |_, pass, told| {
+            let inverts = |draw: &Draw| draw.raster.face(true).0.pass_op == Operation::Invert;
+            is_light(pass, told[0]) && pass.counts_at_near_plane() && pass.view.0 != 0 && pass.draws.iter().all(inverts)
+        },
+    ),
+    (
+        "Draws the caster as the light sees it, in a frame that is alike for all casters: not how far it is, but how much light it lets through.",
+        |frame, pass, _| holds_color(frame, pass) && frame.plan.settings.get("fit").is_some_and(|fit| fit == "off"),
     ),
     (
         "Adds the light where the count is zero. Everywhere else the surface is inside a shadow volume and stays dark.",

@@ -211,6 +211,13 @@ const REASONS: &[(&str, Check)] = &[
     ("The volume faces {} the surface cancel out, so the light pass adds the light.", |here, told| {
         here.label() == is(0) && here.says_side(told[0]) && here.count() == 0.0
     }),
+    (
+        "What the count began with and the volume faces {} the surface cancel out, so the light pass adds the light.",
+        |here, told| {
+            let told_to = here.frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
+            told_to && here.label() == is(0) && here.says_side(told[0]) && here.count() == 0.0
+        },
+    ),
     ("The light's map holds something nearer to the light here, so the light pass adds nothing.", |here, _| {
         by_a_map(here, 1)
     }),
@@ -332,9 +339,18 @@ fn counted(here: &Here, told: &str) -> bool {
     };
     let near_holds = near.is_none_or(|near| near == here.near());
     let (faces, count) = told.rsplit_once("; ").unwrap_or((told, ""));
-    let count_holds = match (gaps("count {}", count), gaps("together {}, which eight bits hold as {}", count)) {
+    let modulus = |bits: &str| match bits {
+        "eight bits hold" => 256.0,
+        "four bits hold" => 16.0,
+        "two bits hold" => 4.0,
+        "one bit holds" => 2.0,
+        _ => f64::NAN,
+    };
+    let count_holds = match (gaps("count {}", count), gaps("together {}, which {} as {}", count)) {
         (Some(told), _) => here.is_count(told[0]),
-        (_, Some(told)) => here.is_count(told[1]) && (number(told[0]) - here.count()).rem_euclid(256.0) == 0.0,
+        (_, Some(told)) => {
+            here.is_count(told[2]) && (number(told[0]) - here.count()).rem_euclid(modulus(told[1])) == 0.0
+        }
         _ => false,
     };
     let faces = faces.split(", of which").next().unwrap_or_default();

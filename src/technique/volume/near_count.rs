@@ -18,7 +18,7 @@ use crate::plan::{
     ColorWrite, Decision, Draw, DrawConstants, LightId, PlanView, Program, RasterState, StencilFace, ViewId,
 };
 use crate::technique::frame::Frame;
-use crate::technique::settings::VolumeSettings;
+use crate::technique::settings::{CountsBy, VolumeSettings};
 use wgpu::CompareFunction;
 
 /// Adds the light's view and the pass; none where nothing can count.
@@ -49,9 +49,13 @@ pub fn pass(frame: &mut Frame, light: LightId, options: &VolumeSettings, volumes
         clip_from_relative: matrix.as_mat4(),
     });
     let view = ViewId(frame.plan.views.len() - 1);
+    let does = match options.operations {
+        CountsBy::Inverting if !options.counts_in_float => "turns the bit over",
+        _ => "adds 1",
+    };
     let purpose = format!(
         "Counts how many shadow volumes of {name} contain each point of the near plane: every casting triangle between \
-         it and the light adds 1, drawn as the light sees it through the near rectangle."
+         it and the light {does}, drawn as the light sees it through the near rectangle."
     );
     if options.counts_in_float {
         let adding_one = DrawConstants { flat: [1.0, 0.0, 0.0, 0.0], ..DrawConstants::default() };
