@@ -291,13 +291,13 @@ fn step_of(operation: StencilOperation) -> Option<i32> {
 impl PixelHistory {
     /// What a light's count was cleared to, where it was.
     pub(crate) fn cleared_to(&self, light: usize) -> i32 {
-        let clears = self.events.iter().filter(|event| event.light == Some(light));
-        let cleared = clears.filter_map(|event| match event.kind {
+        let clears = self.events.iter().rev().filter(|event| event.light == Some(light));
+        let mut cleared = clears.filter_map(|event| match event.kind {
             EventKind::ClearStencil => Some(i32::from(event.after.stencil)),
             EventKind::ClearCount => Some(event.after.count as i32),
             _ => None,
         });
-        cleared.last().unwrap_or(0)
+        cleared.next().unwrap_or(0)
     }
 
     /// Do the events make what the GPU stored, after every pass and bit for bit, and are they whole

@@ -70,12 +70,15 @@ fn two_causes_at_once_are_both_named() {
     assert!(missed.is_empty(), "{}", missed.join("\n"));
 }
 
+/// Keys and values.
+type Settings<'a> = &'a [(&'a str, &'a str)];
+
 /// What a setting makes wrong, a setting mends.
 #[test]
 fn caps_that_a_setting_leaves_out_and_a_wrong_order_are_mended_by_it() {
     let mut session = session();
     let clamped_in_turn = [("operations", "clamp"), ("faces", "two-pass"), ("order", "subtract-first")];
-    let cases: [(Cause, &[(&str, &str)], &str); 4] = [
+    let cases: [(Cause, Settings, &str); 4] = [
         (Cause::MissingDarkCap, &[("caps", "light")], "set caps = both"),
         (Cause::MissingLightCap, &[("caps", "dark")], "set caps = both"),
         (Cause::OperationOrder, &clamped_in_turn, "set operations = wrap"),

@@ -19,6 +19,9 @@ const OPERATIONS: [StencilOperation; 8] = [
     StencilOperation::DecrementWrap,
 ];
 
+/// Which operation of a face.
+type Of = fn(&mut StencilFace) -> &mut StencilOperation;
+
 /// Draws the tab.
 pub fn ui(ui: &mut Ui, own: &mut Bench, model: &Model) {
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
@@ -83,7 +86,7 @@ fn state(ui: &mut Ui, state: &mut RasterState) {
         compare(ui, "front function", width, &mut front.compare);
         compare(ui, "back function", width, &mut back.compare);
         ui.end_row();
-        let rows: [(&str, fn(&mut StencilFace) -> &mut StencilOperation); 3] = [
+        let rows: [(&str, Of); 3] = [
             ("stencil fails", |face| &mut face.fail_op),
             ("depth fails", |face| &mut face.depth_fail_op),
             ("both pass", |face| &mut face.pass_op),
