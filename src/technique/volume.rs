@@ -219,7 +219,7 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
     if usual == Counting::InFrontPlus {
         near_count::pass(frame, light, settings, &volumes);
     }
-    let start = settings.starts_at_eye.then(|| eye_count::at(frame, light, &volumes) as u8);
+    let start = settings.starts_at_eye.then(|| eye_count::at(frame, light, &volumes) as u8 & settings.mask());
     for step in Step::all(settings) {
         let draws: Vec<Draw> = volumes.iter().flat_map(|volume| volume.draws(settings, *step)).collect();
         if draws.is_empty() && !decides.keeps_empty_pass() {
