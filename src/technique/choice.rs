@@ -211,8 +211,15 @@ mod tests {
         };
         assert_eq!(off(Technique::Planar, &[]), ["epsilon"]);
         assert_eq!(off(Technique::Planar, &[("stencil", "off")]), ["epsilon", "blend"]);
-        assert!(off(Technique::ZFail, &[("depth", "standard-infinite-epsilon")]).is_empty());
-        assert_eq!(off(Technique::ZPass, &[("counter", "float")]), ["epsilon", "faces", "operations"]);
+        // Volumes without end, and one pass for both faces.
+        let infinite = ["far-vertices", "order"];
+        assert_eq!(off(Technique::ZFail, &[("depth", "standard-infinite-epsilon")]), infinite);
+        let finite_in_turn = [("depth", "standard-infinite-epsilon"), ("extrusion", "finite:2"), ("faces", "two-pass")];
+        assert!(off(Technique::ZFail, &finite_in_turn).is_empty());
+        let in_float = ["epsilon", "far-vertices", "faces", "order", "operations", "stencil-bits"];
+        assert_eq!(off(Technique::ZPass, &[("counter", "float")]), in_float);
+        let parity = ["epsilon", "far-vertices", "order", "stencil-bits"];
+        assert_eq!(off(Technique::ZPass, &[("operations", "invert")]), parity);
     }
 
     #[test]
