@@ -52,7 +52,7 @@ fn the_command_tells_in_every_form() {
 
     let list = text(&run(folder.path(), &["stress", "--list"]).stdout);
     assert_eq!(list.lines().count(), cases::all().count());
-    assert!(list.lines().any(|line| line.starts_with("nested ") && line.contains("8 values of volumes")), "{list}");
+    assert!(list.lines().any(|line| line.starts_with("nested ") && line.contains("9 values of volumes")), "{list}");
 }
 
 /// At this size the crack of one pixel does not show: knowledge that is not confirmed is reported.

@@ -39,6 +39,8 @@ fn cast_nothing_in_every_case() {
         "light-far depth-bits",
         "sliver aliasing",
         "nested wrap-256",
+        "nested few-bits",
+        "nested parity",
         "light-at-sheet f32-limit",
         "light-at-sheet map-near-plane",
         "light-inside-mesh near-plane",

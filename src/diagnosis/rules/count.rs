@@ -17,9 +17,10 @@ fn first_lost(sample: &Sample, light: usize) -> Option<(u8, u64)> {
     Some((first, 1 + lost.count() as u64))
 }
 
-/// Of all steps together, as no limit would have them.
+/// What the count was cleared to, and of all steps together, as no limit would have them.
 fn true_count(sample: &Sample, light: usize) -> i32 {
-    sample.volume_events(light).map(|(event, _)| event.step()).sum()
+    let start = sample.history.as_ref().map_or(0, |history| history.cleared_to(light));
+    start + sample.volume_events(light).map(|(event, _)| event.step()).sum::<i32>()
 }
 
 fn stored(sample: &Sample, light: usize) -> Option<u8> {

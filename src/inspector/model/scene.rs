@@ -95,7 +95,10 @@ impl OpenScene {
     /// Deletes a light of the draft.
     pub fn delete_light(&mut self, index: usize) {
         self.draft.lights.remove(index);
-        self.lights_opened.remove(index);
+        // A scene that was run again may have more lights than were opened.
+        if index < self.lights_opened.len() {
+            self.lights_opened.remove(index);
+        }
     }
 
     /// Are its lights and objects those that it was opened with?
