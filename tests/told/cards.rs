@@ -2,7 +2,7 @@
 
 use super::Held;
 use super::frames::Frame;
-use super::patterns::{gaps, is_near, number};
+use super::patterns::{gaps, is_near, mask_of, number};
 use super::purposes::steps;
 use stencilscope::history::{EventKind, PixelHistory};
 use stencilscope::math::depth::DepthMapping;
@@ -232,15 +232,6 @@ fn adds_up(here: &Here, told: &[&str], modulus: f64) -> bool {
     // What a first pass of floats leaves is not kept.
     let stored = stored || (in_floats && here.volume_passes_follow());
     (up, down, idle) == (ups, downs, rest) && (up, down) == (up_again, down_again) && sum == up - down && stored
-}
-
-fn mask_of(bits: &str) -> u8 {
-    match bits {
-        "one bit" => 1,
-        "two bits" => 3,
-        "four bits" => 15,
-        _ => panic!("no mask has {bits}"),
-    }
 }
 
 fn asks_stencil(here: &Here, bits: u8) -> bool {

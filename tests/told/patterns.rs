@@ -22,6 +22,16 @@ pub fn number(text: &str) -> f64 {
     if plain == "∞" { f64::INFINITY } else { plain.parse().unwrap_or(f64::NAN) }
 }
 
+/// The lowest bits of a stencil, by name.
+pub fn mask_of(bits: &str) -> u8 {
+    match bits {
+        "one bit" => 1,
+        "two bits" => 3,
+        "four bits" => 15,
+        _ => panic!("no mask has {bits}"),
+    }
+}
+
 /// Are a number and the digits that it is told in the same? Four digits are told.
 pub fn is_near(told: &str, value: f64) -> bool {
     let told = number(told);

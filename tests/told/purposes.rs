@@ -2,7 +2,7 @@
 
 use super::Held;
 use super::frames::Frame;
-use super::patterns::gaps;
+use super::patterns::{gaps, mask_of};
 use stencilscope::plan::{Draw, Part, Pass, Program, Visibility};
 use stencilscope::technique::Technique;
 use wgpu::{CompareFunction, StencilOperation as Operation};
@@ -72,16 +72,6 @@ fn tests_zero(pass: &Pass, bits: u32) -> bool {
         let (face, masks) = draw.raster.face(true);
         face.compare == CompareFunction::Equal && u32::from(masks.read) & 0xff == bits && masks.reference == 0
     })
-}
-
-/// The lowest bits of a stencil, by name.
-fn mask_of(bits: &str) -> u8 {
-    match bits {
-        "one bit" => 1,
-        "two bits" => 3,
-        "four bits" => 15,
-        _ => panic!("no mask has {bits}"),
-    }
 }
 
 /// Does a volume's draw invert one bit on this side of the surface, and nothing on the other?

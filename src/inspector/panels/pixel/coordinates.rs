@@ -11,6 +11,10 @@ const DIGITS: u32 = 4;
 
 /// Folded until somebody asks.
 pub fn ui(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
+    // Another program's camera is a guess, and so is its unit.
+    if capture.origin.is_some() {
+        return;
+    }
     let header = CollapsingHeader::new("Coordinates").id_salt("coordinates");
     header.show(ui, |ui| {
         let place = Place::of(capture, at);
