@@ -7,11 +7,14 @@ use stencilscope::technique::{Choice, Technique};
 
 /// Captures before it is measured: caches fill, and the driver compiles.
 const WARM_UP: usize = 10;
-/// Captures while it is measured.
-const FRAMES: usize = 40;
-/// What may be kept of all of them, bytes. Lavapipe (Mesa 22.3) kept 8 MB of each while it compiled draws by their
-/// uniform values.
-const MOST_KEPT: u64 = 40 << 20;
+/// How often it is measured. What a frame keeps grows each time; what an allocator takes for its own ends, up to 20 MB
+/// on two cores and once more than 40 on a busy machine, does not.
+const ROUNDS: usize = 3;
+/// Captures of a round.
+const FRAMES: usize = 30;
+/// What a round's frames may keep together, bytes. Lavapipe (Mesa 22.3) kept 8 MB of each while it compiled draws by
+/// their uniform values.
+const MOST_KEPT: u64 = 30 << 20;
 
 /// What stepping draw by draw through every pass may take, bytes. It takes 222 MiB; 352 where pictures share no rows,
 /// 639 where all copies of a frame are held before any is looked at.
@@ -38,10 +41,13 @@ fn captures_keep_no_memory() {
             }
         };
         run(WARM_UP);
-        let before = memory("RssAnon");
-        run(FRAMES);
-        let kept = memory("RssAnon").saturating_sub(before);
-        assert!(kept < MOST_KEPT, "{part}: {} MB of {FRAMES} frames", kept >> 20);
+        let kept = [(); ROUNDS].map(|()| {
+            let before = memory("RssAnon");
+            run(FRAMES);
+            memory("RssAnon").saturating_sub(before)
+        });
+        let least = kept.into_iter().min().expect("a round");
+        assert!(least < MOST_KEPT, "{part}: {kept:?} bytes of {FRAMES} frames each");
     });
 }
 
