@@ -65,7 +65,13 @@ pub fn jobs() -> Vec<Job> {
             for value in values(technique, spec) {
                 let scene = quick[jobs.len() % quick.len()];
                 // What it changes only beside another.
-                let beside = (spec.key == "epsilon").then(|| ("depth", "standard-infinite-epsilon".to_owned()));
+                let beside = match spec.key {
+                    "epsilon" => Some(("depth", "standard-infinite-epsilon")),
+                    "far-vertices" => Some(("extrusion", "finite:3")),
+                    "order" => Some(("faces", "two-pass")),
+                    _ => None,
+                };
+                let beside = beside.map(|(key, value)| (key, value.to_owned()));
                 jobs.push(Job { scene, technique, settings: beside.into_iter().chain([(spec.key, value)]).collect() });
             }
         }

@@ -24,6 +24,8 @@ pub struct Volume {
     pub parts: VolumeParts,
     /// Which of its parts count in the volume pass.
     pub needed: Vec<NeededPart>,
+    /// Light cap and dark cap: it has one that would count, and it is not to be drawn.
+    pub lacks_caps: [bool; 2],
 }
 
 impl Volume {
@@ -108,22 +110,22 @@ pub fn make(
     (mesh, parts)
 }
 
-/// The parts that count in a form, but for caps that are not to be drawn; what is left out is said.
+/// The parts that count in a form; what is left out is said, but of dark caps that are not drawn anyway.
 pub fn needed_parts(
     frame: &mut Frame,
     form: Form,
     parts: &VolumeParts,
     caster: &Object,
-    [draws_light_caps, draws_dark_caps]: [bool; 2],
+    draws_dark_caps: bool,
 ) -> Vec<NeededPart> {
     let run = NeededPart::new;
     let hugging = NeededPart { hugs: true, ..run(Part::Side, false, &parts.hugging_sides) };
     let mut needed = vec![run(Part::Side, false, &parts.sides), hugging];
-    if form.light_cap && draws_light_caps {
+    if form.light_cap {
         needed.push(run(Part::LightCap, false, &parts.light_cap));
         needed.push(run(Part::LightCap, true, &parts.light_cap_turned));
     }
-    if !(form.dark_cap && draws_dark_caps) {
+    if !form.dark_cap {
         return needed;
     }
     match &parts.dark_cap {
@@ -134,7 +136,7 @@ pub fn needed_parts(
         DarkCap::Fan(triangles, _) => {
             needed.push(run(Part::DarkCap, false, triangles));
             let cap = parts.light_cap.len() + parts.light_cap_turned.len();
-            if triangles.len() < cap {
+            if triangles.len() < cap && draws_dark_caps {
                 let because = format!(
                     "at infinity only its outline matters: {} triangles close what {cap} would",
                     triangles.len()
