@@ -79,6 +79,7 @@ pub fn jobs() -> Vec<Job> {
     // Counts beyond eight bits, and both passes of faces in floats.
     let gate =
         |key, value: &str| Job { scene: "gate", technique: Technique::ZFail, settings: vec![(key, value.to_owned())] };
+    jobs.push(gate("stencil-bits", "4"));
     jobs.extend([gate("counter", "float"), gate("operations", "clamp"), gate("faces", "two-pass")]);
     let inside =
         |technique, key, value: &str| Job { scene: "inside", technique, settings: vec![(key, value.to_owned())] };
