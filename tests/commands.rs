@@ -131,6 +131,8 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
 #[test]
 fn a_recorded_frame_tells_distances_in_units() {
     let folder = folder();
+    let coordinates = ["pixel", "ogre", "--at", "200,150", "--coordinates"];
+    assert_fails(&coordinates, 2, &["another program's is a guess", "leave it out"]);
     let output = run(folder.path(), &["pixel", "ogre", "--at", "200,150"]);
     let story = text(&output.stdout);
     assert!(output.status.success() && story.contains(" units away (depth"), "{story}");

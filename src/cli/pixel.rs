@@ -21,7 +21,8 @@ pub struct PixelArguments {
     scene_options: SceneOptions,
     #[command(flatten)]
     frame: FrameOptions,
-    /// Also the pixel's point in world, eye, clip, device and window coordinates, with the matrices between them
+    /// Also the pixel's point in world, eye, clip, device and window coordinates, with the matrices between them; not of
+    /// another program's frame, whose camera is a guess
     #[arg(long)]
     coordinates: bool,
     /// Machine-readable, to a file or to standard output in place of the text
@@ -45,6 +46,10 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     file.map_or(Ok(()), output::check_target)?;
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
     let RunFrame { capture, plan, .. } = subject.frame(&mut session)?;
+    if arguments.coordinates && capture.origin.is_some() {
+        let why = "`--coordinates` needs the frame's camera, and another program's is a guess: leave it out";
+        return Err(CliError::Usage(why.to_owned()));
+    }
     let mut stories = vec![format!("{}, {}, {}x{}\n", capture.scene, capture.technique, size[0], size[1])];
     for (light, counted) in capture.lights.iter().enumerate().filter_map(|(at, light)| Some((at, light.count_of?))) {
         stories[0] += &format!("{}: {}\n", LightId(light).name(), counted.meaning());
