@@ -138,6 +138,7 @@ mod tests {
             eye: DVec3::ONE,
             target: DVec3::new(1.0, 1.0, 0.0),
             up: DVec3::Y,
+            projection: crate::scene::Projection::Perspective,
             fov_y_degrees: 90.0,
             near: 0.5,
             far: None,

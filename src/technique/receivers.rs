@@ -40,7 +40,7 @@ pub fn all(frame: &mut Frame) -> Vec<FlatReceiver> {
 impl FlatReceiver {
     /// Does the eye see it from the side that a light is on? Any other shows no shadow of that light.
     pub fn shows_lit_side(&self, frame: &Frame, light: LightId) -> bool {
-        let (eye, light) = (frame.eye().extend(1.0), frame.light_position(light));
+        let (eye, light) = (frame.eye_position(), frame.light_position(light));
         let placed = &frame.placed[self.object];
         self.receiver.triangles.iter().any(|triangle| {
             let corners = placed.object.mesh.triangles()[*triangle as usize].map(|v| placed.world[v as usize]);
@@ -56,7 +56,7 @@ const FACET: f64 = 1.0 / 20.0;
 /// Leaves out what can't be seen to receive, of those that show a light's shadows: facets of round objects, and the
 /// insides of closed ones. Without marks each would throw shadows over all that is in its plane.
 pub fn leave_out_unmarked(frame: &mut Frame, shown: &mut Vec<&FlatReceiver>, of: &str) {
-    let eye = frame.eye().extend(1.0);
+    let eye = frame.eye_position();
     let all = shown.len();
     shown.retain(|one| {
         let placed = &frame.placed[one.object];

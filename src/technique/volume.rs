@@ -15,6 +15,7 @@
 mod counting;
 mod drawn;
 mod eye_count;
+mod far_count;
 mod near_count;
 
 use super::casters::{self, Darkened};
@@ -26,8 +27,8 @@ use super::{Choice, PlanError};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
 use crate::plan::{CountBits, CountOf, DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Side, Visibility};
 use crate::scene::Scene;
-use counting::Step;
 pub use counting::{Counting, Form};
+use counting::{Start, Step};
 use drawn::{Volume, make, needed_parts};
 use glam::{DVec3, DVec4};
 
@@ -219,16 +220,16 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
     if usual == Counting::InFrontPlus {
         near_count::pass(frame, light, settings, &volumes);
     }
-    let start = settings.starts_at_eye.then(|| eye_count::at(frame, light, &volumes) as u8 & settings.mask());
+    let (begins_at, start) = begin(frame, light, settings, &volumes);
     for step in Step::all(settings) {
         let draws: Vec<Draw> = volumes.iter().flat_map(|volume| volume.draws(settings, *step)).collect();
-        if draws.is_empty() && !decides.keeps_empty_pass() {
+        if draws.is_empty() && begins_at == 0 && !decides.keeps_empty_pass() {
             frame.leave_out(Decision::VolumePass, light.name(), "no caster's volume is needed");
             continue;
         }
         frame.stencil_pass(light, step.name(), &counting::purpose(counted, light, *step, settings, start), draws);
         if *step == Step::all(settings)[0] {
-            frame.begin_stencil_at(start.unwrap_or(0));
+            frame.begin_stencil_at(begins_at as u8 & settings.mask());
         }
     }
     let mask = settings.mask().into();
@@ -242,6 +243,17 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
          Everywhere else the surface is inside a shadow volume and stays dark."
     );
     frame.light_pass(light, &purpose, &Drawn::light_once_where_zero(mask));
+}
+
+/// What a light's count begins at, and why where that is said.
+fn begin(frame: &Frame, light: LightId, settings: &VolumeSettings, volumes: &[Volume]) -> (u32, Option<Start>) {
+    let kept = |start: u32| if settings.counts_in_float { start as u8 } else { start as u8 & settings.mask() };
+    if settings.starts_at_eye {
+        let start = eye_count::at(frame, light, volumes);
+        return (start, Some(Start::Eye(kept(start))));
+    }
+    let start = volumes.iter().map(|volume| volume.begins_with).sum();
+    (start, (start != 0).then_some(Start::FarEnd(kept(start))))
 }
 
 /// What a count of these counts at a surface; `None` if there are none.
@@ -276,16 +288,10 @@ fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options
         near_count::pass(frame, light, options, volumes);
     }
     let draws = volumes.iter().flat_map(|volume| volume.float_draws(options)).collect();
-    let start = options.starts_at_eye.then(|| eye_count::at(frame, light, volumes));
-    let purpose = counting::purpose(
-        counted_by(volumes, counting),
-        light,
-        Step::BothFaces,
-        options,
-        start.map(|start| start as u8),
-    );
+    let (begins_at, start) = begin(frame, light, options, volumes);
+    let purpose = counting::purpose(counted_by(volumes, counting), light, Step::BothFaces, options, start);
     frame.count_pass(light, Step::BothFaces.name(), &purpose, draws);
-    frame.begin_count_at(light, start.unwrap_or(0));
+    frame.begin_count_at(light, begins_at);
     frame.mask_pass(light, &[Drawn::lit_by(Visibility::Count)]);
     let purpose = "Adds the light where the count is zero. Everywhere else the surface is inside a shadow volume and \
                    stays dark.";
@@ -309,7 +315,7 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
         };
         let casters = who_casts(frame, light, index, options);
         let held = decides.held_by_parts(frame, index);
-        let (mesh, parts) = make(frame, light, index, (casters, &held), options);
+        let (mesh, parts, far_end) = make(frame, light, index, (casters, &held), options);
         if parts.light_cap_turned.end == 0 {
             let because = match casters {
                 Casters::All => "every triangle is edge-on to the light",
@@ -325,13 +331,23 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
             frame.leave_out(Decision::Caster, &object.name, because);
             continue;
         }
-        let mut needed = needed_parts(frame, form, &parts, object, options.caps);
+        let (mut needed, begins_with) = needed_parts(frame, form, &parts, object, (options.caps, far_end));
         needed.retain(|part| !part.triangles.is_empty());
         let mesh = frame.add_mesh(mesh);
         let is_body = options.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
         let darkens_nothing = !is_body && !casters::can_darken(frame, index, light, Darkened::All);
         let (caster, counting) = (object.name.clone(), form.counting);
-        volumes.push(Volume { object: index, caster, counting, is_body, darkens_nothing, mesh, parts, needed });
+        volumes.push(Volume {
+            object: index,
+            caster,
+            counting,
+            is_body,
+            darkens_nothing,
+            mesh,
+            parts,
+            needed,
+            begins_with,
+        });
     }
     let mut casting = volumes.iter().flat_map(|volume: &Volume| volume.casting_triangles(frame));
     let may_overflow = decides.may_overflow(&mut casting);

@@ -103,6 +103,7 @@ fn example() -> Capture {
             eye: DVec3::new(0.1, 0.2, 1.0 / 3.0),
             target: DVec3::ZERO,
             up: DVec3::Y,
+            projection: crate::scene::Projection::Perspective,
             fov_y_degrees: 44.9,
             near: 0.05,
             far: None,

@@ -17,6 +17,15 @@ use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 /// steps over the tangent of the light's height.
 const HUGGING_BIAS: i32 = -4;
 
+/// What a count begins at, and for what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Start {
+    /// The volumes around the eye.
+    Eye(u8),
+    /// The volumes that parallel lines of sight end in.
+    FarEnd(u8),
+}
+
 /// A run of a volume's triangles that counts.
 pub struct NeededPart {
     pub part: Part,
@@ -102,7 +111,8 @@ impl Counting {
         }
     }
 
-    /// The state that a part counts with.
+    /// The state that a part counts with. What counts behind surfaces asks not to be clipped, as far as the frame
+    /// can do without ([`Frame::finish`](crate::technique::frame::Frame::finish)).
     pub(super) fn raster(self, part: &NeededPart, options: &VolumeSettings, step: Step) -> RasterState {
         let (add, take) = operations(options);
         let adds_in_front = (self != Counting::Behind) != part.turned;
@@ -111,7 +121,9 @@ impl Counting {
         let is_never = options.light_caps_never_pass && part.part == Part::LightCap;
         let depth_compare = if is_never { CompareFunction::Never } else { surface.depth_compare };
         let depth_bias = depth_bias(part);
-        let state = RasterState { depth_compare, depth_bias, depth_write: false, color: ColorWrite::None, ..surface };
+        let unclipped_depth = self == Counting::Behind;
+        let color = ColorWrite::None;
+        let state = RasterState { unclipped_depth, depth_compare, depth_bias, depth_write: false, color, ..surface };
         // Not by culling, as textbooks have it: on Mesa's software driver, culling one face changes
         // a few counts (2 and 16 of 40 000 pixels on a torn torus), with the operations as they are
         // here or not. Why is not known; without culling both ways leave the same counts.
@@ -139,7 +151,9 @@ impl Counting {
         };
         let adds_in_front = (self != Counting::Behind) != part.turned;
         let depth_bias = depth_bias(part);
-        let state = RasterState { depth_compare, depth_bias, depth_write: false, color: ColorWrite::Add, ..surface };
+        let unclipped_depth = self == Counting::Behind;
+        let color = ColorWrite::Add;
+        let state = RasterState { unclipped_depth, depth_compare, depth_bias, depth_write: false, color, ..surface };
         (state, if adds_in_front { 1.0 } else { -1.0 })
     }
 
@@ -157,13 +171,13 @@ fn depth_bias(part: &NeededPart) -> DepthBiasState {
     DepthBiasState { constant, ..DepthBiasState::default() }
 }
 
-/// What a pass is for; `None` counts each volume in its own way. `start` is what the count begins with.
+/// What a pass is for; `None` counts each volume in its own way.
 pub fn purpose(
     counting: Option<Counting>,
     light: LightId,
     step: Step,
     options: &VolumeSettings,
-    start: Option<u8>,
+    start: Option<Start>,
 ) -> String {
     let light = light.name();
     let what = match counting {
@@ -193,7 +207,11 @@ pub fn purpose(
         Some(Counting::Behind) => ["a back face hidden by the surface adds 1", "a hidden front face takes 1 away"],
         None => ["in front, a front face adds 1 and a back face takes 1 away", "behind, it is the other way round"],
     };
-    let left = match (counting, start) {
+    let eye_start = match start {
+        Some(Start::Eye(start)) => Some(start),
+        Some(Start::FarEnd(_)) | None => None,
+    };
+    let left = match (counting, eye_start) {
         (Some(Counting::InFront), None) => {
             "What is left contains the surface, if the eye itself is in none.".to_owned()
         }
@@ -207,6 +225,13 @@ pub fn purpose(
         }
         (Some(Counting::Behind), _) => "What is left contains the surface, wherever the eye is.".to_owned(),
         (None, _) => "Either way, what is left contains the surface, wherever the eye is.".to_owned(),
+    };
+    let left = match start {
+        Some(Start::FarEnd(start)) => format!(
+            "It begins at {start}: parallel lines of sight all end at one point at infinity, in the volumes of so many \
+             casting triangles, those that a ray from {light} along them meets. {left}"
+        ),
+        Some(Start::Eye(_)) | None => left,
     };
     let is_last = match step {
         Step::BothFaces => return format!("Counts {what}: {adds}, {takes}. {left}"),
