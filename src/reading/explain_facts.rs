@@ -74,13 +74,14 @@ fn fact(formula: &str, here: Vec<String>) -> Fact {
     Fact { formula: formula.to_owned(), here }
 }
 
-/// `stored depth = offset + scale / distance`.
+/// `stored depth = offset + scale / distance`, or of a parallel camera `offset + scale · distance`.
 fn depth(known: &Known) -> Fact {
     let curve = known.capture.depth;
     // With fewer digits the sum would not be what is stored.
     let sign = if curve.scale < 0.0 { "−" } else { "+" };
-    let terms = format!("{} {sign} {}", format::precise(curve.offset), format::precise(curve.scale.abs()));
-    let mut here = vec![format!("{}: {terms} / distance", curve.mapping.name())];
+    let by = if curve.is_linear { "·" } else { "/" };
+    let terms = format!("{} {sign} {} {by}", format::precise(curve.offset), format::precise(curve.scale.abs()));
+    let mut here = vec![format!("{}: {terms} distance", curve.mapping.name())];
     let stored = known.pick.and_then(|at| known.capture.frame_at(known.step)?.depth.image.depth_at(at));
     if let (Some([x, y]), Some(stored)) = (known.pick, stored) {
         let measure = DepthMeasure::of_camera(known.capture);
@@ -90,7 +91,7 @@ fn depth(known: &Known) -> Fact {
             }
             Some(distance) => {
                 let away = format::length(distance, curve.unit.name());
-                here.push(format!("pixel {x}, {y}: {terms} / {away} = {}", format::depth(stored)));
+                here.push(format!("pixel {x}, {y}: {terms} {away} = {}", format::depth(stored)));
                 here.extend(measure.step_at(stored).map(|step| {
                     format!("the next depth that can be stored is {} further", format::length(step, curve.unit.name()))
                 }));
@@ -99,7 +100,7 @@ fn depth(known: &Known) -> Fact {
     } else {
         here.push("Pick a pixel (right click) to see its own numbers.".to_owned());
     }
-    fact("stored depth = offset + scale / distance along the view", here)
+    fact(&format!("stored depth = offset + scale {by} distance along the view"), here)
 }
 
 /// By the side of the surface on which the light's volumes count.

@@ -159,13 +159,16 @@ impl Camera {
         }
     }
 
-    /// Half of what the picture shows upwards where the target is, metres.
+    /// Half of what the picture shows upwards at a distance along the view's axis, metres.
+    #[must_use]
+    pub fn half_height_at(&self, distance: f64) -> f64 {
+        self.half_height() * if self.is_parallel() { 1.0 } else { distance }
+    }
+
+    /// The same where the target is.
     #[must_use]
     pub fn half_height_at_target(&self) -> f64 {
-        match self.projection {
-            Projection::Perspective => self.half_height() * (self.target - self.eye).length(),
-            _ => self.half_height(),
-        }
+        self.half_height_at((self.target - self.eye).length())
     }
 
     /// How depth is measured: of a parallel projection it grows with the distance, from `near` to `far`.
