@@ -125,6 +125,10 @@ fn volumes(known: &Known) -> Fact {
     let mut here = Vec::new();
     match (known.pick, known.history) {
         (Some([x, y]), Some(history)) => {
+            let began = light.map_or(0, |light| history.cleared_to(light));
+            if known.capture.camera.is_parallel() && began != 0 {
+                here.push(format!("the count began at {began}, the volumes that all lines of sight end in"));
+            }
             let (mut up, mut down, mut idle) = (0_u32, 0_u32, 0_u32);
             let mut last = None;
             for event in history.events.iter().filter(|event| event.pass == known.step) {
@@ -216,7 +220,11 @@ fn triangles(known: &Known, step: &Step) -> Fact {
     let [sides, light, dark] = [Part::Side, Part::LightCap, Part::DarkCap].map(of);
     let is_sun = step.light.and_then(|light| known.lights.get(light)).is_some_and(Light::is_directional);
     let is_finite = known.capture.settings.get("extrusion").is_some_and(|how| how.starts_with("finite"));
+    let is_parallel = known.capture.camera.is_parallel();
     let dark_cap = match (is_sun, is_finite) {
+        (false, false) if is_parallel => {
+            "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there"
+        }
         (_, true) => "dark caps, the casting triangles carried to the far end",
         (true, false) => "dark caps: the sides of a sun's volume meet in one point at infinity, so it needs none",
         (false, false) => "dark caps, fans over the silhouettes at infinity",
