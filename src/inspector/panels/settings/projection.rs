@@ -8,9 +8,8 @@ use egui::{DragValue, Ui};
 pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
     let names = ("camera projection", "projection");
     let half_height = camera.half_height_at_target();
-    let mut changed = row(ui, names, &mut camera.projection, &before.projection, |ui, projection| {
-        kind(ui, projection, half_height)
-    });
+    let mut changed =
+        row(ui, names, &mut camera.projection, &before.projection, |ui, projection| kind(ui, projection, half_height));
     changed |= field_of_view(ui, camera, before);
     let (half_before, oblique_before) = numbers(before.projection);
     if let Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } = &mut camera.projection {
