@@ -6,6 +6,8 @@
 
 struct View {
     clip_from_relative: mat4x4f,
+    // Where lines of sight meet; w = 0 where they are parallel.
+    eye: vec4f,
     // Linear RGB; the fourth is unused.
     ambient: vec4f,
 }

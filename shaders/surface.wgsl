@@ -98,7 +98,7 @@ fn light_on(relative: vec3f, normal: vec3f) -> LightOn {
     let direction = normalize(to_light);
     let cosine = dot(normal, direction);
     let diffuse = select(max(cosine, 0.0), 0.5 * cosine + 0.5, light.wraps != 0u);
-    let halfway = normalize(direction - normalize(relative));
+    let halfway = normalize(direction + normalize(view.eye.xyz - relative * view.eye.w));
     let gloss = select(0.0, draw.specular * pow(max(dot(normal, halfway), 0.0), draw.shininess), cosine > 0.0);
     let arriving = light.color * falloff(length(to_light));
     return LightOn(arriving * draw.color * diffuse, arriving * gloss);

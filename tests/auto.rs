@@ -72,7 +72,18 @@ fn closed_box(name: &str, low: [f64; 3], high: [f64; 3]) -> Object {
 
 fn looking(scene: Scene, eye: [f64; 3], target: [f64; 3]) -> Scene {
     let (eye, target) = (DVec3::from_array(eye), DVec3::from_array(target));
-    Scene { camera: Camera { eye, target, up: DVec3::Y, fov_y_degrees: 50.0, near: 0.1, far: None }, ..scene }
+    Scene {
+        camera: Camera {
+            eye,
+            target,
+            up: DVec3::Y,
+            projection: stencilscope::scene::Projection::Perspective,
+            fov_y_degrees: 50.0,
+            near: 0.1,
+            far: None,
+        },
+        ..scene
+    }
 }
 
 fn carried(mut scene: Scene, by: DVec3) -> Scene {

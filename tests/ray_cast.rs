@@ -28,6 +28,7 @@ fn soup(seed: u64) -> Scene {
         eye,
         target: random.within(0.5),
         up: DVec3::Y,
+        projection: stencilscope::scene::Projection::Perspective,
         fov_y_degrees: 70.0,
         near: 0.02 + random.unit() * 0.5,
         far: None,

@@ -56,7 +56,12 @@ fn plan(format: TextureFormat, meshes: Vec<DrawMesh>, passes: Vec<Pass>) -> Fram
             size: SIZE,
             layers: 1,
         }],
-        views: vec![PlanView { name: "camera".to_owned(), origin: DVec3::ZERO, clip_from_relative: Mat4::IDENTITY }],
+        views: vec![PlanView {
+            name: "camera".to_owned(),
+            origin: DVec3::ZERO,
+            eye: PlanView::at_origin(),
+            clip_from_relative: Mat4::IDENTITY,
+        }],
         lights: Vec::new(),
         ambient: [0.0; 3],
         meshes,

@@ -191,7 +191,12 @@ fn plan(cases: &[Case]) -> FramePlan {
             size,
             layers: 1,
         }],
-        views: vec![PlanView { name: "clip".to_owned(), origin: DVec3::ZERO, clip_from_relative: Mat4::IDENTITY }],
+        views: vec![PlanView {
+            name: "clip".to_owned(),
+            origin: DVec3::ZERO,
+            eye: PlanView::at_origin(),
+            clip_from_relative: Mat4::IDENTITY,
+        }],
         lights: Vec::new(),
         ambient: [0.0; 3],
         meshes: vec![stored, mesh("tested", vertices, indices)],

@@ -2,9 +2,8 @@
 
 use super::{Frustum, NearClip, PlacedObject, ViewOf};
 use crate::geometry::{NearClipVolume, ViewVolume};
-use crate::math::projection;
 use crate::plan::{FramePlan, LightId, PlanMap, Program, ViewId, Visibility};
-use crate::scene::{Camera, Light, Scene};
+use crate::scene::{Camera, Light, Scene, Sight};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// The corners of a view: right top, left top, left bottom, right bottom.
@@ -90,20 +89,13 @@ fn of_projector(clip_from_world: DMat4, light: DVec4, caster: &[DVec3], of: View
 }
 
 pub fn of_camera(camera: &Camera, aspect: f64, far: Option<f64>) -> Frustum {
-    let rays = rays(camera, aspect);
-    let at = |ray: DVec3, distance: f64| (camera.eye + ray * distance).extend(1.0);
+    let sights = CORNERS.map(|corner| camera.sights(aspect).through(corner));
+    let at = |sight: Sight, distance: f64| (camera.eye + sight.at(distance)).extend(1.0);
     Frustum {
         of: ViewOf::Camera,
-        near: rays.map(|ray| at(ray, camera.near)),
-        far: rays.map(|ray| far.map_or(ray.extend(0.0), |far| at(ray, far))),
+        near: sights.map(|sight| at(sight, camera.near)),
+        far: sights.map(|sight| far.map_or(sight.along.extend(0.0), |far| at(sight, far))),
     }
-}
-
-/// From the eye to the corners of the picture at distance 1.
-fn rays(camera: &Camera, aspect: f64) -> [DVec3; 4] {
-    let world_from_view = projection::view_from_world_rotation(camera.target - camera.eye, camera.up).transpose();
-    let up = (camera.fov_y_degrees.to_radians() / 2.0).tan();
-    CORNERS.map(|corner| world_from_view * DVec3::new(corner.x * up * aspect, corner.y * up, -1.0))
 }
 
 /// `None` where the matrix has no inverse, or sees no frustum.
@@ -127,7 +119,7 @@ pub fn near_clip(camera: &Camera, aspect: f64, light: &Light) -> Option<NearClip
     match ViewVolume::new(camera, aspect).near_clip(relative) {
         NearClipVolume::Slab(_) => None,
         NearClipVolume::Planes(_) => {
-            let rectangle = rays(camera, aspect).map(|ray| camera.eye + ray * camera.near);
+            let rectangle = of_camera(camera, aspect, None).near.map(|corner| corner.truncate());
             Some(NearClip { rectangle, apex: position })
         }
     }

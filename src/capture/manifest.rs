@@ -6,7 +6,7 @@ use super::{AdapterInfo, Capture, Differs, DrawSummary, Origin, Timing};
 use crate::accuracy::{ErrorCounts, Finding, Region};
 use crate::math::depth::DepthCurve;
 use crate::plan::{CountOf, DecidedBy, LeftOut, Part, Side};
-use crate::scene::Camera;
+use crate::scene::{Camera, Projection};
 use glam::{DMat4, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -43,6 +43,9 @@ pub(super) struct CameraEntry {
     pub eye: [f64; 3],
     pub target: [f64; 3],
     pub up: [f64; 3],
+    /// Where it is not a pinhole.
+    #[serde(default, skip_serializing_if = "Projection::is_pinhole")]
+    pub projection: Projection,
     pub fov_y_degrees: f64,
     pub near: f64,
     pub far: Option<f64>,
@@ -210,6 +213,7 @@ impl From<&Camera> for CameraEntry {
             eye: camera.eye.to_array(),
             target: camera.target.to_array(),
             up: camera.up.to_array(),
+            projection: camera.projection,
             fov_y_degrees: camera.fov_y_degrees,
             near: camera.near,
             far: camera.far,
@@ -223,6 +227,7 @@ impl From<&CameraEntry> for Camera {
             eye: DVec3::from_array(entry.eye),
             target: DVec3::from_array(entry.target),
             up: DVec3::from_array(entry.up),
+            projection: entry.projection,
             fov_y_degrees: entry.fov_y_degrees,
             near: entry.near,
             far: entry.far,

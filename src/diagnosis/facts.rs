@@ -141,8 +141,7 @@ impl<'a> Facts<'a> {
 
     /// Metres that a pixel is wide at a distance along the view's axis.
     pub fn pixel_width(&self, depth: f64) -> f64 {
-        let half = (self.scene.camera.fov_y_degrees.to_radians() / 2.0).tan();
-        2.0 * half * depth / f64::from(self.plan.size[1])
+        2.0 * self.scene.camera.half_height_at(depth) / f64::from(self.plan.size[1])
     }
 
     /// The names of the objects that rays have met, in order.

@@ -2,6 +2,7 @@
 
 use crate::capture::{Capture, CapturedLight};
 use crate::numbers;
+use crate::scene::Projection;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeSet;
 
@@ -40,6 +41,17 @@ pub(super) fn asked(a: &Capture, b: &Capture) -> Vec<Note> {
     notes.0
 }
 
+/// With all its numbers.
+fn projection(capture: &Capture) -> String {
+    match capture.camera.projection {
+        Projection::Perspective => "perspective".to_owned(),
+        Projection::Orthographic { half_height } => format!("orthographic, half height {half_height}"),
+        Projection::Oblique { half_height, angle_degrees, factor } => {
+            format!("oblique, half height {half_height}, angle {angle_degrees}, factor {factor}")
+        }
+    }
+}
+
 /// Camera, depth mapping and lights.
 pub(super) fn conditions(a: &Capture, b: &Capture) -> Vec<Note> {
     let mut notes = Notes::default();
@@ -47,13 +59,11 @@ pub(super) fn conditions(a: &Capture, b: &Capture) -> Vec<Note> {
     notes.add("camera's eye", &point(a.camera.eye), &point(b.camera.eye));
     notes.add("camera's target", &point(a.camera.target), &point(b.camera.target));
     notes.add("camera's up", &point(a.camera.up), &point(b.camera.up));
+    notes.add("projection", &projection(a), &projection(b));
     notes.add("field of view", &a.camera.fov_y_degrees.to_string(), &b.camera.fov_y_degrees.to_string());
     notes.add("near plane", &a.camera.near.to_string(), &b.camera.near.to_string());
     notes.add("far plane", &far(a), &far(b));
-    let depth = |capture: &Capture| {
-        let curve = &capture.depth;
-        format!("{}: {} + {} / distance", curve.mapping.name(), curve.offset, curve.scale)
-    };
+    let depth = |capture: &Capture| format!("{}: {}", capture.depth.mapping.name(), capture.depth.formula());
     notes.add("depth", &depth(a), &depth(b));
     notes.add("lights", &a.lights.len().to_string(), &b.lights.len().to_string());
     for (index, (in_a, in_b)) in a.lights.iter().zip(&b.lights).enumerate() {

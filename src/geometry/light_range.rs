@@ -3,7 +3,7 @@
 //! What is outside of the rectangle round a light's sphere is beyond the range. Like all of `reach`, that errs
 //! to the safe side.
 
-use crate::math::{AxisBox, projection};
+use crate::math::AxisBox;
 use crate::scene::Camera;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -27,33 +27,45 @@ pub enum RangeInView {
 /// The pixels of a picture of `size` pixels that points within `range` metres of `light` may show in.
 #[must_use]
 pub fn range_in_view(camera: &Camera, size: [u32; 2], light: DVec3, range: f64) -> RangeInView {
-    let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
-    let center = rotation * (light - camera.eye);
+    let center = camera.world_from_view().transpose() * (light - camera.eye);
     let radius = range * (1.0 + MARGIN) + center.length() * MARGIN;
     let ahead = -center.z;
     if ahead + radius < camera.near {
         return RangeInView::Nothing;
     }
-    let up = (camera.fov_y_degrees.to_radians() / 2.0).tan();
+    let up = camera.half_height();
     let [width, height] = size.map(f64::from);
     let right = up * width / height;
     // Seen along an axis of the picture, the sphere is a circle between two lines from the eye.
-    let ends = |middle: f64, half: f64, pixels: f64| {
+    let from_eye = |middle: f64, half: f64| {
         let away = middle.hypot(ahead);
         if away <= radius {
-            return [0, pixels as u32];
+            return [f64::NEG_INFINITY, f64::INFINITY];
         }
         let (angle, spread) = (middle.atan2(ahead), (radius / away).asin());
-        let at = |angle: f64| match angle.abs() < FRAC_PI_2 {
-            true => (0.5 + 0.5 * angle.tan() / half) * pixels,
+        [angle - spread, angle + spread].map(|angle| match angle.abs() < FRAC_PI_2 {
+            true => angle.tan() / half,
             false => f64::INFINITY.copysign(angle),
-        };
-        // A pixel more on each side, as edges are rasterised in steps.
-        let [low, high] = [at(angle - spread).floor() - 1.0, at(angle + spread).ceil() + 1.0];
-        [low, high].map(|end| end.clamp(0.0, pixels) as u32)
+        })
     };
-    let [left, end_x] = ends(center.x, right, width);
-    let [top, end_y] = ends(-center.y, up, height);
+    // Or between parallel ones, and where those are aslant it is drawn out.
+    let shear = camera.projection.shear();
+    let behind = ahead - (camera.target - camera.eye).length();
+    let parallel = |middle: f64, shear: f64, half: f64| {
+        let (middle, reach) = (middle + shear * behind, radius * shear.hypot(1.0));
+        [middle - reach, middle + reach].map(|end| end / half)
+    };
+    let [across, down] = match camera.is_parallel() {
+        true => [parallel(center.x, shear.x, right), parallel(-center.y, -shear.y, up)],
+        false => [from_eye(center.x, right), from_eye(-center.y, up)],
+    };
+    let ends = |[low, high]: [f64; 2], pixels: f64| {
+        let [low, high] = [low, high].map(|end| (0.5 + 0.5 * end) * pixels);
+        // A pixel more on each side, as edges are rasterised in steps.
+        [low.floor() - 1.0, high.ceil() + 1.0].map(|end| end.clamp(0.0, pixels) as u32)
+    };
+    let [left, end_x] = ends(across, width);
+    let [top, end_y] = ends(down, height);
     match (end_x.saturating_sub(left), end_y.saturating_sub(top)) {
         (0, _) | (_, 0) => RangeInView::Nothing,
         (columns, rows) if [columns, rows] == size => RangeInView::All,
@@ -75,10 +87,40 @@ pub fn beyond_range(points: &[DVec3], light: DVec3, range: f64, eye: DVec3) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::depth::DepthMapping;
+    use crate::scene::Projection;
 
     fn camera() -> Camera {
         let (eye, target) = (DVec3::new(0.0, 0.0, 10.0), DVec3::ZERO);
-        Camera { eye, target, up: DVec3::Y, fov_y_degrees: 90.0, near: 0.1, far: None }
+        let projection = Projection::Perspective;
+        Camera { eye, target, up: DVec3::Y, projection, fov_y_degrees: 90.0, near: 0.1, far: None }
+    }
+
+    /// The same for a parallel camera, whose matrix says where points show.
+    #[test]
+    fn the_rectangle_of_a_parallel_camera_holds_the_sphere_and_little_more() {
+        let size = [200, 200];
+        let oblique = Projection::Oblique { half_height: 8.0, angle_degrees: 30.0, factor: 0.5 };
+        for projection in [Projection::Orthographic { half_height: 8.0 }, oblique] {
+            let camera = Camera { projection, ..camera() };
+            let clip_from_view = camera.clip_from_view(1.0, &DepthMapping::ReversedInfinite.linear_curve(0.1, 30.0));
+            for light in [DVec3::ZERO, DVec3::new(4.0, -3.0, 2.0)] {
+                let RangeInView::Pixels([left, top, columns, rows]) = range_in_view(&camera, size, light, 2.0) else {
+                    panic!("{light}: no rectangle");
+                };
+                let mut seen = [f64::INFINITY, f64::INFINITY, 0.0, 0.0];
+                for step in 0..40_000 {
+                    let (a, b) = (f64::from(step % 200) * 0.0315, f64::from(step / 200) * 0.0158);
+                    let point = light + DVec3::new(b.sin() * a.cos(), b.cos(), b.sin() * a.sin()) * 2.0;
+                    let clip = clip_from_view * (point - camera.eye).extend(1.0);
+                    let [x, y] = [clip.x, -clip.y].map(|offset| (0.5 + 0.5 * offset) * 200.0);
+                    seen = [seen[0].min(x), seen[1].min(y), seen[2].max(x), seen[3].max(y)];
+                }
+                let found = [left, top, left + columns, top + rows].map(f64::from);
+                let spare = [seen[0] - found[0], seen[1] - found[1], found[2] - seen[2], found[3] - seen[3]];
+                assert!(spare.iter().all(|spare| (0.9..4.0).contains(spare)), "{light}: {spare:?}");
+            }
+        }
     }
 
     /// Every point of the sphere shows inside the rectangle, and the rectangle is not much larger.

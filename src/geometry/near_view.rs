@@ -5,7 +5,7 @@
 //! ray onto π; the camera's x, y and w rows do the rest. Depth only clips: 0 on the near plane, and
 //! `w` just in front of a point light or beyond every caster of a directional one.
 
-use crate::math::projection;
+use crate::math::depth::DepthMapping;
 use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
 
@@ -25,7 +25,7 @@ pub fn through_near_rectangle<'a>(
     light: DVec4,
     points: impl Iterator<Item = &'a DVec3>,
 ) -> Result<DMat4, &'static str> {
-    let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
+    let rotation = camera.world_from_view().transpose();
     // A direction's length means nothing.
     let scale = if light.w == 0.0 { light.truncate().abs().max_element() } else { 1.0 };
     let light = (rotation * (light.truncate() / scale - camera.eye * light.w)).extend(light.w);
@@ -38,10 +38,11 @@ pub fn through_near_rectangle<'a>(
     // of the way, whichever side the light is on.
     let share = near_plane / height;
     let onto_plane = |row: DVec4, of_light: f64| row - share * of_light;
-    let focal = 1.0 / (camera.fov_y_degrees.to_radians() / 2.0).tan();
-    let x = onto_plane(DVec4::X, light.x) * (focal / aspect);
-    let y = onto_plane(DVec4::Y, light.y) * focal;
-    let w = onto_plane(DVec4::W, light.w) * camera.near;
+    // The camera's rows, whatever its depth. On the near plane w is one number: a pinhole's is its distance.
+    let of_camera = camera.clip_from_view(aspect, &DepthMapping::ReversedInfinite.curve(camera.near, 0.0, 0.0));
+    let [x, y] = [of_camera.row(0), of_camera.row(1)].map(|row| onto_plane(row, row.dot(light)));
+    let w_there = if camera.is_parallel() { 1.0 } else { camera.near };
+    let w = onto_plane(DVec4::W, light.w) * w_there;
     let depth_per_share = match light.w == 0.0 {
         true => {
             let share_of = |point: &DVec3| share.dot((rotation * (*point - camera.eye)).extend(1.0));
@@ -49,9 +50,9 @@ pub fn through_near_rectangle<'a>(
             if farthest <= 0.0 {
                 return Err("nothing that casts lies between it and the near plane");
             }
-            camera.near * 0.5 / farthest
+            w_there * 0.5 / farthest
         }
-        false => camera.near * NEAREST,
+        false => w_there * NEAREST,
     };
     let clip_from_view = DMat4::from_cols(x, y, share * depth_per_share, w).transpose();
     Ok(clip_from_view * DMat4::from_mat3(rotation))
@@ -60,13 +61,20 @@ pub fn through_near_rectangle<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::depth::DepthMapping;
+    use crate::scene::Projection;
+
+    fn cameras() -> [Camera; 3] {
+        let oblique = Projection::Oblique { half_height: 1.5, angle_degrees: 30.0, factor: 0.5 };
+        [Projection::Perspective, Projection::Orthographic { half_height: 2.0 }, oblique]
+            .map(|projection| Camera { projection, ..camera() })
+    }
 
     fn camera() -> Camera {
         Camera {
             eye: DVec3::new(1.0, 2.0, 3.0),
             target: DVec3::new(0.5, 1.0, -1.0),
             up: DVec3::Y,
+            projection: Projection::Perspective,
             fov_y_degrees: 60.0,
             near: 0.5,
             far: None,
@@ -75,19 +83,20 @@ mod tests {
 
     /// The camera's clip space from positions relative to the eye.
     fn camera_matrix(camera: &Camera) -> DMat4 {
-        let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
-        let depth = DepthMapping::ReversedInfinite.curve(camera.near, 0.0, 0.0);
-        projection::perspective(camera.fov_y_degrees, 1.5, &depth) * DMat4::from_mat3(rotation)
+        let depth = match camera.is_parallel() {
+            true => DepthMapping::ReversedInfinite.linear_curve(camera.near, 20.0),
+            false => DepthMapping::ReversedInfinite.curve(camera.near, 0.0, 0.0),
+        };
+        camera.clip_from_view(1.5, &depth) * DMat4::from_mat3(camera.world_from_view().transpose())
     }
 
     /// Any point between the light and a point of the near plane has that point's pixel, and lies
     /// inside the depth range; beyond the plane or the light it does not.
     #[test]
     fn what_lies_between_has_the_near_points_pixel() {
-        let camera = camera();
-        let relative_from_clip = camera_matrix(&camera).inverse();
         let lights = [DVec4::new(5.0, 4.0, 9.0, 1.0), DVec4::new(-3.0, 1.0, -8.0, 1.0), DVec4::new(0.3, 0.5, 0.4, 0.0)];
-        for light in lights {
+        for (camera, light) in cameras().into_iter().flat_map(|camera| lights.map(|light| (camera, light))) {
+            let relative_from_clip = camera_matrix(&camera).inverse();
             for (x, y) in [(0.0, 0.0), (-0.9, 0.3), (0.7, -0.8)] {
                 let near = relative_from_clip * DVec4::new(x, y, 1.0, 1.0);
                 let near = near.truncate() / near.w;

@@ -9,9 +9,8 @@
 //! than that rounding can move it, and a margin for the arithmetic here comes on top.
 
 use crate::math::Plane;
-use crate::math::projection;
 use crate::scene::Camera;
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 
 /// A light this near to the near plane, in parts of its distance from the eye, lies in it.
 const IN_PLANE: f64 = 1e-6;
@@ -25,7 +24,8 @@ pub struct ViewVolume {
     planes: [Plane; 5],
     /// Corners of the near rectangle in order round it.
     near_rectangle: [DVec3; 4],
-    ahead: DVec3,
+    /// World axes, relative to the eye.
+    near_middle: DVec3,
     near: f64,
 }
 
@@ -53,22 +53,35 @@ impl ViewVolume {
     /// cut there.
     #[must_use]
     pub fn new(camera: &Camera, aspect: f64) -> ViewVolume {
-        let world_from_view = projection::view_from_world_rotation(camera.target - camera.eye, camera.up).transpose();
-        let up = (camera.fov_y_degrees.to_radians() / 2.0).tan();
-        let right = up * aspect;
-        let corner = |x: f64, y: f64| world_from_view * (DVec3::new(x * right, y * up, -1.0) * camera.near);
-        let side = |inward: DVec3| Plane::through(DVec3::ZERO, world_from_view * inward);
+        let world_from_view = camera.world_from_view();
+        let sights = camera.sights(aspect);
+        let corner = |x: f64, y: f64| sights.through(DVec2::new(x, y)).at(camera.near);
+        let half = camera.half_height();
         let ahead = world_from_view * DVec3::NEG_Z;
+        // In view space, through the edges that face left, right, down and up.
+        let side = |outward: DVec2| {
+            let reach = half * if outward.x == 0.0 { 1.0 } else { aspect };
+            let plane = match camera.is_parallel() {
+                false => Plane::through(DVec3::ZERO, world_from_view * (-outward).extend(-reach)),
+                true => {
+                    let edge = sights.through(outward);
+                    let along_edge = world_from_view * outward.perp().extend(0.0);
+                    Plane::through(edge.from, edge.along.cross(along_edge))
+                }
+            };
+            let inside = sights.through(DVec2::ZERO).at(1.0).extend(1.0);
+            if plane.at(inside) < 0.0 { plane.turned() } else { plane }
+        };
         ViewVolume {
             planes: [
                 Plane::through(ahead * camera.near, ahead),
-                side(DVec3::new(1.0, 0.0, -right)),
-                side(DVec3::new(-1.0, 0.0, -right)),
-                side(DVec3::new(0.0, 1.0, -up)),
-                side(DVec3::new(0.0, -1.0, -up)),
+                side(DVec2::NEG_X),
+                side(DVec2::X),
+                side(DVec2::NEG_Y),
+                side(DVec2::Y),
             ],
             near_rectangle: [corner(1.0, 1.0), corner(-1.0, 1.0), corner(-1.0, -1.0), corner(1.0, -1.0)],
-            ahead,
+            near_middle: sights.through(DVec2::ZERO).at(camera.near),
             near: camera.near,
         }
     }
@@ -104,7 +117,7 @@ impl ViewVolume {
             return NearClipVolume::Slab(*near_plane);
         }
         let corners = self.near_rectangle;
-        let middle = self.ahead * self.near;
+        let middle = self.near_middle;
         let inwards = |plane: Plane| if plane.at(middle.extend(1.0)) < 0.0 { plane.turned() } else { plane };
         let side = |index: usize| {
             let [a, b] = [corners[index], corners[(index + 1) % 4]];
@@ -155,6 +168,7 @@ fn outside(planes: &[Plane], points: &[DVec4]) -> Option<Outside> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Projection;
 
     /// At the origin, looking along −z, 90 degrees each way: the near rectangle is 2 wide at 1.
     fn view() -> ViewVolume {
@@ -162,6 +176,7 @@ mod tests {
             eye: DVec3::new(3e6, -2e6, 1e6),
             target: DVec3::new(3e6, -2e6, 0.0),
             up: DVec3::Y,
+            projection: Projection::Perspective,
             fov_y_degrees: 90.0,
             near: 1.0,
             far: None,

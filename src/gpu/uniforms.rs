@@ -20,6 +20,7 @@ const NO_LAYER: u32 = u32::MAX;
 #[repr(C)]
 struct ViewUniform {
     clip_from_relative: [f32; 16],
+    eye: [f32; 4],
     ambient: [f32; 4],
 }
 
@@ -107,6 +108,7 @@ pub(super) fn views(device: &Device, plan: &FramePlan) -> UniformArray {
     let [r, g, b] = plan.ambient;
     let view = |view: &crate::plan::PlanView| ViewUniform {
         clip_from_relative: view.clip_from_relative.to_cols_array(),
+        eye: view.eye.to_array(),
         ambient: [r, g, b, 0.0],
     };
     UniformArray::new(device, "views", &plan.views.iter().map(view).collect::<Vec<_>>(), BufferUsages::UNIFORM)

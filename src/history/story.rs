@@ -123,7 +123,9 @@ impl PixelHistory {
                     Some(distance) if distance >= 0.0 => {
                         format!(", at {}", numbers::length(distance, curve.unit.name()))
                     }
+                    Some(_) if curve.is_linear => ", before the eye".to_owned(),
                     Some(_) => ", beyond the far plane".to_owned(),
+                    None if event.is_from_camera && curve.is_linear => ", where depth ends or beyond".to_owned(),
                     None if event.is_from_camera => ", at infinity".to_owned(),
                     None => String::new(),
                 };

@@ -79,7 +79,12 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
         depth: crate::math::depth::DepthMapping::StandardInfinite.curve(1.0, 0.0, 0.0),
         wraps_diffuse: false,
         attachments,
-        views: vec![PlanView { name: "camera".to_owned(), origin: DVec3::ZERO, clip_from_relative: Mat4::IDENTITY }],
+        views: vec![PlanView {
+            name: "camera".to_owned(),
+            origin: DVec3::ZERO,
+            eye: PlanView::at_origin(),
+            clip_from_relative: Mat4::IDENTITY,
+        }],
         lights: Vec::new(),
         ambient: [0.0; 3],
         meshes,

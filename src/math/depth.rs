@@ -1,7 +1,9 @@
 //! Depth mappings: how the distance along the view axis becomes the depth that is stored.
 //!
 //! Every perspective mapping here is `depth = offset + scale / distance`, so two numbers say how
-//! a stored depth is read back and how fine it is. Techniques are written for reversed depth,
+//! a stored depth is read back and how fine it is. Those of a parallel camera are linear, `depth = offset +
+//! scale · distance`: no number there stands for infinity, so depth ends at a distance, and what must not be clipped
+//! behind it is clamped. Techniques are written for reversed depth,
 //! where greater is nearer; the frame turns tests and biases round for the others.
 
 use glam::DVec2;
@@ -39,15 +41,18 @@ named_enum! {
     }
 }
 
-/// A mapping with its numbers: `depth = offset + scale / distance`.
+/// A mapping with its numbers: `depth = offset + scale / distance`, or `offset + scale · distance` where it is linear.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DepthCurve {
     /// Which mapping.
     pub mapping: DepthMapping,
-    /// What an infinite distance becomes.
+    /// What an infinite distance becomes; of a linear one, no distance.
     pub offset: f64,
-    /// In its unit.
+    /// In its unit; of a linear one, in parts of its unit.
     pub scale: f64,
+    /// Of a parallel camera.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_linear: bool,
     /// Distance of the far plane; `None` where there is none.
     pub far: Option<f64>,
     /// Of all distances.
@@ -101,7 +106,18 @@ impl DepthMapping {
             DepthMapping::StandardFinite | DepthMapping::StandardFiniteClamp => far / (far - near),
         };
         let scale = if self.is_reversed() { near } else { -near * offset };
-        DepthCurve { mapping: self, offset, scale, far: self.is_finite().then_some(far), unit: LengthUnit::Metre }
+        let far = self.is_finite().then_some(far);
+        DepthCurve { mapping: self, offset, scale, is_linear: false, far, unit: LengthUnit::Metre }
+    }
+
+    /// With the numbers of a parallel camera, which are those of no other mapping: from 0 to 1 between `near` and
+    /// `end`, or from 1 to 0. Only a finite mapping has a far plane there.
+    #[must_use]
+    pub fn linear_curve(self, near: f64, end: f64) -> DepthCurve {
+        let scale = if self.is_reversed() { -1.0 / (end - near) } else { 1.0 / (end - near) };
+        let offset = if self.is_reversed() { -end * scale } else { -near * scale };
+        let far = self.is_finite().then_some(end);
+        DepthCurve { mapping: self, offset, scale, is_linear: true, far, unit: LengthUnit::Metre }
     }
 }
 
@@ -109,19 +125,34 @@ impl DepthCurve {
     /// What z of clip space is made of: factors of view z (negative ahead) and of w.
     #[must_use]
     pub fn z_row(&self) -> DVec2 {
-        DVec2::new(-self.offset, self.scale)
+        if self.is_linear { DVec2::new(-self.scale, self.offset) } else { DVec2::new(-self.offset, self.scale) }
+    }
+
+    /// Ends where nothing must be clipped: volumes that go on are clamped there.
+    #[must_use]
+    pub fn keeps_volumes(&self) -> bool {
+        self.is_linear && !self.mapping.is_finite()
+    }
+
+    /// The formula, for people: `0 + 0.05 / distance`.
+    #[must_use]
+    pub fn formula(&self) -> String {
+        let times = if self.is_linear { "*" } else { "/" };
+        format!("{} + {} {times} distance", self.offset, self.scale)
     }
 
     /// Distance along the view axis; `None` for the depth of what was not drawn.
     #[must_use]
     pub fn distance(&self, depth: f32) -> Option<f64> {
-        (depth != self.mapping.clear_depth()).then(|| self.scale / (f64::from(depth) - self.offset))
+        let above = f64::from(depth) - self.offset;
+        (depth != self.mapping.clear_depth())
+            .then(|| if self.is_linear { above / self.scale } else { self.scale / above })
     }
 
     /// The depth of a distance, before it is rounded.
     #[must_use]
     pub fn depth(&self, distance: f64) -> f64 {
-        self.offset + self.scale / distance
+        self.offset + if self.is_linear { self.scale * distance } else { self.scale / distance }
     }
 }
 
@@ -159,6 +190,20 @@ mod tests {
                 let z = row.x * -distance + row.y;
                 assert!((z / distance - curve.depth(distance)).abs() < 1e-14, "{mapping:?} at {distance}");
             }
+        }
+    }
+
+    #[test]
+    fn linear_depth_goes_from_one_end_to_the_other() {
+        for mapping in DepthMapping::ALL {
+            let curve = mapping.linear_curve(NEAR, FAR);
+            let [near, far] = if mapping.is_reversed() { [1.0, 0.0] } else { [0.0, 1.0] };
+            assert!((curve.depth(NEAR) - near).abs() < 1e-15 && (curve.depth(FAR) - far).abs() < 1e-15, "{mapping:?}");
+            let back = curve.distance(curve.depth(3.0) as f32).expect("a distance");
+            assert!((back - 3.0).abs() < 1e-5 && curve.distance(mapping.clear_depth()).is_none());
+            let row = curve.z_row();
+            assert!((row.x * -7.0 + row.y - curve.depth(7.0)).abs() < 1e-15);
+            assert_eq!(curve.far.is_some(), mapping.is_finite());
         }
     }
 

@@ -1,7 +1,7 @@
 //! Cameras as matrices: view rotation, perspective and parallel projection.
 
 use super::depth::DepthCurve;
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// Clip space from view space: perspective. `aspect` is width over height.
 #[must_use]
@@ -19,6 +19,21 @@ pub fn frustum(focal_x: f64, focal_y: f64, depth: &DepthCurve) -> DMat4 {
         DVec4::new(0.0, focal_y, 0.0, 0.0),
         DVec4::new(0.0, 0.0, z_row.x, -1.0),
         DVec4::new(0.0, 0.0, z_row.y, 0.0),
+    )
+}
+
+/// Clip space from view space: parallel, of pictures whose edges are `half` from the middle. What lies a metre behind
+/// the distance `in_place` is moved by `shear`. Depth must be linear.
+#[must_use]
+pub fn parallel(half: [f64; 2], shear: DVec2, in_place: f64, depth: &DepthCurve) -> DMat4 {
+    let z_row = depth.z_row();
+    let half = DVec2::from_array(half);
+    let (receding, back) = (-shear / half, -shear * in_place / half);
+    DMat4::from_cols(
+        DVec4::new(1.0 / half.x, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, 1.0 / half.y, 0.0, 0.0),
+        DVec4::new(receding.x, receding.y, z_row.x, 0.0),
+        DVec4::new(back.x, back.y, z_row.y, 1.0),
     )
 }
 

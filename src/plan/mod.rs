@@ -40,7 +40,7 @@ pub use raster::{ColorWrite, FaceMasks, RasterState, StencilFace};
 pub use recorded::{May, RecordedPass, StartContent, Viewport};
 
 use crate::math::depth::DepthCurve;
-use glam::{DMat4, DVec3, Mat4};
+use glam::{DMat4, DVec3, Mat4, Vec4};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -137,8 +137,20 @@ pub struct PlanView {
     pub name: String,
     /// World position that the vertices of this view's meshes are relative to.
     pub origin: DVec3,
+    /// Where lines of sight meet, homogeneous and relative to `origin`; of a parallel view the direction towards it.
+    /// Highlights ask for it.
+    #[serde(default = "PlanView::at_origin")]
+    pub eye: Vec4,
     /// Clip space from positions relative to `origin`.
     pub clip_from_relative: Mat4,
+}
+
+impl PlanView {
+    /// An eye where the vertices are relative to.
+    #[must_use]
+    pub fn at_origin() -> Vec4 {
+        Vec4::W
+    }
 }
 
 /// What shaders know of a light.

@@ -15,7 +15,7 @@ impl Display for FramePlan {
         for (key, value) in &self.settings {
             writeln!(f, "  {key} = {value}")?;
         }
-        writeln!(f, "depth {}: {} + {} / distance", self.depth.mapping.name(), self.depth.offset, self.depth.scale)?;
+        writeln!(f, "depth {}: {}", self.depth.mapping.name(), self.depth.formula())?;
         for (index, attachment) in self.attachments.iter().enumerate() {
             let [width, height] = attachment.size;
             let (name, format, layers) = (&attachment.name, attachment.format, attachment.layers);

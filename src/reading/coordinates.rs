@@ -6,7 +6,6 @@
 use super::depth::DepthMeasure;
 use super::fragments::Surface;
 use crate::capture::Capture;
-use crate::math::projection;
 use crate::scene::Camera;
 use glam::{DMat4, DVec3, DVec4};
 use serde::Serialize;
@@ -113,10 +112,10 @@ impl Matrices {
     fn of(capture: &Capture) -> Matrices {
         let camera = &capture.camera;
         let [width, height] = capture.size.map(f64::from);
-        let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
+        let rotation = camera.world_from_view().transpose();
         Matrices {
             eye_from_world: DMat4::from_mat3(rotation) * DMat4::from_translation(-camera.eye),
-            clip_from_eye: projection::perspective(camera.fov_y_degrees, width / height, &capture.depth),
+            clip_from_eye: camera.clip_from_view(width / height, &capture.depth),
             // Rows run down, as y does not.
             window_from_ndc: DMat4::from_cols(
                 DVec4::new(width / 2.0, 0.0, 0.0, 0.0),

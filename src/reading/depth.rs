@@ -20,9 +20,9 @@ pub enum DepthMeasure {
         /// What is stored where nothing was drawn.
         clear: f32,
     },
-    /// Metres behind the near plane of a parallel view: `(depth − near) · length`.
+    /// Metres of a parallel view: `(depth − near) · length`, behind a map's near plane or along the camera's axis.
     Parallel {
-        /// What the near plane is stored as.
+        /// What the near plane is stored as; of the camera, what the eye would be.
         near: f64,
         /// From depth 0 to depth 1, metres; negative where depth is reversed.
         length: f64,
@@ -47,8 +47,12 @@ impl DepthMeasure {
     /// Of the camera's depth buffer.
     #[must_use]
     pub fn of_camera(capture: &Capture) -> DepthMeasure {
-        let DepthCurve { mapping, offset, scale, .. } = capture.depth;
-        DepthMeasure::Perspective { scale, offset, clear: mapping.clear_depth() }
+        let DepthCurve { mapping, offset, scale, is_linear, .. } = capture.depth;
+        let clear = mapping.clear_depth();
+        match is_linear {
+            true => DepthMeasure::Parallel { near: offset, length: 1.0 / scale, clear },
+            false => DepthMeasure::Perspective { scale, offset, clear },
+        }
     }
 
     /// Of a face of a light's shadow map; `None` where there is none or its matrix tells no distance, as

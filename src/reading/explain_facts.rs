@@ -74,13 +74,14 @@ fn fact(formula: &str, here: Vec<String>) -> Fact {
     Fact { formula: formula.to_owned(), here }
 }
 
-/// `stored depth = offset + scale / distance`.
+/// `stored depth = offset + scale / distance`, or of a parallel camera `offset + scale · distance`.
 fn depth(known: &Known) -> Fact {
     let curve = known.capture.depth;
     // With fewer digits the sum would not be what is stored.
     let sign = if curve.scale < 0.0 { "−" } else { "+" };
-    let terms = format!("{} {sign} {}", format::precise(curve.offset), format::precise(curve.scale.abs()));
-    let mut here = vec![format!("{}: {terms} / distance", curve.mapping.name())];
+    let by = if curve.is_linear { "·" } else { "/" };
+    let terms = format!("{} {sign} {} {by}", format::precise(curve.offset), format::precise(curve.scale.abs()));
+    let mut here = vec![format!("{}: {terms} distance", curve.mapping.name())];
     let stored = known.pick.and_then(|at| known.capture.frame_at(known.step)?.depth.image.depth_at(at));
     if let (Some([x, y]), Some(stored)) = (known.pick, stored) {
         let measure = DepthMeasure::of_camera(known.capture);
@@ -90,7 +91,7 @@ fn depth(known: &Known) -> Fact {
             }
             Some(distance) => {
                 let away = format::length(distance, curve.unit.name());
-                here.push(format!("pixel {x}, {y}: {terms} / {away} = {}", format::depth(stored)));
+                here.push(format!("pixel {x}, {y}: {terms} {away} = {}", format::depth(stored)));
                 here.extend(measure.step_at(stored).map(|step| {
                     format!("the next depth that can be stored is {} further", format::length(step, curve.unit.name()))
                 }));
@@ -99,7 +100,7 @@ fn depth(known: &Known) -> Fact {
     } else {
         here.push("Pick a pixel (right click) to see its own numbers.".to_owned());
     }
-    fact("stored depth = offset + scale / distance along the view", here)
+    fact(&format!("stored depth = offset + scale {by} distance along the view"), here)
 }
 
 /// By the side of the surface on which the light's volumes count.
@@ -124,6 +125,10 @@ fn volumes(known: &Known) -> Fact {
     let mut here = Vec::new();
     match (known.pick, known.history) {
         (Some([x, y]), Some(history)) => {
+            let began = light.map_or(0, |light| history.cleared_to(light));
+            if known.capture.camera.is_parallel() && began != 0 {
+                here.push(format!("the count began at {began}, the volumes that all lines of sight end in"));
+            }
             let (mut up, mut down, mut idle) = (0_u32, 0_u32, 0_u32);
             let mut last = None;
             for event in history.events.iter().filter(|event| event.pass == known.step) {
@@ -215,7 +220,11 @@ fn triangles(known: &Known, step: &Step) -> Fact {
     let [sides, light, dark] = [Part::Side, Part::LightCap, Part::DarkCap].map(of);
     let is_sun = step.light.and_then(|light| known.lights.get(light)).is_some_and(Light::is_directional);
     let is_finite = known.capture.settings.get("extrusion").is_some_and(|how| how.starts_with("finite"));
+    let is_parallel = known.capture.camera.is_parallel();
     let dark_cap = match (is_sun, is_finite) {
+        (false, false) if is_parallel => {
+            "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there"
+        }
         (_, true) => "dark caps, the casting triangles carried to the far end",
         (true, false) => "dark caps: the sides of a sun's volume meet in one point at infinity, so it needs none",
         (false, false) => "dark caps, fans over the silhouettes at infinity",

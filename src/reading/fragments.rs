@@ -5,12 +5,12 @@
 //! there, and where depths tell of another surface, the plane goes through the points of neighbouring pixels.
 
 use crate::capture::{Capture, Image};
-use crate::math::projection;
 use crate::plan::{DrawMesh, FramePlan, LightId, Program, ViewId, Visibility};
 use crate::reading::depth::DepthMeasure;
 use crate::reading::object_ids::fill;
 use crate::reading::projected::Projector;
-use glam::{DVec3, DVec4};
+use crate::scene::{Sight, Sights};
+use glam::{DVec2, DVec3, DVec4};
 use std::sync::Arc;
 
 /// The camera's view.
@@ -84,9 +84,9 @@ impl Fragments {
         let eye = self.surface.eye;
         let height = fragment.plane.dot(fragment.world - eye);
         let corner = |right: f64, down: f64| {
-            let ray = self.surface.ray([f64::from(x) + right, f64::from(y) + down]);
-            let along = height / fragment.plane.dot(ray);
-            (along.is_finite() && along > 0.0).then(|| eye + ray * along)
+            let sight = self.surface.sight([f64::from(x) + right, f64::from(y) + down]);
+            let distance = (height - fragment.plane.dot(sight.from)) / fragment.plane.dot(sight.along);
+            (distance.is_finite() && distance > 0.0).then(|| eye + sight.at(distance))
         };
         Some([corner(0.0, 0.0)?, corner(1.0, 0.0)?, corner(1.0, 1.0)?, corner(0.0, 1.0)?])
     }
@@ -104,7 +104,8 @@ impl Fragments {
         };
         let across = along([point(x.checked_sub(1), Some(y)), point(x.checked_add(1), Some(y))]);
         let down = along([point(Some(x), y.checked_sub(1)), point(Some(x), y.checked_add(1))]);
-        let to_eye = (self.surface.eye - world).normalize_or(DVec3::Y);
+        let meeting = self.surface.meeting;
+        let to_eye = (meeting.truncate() - world * meeting.w).normalize_or(DVec3::Y);
         let normal = across.zip(down).and_then(|(across, down)| across.cross(down).try_normalize());
         normal.map_or(to_eye, |normal| if normal.dot(to_eye) < 0.0 { -normal } else { normal })
     }
@@ -157,9 +158,9 @@ impl Drawn {
     fn at(&self, [x, y]: [u32; 2], surface: &Surface) -> Option<Fragment> {
         let place = self.place([x, y])?;
         let (mesh, [a, b, c]) = triangle(&self.plan, place)?;
-        let ray = surface.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]);
+        let sight = surface.sight([f64::from(x) + 0.5, f64::from(y) + 0.5]);
         let across = (b - a).cross(c - a);
-        let relative = ray * (across.dot(a) / across.dot(ray));
+        let relative = sight.at(across.dot(a - sight.from) / across.dot(sight.along));
         let area = across.length_squared();
         let shares = [(b, c), (c, a), (a, b)].map(|(from, to)| across.dot((to - from).cross(relative - from)) / area);
         let data = mesh.surface.as_ref()?;
@@ -225,10 +226,11 @@ fn xyz(value: [f32; 4]) -> DVec4 {
 #[derive(Debug)]
 pub struct Surface {
     measure: DepthMeasure,
-    world_from_view: glam::DMat3,
+    sights: Sights,
     /// World space.
     pub eye: DVec3,
-    up: f64,
+    /// Where lines of sight meet: homogeneous, world space.
+    meeting: DVec4,
     size: [f64; 2],
 }
 
@@ -237,12 +239,13 @@ impl Surface {
     #[must_use]
     pub fn new(capture: &Capture) -> Surface {
         let camera = &capture.camera;
+        let [width, height] = capture.size.map(f64::from);
         Surface {
             measure: DepthMeasure::of_camera(capture),
-            world_from_view: projection::view_from_world_rotation(camera.target - camera.eye, camera.up).transpose(),
+            sights: camera.sights(width / height),
             eye: camera.eye,
-            up: (camera.fov_y_degrees.to_radians() / 2.0).tan(),
-            size: capture.size.map(f64::from),
+            meeting: camera.eye_position(),
+            size: [width, height],
         }
     }
 
@@ -250,14 +253,12 @@ impl Surface {
     #[must_use]
     pub fn at(&self, [x, y]: [u32; 2], depth: f32) -> Option<DVec3> {
         let distance = self.measure.value(depth).filter(|distance| distance.is_finite())?;
-        Some(self.eye + self.ray([f64::from(x) + 0.5, f64::from(y) + 0.5]) * distance)
+        Some(self.eye + self.sight([f64::from(x) + 0.5, f64::from(y) + 0.5]).at(distance))
     }
 
-    /// From the eye through a texel position, world space; its part along the view is 1.
-    fn ray(&self, [x, y]: [f64; 2]) -> DVec3 {
+    /// The line of sight through a texel position.
+    fn sight(&self, [x, y]: [f64; 2]) -> Sight {
         let [width, height] = self.size;
-        let across = (2.0 * x / width - 1.0) * self.up * width / height;
-        let up = (1.0 - 2.0 * y / height) * self.up;
-        self.world_from_view * DVec3::new(across, up, -1.0)
+        self.sights.through(DVec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height))
     }
 }

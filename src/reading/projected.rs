@@ -5,7 +5,6 @@
 //! homogeneous coordinates).
 
 use crate::capture::Capture;
-use crate::math::projection;
 use glam::{DMat4, DVec2, DVec4};
 
 /// How far outside the picture's edges lines are cut, where the picture ends at 1.
@@ -13,12 +12,22 @@ const GUARD: f64 = 1.2;
 /// How far outside a triangle that is outlined is cut: where it is, none of its edges may be seen.
 const OUTLINE_GUARD: f64 = 1.5;
 
+/// What tells how near a point of clip space is, linear in the picture.
+#[derive(Debug, Clone, Copy)]
+enum Nearness {
+    /// 1 over w.
+    InverseDistance,
+    /// This row's product over w: w tells nothing in a parallel view.
+    Linear(DVec4),
+}
+
 /// From the world to the texels of a capture's picture.
 #[derive(Debug, Clone)]
 pub struct Projector {
     clip_from_world: DMat4,
     planes: [DVec4; 5],
     half: DVec2,
+    nearness: Nearness,
 }
 
 impl Projector {
@@ -31,9 +40,9 @@ impl Projector {
     fn guarded(capture: &Capture, guard: f64) -> Projector {
         let [width, height] = capture.size.map(f64::from);
         let camera = &capture.camera;
-        let clip_from_view = projection::perspective(camera.fov_y_degrees, width / height, &capture.depth);
-        let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
-        let clip_from_world = clip_from_view * DMat4::from_mat3(rotation) * DMat4::from_translation(-camera.eye);
+        let view_from_relative = DMat4::from_mat3(camera.world_from_view().transpose());
+        let clip_from_view = camera.clip_from_view(width / height, &capture.depth);
+        let clip_from_world = clip_from_view * view_from_relative * DMat4::from_translation(-camera.eye);
         let [x, y] = [DVec4::X, DVec4::Y];
         let sides = [x, -x, y, -y].map(|side| side + DVec4::W * guard);
         let near = near_plane(capture);
@@ -41,6 +50,11 @@ impl Projector {
             clip_from_world,
             planes: [near, sides[0], sides[1], sides[2], sides[3]],
             half: DVec2::new(width, height) / 2.0,
+            nearness: match (capture.depth.is_linear, capture.depth.mapping.is_reversed()) {
+                (false, _) => Nearness::InverseDistance,
+                (true, true) => Nearness::Linear(DVec4::Z + DVec4::W),
+                (true, false) => Nearness::Linear(DVec4::W * 2.0 - DVec4::Z),
+            },
         }
     }
 
@@ -63,8 +77,8 @@ impl Projector {
         is_before.then(|| [from, to].map(|end| self.place(end)))
     }
 
-    /// What is seen of a triangle: a convex polygon in texels, with 1 over the distance along the view
-    /// at each corner. Empty where nothing is.
+    /// What is seen of a triangle: a convex polygon in texels, with how near it is at each corner, in proportion to 1
+    /// over the distance along the view; of a parallel view, from 2 at the near plane to 1 where depth ends. Empty where nothing is.
     #[must_use]
     pub fn polygon(&self, corners: [DVec4; 3]) -> Vec<(DVec2, f64)> {
         let corners = corners.map(|corner| self.clip_from_world * corner);
@@ -75,7 +89,15 @@ impl Projector {
         }
         let crossed = self.planes.into_iter().filter(|plane| corners.iter().any(|corner| is_beyond(plane, corner)));
         let clipped = crossed.fold(corners.to_vec(), |polygon, plane| clip(&polygon, plane));
-        clipped.into_iter().filter(|corner| corner.w > 0.0).map(|corner| (self.place(corner), 1.0 / corner.w)).collect()
+        let seen = clipped.into_iter().filter(|corner| corner.w > 0.0);
+        seen.map(|corner| (self.place(corner), self.near(corner))).collect()
+    }
+
+    fn near(&self, clip: DVec4) -> f64 {
+        match self.nearness {
+            Nearness::InverseDistance => 1.0 / clip.w,
+            Nearness::Linear(row) => row.dot(clip) / clip.w,
+        }
     }
 
     fn place(&self, clip: DVec4) -> DVec2 {
@@ -138,6 +160,7 @@ mod tests {
             eye: DVec3::ONE,
             target: DVec3::new(1.0, 1.0, 0.0),
             up: DVec3::Y,
+            projection: crate::scene::Projection::Perspective,
             fov_y_degrees: 90.0,
             near: 0.5,
             far: None,

@@ -143,7 +143,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
     let in_float = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at));
     let decides = capture.decided_by(light).counts_in_floats();
     if let Some(count) = in_float.filter(|_| decides) {
-        return counted_in_float(VolumeSettings::read(&capture.settings), count, is_dark, side.preposition(), title);
+        return counted_in_float(counters(capture, side), count, is_dark, title);
     }
     let Some(count) = tested_count(capture, light, at) else {
         return Verdict {
@@ -155,6 +155,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
     let settings = VolumeSettings::read(&capture.settings);
     let shown = crate::numbers::signed(count);
     let title = format!("{title}: its stencil count is {shown}.");
+    let counters = counters(capture, side);
     let side = side.preposition();
     let bits = CountBits::of_mask(settings.mask().into());
     let inverts = settings.operations == CountsBy::Inverting;
@@ -165,9 +166,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
         (true, 1..) if bits != CountBits::EIGHT => format!(
             "The volume faces {side} the surface leave {shown} in {bits}, not 0, so the light pass skips this pixel."
         ),
-        (true, 1..=127) => {
-            format!("The volume faces {side} the surface leave {shown}, not 0, so the light pass skips this pixel.")
-        }
+        (true, 1..=127) => format!("{} leave {shown}, not 0, so the light pass skips this pixel.", counters.leaving),
         (true, 128..) => format!(
             "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it skips \
              this pixel."
@@ -181,7 +180,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
             "An even number of volume faces {side} the surface, or none, turned its bit over, so the light pass adds \
              the light."
         ),
-        (false, 0) => cancels_out(settings, side),
+        (false, 0) => counters.cancel_out(),
         // Label and count disagree: say so, and do not explain it away.
         (_, count) => format!("The mask does not match the count {count} that the light pass tested."),
     };
@@ -195,29 +194,50 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
     Verdict { title, reason, by_history }
 }
 
-/// A count of none, and what it is the sum of.
-fn cancels_out(settings: VolumeSettings, side: &str) -> String {
-    let began = if settings.starts_at_eye { "What the count began with and the" } else { "The" };
-    format!("{began} volume faces {side} the surface cancel out, so the light pass adds the light.")
+/// What a count is the sum of, as the beginning of a sentence.
+struct Counters {
+    /// Where something is left.
+    leaving: String,
+    /// Where nothing is.
+    cancelling: String,
+    side: &'static str,
+}
+
+/// Parallel lines of sight begin in the volumes that they end in at infinity.
+fn counters(capture: &Capture, side: Side) -> Counters {
+    let begins_elsewhere = capture.camera.is_parallel() && side != Side::InFront;
+    let starts_at_eye = VolumeSettings::read(&capture.settings).starts_at_eye;
+    let side = side.preposition();
+    let sum = |begins: bool| {
+        let began = if begins { "What the count began with and the" } else { "The" };
+        format!("{began} volume faces {side} the surface")
+    };
+    Counters { leaving: sum(begins_elsewhere), cancelling: sum(begins_elsewhere || starts_at_eye), side }
+}
+
+impl Counters {
+    fn cancel_out(&self) -> String {
+        format!("{} cancel out, so the light pass adds the light.", self.cancelling)
+    }
 }
 
 /// A count that is kept in a float has a sign, and no limits.
-fn counted_in_float(settings: VolumeSettings, count: f32, is_dark: bool, side: &str, title: &str) -> Verdict {
+fn counted_in_float(counters: Counters, count: f32, is_dark: bool, title: &str) -> Verdict {
+    let Counters { leaving, side, .. } = &counters;
     let shown = counts::text(count);
     let title = format!("{title}: its count is {shown}.");
     let reason = match is_dark {
         true if counts::reads_zero_in_eight_bits(count) => format!(
-            "The volume faces {side} the surface leave {shown}, so the light pass adds nothing. Eight bits would read 0 \
-             and light this pixel."
+            "{leaving} leave {shown}, so the light pass adds nothing. Eight bits would read 0 and light this pixel."
         ),
         true if count > 0.0 => {
-            format!("The volume faces {side} the surface leave {shown}, not 0, so the light pass adds nothing.")
+            format!("{leaving} leave {shown}, not 0, so the light pass adds nothing.")
         }
         true if count < 0.0 => format!(
             "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it adds \
              nothing."
         ),
-        false if count == 0.0 => cancels_out(settings, side),
+        false if count == 0.0 => counters.cancel_out(),
         // Label and count disagree: say so, and do not explain it away.
         _ => format!("The mask does not match the count {shown} that the light pass read."),
     };

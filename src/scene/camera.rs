@@ -1,8 +1,59 @@
-//! The eye: a pinhole camera by eye point, target and up.
+//! The eye: a camera by eye point, target and up, with the projection that makes its picture.
+//!
+//! A pinhole's lines of sight meet in the eye. Those of a parallel projection have one direction: they meet at
+//! infinity, and the eye point only says where distances are measured from.
 
-use glam::DVec3;
+use crate::math::depth::DepthCurve;
+use crate::math::projection;
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+use serde::{Deserialize, Serialize};
 
-/// A pinhole camera in world space. View space is right-handed and looks down −z.
+/// How what lies before a camera comes into its picture.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Projection {
+    /// Lines of sight meet in the eye; the field of view says how wide they open.
+    #[default]
+    Perspective,
+    /// Lines of sight are parallel and meet the picture at right angles.
+    Orthographic {
+        /// From the picture's middle to its upper edge, metres, > 0.
+        half_height: f64,
+    },
+    /// Lines of sight are parallel and meet the picture aslant: what is square to the view keeps its shape, and what
+    /// lies behind it moves along a line of the picture. Cavalier projection with a factor of 1, cabinet with ½.
+    Oblique {
+        /// From the picture's middle to its upper edge, metres, > 0.
+        half_height: f64,
+        /// Of the line along which things recede, degrees, from the right and counter-clockwise.
+        angle_degrees: f64,
+        /// How far a metre of depth moves things along it, metres, at least 0.
+        factor: f64,
+    },
+}
+
+/// A line of sight: `from + along · distance` for distances along the view's axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight {
+    /// At distance 0, world space, relative to the eye.
+    pub from: DVec3,
+    /// World space; its part along the view's axis is 1.
+    pub along: DVec3,
+}
+
+/// All lines of sight of a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sights {
+    world_from_view: DMat3,
+    /// From the picture's middle to its edges, at distance 1 of a pinhole.
+    half: DVec2,
+    shear: DVec2,
+    /// The distance at which nothing is sheared.
+    in_place: f64,
+    is_parallel: bool,
+}
+
+/// A camera in world space. View space is right-handed and looks down −z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     /// Where the eye is, world units (metres).
@@ -11,7 +62,9 @@ pub struct Camera {
     pub target: DVec3,
     /// Roughly up; not parallel to `target − eye`.
     pub up: DVec3,
-    /// Vertical field of view in degrees, in (0, 180).
+    /// How its picture is made.
+    pub projection: Projection,
+    /// Vertical field of view in degrees, in (0, 180); of a pinhole alone.
     pub fov_y_degrees: f64,
     /// Distance of the near plane, > 0.
     pub near: f64,
@@ -27,14 +80,15 @@ impl Camera {
         let (eye, target) = (eye.into(), target.into());
         let ahead = (target - eye).normalize_or_zero();
         let up = if ahead.y.abs() > 0.99 { DVec3::NEG_Z } else { DVec3::Y };
-        Camera { eye, target, up, fov_y_degrees: 45.0, near: 0.05, far: None }
+        Camera { eye, target, up, projection: Projection::Perspective, fov_y_degrees: 45.0, near: 0.05, far: None }
     }
 
     /// Names what makes this camera unusable, in a few words for an error line.
     ///
     /// # Errors
     /// The first rule broken: numbers that single precision can work with, an eye apart from its
-    /// target, an up that is not along the view, a field of view in (0, 180), 0 < near < far.
+    /// target, an up that is not along the view, a field of view in (0, 180), 0 < near < far, a parallel
+    /// projection's half height above 0, its angle a number and its factor from 0 to 100.
     pub fn check(&self) -> Result<(), &'static str> {
         let vectors = [self.eye, self.target, self.up];
         let forward = self.target - self.eye;
@@ -52,7 +106,81 @@ impl Camera {
         } else if self.far.is_some_and(|far| !(far > self.near && far.is_finite())) {
             Err("the far plane must be farther than the near plane")
         } else {
-            Ok(())
+            self.projection.check()
+        }
+    }
+
+    /// Are lines of sight parallel?
+    #[must_use]
+    pub fn is_parallel(&self) -> bool {
+        !self.projection.is_pinhole()
+    }
+
+    /// World space from view space, directions only.
+    #[must_use]
+    pub fn world_from_view(&self) -> DMat3 {
+        projection::view_from_world_rotation(self.target - self.eye, self.up).transpose()
+    }
+
+    /// Where lines of sight meet, homogeneous, world space: the eye, or where they are parallel the direction towards it.
+    #[must_use]
+    pub fn eye_position(&self) -> DVec4 {
+        self.relative_eye() + (self.eye * self.relative_eye().w).extend(0.0)
+    }
+
+    /// The same relative to the eye point.
+    #[must_use]
+    pub fn relative_eye(&self) -> DVec4 {
+        match self.projection {
+            Projection::Perspective => DVec4::W,
+            parallel => (self.world_from_view() * parallel.shear().extend(1.0)).extend(0.0),
+        }
+    }
+
+    /// The lines of sight of a picture of this width over height.
+    #[must_use]
+    pub fn sights(&self, aspect: f64) -> Sights {
+        let half = self.half_height();
+        Sights {
+            world_from_view: self.world_from_view(),
+            half: DVec2::new(half * aspect, half),
+            shear: self.projection.shear(),
+            in_place: (self.target - self.eye).length(),
+            is_parallel: self.is_parallel(),
+        }
+    }
+
+    /// Half of what the picture shows upwards, metres: at distance 1 of a pinhole, at any of a parallel projection.
+    #[must_use]
+    pub fn half_height(&self) -> f64 {
+        match self.projection {
+            Projection::Perspective => (self.fov_y_degrees.to_radians() / 2.0).tan(),
+            Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } => half_height,
+        }
+    }
+
+    /// Half of what the picture shows upwards at a distance along the view's axis, metres.
+    #[must_use]
+    pub fn half_height_at(&self, distance: f64) -> f64 {
+        self.half_height() * if self.is_parallel() { 1.0 } else { distance }
+    }
+
+    /// The same where the target is.
+    #[must_use]
+    pub fn half_height_at_target(&self) -> f64 {
+        self.half_height_at((self.target - self.eye).length())
+    }
+
+    /// How depth is measured: of a parallel projection it grows with the distance, from `near` to `far`.
+    #[must_use]
+    pub fn clip_from_view(&self, aspect: f64, depth: &DepthCurve) -> DMat4 {
+        match self.projection {
+            Projection::Perspective => projection::perspective(self.fov_y_degrees, aspect, depth),
+            parallel => {
+                let (half, shear) = (self.half_height(), parallel.shear());
+                let in_place = (self.target - self.eye).length();
+                projection::parallel([half * aspect, half], shear, in_place, depth)
+            }
         }
     }
 
@@ -74,5 +202,168 @@ impl Camera {
             |reach: f64| DVec3::new(unit(), unit(), unit()).map(|one| (2.0 * one - 1.0) * reach * distance);
         let (target, eye) = (self.target + within(0.3), self.target + within(1.2));
         Camera { eye, target, near: self.near * 10_f64.powf(2.0 * unit() - 1.0), ..*self }
+    }
+}
+
+impl Sights {
+    /// The one through a point of the picture, by x and y from −1 to 1, right and up.
+    #[must_use]
+    pub fn through(&self, at: DVec2) -> Sight {
+        let place = at * self.half;
+        let [from, along] = match self.is_parallel {
+            true => [(place + self.shear * self.in_place).extend(0.0), (-self.shear).extend(-1.0)],
+            false => [DVec3::ZERO, place.extend(-1.0)],
+        };
+        Sight { from: self.world_from_view * from, along: self.world_from_view * along }
+    }
+
+    /// World direction of the view's axis.
+    #[must_use]
+    pub fn axis(&self) -> DVec3 {
+        -self.world_from_view.z_axis
+    }
+}
+
+impl Sight {
+    /// The point at a distance along the view's axis, relative to the eye.
+    #[must_use]
+    pub fn at(&self, distance: f64) -> DVec3 {
+        self.from + self.along * distance
+    }
+}
+
+impl Projection {
+    /// The names of its kinds, in the order in which they are offered.
+    pub const NAMES: [&str; 3] = ["perspective", "orthographic", "oblique"];
+    /// The angle that drawings are made with, degrees.
+    pub const USUAL_ANGLE: f64 = 45.0;
+    /// Cabinet projection's factor.
+    pub const CABINET: f64 = 0.5;
+    /// Cavalier projection's factor.
+    pub const CAVALIER: f64 = 1.0;
+
+    /// Do lines of sight meet in the eye?
+    #[must_use]
+    pub fn is_pinhole(&self) -> bool {
+        *self == Projection::Perspective
+    }
+
+    /// Which kind it is: one of [`Projection::NAMES`].
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Projection::Perspective => "perspective",
+            Projection::Orthographic { .. } => "orthographic",
+            Projection::Oblique { .. } => "oblique",
+        }
+    }
+
+    /// How far to the right and up in the picture a metre of depth moves things, metres.
+    #[must_use]
+    pub fn shear(self) -> DVec2 {
+        match self {
+            Projection::Oblique { angle_degrees, factor, .. } => DVec2::from_angle(angle_degrees.to_radians()) * factor,
+            Projection::Perspective | Projection::Orthographic { .. } => DVec2::ZERO,
+        }
+    }
+
+    /// As [`Camera::check`], of its own numbers.
+    fn check(self) -> Result<(), &'static str> {
+        let is_usable = |half_height: f64| (1e-30..=1e30).contains(&half_height);
+        match self {
+            Projection::Perspective => Ok(()),
+            Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. }
+                if !is_usable(half_height) =>
+            {
+                Err("the half height of a parallel projection must be from 1e-30 to 1e30 metres")
+            }
+            Projection::Oblique { angle_degrees, .. } if !(angle_degrees.abs() <= 360.0) => {
+                Err("the angle of an oblique projection must be from -360 to 360 degrees")
+            }
+            Projection::Oblique { factor, .. } if !(0.0..=100.0).contains(&factor) => {
+                Err("the depth factor of an oblique projection must be from 0 to 100")
+            }
+            Projection::Orthographic { .. } | Projection::Oblique { .. } => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::depth::DepthMapping;
+
+    fn cameras() -> [Camera; 4] {
+        let camera = Camera::looking([3.0, 2.0, 5.0], [0.5, -0.3, 0.2]);
+        let oblique = |angle_degrees, factor| Projection::Oblique { half_height: 1.7, angle_degrees, factor };
+        [
+            Projection::Perspective,
+            Projection::Orthographic { half_height: 2.5 },
+            oblique(45.0, Projection::CABINET),
+            oblique(120.0, Projection::CAVALIER),
+        ]
+        .map(|projection| Camera { projection, ..camera })
+    }
+
+    fn curve(camera: &Camera) -> DepthCurve {
+        match camera.is_parallel() {
+            true => DepthMapping::ReversedInfinite.linear_curve(0.5, 20.0),
+            false => DepthMapping::ReversedInfinite.curve(0.5, 0.0, 0.0),
+        }
+    }
+
+    /// The two descriptions of a camera agree: a point of a line of sight comes to the line's place.
+    #[test]
+    fn lines_of_sight_are_the_matrixs() {
+        for camera in cameras() {
+            let curve = curve(&camera);
+            let clip_from_relative =
+                camera.clip_from_view(1.5, &curve) * DMat4::from_mat3(camera.world_from_view().transpose());
+            for at in [DVec2::ZERO, DVec2::new(-0.8, 0.3), DVec2::new(1.0, -1.0)] {
+                let Sight { from, along } = camera.sights(1.5).through(at);
+                for distance in [0.5, 3.0, 17.0] {
+                    let clip = clip_from_relative * (from + along * distance).extend(1.0);
+                    let place = clip.truncate() / clip.w;
+                    assert!((place - at.extend(curve.depth(distance))).length() < 1e-12, "{camera:?}: {place}");
+                }
+                let met = camera.relative_eye();
+                let beside = (from * met.w - along * (1.0 - met.w)).cross(met.truncate());
+                assert!(beside.length() < 1e-12, "lines of sight meet in the eye");
+            }
+        }
+    }
+
+    #[test]
+    fn the_target_is_in_the_middle_and_what_lies_behind_moves_along_the_angle() {
+        for camera in cameras() {
+            let curve = curve(&camera);
+            let clip_from_view = camera.clip_from_view(1.0, &curve);
+            let view = |world: DVec3| camera.world_from_view().transpose() * (world - camera.eye);
+            let clip = clip_from_view * view(camera.target).extend(1.0);
+            assert!(clip.truncate().truncate().length() < 1e-12 * clip.w.abs(), "{camera:?}");
+            let Projection::Oblique { half_height, angle_degrees, factor } = camera.projection else { continue };
+            let behind = camera.target + (camera.target - camera.eye).normalize();
+            let clip = clip_from_view * view(behind).extend(1.0);
+            let moved = DVec2::new(clip.x, clip.y) * half_height;
+            assert!((moved - DVec2::from_angle(angle_degrees.to_radians()) * factor).length() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn numbers_that_make_no_picture_are_refused() {
+        let [pinhole, ..] = cameras();
+        let oblique = |half_height, angle_degrees, factor| Projection::Oblique { half_height, angle_degrees, factor };
+        for projection in [
+            Projection::Orthographic { half_height: 0.0 },
+            Projection::Orthographic { half_height: f64::NAN },
+            oblique(-1.0, 45.0, 1.0),
+            oblique(1.0, f64::INFINITY, 1.0),
+            oblique(1.0, 45.0, -0.5),
+            oblique(1.0, 45.0, f64::NAN),
+        ] {
+            let camera = Camera { projection, ..pinhole };
+            assert!(camera.check().is_err(), "{projection:?}");
+        }
+        assert!(cameras().iter().all(|camera| camera.check().is_ok()));
     }
 }

@@ -24,7 +24,7 @@ mod suggestion;
 mod wall_tree;
 
 pub use builder::SceneBuilder;
-pub use camera::Camera;
+pub use camera::{Camera, Projection, Sight, Sights};
 pub use collision::{WallCache, Walls};
 pub use error::SceneError;
 pub use light::Light;

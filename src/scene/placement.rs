@@ -91,6 +91,7 @@ impl Surroundings {
             eye: target + back * distance,
             target,
             up: DVec3::Y,
+            projection: crate::scene::Projection::Perspective,
             fov_y_degrees: FOV_Y_DEGREES,
             near: distance * NEAR,
             far: None,

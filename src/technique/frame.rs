@@ -15,7 +15,7 @@ use crate::math::depth::DepthMapping;
 use crate::plan::{Attachment, AttachmentId, Decision, DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, ViewId};
 use crate::scene::{Material, Object, Scene};
 pub use drawn::Drawn;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 pub use places::coincide;
 use std::ops::Range;
 
@@ -154,13 +154,18 @@ impl<'a> Frame<'a> {
         self.job.scene.camera.eye
     }
 
+    /// Where lines of sight meet, homogeneous, world space: of a parallel camera the direction towards it.
+    pub fn eye_position(&self) -> DVec4 {
+        self.job.scene.camera.eye_position()
+    }
+
     /// The lights in order.
     pub fn light_ids(&self) -> impl Iterator<Item = LightId> + use<> {
         (0..self.job.scene.lights.len()).map(LightId)
     }
 
     /// Homogeneous world position of a light.
-    pub fn light_position(&self, light: LightId) -> glam::DVec4 {
+    pub fn light_position(&self, light: LightId) -> DVec4 {
         self.job.scene.lights[light.0].homogeneous()
     }
 
@@ -198,8 +203,15 @@ impl<'a> Frame<'a> {
             }
             let is_of_camera = pass.view == ViewId(0);
             for draw in &mut pass.draws {
-                let is_clipped = self.clips_volumes && draw.part != Part::Surface;
-                draw.raster.unclipped_depth = is_of_camera && mapping.clamps() && !is_clipped;
+                // Of a pinhole, what counts in front and is not cut at the near plane ends at the eye; else nowhere.
+                let is_of_these = self.plan.depth.is_linear && draw.part.is_of_volume() && !draw.raster.unclipped_depth;
+                let is_in_front = self.clips_volumes || is_of_these;
+                let is_unclipped = match self.plan.depth.keeps_volumes() {
+                    // Light caps are clipped as the surfaces that they coincide with.
+                    true => draw.raster.unclipped_depth && draw.part != Part::LightCap,
+                    false => mapping.clamps() && !(is_in_front && draw.part != Part::Surface),
+                };
+                draw.raster.unclipped_depth = is_of_camera && is_unclipped;
                 if !mapping.is_reversed() {
                     draw.raster = draw.raster.clone().for_standard_depth();
                 }

@@ -40,7 +40,7 @@ pub fn all(frame: &mut Frame) -> Vec<FlatReceiver> {
 impl FlatReceiver {
     /// Does the eye see it from the side that a light is on? Any other shows no shadow of that light.
     pub fn shows_lit_side(&self, frame: &Frame, light: LightId) -> bool {
-        let (eye, light) = (frame.eye().extend(1.0), frame.light_position(light));
+        let (eye, light) = (frame.eye_position(), frame.light_position(light));
         let placed = &frame.placed[self.object];
         self.receiver.triangles.iter().any(|triangle| {
             let corners = placed.object.mesh.triangles()[*triangle as usize].map(|v| placed.world[v as usize]);
@@ -56,15 +56,15 @@ const FACET: f64 = 1.0 / 20.0;
 /// Leaves out what can't be seen to receive, of those that show a light's shadows: facets of round objects, and the
 /// insides of closed ones. Without marks each would throw shadows over all that is in its plane.
 pub fn leave_out_unmarked(frame: &mut Frame, shown: &mut Vec<&FlatReceiver>, of: &str) {
-    let eye = frame.eye();
+    let (eye, place) = (frame.eye_position(), frame.eye());
     let all = shown.len();
     shown.retain(|one| {
         let placed = &frame.placed[one.object];
         let (world, triangles) = (&placed.world, placed.object.mesh.triangles());
         let corners = triangles[one.receiver.triangles[0] as usize].map(|vertex| world[vertex as usize]);
         // The inside of a room is what one sees of it: an object that the eye is in has the eye within its bounds.
-        let is_inside = side_of_triangle(corners, eye.extend(1.0)) != Sign::Positive
-            && !AxisBox::around(world.iter().copied()).holds(eye)
+        let is_inside = side_of_triangle(corners, eye) != Sign::Positive
+            && !AxisBox::around(world.iter().copied()).holds(place)
             && frame.job.cache.topology(&placed.object.mesh).is_closed();
         !is_inside && one.receiver.area >= FACET * area(world, triangles)
     });

@@ -209,6 +209,7 @@ fn add_face(
     frame.plan.views.push(PlanView {
         name: format!("{} {name}", light.name()),
         origin: light_frame.origin,
+        eye: PlanView::at_origin(),
         clip_from_relative: (clip_from_light * light_frame.light_from_relative).as_mat4(),
     });
     let view = ViewId(frame.plan.views.len() - 1);

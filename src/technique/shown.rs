@@ -42,7 +42,7 @@ enum Shown {
 }
 
 fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
-    let eye = frame.eye();
+    let (eye, sees_from) = (frame.eye(), frame.eye_position());
     let placed = &frame.placed[index];
     let (object, world) = (placed.object, &placed.world);
     let relative: Vec<DVec4> = outside::outline(world).map(|point| (point - eye).extend(1.0)).collect();
@@ -57,12 +57,12 @@ fn shown(frame: &mut Frame, view: &ViewVolume, index: usize) -> Shown {
         return Shown::All;
     }
     let caster = Caster { mesh: &object.mesh, pose: &object.pose, world };
-    if frame.job.cache.light_facing_suffices(caster, eye.extend(1.0)).is_err() {
+    if frame.job.cache.light_facing_suffices(caster, sees_from).is_err() {
         return Shown::All;
     }
     let faces_eye = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|vertex| world[vertex as usize]);
-        let (normal, to_eye): (DVec3, DVec3) = ((b - a).cross(c - a), eye - a);
+        let (normal, to_eye): (DVec3, DVec3) = ((b - a).cross(c - a), sees_from.truncate() - a * sees_from.w);
         normal.dot(to_eye) > -EDGE_ON * normal.length() * to_eye.length()
     };
     // Along an edge with one that faces the eye, rounding may let the other win: neighbours stay.

@@ -46,6 +46,7 @@ pub fn add_map(
         frame.plan.views.push(PlanView {
             name: format!("{} {name}", light.name()),
             origin: frame.eye(),
+            eye: PlanView::at_origin(),
             clip_from_relative: clip_from_relative[layer],
         });
         let view = ViewId(frame.plan.views.len() - 1);

@@ -20,7 +20,7 @@ pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene, shading: Optio
 
 /// [`SurfaceData::sides`].
 fn sides(object: &Object, world: &[DVec3], scene: &Scene) -> Vec<u32> {
-    let eye = scene.camera.eye.extend(1.0);
+    let eye = scene.camera.eye_position();
     let word = |corners: &[u32; 3]| {
         let corners = corners.map(|vertex| world[vertex as usize]);
         let eye_side = side_of_triangle(corners, eye);

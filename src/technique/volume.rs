@@ -15,6 +15,7 @@
 mod counting;
 mod drawn;
 mod eye_count;
+mod far_count;
 mod near_count;
 
 use super::casters::{self, Darkened};
@@ -27,7 +28,7 @@ use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH,
 use crate::plan::{CountBits, CountOf, DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Part, Side, Visibility};
 use crate::scene::Scene;
 pub use counting::{Counting, Form};
-use counting::{Counts, NeededPart, Step};
+use counting::{Counts, NeededPart, Start, Step};
 use drawn::{Volume, make, needed_parts};
 use glam::{DVec3, DVec4};
 
@@ -219,15 +220,15 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
     if usual == Counting::InFrontPlus {
         near_count::pass(frame, light, settings, &volumes);
     }
-    let start = settings.starts_at_eye.then(|| eye_count::at(frame, light, &volumes) & u32::from(settings.mask()));
+    let (begins_at, start) = begin(frame, light, settings, &volumes);
     let counts = told(frame, light, settings, &volumes, (counted, start));
     for (index, step) in Step::all(settings).iter().enumerate() {
         let draws: Vec<Draw> = volumes.iter().flat_map(|volume| volume.draws(settings, *step)).collect();
-        if draws.is_empty() && !decides.keeps_empty_pass() {
+        if draws.is_empty() && begins_at == 0 && !decides.keeps_empty_pass() {
             frame.leave_out(Decision::VolumePass, light.name(), "no caster's volume is needed");
             continue;
         }
-        let start = start.filter(|_| index == 0).unwrap_or(0) as u8;
+        let start = if index == 0 { begins_at as u8 & settings.mask() } else { 0 };
         frame.stencil_pass_from(start, light, step.name(), &counts.purpose(*step), draws);
     }
     let mask = settings.mask().into();
@@ -241,6 +242,17 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
          Everywhere else the surface is inside a shadow volume and stays dark."
     );
     frame.light_pass(light, &purpose, &Drawn::light_once_where_zero(mask));
+}
+
+/// What a light's count begins at, and why where that is said.
+fn begin(frame: &Frame, light: LightId, settings: &VolumeSettings, volumes: &[Volume]) -> (u32, Option<Start>) {
+    let kept = |start: u32| if settings.counts_in_float { start } else { start & u32::from(settings.mask()) };
+    if settings.starts_at_eye {
+        let start = eye_count::at(frame, light, volumes);
+        return (start, Some(Start::Eye(kept(start))));
+    }
+    let start = volumes.iter().map(|volume| volume.begins_with).sum();
+    (start, (start != 0).then_some(Start::FarEnd(kept(start))))
 }
 
 /// What a count of these counts at a surface; `None` if there are none.
@@ -269,7 +281,7 @@ fn told<'a>(
     light: LightId,
     options: &'a VolumeSettings,
     volumes: &[Volume],
-    (by, start): (Option<Counting>, Option<u32>),
+    (by, start): (Option<Counting>, Option<Start>),
 ) -> Counts<'a> {
     let chooses_side = frame.job.choice.technique() == Technique::Auto;
     let lacks = [0, 1].map(|cap| volumes.iter().any(|volume| volume.lacks_caps[cap]));
@@ -288,10 +300,10 @@ fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options
         near_count::pass(frame, light, options, volumes);
     }
     let draws = volumes.iter().flat_map(|volume| volume.float_draws(options)).collect();
-    let start = options.starts_at_eye.then(|| eye_count::at(frame, light, volumes));
+    let (begins_at, start) = begin(frame, light, options, volumes);
     let counts = told(frame, light, options, volumes, (counted_by(volumes, counting), start));
     let step = Step::BothFaces;
-    frame.count_pass(start.unwrap_or(0), light, step.name(), &counts.purpose(step), draws);
+    frame.count_pass(begins_at, light, step.name(), &counts.purpose(step), draws);
     frame.mask_pass(light, &[Drawn::lit_by(Visibility::Count)]);
     let purpose = "Adds the light where the count is zero. Everywhere else the surface is inside a shadow volume and \
                    stays dark.";
@@ -315,7 +327,7 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
         };
         let casters = who_casts(frame, light, index, options);
         let held = decides.held_by_parts(frame, index);
-        let (mesh, parts) = make(frame, light, index, (casters, &held), options);
+        let (mesh, parts, far_end) = make(frame, light, index, (casters, &held), options);
         if parts.light_cap_turned.end == 0 {
             let because = match casters {
                 Casters::All => "every triangle is edge-on to the light",
@@ -331,7 +343,7 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
             frame.leave_out(Decision::Caster, &object.name, because);
             continue;
         }
-        let needed = needed_parts(frame, form, &parts, object, options.caps[1]);
+        let (needed, begins_with) = needed_parts(frame, form, &parts, object, (options.caps[1], far_end));
         let is_drawn = |part: &NeededPart| match part.part {
             Part::LightCap => options.caps[0],
             Part::DarkCap => options.caps[1],
@@ -354,6 +366,7 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
             parts,
             needed,
             lacks_caps,
+            begins_with,
         });
     }
     let mut casting = volumes.iter().flat_map(|volume: &Volume| volume.casting_triangles(frame));

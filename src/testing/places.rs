@@ -1,8 +1,8 @@
 //! Points of the world in the picture and in shadow maps.
 
 use crate::capture::Capture;
-use crate::math::projection;
 use crate::reading::depth::DepthMeasure;
+use crate::scene::{Camera, Sights};
 use glam::{DMat3, DVec2, DVec3, DVec4};
 
 /// The texel of a light's shadow map that a pixel's surface falls in.
@@ -46,10 +46,9 @@ pub fn texel_of(capture: &Capture, light: usize, point: DVec3) -> Option<MapTexe
 pub struct View {
     /// Of the picture, in pixels.
     pub size: DVec2,
-    eye: DVec3,
+    camera: Camera,
+    sights: Sights,
     view_from_world: DMat3,
-    /// Half the picture's width and height, a metre away.
-    half: DVec2,
 }
 
 impl View {
@@ -57,31 +56,33 @@ impl View {
     pub fn of(capture: &Capture) -> View {
         let camera = &capture.camera;
         let [width, height] = capture.size.map(f64::from);
-        let up = (camera.fov_y_degrees / 2.0).to_radians().tan();
         View {
             size: DVec2::new(width, height),
-            eye: camera.eye,
-            view_from_world: projection::view_from_world_rotation(camera.target - camera.eye, camera.up),
-            half: DVec2::new(up * width / height, up),
+            camera: *camera,
+            sights: camera.sights(width / height),
+            view_from_world: camera.world_from_view().transpose(),
         }
     }
 
     /// Where a point is in the picture, in pixels from its top left corner, and how far along the view axis, metres.
     pub fn pixel_and_distance(&self, point: DVec3) -> (DVec2, f64) {
-        let in_view = self.view_from_world * (point - self.eye);
+        let in_view = self.view_from_world * (point - self.camera.eye);
         let distance = -in_view.z;
-        let at = in_view.truncate() / distance / self.half;
+        // The line of sight through the middle is there at this distance.
+        let middle = self.view_from_world * self.sights.through(DVec2::ZERO).at(distance);
+        let half = self.camera.half_height_at(distance);
+        let at = (in_view - middle).truncate() / DVec2::new(half * self.size.x / self.size.y, half);
         ((at * DVec2::new(0.5, -0.5) + 0.5) * self.size, distance)
     }
 
     /// The point at this place of the picture, so far along the view axis.
     pub fn point(&self, at: DVec2, distance: f64) -> DVec3 {
-        let in_view = (at / self.size - 0.5) * DVec2::new(2.0, -2.0) * self.half;
-        self.eye + self.view_from_world.transpose() * (in_view.extend(-1.0) * distance)
+        let at = (at / self.size - 0.5) * DVec2::new(2.0, -2.0);
+        self.camera.eye + self.sights.through(at).at(distance)
     }
 
     /// How wide a pixel is so far away, metres.
     pub fn pixel_width(&self, distance: f64) -> f64 {
-        2.0 * self.half.y * distance / self.size.y
+        2.0 * self.camera.half_height_at(distance) / self.size.y
     }
 }

@@ -50,13 +50,13 @@ impl Tracer {
     /// Where the ray of sight through a point of the picture begins: on the near plane, world space.
     #[must_use]
     pub fn near_point(&self, point: [f64; 2]) -> DVec3 {
-        self.eye.origin + self.view.direction(point) * self.view.near
+        self.view.eye + self.view.ray(point).at(self.view.near)
     }
 
     /// How far a world position is along the view's axis, metres.
     #[must_use]
     pub fn depth_of(&self, position: DVec3) -> f64 {
-        (position - self.eye.origin).dot(self.view.axis())
+        (position - self.view.eye).dot(self.view.axis())
     }
 
     /// The name of a triangle's object.

@@ -51,13 +51,22 @@ pub enum Chart {
 pub enum Line {
     /// To a point, and no farther.
     To(DVec3),
+    /// Through a point, of a centre at infinity: without end.
+    Through(DVec3),
     /// In a direction, without end.
     Along(DVec3),
 }
 
 impl Chart {
     /// For the lines of sight of an eye that sees what lies within `reach` of `middle`.
-    pub fn of_eye(center: DVec3, middle: DVec3, reach: f64) -> Chart {
+    pub fn of_eye(center: DVec4, middle: DVec3, reach: f64) -> Chart {
+        match center.w == 0.0 {
+            true => Chart::of_light(center, middle, reach),
+            false => Chart::of_point(center.truncate(), middle, reach),
+        }
+    }
+
+    fn of_point(center: DVec3, middle: DVec3, reach: f64) -> Chart {
         let distance = (middle - center).length();
         if distance > FAR * reach {
             let axis = (middle - center) / distance;
@@ -72,7 +81,7 @@ impl Chart {
         let place = center.truncate();
         let distance = if center.w == 0.0 { f64::INFINITY } else { (place - middle).length() };
         if distance <= VERY_FAR * reach {
-            return Chart::of_eye(place, middle, reach);
+            return Chart::of_point(place, middle, reach);
         }
         let towards = if center.w == 0.0 { place } else { place - middle };
         let towards = towards.normalize();
@@ -101,7 +110,7 @@ impl Chart {
 
     /// Where a bundle of lines is seen.
     pub fn bundle(&self, lines: impl Iterator<Item = Line> + Clone) -> Boxes {
-        let is_endless = lines.clone().any(|line| matches!(line, Line::Along(_)));
+        let is_endless = lines.clone().any(|line| !matches!(line, Line::To(_)));
         let open = |mut area: Aabb| {
             area.min.z = f32::NEG_INFINITY;
             if is_endless {
@@ -245,7 +254,7 @@ impl Line {
     /// A point of the line, or its direction, as seen from another point.
     pub fn from(self, center: DVec3) -> DVec3 {
         match self {
-            Line::To(point) => point - center,
+            Line::To(point) | Line::Through(point) => point - center,
             Line::Along(direction) => direction,
         }
     }

@@ -28,7 +28,7 @@ pub use world::Place;
 
 use crate::math::{Sign, side_of_triangle};
 use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::scene::{Scene, Sight};
 use chart::Line;
 use glam::{DVec3, DVec4};
 use pencil::{Bundle, Pencil, Seen, Then, Whose};
@@ -158,7 +158,7 @@ impl Tracer {
         let range = |light: &crate::scene::Light| light.range.filter(|_| !light.is_directional());
         let lights: Vec<_> = scene.lights.iter().map(|light| (light.homogeneous(), range(light))).collect();
         let (eye, lights) = rayon::join(
-            || Pencil::new(Whose::Eye, scene.camera.eye.extend(1.0), triangles, is_seen),
+            || Pencil::new(Whose::Eye, scene.camera.eye_position(), triangles, is_seen),
             || lights.into_par_iter().map(pencil_of).collect(),
         );
         Ok(Tracer { view: View::new(&scene.camera, size), world, size, eye, lights })
@@ -238,7 +238,7 @@ impl Tracer {
 
     fn surfaces_at<const N: usize>(&self, points: [[f64; 2]; N]) -> [Option<Surface>; N] {
         let mut surfaces = [None; N];
-        self.meet_surfaces(&points.map(|point| self.view.direction(point)), &mut surfaces);
+        self.meet_surfaces(&points.map(|point| self.view.ray(point)), &mut surfaces);
         surfaces
     }
 
@@ -247,19 +247,19 @@ impl Tracer {
         let [width, height] = self.size.map(|n| n as usize);
         let rows = top..height.min(top + TILE);
         let mut labels = vec![vec![BACKGROUND; rows.len() * width]; lights.len()];
-        let (mut directions, mut places) = (Vec::with_capacity(TILE * TILE), Vec::with_capacity(TILE * TILE));
+        let (mut rays, mut places) = (Vec::with_capacity(TILE * TILE), Vec::with_capacity(TILE * TILE));
         for left in (0..width).step_by(TILE) {
-            directions.clear();
+            rays.clear();
             places.clear();
             for (row, y) in rows.clone().enumerate() {
                 for x in left..width.min(left + TILE) {
-                    directions.push(self.view.direction([x as f64 + 0.5, y as f64 + 0.5]));
+                    rays.push(self.view.ray([x as f64 + 0.5, y as f64 + 0.5]));
                     places.push(row * width + x);
                 }
             }
             let mut surfaces = [None; TILE * TILE];
-            let surfaces = &mut surfaces[..directions.len()];
-            self.meet_surfaces(&directions, surfaces);
+            let surfaces = &mut surfaces[..rays.len()];
+            self.meet_surfaces(&rays, surfaces);
             for (light, labels) in lights.iter().zip(&mut labels) {
                 let mut tile = [BACKGROUND; TILE * TILE];
                 self.label_surfaces(&self.lights[*light], surfaces, &mut tile[..surfaces.len()]);
@@ -269,14 +269,18 @@ impl Tracer {
         labels
     }
 
-    /// What rays of sight in these directions meet first. Of surfaces at one distance it is the
-    /// one drawn first, as in a rasteriser.
-    fn meet_surfaces(&self, directions: &[DVec3], surfaces: &mut [Option<Surface>]) {
+    /// What rays of sight meet first. Of surfaces at one distance it is the one drawn first, as in a rasteriser.
+    fn meet_surfaces(&self, rays: &[Sight], surfaces: &mut [Option<Surface>]) {
         let mut bundle = Bundle::new();
-        directions.iter().for_each(|direction| bundle.push(Line::Along(*direction)));
+        rays.iter().for_each(|ray| {
+            bundle.push(match self.view.is_parallel {
+                true => Line::Through(self.view.eye + ray.from),
+                false => Line::Along(ray.along),
+            });
+        });
         let mut nearest = [Nearest::NOTHING; Bundle::MOST];
         self.eye.for_each_meeting(&self.world.triangles, &bundle, |seen, line| {
-            let distance = self.distance(seen, directions[line]);
+            let distance = self.distance(seen, &rays[line]);
             let best = nearest[line];
             let is_nearer = distance < best.distance || (distance == best.distance && seen.index < best.triangle);
             if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
@@ -285,12 +289,14 @@ impl Tracer {
             }
             Then::Continue
         });
-        for ((surface, direction), nearest) in surfaces.iter_mut().zip(directions).zip(nearest) {
+        let eye = self.view.eye;
+        for ((surface, ray), nearest) in surfaces.iter_mut().zip(rays).zip(nearest) {
             *surface = (nearest.triangle != u32::MAX).then(|| {
-                let offset = *direction * nearest.distance;
-                let point = self.eye.origin + offset;
-                let rounding = POINT_ROUNDING
-                    * (self.eye.origin.abs().max_element() + offset.abs().max_element() + point.abs().max_element());
+                let offset = ray.at(nearest.distance);
+                let point = eye + offset;
+                // The sum is rounded at the size of its larger part.
+                let parts = ray.from.abs().max_element() + offset.abs().max_element();
+                let rounding = POINT_ROUNDING * (eye.abs().max_element() + parts + point.abs().max_element());
                 let rounding = rounding + nearest.rounding;
                 Surface { triangle: nearest.triangle as usize, eye_side: nearest.eye_side, point, rounding }
             });
@@ -299,12 +305,17 @@ impl Tracer {
 
     /// Along the view's axis, within the triangle's own distances: a sliver's plane may be so
     /// steep that rounding puts the meeting anywhere.
-    fn distance(&self, seen: &Seen, direction: DVec3) -> f64 {
+    fn distance(&self, seen: &Seen, ray: &Sight) -> f64 {
         let axis = self.view.axis();
-        let depth = |corner: DVec3| (corner - self.eye.origin).dot(axis);
+        let depth = |corner: DVec3| (corner - self.view.eye).dot(axis);
         let [a, b, c] = self.world.triangles[seen.index as usize];
         let (a, b, c) = (depth(a), depth(b), depth(c));
-        (seen.offset / seen.normal.dot(direction)).max(a.min(b).min(c)).min(a.max(b).max(c))
+        let from = match self.view.is_parallel {
+            // Relative to what the pencil's places are relative to.
+            true => seen.normal.dot(self.view.eye - self.eye.origin + ray.from),
+            false => 0.0,
+        };
+        ((seen.offset - from) / seen.normal.dot(ray.along)).max(a.min(b).min(c)).min(a.max(b).max(c))
     }
 
     fn label_surfaces(&self, light: &LightPencil, surfaces: &[Option<Surface>], labels: &mut [u8]) {

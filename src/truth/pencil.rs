@@ -151,7 +151,7 @@ impl Pencil {
         let middle = low + (high - low) / 2.0;
         let reach = ((high - low).length() / 2.0).max(f64::MIN_POSITIVE);
         let chart = match whose {
-            Whose::Eye => Chart::of_eye(center.truncate(), middle, reach),
+            Whose::Eye => Chart::of_eye(center, middle, reach),
             Whose::Light => Chart::of_light(center, middle, reach),
         };
         let is_met = |index: &usize| takes_part(*index) && side_of_triangle(triangles[*index], center) != Sign::Zero;
@@ -253,10 +253,10 @@ impl Pencil {
         let center = self.center.truncate();
         let along = |axis: DVec3| side_of_triangle([center, a, b], axis.extend(0.0));
         let through = match line {
-            Line::To(point) if self.center.w == 0.0 => {
+            Line::To(point) | Line::Through(point) if self.center.w == 0.0 => {
                 return side_of_triangle([point, a, b], self.center).or_else(|| first_sign_of_cross(a, b, center));
             }
-            Line::To(point) => side_of_triangle([center, a, b], point.extend(1.0)),
+            Line::To(point) | Line::Through(point) => side_of_triangle([center, a, b], point.extend(1.0)),
             Line::Along(direction) => along(direction),
         };
         through.or_else(|| along(DVec3::X)).or_else(|| along(DVec3::Y)).or_else(|| along(DVec3::Z))

@@ -108,17 +108,19 @@ fn side(corners: &[DVec3; 3], center: DVec4) -> i32 {
 fn is_on_line(corners: [DVec3; 3], center: DVec4, line: Line) -> bool {
     let [a, b, c] = corners;
     let sides = [(a, b), (b, c), (c, a)].map(|(p, q)| match line {
-        Line::To(point) if center.w == 0.0 => side(&[point, p, q], center),
-        Line::To(point) => side(&[center.truncate(), p, q], point.extend(1.0)),
+        Line::To(point) | Line::Through(point) if center.w == 0.0 => side(&[point, p, q], center),
+        Line::To(point) | Line::Through(point) => side(&[center.truncate(), p, q], point.extend(1.0)),
         Line::Along(direction) => side(&[center.truncate(), p, q], direction.extend(0.0)),
     });
     sides == [1; 3] || sides == [-1; 3]
 }
 
-/// Must a triangle on the line be found? Between the centre and the line's end, or before the eye.
+/// Must a triangle on the line be found? Between the centre and the line's end, or before the eye; anywhere on a
+/// parallel line of sight.
 fn is_on_the_way(corners: [DVec3; 3], center: DVec4, line: Line) -> bool {
     match line {
         Line::To(point) => side(&corners, center) == -side(&corners, point.extend(1.0)),
+        Line::Through(_) => true,
         Line::Along(direction) => side(&corners, center) == -side(&corners, direction.extend(0.0)),
     }
 }
@@ -158,9 +160,6 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
             _ => (point(reach) + offset).extend(1.0),
         };
         for whose in [Whose::Eye, Whose::Light] {
-            if center.w == 0.0 && whose == Whose::Eye {
-                continue;
-            }
             let pencil = Pencil::new(whose, center, &triangles, |_| true);
             for bundle in 0..8 {
                 let middle = triangles[bundle * 3][1];
@@ -176,7 +175,11 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
                         }
                         _ => middle + point(spread),
                     };
-                    if whose == Whose::Light { Line::To(target) } else { Line::Along(target - center.truncate()) }
+                    match (whose, center.w == 0.0) {
+                        (Whose::Light, _) => Line::To(target),
+                        (Whose::Eye, true) => Line::Through(target),
+                        (Whose::Eye, false) => Line::Along(target - center.truncate()),
+                    }
                 });
                 for (line, met) in lines.into_iter().zip(met(&pencil, &triangles, lines)) {
                     for (index, corners) in (0..).zip(triangles) {
@@ -199,8 +202,8 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
 fn is_on_an_edge(corners: [DVec3; 3], center: DVec4, line: Line) -> bool {
     let [a, b, c] = corners;
     [(a, b), (b, c), (c, a)].into_iter().any(|(p, q)| match line {
-        Line::To(point) if center.w == 0.0 => side(&[point, p, q], center) == 0,
-        Line::To(point) => side(&[center.truncate(), p, q], point.extend(1.0)) == 0,
+        Line::To(point) | Line::Through(point) if center.w == 0.0 => side(&[point, p, q], center) == 0,
+        Line::To(point) | Line::Through(point) => side(&[center.truncate(), p, q], point.extend(1.0)) == 0,
         Line::Along(direction) => side(&[center.truncate(), p, q], direction.extend(0.0)) == 0,
     })
 }

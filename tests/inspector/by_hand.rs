@@ -15,7 +15,15 @@ use stencilscope::plan::{DecidedBy, Decision, LeftOut, Part, Side};
 use stencilscope::scene::Camera;
 
 fn camera() -> Camera {
-    Camera { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y, fov_y_degrees: 45.0, near: 0.1, far: None }
+    Camera {
+        eye: DVec3::Z,
+        target: DVec3::ZERO,
+        up: DVec3::Y,
+        projection: stencilscope::scene::Projection::Perspective,
+        fov_y_degrees: 45.0,
+        near: 0.1,
+        far: None,
+    }
 }
 
 fn image_of<const N: usize>(format: PixelFormat, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; N]) -> Arc<Image> {

@@ -21,7 +21,15 @@ use stencilscope::technique::{Choice, Job, Technique, plan};
 /// A box on a floor, seen from the front.
 pub fn box_scene() -> Scene {
     let eye = DVec3::new(0.0, 2.0, 8.0);
-    let camera = Camera { eye, target: DVec3::Y, up: DVec3::Y, fov_y_degrees: 50.0, near: 0.1, far: None };
+    let camera = Camera {
+        eye,
+        target: DVec3::Y,
+        up: DVec3::Y,
+        projection: stencilscope::scene::Projection::Perspective,
+        fov_y_degrees: 50.0,
+        near: 0.1,
+        far: None,
+    };
     let objects = vec![common::cuboid("box", [-1.0, 0.5, -1.0], [1.0, 1.5, 1.0])];
     Scene { name: "by hand".to_owned(), camera, ..common::from_above(objects) }
 }

@@ -8,7 +8,7 @@ use crate::capture::{
 };
 use crate::math::depth::DepthMapping;
 use crate::plan::{DecidedBy, Decision, LeftOut, Part, Side};
-use crate::scene::Camera;
+use crate::scene::{Camera, Projection};
 use glam::{DMat4, DVec3, DVec4};
 use std::fs;
 use std::sync::Arc;
@@ -103,6 +103,7 @@ fn example() -> Capture {
             eye: DVec3::new(0.1, 0.2, 1.0 / 3.0),
             target: DVec3::ZERO,
             up: DVec3::Y,
+            projection: Projection::Perspective,
             fov_y_degrees: 44.9,
             near: 0.05,
             far: None,
@@ -155,6 +156,28 @@ fn what_is_written_is_read_back() {
     read_back.timing.write_ms = None;
     assert_eq!(read_back, written);
     assert_eq!(names(parent.path()), ["out"]);
+}
+
+/// A pinhole's manifest is what it was before there were others.
+#[test]
+fn a_parallel_camera_is_read_back_and_a_folder_without_one_has_a_pinhole() {
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("out");
+    let oblique = Projection::Oblique { half_height: 1.0 / 3.0, angle_degrees: 30.0, factor: 0.5 };
+    for projection in [Projection::Orthographic { half_height: 2.5 }, oblique] {
+        let camera = Camera { projection, ..example().camera };
+        let depth = DepthMapping::ReversedInfinite.linear_curve(0.05, 9.0);
+        write(&Capture { camera, depth, ..example() }, &folder, true).expect("written");
+        let found = read(&folder).expect("read");
+        assert_eq!((found.camera, found.depth), (camera, depth));
+    }
+    assert_eq!(manifest(&folder)["camera"]["projection"]["kind"], "oblique");
+    write(&example(), &folder, true).expect("written");
+    let json = manifest(&folder);
+    assert!(json["camera"].get("projection").is_none() && json["depth"].get("is_linear").is_none());
+    assert_eq!(read(&folder).expect("read").camera, example().camera);
+    let refused = reading_after(|text| text.replacen("\"up\"", "\"projection\": {\"kind\": \"fish-eye\"}, \"up\"", 1));
+    assert!(refused.contains("fish-eye"), "{refused}");
 }
 
 #[test]

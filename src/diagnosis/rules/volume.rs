@@ -50,7 +50,9 @@ fn holding(facts: &Facts, light: usize, point: DVec3) -> (BTreeSet<String>, u64)
 
 fn eye_in_volume(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
-    if !begins_with_one_number(facts, light) || starts_at_eye(facts) {
+    // Parallel lines of sight begin at the near plane, each in volumes of its own.
+    let has_eye = !facts.scene.camera.is_parallel();
+    if !has_eye || !begins_with_one_number(facts, light) || starts_at_eye(facts) {
         return None;
     }
     let (eye_in, volumes) = holding(facts, light, facts.scene.camera.eye);
@@ -85,9 +87,12 @@ fn near_plane_cut(facts: &Facts, case: &Case) -> Option<Suspicion> {
         );
         return Suspicion::new(Cause::NearPlaneCut, evidence, vec![Mend::technique(Technique::ZFail)], shown_by);
     }
+    let is_of_eye = |near_in: &BTreeSet<String>| {
+        !facts.scene.camera.is_parallel() && near_in.intersection(&eye_in).next().is_some()
+    };
     let ((near_in, count), shown_by) = case.shown(|sample| {
         let (near_in, count) = holding(facts, light, facts.tracer.near_point(sample.center()));
-        (count > 0 && near_in.intersection(&eye_in).next().is_none()).then_some((near_in, count))
+        (count > 0 && !is_of_eye(&near_in)).then_some((near_in, count))
     })?;
     let meeting = meeting_near_clip(facts, light);
     let evidence = format!(

@@ -46,7 +46,14 @@ pub(super) fn curve(plan: &FramePlan) -> Option<DepthCurve> {
             let is_clipped = picture().flat_map(|pass| &pass.draws).filter(|draw| draw.part == Part::Surface);
             let is_clipped = is_clipped.filter(|draw| draw.raster.depth_write).all(|draw| !draw.raster.unclipped_depth);
             let far = Some(far).filter(|far| far.is_finite() && *far > 0.0 && is_clipped);
-            Some(DepthCurve { mapping: mapping(far.is_some()), offset: a, scale: b, far, unit: LengthUnit::Unknown })
+            Some(DepthCurve {
+                mapping: mapping(far.is_some()),
+                offset: a,
+                scale: b,
+                is_linear: false,
+                far,
+                unit: LengthUnit::Unknown,
+            })
         }
         None => None,
     }
@@ -106,6 +113,7 @@ pub(super) fn camera(curve: &DepthCurve) -> Camera {
         eye: DVec3::ZERO,
         target: DVec3::NEG_Z,
         up: DVec3::Y,
+        projection: crate::scene::Projection::Perspective,
         fov_y_degrees: FIELD_OF_VIEW,
         near,
         far: curve.far.filter(|far| *far > near),

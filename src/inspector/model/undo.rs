@@ -98,8 +98,15 @@ mod tests {
     use std::collections::BTreeSet;
 
     fn moment(width: u32, time: f64) -> Moment {
-        let camera =
-            Camera { eye: DVec3::Y, target: DVec3::ZERO, up: DVec3::X, fov_y_degrees: 45.0, near: 0.1, far: None };
+        let camera = Camera {
+            eye: DVec3::Y,
+            target: DVec3::ZERO,
+            up: DVec3::X,
+            projection: crate::scene::Projection::Perspective,
+            fov_y_degrees: 45.0,
+            near: 0.1,
+            far: None,
+        };
         let choice = Choice::new(Technique::ZFail);
         let (off, objects) = (BTreeSet::new(), ObjectChanges::default());
         let request = RunRequest { choice, size: [width, 1], camera, lights: Vec::new(), time, off, objects };

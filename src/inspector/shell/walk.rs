@@ -288,6 +288,7 @@ mod tests {
             eye: DVec3::Y,
             target: DVec3::new(0.0, 1.0, -4.0),
             up: DVec3::Y,
+            projection: crate::scene::Projection::Perspective,
             fov_y_degrees: 60.0,
             near: 0.1,
             far: None,

@@ -29,6 +29,7 @@ pub fn build() -> Result<Scene, MeshError> {
             eye: DVec3::new(-2.5, 3.5, -2.5),
             target: DVec3::new(-0.1, 0.0, -0.1),
             up: DVec3::Y,
+            projection: crate::scene::Projection::Perspective,
             fov_y_degrees: 45.0,
             near: 0.05,
             far: None,

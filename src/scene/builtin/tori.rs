@@ -85,6 +85,7 @@ pub fn build() -> Result<Scene, MeshError> {
             eye: DVec3::new(4.0, 1.9, 4.4),
             target: DVec3::new(-0.3, -0.45, -0.3),
             up: DVec3::Y,
+            projection: crate::scene::Projection::Perspective,
             fov_y_degrees: 52.0,
             near: 0.05,
             far: None,

@@ -9,8 +9,8 @@ use super::tables::{
 use crate::scene::placement::Surroundings;
 use crate::scene::suggestion;
 use crate::scene::{
-    Camera, Light, Material, Mesh, Motion, Object, Orbit, Pose, Scene, Shading, Swing, TechniqueRequest, obj,
-    read_text::stem,
+    Camera, Light, Material, Mesh, Motion, Object, Orbit, Pose, Projection, Scene, Shading, Swing, TechniqueRequest,
+    obj, read_text::stem,
 };
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -20,6 +20,11 @@ use toml::Spanned;
 
 const DEFAULT_AMBIENT: [f32; 3] = [0.15; 3];
 const DEFAULT_FOV_Y_DEGREES: f64 = 45.0;
+/// Why a value that only an oblique projection has is no use: its angle and its factor.
+const OF_OBLIQUE: [&str; 2] = [
+    "`oblique_angle_degrees` is of `projection = \"oblique\"` alone: give that, or leave it out",
+    "`oblique_factor` is of `projection = \"oblique\"` alone: give that, or leave it out",
+];
 /// The near plane's distance unless given, in distances from eye to target.
 const DEFAULT_NEAR: f64 = 0.01;
 
@@ -57,11 +62,14 @@ pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Prob
 fn camera(table: &CameraTable) -> Result<Camera, Problem> {
     let [eye, target] = [finite(&table.eye)?, finite(&table.target)?];
     let number = |value: &Option<Number>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
+    let fov_y_degrees = number(&table.fov_y_degrees, DEFAULT_FOV_Y_DEGREES)?;
     let camera = Camera {
         eye,
         target,
         up: table.up.as_ref().map_or(Ok(DVec3::Y), finite)?,
-        fov_y_degrees: number(&table.fov_y_degrees, DEFAULT_FOV_Y_DEGREES)?,
+        // Unless given, the target is as large as a pinhole would have it.
+        projection: projection(table, eye.distance(target) * (fov_y_degrees.to_radians() / 2.0).tan())?,
+        fov_y_degrees,
         near: number(&table.near, eye.distance(target) * DEFAULT_NEAR)?,
         far: table.far.as_ref().map(finite_number).transpose()?,
     };
@@ -72,23 +80,72 @@ fn camera(table: &CameraTable) -> Result<Camera, Problem> {
     Ok(camera)
 }
 
+/// With `half_height` where the table gives none.
+fn projection(table: &CameraTable, half_height: f64) -> Result<Projection, Problem> {
+    let number = |value: &Option<Number>, default: f64| value.as_ref().map_or(Ok(default), finite_number);
+    let kind = table.projection.as_ref().map_or("perspective", |kind| kind.get_ref());
+    let is_parallel = kind != "perspective";
+    let unused = [
+        (&table.half_height, is_parallel, "`half_height` is of parallel projections: give `projection` too"),
+        (&table.oblique_angle_degrees, kind == "oblique", OF_OBLIQUE[0]),
+        (&table.oblique_factor, kind == "oblique", OF_OBLIQUE[1]),
+    ];
+    if let Some(kind) = table.projection.as_ref().filter(|kind| !Projection::NAMES.contains(&kind.get_ref().as_str())) {
+        return Err(unknown(kind, "projection", &Projection::NAMES));
+    }
+    if let Some((Some(value), _, reason)) = unused.into_iter().find(|(value, is_used, _)| value.is_some() && !is_used) {
+        return Err(Problem::new(value.span(), reason));
+    }
+    let half_height = number(&table.half_height, half_height)?;
+    Ok(match kind {
+        "perspective" => Projection::Perspective,
+        "orthographic" => Projection::Orthographic { half_height },
+        _ => Projection::Oblique {
+            half_height,
+            angle_degrees: number(&table.oblique_angle_degrees, Projection::USUAL_ANGLE)?,
+            factor: number(&table.oblique_factor, Projection::CABINET)?,
+        },
+    })
+}
+
 /// Where the value stands that makes the camera unusable.
 fn culprit(table: &CameraTable, camera: &Camera) -> usize {
     let place = |value: &Option<Number>| value.as_ref().map(|value| value.span().start);
     let eye = table.eye.span().start;
-    let with_defaults = Camera { fov_y_degrees: DEFAULT_FOV_Y_DEGREES, near: 1.0, far: None, ..*camera };
+    let with_defaults = Camera {
+        projection: Projection::Perspective,
+        fov_y_degrees: DEFAULT_FOV_Y_DEGREES,
+        near: 1.0,
+        far: None,
+        ..*camera
+    };
+    let of_projection = || {
+        let half_height = place(&table.half_height).filter(|_| !(1e-30..=1e30).contains(&camera.half_height()));
+        let projection = table.projection.as_ref().map(|kind| kind.span().start);
+        half_height
+            .or_else(|| place(&table.oblique_factor).filter(|_| is_wrong_factor(camera.projection)))
+            .or_else(|| place(&table.oblique_angle_degrees))
+            .or(projection)
+    };
     let found = if camera.eye == camera.target {
         None
     } else if with_defaults.check().is_err() {
         table.up.as_ref().map(|up| up.span().start)
     } else if (Camera { fov_y_degrees: camera.fov_y_degrees, ..with_defaults }).check().is_err() {
         place(&table.fov_y_degrees)
-    } else if (Camera { far: None, ..*camera }).check().is_err() {
+    } else if (Camera { projection: Projection::Perspective, far: None, ..*camera }).check().is_err() {
         place(&table.near)
-    } else {
+    } else if (Camera { projection: Projection::Perspective, ..*camera }).check().is_err() {
         place(&table.far)
+    } else {
+        of_projection()
     };
     found.unwrap_or(eye)
+}
+
+/// Is a projection's factor what is wrong with it?
+fn is_wrong_factor(projection: Projection) -> bool {
+    matches!(projection, Projection::Oblique { factor, .. } if !(0.0..=100.0).contains(&factor))
 }
 
 fn light(table: &LightTable) -> Result<Light, Problem> {

@@ -3,7 +3,7 @@
 //! Numbers are written in the fewest digits that read back as the same bits, so that the scene that is
 //! read is the one that was written. Small meshes stand in the file itself; others become models.
 
-use crate::scene::{Group, Light, Material, Mesh, Motion, Object, Scene};
+use crate::scene::{Group, Light, Material, Mesh, Motion, Object, Projection, Scene};
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -40,6 +40,10 @@ pub fn save(scene: &Scene, stem: &str, known: &BTreeMap<u64, String>) -> Result<
         objects.push(object_table(object, mesh));
     }
     let camera = &scene.camera;
+    let oblique = match camera.projection {
+        Projection::Oblique { angle_degrees, factor, .. } => Some((angle_degrees, factor)),
+        Projection::Perspective | Projection::Orthographic { .. } => None,
+    };
     let table = SceneTable {
         name: &scene.name,
         ambient: scene.ambient.map(short),
@@ -47,6 +51,10 @@ pub fn save(scene: &Scene, stem: &str, known: &BTreeMap<u64, String>) -> Result<
             eye: camera.eye.to_array(),
             target: camera.target.to_array(),
             up: camera.up.to_array(),
+            projection: camera.is_parallel().then(|| camera.projection.name()),
+            half_height: camera.is_parallel().then(|| camera.half_height()),
+            oblique_angle_degrees: oblique.map(|(angle_degrees, _)| angle_degrees),
+            oblique_factor: oblique.map(|(_, factor)| factor),
             fov_y_degrees: camera.fov_y_degrees,
             near: camera.near,
             far: camera.far,
@@ -76,6 +84,10 @@ struct CameraTable {
     eye: [f64; 3],
     target: [f64; 3],
     up: [f64; 3],
+    projection: Option<&'static str>,
+    half_height: Option<f64>,
+    oblique_angle_degrees: Option<f64>,
+    oblique_factor: Option<f64>,
     fov_y_degrees: f64,
     near: f64,
     far: Option<f64>,

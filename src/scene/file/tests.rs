@@ -1,6 +1,7 @@
 use super::*;
-use crate::scene::{Light, Motion, Shading, Swing};
+use crate::scene::{Light, Motion, Projection, Shading, Swing};
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 const SCENE: &str = r#"name = "two shapes"
 ambient = [0.1, 0.2, 0.3]
@@ -89,6 +90,28 @@ fn every_shape_makes_a_mesh() {
     }
 }
 
+/// Unless given, the target is as large as a pinhole shows it; cabinet projection is usual. Saved, it is read as it was.
+#[test]
+fn a_parallel_camera_has_a_half_height_and_may_be_aslant() {
+    let with = |keys: &str| {
+        let scene = parsed(&SCENE.replace("near = 0.05", &format!("near = 0.05\n{keys}"))).expect(keys);
+        let saved = save(&scene, "saved", &BTreeMap::new()).expect("saved");
+        assert_eq!(parsed(&saved.toml).expect("read again").camera, scene.camera, "{keys}");
+        scene.camera
+    };
+    assert_eq!(with("").projection, Projection::Perspective);
+    let pinhole = with("");
+    let usual = with("projection = \"orthographic\"");
+    assert_eq!(usual.projection, Projection::Orthographic { half_height: pinhole.half_height_at_target() });
+    assert_eq!(usual.half_height_at_target(), pinhole.half_height_at_target());
+    let given = with("projection = \"oblique\"\nhalf_height = 3");
+    let cabinet = Projection::Oblique { half_height: 3.0, angle_degrees: 45.0, factor: 0.5 };
+    assert_eq!(given.projection, cabinet);
+    let all = with("projection = \"oblique\"\nhalf_height = 3\noblique_angle_degrees = -30\noblique_factor = 1");
+    let cavalier = Projection::Oblique { half_height: 3.0, angle_degrees: -30.0, factor: 1.0 };
+    assert_eq!(all.projection, cavalier);
+}
+
 #[test]
 fn errors_name_the_line_and_the_mend() {
     let cases = [
@@ -99,6 +122,14 @@ fn errors_name_the_line_and_the_mend() {
         ("near = 0.05", "near = 0.05\nup = [0, 0, 0]", 7, "up"),
         ("near = 0.05", "near = 0.05\nfov_y_degrees = 180", 7, "field of view"),
         ("near = 0.05", "near = nan", 6, "finite"),
+        ("near = 0.05", "near = 0.05\nprojection = \"oblong\"", 7, "no projection is called `oblong`"),
+        ("near = 0.05", "near = 0.05\nprojection = \"obliqu\"", 7, "did you mean `oblique`?"),
+        ("near = 0.05", "near = 0.05\nhalf_height = 2", 7, "of parallel projections"),
+        ("near = 0.05", "near = 0.05\nprojection = \"orthographic\"\noblique_factor = 1", 8, "alone"),
+        ("near = 0.05", "near = 0.05\nprojection = \"orthographic\"\nhalf_height = 0", 8, "half height"),
+        ("near = 0.05", "near = 0.05\nprojection = \"orthographic\"\nhalf_height = inf", 8, "finite"),
+        ("near = 0.05", "near = 0.05\nprojection = \"oblique\"\noblique_factor = -1", 8, "depth factor"),
+        ("near = 0.05", "near = 0.05\nprojection = \"oblique\"\noblique_angle_degrees = 400", 8, "angle"),
         ("eye = [0.0, 1.0, 3.0]", "eye = [0.0, 0.3, 0.0]", 4, "eye equals its target"),
         ("eye = [0.0, 1.0, 3.0]", "eye = [0.0, nan, 0.0]", 4, "finite"),
         ("eye = [0.0, 1.0, 3.0]", "eye = [0.0, 1.0]", 4, "length 2"),

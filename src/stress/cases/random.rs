@@ -73,7 +73,15 @@ fn scene(seed: f64) -> Result<Scene, MeshError> {
         _ => Light::point(random.within(2.5)),
     };
     let near = 10.0_f64.powf(random.unit() * 2.5 - 2.5);
-    let camera = Camera { eye, target: random.within(0.7), up: DVec3::Y, fov_y_degrees: 60.0, near, far: None };
+    let camera = Camera {
+        eye,
+        target: random.within(0.7),
+        up: DVec3::Y,
+        projection: crate::scene::Projection::Perspective,
+        fov_y_degrees: 60.0,
+        near,
+        far: None,
+    };
     Ok(Scene {
         name: format!("random {seed}"),
         ambient: [0.12; 3],

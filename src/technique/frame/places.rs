@@ -1,13 +1,12 @@
 //! Places a frame: objects in world space, lights, the camera, and the pictures that passes draw into.
 
 use super::{Frame, Piece, Placed};
-use crate::geometry::relative;
+use crate::geometry::{ViewVolume, relative};
 use crate::math::depth::DepthCurve;
-use crate::math::projection;
 use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, MeshId, PlanLight, PlanView};
 use crate::scene::{Material, Object, Scene, Shading};
-use crate::technique::{PlanError, surfaces};
-use glam::{DMat4, DVec3};
+use crate::technique::{PlanError, outside, surfaces};
+use glam::{DMat4, DVec3, DVec4};
 use std::collections::HashSet;
 use wgpu::TextureFormat;
 
@@ -89,14 +88,36 @@ impl Frame<'_> {
     }
 
     /// How depth is stored, as the settings say. Without a far plane of its own, the camera's is put
-    /// behind the farthest surface.
+    /// behind the farthest surface; so is the end of a parallel camera's depth where a mapping has no far plane,
+    /// behind all that is drawn or casts within the view's sides.
     pub(super) fn depth_curve(&self) -> DepthCurve {
         let camera = &self.job.scene.camera;
         let ahead = (camera.target - camera.eye).normalize_or_zero();
         let drawn = self.placed.iter().filter(|placed| placed.surface.is_some()).flat_map(|placed| &placed.world);
-        let farthest = drawn.map(|position| (*position - camera.eye).dot(ahead)).fold(camera.near * 2.0, f64::max);
+        let distance = |position: &DVec3| (*position - camera.eye).dot(ahead);
+        let farthest = drawn.map(distance).fold(camera.near * 2.0, f64::max);
         let far = camera.far.unwrap_or(farthest * FAR_MARGIN);
-        self.common.depth.curve(camera.near, far, self.common.epsilon)
+        match (camera.is_parallel(), self.common.depth.is_finite()) {
+            (false, _) => self.common.depth.curve(camera.near, far, self.common.epsilon),
+            (true, true) => self.common.depth.linear_curve(camera.near, far),
+            (true, false) => {
+                let end =
+                    self.in_view().flat_map(|placed| &placed.world).map(distance).fold(camera.near * 2.0, f64::max);
+                self.common.depth.linear_curve(camera.near, camera.near + (end - camera.near) * FAR_MARGIN)
+            }
+        }
+    }
+
+    /// What is drawn or casts, and lies within the sides of the view or in front of it.
+    fn in_view(&self) -> impl Iterator<Item = &Placed<'_>> {
+        let [width, height] = self.job.size.map(f64::from);
+        let view = ViewVolume::new(&self.job.scene.camera, width / height);
+        self.placed.iter().filter(move |placed| {
+            let relative: Vec<DVec4> =
+                outside::outline(&placed.world).map(|point| (point - self.eye()).extend(1.0)).collect();
+            let takes_part = placed.surface.is_some() || placed.object.casts;
+            takes_part && view.outside(&relative).is_none()
+        })
     }
 }
 
@@ -121,10 +142,10 @@ fn pieces_of(object: &Object, index: usize, mesh: MeshId, shading: Option<Shadin
 pub(super) fn camera_view(scene: &Scene, size: [u32; 2], depth: &DepthCurve) -> PlanView {
     let camera = &scene.camera;
     let aspect = f64::from(size[0]) / f64::from(size[1]);
-    let clip_from_view = projection::perspective(camera.fov_y_degrees, aspect, depth);
-    let rotation = projection::view_from_world_rotation(camera.target - camera.eye, camera.up);
-    let clip_from_relative = (clip_from_view * DMat4::from_mat3(rotation)).as_mat4();
-    PlanView { name: "camera".to_owned(), origin: camera.eye, clip_from_relative }
+    let view_from_relative = DMat4::from_mat3(camera.world_from_view().transpose());
+    let clip_from_relative = (camera.clip_from_view(aspect, depth) * view_from_relative).as_mat4();
+    let eye = camera.relative_eye().as_vec4();
+    PlanView { name: "camera".to_owned(), origin: camera.eye, eye, clip_from_relative }
 }
 
 /// Do any two drawn triangles have the same three corners? Then both are visible at one depth.

@@ -17,6 +17,15 @@ use wgpu::{CompareFunction, DepthBiasState, StencilOperation};
 /// steps over the tangent of the light's height.
 const HUGGING_BIAS: i32 = -4;
 
+/// What a count begins at, and for what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Start {
+    /// The volumes around the eye.
+    Eye(u32),
+    /// The volumes that parallel lines of sight end in.
+    FarEnd(u32),
+}
+
 /// A run of a volume's triangles that counts.
 pub struct NeededPart {
     pub part: Part,
@@ -102,7 +111,8 @@ impl Counting {
         }
     }
 
-    /// The state that a part counts with.
+    /// The state that a part counts with. What counts behind surfaces asks not to be clipped, as far as the frame
+    /// can do without ([`Frame::finish`](crate::technique::frame::Frame::finish)).
     pub(super) fn raster(self, part: &NeededPart, options: &VolumeSettings, step: Step) -> RasterState {
         let (add, take) = operations(options);
         let adds_in_front = (self != Counting::Behind) != part.turned;
@@ -111,7 +121,9 @@ impl Counting {
         let is_never = options.light_caps_never_pass && part.part == Part::LightCap;
         let depth_compare = if is_never { CompareFunction::Never } else { surface.depth_compare };
         let depth_bias = depth_bias(part);
-        let state = RasterState { depth_compare, depth_bias, depth_write: false, color: ColorWrite::None, ..surface };
+        let unclipped_depth = self == Counting::Behind;
+        let color = ColorWrite::None;
+        let state = RasterState { unclipped_depth, depth_compare, depth_bias, depth_write: false, color, ..surface };
         // Not by culling, as textbooks have it: on Mesa's software driver, culling one face changes
         // a few counts (2 and 16 of 40 000 pixels on a torn torus), with the operations as they are
         // here or not. Why is not known; without culling both ways leave the same counts.
@@ -139,7 +151,9 @@ impl Counting {
         };
         let adds_in_front = (self != Counting::Behind) != part.turned;
         let depth_bias = depth_bias(part);
-        let state = RasterState { depth_compare, depth_bias, depth_write: false, color: ColorWrite::Add, ..surface };
+        let unclipped_depth = self == Counting::Behind;
+        let color = ColorWrite::Add;
+        let state = RasterState { unclipped_depth, depth_compare, depth_bias, depth_write: false, color, ..surface };
         (state, if adds_in_front { 1.0 } else { -1.0 })
     }
 
@@ -163,8 +177,8 @@ pub struct Counts<'a> {
     pub by: Option<Counting>,
     pub light: LightId,
     pub options: &'a VolumeSettings,
-    /// What the count begins with, where that is the number of volumes around the eye.
-    pub start: Option<u32>,
+    /// What the count begins with, if anything.
+    pub start: Option<Start>,
     /// Volumes are only counted in front of the surface where neither the eye nor the near plane is in them.
     pub chooses_side: bool,
     /// Light caps, dark caps: some would count and are not drawn.
@@ -180,8 +194,9 @@ impl Counts<'_> {
             let counts = if self.by == Some(Counting::Behind) { "hidden by the surface" } else { "nearer than it" };
             let own = if step == Step::BothFaces { "" } else { ", those of one side in this pass" };
             return format!(
-                "Counts {what}, odd or even: every face {counts} turns one bit over{own}. 1 is left where an odd \
+                "Counts {what}, odd or even: every face {counts} turns one bit over{own}. {}1 is left where an odd \
                  number of volumes contains the surface, and an even one reads as none{}.",
+                self.begins(),
                 self.condition()
             );
         }
@@ -219,9 +234,7 @@ impl Counts<'_> {
 
     /// What the count says in the end.
     fn left(&self) -> String {
-        let begins = self
-            .start
-            .map_or_else(String::new, |start| format!("It begins at {start}, for the volumes around the eye. "));
+        let begins = self.begins();
         let what = match self.by {
             Some(Counting::InFrontPlus) => "With what the near plane began with, if anything, what is left contains",
             None => "Either way, what is left contains",
@@ -230,12 +243,24 @@ impl Counts<'_> {
         format!("{begins}{what} the surface{}.", self.condition())
     }
 
+    fn begins(&self) -> String {
+        match self.start {
+            None => String::new(),
+            Some(Start::Eye(start)) => format!("It begins at {start}, for the volumes around the eye. "),
+            Some(Start::FarEnd(start)) => format!(
+                "It begins at {start}: parallel lines of sight all end at one point at infinity, in the volumes of so \
+                 many casting triangles, those that a ray from {} along them meets. ",
+                self.light.name()
+            ),
+        }
+    }
+
     /// Where that is so.
     fn condition(&self) -> String {
         let eye = match (self.by, self.start) {
             (Some(Counting::InFront), _) if self.chooses_side => ", as neither the eye nor the near plane is in any",
-            (Some(Counting::InFront), None) => ", if the eye itself is in none",
-            (Some(Counting::InFront), Some(_)) => ", if the near plane cuts none",
+            (Some(Counting::InFront), None | Some(Start::FarEnd(_))) => ", if the eye itself is in none",
+            (Some(Counting::InFront), Some(Start::Eye(_))) => ", if the near plane cuts none",
             _ => ", wherever the eye is",
         };
         let caps = match self.lacks {

@@ -1,7 +1,9 @@
 //! A caster's volume as a mesh and draws: sides, light cap and dark cap, each triangle run with its own operations.
 
 use super::counting::{Counting, Form, NeededPart, Step};
-use crate::geometry::{Caster, Casters, DarkCap, Extruder, Fan, VolumeOf, VolumeParts, relative};
+use super::far_count::FarPoint;
+use crate::geometry::{Caster, Casters, DarkCap, Extruder, Extrusion, Fan, VolumeOf, VolumeParts, relative};
+use crate::numbers;
 use crate::plan::{
     Blob, Decision, Draw, DrawConstants, DrawMesh, LeftOut, LightId, MeshId, Part, Program, RasterState,
 };
@@ -9,6 +11,16 @@ use crate::scene::Object;
 use crate::technique::frame::Frame;
 use crate::technique::settings::VolumeSettings;
 use glam::DVec3;
+use std::ops::Range;
+
+/// What a volume's far end takes where lines of sight are parallel.
+#[derive(Debug, Clone, Copy)]
+pub struct FarEnd {
+    /// Casting triangles that the light's ray along the view meets: how many of its volumes hold that end.
+    pub met: u32,
+    /// How far beside the light its far vertices are carried from, metres; of a directional one, in parts of its length.
+    pub beside: f64,
+}
 
 /// A caster's volume, ready to be drawn.
 pub struct Volume {
@@ -26,6 +38,8 @@ pub struct Volume {
     pub needed: Vec<NeededPart>,
     /// Light cap and dark cap: it has one that would count, and it is not to be drawn.
     pub lacks_caps: [bool; 2],
+    /// How many of the count begin at the far end, where no dark cap is drawn for it.
+    pub begins_with: u32,
 }
 
 impl Volume {
@@ -89,7 +103,7 @@ pub fn make(
     index: usize,
     (casters, held): (Casters, &[bool]),
     options: &VolumeSettings,
-) -> (DrawMesh, VolumeParts) {
+) -> (DrawMesh, VolumeParts, Option<FarEnd>) {
     let (position, eye) = (frame.light_position(light), frame.eye());
     let placed = &frame.placed[index];
     let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
@@ -99,6 +113,20 @@ pub fn make(
     let volume = VolumeOf { caster, is_drawn, light: position, casters, held, by, extruder: &extruder };
     let parts = frame.job.cache.volume_indices(&volume, &mut indices);
     let fan = if let DarkCap::Fan(_, fan) = parts.dark_cap { Some(fan) } else { None };
+    let far_point = FarPoint::of(&frame.job.scene.camera).filter(|_| options.extrusion == Extrusion::Infinite);
+    let far_end = far_point.map(|far_point| {
+        let corners = |run: Range<usize>| indices[run.start * 3..run.end * 3].chunks_exact(3);
+        let place = |vertex: &u32| placed.world.get(*vertex as usize).copied();
+        let edge = |corners: &[u32]| -> Option<[DVec3; 2]> {
+            corners.iter().filter_map(place).collect::<Vec<_>>().try_into().ok()
+        };
+        let edges: Vec<_> = corners(0..parts.hugging_sides.end).filter_map(edge).collect();
+        let from = far_point.settled(position, &edges);
+        let triangle = |corners: &[u32]| [0, 1, 2].map(|corner| placed.world[corners[corner] as usize]);
+        let casting = corners(parts.light_cap.start..parts.light_cap_turned.end).map(triangle);
+        (from, FarEnd { met: far_point.count(from, casting), beside: (from - position).length() })
+    });
+    let extruder = far_end.map_or(extruder, |(from, _)| Extruder::new(&placed.world, from, options.extrusion));
     let vertices = extruder.vertices(&placed.world).chain(fan.iter().flat_map(Fan::vertices));
     let vertices = vertices.map(|vertex| relative::homogeneous(vertex, eye)).collect();
     let mesh = DrawMesh {
@@ -107,7 +135,7 @@ pub fn make(
         indices: Blob::new(indices),
         surface: None,
     };
-    (mesh, parts)
+    (mesh, parts, far_end.map(|(_, far_end)| far_end))
 }
 
 /// The parts that count in a form; what is left out is said, but of dark caps that are not drawn anyway.
@@ -116,8 +144,8 @@ pub fn needed_parts(
     form: Form,
     parts: &VolumeParts,
     caster: &Object,
-    draws_dark_caps: bool,
-) -> Vec<NeededPart> {
+    (draws_dark_caps, far_end): (bool, Option<FarEnd>),
+) -> (Vec<NeededPart>, u32) {
     let run = NeededPart::new;
     let hugging = NeededPart { hugs: true, ..run(Part::Side, false, &parts.hugging_sides) };
     let mut needed = vec![run(Part::Side, false, &parts.sides), hugging];
@@ -126,11 +154,16 @@ pub fn needed_parts(
         needed.push(run(Part::LightCap, true, &parts.light_cap_turned));
     }
     if !form.dark_cap {
-        return needed;
+        return (needed, 0);
+    }
+    if let (DarkCap::Fan(..), Some(far_end), true) = (&parts.dark_cap, far_end, draws_dark_caps) {
+        frame.leave_out(Decision::DarkCap, &caster.name, far_end.because());
+        return (needed, far_end.met);
     }
     match &parts.dark_cap {
         DarkCap::None => {
-            let because = "a directional light's volume closes in one point at infinity";
+            let beside = far_end.map_or_else(String::new, FarEnd::beside);
+            let because = format!("a directional light's volume closes in one point at infinity{beside}");
             frame.leave_out(Decision::DarkCap, &caster.name, because);
         }
         DarkCap::Fan(triangles, _) => {
@@ -151,5 +184,27 @@ pub fn needed_parts(
             needed.push(carried(run(Part::DarkCap, false, &parts.light_cap_turned)));
         }
     }
-    needed
+    (needed, 0)
+}
+
+impl FarEnd {
+    /// From where its sides lead, if not from the light itself.
+    fn beside(self) -> String {
+        match self.beside > 0.0 {
+            true => {
+                format!("; as a side is seen edge-on, they lead from {} beside the light", numbers::metres(self.beside))
+            }
+            false => String::new(),
+        }
+    }
+
+    /// Why it has no dark cap.
+    fn because(self) -> String {
+        let beside = self.beside();
+        format!(
+            "lines of sight are parallel, and what lies at infinity is a line in the picture: the count begins at {} \
+             for it, the casting triangles that a ray from the light along them meets{beside}",
+            self.met
+        )
+    }
 }

@@ -46,6 +46,7 @@ pub fn pass(frame: &mut Frame, light: LightId, options: &VolumeSettings, volumes
     frame.plan.views.push(PlanView {
         name: format!("{name} through the near rectangle"),
         origin,
+        eye: PlanView::at_origin(),
         clip_from_relative: matrix.as_mat4(),
     });
     let view = ViewId(frame.plan.views.len() - 1);

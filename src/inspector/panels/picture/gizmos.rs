@@ -75,8 +75,8 @@ pub fn ui(ui: &Ui, model: &mut Model, rect: Rect, shown: &Shown, placement: Plac
         }
         // In the plane parallel to the picture, behind the eye as far as before it.
         let depth = (point - camera.eye).dot(ahead).abs().max(camera.near);
-        let ray = |x: f32, y: f32| pick_ray::ray_at(capture, [f64::from(x), f64::from(y)]);
-        let moved: DVec3 = (ray(by.x, by.y) - ray(0.0, 0.0)) * depth;
+        let place = |x: f32, y: f32| pick_ray::sight_at(capture, [f64::from(x), f64::from(y)]).at(depth);
+        let moved: DVec3 = place(by.x, by.y) - place(0.0, 0.0);
         draft.lights[index].position = moved_light(&draft.lights[index], draft.time, moved, anchor);
         changed = true;
     }

@@ -22,8 +22,10 @@ pub fn ui(ui: &Ui, model: &Model, choice: Choice, stage: &Stage, anatomy: &Anato
     let colors = theme::of(ui);
     let reach = 4.0 * stage.radius;
     let surface = pick_ray::surface(capture, at);
-    let end = surface.unwrap_or_else(|| capture.camera.eye + pick_ray::ray(capture, at).normalize() * reach);
-    if let Some(ends) = lens.line([capture.camera.eye, end]) {
+    let sight = pick_ray::sight(capture, at);
+    let start = capture.camera.eye + sight.from;
+    let end = surface.unwrap_or_else(|| start + sight.along.normalize() * reach);
+    if let Some(ends) = lens.line([start, end]) {
         painter.line_segment(ends, Stroke::new(1.5, colors.text));
     }
     let Some(surface) = surface else { return };

@@ -6,7 +6,7 @@ use super::toggles::{Choice, Toggles};
 use crate::anatomy::Anatomy;
 use crate::inspector::canvas::handles::Grip;
 use crate::inspector::look::theme;
-use crate::scene::Camera;
+use crate::scene::{self, Camera};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -160,11 +160,19 @@ impl SceneView {
     pub fn see_from(&mut self, camera: &Camera) {
         let view = self.view_mut(Pane::Free);
         (view.yaw, view.pitch) = angles(camera);
-        view.projection = Projection::Perspective;
+        view.projection = match camera.projection {
+            scene::Projection::Perspective => Projection::Perspective,
+            scene::Projection::Orthographic { .. } => Projection::Orthographic,
+            // Of the two that a view has, the nearer.
+            scene::Projection::Oblique { factor, .. } if factor > 0.75 => Projection::Cavalier,
+            scene::Projection::Oblique { .. } => Projection::Cabinet,
+        };
+        if let scene::Projection::Oblique { angle_degrees, .. } = camera.projection {
+            view.oblique = angle_degrees;
+        }
         view.center = camera.target;
         view.fov_y = camera.fov_y_degrees;
-        let distance = (camera.target - camera.eye).length();
-        view.height = 2.0 * distance * (camera.fov_y_degrees.to_radians() / 2.0).tan();
+        view.height = 2.0 * camera.half_height_at_target();
         self.layout = Layout::One(Pane::Free);
     }
 

@@ -5,7 +5,7 @@
 use crate::inspector::look::theme;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
-use crate::scene::{Camera, Light, Material, Mesh, MeshError, Object, Pose, Shading, shapes};
+use crate::scene::{Camera, Light, Material, Mesh, MeshError, Object, Pose, Projection, Shading, shapes};
 use egui::{CollapsingHeader, DragValue, Ui};
 use glam::DVec3;
 
@@ -189,6 +189,9 @@ fn look_at(camera: &mut Camera, object: &Object) -> bool {
     let away = (camera.eye - camera.target).try_normalize();
     let Some(away) = away.filter(|_| radius > 0.0 && radius.is_finite()) else { return false };
     let distance = radius / (FILLED * (camera.fov_y_degrees / 2.0).to_radians().sin());
+    if let Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } = &mut camera.projection {
+        *half_height = radius / FILLED;
+    }
     camera.target = middle;
     camera.eye = middle + away * distance;
     // The near plane does not cut it.

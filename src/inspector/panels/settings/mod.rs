@@ -3,6 +3,7 @@
 pub mod animation;
 pub mod making;
 pub mod meshes;
+mod projection;
 pub mod scene;
 pub mod up_axis;
 

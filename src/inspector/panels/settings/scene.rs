@@ -1,6 +1,7 @@
 //! The settings of what is seen: lights and camera by number, the picture's size, the moment. Each is held against what
 //! it was when the scene was opened, and goes back to it.
 
+use super::projection;
 use crate::ask::RunRequest;
 use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::scene::OpenScene;
@@ -36,7 +37,7 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
 }
 
 /// One setting in a row: the way back where it was changed, its name, its widget; true when it changes.
-fn row<T: PartialEq + Clone>(
+pub(super) fn row<T: PartialEq + Clone>(
     ui: &mut Ui,
     (name, label): (&str, &str),
     value: &mut T,
@@ -139,11 +140,7 @@ fn camera(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
         for (name, label, value, before) in vectors {
             changed |= row(ui, (name, label), value, before, |ui, value| vector(ui, name, value));
         }
-        let name = ("field of view", "field of view");
-        changed |= row(ui, name, &mut camera.fov_y_degrees, &before.fov_y_degrees, |ui, fov| {
-            let widget = DragValue::new(fov).range(1.0..=179.0).speed(0.2).suffix("°").update_while_editing(false);
-            ui.add(widget).accessible_name("Field of view").changed()
-        });
+        changed |= projection::rows(ui, camera, before);
         changed |= row(ui, ("near plane", "near plane"), &mut camera.near, &before.near, |ui, near| {
             let widget = DragValue::new(near).range(1e-6..=1e6).speed(0.001).max_decimals(6).suffix(" m");
             ui.add(widget.update_while_editing(false)).accessible_name("Near plane").changed()

@@ -44,6 +44,6 @@ fn turn(scene: &mut OpenScene, pose: Pose) {
     if scene.light_opened(0).is_some() {
         scene.draft.lights[0].position = around.light().position;
     }
-    let Camera { fov_y_degrees, far, .. } = scene.draft.camera;
-    scene.draft.camera = Camera { fov_y_degrees, far, ..around.camera(&turned) };
+    let Camera { projection, fov_y_degrees, far, .. } = scene.draft.camera;
+    scene.draft.camera = Camera { projection, fov_y_degrees, far, ..around.camera(&turned) };
 }

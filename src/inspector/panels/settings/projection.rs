@@ -1,0 +1,76 @@
+//! The camera's projection: which, and the numbers that it has. What it has not is there all the same, with why.
+
+use super::scene::row;
+use crate::scene::{Camera, Projection};
+use egui::{DragValue, Ui};
+
+/// Rows of the camera's grid; true when one changed.
+pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
+    let names = ("camera projection", "projection");
+    let half_height = camera.half_height_at_target();
+    let mut changed =
+        row(ui, names, &mut camera.projection, &before.projection, |ui, projection| kind(ui, projection, half_height));
+    changed |= field_of_view(ui, camera, before);
+    let (half_before, oblique_before) = numbers(before.projection);
+    if let Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } = &mut camera.projection {
+        let before = half_before.unwrap_or(*half_height);
+        changed |= row(ui, ("half height", "half height"), half_height, &before, |ui, half_height| {
+            let widget = DragValue::new(half_height).range(1e-6..=1e6).speed(0.01).max_decimals(4).suffix(" m");
+            let shown = ui.add(widget.update_while_editing(false)).accessible_name("Half height");
+            shown.on_hover_text("From the picture's middle to its upper edge").changed()
+        });
+    }
+    if let Projection::Oblique { angle_degrees, factor, .. } = &mut camera.projection {
+        let before = oblique_before.unwrap_or([*angle_degrees, *factor]);
+        changed |= row(ui, ("oblique angle", "angle"), angle_degrees, &before[0], |ui, angle| {
+            let widget = DragValue::new(angle).range(-360.0..=360.0).speed(0.2).suffix("°");
+            let shown = ui.add(widget.update_while_editing(false)).accessible_name("Oblique angle");
+            shown.on_hover_text("Of the line along which things recede, from the right and counter-clockwise").changed()
+        });
+        changed |= row(ui, ("oblique factor", "depth factor"), factor, &before[1], |ui, factor| {
+            let widget = DragValue::new(factor).range(0.0..=4.0).speed(0.01).max_decimals(3);
+            let shown = ui.add(widget.update_while_editing(false)).accessible_name("Oblique depth factor");
+            shown.on_hover_text("Of a metre of depth in the picture: 1 is cavalier, 0.5 cabinet").changed()
+        });
+    }
+    changed
+}
+
+/// Half height, and angle and factor, where a projection has them.
+fn numbers(projection: Projection) -> (Option<f64>, Option<[f64; 2]>) {
+    match projection {
+        Projection::Perspective => (None, None),
+        Projection::Orthographic { half_height } => (Some(half_height), None),
+        Projection::Oblique { half_height, angle_degrees, factor } => {
+            (Some(half_height), Some([angle_degrees, factor]))
+        }
+    }
+}
+
+/// Another kind shows the target as large as it is shown now.
+fn kind(ui: &mut Ui, projection: &mut Projection, half_height: f64) -> bool {
+    let before = projection.name();
+    let (angle_degrees, factor) = (Projection::USUAL_ANGLE, Projection::CABINET);
+    let oblique = Projection::Oblique { half_height, angle_degrees, factor };
+    let kinds = [Projection::Perspective, Projection::Orthographic { half_height }, oblique];
+    let combo = egui::ComboBox::from_id_salt("camera projection").selected_text(before).show_ui(ui, |ui| {
+        for of in kinds {
+            if ui.selectable_label(of.name() == before, of.name()).clicked() && of.name() != before {
+                *projection = of;
+            }
+        }
+    });
+    combo.response.accessible_name("Projection");
+    projection.name() != before
+}
+
+fn field_of_view(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
+    let is_pinhole = camera.projection.is_pinhole();
+    let names = ("field of view", "field of view");
+    row(ui, names, &mut camera.fov_y_degrees, &before.fov_y_degrees, |ui, fov| {
+        let widget = DragValue::new(fov).range(1.0..=179.0).speed(0.2).suffix("°").update_while_editing(false);
+        let shown = ui.add_enabled(is_pinhole, widget).accessible_name("Field of view");
+        let why = "No effect: lines of sight are parallel, and the half height says how much they show";
+        shown.on_disabled_hover_text(why).changed()
+    })
+}

@@ -1,0 +1,228 @@
+//! Cameras whose lines of sight are parallel: every volume counted right, from anywhere.
+
+use crate::common::random::Random;
+use crate::common::{cuboid, from_above, request, session};
+use std::collections::BTreeSet;
+use stencilscope::capture::{Capture, CapturedLight};
+use stencilscope::math::depth::DepthMapping;
+use stencilscope::plan::{Decision, FramePlan, Part};
+use stencilscope::progress::Progress;
+use stencilscope::scene::{Camera, Light, Projection, Scene, builtin};
+use stencilscope::session::Session;
+use stencilscope::technique::Technique;
+
+const SIZE: [u32; 2] = [48, 36];
+const PLACES: u64 = 10;
+
+/// An orthographic and a cabinet camera that show the target as large as a pinhole does.
+fn parallel(camera: Camera) -> [Camera; 2] {
+    let half_height = camera.half_height_at_target();
+    let cabinet = Projection::Oblique { half_height, angle_degrees: 45.0, factor: Projection::CABINET };
+    [Projection::Orthographic { half_height }, cabinet].map(|projection| Camera { projection, ..camera })
+}
+
+fn wrong(judged: &Capture) -> u64 {
+    judged.lights.iter().filter_map(|light| light.truth.as_ref()).map(|truth| truth.error.wrong()).sum()
+}
+
+fn seen_by(scene: &Scene, camera: Camera) -> Scene {
+    Scene { camera, ..scene.clone() }
+}
+
+/// Pixels that z-fail or `auto` has wrong. The truth is asked once: where both say the same, it is of both.
+fn faults(session: &mut Session, scene: &Scene) -> Vec<String> {
+    // Counts of 256 read as none in eight bits, which is no matter here.
+    let mut z_fail = request(Technique::ZFail, SIZE);
+    z_fail.choice.set("counter", "float").expect("a setting");
+    let counted = session.capture(scene, &z_fail).expect("a capture");
+    let auto = session.capture(scene, &request(Technique::Auto, SIZE)).expect("a capture");
+    let is_same = labels(&counted) == labels(&auto);
+    let both = [("z-fail", counted), ("auto", auto)];
+    let judged = both.into_iter().take(if is_same { 1 } else { 2 }).filter_map(|(name, capture)| {
+        let wrong = wrong(&session.judged(scene, &capture, &Progress::default()).expect("a truth"));
+        let projection = scene.camera.projection.name();
+        (wrong > 0).then(|| format!("{}, {projection}: {name} has {wrong} wrong", scene.name))
+    });
+    judged.collect()
+}
+
+fn labels(capture: &Capture) -> Vec<Vec<u8>> {
+    let of = |light: &CapturedLight| light.shadow.as_ref().expect("labels").rows().flatten().copied().collect();
+    capture.lights.iter().map(of).collect()
+}
+
+#[test]
+fn auto_and_z_fail_have_no_wrong_pixel_on_any_scene_from_anywhere() {
+    let mut session = session();
+    let mut all = Vec::new();
+    for builtin in builtin::ALL {
+        let scene = builtin.scene().expect("a scene");
+        for seed in 0..PLACES {
+            for camera in parallel(scene.camera.anywhere(seed)) {
+                let found = faults(&mut session, &seen_by(&scene, camera));
+                all.extend(found.into_iter().map(|fault| format!("from {seed}, {fault}")));
+            }
+        }
+    }
+    assert!(all.is_empty(), "{all:#?}");
+}
+
+/// Straight down on edges, corners and diagonals that lie right under the light, or under the sun that the view
+/// follows: nobody can tell in single precision on which side the light's own ray passes them.
+#[test]
+fn edges_seen_end_on_under_the_light_are_no_matter() {
+    let mut session = session();
+    let boxes = [
+        ("its diagonal", [-1.0, 1.0, -1.0], [1.0, 2.0, 1.0]),
+        ("an edge", [0.0, 1.0, -1.0], [1.0, 2.0, 1.0]),
+        ("a corner", [0.0, 1.0, 0.0], [1.0, 2.0, 1.0]),
+        ("an edge, all but a hair", [1e-9, 1.0, -1.0], [1.0, 2.0, 1.0]),
+        ("a corner, all but a hair", [-1e-7, 1.0, 1e-8], [1.0, 2.0, 1.0]),
+        ("beside it", [0.3, 1.0, 0.2], [1.0, 2.0, 1.0]),
+        ("over it", [-1.0, 5.0, 0.0], [0.0, 6.0, 1.0]),
+        ("around it", [-1.0, 3.0, -1.0], [1.0, 5.0, 1.0]),
+        ("into the floor", [0.0, -1.0, 0.0], [1.0, 1.0, 1.0]),
+    ];
+    for (what, low, high) in boxes {
+        for light in [Light::point([0.0, 4.0, 0.0]), Light::directional([0.0, 1.0, 0.0])] {
+            let scene = Scene { lights: vec![light.clone()], ..from_above(vec![cuboid("box", low, high)]) };
+            let pinhole = Camera { projection: Projection::Perspective, ..scene.camera };
+            let projections = [
+                Projection::Orthographic { half_height: 2.5 },
+                Projection::Oblique { half_height: 2.5, angle_degrees: 45.0, factor: 0.5 },
+                Projection::Oblique { half_height: 2.5, angle_degrees: 90.0, factor: 1.0 },
+            ];
+            for projection in projections {
+                let found = faults(&mut session, &seen_by(&scene, Camera { projection, ..pinhole }));
+                assert!(found.is_empty(), "{what}, {light:?}: {found:?}");
+            }
+        }
+    }
+}
+
+/// Over a large floor, straight down, with a box under the lamp: its whole lit side is met by the lamp's own ray.
+fn over_a_box() -> Scene {
+    let scene = from_above(vec![cuboid("box", [-0.9, 1.0, -0.7], [0.8, 2.0, 1.0])]);
+    let projection = Projection::Orthographic { half_height: 5.0 };
+    let camera = Camera { projection, ..scene.camera };
+    seen_by(&scene, camera)
+}
+
+fn clears(plan: &FramePlan) -> Vec<u8> {
+    let volumes = plan.passes.iter().filter(|pass| pass.name == "volumes");
+    volumes.filter_map(|pass| pass.depth_stencil.as_ref()?.clear_stencil).collect()
+}
+
+/// The floor is nobody's shadow's end: only what the ray meets is counted, once for each casting triangle.
+#[test]
+fn the_count_begins_at_what_the_lamps_ray_along_the_view_meets() {
+    let mut session = session();
+    let scene = over_a_box();
+    let mut began = |casters: &str, scene: &Scene| {
+        let mut request = request(Technique::ZFail, SIZE);
+        request.choice.set("casters", casters).expect("a setting");
+        let (capture, plan) = session.capture_with_plan(scene, &request).expect("a capture");
+        let judged = session.judged(scene, &capture, &Progress::default()).expect("a truth");
+        assert_eq!(wrong(&judged), 0, "{casters}");
+        let drawn = plan.passes.iter().flat_map(|pass| &pass.draws);
+        assert!(drawn.filter(|draw| draw.part == Part::DarkCap).count() == 0, "a line at infinity");
+        let kept = plan.left_out.iter().filter(|left| left.decision == Some(Decision::DarkCap)).count();
+        assert_eq!(kept, 2, "the floor's and the box's");
+        clears(&plan)
+    };
+    // The floor casts too: one of its two triangles is met, and the box's lit side, or both sides.
+    assert_eq!(began("light-facing", &scene), [2]);
+    assert_eq!(began("all", &scene), [3]);
+    let mut aside = scene.clone();
+    aside.objects[0].casts = true;
+    aside.objects[1].pose.translate.x = 3.0;
+    assert_eq!(began("light-facing", &aside), [1], "the floor alone");
+}
+
+/// From within a shadow, and with the near plane across the scene: z-pass is wrong, as of a pinhole, and
+/// z-pass-plus counts what the near plane begins with.
+#[test]
+fn z_pass_plus_counts_what_parallel_lines_of_sight_begin_in() {
+    let mut session = session();
+    let scene = builtin::ALL.iter().find(|builtin| builtin.name == "inside").expect("a scene");
+    let scene = scene.scene().expect("a scene");
+    let mut z_pass_is_wrong = 0;
+    for camera in parallel(scene.camera) {
+        let scene = seen_by(&scene, camera);
+        let mut wrong = |technique: Technique| {
+            let capture = session.capture(&scene, &request(technique, SIZE)).expect("a capture");
+            wrong(&session.judged(&scene, &capture, &Progress::default()).expect("a truth"))
+        };
+        let [z_pass, plus, z_fail] = [Technique::ZPass, Technique::ZPassPlus, Technique::ZFail].map(&mut wrong);
+        assert_eq!((plus, z_fail), (0, 0), "{:?}", camera.projection);
+        z_pass_is_wrong += usize::from(z_pass > 0);
+    }
+    assert_eq!(z_pass_is_wrong, 2);
+}
+
+/// Every event of a pixel is what the GPU stored, clamped depth and a count that begins elsewhere too.
+#[test]
+fn histories_agree_with_the_gpu() {
+    let mut session = session();
+    let tori = builtin::ALL[0].scene().expect("a scene");
+    let scenes = parallel(tori.camera).map(|camera| seen_by(&tori, camera)).into_iter().chain([over_a_box()]);
+    for scene in scenes {
+        for technique in [Technique::ZFail, Technique::Auto, Technique::ZPassPlus] {
+            let (capture, plan) = session.capture_with_plan(&scene, &request(technique, SIZE)).expect("a capture");
+            let mut random = Random::new(3);
+            for _ in 0..40 {
+                let at = SIZE.map(|pixels| random.below(pixels));
+                let history = session.history(&plan, &capture, at).expect("a history");
+                assert!(
+                    history.agrees(),
+                    "{} {technique:?}: {:?}\n{}",
+                    scene.name,
+                    history.disagreements(),
+                    history.story(&capture.depth)
+                );
+            }
+        }
+    }
+}
+
+/// No far plane, one that cuts, one that clamps; reversed or not: volumes go on wherever nothing clips them.
+#[test]
+fn every_mapping_that_clips_nothing_counts_right() {
+    let mut session = session();
+    let tori = builtin::ALL[0].scene().expect("a scene");
+    for camera in parallel(tori.camera) {
+        let scene = seen_by(&tori, camera);
+        for mapping in DepthMapping::ALL {
+            for technique in [Technique::Auto, Technique::ZFail, Technique::ZPass] {
+                let mut request = request(technique, SIZE);
+                request.choice.set("depth", mapping.name()).expect("a setting");
+                let capture = session.capture(&scene, &request).expect("a capture");
+                let clips = mapping == DepthMapping::StandardFinite && technique != Technique::ZPass;
+                let wrong = wrong(&session.judged(&scene, &capture, &Progress::default()).expect("a truth"));
+                assert!(capture.depth.is_linear);
+                assert!(wrong == 0 || clips, "{mapping:?} {technique:?}: {wrong} wrong");
+            }
+        }
+    }
+}
+
+/// On a flat floor under a sun, neither the light's way nor the eye's changes: the highlight is one colour.
+#[test]
+fn a_highlight_is_seen_from_one_direction() {
+    let mut session = session();
+    let mut scene = from_above(Vec::new());
+    scene.lights = vec![Light::directional([0.4, 1.0, 0.3])];
+    scene.objects[0].material.specular = 0.8;
+    scene.objects[0].material.shininess = 20.0;
+    let mut colors = |scene: &Scene| {
+        let capture = session.capture(scene, &request(Technique::None, SIZE)).expect("a capture");
+        let last = (0..capture.steps.len()).rev().find(|step| capture.steps[*step].name == "light").expect("a pass");
+        let picture = &capture.frame_at(last).expect("a frame").color.image;
+        let all: BTreeSet<Vec<u8>> = picture.rows().flat_map(|row| row.chunks(4)).map(<[u8]>::to_vec).collect();
+        all.len()
+    };
+    assert!(colors(&scene) > 20, "a pinhole sees it from many");
+    for camera in parallel(scene.camera) {
+        assert_eq!(colors(&seen_by(&scene, camera)), 1, "{:?}", camera.projection);
+    }
+}
