@@ -32,6 +32,7 @@ mod stencil_machine;
 mod step_tests;
 mod stress;
 mod techniques;
+mod texels_read;
 mod told;
 mod truth;
 mod volumes;

@@ -5,6 +5,7 @@ use super::{CliError, output};
 use crate::history::PixelDocument;
 use crate::plan::LightId;
 use crate::reading::coordinates::Place;
+use crate::reading::texels_read::{TexelReaders, TexelsRead};
 use crate::session::{RunFrame, Session, SessionError};
 use clap::Args;
 use serde::Serialize;
@@ -49,6 +50,7 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     for (light, counted) in capture.lights.iter().enumerate().filter_map(|(at, light)| Some((at, light.count_of?))) {
         stories[0] += &format!("{}: {}\n", LightId(light).name(), counted.meaning());
     }
+    let readers = TexelReaders::new(&capture, &plan);
     let mut documents = Vec::with_capacity(arguments.at.len());
     let mut wrong = 0;
     for pixel in &arguments.at {
@@ -56,10 +58,12 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         let history = session.history(&plan, &capture, *pixel)?;
         let took = start.elapsed().as_secs_f64() * 1e3;
         wrong += usize::from(!history.agrees());
-        stories.push(history.story(&capture.depth));
+        let texels = readers.at(&capture, *pixel);
+        let read = texels.iter().enumerate().filter_map(|(light, read)| Some(read.as_ref()?.text(light)));
+        stories.push(history.story_with(&capture.depth, &read.collect::<String>()));
         let coordinates = arguments.coordinates.then(|| Place::of(&capture, *pixel));
         stories.extend(coordinates.as_ref().map(Place::text));
-        documents.push(Document { history: PixelDocument::new(&history, took), coordinates });
+        documents.push(Document { history: PixelDocument::new(&history, took), texels, coordinates });
     }
     match (&arguments.json, &documents[..]) {
         (None, _) => output::print(&stories.join("\n"))?,
@@ -69,11 +73,12 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     if wrong == 0 { Ok(()) } else { Err(CliError::WrongHistory { pixels: wrong }) }
 }
 
-/// A history, and where the pixel's point is, if that was asked for.
+/// A history, the texels that decided each light, and where the pixel's point is, if that was asked for.
 #[derive(Debug, Serialize)]
 struct Document {
     #[serde(flatten)]
     history: PixelDocument,
+    texels: Vec<Option<TexelsRead>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     coordinates: Option<Place>,
 }
