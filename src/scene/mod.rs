@@ -4,6 +4,7 @@
 //! code ([`SceneBuilder`] and [`shapes`], as for [`builtin`]); [`open`] takes any of the three names. Everything that moves is put where
 //! it is at a moment by [`Scene::at`], so nothing downstream knows about time.
 
+mod body;
 mod builder;
 pub mod builtin;
 mod camera;
@@ -23,6 +24,7 @@ pub mod shapes;
 mod suggestion;
 mod wall_tree;
 
+pub use body::{Body, Standing};
 pub use builder::SceneBuilder;
 pub use camera::Camera;
 pub use collision::{WallCache, Walls};
