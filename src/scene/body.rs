@@ -388,6 +388,20 @@ mod tests {
     }
 
     #[test]
+    fn the_stairs_of_the_prison_block_lead_to_its_walkway_and_a_bed_stops() {
+        let scene = crate::scene::builtin::Builtin::named("tiger-cage").expect("a name").scene().expect("a scene");
+        let walls = crate::scene::WallCache::default().walls(&scene);
+        let landed = walked(&walls, BODY.under(scene.camera.eye, &walls), DVec3::ZERO, 1.0);
+        assert!(landed.is_on_ground && landed.feet.y.abs() < 1e-9, "{landed:?}");
+        let up = walked(&walls, at([0.0, 1.0, 8.2]), DVec3::NEG_Z, 3.0);
+        assert!(up.is_on_ground && (up.feet.y - 2.6).abs() < 1e-9 && up.feet.z < 3.0, "{up:?}");
+        // In the first cell on the right, towards the bed at its outer wall, 0.45 m high.
+        let stopped = walked(&walls, at([2.0, 0.0, 4.5]), DVec3::X, 2.0);
+        assert!(stopped.is_on_ground && stopped.feet.y.abs() < 1e-9, "{stopped:?}");
+        assert!(stopped.feet.x < 3.6 - 0.7, "the bed stops: {stopped:?}");
+    }
+
+    #[test]
     fn what_is_no_number_moves_nobody() {
         let walls = world(&[]);
         let now = at([0.0, 1.0, 0.0]);
