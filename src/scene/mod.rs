@@ -32,9 +32,9 @@ pub use error::SceneError;
 pub use light::Light;
 pub use material::{Material, Shading};
 pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
-pub use model_scene::model_scene;
+pub use model_scene::{UpAxis, model_scene};
 pub use object::{Motion, Object, Orbit, Pose, Swing};
-pub use open::{OpenSpec, files_of, open};
+pub use open::{OpenSpec, files_of, is_model, open};
 pub use placement::Surroundings;
 pub use suggestion::{nearest, suggestion};
 
