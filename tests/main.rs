@@ -28,6 +28,7 @@ mod readme;
 mod recorded;
 mod report;
 mod scenes;
+mod shading;
 mod stencil_machine;
 mod step_tests;
 mod stress;

@@ -164,6 +164,6 @@ fn where_no_texel_decides_there_is_none() {
     assert_eq!(TexelReaders::new(frame.capture(), &plan).at(frame.capture(), [80, 70]), [None]);
     assert_eq!(json(&["table", "-t", "z-fail", "--at", "80,70"])["texels"], serde_json::json!([null]));
     // Nor on a pixel without a surface.
-    let background = json(&["tetrahedron", "-t", "shadow-map", "--at", "0,0"]);
+    let background = json(&["triangle.obj", "--no-floor", "-t", "shadow-map", "--at", "0,0"]);
     assert_eq!(background["texels"], serde_json::json!([null]));
 }

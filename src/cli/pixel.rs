@@ -5,6 +5,7 @@ use super::{CliError, output};
 use crate::history::PixelDocument;
 use crate::plan::LightId;
 use crate::reading::coordinates::Place;
+use crate::reading::shading::Shaded;
 use crate::reading::texels_read::{TexelReaders, TexelsRead};
 use crate::session::{RunFrame, Session, SessionError};
 use clap::Args;
@@ -58,12 +59,14 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         let history = session.history(&plan, &capture, *pixel)?;
         let took = start.elapsed().as_secs_f64() * 1e3;
         wrong += usize::from(!history.agrees());
+        let shading = Shaded::of(&capture, &plan, &history);
         let texels = readers.at(&capture, *pixel);
         let read = texels.iter().enumerate().filter_map(|(light, read)| Some(read.as_ref()?.text(light)));
-        stories.push(history.story_with(&capture.depth, &read.collect::<String>()));
+        let reasons = read.chain(shading.as_ref().map(Shaded::text)).collect::<String>();
+        stories.push(history.story_with(&capture.depth, &reasons));
         let coordinates = arguments.coordinates.then(|| Place::of(&capture, *pixel));
         stories.extend(coordinates.as_ref().map(Place::text));
-        documents.push(Document { history: PixelDocument::new(&history, took), texels, coordinates });
+        documents.push(Document { history: PixelDocument::new(&history, took), texels, shading, coordinates });
     }
     match (&arguments.json, &documents[..]) {
         (None, _) => output::print(&stories.join("\n"))?,
@@ -73,12 +76,13 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     if wrong == 0 { Ok(()) } else { Err(CliError::WrongHistory { pixels: wrong }) }
 }
 
-/// A history, the texels that decided each light, and where the pixel's point is, if that was asked for.
+/// A history, the texels that decided each light, how the surface answers it, and where the pixel's point is, if that was asked for.
 #[derive(Debug, Serialize)]
 struct Document {
     #[serde(flatten)]
     history: PixelDocument,
     texels: Vec<Option<TexelsRead>>,
+    shading: Option<Shaded>,
     #[serde(skip_serializing_if = "Option::is_none")]
     coordinates: Option<Place>,
 }
