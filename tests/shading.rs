@@ -1,6 +1,6 @@
 //! The terms of shading that a pixel is told, held against the picture that the GPU made of them.
 
-use crate::commands::{folder, run, text};
+use crate::commands::{assert_fails, folder, run, text};
 use std::f64::consts::FRAC_1_SQRT_2;
 use stencilscope::reading::shading::Shaded;
 use stencilscope::scene::builtin::Builtin;
@@ -154,4 +154,40 @@ fn pixel_tells_the_cosine_and_explains_each_key() {
     let nothing = ["pixel", "triangle.obj", "--no-floor", "-t", "z-fail", "--size", "96x72", "--at", "0,0", "--json"];
     let nothing: serde_json::Value = serde_json::from_slice(&run(folder.path(), &nothing).stdout).expect("JSON");
     assert!(nothing["shading"].is_null());
+}
+
+#[test]
+fn a_light_that_is_off_adds_nothing_and_keeps_its_place() {
+    let whole = Builtin::named("two-lights").expect("a name").scene().expect("a scene");
+    let mut off = whole.clone();
+    off.lights[0].is_on = false;
+    let mut alone = whole.clone();
+    alone.lights.remove(0);
+    let picture = |scene: &Scene| {
+        let frame = rendered(scene, Technique::ZFail, &[]);
+        let capture = frame.capture();
+        (
+            capture.lights.len(),
+            capture
+                .frame_at(capture.steps.len() - 1)
+                .expect("a picture")
+                .color
+                .image
+                .rows()
+                .map(<[u8]>::to_vec)
+                .collect::<Vec<_>>(),
+        )
+    };
+    let [(count, without), (_, removed), (_, both)] = [&off, &alone, &whole].map(picture);
+    assert_eq!(count, 2, "numbers of lights stay");
+    assert!(without == removed && without != both);
+    let folder = folder();
+    let pixel = ["pixel", "two-lights", "-t", "z-fail", "--size", "96x72", "--at", "48,40", "--json"];
+    let document = text(&run(folder.path(), &[&pixel[..], &["--off", "1"]].concat()).stdout);
+    let document: serde_json::Value = serde_json::from_str(&document).expect("JSON");
+    let color = |light: usize| document["shading"]["lights"][light]["color"].clone();
+    assert_eq!(color(0), serde_json::json!([0.0, 0.0, 0.0]));
+    assert_ne!(color(1), color(0));
+    assert_fails(&["capture", "two-lights", "--off", "3", "-o", "out"], 2, &["--off 3", "lights 1 to 2"]);
+    assert_fails(&["capture", "two-lights", "--off", "0", "-o", "out"], 2, &["--off"]);
 }
