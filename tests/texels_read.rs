@@ -91,10 +91,13 @@ fn every_texel_of_a_filter_is_read() {
     assert!(told(&asked).contains("and 11 texels more"));
 }
 
+/// A scene, how it is drawn, and settings.
+type Case = (&'static str, Technique, &'static [(&'static str, &'static str)]);
+
 /// What textures are computed to let through decides as the GPU's labels do, but where rounding decides.
 #[test]
 fn what_textures_let_through_is_what_labels_say() {
-    let cases: [(&str, Technique, &[(&str, &str)]); 5] = [
+    let cases: [Case; 5] = [
         ("table", Technique::PlanarTexture, &[]),
         ("two-lights", Technique::PlanarTexture, &[("size", "64")]),
         ("table", Technique::Projective, &[]),
