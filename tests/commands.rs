@@ -180,6 +180,22 @@ fn pixel_tells_its_history_as_text_and_as_json() {
 }
 
 #[test]
+fn a_model_with_z_up_is_turned_and_nothing_else_is() {
+    let folder = folder();
+    let height = |more: &[&str]| {
+        let arguments = [&["capture", "triangle.obj", "--size", "32x24", "-o", "out", "--overwrite"], more].concat();
+        let output = run(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let scene = stencilscope::scene::file::load(&folder.path().join("out/scene.toml")).expect("a scene");
+        let heights = scene.objects[0].world_positions().into_iter().map(|at| at.y);
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| [low.min(y), high.max(y)])
+    };
+    let [low, high] = height(&["--z-up"]);
+    assert_ne!(height(&[]), [low, high]);
+    assert_fails(&["capture", "tori", "--z-up", "-o", "out"], 2, &["--z-up", "`tori`", "leave it out"]);
+}
+
+#[test]
 fn a_place_that_can_not_be_written_to_is_refused() {
     // Root may write anywhere but below a file.
     assert_fails(

@@ -5,6 +5,8 @@ use super::{CliError, output};
 use crate::history::PixelDocument;
 use crate::plan::LightId;
 use crate::reading::coordinates::Place;
+use crate::reading::shading::Shaded;
+use crate::reading::texels_read::{TexelReaders, TexelsRead};
 use crate::session::{RunFrame, Session, SessionError};
 use clap::Args;
 use serde::Serialize;
@@ -54,6 +56,7 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     for (light, counted) in capture.lights.iter().enumerate().filter_map(|(at, light)| Some((at, light.count_of?))) {
         stories[0] += &format!("{}: {}\n", LightId(light).name(), counted.meaning());
     }
+    let readers = TexelReaders::new(&capture, &plan);
     let mut documents = Vec::with_capacity(arguments.at.len());
     let mut wrong = 0;
     for pixel in &arguments.at {
@@ -61,10 +64,14 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         let history = session.history(&plan, &capture, *pixel)?;
         let took = start.elapsed().as_secs_f64() * 1e3;
         wrong += usize::from(!history.agrees());
-        stories.push(history.story(&capture.depth));
+        let shading = Shaded::of(&capture, &plan, &history);
+        let texels = readers.at(&capture, *pixel);
+        let read = texels.iter().enumerate().filter_map(|(light, read)| Some(read.as_ref()?.text(light)));
+        let reasons = read.chain(shading.as_ref().map(Shaded::text)).collect::<String>();
+        stories.push(history.story_with(&capture.depth, &reasons));
         let coordinates = arguments.coordinates.then(|| Place::of(&capture, *pixel));
         stories.extend(coordinates.as_ref().map(Place::text));
-        documents.push(Document { history: PixelDocument::new(&history, took), coordinates });
+        documents.push(Document { history: PixelDocument::new(&history, took), texels, shading, coordinates });
     }
     match (&arguments.json, &documents[..]) {
         (None, _) => output::print(&stories.join("\n"))?,
@@ -74,11 +81,13 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     if wrong == 0 { Ok(()) } else { Err(CliError::WrongHistory { pixels: wrong }) }
 }
 
-/// A history, and where the pixel's point is, if that was asked for.
+/// A history, the texels that decided each light, how the surface answers it, and where the pixel's point is, if that was asked for.
 #[derive(Debug, Serialize)]
 struct Document {
     #[serde(flatten)]
     history: PixelDocument,
+    texels: Vec<Option<TexelsRead>>,
+    shading: Option<Shaded>,
     #[serde(skip_serializing_if = "Option::is_none")]
     coordinates: Option<Place>,
 }
