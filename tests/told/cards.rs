@@ -85,7 +85,7 @@ impl Here<'_> {
         let pass = self.frame.step(self.step).1;
         let cleared = pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil);
         if self.decided_by().counts_in_floats() {
-            return 0.0;
+            return pass.color.as_ref().and_then(|target| target.clear).map_or(0.0, |clear| clear[0] as f32);
         }
         cleared.or_else(|| self.frame.stencil(self.step.checked_sub(1), at)).expect("a stencil").into()
     }
@@ -146,6 +146,16 @@ const FORMULAS: &[(&str, Check)] = &[
         // Linear in 1 / distance, from the near plane's depth on.
         let near = if curve.mapping == DepthMapping::ReversedInfinite { 1.0 } else { 0.0 };
         (curve.depth(camera.near) - near).abs() < 1e-9
+    }),
+    ("stored depth = offset + scale · distance along the view", |here, _| {
+        let curve = here.frame.plan.depth;
+        let near = if curve.mapping == DepthMapping::ReversedInfinite { 1.0 } else { 0.0 };
+        let [at_near, at_middle] = [1.0, 2.0].map(|nears| curve.depth(nears * here.frame.scene.camera.near));
+        // Linear in the distance.
+        let slope = (at_middle - at_near) / here.frame.scene.camera.near;
+        here.frame.scene.camera.is_parallel()
+            && (at_near - near).abs() < 1e-9
+            && (slope / curve.scale - 1.0).abs() < 1e-6
     }),
     ("count = front faces before the surface − back faces before it, seen from the eye", |here, _| {
         here.counts(Side::InFront)
@@ -255,6 +265,33 @@ fn is_sum(here: &Here, told: &[&str], sign: f64) -> bool {
     told[4].ends_with(" m") && told[5].parse().ok() == stored && is_sum
 }
 
+/// The same of a parallel camera.
+fn is_linear_sum(here: &Here, told: &[&str], sign: f64) -> bool {
+    let stored =
+        here.frame.capture.frame_at(here.step).and_then(|frame| frame.depth.image.depth_at(at(told[0], told[1])));
+    let [offset, scale, distance] = [told[2], told[3], told[4]].map(number);
+    let part = scale * distance;
+    let is_sum = (offset + sign * part - number(told[5])).abs() <= 2e-3 * part + 1e-6;
+    told[4].ends_with(" m") && told[5].parse().ok() == stored && is_sum
+}
+
+/// The numbers of linear depth: where it is 0 and 1 lie near plane and what is behind all.
+fn is_line(here: &Here, told: &[&str], sign: f64) -> bool {
+    let [offset, scale] = [number(told[1]), sign * number(told[2])];
+    let near = here.frame.scene.camera.near;
+    let is_reversed = told[0] == "reversed-infinite";
+    let end = if is_reversed { -offset / scale } else { (1.0 - offset) / scale };
+    let at_near = offset + scale * near;
+    let camera = here.frame.scene.camera;
+    let ahead = (camera.target - camera.eye).normalize();
+    let deepest = here.frame.scene.objects.iter().filter(|object| object.visible).flat_map(|o| o.world_positions());
+    let deepest = deepest.map(|point| (point - camera.eye).dot(ahead)).fold(0.0, f64::max);
+    told[0] == here.frame.capture.settings["depth"]
+        && (at_near - if is_reversed { 1.0 } else { 0.0 }).abs() < 1e-5
+        && end > near
+        && end < deepest * 1.02
+}
+
 /// A depth mapping's numbers, from the camera's.
 fn is_curve(here: &Here, told: &[&str], sign: f64) -> bool {
     let camera = here.frame.scene.camera;
@@ -283,15 +320,30 @@ const LINES: &[(&str, Check)] = &[
     }),
     ("pixel {}, {}: {} + {} / {} = {}", |here, told| is_sum(here, told, 1.0)),
     ("pixel {}, {}: {} − {} / {} = {}", |here, told| is_sum(here, told, -1.0)),
+    ("pixel {}, {}: {} + {} · {} = {}", |here, told| is_linear_sum(here, told, 1.0)),
+    ("pixel {}, {}: {} − {} · {} = {}", |here, told| is_linear_sum(here, told, -1.0)),
+    ("the count began at {}, the volumes that all lines of sight end in", |here, told| {
+        let began = here.history.expect("a history").events.iter().rev().find_map(|event| match event.kind {
+            EventKind::ClearStencil => Some(f64::from(event.after.stencil)),
+            EventKind::ClearCount => Some(f64::from(event.after.count)),
+            _ => None,
+        });
+        here.frame.scene.camera.is_parallel() && began == Some(number(told[0]))
+    }),
     ("the next depth that can be stored is {} further", |here, told| {
         let at = here.pick.expect("a pick");
         let stored =
             here.frame.capture.frame_at(here.step).and_then(|frame| frame.depth.image.depth_at(at)).expect("a depth");
         let curve = here.frame.plan.depth;
-        let away = |depth: f32| curve.scale / (f64::from(depth) - curve.offset);
+        let away = |depth: f32| {
+            let above = f64::from(depth) - curve.offset;
+            if curve.is_linear { above / curve.scale } else { curve.scale / above }
+        };
         let step = (away(stored.next_up()) - away(stored)).abs();
         !step.is_finite() || is_near(told[0], step)
     }),
+    ("{}: {} + {} · distance", |here, told| is_line(here, told, 1.0)),
+    ("{}: {} − {} · distance", |here, told| is_line(here, told, -1.0)),
     ("{}: {} + {} / distance", |here, told| is_curve(here, told, 1.0)),
     ("{}: {} − {} / distance", |here, told| is_curve(here, told, -1.0)),
     ("pixel {}, {}: {} faces turn the bit over, {} do not count here", |here, told| {
@@ -357,6 +409,10 @@ const LINES: &[(&str, Check)] = &[
     ("dark caps, fans over the silhouettes at infinity: {}", |here, told| {
         here.frame.capture.lights[here.light()].position.w != 0.0 && number(told[0]) == here.triangles(Part::DarkCap)
     }),
+    (
+        "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there: {}",
+        |here, told| told[0] == "0" && here.triangles(Part::DarkCap) == 0.0 && here.frame.scene.camera.is_parallel(),
+    ),
     ("{} adds ({}, {}, {}) × (material × {} + highlight){}", |here, told| {
         let index = here.light();
         let light = &here.frame.scene.lights[index];

@@ -3,6 +3,7 @@
 use super::Held;
 use super::frames::Frame;
 use super::patterns::{gaps, mask_of};
+use glam::{DVec3, DVec4};
 use stencilscope::plan::{Draw, Part, Pass, Program, Visibility};
 use stencilscope::technique::Technique;
 use wgpu::{CompareFunction, StencilOperation as Operation};
@@ -82,6 +83,33 @@ fn turns_over(draw: &Draw, is_in_front: bool) -> bool {
             if is_in_front { [face.pass_op, face.depth_fail_op] } else { [face.depth_fail_op, face.pass_op] };
         (here, there, masks.write) == (Operation::Invert, Operation::Keep, 1)
     })
+}
+
+/// Does a count begin at the casting triangles that the light's ray along parallel lines of sight meets?
+fn begins_at_far_end(frame: &Frame, pass: &Pass, told: &str) -> bool {
+    let cleared = match &pass.color {
+        Some(color) => color.clear.map_or(0, |clear| clear[0] as u32),
+        None => pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil).unwrap_or(0).into(),
+    };
+    let eye = frame.scene.camera.relative_eye();
+    let light = pass.light.expect("a light").0;
+    let [x, y, z, w] = frame.plan.lights[light].relative_position.map(f64::from);
+    let (light, along) = (DVec3::new(x, y, z), -eye.truncate());
+    let meets = |corners: [DVec3; 3]| {
+        let [a, b, c] = corners.map(|corner| corner - light);
+        let sides = [(a, b), (b, c), (c, a)].map(|(p, q)| p.cross(q).dot(along) > 0.0);
+        let normal = (b - a).cross(c - a);
+        (sides == [true; 3] || sides == [false; 3]) && normal.dot(a) / normal.dot(along) > 0.0
+    };
+    let caps = pass.draws.iter().filter(|draw| draw.part == Part::LightCap);
+    let met = caps.flat_map(|draw| {
+        let mesh = &frame.plan.meshes[draw.mesh.0];
+        let corners = &mesh.indices.data()[draw.triangles.start as usize * 3..draw.triangles.end as usize * 3];
+        let place = |index: u32| DVec4::from_array(mesh.vertices.data()[index as usize].map(f64::from)).truncate();
+        corners.chunks_exact(3).map(move |corners| [0, 1, 2].map(|corner| place(corners[corner]))).collect::<Vec<_>>()
+    });
+    let met = met.filter(|corners| meets(*corners)).count() as u32;
+    eye.w == 0.0 && w == 1.0 && told.parse() == Ok(cleared) && cleared == met && met > 0
 }
 
 fn asks(pass: &Pass, how: Visibility) -> bool {
@@ -211,6 +239,20 @@ const PURPOSES: &[(&str, Check)] = &[
             let start: u8 = told[1].parse().expect("a number");
             let cleared = pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil).unwrap_or(0);
             is_light(pass, told[0]) && count_all(pass, true, true, true) && start == cleared
+        },
+    ),
+    (
+        "Counts the shadow volumes of {} behind each surface: a back face hidden by the surface adds 1, a hidden front face takes 1 away. It begins at {}: parallel lines of sight all end at one point at infinity, in the volumes of so many casting triangles, those that a ray from {} along them meets. What is left contains the surface, wherever the eye is.",
+        |frame, pass, told| {
+            is_light(pass, told[0]) && count_all(pass, false, true, true) && begins_at_far_end(frame, pass, told[1])
+        },
+    ),
+    (
+        "Counts the shadow volumes of {} behind each surface, second half: a hidden front face takes 1 away. It begins at {}: parallel lines of sight all end at one point at infinity, in the volumes of so many casting triangles, those that a ray from {} along them meets. What is left contains the surface, wherever the eye is.",
+        |frame, pass, told| {
+            let of_light = |other: &&Pass| other.light == pass.light && other.name.starts_with("volumes");
+            let first = frame.plan.passes.iter().find(of_light).expect("a first half");
+            is_light(pass, told[0]) && count_all(pass, false, false, true) && begins_at_far_end(frame, first, told[1])
         },
     ),
     (

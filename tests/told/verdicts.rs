@@ -5,7 +5,7 @@ use super::Held;
 use super::frames::Frame;
 use super::patterns::{gaps, number};
 use stencilscope::capture::FrameTarget;
-use stencilscope::history::PixelHistory;
+use stencilscope::history::{EventKind, PixelHistory};
 use stencilscope::plan::{DecidedBy, Part, Program};
 use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::reading::verdict::{Verdict, by_map, explained, verdict};
@@ -189,6 +189,14 @@ const REASONS: &[(&str, Check)] = &[
         dark_count(here, told[0], told[1])
     }),
     (
+        "What the count began with and the volume faces {} the surface leave {}, not 0, so the light pass skips this pixel.",
+        |here, told| here.frame.scene.camera.is_parallel() && dark_count(here, told[0], told[1]),
+    ),
+    (
+        "What the count began with and the volume faces {} the surface leave {}, not 0, so the light pass adds nothing.",
+        |here, told| here.frame.scene.camera.is_parallel() && dark_count(here, told[0], told[1]),
+    ),
+    (
         "The volume faces {} the surface leave {}, so the light pass adds nothing. Eight bits would read 0 and light this pixel.",
         |here, told| dark_count(here, told[0], told[1]) && here.count() % 256.0 == 0.0,
     ),
@@ -215,7 +223,10 @@ const REASONS: &[(&str, Check)] = &[
         "What the count began with and the volume faces {} the surface cancel out, so the light pass adds the light.",
         |here, told| {
             let told_to = here.frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
-            told_to && here.label() == is(0) && here.says_side(told[0]) && here.count() == 0.0
+            (told_to || here.frame.scene.camera.is_parallel())
+                && here.label() == is(0)
+                && here.says_side(told[0])
+                && here.count() == 0.0
         },
     ),
     ("The light's map holds something nearer to the light here, so the light pass adds nothing.", |here, _| {
@@ -333,6 +344,17 @@ fn counted(here: &Here, told: &str) -> bool {
         .trim_end_matches(", so the light pass skips it")
         .trim_end_matches(", so the light pass adds the light");
     let [outside, inside] = here.faces();
+    let (began, told) = match gaps("The count begins at {}; {}", told) {
+        Some(parts) => (Some(number(parts[0])), parts[1]),
+        None => (None, told),
+    };
+    let clears = here.history.events.iter().filter(|event| event.light == Some(here.light));
+    let cleared = clears.filter_map(|event| match event.kind {
+        EventKind::ClearStencil => Some(f64::from(event.after.stencil)),
+        EventKind::ClearCount => Some(f64::from(event.after.count)),
+        _ => None,
+    });
+    let began_holds = began.unwrap_or(0.0) == cleared.last().unwrap_or(0.0);
     let (near, told) = match gaps("The near plane is in {}; {}", told) {
         Some(parts) => (Some(number(parts[0])), parts[1]),
         None => (None, told),
@@ -363,7 +385,7 @@ fn counted(here: &Here, told: &str) -> bool {
         let is_there = here.lie(words.split(" the surface").next().unwrap_or_default());
         number(words) == outside + inside && front.or(back) == Some([outside, inside]) && is_there
     };
-    near_holds && count_holds && faces_hold
+    began_holds && near_holds && count_holds && faces_hold
 }
 
 pub fn patterns() -> Vec<&'static str> {
