@@ -232,3 +232,22 @@ fn a_highlight_is_seen_from_one_direction() {
         assert_eq!(colors(&seen_by(&scene, camera)), 1, "{:?}", camera.projection);
     }
 }
+
+#[test]
+fn a_field_of_view_is_refused_where_there_is_none() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = "[camera]\neye = [0, 2, 6]\ntarget = [0, 0, 0]\nprojection = \"orthographic\"\n\
+                 [[objects]]\nmesh = { shape = \"box\", size = [1, 1, 1] }\n";
+    std::fs::write(folder.path().join("box.toml"), scene).expect("written");
+    let run = |options: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stencilscope"));
+        command.args(["pixel", "box.toml", "--at", "24,18", "--size", "48x36"]).args(options).current_dir(folder.path());
+        let output = command.output().expect("the program runs");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (code, line) = run(&["--fov", "30"]);
+    assert_eq!((code, line.trim_end().lines().count()), (Some(2), 1), "{line}");
+    assert!(line.contains("orthographic and has no field of view"), "{line}");
+    let (code, line) = run(&["--coordinates"]);
+    assert_eq!(code, Some(0), "{line}");
+}

@@ -277,7 +277,7 @@ impl Projection {
             {
                 Err("the half height of a parallel projection must be from 1e-30 to 1e30 metres")
             }
-            Projection::Oblique { angle_degrees, .. } if !(angle_degrees.abs() <= 360.0) => {
+            Projection::Oblique { angle_degrees, .. } if !(-360.0..=360.0).contains(&angle_degrees) => {
                 Err("the angle of an oblique projection must be from -360 to 360 degrees")
             }
             Projection::Oblique { factor, .. } if !(0.0..=100.0).contains(&factor) => {

@@ -349,12 +349,12 @@ fn counted(here: &Here, told: &str) -> bool {
         None => (None, told),
     };
     let clears = here.history.events.iter().filter(|event| event.light == Some(here.light));
-    let cleared = clears.filter_map(|event| match event.kind {
+    let mut cleared = clears.rev().filter_map(|event| match event.kind {
         EventKind::ClearStencil => Some(f64::from(event.after.stencil)),
         EventKind::ClearCount => Some(f64::from(event.after.count)),
         _ => None,
     });
-    let began_holds = began.unwrap_or(0.0) == cleared.last().unwrap_or(0.0);
+    let began_holds = began.unwrap_or(0.0) == cleared.next().unwrap_or(0.0);
     let (near, told) = match gaps("The near plane is in {}; {}", told) {
         Some(parts) => (Some(number(parts[0])), parts[1]),
         None => (None, told),
