@@ -241,7 +241,10 @@ fn a_field_of_view_is_refused_where_there_is_none() {
     std::fs::write(folder.path().join("box.toml"), scene).expect("written");
     let run = |options: &[&str]| {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stencilscope"));
-        command.args(["pixel", "box.toml", "--at", "24,18", "--size", "48x36"]).args(options).current_dir(folder.path());
+        command
+            .args(["pixel", "box.toml", "--at", "24,18", "--size", "48x36"])
+            .args(options)
+            .current_dir(folder.path());
         let output = command.output().expect("the program runs");
         (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
     };

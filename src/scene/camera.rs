@@ -7,6 +7,7 @@ use crate::math::depth::DepthCurve;
 use crate::math::projection;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// How what lies before a camera comes into its picture.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -284,6 +285,19 @@ impl Projection {
                 Err("the depth factor of an oblique projection must be from 0 to 100")
             }
             Projection::Orthographic { .. } | Projection::Oblique { .. } => Ok(()),
+        }
+    }
+}
+
+/// With all its numbers.
+impl fmt::Display for Projection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Projection::Perspective => f.write_str("perspective"),
+            Projection::Orthographic { half_height } => write!(f, "orthographic, half height {half_height}"),
+            Projection::Oblique { half_height, angle_degrees, factor } => {
+                write!(f, "oblique, half height {half_height}, angle {angle_degrees}, factor {factor}")
+            }
         }
     }
 }
