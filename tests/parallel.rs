@@ -3,6 +3,7 @@
 use crate::common::random::Random;
 use crate::common::{cuboid, from_above, request, session};
 use std::collections::BTreeSet;
+use stencilscope::accuracy;
 use stencilscope::capture::{Capture, CapturedLight};
 use stencilscope::math::depth::DepthMapping;
 use stencilscope::plan::{Decision, FramePlan, Part};
@@ -10,6 +11,7 @@ use stencilscope::progress::Progress;
 use stencilscope::scene::{Camera, Light, Projection, Scene, builtin};
 use stencilscope::session::Session;
 use stencilscope::technique::Technique;
+use stencilscope::truth::Tracer;
 
 const SIZE: [u32; 2] = [48, 36];
 const PLACES: u64 = 10;
@@ -29,17 +31,21 @@ fn seen_by(scene: &Scene, camera: Camera) -> Scene {
     Scene { camera, ..scene.clone() }
 }
 
-/// Pixels that z-fail or `auto` has wrong. The truth is asked once: where both say the same, it is of both.
+/// Pixels that z-fail or `auto` has wrong.
 fn faults(session: &mut Session, scene: &Scene) -> Vec<String> {
     // Counts of 256 read as none in eight bits, which is no matter here.
     let mut z_fail = request(Technique::ZFail, SIZE);
     z_fail.choice.set("counter", "float").expect("a setting");
     let counted = session.capture(scene, &z_fail).expect("a capture");
     let auto = session.capture(scene, &request(Technique::Auto, SIZE)).expect("a capture");
-    let is_same = labels(&counted) == labels(&auto);
-    let both = [("z-fail", counted), ("auto", auto)];
-    let judged = both.into_iter().take(if is_same { 1 } else { 2 }).filter_map(|(name, capture)| {
-        let wrong = wrong(&session.judged(scene, &capture, &Progress::default()).expect("a truth"));
+    let tracer = Tracer::new(scene, SIZE).expect("rays");
+    let truth = tracer.trace(&Progress::default()).expect("a truth");
+    let judged = [("z-fail", counted), ("auto", auto)].into_iter().filter_map(|(name, capture)| {
+        let of_light = |(light, labels): (usize, Vec<u8>)| {
+            let rows: Vec<&[u8]> = labels.chunks_exact(SIZE[0] as usize).collect();
+            accuracy::compare(&tracer, &truth, light, &rows).counts.wrong()
+        };
+        let wrong: u64 = labels(&capture).into_iter().enumerate().map(of_light).sum();
         let projection = scene.camera.projection.name();
         (wrong > 0).then(|| format!("{}, {projection}: {name} has {wrong} wrong", scene.name))
     });
@@ -225,4 +231,26 @@ fn a_highlight_is_seen_from_one_direction() {
     for camera in parallel(scene.camera) {
         assert_eq!(colors(&seen_by(&scene, camera)), 1, "{:?}", camera.projection);
     }
+}
+
+#[test]
+fn a_field_of_view_is_refused_where_there_is_none() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = "[camera]\neye = [0, 2, 6]\ntarget = [0, 0, 0]\nprojection = \"orthographic\"\n\
+                 [[objects]]\nmesh = { shape = \"box\", size = [1, 1, 1] }\n";
+    std::fs::write(folder.path().join("box.toml"), scene).expect("written");
+    let run = |options: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_stencilscope"));
+        command
+            .args(["pixel", "box.toml", "--at", "24,18", "--size", "48x36"])
+            .args(options)
+            .current_dir(folder.path());
+        let output = command.output().expect("the program runs");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (code, line) = run(&["--fov", "30"]);
+    assert_eq!((code, line.trim_end().lines().count()), (Some(2), 1), "{line}");
+    assert!(line.contains("orthographic and has no field of view"), "{line}");
+    let (code, line) = run(&["--coordinates"]);
+    assert_eq!(code, Some(0), "{line}");
 }

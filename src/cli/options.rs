@@ -124,6 +124,11 @@ impl SceneOptions {
 
     fn place_camera(&self, scene: &mut Scene) -> Result<(), CliError> {
         let camera = &mut scene.camera;
+        if self.fov.is_some() && camera.is_parallel() {
+            let name = camera.projection.name();
+            let reason = format!("--fov: the scene's camera is {name} and has no field of view: leave it out");
+            return Err(CliError::Usage(reason));
+        }
         camera.eye = self.eye.unwrap_or(camera.eye);
         camera.target = self.target.unwrap_or(camera.target);
         camera.up = self.up.unwrap_or(camera.up);

@@ -2,7 +2,6 @@
 
 use crate::capture::{Capture, CapturedLight};
 use crate::numbers;
-use crate::scene::Projection;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeSet;
 
@@ -41,17 +40,6 @@ pub(super) fn asked(a: &Capture, b: &Capture) -> Vec<Note> {
     notes.0
 }
 
-/// With all its numbers.
-fn projection(capture: &Capture) -> String {
-    match capture.camera.projection {
-        Projection::Perspective => "perspective".to_owned(),
-        Projection::Orthographic { half_height } => format!("orthographic, half height {half_height}"),
-        Projection::Oblique { half_height, angle_degrees, factor } => {
-            format!("oblique, half height {half_height}, angle {angle_degrees}, factor {factor}")
-        }
-    }
-}
-
 /// Camera, depth mapping and lights.
 pub(super) fn conditions(a: &Capture, b: &Capture) -> Vec<Note> {
     let mut notes = Notes::default();
@@ -59,7 +47,7 @@ pub(super) fn conditions(a: &Capture, b: &Capture) -> Vec<Note> {
     notes.add("camera's eye", &point(a.camera.eye), &point(b.camera.eye));
     notes.add("camera's target", &point(a.camera.target), &point(b.camera.target));
     notes.add("camera's up", &point(a.camera.up), &point(b.camera.up));
-    notes.add("projection", &projection(a), &projection(b));
+    notes.add("projection", &a.camera.projection.to_string(), &b.camera.projection.to_string());
     notes.add("field of view", &a.camera.fov_y_degrees.to_string(), &b.camera.fov_y_degrees.to_string());
     notes.add("near plane", &a.camera.near.to_string(), &b.camera.near.to_string());
     notes.add("far plane", &far(a), &far(b));

@@ -20,7 +20,7 @@ const ON_DEMAND: [OnDemand; 2] = [
         feature: Features::DEPTH_CLIP_CONTROL,
         is_needed: |plan| plan.passes.iter().flat_map(|pass| &pass.draws).any(|draw| draw.raster.unclipped_depth),
         name: "depth clamping",
-        instead: "choose another `depth`",
+        instead: "choose another `depth`, and of a parallel camera z-pass",
     },
     OnDemand {
         feature: Features::FLOAT32_BLENDABLE,

@@ -7,6 +7,7 @@ use crate::math::depth::DepthCurve;
 use crate::math::projection;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// How what lies before a camera comes into its picture.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -277,13 +278,26 @@ impl Projection {
             {
                 Err("the half height of a parallel projection must be from 1e-30 to 1e30 metres")
             }
-            Projection::Oblique { angle_degrees, .. } if !(angle_degrees.abs() <= 360.0) => {
+            Projection::Oblique { angle_degrees, .. } if !(-360.0..=360.0).contains(&angle_degrees) => {
                 Err("the angle of an oblique projection must be from -360 to 360 degrees")
             }
             Projection::Oblique { factor, .. } if !(0.0..=100.0).contains(&factor) => {
                 Err("the depth factor of an oblique projection must be from 0 to 100")
             }
             Projection::Orthographic { .. } | Projection::Oblique { .. } => Ok(()),
+        }
+    }
+}
+
+/// With all its numbers.
+impl fmt::Display for Projection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Projection::Perspective => f.write_str("perspective"),
+            Projection::Orthographic { half_height } => write!(f, "orthographic, half height {half_height}"),
+            Projection::Oblique { half_height, angle_degrees, factor } => {
+                write!(f, "oblique, half height {half_height}, angle {angle_degrees}, factor {factor}")
+            }
         }
     }
 }

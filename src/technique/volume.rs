@@ -58,7 +58,9 @@ pub(super) const Z_FAIL: Description = Description {
              ends. Takes any mesh: open, self-intersecting, inconsistently wound. Every triangle is turned \
              towards the light by one exact sign, and each edge bounds the shadow as often as the turned \
              triangles around it do not cancel, so volumes always close. Light caps are drawn in the surface's \
-             own vertex order, so that their depths are bit-equal to the surface's. Eight bits count to 255: \
+             own vertex order, so that their depths are bit-equal to the surface's. Parallel lines of sight all end \
+             at one point at infinity, so of an orthographic or oblique camera dark caps there are not drawn: the \
+             count begins at the number of casting triangles that the light's own ray along them meets. Eight bits count to 255: \
              where a multiple of 256 volumes contain a surface it reads as lit, and `counter=float` counts on.",
         formula: "count = back faces - front faces, of those that fail the depth test; light is added where it is 0",
         sources: &[cited::BILODEAU, cited::CARMACK, cited::EVERITT_KILGARD],

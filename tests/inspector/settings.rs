@@ -10,7 +10,7 @@ use stencilscope::ask::{MeshesOf, RunRequest};
 use stencilscope::geometry::{EdgeList, Topology};
 use stencilscope::inspector::Action;
 use stencilscope::reading::ObjectMesh;
-use stencilscope::scene::Mesh;
+use stencilscope::scene::{Mesh, Projection};
 use stencilscope::technique::{Choice, Technique};
 
 fn settings_of(technique: &str) -> Harness<'static, Seen> {
@@ -153,6 +153,33 @@ fn what_was_changed_is_marked_and_goes_back_by_itself() {
     harness.run_steps(2);
     assert_eq!(harness.get_by_role_and_label(Role::SpinButton, "Field of view").rect(), place, "nothing moves for it");
     click_button(&mut harness, "Reset field of view");
+    assert_eq!(last_run(&harness).camera, scene().camera);
+    assert!(harness.query_by_label_contains("Reset ").is_none());
+}
+
+/// A parallel camera shows the target as large as the pinhole did, and has numbers of its own.
+#[test]
+fn a_parallel_projection_is_chosen_and_taken_back() {
+    let mut harness = harness_of(inspector(z_fail(SIZE)), [1280.0, 2000.0]);
+    click(&mut harness, "Scene settings");
+    let field_of_view = |harness: &Harness<Seen>| {
+        harness.get_by_role_and_label(Role::SpinButton, "Field of view").accesskit_node().is_disabled()
+    };
+    assert!(!field_of_view(&harness) && harness.query_by_label("Half height").is_none());
+    choose(&mut harness, "Projection", "orthographic");
+    let half_height = scene().camera.half_height_at_target();
+    assert_eq!(last_run(&harness).camera.projection, Projection::Orthographic { half_height });
+    assert!(field_of_view(&harness), "it has no effect");
+    choose(&mut harness, "Projection", "oblique");
+    harness.get_by_label("Half height").set_value_accesskit(3.0);
+    harness.run_steps(2);
+    harness.get_by_label("Oblique angle").set_value_accesskit(30.0);
+    harness.run_steps(2);
+    harness.get_by_label("Oblique depth factor").set_value_accesskit(1.0);
+    harness.run_steps(2);
+    let cavalier = Projection::Oblique { half_height: 3.0, angle_degrees: 30.0, factor: 1.0 };
+    assert_eq!(last_run(&harness).camera.projection, cavalier);
+    click_button(&mut harness, "Reset camera projection");
     assert_eq!(last_run(&harness).camera, scene().camera);
     assert!(harness.query_by_label_contains("Reset ").is_none());
 }

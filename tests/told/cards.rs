@@ -14,6 +14,7 @@ use stencilscope::math::depth::DepthMapping;
 use stencilscope::plan::{CountOf, DecidedBy, Part, Program, Side, Visibility};
 use stencilscope::reading::explain_facts::{Known, facts};
 use stencilscope::reading::map_decision::MapDecision;
+use stencilscope::scene::Projection;
 use wgpu::CompareFunction;
 
 /// A card, and what it is told of.
@@ -90,7 +91,7 @@ impl Here<'_> {
         let pass = self.frame.step(self.step).1;
         let cleared = pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil);
         if self.decided_by().counts_in_floats() {
-            return 0.0;
+            return pass.color.as_ref().and_then(|target| target.clear).map_or(0.0, |clear| clear[0] as f32);
         }
         cleared.or_else(|| self.frame.stencil(self.step.checked_sub(1), at)).expect("a stencil").into()
     }
@@ -147,6 +148,17 @@ fn is_count_of(here: &Here, of: CountOf) -> bool {
 /// The faces of a pass at a pixel: those that add and take away, and what the count holds after them.
 fn adds_up(here: &Here, told: &[&str], modulus: f64) -> bool {
     let at = at(told[0], told[1]);
+    let sum = number(told[7]);
+    let change = f64::from(here.stored(at) - here.before(at));
+    let in_floats = here.decided_by().counts_in_floats();
+    let near = if in_floats && sum != change { near_count(here, at) } else { 0.0 };
+    let stored = if in_floats { sum == change - near } else { (sum - change).rem_euclid(modulus) == 0.0 };
+    // What a first pass of floats leaves is not kept.
+    faces_add_up(here, told) && (stored || (in_floats && here.volume_passes_follow()))
+}
+
+/// Are these the picked pixel's faces, and their sum?
+fn faces_add_up(here: &Here, told: &[&str]) -> bool {
     let [up, down, idle, up_again, down_again, sum] = [2, 3, 4, 5, 6, 7].map(|gap| number(told[gap]));
     let history = here.history.expect("a history");
     // Triangle by triangle, as the machine of the history took them; and in the end as the GPU stored it.
@@ -163,13 +175,7 @@ fn adds_up(here: &Here, told: &[&str], modulus: f64) -> bool {
             _ => {}
         }
     }
-    let change = f64::from(here.stored(at) - here.before(at));
-    let in_floats = here.decided_by().counts_in_floats();
-    let near = if in_floats && sum != change { near_count(here, at) } else { 0.0 };
-    let stored = if in_floats { sum == change - near } else { (sum - change).rem_euclid(modulus) == 0.0 };
-    // What a first pass of floats leaves is not kept.
-    let stored = stored || (in_floats && here.volume_passes_follow());
-    (up, down, idle) == (ups, downs, rest) && (up, down) == (up_again, down_again) && sum == up - down && stored
+    (up, down, idle) == (ups, downs, rest) && (up, down) == (up_again, down_again) && sum == up - down
 }
 
 fn asks_stencil(here: &Here, bits: u8) -> bool {
@@ -184,12 +190,12 @@ fn pick_is_missing(here: &Here, _: &[&str]) -> bool {
 }
 
 /// The sum of a pixel's depth: what the GPU stored, and what a reader gets who adds the numbers up.
-fn is_sum(here: &Here, told: &[&str], sign: f64) -> bool {
+fn is_sum(here: &Here, told: &[&str], [sign, power]: [f64; 2]) -> bool {
     let pixel = at(told[0], told[1]);
     let stored = here.frame.capture.frame_at(here.step).and_then(|frame| frame.depth.image.depth_at(pixel));
     let [offset, scale, distance] = [told[2], told[3], told[4]].map(number);
-    let part = scale / distance;
-    let is_sum = (offset + sign * part - number(told[5])).abs() <= 1e-3 * part + 1e-6;
+    let part = scale * distance.powf(power);
+    let is_sum = (offset + sign * part - number(told[5])).abs() <= 2e-3 * part + 1e-6;
     told[4].ends_with(" m") && told[5].parse().ok() == stored && is_sum
 }
 
@@ -207,6 +213,23 @@ fn is_curve(here: &Here, told: &[&str], sign: f64) -> bool {
     let scale = if told[0] == "reversed-infinite" { camera.near } else { -camera.near * offset };
     let is = |told: &str, value: f64| (number(told) / value - 1.0).abs() < 1e-6 || number(told) == value;
     told[0] == here.frame.capture.settings["depth"] && is(told[1], offset) && is(told[2], sign * scale)
+}
+
+/// The numbers of linear depth: where it is 0 and 1 lie near plane and what is behind all.
+fn is_line(here: &Here, told: &[&str], sign: f64) -> bool {
+    let [offset, scale] = [number(told[1]), sign * number(told[2])];
+    let near = here.frame.scene.camera.near;
+    let is_reversed = told[0] == "reversed-infinite";
+    let end = if is_reversed { -offset / scale } else { (1.0 - offset) / scale };
+    let at_near = offset + scale * near;
+    let camera = here.frame.scene.camera;
+    let ahead = (camera.target - camera.eye).normalize();
+    let deepest = here.frame.scene.objects.iter().filter(|object| object.visible).flat_map(|o| o.world_positions());
+    let deepest = deepest.map(|point| (point - camera.eye).dot(ahead)).fold(0.0, f64::max);
+    told[0] == here.frame.capture.settings["depth"]
+        && (at_near - if is_reversed { 1.0 } else { 0.0 }).abs() < 1e-5
+        && end > near
+        && end < deepest * 1.02
 }
 
 /// What z-pass-plus began with: no step keeps it.

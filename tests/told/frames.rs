@@ -7,7 +7,7 @@ use stencilscope::history::PixelHistory;
 use stencilscope::plan::{FramePlan, Pass};
 use stencilscope::reading::map_readers::MapReaders;
 use stencilscope::scene::builtin;
-use stencilscope::scene::{OpenSpec, Scene, open};
+use stencilscope::scene::{OpenSpec, Projection, Scene, open};
 use stencilscope::session::Session;
 use stencilscope::technique::{SettingSpec, SettingValues, Technique};
 
@@ -20,12 +20,46 @@ pub struct Job {
     scene: &'static str,
     technique: Technique,
     settings: Vec<(&'static str, String)>,
+    camera: Seen,
+}
+
+/// What a scene is seen by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Seen {
+    /// Its own camera.
+    AsItIs,
+    /// The same place, lines of sight parallel.
+    Orthographic,
+    /// And aslant.
+    Cabinet,
+    /// Parallel lines of sight from the light's place to a caster: its own ray along them meets that.
+    FromTheLight,
 }
 
 impl std::fmt::Display for Job {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} by {}", self.scene, self.technique.name())?;
+        if self.camera != Seen::AsItIs {
+            write!(f, ", {:?},", self.camera)?;
+        }
         self.settings.iter().try_for_each(|(key, value)| write!(f, " {key}={value}"))
+    }
+}
+
+impl Seen {
+    fn place(self, scene: &mut Scene) {
+        if self == Seen::FromTheLight {
+            scene.camera.eye = scene.lights[0].position.truncate();
+            let caster = scene.objects.iter().rfind(|object| object.casts).expect("a caster");
+            let [a, b, c] = caster.mesh.triangles()[0].map(|corner| caster.world_positions()[corner as usize]);
+            scene.camera.target = (a + b + c) / 3.0;
+        }
+        let half_height = scene.camera.half_height_at_target();
+        scene.camera.projection = match self {
+            Seen::AsItIs => Projection::Perspective,
+            Seen::Orthographic | Seen::FromTheLight => Projection::Orthographic { half_height },
+            Seen::Cabinet => Projection::Oblique { half_height, angle_degrees: 45.0, factor: 0.5 },
+        };
     }
 }
 
@@ -58,7 +92,7 @@ pub fn jobs() -> Vec<Job> {
         for scene in &scenes {
             let is_slow = *scene == LARGE && technique != Technique::Auto;
             if !is_slow {
-                jobs.push(Job { scene, technique, settings: Vec::new() });
+                jobs.push(Job { scene, technique, settings: Vec::new(), camera: Seen::AsItIs });
             }
         }
         for spec in technique.settings() {
@@ -72,20 +106,52 @@ pub fn jobs() -> Vec<Job> {
                     _ => None,
                 };
                 let beside = beside.map(|(key, value)| (key, value.to_owned()));
-                jobs.push(Job { scene, technique, settings: beside.into_iter().chain([(spec.key, value)]).collect() });
+                let settings = beside.into_iter().chain([(spec.key, value)]).collect();
+                jobs.push(Job { scene, technique, settings, camera: Seen::AsItIs });
             }
         }
     }
     // Counts beyond eight bits, and both passes of faces in floats.
-    let gate =
-        |key, value: &str| Job { scene: "gate", technique: Technique::ZFail, settings: vec![(key, value.to_owned())] };
-    jobs.push(gate("stencil-bits", "4"));
+    let job = |scene, technique, key, value: &str| Job {
+        scene,
+        technique,
+        settings: vec![(key, value.to_owned())],
+        camera: Seen::AsItIs,
+    };
+    let gate = |key, value| job("gate", Technique::ZFail, key, value);
     jobs.extend([gate("counter", "float"), gate("operations", "clamp"), gate("faces", "two-pass")]);
-    let inside =
-        |technique, key, value: &str| Job { scene: "inside", technique, settings: vec![(key, value.to_owned())] };
-    jobs.push(inside(Technique::ZPassPlus, "counter", "float"));
-    jobs.push(inside(Technique::ZPass, "faces", "two-pass"));
+    jobs.push(gate("stencil-bits", "4"));
+    jobs.push(job("inside", Technique::ZPassPlus, "counter", "float"));
+    jobs.push(job("inside", Technique::ZPass, "faces", "two-pass"));
+    jobs.extend(parallel());
     jobs
+}
+
+/// Parallel cameras: linear depth, and counts that begin elsewhere.
+fn parallel() -> Vec<Job> {
+    let job = |scene, technique, camera, settings: &[(&'static str, &str)]| Job {
+        scene,
+        technique,
+        settings: settings.iter().map(|(key, value)| (*key, (*value).to_owned())).collect(),
+        camera,
+    };
+    use Seen::{Cabinet, FromTheLight, Orthographic};
+    vec![
+        job("tori", Technique::ZFail, Orthographic, &[]),
+        job("tori", Technique::Auto, Cabinet, &[]),
+        job("inside", Technique::Auto, Orthographic, &[]),
+        job("inside", Technique::ZPassPlus, Cabinet, &[]),
+        job("two-lights", Technique::ZPass, Cabinet, &[]),
+        job("table", Technique::ShadowMap, Orthographic, &[]),
+        job("tori", Technique::ZFail, FromTheLight, &[]),
+        job("tori", Technique::Auto, FromTheLight, &[]),
+        job("tori", Technique::ZFail, FromTheLight, &[("counter", "float")]),
+        job("tori", Technique::ZFail, FromTheLight, &[("faces", "two-pass"), ("depth", "standard-infinite")]),
+        job("rings", Technique::ZFail, FromTheLight, &[("casters", "all")]),
+        job("tori", Technique::ZFail, FromTheLight, &[("operations", "invert")]),
+        job("tori", Technique::ZFail, FromTheLight, &[("stencil-bits", "1")]),
+        job("tori", Technique::ZFail, FromTheLight, &[("stencil-bits", "2")]),
+    ]
 }
 
 /// A frame with what is known of some of its pixels.
@@ -99,7 +165,8 @@ pub struct Frame {
 
 impl Frame {
     pub fn of(session: &mut Session, job: &Job) -> Frame {
-        let scene = open(&OpenSpec::new(job.scene)).expect("a built-in scene");
+        let mut scene = open(&OpenSpec::new(job.scene)).expect("a built-in scene");
+        job.camera.place(&mut scene);
         let mut request = request(job.technique, SIZE);
         for (key, value) in &job.settings {
             request.choice.set(key, value).unwrap_or_else(|error| panic!("{job}: {error}"));

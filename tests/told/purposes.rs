@@ -3,6 +3,7 @@
 use super::Held;
 use super::frames::Frame;
 use super::patterns::{gaps, mask_of};
+use glam::{DVec3, DVec4};
 use stencilscope::plan::{Draw, Part, Pass, Program, Visibility};
 use stencilscope::technique::Technique;
 use wgpu::{CompareFunction, StencilOperation as Operation};
@@ -104,22 +105,63 @@ fn turns_over(draw: &Draw, is_in_front: bool) -> bool {
 
 /// Where the first pass of its light begins to count, if not at nothing.
 fn cleared_to(frame: &Frame, pass: &Pass) -> u32 {
-    let counts = |other: &&Pass| other.light == pass.light && other.view.0 == 0 && !counting(other).is_empty();
+    let counts = |other: &&Pass| {
+        other.light == pass.light && other.view.0 == 0 && other.draws.iter().any(|draw| draw.part.is_of_volume())
+    };
     let Some(first) = frame.plan.passes.iter().find(counts) else { return 0 };
     let stencil = first.depth_stencil.as_ref().and_then(|target| target.clear_stencil).map(u32::from);
     let float = first.color.as_ref().and_then(|target| target.clear).map(|clear| clear[0] as u32);
     if first.draws.iter().any(|draw| draw.program == Program::Count) { float } else { stencil }.unwrap_or(0)
 }
 
+/// Does a count begin at the casting triangles that the light's ray along parallel lines of sight meets?
+fn begins_at_far_end(frame: &Frame, pass: &Pass, bits: u8) -> bool {
+    let eye = frame.scene.camera.relative_eye();
+    let light = pass.light.expect("a light").0;
+    let [x, y, z, w] = frame.plan.lights[light].relative_position.map(f64::from);
+    let (light, along) = (DVec3::new(x, y, z), -eye.truncate());
+    let meets = |corners: [DVec3; 3]| {
+        let [a, b, c] = corners.map(|corner| corner - light);
+        let sides = [(a, b), (b, c), (c, a)].map(|(p, q)| p.cross(q).dot(along) > 0.0);
+        let normal = (b - a).cross(c - a);
+        (sides == [true; 3] || sides == [false; 3]) && normal.dot(a) / normal.dot(along) > 0.0
+    };
+    let caps = pass.draws.iter().filter(|draw| draw.part == Part::LightCap);
+    let met = caps.flat_map(|draw| {
+        let mesh = &frame.plan.meshes[draw.mesh.0];
+        let corners = &mesh.indices.data()[draw.triangles.start as usize * 3..draw.triangles.end as usize * 3];
+        let place = |index: u32| DVec4::from_array(mesh.vertices.data()[index as usize].map(f64::from)).truncate();
+        corners.chunks_exact(3).map(move |corners| [0, 1, 2].map(|corner| place(corners[corner]))).collect::<Vec<_>>()
+    });
+    let met = met.filter(|corners| meets(*corners)).count() as u32;
+    let is_in_bits = |draw: &Draw| draw.program == Program::Count || draw.raster.face(true).1.write == bits;
+    let counts_float = pass.draws.iter().any(|draw| draw.program == Program::Count);
+    let kept = if counts_float { met } else { met & u32::from(bits) };
+    eye.w == 0.0 && w == 1.0 && cleared_to(frame, pass) == kept && kept > 0 && pass.draws.iter().all(is_in_bits)
+}
+
+/// What follows of what a count is said to begin at; `None` where that is not so.
+fn begins<'t>(frame: &Frame, pass: &Pass, told: &'t str) -> Option<&'t str> {
+    let cleared = cleared_to(frame, pass);
+    let (start, is_so, rest) = if let Some(told) = gaps("It begins at {}, for the volumes around the eye. {}", told) {
+        let starts_at_eye = frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
+        (told[0], starts_at_eye, told[1])
+    } else if let Some(told) = gaps(
+        "It begins at {}: parallel lines of sight all end at one point at infinity, in the volumes of so many casting triangles, those that a ray from {} along them meets. {}",
+        told,
+    ) {
+        let (start, bits) =
+            told[0].split_once(" in ").map_or((told[0], u8::MAX), |(start, bits)| (start, mask_of(bits)));
+        (start, is_light(pass, told[1]) && begins_at_far_end(frame, pass, bits), told[2])
+    } else {
+        return (cleared == 0).then_some(told);
+    };
+    (is_so && start.parse() == Ok(cleared)).then_some(rest)
+}
+
 /// What a count says in the end.
 fn is_left(frame: &Frame, pass: &Pass, told: &str) -> bool {
-    let begins = "It begins at {}, for the volumes around the eye. {}";
-    let rest = match gaps(begins, told) {
-        Some(told) if told[0].parse() != Ok(cleared_to(frame, pass)) => return false,
-        Some(told) => told[1],
-        None if cleared_to(frame, pass) != 0 => return false,
-        None => told,
-    };
+    let Some(rest) = begins(frame, pass, told) else { return false };
     let [one_side, is_plus] = [rest.starts_with("What is left"), frame.plan.technique == Technique::ZPassPlus.name()];
     let kinds = [
         ("What is left contains the surface{}.", one_side && !is_plus),
@@ -161,7 +203,9 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
     let is_behind =
         counting(pass).iter().any(|one| !one.is_in_front) || pass.draws.iter().any(|d| turns_over(d, false));
     let is_point = frame.scene.lights[light].homogeneous().w != 0.0;
-    let is_needed = [is_behind, is_behind && is_point];
+    // Parallel lines of sight see it as a point.
+    let is_parallel = frame.scene.camera.is_parallel();
+    let is_needed = [is_behind, is_behind && is_point && !is_parallel];
     is_eye_so
         && [0, 1]
             .into_iter()
@@ -281,17 +325,23 @@ const PURPOSES: &[(&str, Check)] = &[
         },
     ),
     (
-        "Counts the shadow volumes of {} in front of each surface, odd or even: every face nearer than it turns one bit over. 1 is left where an odd number of volumes contains the surface, and an even one reads as none{}.",
+        "Counts the shadow volumes of {} in front of each surface, odd or even: every face nearer than it turns one bit over. {}1 is left where an odd number of volumes contains the surface, and an even one reads as none{}.",
         |frame, pass, told| {
             let turned = pass.draws.iter().all(|draw| turns_over(draw, true));
-            is_light(pass, told[0]) && turned && is_so_where(frame, pass, told[1])
+            is_light(pass, told[0])
+                && turned
+                && begins(frame, pass, told[1]) == Some("")
+                && is_so_where(frame, pass, told[2])
         },
     ),
     (
-        "Counts the shadow volumes of {} behind each surface, odd or even: every face hidden by the surface turns one bit over. 1 is left where an odd number of volumes contains the surface, and an even one reads as none{}.",
+        "Counts the shadow volumes of {} behind each surface, odd or even: every face hidden by the surface turns one bit over. {}1 is left where an odd number of volumes contains the surface, and an even one reads as none{}.",
         |frame, pass, told| {
             let turned = pass.draws.iter().all(|draw| turns_over(draw, false));
-            is_light(pass, told[0]) && turned && is_so_where(frame, pass, told[1])
+            is_light(pass, told[0])
+                && turned
+                && begins(frame, pass, told[1]) == Some("")
+                && is_so_where(frame, pass, told[2])
         },
     ),
     (

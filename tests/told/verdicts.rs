@@ -5,7 +5,7 @@ use super::Held;
 use super::frames::Frame;
 use super::patterns::{gaps, mask_of, number};
 use stencilscope::capture::FrameTarget;
-use stencilscope::history::PixelHistory;
+use stencilscope::history::{EventKind, PixelHistory};
 use stencilscope::plan::{DecidedBy, Part, Program};
 use stencilscope::reading::map_decision::MapDecision;
 use stencilscope::reading::verdict::{Verdict, by_map, explained, verdict};
@@ -83,6 +83,13 @@ impl Here<'_> {
             _ if told.ends_with(" in front of") => counted.all(|(nearer, _)| nearer),
             _ => told.ends_with(" on either side of") && self.says_side("on either side of"),
         }
+    }
+
+    /// May the count begin at another number than 0: of the volumes around the eye, or of those that parallel lines of
+    /// sight end in?
+    fn begins_elsewhere(&self) -> bool {
+        let starts_at_eye = self.frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
+        starts_at_eye || (self.frame.capture.camera.is_parallel() && !self.says_side("in front of"))
     }
 
     /// How often faces turned its bit over.
@@ -195,6 +202,13 @@ const REASONS: &[(&str, Check)] = &[
     ("The volume faces {} the surface leave {}, not 0, so the light pass skips this pixel.", |here, told| {
         dark_count(here, told[0], told[1])
     }),
+    (
+        "What the count began with and the volume faces {} the surface leave {}, not 0, so the light pass {}.",
+        |here, told| {
+            let does = ["skips this pixel", "adds nothing"].contains(&told[2]);
+            here.begins_elsewhere() && dark_count(here, told[0], told[1]) && does
+        },
+    ),
     ("The volume faces {} the surface leave {}, not 0, so the light pass adds nothing.", |here, told| {
         dark_count(here, told[0], told[1])
     }),
@@ -219,6 +233,15 @@ const REASONS: &[(&str, Check)] = &[
             && held.is_some_and(|count| number(told[1]) == f64::from(count))
     }),
     (
+        "What the count began with and the volume faces {} the surface leave its bit at {}, so the light pass {}.",
+        |here, told| {
+            let is_one = told[1] == "1";
+            let does = if is_one { "skips this pixel" } else { "adds the light" };
+            let stored = here.label() == is(u8::from(is_one)) && here.count() == f64::from(u8::from(is_one));
+            here.begins_elsewhere() && here.says_side(told[0]) && stored && told[2] == does
+        },
+    ),
+    (
         "An odd number of volume faces {} the surface turned its bit over, so the light pass skips this pixel.",
         |here, told| here.label() == is(1) && here.count() == 1.0 && here.says_side(told[0]) && here.turns() % 2 == 1,
     ),
@@ -231,10 +254,7 @@ const REASONS: &[(&str, Check)] = &[
     }),
     (
         "What the count began with and the volume faces {} the surface cancel out, so the light pass adds the light.",
-        |here, told| {
-            let told_to = here.frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
-            told_to && here.label() == is(0) && here.says_side(told[0]) && here.count() == 0.0
-        },
+        |here, told| here.begins_elsewhere() && here.label() == is(0) && here.says_side(told[0]) && here.count() == 0.0,
     ),
     ("The light's map holds something nearer to the light here, so the light pass adds nothing.", |here, _| {
         by_a_map(here, 1)
@@ -351,6 +371,18 @@ fn counted(here: &Here, told: &str) -> bool {
         .trim_end_matches(", so the light pass skips it")
         .trim_end_matches(", so the light pass adds the light");
     let [outside, inside] = here.faces();
+    let (cleared, told) = match gaps("The count begins at {}; {}", told) {
+        Some(parts) => (Some(number(parts[0])), parts[1]),
+        None => (None, told),
+    };
+    let begins = here.history.events.iter().rev().find_map(|event| match event.kind {
+        EventKind::ClearStencil if event.light == Some(here.light) => Some(f64::from(event.after.stencil)),
+        EventKind::ClearCount if event.light == Some(here.light) => Some(f64::from(event.after.count)),
+        _ => None,
+    });
+    let is_cleared = cleared.unwrap_or(0.0) == begins.unwrap_or(0.0);
+    let upper = told.strip_prefix("the").map(|rest| format!("The{rest}"));
+    let told = upper.as_deref().unwrap_or(told);
     let (near, told) = match gaps("The near plane is in {}; {}", told) {
         Some(parts) => (Some(number(parts[0])), parts[1]),
         None => (None, told),
@@ -381,7 +413,7 @@ fn counted(here: &Here, told: &str) -> bool {
         let is_there = here.lie(words.split(" the surface").next().unwrap_or_default());
         number(words) == outside + inside && front.or(back) == Some([outside, inside]) && is_there
     };
-    near_holds && count_holds && faces_hold
+    is_cleared && near_holds && count_holds && faces_hold
 }
 
 pub fn patterns() -> Vec<&'static str> {

@@ -15,10 +15,13 @@ const DEPTH: Words<DepthMapping> = words(
         text: "A far plane cuts volumes open, and what is cut away is not counted: compare `standard-finite` with \
              `reversed-infinite`, and `standard-finite-clamp`, which mends it by clamping depth. Reversed depth \
              is also the finest: floats are dense near 0, where the far end then lies. `standard-infinite` puts \
-             infinity at 1, `standard-infinite-epsilon` a little before it.",
+             infinity at 1, `standard-infinite-epsilon` a little before it. A parallel camera's depth is linear, and \
+             no number in it is infinity: where there is no far plane it ends behind all that is in view, and \
+             volumes that go on are clamped there.",
         formula: "with the distance d along the view, near plane n, far plane f and epsilon e: reversed-infinite n/d; \
              standard-infinite 1 - n/d; standard-infinite-epsilon (1 - e)(1 - n/d); standard-finite and \
-             standard-finite-clamp f(d - n) / (d(f - n))",
+             standard-finite-clamp f(d - n) / (d(f - n)); of a parallel camera (d - n) / (f - n), or reversed one less \
+             that",
         sources: &[cited::EVERITT_KILGARD, cited::LENGYEL, cited::REED],
     },
 );

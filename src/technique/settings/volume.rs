@@ -99,7 +99,8 @@ const CAPS: Words<[bool; 2]> = words(
     Lesson {
         text: "`both` draws what the count needs: of z-fail light cap and dark cap, of z-pass none but for casters that are \
              not drawn or volumes that end. With `light` the far end is open, with `dark` the end at the caster, with \
-             `none` both: z-fail then miscounts every surface behind the open end.",
+             `none` both: z-fail then miscounts every surface behind the open end. Of a parallel camera a dark cap at \
+             infinity is a number that the count begins at, and is left out with it.",
         formula: "z-fail is right where each volume is closed: what a ray to infinity enters it leaves again",
         sources: &[cited::CARMACK, cited::BILODEAU, cited::EVERITT_KILGARD],
     },

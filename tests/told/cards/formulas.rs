@@ -10,6 +10,14 @@ pub const FORMULAS: &[(&str, Check)] = &[
         let near = if curve.mapping == DepthMapping::ReversedInfinite { 1.0 } else { 0.0 };
         (curve.depth(camera.near) - near).abs() < 1e-9
     }),
+    ("stored depth = offset + scale · distance along the view", |here, _| {
+        let curve = here.frame.plan.depth;
+        let camera = here.frame.scene.camera;
+        // As far beyond the near plane again is as many steps further.
+        let [near, middle, far] = [1.0, 1.5, 2.0].map(|factor| curve.depth(camera.near * factor));
+        let is_linear = (far - middle - (middle - near)).abs() < 1e-9 && far != near;
+        is_linear && camera.projection != Projection::Perspective
+    }),
     ("count = front faces before the surface − back faces before it, seen from the eye", |here, _| {
         here.counts(Side::InFront)
     }),

@@ -12,17 +12,24 @@ pub const LINES: &[(&str, Check)] = &[
         let clear = if here.frame.plan.depth.mapping == DepthMapping::ReversedInfinite { 0.0 } else { 1.0 };
         stored == Some(clear) && told[2].parse() == Ok(clear)
     }),
-    ("pixel {}, {}: {} + {} / {} = {}", |here, told| is_sum(here, told, 1.0)),
-    ("pixel {}, {}: {} − {} / {} = {}", |here, told| is_sum(here, told, -1.0)),
+    ("pixel {}, {}: {} + {} · {} = {}", |here, told| is_sum(here, told, [1.0, 1.0])),
+    ("pixel {}, {}: {} − {} · {} = {}", |here, told| is_sum(here, told, [-1.0, 1.0])),
+    ("pixel {}, {}: {} + {} / {} = {}", |here, told| is_sum(here, told, [1.0, -1.0])),
+    ("pixel {}, {}: {} − {} / {} = {}", |here, told| is_sum(here, told, [-1.0, -1.0])),
     ("the next depth that can be stored is {} further", |here, told| {
         let at = here.pick.expect("a pick");
         let stored =
             here.frame.capture.frame_at(here.step).and_then(|frame| frame.depth.image.depth_at(at)).expect("a depth");
         let curve = here.frame.plan.depth;
-        let away = |depth: f32| curve.scale / (f64::from(depth) - curve.offset);
+        let away = |depth: f32| {
+            let part = f64::from(depth) - curve.offset;
+            if here.frame.capture.camera.is_parallel() { part / curve.scale } else { curve.scale / part }
+        };
         let step = (away(stored.next_up()) - away(stored)).abs();
         !step.is_finite() || is_near(told[0], step)
     }),
+    ("{}: {} + {} · distance", |here, told| is_line(here, told, 1.0)),
+    ("{}: {} − {} · distance", |here, told| is_line(here, told, -1.0)),
     ("{}: {} + {} / distance", |here, told| is_curve(here, told, 1.0)),
     ("{}: {} − {} / distance", |here, told| is_curve(here, told, -1.0)),
     ("pixel {}, {}: {} faces turn the bit over, {} do not count here", |here, told| {
@@ -34,6 +41,19 @@ pub const LINES: &[(&str, Check)] = &[
         let is_odd = turning.len() % 2 == 1;
         [number(told[2]), number(told[3])] == [turning.len() as f64, idle.len() as f64] && is_odd == (change != 0.0)
     }),
+    (
+        "pixel {}, {}: it begins at {}, {} faces add 1, {} take 1 away, {} do not count here: {} + {} − {} = {}",
+        |here, told| {
+            let (sum, kept) = told[9].split_once(", kept in ").unwrap_or((told[9], ""));
+            let modulus = if kept.is_empty() { 256.0 } else { f64::from(mask_of(kept)) + 1.0 };
+            let stored = f64::from(here.stored(at(told[0], told[1])));
+            let [began, again] = [told[2], told[6]].map(number);
+            let rest = (number(sum) - began).to_string();
+            let of_faces = [told[0], told[1], told[3], told[4], told[5], told[7], told[8], rest.as_str()];
+            let is_stored = (number(sum) - stored).rem_euclid(modulus) == 0.0;
+            began == again && faces_add_up(here, &of_faces) && (is_stored || here.volume_passes_follow())
+        },
+    ),
     ("pixel {}, {}: {} faces add 1, {} take 1 away, {} do not count here: {} − {} = {}, kept in {}", |here, told| {
         adds_up(here, &told[..8], f64::from(mask_of(told[8])) + 1.0)
     }),
@@ -85,6 +105,10 @@ pub const LINES: &[(&str, Check)] = &[
             && told[0] == "0"
             && here.triangles(Part::DarkCap) == 0.0
     }),
+    (
+        "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there: {}",
+        |here, told| here.frame.capture.camera.is_parallel() && told[0] == "0" && here.triangles(Part::DarkCap) == 0.0,
+    ),
     ("dark caps, fans over the silhouettes at infinity: {}", |here, told| {
         here.frame.capture.lights[here.light()].position.w != 0.0 && number(told[0]) == here.triangles(Part::DarkCap)
     }),

@@ -4,6 +4,7 @@ pub mod animation;
 pub mod making;
 pub mod meshes;
 mod projection;
+mod row;
 pub mod scene;
 pub mod up_axis;
 

@@ -1,6 +1,6 @@
 //! The camera's projection: which, and the numbers that it has. What it has not is there all the same, with why.
 
-use super::scene::row;
+use super::row::row;
 use crate::scene::{Camera, Projection};
 use egui::{DragValue, Ui};
 

@@ -2,8 +2,9 @@
 //! it was when the scene was opened, and goes back to it.
 
 use super::projection;
+use super::row::row;
 use crate::ask::RunRequest;
-use crate::inspector::look::{theme, widgets};
+use crate::inspector::look::theme;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
 use crate::scene::{Camera, Light};
@@ -33,25 +34,6 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
     changed |= picture(ui, draft, opened, *animated);
     ui.add_space(12.0);
     changed |= objects_on(ui, draft, objects);
-    changed
-}
-
-/// One setting in a row: the way back where it was changed, its name, its widget; true when it changes.
-pub(super) fn row<T: PartialEq + Clone>(
-    ui: &mut Ui,
-    (name, label): (&str, &str),
-    value: &mut T,
-    before: &T,
-    widget: impl FnOnce(&mut Ui, &mut T) -> bool,
-) -> bool {
-    let is_changed = value != before;
-    let goes_back = widgets::reset(ui, name, is_changed, "what the scene was opened with");
-    if goes_back {
-        value.clone_from(before);
-    }
-    widgets::setting_name(ui, label, is_changed);
-    let changed = widget(ui, value) || goes_back;
-    ui.end_row();
     changed
 }
 

@@ -1,0 +1,23 @@
+//! A setting of what is seen, in a row of its heading's grid.
+
+use crate::inspector::look::widgets;
+use egui::Ui;
+
+/// One setting in a row: the way back where it was changed, its name, its widget; true when it changes.
+pub fn row<T: PartialEq + Clone>(
+    ui: &mut Ui,
+    (name, label): (&str, &str),
+    value: &mut T,
+    before: &T,
+    widget: impl FnOnce(&mut Ui, &mut T) -> bool,
+) -> bool {
+    let is_changed = value != before;
+    let goes_back = widgets::reset(ui, name, is_changed, "what the scene was opened with");
+    if goes_back {
+        value.clone_from(before);
+    }
+    widgets::setting_name(ui, label, is_changed);
+    let changed = widget(ui, value) || goes_back;
+    ui.end_row();
+    changed
+}
