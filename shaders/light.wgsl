@@ -13,8 +13,10 @@ fn added(surface: Surface) -> vec3f {
     if faces_away(surface.sides) && light.wraps == 0u {
         return vec3f(0.0);
     }
+    let share = in_checks(surface.relative);
     if draw.shading == GOURAUD {
-        return surface.lit * in_checks(surface.relative);
+        return surface.diffuse * share + surface.gloss;
     }
-    return light_on(surface.relative, normalize(surface.normal), in_checks(surface.relative));
+    let light_here = light_on(surface.relative, normalize(surface.normal));
+    return light_here.diffuse * share + light_here.gloss;
 }

@@ -50,8 +50,9 @@ struct Surface {
     // Towards the side that the eye sees.
     @location(1) normal: vec3f,
     // Gouraud's light.
-    @location(2) lit: vec3f,
-    @location(3) @interpolate(flat) sides: u32,
+    @location(2) diffuse: vec3f,
+    @location(3) gloss: vec3f,
+    @location(4) @interpolate(flat) sides: u32,
 }
 
 @vertex
@@ -69,7 +70,9 @@ fn vs_surface(@builtin(vertex_index) vertex_index: u32) -> Surface {
     let normal = normals[corner].xyz;
     out.normal = select(normal, -normal, (out.sides & SEES_BACK) != 0u);
     if draw.shading == GOURAUD {
-        out.lit = light_on(out.relative, out.normal, 1.0);
+        let light_here = light_on(out.relative, out.normal);
+        out.diffuse = light_here.diffuse;
+        out.gloss = light_here.gloss;
     }
     return out;
 }
@@ -83,15 +86,22 @@ fn faces_away(surface_sides: u32) -> bool {
     return (surface_sides & (1u << light.index)) != 0u;
 }
 
-// Diffuse of this share of its colour, Lambert's or wrapped, and Blinn-Phong's highlight.
-fn light_on(relative: vec3f, normal: vec3f, share: f32) -> vec3f {
+struct LightOn {
+    // Lambert's, or wrapped.
+    diffuse: vec3f,
+    // Blinn-Phong's highlight, which no pattern darkens.
+    gloss: vec3f,
+}
+
+fn light_on(relative: vec3f, normal: vec3f) -> LightOn {
     let to_light = light.position.xyz - relative * light.position.w;
     let direction = normalize(to_light);
     let cosine = dot(normal, direction);
     let diffuse = select(max(cosine, 0.0), 0.5 * cosine + 0.5, light.wraps != 0u);
     let halfway = normalize(direction + normalize(view.eye.xyz - relative * view.eye.w));
     let gloss = select(0.0, draw.specular * pow(max(dot(normal, halfway), 0.0), draw.shininess), cosine > 0.0);
-    return light.color * falloff(length(to_light)) * (draw.color * share * diffuse + gloss);
+    let arriving = light.color * falloff(length(to_light));
+    return LightOn(arriving * draw.color * diffuse, arriving * gloss);
 }
 
 fn falloff(distance: f32) -> f32 {

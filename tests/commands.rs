@@ -131,6 +131,8 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
 #[test]
 fn a_recorded_frame_tells_distances_in_units() {
     let folder = folder();
+    let coordinates = ["pixel", "ogre", "--at", "200,150", "--coordinates"];
+    assert_fails(&coordinates, 2, &["another program's is a guess", "leave it out"]);
     let output = run(folder.path(), &["pixel", "ogre", "--at", "200,150"]);
     let story = text(&output.stdout);
     assert!(output.status.success() && story.contains(" units away (depth"), "{story}");
@@ -175,6 +177,22 @@ fn pixel_tells_its_history_as_text_and_as_json() {
     run(folder.path(), &[&arguments[..], &["--json", "history.json"]].concat());
     let written = fs::read_to_string(folder.path().join("history.json")).expect("a file");
     assert!(written.contains("increment-wrap"));
+}
+
+#[test]
+fn a_model_with_z_up_is_turned_and_nothing_else_is() {
+    let folder = folder();
+    let height = |more: &[&str]| {
+        let arguments = [&["capture", "triangle.obj", "--size", "32x24", "-o", "out", "--overwrite"], more].concat();
+        let output = run(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let scene = stencilscope::scene::file::load(&folder.path().join("out/scene.toml")).expect("a scene");
+        let heights = scene.objects[0].world_positions().into_iter().map(|at| at.y);
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| [low.min(y), high.max(y)])
+    };
+    let [low, high] = height(&["--z-up"]);
+    assert_ne!(height(&[]), [low, high]);
+    assert_fails(&["capture", "tori", "--z-up", "-o", "out"], 2, &["--z-up", "`tori`", "leave it out"]);
 }
 
 #[test]

@@ -4,6 +4,8 @@ use crate::commands::{assert_fails, folder, run, text};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
+use stencilscope::history::operation_name;
+use stencilscope::reading::bench::COMPARES;
 use stencilscope::scene::{SceneError, file};
 use stencilscope::technique::Technique;
 
@@ -93,6 +95,21 @@ fn every_key_that_a_scene_file_knows_is_explained() {
     }
     // The file, camera, lights, objects, the orbit and swing of both, material, mesh and technique.
     assert_eq!(tables, 11);
+}
+
+#[test]
+fn the_page_of_the_stencil_test_names_each_function_and_operation_of_the_bench() {
+    let page = help("stencil-test");
+    let functions = section(&page, "The functions");
+    COMPARES.iter().for_each(|(_, name, _)| assert_explained(&functions, name, "the bench"));
+    let operations = section(&page, "The operations");
+    use wgpu::StencilOperation::*;
+    for operation in
+        [Keep, Zero, Replace, Invert, IncrementClamp, DecrementClamp, IncrementWrap, DecrementWrap].map(operation_name)
+    {
+        assert_explained(&operations, operation, "the bench");
+    }
+    assert!(page.contains("*Bench*"));
 }
 
 #[test]

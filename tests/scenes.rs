@@ -6,7 +6,7 @@ mod motion;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 use stencilscope::scene::shapes;
-use stencilscope::scene::{Camera, Light, Mesh, MeshBuilder, Object, OpenSpec, Scene, model_scene, open};
+use stencilscope::scene::{Camera, Light, Mesh, MeshBuilder, Object, OpenSpec, Scene, UpAxis, model_scene, open};
 
 /// How often each directed edge is used, less how often its reverse is: all zero when closed.
 fn open_edges(mesh: &Mesh) -> usize {
@@ -155,7 +155,7 @@ fn assert_eye_is_free(scene: &Scene) {
 #[test]
 fn a_model_gets_a_floor_a_light_and_a_camera_from_its_bounds() {
     let mesh = shapes::cuboid([1.0, 2.0, 3.0]).expect("a box");
-    let scene = model_scene("box", mesh.clone(), true).expect("a scene");
+    let scene = model_scene("box", mesh.clone(), true, UpAxis::Y).expect("a scene");
     assert_eye_is_free(&scene);
     assert!(is_eye_lit(&scene, 16.0 / 9.0));
     let (low, high) = scene.objects[1].mesh.bounds().expect("a floor");
@@ -163,7 +163,7 @@ fn a_model_gets_a_floor_a_light_and_a_camera_from_its_bounds() {
     assert_eq!(low, DVec3::new(-30.0, -1.06, -30.0));
     assert_eq!(high, DVec3::new(30.0, -1.06, 30.0));
     assert!(scene.lights[0].position.y > 1.0);
-    assert_eq!(model_scene("box", mesh, false).expect("a scene").objects.len(), 1);
+    assert_eq!(model_scene("box", mesh, false, UpAxis::Y).expect("a scene").objects.len(), 1);
 }
 
 #[test]
@@ -177,13 +177,15 @@ fn flat_thin_far_and_tiny_models_can_be_looked_at() {
     let needle = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 2.0, 0.0]];
     for points in [flat, upright, needle] {
         for (scale, offset) in [(1.0, 0.0), (1e-9, 0.0), (1e9, 0.0), (1.0, 1e7)] {
-            let scene = model_scene("thin", triangle(scale, offset, points), true).expect("a scene");
+            let scene = model_scene("thin", triangle(scale, offset, points), true, UpAxis::Y).expect("a scene");
             assert_eq!(scene.camera.check(), Ok(()), "scale {scale}, offset {offset}");
             assert_eq!(scene.lights[0].check(), Ok(()));
         }
     }
     for scale in [1e-200, 1e300] {
-        let error = model_scene("odd", triangle(scale, 0.0, flat), true).expect_err("no size to look at").to_string();
+        let error = model_scene("odd", triangle(scale, 0.0, flat), true, UpAxis::Y)
+            .expect_err("no size to look at")
+            .to_string();
         assert!(error.contains("scale it"), "{error}");
     }
 }

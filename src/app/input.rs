@@ -8,11 +8,30 @@
 
 use egui::Event;
 
-/// Takes out of `events` those of the next frame; what is left is later.
+/// Frames that may wait. Where more are asked for than are drawn, what is under the pointer matters less than that the
+/// window keeps up.
+const MOST_WAITING: usize = 8;
+
+/// Takes out of `events` those of the next frame; what is left is later. Where more than a few frames would be, that
+/// is all of them.
 #[must_use]
 pub fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {
+    let Some(end) = end_of_frame(events) else { return std::mem::take(events) };
+    let mut later = &events[end..];
+    for _ in 0..MOST_WAITING {
+        let Some(end) = end_of_frame(later) else {
+            let later = events.split_off(end);
+            return std::mem::replace(events, later);
+        };
+        later = &later[end..];
+    }
+    std::mem::take(events)
+}
+
+/// The first event that a frame which begins with these must not see.
+fn end_of_frame(events: &[Event]) -> Option<usize> {
     let (mut has_button, mut has_moved) = (false, false);
-    let end = events.iter().position(|event| match event {
+    events.iter().position(|event| match event {
         Event::PointerMoved(_) => {
             has_moved = true;
             has_button
@@ -21,11 +40,9 @@ pub fn of_next_frame(events: &mut Vec<Event>) -> Vec<Event> {
             has_button = true;
             std::mem::take(&mut has_moved) && !pressed
         }
-        Event::Key { .. } => has_moved,
+        Event::Key { pressed, repeat, .. } => has_moved && *pressed && !repeat,
         _ => false,
-    });
-    let later = end.map_or_else(Vec::new, |end| events.split_off(end));
-    std::mem::replace(events, later)
+    })
 }
 
 #[cfg(test)]
@@ -35,6 +52,10 @@ mod tests {
 
     fn button(pos: Pos2, pressed: bool) -> Event {
         Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
+    }
+
+    fn key(repeat: bool) -> Event {
+        Event::Key { key: Key::Tab, physical_key: None, pressed: true, repeat, modifiers: Modifiers::NONE }
     }
 
     /// How far a handle at 20,20 on a larger ground was dragged, and how far the ground, by all these at once.
@@ -76,8 +97,7 @@ mod tests {
     #[test]
     fn nothing_is_lost_and_what_belongs_together_stays() {
         let (here, there) = (pos2(1.0, 1.0), pos2(2.0, 2.0));
-        let key =
-            Event::Key { key: Key::Tab, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
+        let key = key(false);
         let moved = Event::PointerMoved;
         let all = vec![
             moved(here),
@@ -95,5 +115,19 @@ mod tests {
             std::iter::from_fn(|| (!left.is_empty()).then(|| of_next_frame(&mut left))).collect();
         assert_eq!(frames.iter().map(Vec::len).collect::<Vec<_>>(), [4, 2, 3]);
         assert_eq!(frames.concat(), all);
+    }
+
+    #[test]
+    fn a_key_held_while_the_pointer_moves_takes_no_frame_of_its_own() {
+        let mut events: Vec<Event> = (0..40).flat_map(|_| [Event::PointerMoved(pos2(1.0, 1.0)), key(true)]).collect();
+        assert_eq!(of_next_frame(&mut events).len(), 80);
+    }
+
+    #[test]
+    fn a_window_that_falls_behind_catches_up() {
+        let mut events: Vec<Event> = (0..40).flat_map(|_| [Event::PointerMoved(pos2(1.0, 1.0)), key(false)]).collect();
+        assert_eq!((of_next_frame(&mut events).len(), events.len()), (80, 0));
+        let mut few = vec![Event::PointerMoved(pos2(1.0, 1.0)), key(false)];
+        assert_eq!((of_next_frame(&mut few).len(), few.len()), (1, 1));
     }
 }

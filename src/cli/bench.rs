@@ -3,7 +3,7 @@
 use super::options::{FrameOptions, SceneOptions};
 use super::{CliError, output};
 use crate::progress::Progress;
-use crate::scene::{Mesh, MeshBuilder, Scene, SceneError, model_scene};
+use crate::scene::{Mesh, MeshBuilder, Scene, SceneError, UpAxis, model_scene};
 use crate::scene::{builtin, shapes};
 use crate::session::{
     CaptureCost, Measured, Measurement, Session, TruthCost, VolumeCost, median_ms, truth_cost, volume_cost,
@@ -282,7 +282,7 @@ fn volume_lines(title: &str, cost: &VolumeCost) -> String {
 
 /// A closed model of about twice `around` times `up` triangles on a floor, as uneven as a scanned one.
 fn bumpy_model(around: u32, up: u32) -> Result<Scene, SceneError> {
-    model_scene(BUMPY, bumpy_mesh(around, up)?, true)
+    model_scene(BUMPY, bumpy_mesh(around, up)?, true, UpAxis::Y)
 }
 
 fn bumpy_mesh(around: u32, up: u32) -> Result<Mesh, SceneError> {

@@ -60,7 +60,7 @@ impl<'a> Fix<'a> {
         };
         let scene = mended(loaded, request.choice.clone(), &mend)?;
         store(&scene, Some(Path::new(self.source)), Path::new(self.file))?;
-        let again = open(&OpenSpec { name: self.file.to_owned(), floor: false })?.at(time);
+        let again = open(&OpenSpec { floor: false, ..OpenSpec::new(self.file) })?.at(time);
         let choice = again.technique.as_ref().map(Choice::parse).transpose()?;
         let request = CaptureRequest { choice: choice.unwrap_or_else(|| request.choice.clone()), ..request.clone() };
         let capture = session.capture(&again, &request)?;

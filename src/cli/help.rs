@@ -12,7 +12,7 @@ use crate::technique::{Lesson, SettingSpec, Technique};
 use clap::{Args, CommandFactory};
 
 /// Pages by key, with what they explain.
-const PAGES: [(&str, &str, &str); 3] = [
+const PAGES: [(&str, &str, &str); 4] = [
     ("scene-file", "every key of a scene file (.toml)", include_str!("../../assets/help/scene-file.md")),
     (
         "capture-folder",
@@ -20,6 +20,11 @@ const PAGES: [(&str, &str, &str); 3] = [
         include_str!("../../assets/help/capture-folder.md"),
     ),
     ("json", "what `--json` writes, command by command", include_str!("../../assets/help/json.md")),
+    (
+        "stencil-test",
+        "the stencil test: functions, operations, masks; the window's tab Bench has it",
+        include_str!("../../assets/help/stencil-test.md"),
+    ),
 ];
 /// The page of causes is made from the table of causes.
 const CAUSES: (&str, &str) = ("causes", "what `diagnose` may find, by name");
@@ -30,8 +35,8 @@ const WIDTH: usize = 100;
 
 #[derive(Debug, Args)]
 pub struct HelpArguments {
-    /// A command, a technique, a setting, a scene, a key of scene files, `scene-file`, `capture-folder`, `json` or
-    /// `causes` [default: all of them, by name]
+    /// A command, a technique, a setting, a scene, a key of scene files, `scene-file`, `capture-folder`, `json`,
+    /// `stencil-test` or `causes` [default: all of them, by name]
     key: Option<String>,
 }
 

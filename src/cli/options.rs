@@ -3,7 +3,7 @@
 use super::CliError;
 use crate::capture::disk;
 use crate::import::Shipped;
-use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, open};
+use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, UpAxis, is_model, open};
 use crate::session::{CaptureRequest, Every, RunFrame, Session};
 use crate::technique::{Choice, ChoiceError, Technique};
 use clap::Args;
@@ -26,6 +26,9 @@ pub struct SceneOptions {
     /// Leave out the floor under a bare model
     #[arg(long)]
     pub no_floor: bool,
+    /// The z axis of a bare model is up, not y: it is turned
+    #[arg(long)]
+    pub z_up: bool,
     /// The eye's place
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
@@ -50,6 +53,9 @@ pub struct SceneOptions {
     /// A directional light, towards it, in place of the scene's lights, after all of --light; repeatable
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub sun: Vec<DVec3>,
+    /// A light that is switched off, counted as sentences count, from 1; repeatable
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub off: Vec<u32>,
     /// The moment of an animated scene
     #[arg(long, value_name = "SECONDS", value_parser = finite, default_value = "0", allow_hyphen_values = true)]
     pub time: f64,
@@ -81,15 +87,16 @@ pub struct FrameOptions {
 impl SceneOptions {
     /// What opens the scene again, without these options.
     pub fn spec(&self, name: &str) -> OpenSpec {
-        OpenSpec { name: name.to_owned(), floor: !self.no_floor }
+        let up = if self.z_up { UpAxis::Z } else { UpAxis::Y };
+        OpenSpec { name: name.to_owned(), floor: !self.no_floor, up }
     }
 
     /// Is the scene to be taken as it is?
     fn is_untouched(&self) -> bool {
-        let SceneOptions { no_floor, eye, target, up, fov, near, far, light, sun, time } = self;
+        let SceneOptions { no_floor, z_up, eye, target, up, fov, near, far, light, sun, off, time } = self;
         let points = [eye, target, up].iter().all(|point| point.is_none());
         let numbers = [fov, near, far].iter().all(|number| number.is_none());
-        !no_floor && points && numbers && light.is_empty() && sun.is_empty() && *time == 0.0
+        !no_floor && !z_up && points && numbers && light.is_empty() && sun.is_empty() && off.is_empty() && *time == 0.0
     }
 
     /// Opens the scene and applies these options; the result stands still at `--time`.
@@ -106,6 +113,10 @@ impl SceneOptions {
     /// As [`SceneOptions::open`].
     pub fn load(&self, name: &str) -> Result<Scene, CliError> {
         let mut scene = open(&self.spec(name))?;
+        if self.z_up && !is_model(name) {
+            let mend = "leave it out, or turn its objects in a scene file (`rotate_degrees`)";
+            return Err(CliError::Usage(format!("`--z-up` turns a bare model (.obj), and `{name}` is none: {mend}")));
+        }
         self.place_camera(&mut scene)?;
         self.place_lights(&mut scene)?;
         Ok(scene)
@@ -135,6 +146,20 @@ impl SceneOptions {
         }
         if !lights.is_empty() {
             scene.lights = lights;
+        }
+        let count = scene.lights.len();
+        for number in &self.off {
+            let Some(light) = scene.lights.get_mut(*number as usize - 1) else {
+                let has = match count {
+                    0 => "no light".to_owned(),
+                    1 => "light 1 alone".to_owned(),
+                    _ => format!("lights 1 to {count}"),
+                };
+                return Err(CliError::Usage(format!(
+                    "`--off {number}`: the scene has {has}: name one of them, or none"
+                )));
+            };
+            light.is_on = false;
         }
         Ok(())
     }

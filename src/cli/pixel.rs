@@ -5,6 +5,8 @@ use super::{CliError, output};
 use crate::history::PixelDocument;
 use crate::plan::LightId;
 use crate::reading::coordinates::Place;
+use crate::reading::shading::Shaded;
+use crate::reading::texels_read::{TexelReaders, TexelsRead};
 use crate::session::{RunFrame, Session, SessionError};
 use clap::Args;
 use serde::Serialize;
@@ -21,7 +23,8 @@ pub struct PixelArguments {
     scene_options: SceneOptions,
     #[command(flatten)]
     frame: FrameOptions,
-    /// Also the pixel's point in world, eye, clip, device and window coordinates, with the matrices between them
+    /// Also the pixel's point in world, eye, clip, device and window coordinates, with the matrices between them; not of
+    /// another program's frame, whose camera is a guess
     #[arg(long)]
     coordinates: bool,
     /// Machine-readable, to a file or to standard output in place of the text
@@ -45,10 +48,15 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     file.map_or(Ok(()), output::check_target)?;
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
     let RunFrame { capture, plan, .. } = subject.frame(&mut session)?;
+    if arguments.coordinates && capture.origin.is_some() {
+        let why = "`--coordinates` needs the frame's camera, and another program's is a guess: leave it out";
+        return Err(CliError::Usage(why.to_owned()));
+    }
     let mut stories = vec![format!("{}, {}, {}x{}\n", capture.scene, capture.technique, size[0], size[1])];
     for (light, counted) in capture.lights.iter().enumerate().filter_map(|(at, light)| Some((at, light.count_of?))) {
         stories[0] += &format!("{}: {}\n", LightId(light).name(), counted.meaning());
     }
+    let readers = TexelReaders::new(&capture, &plan);
     let mut documents = Vec::with_capacity(arguments.at.len());
     let mut wrong = 0;
     for pixel in &arguments.at {
@@ -56,10 +64,14 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         let history = session.history(&plan, &capture, *pixel)?;
         let took = start.elapsed().as_secs_f64() * 1e3;
         wrong += usize::from(!history.agrees());
-        stories.push(history.story(&capture.depth));
+        let shading = Shaded::of(&capture, &plan, &history);
+        let texels = readers.at(&capture, *pixel);
+        let read = texels.iter().enumerate().filter_map(|(light, read)| Some(read.as_ref()?.text(light)));
+        let reasons = read.chain(shading.as_ref().map(Shaded::text)).collect::<String>();
+        stories.push(history.story_with(&capture.depth, &reasons));
         let coordinates = arguments.coordinates.then(|| Place::of(&capture, *pixel));
         stories.extend(coordinates.as_ref().map(Place::text));
-        documents.push(Document { history: PixelDocument::new(&history, took), coordinates });
+        documents.push(Document { history: PixelDocument::new(&history, took), texels, shading, coordinates });
     }
     match (&arguments.json, &documents[..]) {
         (None, _) => output::print(&stories.join("\n"))?,
@@ -69,11 +81,13 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     if wrong == 0 { Ok(()) } else { Err(CliError::WrongHistory { pixels: wrong }) }
 }
 
-/// A history, and where the pixel's point is, if that was asked for.
+/// A history, the texels that decided each light, how the surface answers it, and where the pixel's point is, if that was asked for.
 #[derive(Debug, Serialize)]
 struct Document {
     #[serde(flatten)]
     history: PixelDocument,
+    texels: Vec<Option<TexelsRead>>,
+    shading: Option<Shaded>,
     #[serde(skip_serializing_if = "Option::is_none")]
     coordinates: Option<Place>,
 }

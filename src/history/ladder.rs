@@ -17,7 +17,7 @@ pub struct Ladder {
     /// What the count began with: what it was cleared to, and the volumes that contain the near plane, where that was
     /// counted.
     pub start: i32,
-    /// What it was cleared to alone.
+    /// The part of `start` that it was cleared to.
     pub cleared_to: i32,
     /// The bits that a stencil keeps of the count.
     pub bits: CountBits,

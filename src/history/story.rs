@@ -27,6 +27,12 @@ impl PixelHistory {
     /// capture's, and turns depths into metres.
     #[must_use]
     pub fn story(&self, curve: &DepthCurve) -> String {
+        self.story_with(curve, "")
+    }
+
+    /// The same with lines of more reasons, each ended by a newline, after those that events give.
+    #[must_use]
+    pub fn story_with(&self, curve: &DepthCurve, reasons: &str) -> String {
         let mut text = format!("pixel {},{}: {}\n", self.pixel[0], self.pixel[1], self.result(curve));
         let lights: std::collections::BTreeSet<usize> = self.events.iter().filter_map(|event| event.light).collect();
         for light in lights {
@@ -35,6 +41,7 @@ impl PixelHistory {
                 let _ = writeln!(text, "  {}: {why}", numbers::light(light));
             }
         }
+        text += reasons;
         let mut pass = None;
         for event in &self.events {
             if pass.replace(event.pass) != Some(event.pass) {

@@ -269,10 +269,7 @@ impl Inspector {
     #[must_use]
     pub fn rerun(&mut self, draft: RunRequest) -> Vec<Action> {
         let mut actions = Vec::new();
-        if let Some(scene) = &mut self.model.scene {
-            scene.draft = draft;
-        }
-        self.model.run_draft(&mut actions);
+        self.model.replace_draft(draft, &mut actions);
         actions
     }
 

@@ -19,6 +19,12 @@ impl AxisBox {
         points.into_iter().fold(none, |all, point| AxisBox { low: all.low.min(point), high: all.high.max(point) })
     }
 
+    /// Is a point in it, or on its border?
+    #[must_use]
+    pub fn holds(&self, point: DVec3) -> bool {
+        self.low.cmple(point).all() && self.high.cmpge(point).all()
+    }
+
     /// Its length from corner to corner; infinite around no point.
     #[must_use]
     pub fn diagonal(&self) -> f64 {
@@ -43,6 +49,7 @@ mod tests {
     fn its_corners_are_the_box_around_its_points() {
         let points = [DVec3::new(1.0, -2.0, 3.0), DVec3::new(-1.0, 5.0, 3.0)];
         let found = AxisBox::around(points);
+        assert!(found.holds(points[0]) && found.holds(DVec3::new(0.0, 0.0, 3.0)) && !found.holds(DVec3::ZERO));
         assert_eq!((found.low, found.high), (DVec3::new(-1.0, -2.0, 3.0), DVec3::new(1.0, 5.0, 3.0)));
         assert_eq!(AxisBox::around(found.corners()), found);
         assert_eq!(found.diagonal(), 53.0_f64.sqrt());

@@ -241,7 +241,7 @@ fn light(known: &Known, step: &Step) -> Fact {
     let index = step.light.unwrap_or(0);
     let mut here = Vec::new();
     if let Some(light) = known.lights.get(index) {
-        let [red, green, blue] = light.color.map(|share| format::digits(f64::from(share * light.intensity)));
+        let [red, green, blue] = light.emitted().map(|share| format::digits(share.into()));
         let diffuse = match known.capture.settings.get("diffuse").is_some_and(|how| how == "wrapped") {
             true => "(1 + cosine of its angle) / 2",
             false => "cosine of its angle",

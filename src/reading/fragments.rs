@@ -30,8 +30,10 @@ pub struct Fragment {
     pub normal: DVec3,
     /// Of its triangle's plane, of unit length.
     pub plane: DVec3,
-    /// It looks the light's map up.
+    /// It looks the light's map or textures up.
     pub reads: bool,
+    /// The layer of the light's textures that is its own; `None` where it has none, or that is not known.
+    pub layer: Option<u32>,
 }
 
 /// The fragments of a picture's surfaces.
@@ -66,7 +68,7 @@ impl Fragments {
         let drawn = drawn.filter(|fragment| fragment.world.distance(world) <= most);
         Some(drawn.unwrap_or_else(|| {
             let plane = self.guessed(at, world);
-            Fragment { world, normal: plane, plane, reads: true }
+            Fragment { world, normal: plane, plane, reads: true, layer: None }
         }))
     }
 
@@ -126,6 +128,7 @@ struct Place {
     mesh: u32,
     triangle: u32,
     reads: bool,
+    layer: Option<u32>,
 }
 
 impl Drawn {
@@ -173,6 +176,7 @@ impl Drawn {
             normal: if sees_back { -normal } else { normal }.try_normalize()?,
             plane: across.try_normalize()?,
             reads: place.reads,
+            layer: place.layer,
         };
         fragment.world.is_finite().then_some(fragment)
     }
@@ -182,28 +186,38 @@ impl Drawn {
 fn places(plan: &FramePlan, light: usize) -> Vec<Place> {
     const DRAWN: u8 = 1;
     const READS: u8 = 2;
-    let mut found: Vec<Vec<u8>> = vec![Vec::new(); plan.meshes.len()];
+    let mut found: Vec<Vec<(u8, Option<u32>)>> = vec![Vec::new(); plan.meshes.len()];
     for pass in plan.passes.iter().filter(|pass| pass.view == CAMERA) {
         let is_of_light = pass.light == Some(LightId(light));
         for draw in &pass.draws {
             let how = match draw.program {
-                Program::Light(Visibility::Map) | Program::Label(Visibility::Map) if is_of_light => DRAWN | READS,
+                Program::Light(Visibility::Map | Visibility::Projected | Visibility::ReceiverTexture)
+                | Program::Label(Visibility::Map | Visibility::Projected | Visibility::ReceiverTexture)
+                    if is_of_light =>
+                {
+                    DRAWN | READS
+                }
                 Program::Light(_) | Program::Label(_) | Program::Ambient { .. } => DRAWN,
                 _ => continue,
             };
             let Some(mesh) = plan.meshes.get(draw.mesh.0).filter(|mesh| mesh.surface.is_some()) else { continue };
             let of_mesh = &mut found[draw.mesh.0];
-            of_mesh.resize(mesh.indices.data().len() / 3, 0);
+            of_mesh.resize(mesh.indices.data().len() / 3, (0, None));
             let range = draw.triangles.start as usize..draw.triangles.end as usize;
-            of_mesh.get_mut(range).into_iter().flatten().for_each(|triangle| *triangle |= how);
+            let layer = draw.constants.layer;
+            of_mesh.get_mut(range).into_iter().flatten().for_each(|(drawn, own)| {
+                *drawn |= how;
+                *own = own.or(layer);
+            });
         }
     }
     let places = found.iter().enumerate().flat_map(|(mesh, triangles)| {
-        let drawn = triangles.iter().enumerate().filter(|(_, how)| **how != 0);
-        drawn.map(move |(triangle, how)| Place {
+        let drawn = triangles.iter().enumerate().filter(|(_, (how, _))| *how != 0);
+        drawn.map(move |(triangle, (how, layer))| Place {
             mesh: mesh as u32,
             triangle: triangle as u32,
             reads: how & READS != 0,
+            layer: *layer,
         })
     });
     places.collect()

@@ -7,7 +7,8 @@
 //! depth.rs     what a stored depth means         counts.rs    counts beyond eight bits change.rs   what a step changed
 //! verdict.rs   why a pixel is dark, a sentence   explain_facts.rs a step as a formula  meshes.rs   how meshes hang together
 //! history_row.rs, ladder_layout.rs  a pixel's events in rows, and along its view ray
-//! map_decision.rs what a texel stores against a pixel's depth
+//! map_decision.rs what a texel stores against a pixel's depth; texture_decision.rs what textures let through to it
+//! texels_read.rs both, as text and as JSON                    shading.rs   what each light adds, term by term
 //! written.rs    what a step or a draw wrote, and its texels in their colours
 //! map_readers.rs  texels and the pixels that read them: fragments.rs, projected.rs, pick_ray.rs, object_ids.rs
 //! ```
@@ -32,8 +33,11 @@ pub mod object_ids;
 pub mod outcomes;
 pub mod pick_ray;
 pub mod projected;
+pub mod shading;
 pub mod shown;
 pub mod steps;
+pub mod texels_read;
+pub mod texture_decision;
 pub mod verdict;
 pub mod written;
 

@@ -9,7 +9,7 @@ use crate::plan::{CountBits, DecidedBy, Side};
 use crate::reading::counts;
 use crate::reading::format;
 use crate::reading::map_decision::MapDecision;
-use crate::technique::VolumeSettings;
+use crate::technique::{CountsBy, VolumeSettings};
 use crate::truth::{BACKGROUND, FACES_AWAY, LIT};
 
 /// A sentence with what stands behind it.
@@ -157,7 +157,15 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
     let title = format!("{title}: its stencil count is {shown}.");
     let counters = counters(capture, side);
     let side = side.preposition();
+    let bits = CountBits::of_mask(settings.mask().into());
+    let inverts = settings.operations == CountsBy::Inverting;
     let reason = match (is_dark, count) {
+        (true, 1..) if inverts => format!(
+            "An odd number of volume faces {side} the surface turned its bit over, so the light pass skips this pixel."
+        ),
+        (true, 1..) if bits != CountBits::EIGHT => format!(
+            "The volume faces {side} the surface leave {shown} in {bits}, not 0, so the light pass skips this pixel."
+        ),
         (true, 1..=127) => format!("{} leave {shown}, not 0, so the light pass skips this pixel.", counters.leaving),
         (true, 128..) => format!(
             "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it skips \
@@ -165,15 +173,19 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
         ),
         (false, 0) if in_float.is_some_and(|count| count != 0.0) => {
             let count = in_float.unwrap_or_default();
-            let bits = CountBits::of_mask(settings.mask().into());
             let verb = if bits.modulus() == 2 { "reads" } else { "read" };
             format!("{count} volumes contain the surface, which {bits} {verb} as 0: the light pass adds the light.")
         }
+        (false, 0) if inverts => format!(
+            "An even number of volume faces {side} the surface, or none, turned its bit over, so the light pass adds \
+             the light."
+        ),
         (false, 0) => counters.cancel_out(),
         // Label and count disagree: say so, and do not explain it away.
         (_, count) => format!("The mask does not match the count {count} that the light pass tested."),
     };
     let by_history = match (is_dark, count) {
+        (true, 1..) if inverts || bits != CountBits::EIGHT => ByHistory::Replaced,
         (true, 1..=127) => ByHistory::Replaced,
         (false, 0) if in_float.is_none_or(|count| count == 0.0) => ByHistory::Replaced,
         (true, 128..) | (false, 0) => ByHistory::Preceded,

@@ -13,11 +13,11 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Pushes that mend one step, at most.
-const PUSHES: usize = 12;
+pub(super) const PUSHES: usize = 12;
 /// Steps of one move, at most: what is left of it is not made.
-const MOST_STEPS: usize = 2_000;
+pub(super) const MOST_STEPS: usize = 2_000;
 /// A sphere may be so much inside of a wall, in parts of its radius: rounding.
-const SLACK: f64 = 1e-6;
+pub(super) const SLACK: f64 = 1e-6;
 
 /// Triangles that can't be walked through, world space.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -74,7 +74,7 @@ impl Walls {
         if !(by.is_finite() && from.is_finite() && radius > 0.0) {
             return from;
         }
-        if self.trees.iter().all(|tree| tree.is_empty()) {
+        if self.is_empty() {
             return from + by;
         }
         let Some(mut at) = self.pushed_out(from, radius) else { return from + by };
@@ -110,7 +110,18 @@ impl Walls {
         !self.any_near(from.min(to) - reach, from.max(to) + reach, |_| true)
     }
 
-    fn any_near(&self, low: DVec3, high: DVec3, mut visit: impl FnMut(&Wall) -> bool) -> bool {
+    /// Is there no triangle?
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.trees.iter().all(|tree| tree.is_empty())
+    }
+
+    /// The lowest height that one of them reaches, world space; `None` where there is none.
+    pub(super) fn lowest(&self) -> Option<f64> {
+        self.trees.iter().filter_map(|tree| tree.lowest()).reduce(f64::min)
+    }
+
+    pub(super) fn any_near(&self, low: DVec3, high: DVec3, mut visit: impl FnMut(&Wall) -> bool) -> bool {
         self.trees.iter().any(|tree| tree.any_near(low, high, &mut visit))
     }
 
@@ -146,13 +157,13 @@ impl Walls {
     }
 
     /// Does a wall stand between two points?
-    fn is_between(&self, from: DVec3, to: DVec3) -> bool {
+    pub(super) fn is_between(&self, from: DVec3, to: DVec3) -> bool {
         self.any_near(from.min(to), from.max(to), |wall| is_crossed(*wall, from, to))
     }
 }
 
 /// The point of a triangle that is nearest to `at`: by the region of its plane that `at` lies over.
-fn closest([a, b, c]: [DVec3; 3], at: DVec3) -> DVec3 {
+pub(super) fn closest([a, b, c]: [DVec3; 3], at: DVec3) -> DVec3 {
     let (ab, ac, ap) = (b - a, c - a, at - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {

@@ -13,6 +13,8 @@ pub struct Light {
     pub color: [f32; 3],
     /// Factor of `color`, ≥ 0.
     pub intensity: f32,
+    /// Switched on; else it adds nothing. Its passes stay, so that what they do can be seen.
+    pub is_on: bool,
     /// Distance in metres at which a point light has faded to nothing.
     pub range: Option<f64>,
     /// How it moves.
@@ -33,13 +35,19 @@ impl Light {
     }
 
     fn white(position: DVec4) -> Light {
-        Light { position, color: [1.0; 3], intensity: 1.0, range: None, motion: Motion::default() }
+        Light { position, color: [1.0; 3], intensity: 1.0, is_on: true, range: None, motion: Motion::default() }
     }
 
     /// `w = 0`: shines from one direction everywhere.
     #[must_use]
     pub fn is_directional(&self) -> bool {
         self.position.w == 0.0
+    }
+
+    /// What it sends out: linear RGB times intensity; nothing while it is switched off.
+    #[must_use]
+    pub fn emitted(&self) -> [f32; 3] {
+        if self.is_on { self.color.map(|channel| channel * self.intensity) } else { [0.0; 3] }
     }
 
     /// The position that geometry is computed with: a direction is scaled by a power of two, which

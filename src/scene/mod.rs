@@ -4,6 +4,7 @@
 //! code ([`SceneBuilder`] and [`shapes`], as for [`builtin`]); [`open`] takes any of the three names. Everything that moves is put where
 //! it is at a moment by [`Scene::at`], so nothing downstream knows about time.
 
+mod body;
 mod builder;
 pub mod builtin;
 mod camera;
@@ -23,6 +24,7 @@ pub mod shapes;
 mod suggestion;
 mod wall_tree;
 
+pub use body::{Body, Standing};
 pub use builder::SceneBuilder;
 pub use camera::{Camera, Projection, Sight, Sights};
 pub use collision::{WallCache, Walls};
@@ -30,9 +32,9 @@ pub use error::SceneError;
 pub use light::Light;
 pub use material::{Material, Shading};
 pub use mesh::{Group, Mesh, MeshBuilder, MeshError};
-pub use model_scene::model_scene;
+pub use model_scene::{UpAxis, model_scene};
 pub use object::{Motion, Object, Orbit, Pose, Swing};
-pub use open::{OpenSpec, files_of, open};
+pub use open::{OpenSpec, files_of, is_model, open};
 pub use placement::Surroundings;
 pub use suggestion::{nearest, suggestion};
 

@@ -18,14 +18,31 @@ const TERRACOTTA: [f32; 3] = [0.62, 0.23, 0.12];
 const WARM_GREY: [f32; 3] = [0.60, 0.57, 0.52];
 const AMBIENT: [f32; 3] = [0.13, 0.13, 0.14];
 
+/// Which axis of a model is up. Many programs have z up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum UpAxis {
+    /// As it is here.
+    #[default]
+    Y,
+    /// The model is turned.
+    Z,
+}
+
 /// Completes a model to a scene: a point light, a camera and, with `floor`, a level square that
-/// casts and receives like any object.
+/// casts and receives like any object. One whose z axis is up is turned before.
 ///
 /// # Errors
 /// A mesh without triangles, or one so large or small that single precision can't show it.
-pub fn model_scene(name: &str, mesh: Mesh, floor: bool) -> Result<Scene, SceneError> {
+pub fn model_scene(name: &str, mesh: Mesh, floor: bool, up: UpAxis) -> Result<Scene, SceneError> {
     let unusable = |reason: &str| SceneError::Read { file: PathBuf::from(name), reason: reason.to_owned() };
-    let surroundings = Surroundings::of(mesh.positions())
+    let shading = if mesh.corner_normals().is_some() { Shading::Phong } else { Shading::Flat };
+    let material = Material { color: TERRACOTTA, specular: 0.12, shininess: 24.0, shading, ..Material::default() };
+    let mut model = Object::new(name, Arc::new(mesh), material);
+    if up == UpAxis::Z {
+        model.pose = model.pose.with_z_up();
+    }
+    let positions = model.world_positions();
+    let surroundings = Surroundings::of(&positions)
         .ok_or_else(|| unusable("has no surface whose size can be told: give a model with triangles"))?;
     if surroundings.extent() > MOST_EXTENT {
         return Err(unusable("is too large: scale it down"));
@@ -33,10 +50,7 @@ pub fn model_scene(name: &str, mesh: Mesh, floor: bool) -> Result<Scene, SceneEr
     if surroundings.extent() < LEAST_EXTENT {
         return Err(unusable("is too small: scale it up"));
     }
-    let shading = if mesh.corner_normals().is_some() { Shading::Phong } else { Shading::Flat };
-    let material = Material { color: TERRACOTTA, specular: 0.12, shininess: 24.0, shading, ..Material::default() };
-    let camera = surroundings.camera(mesh.positions());
-    let model = Object::new(name, Arc::new(mesh), material);
+    let camera = surroundings.camera(&positions);
     let mut objects = vec![model];
     if floor {
         objects.push(floor_under(&surroundings)?);

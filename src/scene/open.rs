@@ -3,7 +3,7 @@
 use super::builtin::{self, Builtin};
 use super::read_text::stem;
 use super::suggestion::nearest;
-use super::{Scene, SceneError, file, model_scene, obj};
+use super::{Scene, SceneError, UpAxis, file, model_scene, obj};
 use std::path::{Path, PathBuf};
 
 /// What to open, and how a bare model is completed.
@@ -13,13 +13,15 @@ pub struct OpenSpec {
     pub name: String,
     /// Puts a floor under a bare model; scene files and built-in scenes are taken as they are.
     pub floor: bool,
+    /// Which axis of a bare model is up; the others say so themselves.
+    pub up: UpAxis,
 }
 
 impl OpenSpec {
-    /// `name` with a floor under it if it is a model.
+    /// `name` with a floor under it if it is a model, whose y axis is up.
     #[must_use]
     pub fn new(name: impl Into<String>) -> OpenSpec {
-        OpenSpec { name: name.into(), floor: true }
+        OpenSpec { name: name.into(), floor: true, up: UpAxis::Y }
     }
 }
 
@@ -35,6 +37,13 @@ pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
     std::iter::once(path).chain(models).collect()
 }
 
+/// Does this name a bare model?
+#[must_use]
+pub fn is_model(name: &str) -> bool {
+    let extension = Path::new(name).extension();
+    Builtin::named(name).is_none() && extension.is_some_and(|kind| kind.eq_ignore_ascii_case("obj"))
+}
+
 /// Opens a scene. The result is at time 0.
 ///
 /// # Errors
@@ -48,7 +57,9 @@ pub fn open(spec: &OpenSpec) -> Result<Scene, SceneError> {
     let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
     match extension.as_deref().and_then(|extension| extension.to_str()) {
         Some("toml") => file::load(path),
-        Some("obj") => model_scene(&stem(path), obj::load(path)?, spec.floor).map_err(|error| error.in_file(path)),
+        Some("obj") => {
+            model_scene(&stem(path), obj::load(path)?, spec.floor, spec.up).map_err(|error| error.in_file(path))
+        }
         _ => Err(unknown(&spec.name)),
     }
 }

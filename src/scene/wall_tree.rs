@@ -55,6 +55,11 @@ impl WallTree {
         self.nodes.is_empty()
     }
 
+    /// The lowest height that a triangle reaches; `None` where there is none.
+    pub fn lowest(&self) -> Option<f64> {
+        self.nodes.first().map(|root| root.low.y)
+    }
+
     /// Adds the node of a run of the triangles that begins at `first`, with those below it.
     fn grow(&mut self, triangles: &mut [Wall], first: usize) {
         let AxisBox { low, high } = AxisBox::around(triangles.iter().flatten().copied());

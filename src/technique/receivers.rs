@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use crate::geometry::planar;
-use crate::math::{Sign, side_of_triangle};
+use crate::math::{AxisBox, Sign, side_of_triangle};
 use crate::plan::{Decision, LeftOut, LightId};
 use glam::DVec3;
 
@@ -56,13 +56,15 @@ const FACET: f64 = 1.0 / 20.0;
 /// Leaves out what can't be seen to receive, of those that show a light's shadows: facets of round objects, and the
 /// insides of closed ones. Without marks each would throw shadows over all that is in its plane.
 pub fn leave_out_unmarked(frame: &mut Frame, shown: &mut Vec<&FlatReceiver>, of: &str) {
-    let eye = frame.eye_position();
+    let (eye, place) = (frame.eye_position(), frame.eye());
     let all = shown.len();
     shown.retain(|one| {
         let placed = &frame.placed[one.object];
         let (world, triangles) = (&placed.world, placed.object.mesh.triangles());
         let corners = triangles[one.receiver.triangles[0] as usize].map(|vertex| world[vertex as usize]);
+        // The inside of a room is what one sees of it: an object that the eye is in has the eye within its bounds.
         let is_inside = side_of_triangle(corners, eye) != Sign::Positive
+            && !AxisBox::around(world.iter().copied()).holds(place)
             && frame.job.cache.topology(&placed.object.mesh).is_closed();
         !is_inside && one.receiver.area >= FACET * area(world, triangles)
     });

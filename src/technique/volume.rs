@@ -23,12 +23,12 @@ use super::description::{Description, ONE_ROW, Standing};
 use super::frame::{Drawn, Frame, Job, StencilUse};
 use super::lesson::{Lesson, cited};
 use super::settings::{CountsBy, VolumeSettings, WhoCasts};
-use super::{Choice, PlanError};
+use super::{Choice, PlanError, Technique};
 use crate::geometry::{Caster, Casters, Extrusion, GeometryCache, MOST_TO_SEARCH, SilhouetteBy};
-use crate::plan::{CountBits, CountOf, DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Side, Visibility};
+use crate::plan::{CountBits, CountOf, DecidedBy, Decision, Draw, FramePlan, LeftOut, LightId, Part, Side, Visibility};
 use crate::scene::Scene;
 pub use counting::{Counting, Form};
-use counting::{Start, Step};
+use counting::{Counts, NeededPart, Start, Step};
 use drawn::{Volume, make, needed_parts};
 use glam::{DVec3, DVec4};
 
@@ -223,16 +223,15 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
         near_count::pass(frame, light, settings, &volumes);
     }
     let (begins_at, start) = begin(frame, light, settings, &volumes);
-    for step in Step::all(settings) {
+    let counts = told(frame, light, settings, &volumes, (counted, start));
+    for (index, step) in Step::all(settings).iter().enumerate() {
         let draws: Vec<Draw> = volumes.iter().flat_map(|volume| volume.draws(settings, *step)).collect();
         if draws.is_empty() && begins_at == 0 && !decides.keeps_empty_pass() {
             frame.leave_out(Decision::VolumePass, light.name(), "no caster's volume is needed");
             continue;
         }
-        frame.stencil_pass(light, step.name(), &counting::purpose(counted, light, *step, settings, start), draws);
-        if *step == Step::all(settings)[0] {
-            frame.begin_stencil_at(begins_at as u8 & settings.mask());
-        }
+        let start = if index == 0 { begins_at as u8 & settings.mask() } else { 0 };
+        frame.stencil_pass_from(start, light, step.name(), &counts.purpose(*step), draws);
     }
     let mask = settings.mask().into();
     frame.mask_pass(light, &[Drawn::shadow(), Drawn::lit().where_stencil(mask, 0)]);
@@ -249,7 +248,7 @@ fn add_light(frame: &mut Frame, light: LightId, settings: &VolumeSettings, decid
 
 /// What a light's count begins at, and why where that is said.
 fn begin(frame: &Frame, light: LightId, settings: &VolumeSettings, volumes: &[Volume]) -> (u32, Option<Start>) {
-    let kept = |start: u32| if settings.counts_in_float { start as u8 } else { start as u8 & settings.mask() };
+    let kept = |start: u32| if settings.counts_in_float { start } else { start & u32::from(settings.mask()) };
     if settings.starts_at_eye {
         let start = eye_count::at(frame, light, volumes);
         return (start, Some(Start::Eye(kept(start))));
@@ -278,6 +277,19 @@ fn counted_by(volumes: &[Volume], usual: Counting) -> Option<Counting> {
     volumes.iter().all(|volume| volume.counting == first).then_some(first)
 }
 
+/// What is told of how these are counted, and from what.
+fn told<'a>(
+    frame: &Frame,
+    light: LightId,
+    options: &'a VolumeSettings,
+    volumes: &[Volume],
+    (by, start): (Option<Counting>, Option<Start>),
+) -> Counts<'a> {
+    let chooses_side = frame.job.choice.technique() == Technique::Auto;
+    let lacks = [0, 1].map(|cap| volumes.iter().any(|volume| volume.lacks_caps[cap]));
+    Counts { by, light, options, start, chooses_side, lacks }
+}
+
 /// The same in a float target: signed, and right beyond eight bits. It adds and takes away in one
 /// draw, and stops nowhere.
 fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options: &VolumeSettings, volumes: &[Volume]) {
@@ -291,9 +303,9 @@ fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options
     }
     let draws = volumes.iter().flat_map(|volume| volume.float_draws(options)).collect();
     let (begins_at, start) = begin(frame, light, options, volumes);
-    let purpose = counting::purpose(counted_by(volumes, counting), light, Step::BothFaces, options, start);
-    frame.count_pass(light, Step::BothFaces.name(), &purpose, draws);
-    frame.begin_count_at(light, begins_at);
+    let counts = told(frame, light, options, volumes, (counted_by(volumes, counting), start));
+    let step = Step::BothFaces;
+    frame.count_pass(begins_at, light, step.name(), &counts.purpose(step), draws);
     frame.mask_pass(light, &[Drawn::lit_by(Visibility::Count)]);
     let purpose = "Adds the light where the count is zero. Everywhere else the surface is inside a shadow volume and \
                    stays dark.";
@@ -333,8 +345,15 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
             frame.leave_out(Decision::Caster, &object.name, because);
             continue;
         }
-        let (mut needed, begins_with) = needed_parts(frame, form, &parts, object, (options.caps, far_end));
-        needed.retain(|part| !part.triangles.is_empty());
+        let (needed, begins_with) = needed_parts(frame, form, &parts, object, (options.caps[1], far_end));
+        let is_drawn = |part: &NeededPart| match part.part {
+            Part::LightCap => options.caps[0],
+            Part::DarkCap => options.caps[1],
+            _ => true,
+        };
+        let (needed, lacking): (Vec<_>, Vec<_>) =
+            needed.into_iter().filter(|part| !part.triangles.is_empty()).partition(is_drawn);
+        let lacks_caps = [Part::LightCap, Part::DarkCap].map(|cap| lacking.iter().any(|part| part.part == cap));
         let mesh = frame.add_mesh(mesh);
         let is_body = options.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
         let darkens_nothing = !is_body && !casters::can_darken(frame, index, light, Darkened::All);
@@ -348,6 +367,7 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
             mesh,
             parts,
             needed,
+            lacks_caps,
             begins_with,
         });
     }

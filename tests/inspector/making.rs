@@ -11,7 +11,7 @@ use std::sync::Arc;
 use stencilscope::ask::{MeshesOf, RunRequest};
 use stencilscope::glam;
 use stencilscope::inspector::{Action, Inspector};
-use stencilscope::scene::{Light, Object, Scene, SceneBuilder, model_scene, shapes};
+use stencilscope::scene::{Light, Object, Pose, Scene, SceneBuilder, UpAxis, model_scene, shapes};
 use stencilscope::technique::{Choice, Technique};
 
 /// A floor and a box, seen from two metres away.
@@ -230,7 +230,7 @@ fn a_far_plane_is_set_and_taken_away() {
 #[test]
 fn a_model_with_z_up_is_turned_and_stands_on_its_floor_before_the_camera() {
     let mesh = shapes::cuboid([1.0, 2.0, 6.0]).expect("a box");
-    let scene = model_scene("tower", mesh, true).expect("a model's scene");
+    let scene = model_scene("tower", mesh, true, UpAxis::Y).expect("a model's scene");
     let mut inspector = Inspector::new(Vec::new());
     let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
     inspector.open_scene(&scene, request.clone(), Some("tower.obj".to_owned()));
@@ -251,4 +251,67 @@ fn a_model_with_z_up_is_turned_and_stands_on_its_floor_before_the_camera() {
     assert!((run.camera.target.y - (low + high) / 2.0).abs() < 1e-9 && run.lights[0].position.y > high);
     click_button(&mut harness, "y up");
     assert_eq!(last_run(&harness), request);
+}
+
+/// The settings over a model's scene, opened with an axis up.
+fn settings_over(up: UpAxis, change: impl FnOnce(&mut Scene)) -> (Scene, Harness<'static, Seen>) {
+    let mesh = shapes::cuboid([1.0, 2.0, 6.0]).expect("a box");
+    let mut scene = model_scene("tower", mesh, true, up).expect("a model's scene");
+    change(&mut scene);
+    let mut inspector = Inspector::new(Vec::new());
+    let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
+    inspector.open_scene(&scene, request, Some("tower.obj".to_owned()));
+    inspector.set_capture(Arc::new(z_fail(SIZE)));
+    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
+    click(&mut harness, "Scene settings");
+    (scene, harness)
+}
+
+#[test]
+fn turning_a_model_leaves_a_light_and_a_camera_where_they_were_put_by_hand() {
+    let lamp = DVec3::new(9.0, 8.0, 7.0);
+    let (scene, mut harness) = settings_over(UpAxis::Y, |scene| scene.lights[0].position = lamp.extend(1.0));
+    click_button(&mut harness, "z up");
+    let run = last_run(&harness);
+    assert_eq!(run.lights[0].position, lamp.extend(1.0), "the light was put there");
+    assert_ne!(run.camera, scene.camera, "the camera was not");
+    let (scene, mut harness) = settings_over(UpAxis::Y, |scene| scene.camera.eye += DVec3::Y);
+    click_button(&mut harness, "z up");
+    let run = last_run(&harness);
+    assert_eq!(run.camera, scene.camera);
+    assert_ne!(run.lights, scene.lights);
+    // A field of view of one's own is no place.
+    let (scene, mut harness) = settings_over(UpAxis::Y, |scene| scene.camera.fov_y_degrees = 70.0);
+    click_button(&mut harness, "z up");
+    let camera = last_run(&harness).camera;
+    assert!(camera.fov_y_degrees == 70.0 && camera.eye != scene.camera.eye, "{camera:?}");
+}
+
+#[test]
+fn a_floor_that_was_moved_stays_when_the_model_is_turned() {
+    let (scene, mut harness) = settings_over(UpAxis::Y, |_| {});
+    let floor = Pose { translate: DVec3::Y * -3.0, ..scene.objects[1].pose };
+    let mut draft = harness.state().inspector.draft().expect("a draft").as_ref().clone();
+    draft.objects.moved.insert(1, floor);
+    let actions = harness.state_mut().inspector.rerun(draft);
+    harness.state_mut().actions.extend(actions);
+    harness.run_steps(1);
+    click_button(&mut harness, "z up");
+    assert_eq!(last_run(&harness).objects.moved[&1], floor);
+}
+
+#[test]
+fn a_model_that_was_opened_with_z_up_is_turned_back_to_what_it_is_with_y_up() {
+    let (z_up, mut harness) = settings_over(UpAxis::Z, |_| {});
+    let (y_up, _) = settings_over(UpAxis::Y, |_| {});
+    click_button(&mut harness, "y up");
+    let turned = last_run(&harness).applied_to(&z_up);
+    assert_eq!((turned.camera, &turned.lights), (y_up.camera, &y_up.lights));
+    let heights = |scene: &Scene| {
+        let of = |object: &Object| object.world_positions().iter().map(|at| at.y).fold(f64::INFINITY, f64::min);
+        scene.objects.iter().map(of).collect::<Vec<f64>>()
+    };
+    assert!(heights(&turned).iter().zip(heights(&y_up)).all(|(a, b)| (a - b).abs() < 1e-9), "{:?}", heights(&turned));
+    click_button(&mut harness, "z up");
+    assert_eq!(last_run(&harness).applied_to(&z_up).camera, z_up.camera);
 }

@@ -168,13 +168,29 @@ fn every_part_has_a_switch_that_shows_and_hides_it() {
     click(&mut harness, "Objects");
     let all = look(&mut harness, FREE);
     assert!(with_objects != all);
-    for name in ["Sides", "Light caps", "Dark caps", "Silhouettes", "Frusta", "Near-clip volume", "Names"] {
+    for name in ["Sides", "Light caps", "Dark caps", "Silhouettes", "Frusta", "Near-clip volume", "Names", "Wireframe"]
+    {
         click(&mut harness, name);
         let without = look(&mut harness, FREE);
         assert!(all != without, "{name} changes nothing");
         click(&mut harness, name);
         assert!(all == look(&mut harness, FREE), "{name} comes back as it was");
     }
+}
+
+#[test]
+fn a_wireframe_is_hidden_by_surfaces_until_they_are_switched_off() {
+    let mut harness = shown();
+    ["Sides", "Light caps", "Dark caps", "Silhouettes", "Frusta"].iter().for_each(|name| click(&mut harness, name));
+    let changed = |a: &[[u8; 4]], b: &[[u8; 4]]| a.iter().zip(b).filter(|(a, b)| a != b).count();
+    let solid = look(&mut harness, FREE);
+    click(&mut harness, "Wireframe");
+    let over_surfaces = changed(&solid, &look(&mut harness, FREE));
+    click(&mut harness, "Objects");
+    let all_edges = look(&mut harness, FREE);
+    click(&mut harness, "Wireframe");
+    let seen_through = changed(&look(&mut harness, FREE), &all_edges);
+    assert!(over_surfaces > 100 && seen_through > over_surfaces, "{over_surfaces} {seen_through}");
 }
 
 #[test]

@@ -210,3 +210,15 @@ fn a_setting_of_the_technique_goes_back_to_its_default() {
     click_button(&mut harness, "Reset casters");
     assert_eq!(last_run(&harness).choice, Choice::new(Technique::ZFail));
 }
+
+#[test]
+fn a_light_is_switched_off_and_on_again() {
+    let mut harness = settings_of("z-fail");
+    let before = harness.state().inspector.draft().expect("a draft").lights.clone();
+    click(&mut harness, "light 1 is on");
+    let off = last_run(&harness).lights.clone();
+    assert_eq!(off.iter().map(|light| light.is_on).collect::<Vec<_>>(), [false]);
+    assert_eq!(off[0].emitted(), [0.0; 3]);
+    click(&mut harness, "light 1 is on");
+    assert_eq!(last_run(&harness).lights, before, "as bright as it was");
+}

@@ -310,6 +310,88 @@ fn walls_are_asked_for_anew_when_they_move_or_the_file_is_loaded_again() {
     assert_eq!(walls_asked(&harness).len(), before + 1, "another file has other walls");
 }
 
+/// The room, and who begins to walk in it at this height, and weighs something.
+fn falling_from(eye: DVec3, scene: &mut Scene) -> Harness<'static, Seen> {
+    scene.camera.target += eye - scene.camera.eye;
+    scene.camera.eye = eye;
+    let mut inspector = Inspector::default();
+    inspector.set_scene(scene, draft_of(scene));
+    let mut harness = harness_of(inspector, [1280.0, 800.0]);
+    answer(&mut harness);
+    click(&mut harness, "Walk");
+    answer_walls(&mut harness, scene);
+    harness.run_steps(1);
+    assert!(runs(&harness).is_empty(), "one floats at first");
+    press(&mut harness, Key::G);
+    harness
+}
+
+fn eye_of(harness: &Harness<Seen>) -> DVec3 {
+    harness.state().inspector.draft().expect("a draft").camera.eye
+}
+
+#[test]
+fn g_makes_one_fall_land_and_walk_on_the_ground_and_float_again() {
+    let mut harness = falling_from(DVec3::new(0.0, 2.6, 0.0), &mut room());
+    harness.get_by_label_contains("falling (G)");
+    let mut heights = vec![eye_of(&harness).y];
+    while runs(&harness).len() > heights.len() - 1 && heights.len() < 200 {
+        answer(&mut harness);
+        heights.push(eye_of(&harness).y);
+    }
+    assert!(heights.windows(2).all(|pair| pair[1] <= pair[0]), "{heights:?}");
+    assert!((3..100).contains(&heights.len()), "no key is held, and one comes to rest: {heights:?}");
+    assert!((eye_of(&harness).y - 1.7).abs() < 1e-9, "{}", eye_of(&harness));
+    harness.get_by_label_contains("on the ground (G)");
+    for _ in 0..8 {
+        press(&mut harness, Key::Period);
+    }
+    let eye = go(&mut harness, Key::D);
+    assert!((eye.y - 1.7).abs() < 1e-9 && eye.x > 1.7 && eye.x < 1.76, "the wall stops: {eye}");
+    press(&mut harness, Key::C);
+    harness.get_by_label_contains("through walls (C)");
+    press(&mut harness, Key::G);
+    harness.get_by_label_contains("floating (G)");
+}
+
+#[test]
+fn who_falls_off_the_world_is_put_back_and_told() {
+    let ground = common::square("ground", 0.0, 2.0);
+    let mut scene = Scene { objects: vec![ground], ..room() };
+    let mut harness = falling_from(DVec3::new(1.5, 1.7, 0.0), &mut scene);
+    for _ in 0..2 {
+        press(&mut harness, Key::Period);
+    }
+    let put_back = "Nothing is below: back where you stood last";
+    harness.key_down(Key::D);
+    let mut lowest = 1.7;
+    for _ in 0..400 {
+        harness.run_steps(1);
+        answer(&mut harness);
+        lowest = f64::min(lowest, eye_of(&harness).y);
+        if harness.query_by_label(put_back).is_some() {
+            break;
+        }
+    }
+    harness.key_up(Key::D);
+    harness.get_by_label(put_back);
+    assert!(lowest < -1.0, "{lowest}");
+    let eye = eye_of(&harness);
+    assert!(eye.x > 1.5 && eye.x < 2.2 && (eye.y - 1.7).abs() < 0.1, "{eye}");
+    // Over nothing there is no place to be put back to but the first.
+    let start = DVec3::new(9.0, 5.0, 0.0);
+    let mut harness = falling_from(start, &mut scene);
+    let floats = "Nothing to land on is below: back where you began, and you float (G)";
+    for _ in 0..400 {
+        answer(&mut harness);
+        if harness.query_by_label(floats).is_some() {
+            break;
+        }
+    }
+    harness.get_by_label(floats);
+    assert_eq!(eye_of(&harness), start);
+}
+
 /// `INSPECTOR_PICTURES=FOLDER cargo test pictures_of_walking` writes it.
 #[test]
 fn pictures_of_walking_can_be_drawn() {

@@ -3,7 +3,7 @@
 use super::{as_bright_as, brightness, capture, over_floor, shadow_pixels, unseen, wrong};
 use crate::common::{from_above, mesh, session, square};
 use glam::DVec3;
-use stencilscope::scene::{Material, Object};
+use stencilscope::scene::{Material, Object, shapes};
 use stencilscope::technique::Technique;
 
 /// Shadows of 40 × 40 and 20 × 20 pixels that share 10 × 20.
@@ -59,6 +59,22 @@ fn without_the_stencil_the_builtin_scenes_hang_shadows_over_their_edges_and_do_n
         assert!((0.01..0.5).contains(&on_surfaces), "{name}: {on_surfaces}");
         assert_eq!(darkened(true) > 0.01, hangs_over, "{name}: {}", darkened(true));
     }
+}
+
+/// What one sees of a closed room is its inside.
+#[test]
+fn without_the_stencil_a_room_receives_where_the_eye_is_in_it() {
+    let mut session = session();
+    let room = Object { casts: false, ..Object::of("room", shapes::cuboid([30.0; 3]).expect("a room")) };
+    let mut scene = from_above(vec![room, unseen(square("caster", 0.0, 1.0), [0.0, 2.0, 0.0])]);
+    scene.objects.remove(0);
+    let settings = [("stencil", "off"), ("z-fighting", "polygon-offset")];
+    let [plain, shadowed] = [Technique::None, Technique::Planar].map(|technique| {
+        let settings = if technique == Technique::Planar { &settings[..] } else { &[] };
+        brightness(&capture(&mut session, &scene, technique, settings))
+    });
+    let darkened = plain.iter().zip(&shadowed).filter(|(before, after)| **after < **before * 0.9).count();
+    assert!(darkened > 400, "{darkened}");
 }
 
 /// Two below the light a square throws one twice as large; two beyond it an anti-shadow as large.

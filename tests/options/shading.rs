@@ -99,6 +99,22 @@ fn what_glows_is_as_bright_in_the_dark() {
     assert_eq!(as_bright_as(&brightness(&found), 0.25), 40_000);
 }
 
+/// Of a black floor that shines, highlights are all there is to see.
+#[test]
+fn a_checkerboard_darkens_no_highlight() {
+    let mut session = session();
+    for shading in ["flat", "gouraud", "phong"] {
+        let [plain, checked] = [0.0, 1.0].map(|checks| {
+            let mut scene = from_above(Vec::new());
+            let floor = &mut scene.objects[0].material;
+            (floor.color, floor.specular, floor.shininess, floor.checks) = ([0.0; 3], 0.8, 1.0, checks);
+            brightness(&capture(&mut session, &scene, Technique::None, &[("shading", shading)]))
+        });
+        assert!(plain.iter().any(|shade| *shade > 0.02), "{shading}");
+        assert_eq!(plain, checked, "{shading}");
+    }
+}
+
 /// Twenty by twenty metres seen as 200 × 200 pixels: squares of one metre are ten pixels, half of them a third as bright,
 /// wherever in the world the floor lies.
 #[test]

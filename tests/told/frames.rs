@@ -99,7 +99,13 @@ pub fn jobs() -> Vec<Job> {
             for value in values(technique, spec) {
                 let scene = quick[jobs.len() % quick.len()];
                 // What it changes only beside another.
-                let beside = (spec.key == "epsilon").then(|| ("depth", "standard-infinite-epsilon".to_owned()));
+                let beside = match spec.key {
+                    "epsilon" => Some(("depth", "standard-infinite-epsilon")),
+                    "far-vertices" => Some(("extrusion", "finite:3")),
+                    "order" => Some(("faces", "two-pass")),
+                    _ => None,
+                };
+                let beside = beside.map(|(key, value)| (key, value.to_owned()));
                 jobs.push(Job {
                     scene,
                     technique,
@@ -116,6 +122,7 @@ pub fn jobs() -> Vec<Job> {
         settings: vec![(key, value.to_owned())],
         camera: Seen::AsItIs,
     };
+    jobs.push(gate("stencil-bits", "4"));
     jobs.extend([gate("counter", "float"), gate("operations", "clamp"), gate("faces", "two-pass")]);
     let inside = |technique, key, value: &str| Job {
         scene: "inside",

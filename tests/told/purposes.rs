@@ -62,6 +62,24 @@ fn count_all(pass: &Pass, is_in_front: bool, up: bool, down: bool) -> bool {
     counting(pass).iter().all(wished)
 }
 
+/// Half of a count: what its faces do.
+fn is_half(pass: &Pass, is_in_front: bool, told: &str) -> bool {
+    let up = match (is_in_front, told) {
+        (true, "a front face nearer than the surface adds 1") | (false, "a back face hidden by the surface adds 1") => {
+            true
+        }
+        (true, "a back face nearer than it takes 1 away") | (false, "a hidden front face takes 1 away") => false,
+        _ => return false,
+    };
+    count_all(pass, is_in_front, up, !up)
+}
+
+/// Is the other half before it?
+fn is_second(frame: &Frame, pass: &Pass) -> bool {
+    let is_half = |other: &&Pass| other.light == pass.light && other.name.starts_with("volumes, ");
+    frame.plan.passes.iter().filter(is_half).position(|other| std::ptr::eq(other, pass)) == Some(1)
+}
+
 fn is_light(pass: &Pass, light: &str) -> bool {
     pass.light.is_some_and(|own| format!("light {}", own.0 + 1) == light)
 }
@@ -87,10 +105,7 @@ fn turns_over(draw: &Draw, is_in_front: bool) -> bool {
 
 /// Does a count begin at the casting triangles that the light's ray along parallel lines of sight meets?
 fn begins_at_far_end(frame: &Frame, pass: &Pass, told: &str) -> bool {
-    let cleared = match &pass.color {
-        Some(color) => color.clear.map_or(0, |clear| clear[0] as u32),
-        None => pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil).unwrap_or(0).into(),
-    };
+    let cleared = cleared_to(frame, pass);
     let eye = frame.scene.camera.relative_eye();
     let light = pass.light.expect("a light").0;
     let [x, y, z, w] = frame.plan.lights[light].relative_position.map(f64::from);
@@ -110,6 +125,80 @@ fn begins_at_far_end(frame: &Frame, pass: &Pass, told: &str) -> bool {
     });
     let met = met.filter(|corners| meets(*corners)).count() as u32;
     eye.w == 0.0 && w == 1.0 && told.parse() == Ok(cleared) && cleared == met && met > 0
+}
+
+/// Where the first pass of its light begins to count, if not at nothing.
+fn cleared_to(frame: &Frame, pass: &Pass) -> u32 {
+    let counts = |other: &&Pass| other.light == pass.light && other.view.0 == 0 && !counting(other).is_empty();
+    let Some(first) = frame.plan.passes.iter().find(counts) else { return 0 };
+    let stencil = first.depth_stencil.as_ref().and_then(|target| target.clear_stencil).map(u32::from);
+    let float = first.color.as_ref().and_then(|target| target.clear).map(|clear| clear[0] as u32);
+    if first.draws.iter().any(|draw| draw.program == Program::Count) { float } else { stencil }.unwrap_or(0)
+}
+
+/// What a count says in the end.
+fn is_left(frame: &Frame, pass: &Pass, told: &str) -> bool {
+    let begins = "It begins at {}, for the volumes around the eye. {}";
+    let ends = "It begins at {}: parallel lines of sight all end at one point at infinity, in the volumes of so many casting triangles, those that a ray from {} along them meets. {}";
+    let rest = match gaps(begins, told) {
+        _ if let Some(told) = gaps(ends, told) => {
+            if !is_light(pass, told[1]) || !begins_at_far_end(frame, pass, told[0]) {
+                return false;
+            }
+            told[2]
+        }
+        Some(told) if told[0].parse() != Ok(cleared_to(frame, pass)) => return false,
+        Some(told) => told[1],
+        None if cleared_to(frame, pass) != 0 => return false,
+        None => told,
+    };
+    let [one_side, is_plus] = [rest.starts_with("What is left"), frame.plan.technique == Technique::ZPassPlus.name()];
+    let kinds = [
+        ("What is left contains the surface{}.", one_side && !is_plus),
+        ("With what the near plane began with, if anything, what is left contains the surface{}.", is_plus),
+        ("Either way, what is left contains the surface{}.", frame.plan.technique == Technique::Auto.name()),
+    ];
+    kinds
+        .iter()
+        .any(|(pattern, is_so)| *is_so && gaps(pattern, rest).is_some_and(|told| is_so_where(frame, pass, told[0])))
+}
+
+/// On what that hangs: the eye, the near plane, and caps that are not drawn.
+fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
+    let (eye, caps) = told.split_once("; ").unwrap_or((told, ""));
+    let [is_z_pass, is_auto] =
+        [Technique::ZPass, Technique::Auto].map(|technique| frame.plan.technique == technique.name());
+    let starts_at_eye = frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
+    let is_eye_so = match eye {
+        ", if the eye itself is in none" => is_z_pass && !starts_at_eye,
+        ", if the near plane cuts none" => is_z_pass && starts_at_eye,
+        ", as neither the eye nor the near plane is in any" => {
+            is_auto && counting(pass).iter().all(|one| one.is_in_front)
+        }
+        ", wherever the eye is" => !is_z_pass,
+        _ => false,
+    };
+    let lacks = match caps {
+        "" => [false; 2],
+        "but no light cap is drawn, and where one lies on that side the count is wrong" => [true, false],
+        "but no dark cap is drawn, and where one lies on that side the count is wrong" => [false, true],
+        "but no cap is drawn, and where one lies on that side the count is wrong" => [true, true],
+        _ => return false,
+    };
+    let own = || frame.plan.passes.iter().filter(|other| other.light == pass.light && other.view.0 == 0);
+    let is_drawn =
+        [Part::LightCap, Part::DarkCap].map(|part| own().any(|pass| pass.draws.iter().any(|draw| draw.part == part)));
+    // Behind surfaces all volumes need a light cap, and those that do not meet in one point a dark one.
+    let light = pass.light.expect("a light").0;
+    let is_behind =
+        counting(pass).iter().any(|one| !one.is_in_front) || pass.draws.iter().any(|d| turns_over(d, false));
+    let is_point = frame.scene.lights[light].homogeneous().w != 0.0;
+    // Parallel lines of sight see the far end as a point, for which a count begins elsewhere.
+    let is_needed = [is_behind, is_behind && is_point && !frame.scene.camera.is_parallel()];
+    is_eye_so
+        && [0, 1]
+            .into_iter()
+            .all(|cap| !(lacks[cap] && is_drawn[cap]) && (lacks[cap] || is_drawn[cap] || !is_needed[cap]))
 }
 
 fn asks(pass: &Pass, how: Visibility) -> bool {
@@ -155,52 +244,43 @@ const PURPOSES: &[(&str, Check)] = &[
         },
     ),
     (
-        "Counts the shadow volumes of {} in front of each surface: a front face nearer than the surface adds 1, a back face nearer than it takes 1 away. What is left contains the surface, if the eye itself is in none.",
+        "Counts the shadow volumes of {} in front of each surface: a front face nearer than the surface adds 1, a back face nearer than it takes 1 away. {}",
         |frame, pass, told| {
-            is_light(pass, told[0])
-                && count_all(pass, true, true, true)
-                && frame.plan.technique != Technique::ZPassPlus.name()
+            is_light(pass, told[0]) && count_all(pass, true, true, true) && is_left(frame, pass, told[1])
         },
     ),
     (
-        "Counts the shadow volumes of {} in front of each surface: a front face nearer than the surface adds 1, a back face nearer than it takes 1 away. With what the near plane began with, if anything, what is left contains the surface, wherever the eye is.",
+        "Counts the shadow volumes of {} behind each surface: a back face hidden by the surface adds 1, a hidden front face takes 1 away. {}",
         |frame, pass, told| {
-            // Without a pass of it, the near plane is in the shadow of nothing.
-            let is_plus = frame.plan.technique == Technique::ZPassPlus.name();
-            is_light(pass, told[0]) && count_all(pass, true, true, true) && is_plus
+            is_light(pass, told[0]) && count_all(pass, false, true, true) && is_left(frame, pass, told[1])
         },
     ),
     (
-        "Counts the shadow volumes of {} behind each surface: a back face hidden by the surface adds 1, a hidden front face takes 1 away. What is left contains the surface, wherever the eye is.",
-        |_, pass, told| is_light(pass, told[0]) && count_all(pass, false, true, true),
-    ),
-    (
-        "Counts the shadow volumes of {}, behind each surface where they may hold the eye, else in front of it: in front, a front face adds 1 and a back face takes 1 away, behind, it is the other way round. Either way, what is left contains the surface, wherever the eye is.",
-        |_, pass, told| {
+        "Counts the shadow volumes of {}, behind each surface where they may hold the eye, else in front of it: in front, a front face adds 1 and a back face takes 1 away, behind, it is the other way round. {}",
+        |frame, pass, told| {
             let counting = counting(pass);
             let [front, behind] = [true, false].map(|side| counting.iter().any(|one| one.is_in_front == side));
             let is_right = |one: &Steps| (one.outside, one.inside) == if one.is_in_front { (1, -1) } else { (-1, 1) };
-            is_light(pass, told[0]) && front && behind && counting.iter().all(is_right)
+            let are_right = counting.iter().all(is_right);
+            is_light(pass, told[0]) && front && behind && are_right && is_left(frame, pass, told[1])
         },
     ),
     (
-        "Counts the shadow volumes of {} in front of each surface, first half: a front face nearer than the surface adds 1. The other faces follow in a pass of their own.",
-        |_, pass, told| is_light(pass, told[0]) && count_all(pass, true, true, false),
+        "Counts the shadow volumes of {} in front of each surface, first half: {}. The other faces follow in a pass of their own.",
+        |frame, pass, told| is_light(pass, told[0]) && is_half(pass, true, told[1]) && !is_second(frame, pass),
     ),
+    ("Counts the shadow volumes of {} in front of each surface, second half: {}. {}", |frame, pass, told| {
+        let is_so = is_half(pass, true, told[1]) && is_left(frame, pass, told[2]);
+        is_light(pass, told[0]) && is_so && is_second(frame, pass)
+    }),
     (
-        "Counts the shadow volumes of {} in front of each surface, second half: a back face nearer than it takes 1 away. {}",
-        |_, pass, told| {
-            is_light(pass, told[0]) && count_all(pass, true, false, true) && told[1].contains("contains the surface")
-        },
+        "Counts the shadow volumes of {} behind each surface, first half: {}. The other faces follow in a pass of their own.",
+        |frame, pass, told| is_light(pass, told[0]) && is_half(pass, false, told[1]) && !is_second(frame, pass),
     ),
-    (
-        "Counts the shadow volumes of {} behind each surface, first half: a back face hidden by the surface adds 1. The other faces follow in a pass of their own.",
-        |_, pass, told| is_light(pass, told[0]) && count_all(pass, false, true, false),
-    ),
-    (
-        "Counts the shadow volumes of {} behind each surface, second half: a hidden front face takes 1 away. What is left contains the surface, wherever the eye is.",
-        |_, pass, told| is_light(pass, told[0]) && count_all(pass, false, false, true),
-    ),
+    ("Counts the shadow volumes of {} behind each surface, second half: {}. {}", |frame, pass, told| {
+        let is_so = is_half(pass, false, told[1]) && is_left(frame, pass, told[2]);
+        is_light(pass, told[0]) && is_so && is_second(frame, pass)
+    }),
     (
         "Counts how many shadow volumes of {} contain each point of the near plane: every casting triangle between it and the light adds 1, drawn as the light sees it through the near rectangle.",
         |_, pass, told| is_light(pass, told[0]) && pass.counts_at_near_plane() && pass.view.0 != 0,
@@ -234,34 +314,18 @@ const PURPOSES: &[(&str, Check)] = &[
         },
     ),
     (
-        "Counts the shadow volumes of {} in front of each surface: a front face nearer than the surface adds 1, a back face nearer than it takes 1 away. It begins at {}, for the volumes around the eye: what is left contains the surface, if the near plane cuts none.",
-        |_, pass, told| {
-            let start: u8 = told[1].parse().expect("a number");
-            let cleared = pass.depth_stencil.as_ref().and_then(|target| target.clear_stencil).unwrap_or(0);
-            is_light(pass, told[0]) && count_all(pass, true, true, true) && start == cleared
-        },
-    ),
-    (
-        "Counts the shadow volumes of {} behind each surface: a back face hidden by the surface adds 1, a hidden front face takes 1 away. It begins at {}: parallel lines of sight all end at one point at infinity, in the volumes of so many casting triangles, those that a ray from {} along them meets. What is left contains the surface, wherever the eye is.",
+        "Counts the shadow volumes of {} in front of each surface, odd or even: every face nearer than it turns one bit over. 1 is left where an odd number of volumes contains the surface, and an even one reads as none{}.",
         |frame, pass, told| {
-            is_light(pass, told[0]) && count_all(pass, false, true, true) && begins_at_far_end(frame, pass, told[1])
+            let turned = pass.draws.iter().all(|draw| turns_over(draw, true));
+            is_light(pass, told[0]) && turned && is_so_where(frame, pass, told[1])
         },
     ),
     (
-        "Counts the shadow volumes of {} behind each surface, second half: a hidden front face takes 1 away. It begins at {}: parallel lines of sight all end at one point at infinity, in the volumes of so many casting triangles, those that a ray from {} along them meets. What is left contains the surface, wherever the eye is.",
+        "Counts the shadow volumes of {} behind each surface, odd or even: every face hidden by the surface turns one bit over. 1 is left where an odd number of volumes contains the surface, and an even one reads as none{}.",
         |frame, pass, told| {
-            let of_light = |other: &&Pass| other.light == pass.light && other.name.starts_with("volumes");
-            let first = frame.plan.passes.iter().find(of_light).expect("a first half");
-            is_light(pass, told[0]) && count_all(pass, false, false, true) && begins_at_far_end(frame, first, told[1])
+            let turned = pass.draws.iter().all(|draw| turns_over(draw, false));
+            is_light(pass, told[0]) && turned && is_so_where(frame, pass, told[1])
         },
-    ),
-    (
-        "Counts the shadow volumes of {} in front of each surface, odd or even: every face nearer than it turns one bit over. It ends as 1 where an odd number of volumes contains the surface, and an even one reads as none.",
-        |_, pass, told| is_light(pass, told[0]) && pass.draws.iter().all(|draw| turns_over(draw, true)),
-    ),
-    (
-        "Counts the shadow volumes of {} behind each surface, odd or even: every face hidden by the surface turns one bit over. It ends as 1 where an odd number of volumes contains the surface, and an even one reads as none.",
-        |_, pass, told| is_light(pass, told[0]) && pass.draws.iter().all(|draw| turns_over(draw, false)),
     ),
     (
         "Counts how many shadow volumes of {} contain each point of the near plane: every casting triangle between it and the light turns the bit over, drawn as the light sees it through the near rectangle.",

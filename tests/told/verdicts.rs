@@ -3,7 +3,7 @@
 
 use super::Held;
 use super::frames::Frame;
-use super::patterns::{gaps, number};
+use super::patterns::{gaps, mask_of, number};
 use stencilscope::capture::FrameTarget;
 use stencilscope::history::{EventKind, PixelHistory};
 use stencilscope::plan::{DecidedBy, Part, Program};
@@ -83,6 +83,12 @@ impl Here<'_> {
             _ if told.ends_with(" in front of") => counted.all(|(nearer, _)| nearer),
             _ => told.ends_with(" on either side of") && self.says_side("on either side of"),
         }
+    }
+
+    /// How often faces turned its bit over.
+    fn turns(&self) -> usize {
+        let own = self.history.events.iter().filter(|event| event.light == Some(self.light) && event.is_of_volume());
+        own.filter(|event| event.step() != 0 && event.before.stencil != event.after.stencil).count()
     }
 
     fn near(&self) -> f64 {
@@ -182,6 +188,10 @@ const REASONS: &[(&str, Check)] = &[
             && !here.decided_by().counts_volumes()
             && !here.is_brighter()
     }),
+    ("The volume faces {} the surface leave {} in {}, not 0, so the light pass skips this pixel.", |here, told| {
+        let mask = i64::from(mask_of(told[2]));
+        dark_count(here, told[0], told[1]) && (here.signed() as i64 & mask) == here.signed() as i64
+    }),
     ("The volume faces {} the surface leave {}, not 0, so the light pass skips this pixel.", |here, told| {
         dark_count(here, told[0], told[1])
     }),
@@ -216,6 +226,14 @@ const REASONS: &[(&str, Check)] = &[
             && of_history
             && held.is_some_and(|count| number(told[1]) == f64::from(count))
     }),
+    (
+        "An odd number of volume faces {} the surface turned its bit over, so the light pass skips this pixel.",
+        |here, told| here.label() == is(1) && here.count() == 1.0 && here.says_side(told[0]) && here.turns() % 2 == 1,
+    ),
+    (
+        "An even number of volume faces {} the surface, or none, turned its bit over, so the light pass adds the light.",
+        |here, told| here.label() == is(0) && here.count() == 0.0 && here.says_side(told[0]) && here.turns() % 2 == 0,
+    ),
     ("The volume faces {} the surface cancel out, so the light pass adds the light.", |here, told| {
         here.label() == is(0) && here.says_side(told[0]) && here.count() == 0.0
     }),

@@ -1,5 +1,8 @@
 //! The worker by its orders and news.
 
+mod cases;
+mod films;
+
 use super::*;
 use crate::ask::{
     Answer, DiagnosisOf, DrawsOf, FilmOf, FilmSubject, HistoryOf, MeshesOf, ObjectChanges, Question, ReportOf,
@@ -78,55 +81,6 @@ fn captured(news: &Receiver<News>) -> (String, std::collections::BTreeMap<String
 }
 
 #[test]
-fn stress_cases_run_one_by_one_and_a_cancelled_run_is_dropped() {
-    let (worker, frame, news) = started();
-    let progress = ask(&worker, frame, 5, StressOf { cases: vec!["one-pixel", "no-receiver"] });
-    let mut heard = Vec::new();
-    wait(&news, |news| match news {
-        News::AnsweredPart { ticket: 5, answer: Answer::StressOf(part) } => {
-            heard.push((part.rows[0].case, part.rows.len()));
-            None
-        }
-        News::AnswerEnded { ticket: 5 } => Some(()),
-        _ => None,
-    });
-    let rows = ["one-pixel", "no-receiver"].map(|name| (name, case(name).entrants().len() * case(name).values.len()));
-    assert_eq!(heard, rows);
-    let all = rows.iter().map(|(_, count)| count).sum();
-    assert_eq!(progress.steps(), (all, all));
-    wait(&news, |news| matches!(news, News::Idle).then_some(()));
-    ask(&worker, frame, 6, StressOf { cases: vec!["tall-picture"] }).cancel();
-    ask(&worker, frame, 7, TruthOf {});
-    wait(&news, |news| {
-        assert!(!matches!(news, News::AnsweredPart { .. } | News::AnswerEnded { .. }), "it was cancelled");
-        matches!(news, News::Answered { ticket: 7, .. }).then_some(())
-    });
-}
-
-#[test]
-fn within_a_case_of_a_thousand_rows_pictures_and_pixels_are_answered_and_it_goes_on() {
-    let (worker, frame, news) = started();
-    let progress = ask(&worker, frame, 1, StressOf { cases: vec!["random"] });
-    wait_until_busy(&news, "stress: random");
-    // As a dragged pick asks: many at once, of which the last is to be answered.
-    (0..60).for_each(|x| drop(ask(&worker, frame, 100 + u64::from(x), history(x, 5))));
-    wait(&news, |news| {
-        assert!(!matches!(news, News::AnsweredPart { .. }), "the answer comes first");
-        matches!(news, News::Answered { ticket: 159, result: Ok(_) }).then_some(())
-    });
-    assert!(worker.order(Order::Open("tori".to_owned())));
-    wait(&news, |news| {
-        assert!(!matches!(news, News::AnsweredPart { .. }), "the picture comes first");
-        matches!(news, News::Captured { .. }).then_some(())
-    });
-    let (done, all) = progress.steps();
-    assert!(done < all, "{done} of {all}");
-    wait_until_busy(&news, "stress: random");
-    progress.cancel();
-    wait(&news, |news| matches!(news, News::Idle).then_some(()));
-}
-
-#[test]
 fn a_pixel_is_answered_while_a_report_is_measured() {
     let (worker, frame, news) = started();
     let choices = [Technique::ZFail, Technique::Planar].map(Choice::new).to_vec();
@@ -157,40 +111,6 @@ fn a_report_of_a_scene_that_is_open_no_more_says_so() {
     assert!(answer::<ReportOf>(&news, 3).expect_err("another scene").contains("measure again"));
 }
 
-#[test]
-fn a_stress_case_is_opened_as_a_scene_with_the_technique_that_breaks() {
-    let (worker, _frame, news) = started();
-    let entrant = case("nested").entrants().into_iter().find(|entrant| !entrant.settings.is_empty());
-    assert!(worker.order(Order::OpenCase { case: case("nested"), value: 2.0, entrant }));
-    let scene = wait(&news, |news| if let News::Opened { scene, .. } = news { Some(scene) } else { None });
-    assert_eq!(scene.name, "nested 2");
-    let (technique, settings, size) = captured(&news);
-    assert_eq!((technique.as_str(), size), ("z-fail", [64, 36]));
-    assert_eq!(settings.get("counter").map(String::as_str), Some("float"));
-    // What it brought along does not stay.
-    assert!(worker.order(Order::OpenCase { case: case("nested"), value: 1.0, entrant: None }));
-    assert_eq!(captured(&news).0, "planar");
-}
-
-#[test]
-fn a_setting_that_a_case_drives_is_set_on_the_chosen_technique_or_on_one_that_has_it() {
-    let (worker, _frame, news) = started();
-    let open = |value| assert!(worker.order(Order::OpenCase { case: case("map-size"), value, entrant: None }));
-    let size = |settings: std::collections::BTreeMap<String, String>| settings.get("size").cloned();
-    for (value, text) in [(64.0, "64"), (256.0, "256")] {
-        open(value);
-        let (technique, settings, _) = captured(&news);
-        assert_eq!((technique.as_str(), size(settings).as_deref()), ("shadow-map", Some(text)));
-    }
-    let request = wait_for_request(&worker, &news);
-    let texture = RunRequest { choice: Choice::new(Technique::PlanarTexture), ..request.1 };
-    assert!(worker.order(Order::Run { scene: request.0, request: Box::new(texture) }));
-    assert_eq!(captured(&news).0, "planar-texture");
-    open(128.0);
-    let (technique, settings, _) = captured(&news);
-    assert_eq!((technique.as_str(), size(settings).as_deref()), ("planar-texture", Some("128")));
-}
-
 /// Opens the built-in table: its generation and first run.
 fn wait_for_request(worker: &Worker, news: &Receiver<News>) -> (u64, RunRequest) {
     assert!(worker.order(Order::Open("table".to_owned())));
@@ -213,34 +133,6 @@ fn what_was_set_for_one_scene_is_not_set_for_the_next() {
     assert!(worker.order(Order::Open("tori".to_owned())));
     let (technique, settings, _) = captured(&news);
     assert_eq!((technique.as_str(), settings["casters"].as_str()), ("z-fail", "by-topology"), "the technique stays");
-}
-
-#[test]
-fn the_size_of_a_case_goes_with_it_but_what_is_changed_meanwhile_stays() {
-    let (worker, _frame, news) = started();
-    let z_fail = case("wide-picture").entrants().into_iter().find(|entrant| entrant.technique == Technique::ZFail);
-    let open = || {
-        assert!(worker.order(Order::OpenCase { case: case("wide-picture"), value: 0.0, entrant: z_fail }));
-        let opened = wait(&news, |news| match news {
-            News::Opened { scene_number, request, .. } => Some((scene_number, *request)),
-            _ => None,
-        });
-        assert_eq!(captured(&news).2, [16_384, 1]);
-        opened
-    };
-    let run = |generation, request: &RunRequest| {
-        assert!(worker.order(Order::Run { scene: generation, request: Box::new(request.clone()) }));
-        captured(&news)
-    };
-    let (generation, mut request) = open();
-    request.camera.eye.x += 0.1;
-    assert_eq!(run(generation, &request).2, [16_384, 1], "only the eye moved");
-    let (_, table) = wait_for_request(&worker, &news);
-    assert_eq!((table.choice.technique(), table.size), (Technique::Planar, [64, 36]));
-    let (generation, request) = open();
-    run(generation, &RunRequest { size: [80, 60], ..request });
-    let (_, table) = wait_for_request(&worker, &news);
-    assert_eq!((table.choice.technique(), table.size), (Technique::Planar, [80, 60]));
 }
 
 #[test]
@@ -475,87 +367,6 @@ fn a_changed_file_is_loaded_again_with_camera_and_lights_as_they_are() {
     assert_eq!(request.choice.technique(), Technique::ZPass);
 }
 
-fn round(worker: &Worker, frame: u64, ticket: u64, path: &Path) -> Progress {
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
-    let request = Box::new(RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]));
-    let subject = FilmSubject::LightRound { request, light: 0 };
-    ask(worker, frame, ticket, FilmOf { subject, path: path.display().to_string() })
-}
-
-#[test]
-fn a_film_lets_pictures_and_pixels_come_between_and_is_whole_in_the_end() {
-    let (worker, frame, news) = started();
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("round.png");
-    let progress = round(&worker, frame, 1, &path);
-    while progress.steps().0 == 0 {
-        thread::yield_now();
-    }
-    ask(&worker, frame, 2, history(30, 20));
-    wait(&news, |news| match news {
-        News::Answered { ticket: 2, result: Ok(_) } => Some(()),
-        News::Answered { ticket: 1, .. } => panic!("the pixel comes first"),
-        _ => None,
-    });
-    // Another scene is opened meanwhile: the film is of the one that it was asked of.
-    assert!(worker.order(Order::Open("tori".to_owned())));
-    wait(&news, |news| match news {
-        News::Captured { .. } => Some(()),
-        News::Answered { ticket: 1, .. } => panic!("the picture comes first"),
-        _ => None,
-    });
-    assert!(!path.exists(), "it is not whole");
-    let filmed = answer::<FilmOf>(&news, 1).expect("a film");
-    assert_eq!((filmed.pictures, progress.steps()), (24, (24, 24)));
-    let file = std::fs::read(&path).expect("a file");
-    assert_eq!(file.len() as u64, filmed.bytes);
-    let reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a PNG");
-    assert_eq!(reader.info().animation_control().map(|all| (all.num_frames, all.num_plays)), Some((24, 0)));
-    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left beside it");
-}
-
-#[test]
-fn a_film_that_is_cancelled_leaves_nothing() {
-    let (worker, frame, news) = started();
-    let folder = tempfile::tempdir().expect("a folder");
-    let progress = round(&worker, frame, 1, &folder.path().join("round.png"));
-    while progress.steps().0 == 0 {
-        thread::yield_now();
-    }
-    progress.cancel();
-    ask(&worker, frame, 2, TruthOf {});
-    answer::<TruthOf>(&news, 2).expect("a truth");
-    ask(&worker, frame, 3, StressOf { cases: vec!["one-pixel"] });
-    // Stress cases come after films.
-    wait(&news, |news| matches!(news, News::AnswerEnded { ticket: 3 }).then_some(()));
-    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
-}
-
-#[test]
-fn a_film_that_can_not_be_made_says_why_with_the_mend() {
-    let (worker, frame, news) = started();
-    round(&worker, frame, 1, Path::new("/no such folder/round.png"));
-    let reason = answer::<FilmOf>(&news, 1).expect_err("no such folder");
-    assert!(
-        reason.contains("/no such folder/round.png: can't be written") && reason.contains("choose another"),
-        "{reason}"
-    );
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("a.png").display().to_string();
-    let scene = crate::scene::open(&OpenSpec::new("table")).expect("a built-in scene");
-    let mut request = RunRequest::of(&scene, Choice::new(Technique::ZFail), [64, 36]);
-    request.lights[0] = Light::directional([0.0, 1.0, 0.0]);
-    let subject = FilmSubject::LightRound { request: Box::new(request), light: 0 };
-    ask(&worker, frame, 2, FilmOf { subject: subject.clone(), path: path.clone() });
-    let reason = answer::<FilmOf>(&news, 2).expect_err("on the axis");
-    assert!(reason.contains("move it to a side"), "{reason}");
-    // Of a scene that is open no more.
-    ask_of(&worker, [0, frame], 3, FilmOf { subject, path });
-    let reason = answer::<FilmOf>(&news, 3).expect_err("another scene");
-    assert!(reason.contains("export it again"), "{reason}");
-    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
-}
-
 /// What is made in the window is in the next frame, in the walls, and in the scene file, which opens as it was left.
 #[test]
 fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
@@ -595,17 +406,4 @@ fn objects_and_lights_that_are_added_and_moved_are_drawn_and_saved() {
     );
     assert_eq!(saved.objects.last().map(|object| object.name.as_str()), Some("new box"));
     assert_eq!(saved.lights, changed.lights);
-}
-
-#[test]
-fn a_film_that_is_under_way_when_the_window_closes_leaves_nothing() {
-    let (worker, frame, _news) = started();
-    let folder = tempfile::tempdir().expect("a folder");
-    let progress = round(&worker, frame, 1, &folder.path().join("round.png"));
-    while progress.steps().0 == 0 {
-        thread::yield_now();
-    }
-    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "it is being written");
-    drop(worker);
-    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
 }

@@ -112,7 +112,7 @@ fn parity(facts: &Facts, case: &Case) -> Option<Suspicion> {
         (count != 0 && count % 2 == 0 && stored(sample, light)? == 0).then_some(count)
     })?;
     let evidence =
-        format!("{count} volumes contain the surface, an even number: as many turns of one bit leave it at 0");
+        format!("{count} volumes contain the surface, an even number, and the one bit that faces turn over ends at 0");
     let mends = vec![Mend::setting("operations", "wrap")];
     Suspicion::new(Cause::Parity, evidence, mends, shown_by)
 }

@@ -10,7 +10,7 @@ use crate::numbers;
 use crate::plan::{Decision, LeftOut, Part};
 use crate::technique::Technique;
 use crate::truth::SeenSurface;
-use glam::DVec2;
+use glam::{DMat3, DVec2, DVec3};
 
 pub(crate) const RULES: &[Rule] = &[reverse_projection, between, edge_smear, self_shadow, aliasing, no_fit];
 
@@ -63,26 +63,58 @@ pub(crate) fn look(
 /// Where a surface point is in the picture of a caster's silhouette: from −1 to 1 across it. `None` behind the light.
 fn place_in_picture(facts: &Facts, light: usize, caster: usize, seen: &SeenSurface) -> Option<DVec2> {
     let map = facts.plan.lights.get(light)?.map.as_ref()?;
-    let name = &facts.scene.objects.get(caster)?.name;
-    let layer = map.layer_names.iter().position(|of| of == name).filter(|layer| map.faces[*layer].is_some())?;
-    let clip = *map.clip_from_light.get(layer)? * seen.point.extend(1.0);
+    let clip = *map.clip_from_light.get(layer_of(facts, light, caster)?)? * seen.point.extend(1.0);
     (clip.w > 0.0).then(|| clip.truncate().truncate() / clip.w)
+}
+
+/// Which layer of a light's map is a caster's picture.
+fn layer_of(facts: &Facts, light: usize, caster: usize) -> Option<usize> {
+    let map = facts.plan.lights.get(light)?.map.as_ref()?;
+    let name = &facts.scene.objects.get(caster)?.name;
+    map.layer_names.iter().position(|of| of == name).filter(|layer| map.faces[*layer].is_some())
 }
 
 fn is_outside(place: DVec2) -> bool {
     place.abs().max_element() > 1.0
 }
 
-/// The caster of whose picture the last texel or what goes on beyond it is here, with the place across it; the nearest.
+/// The caster whose picture's last texels, or what goes on beyond them, darken this place, with the place across it.
 fn smearing(facts: &Facts, light: usize, seen: &SeenSurface) -> Option<(usize, f64)> {
     facts.plan.lights.get(light)?.map.as_ref().filter(|map| map.repeats_edge)?;
     let last_texel = 1.0 - 2.0 / facts.texels();
     let others = (0..facts.scene.objects.len()).filter(|object| *object != seen.place.object);
     let places = others.filter_map(|object| {
-        let place = place_in_picture(facts, light, object, seen)?.abs().max_element();
-        (place >= last_texel).then_some((object, place))
+        let place = place_in_picture(facts, light, object, seen)?;
+        let far = place.abs().max_element();
+        (far >= last_texel && is_covered(facts, light, object, seen, place)).then_some((object, far))
     });
     places.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Does the caster's silhouette cover a texel of its picture that is read at a place: the nearest, or one beside it?
+fn is_covered(facts: &Facts, light: usize, caster: usize, seen: &SeenSurface, place: DVec2) -> bool {
+    let layer = layer_of(facts, light, caster);
+    let Some((map, layer)) = facts.plan.lights.get(light).and_then(|light| light.map.as_ref()).zip(layer) else {
+        return false;
+    };
+    // Where the line of a place in the picture meets the plane across the light's ray through what is seen: two planes
+    // of that line, as clip coordinates have it, and this one.
+    let rows = map.clip_from_light[layer].transpose();
+    let towards = facts.tracer.towards(light, seen.point);
+    let line_at = |place: DVec2| {
+        let [across, up] = [rows.x_axis - rows.w_axis * place.x, rows.y_axis - rows.w_axis * place.y];
+        let planes = DMat3::from_cols(across.truncate(), up.truncate(), towards).transpose();
+        planes.inverse() * DVec3::new(-across.w, -up.w, towards.dot(seen.point))
+    };
+    let texels = facts.texels();
+    let nearest = ((place + 1.0) / 2.0 * texels).floor();
+    let center = |dx: f64, dy: f64| {
+        let texel = (nearest + DVec2::new(dx, dy)).clamp(DVec2::ZERO, DVec2::splat(texels - 1.0));
+        (texel + 0.5) / texels * 2.0 - 1.0
+    };
+    let near = [-1.0, 0.0, 1.0].into_iter().flat_map(|x| [-1.0, 0.0, 1.0].map(|y| center(x, y)));
+    let mut points = near.map(line_at).filter(|point| point.is_finite());
+    points.any(|point| facts.tracer.along(light, point).iter().any(|met| met.place.object == caster))
 }
 
 /// The caster's name and the distance of the first sample that shows a cause, and how many do.
@@ -148,7 +180,10 @@ fn no_fit(facts: &Facts, case: &Case) -> Option<Suspicion> {
             "the surface is at {} of half the width of {caster}'s picture, which ends at 1",
             numbers::digits(place)
         );
-        return Suspicion::new(Cause::OutsideMap, evidence, vec![Mend::setting("fit", "on")], shown_by);
+        // Fitted pictures end beyond their casters, but for rounding.
+        let is_fitted = facts.plan.settings.get("fit").is_none_or(|fit| fit == "on");
+        let mend = if is_fitted { Mend::technique(Technique::ZFail) } else { Mend::setting("fit", "on") };
+        return Suspicion::new(Cause::OutsideMap, evidence, vec![mend], shown_by);
     }
     let is_its = |left: &&LeftOut| left.names(Decision::Silhouette, &caster);
     let because = facts.plan.left_out.iter().find(is_its).map(|left| left.because.clone());

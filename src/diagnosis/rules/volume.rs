@@ -19,8 +19,8 @@ pub(crate) const RULES: &[Rule] = &[
     missing_dark_cap,
     missing_light_cap,
     far_clip,
-    finite_extrusion,
     light_not_added,
+    finite_extrusion,
     cap_fighting,
 ];
 
@@ -284,7 +284,8 @@ fn beyond_clamped(facts: &Facts, case: &Case, far: f64) -> Option<Suspicion> {
 
 fn finite_extrusion(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let light = case.light();
-    let Extrusion::Finite(factor) = facts.volumes()?.extrusion else { return None };
+    // Of a light that is not added back: as far as its volumes would reach if it were.
+    let (Extrusion::Finite(factor) | Extrusion::FromOrigin(factor)) = facts.volumes()?.extrusion else { return None };
     if !case.is_missing() {
         return None;
     }

@@ -112,9 +112,10 @@ impl Model {
     /// Another scene is open; `None` for a capture folder, which can't be run again.
     pub fn set_scene(&mut self, scene: Option<(&Scene, RunRequest)>, source: Option<String>) {
         let before = self.scene.take();
+        let key = scene.as_ref().map(|(scene, _)| source.clone().unwrap_or_else(|| scene.name.clone()));
+        let known = before.as_ref().filter(|before| Some(before.key()) == key).map(|before| &before.lights_opened);
         if let (Some(before), Some((question, report))) = (&before, self.answers.current::<ReportOf>()) {
             // Of one that was changed, or is loaded again, the numbers would be another scene's.
-            let key = scene.as_ref().map(|(scene, _)| source.clone().unwrap_or_else(|| scene.name.clone()));
             if before.is_as_opened() && Some(before.key()) != key {
                 self.reports.insert(before.key(), (question.clone(), Arc::clone(report)));
             } else {
@@ -152,7 +153,7 @@ impl Model {
                 objects: ObjectChanges::default(),
                 ..draft.clone()
             },
-            lights_opened: lights_opened(&draft.lights, &scene.lights, before.as_ref()),
+            lights_opened: lights_opened(&draft.lights, &scene.lights, known.map(Vec::as_slice)),
             draft,
         });
         self.activity.is_waiting = self.scene.is_some();
@@ -185,6 +186,14 @@ impl Model {
         let Some(scene) = &mut self.scene else { return };
         scene.choices.insert(scene.draft.choice.technique(), scene.draft.choice.clone());
         scene.draft.choice = choice;
+        self.run_draft(actions);
+    }
+
+    /// Runs the scene as another draft says.
+    pub fn replace_draft(&mut self, draft: RunRequest, actions: &mut Vec<Action>) {
+        let Some(scene) = &mut self.scene else { return };
+        scene.lights_opened = lights_opened(&draft.lights, &scene.opened.lights, Some(&scene.lights_opened));
+        scene.draft = draft;
         self.run_draft(actions);
     }
 
@@ -261,13 +270,15 @@ impl Model {
 }
 
 /// As in [`OpenScene::lights_opened`], of a scene that is opened to be run with these lights.
-fn lights_opened(draft: &[Light], loaded: &[Light], before: Option<&OpenScene>) -> Vec<Option<usize>> {
-    if draft.len() == loaded.len() {
-        return (0..draft.len()).map(Some).collect();
+/// `before` is what was known of the same scene's, where it is loaded again and run with what was added or deleted.
+fn lights_opened(draft: &[Light], loaded: &[Light], before: Option<&[Option<usize>]>) -> Vec<Option<usize>> {
+    let in_order = || (0..draft.len()).map(Some).collect();
+    match before.filter(|known| known.len() == draft.len()) {
+        _ if draft == loaded => in_order(),
+        Some(known) => known.iter().map(|place| place.filter(|place| *place < loaded.len())).collect(),
+        None if draft.len() == loaded.len() => in_order(),
+        None => vec![None; draft.len()],
     }
-    // Loaded again, and run with those that were added or deleted before.
-    let known = before.map(|before| &before.lights_opened).filter(|known| known.len() == draft.len());
-    known.cloned().unwrap_or_else(|| vec![None; draft.len()])
 }
 
 /// The middle of a mesh's bounding box.
@@ -275,4 +286,24 @@ fn middle(mesh: &Mesh) -> DVec3 {
     let all = || mesh.positions().iter().copied();
     let (low, high) = (all().reduce(DVec3::min), all().reduce(DVec3::max));
     low.zip(high).map_or(DVec3::ZERO, |(low, high)| low / 2.0 + high / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_light_is_the_one_that_it_was_opened_as() {
+        let lights = [1.0, 2.0, 3.0].map(|x| Light::point([x, 1.0, 0.0]));
+        let added = Light::point([9.0; 3]);
+        assert_eq!(lights_opened(&lights, &lights, Some(&[None, None, None])), [Some(0), Some(1), Some(2)]);
+        // The first was deleted and one added.
+        let draft = [lights[1].clone(), lights[2].clone(), added.clone()];
+        let known = [Some(1), Some(2), None];
+        assert_eq!(lights_opened(&draft, &lights, Some(&known)), known);
+        assert_eq!(lights_opened(&draft, &lights[..2], Some(&known)), [Some(1), None, None], "its file has fewer now");
+        // Moved, of a scene that nothing is known of.
+        assert_eq!(lights_opened(&draft, &lights, None), [Some(0), Some(1), Some(2)]);
+        assert_eq!(lights_opened(&draft[..1], &lights, None), [None]);
+    }
 }

@@ -3,7 +3,10 @@
 
 use super::Model;
 use crate::inspector::action::Panel;
+use crate::scene::{Standing, Walls};
 use egui::{Context, CursorGrab, Vec2, ViewportCommand};
+use glam::DVec3;
+use std::sync::Arc;
 
 /// Metres a second at first.
 const SPEED: f64 = 2.0;
@@ -18,15 +21,47 @@ pub struct Walk {
     pub speed: f64,
     /// Why the last key did nothing.
     pub nothing_because: Option<String>,
+    /// One weighs something; `None`: one floats at the height of the eye.
+    pub weight: Option<Weight>,
     /// egui's time of the last step, seconds.
     pub last: Option<f64>,
     /// Mouse movement that no frame shows yet, points.
     pub turned: Vec2,
 }
 
+/// How one stands who weighs something.
+#[derive(Debug, Default)]
+pub struct Weight {
+    /// `None` until the walls are known.
+    pub standing: Option<Standing>,
+    /// The walls that this is so in: others may leave nothing under the feet.
+    pub within: Option<Arc<Walls>>,
+    /// Where the feet stood last.
+    pub stood_at: Option<DVec3>,
+    /// Where the eye was when this began.
+    pub began_at: Option<DVec3>,
+}
+
 impl Default for Walk {
     fn default() -> Walk {
-        Walk { is_on: false, collides: true, speed: SPEED, nothing_because: None, last: None, turned: Vec2::ZERO }
+        Walk {
+            is_on: false,
+            collides: true,
+            speed: SPEED,
+            nothing_because: None,
+            weight: None,
+            last: None,
+            turned: Vec2::ZERO,
+        }
+    }
+}
+
+impl Weight {
+    /// On the ground, and nothing has changed about it.
+    #[must_use]
+    pub fn is_at_rest(&self, walls: &Arc<Walls>) -> bool {
+        let is_same = self.within.as_ref().is_some_and(|within| Arc::ptr_eq(within, walls));
+        is_same && self.standing.is_some_and(|standing| standing.is_on_ground)
     }
 }
 
@@ -44,7 +79,9 @@ impl Model {
         if self.scene.is_none() || self.frame.capture.is_none() || self.walk.is_on {
             return;
         }
-        self.walk = Walk { is_on: true, collides: self.walk.collides, speed: self.walk.speed, ..Walk::default() };
+        let weight = self.walk.weight.as_ref().map(|_| Weight::default());
+        let Walk { collides, speed, .. } = self.walk;
+        self.walk = Walk { is_on: true, collides, speed, weight, ..Walk::default() };
         self.requests.panels.push(Panel::Picture);
         if let Some(id) = ctx.memory(egui::Memory::focused) {
             ctx.memory_mut(|memory| memory.surrender_focus(id));

@@ -3,14 +3,15 @@
 //! Only while one walks these keys act, and no others do. The pointer is hidden and held in the window.
 //! A new frame is asked for when the last one is shown, so nothing queues up: a slow technique moves in
 //! larger steps, not later. Walls are asked for whenever objects are switched off, move or are loaded anew;
-//! until they come the walls before count.
+//! until they come the walls before count. With gravity (G) one falls also while no key is held, until one stands.
 
 use crate::ask::{RunRequest, WallsOf};
 use crate::inspector::action::{Action, Overlay};
 use crate::inspector::canvas;
 use crate::inspector::model::Model;
+use crate::inspector::model::walk::Weight;
 use crate::reading::shown::PictureKind;
-use crate::scene::{Camera, Walls};
+use crate::scene::{Body, Camera, Standing, Walls};
 use crate::technique::Technique;
 use egui::{Context, Event, FocusDirection, Key, Vec2};
 use glam::{DQuat, DVec3};
@@ -28,6 +29,8 @@ const LONGEST: f64 = 0.25;
 /// Half the width of who walks, metres, and what of the near plane's distance it is at least.
 const RADIUS: f64 = 0.25;
 const RADIUS_OF_NEAR: f64 = 1.5;
+/// An eye that is farther from where it was left was set elsewhere, metres.
+const SAME_PLACE: f64 = 1e-6;
 /// Sizes of shadow maps.
 const SIZES: [u32; 5] = [256, 512, 1024, 2048, 4096];
 /// What P goes through.
@@ -49,6 +52,8 @@ pub enum WalkCommand {
     Technique,
     /// Walls stop, or do not.
     Collision,
+    /// One falls, and stands on what is below, or floats.
+    Gravity,
     /// Slower.
     Slower,
     /// Faster.
@@ -81,13 +86,14 @@ const fn key(key: Key, keys: &'static str, command: WalkCommand, does: &'static 
 }
 
 /// All of them: handling and help both read this.
-pub const KEYS: [WalkKey; 12] = [
+pub const KEYS: [WalkKey; 13] = [
     key(Key::W, "W", WalkCommand::Go(1, 0), "walk ahead"),
     key(Key::S, "S", WalkCommand::Go(-1, 0), "walk back"),
     key(Key::A, "A", WalkCommand::Go(0, -1), "walk to the left"),
     key(Key::D, "D", WalkCommand::Go(0, 1), "walk to the right"),
     key(Key::P, "P", WalkCommand::Technique, "no shadow, planar, projective, z-pass, z-fail, shadow map"),
     key(Key::C, "C", WalkCommand::Collision, "walls stop, or do not"),
+    key(Key::G, "G", WalkCommand::Gravity, "gravity: fall, land, climb steps up to 0.4 m; or float"),
     key(Key::Comma, "<", WalkCommand::Slower, "slower"),
     key(Key::Period, ">", WalkCommand::Faster, "faster"),
     key(Key::V, "V", WalkCommand::Overlay, "silhouettes, volumes, shadow, or nothing over the picture"),
@@ -151,7 +157,10 @@ fn begins(ctx: &Context, model: &mut Model) -> bool {
 
 fn act(ctx: &Context, model: &mut Model, command: WalkCommand, actions: &mut Vec<Action>) {
     let [slowest, fastest] = SPEED_LIMITS;
-    model.walk.nothing_because = None;
+    // Keys of walking are held: what was said stays to be read.
+    if !matches!(command, WalkCommand::Go(..)) {
+        model.walk.nothing_because = None;
+    }
     match command {
         // As long as it is held: see `step`.
         WalkCommand::Go(..) => {}
@@ -162,6 +171,9 @@ fn act(ctx: &Context, model: &mut Model, command: WalkCommand, actions: &mut Vec
             model.choose_technique(next, actions);
         }
         WalkCommand::Collision => model.walk.collides = !model.walk.collides,
+        WalkCommand::Gravity => {
+            model.walk.weight = if model.walk.weight.is_some() { None } else { Some(Weight::default()) }
+        }
         WalkCommand::Slower => model.walk.speed = (model.walk.speed / FASTER).max(slowest),
         WalkCommand::Faster => model.walk.speed = (model.walk.speed * FASTER).min(fastest),
         WalkCommand::Overlay => next_overlay(model),
@@ -212,26 +224,38 @@ fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
     let goes: DVec3 = KEYS.iter().filter(|key| held(key.key)).map(|key| way(key.command)).sum();
     model.walk.turned += ctx.input(|input| input.pointer.motion()).unwrap_or(Vec2::ZERO);
     let now = ctx.input(|input| input.time);
-    if goes == DVec3::ZERO {
-        model.walk.last = None;
-    } else {
-        ctx.request_repaint();
-    }
+    let needs_walls = model.walk.collides || model.walk.weight.is_some();
     let walls = walls(model);
-    let has_walls = !model.walk.collides || walls.is_some();
-    if model.activity.is_waiting || !has_walls || (goes == DVec3::ZERO && model.walk.turned == Vec2::ZERO) {
+    let falls = match (&model.walk.weight, &walls) {
+        (Some(weight), Some(walls)) => !weight.is_at_rest(walls),
+        _ => false,
+    };
+    let moves = goes != DVec3::ZERO || falls;
+    if moves {
+        ctx.request_repaint();
+    } else {
+        model.walk.last = None;
+    }
+    let is_known = !needs_walls || walls.is_some();
+    if model.activity.is_waiting || !is_known || (!moves && model.walk.turned == Vec2::ZERO) {
         return;
     }
     let passed = model.walk.last.map_or(1.0 / 60.0, |last| (now - last).clamp(0.0, LONGEST));
-    model.walk.last = Some(now).filter(|_| goes != DVec3::ZERO);
+    model.walk.last = Some(now).filter(|_| moves);
     let turned = std::mem::take(&mut model.walk.turned);
     let Some(scene) = &mut model.scene else { return };
     let before = scene.draft.camera;
     turn(&mut scene.draft.camera, turned);
-    let by = direction(&scene.draft.camera, goes, !model.walk.collides) * (model.walk.speed * passed);
+    let floats = model.walk.weight.is_none();
+    let by = direction(&scene.draft.camera, goes, floats && !model.walk.collides) * (model.walk.speed * passed);
     let radius = RADIUS.max(before.near * RADIUS_OF_NEAR);
-    let walls = walls.filter(|_| model.walk.collides);
-    let eye = walls.map_or(before.eye + by, |walls| walls.walk(before.eye, by, radius));
+    let eye = match (&walls, floats) {
+        (Some(walls), false) if moves => fallen(model, before.eye, (by, passed), (walls, &Body::new(radius))),
+        (Some(walls), true) if model.walk.collides => walls.walk(before.eye, by, radius),
+        (_, true) => before.eye + by,
+        (_, false) => before.eye,
+    };
+    let Some(scene) = &mut model.scene else { return };
     scene.draft.camera.target += eye - before.eye;
     scene.draft.camera.eye = eye;
     // A running animation asks for the frame with its own moment.
@@ -240,9 +264,41 @@ fn step(ctx: &Context, model: &mut Model, actions: &mut Vec<Action>) {
     }
 }
 
+/// Where the eye of a body is that weighs something, and has gone by a way in some seconds. Who falls beyond all that there is
+/// is put back to where they stood last; who stood nowhere floats again.
+fn fallen(model: &mut Model, eye: DVec3, (by, seconds): (DVec3, f64), (walls, body): (&Arc<Walls>, &Body)) -> DVec3 {
+    let Some(weight) = &mut model.walk.weight else { return eye };
+    // A camera that was set elsewhere begins anew.
+    let known = weight.standing.filter(|standing| body.eye_of(standing.feet).distance(eye) < SAME_PLACE);
+    let began_at = *weight.began_at.get_or_insert(eye);
+    let from = known.unwrap_or_else(|| body.under(eye, walls));
+    let now = body.walk(from, by, seconds, (walls, model.walk.collides));
+    weight.within = Some(walls.clone());
+    weight.standing = Some(now);
+    if now.is_on_ground {
+        weight.stood_at = Some(now.feet);
+    }
+    if !now.is_beyond {
+        return body.eye_of(now.feet);
+    }
+    match weight.stood_at.take() {
+        Some(feet) => {
+            weight.standing = Some(Standing { feet, falls_by: 0.0, is_on_ground: false, is_beyond: false });
+            model.walk.nothing_because = Some("Nothing is below: back where you stood last".to_owned());
+            body.eye_of(feet)
+        }
+        None => {
+            model.walk.weight = None;
+            let because = "Nothing to land on is below: back where you began, and you float (G)";
+            model.walk.nothing_because = Some(because.to_owned());
+            began_at
+        }
+    }
+}
+
 /// The walls of what is to be run; until they are known, those before.
 fn walls(model: &Model) -> Option<Arc<Walls>> {
-    let scene = model.scene.as_ref().filter(|_| model.walk.collides)?;
+    let scene = model.scene.as_ref().filter(|_| model.walk.collides || model.walk.weight.is_some())?;
     let time = if scene.animated { scene.draft.time } else { 0.0 };
     let RunRequest { off, objects, .. } = scene.draft.clone();
     model.answers.want(WallsOf { off, objects, time }).latest().cloned()

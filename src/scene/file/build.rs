@@ -164,6 +164,7 @@ fn light(table: &LightTable) -> Result<Light, Problem> {
     let light = Light {
         color: table.color.as_ref().map_or(Ok(default.color), |rgb| color(rgb, f64::MAX))?,
         intensity: table.intensity.as_ref().map_or(Ok(1.0), |value| within(value, 0.0, f64::from(f32::MAX)))?,
+        is_on: table.on.unwrap_or(true),
         range: table.range.as_ref().map(positive).transpose()?,
         motion: motion(DVec3::ZERO, table.orbit.as_ref(), table.swing.as_ref())?,
         ..default

@@ -100,6 +100,8 @@ struct LightTable {
     towards: Option<[f64; 3]>,
     color: [f64; 3],
     intensity: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    on: Option<bool>,
     range: Option<f64>,
     orbit: Option<OrbitTable>,
     swing: Option<SwingTable>,
@@ -168,7 +170,8 @@ fn light_table(light: &Light) -> LightTable {
         if light.is_directional() { ("directional", None, Some(at)) } else { ("point", Some(at), None) };
     let (orbit, swing) = motion(&light.motion);
     let (color, intensity) = (light.color.map(short), short(light.intensity));
-    LightTable { kind, position, towards, color, intensity, range: light.range, orbit, swing }
+    let on = (!light.is_on).then_some(false);
+    LightTable { kind, position, towards, color, intensity, on, range: light.range, orbit, swing }
 }
 
 fn motion(motion: &Motion) -> (Option<OrbitTable>, Option<SwingTable>) {
@@ -360,7 +363,7 @@ mod tests {
             settings: BTreeMap::from([("casters".to_owned(), "all".to_owned())]),
         });
         (scene.objects[0].casts, scene.objects[0].receives, scene.objects[1].visible) = (false, false, false);
-        scene.lights[0].intensity = 0.1;
+        (scene.lights[0].intensity, scene.lights[0].is_on) = (0.1, false);
         assert_same(&scene, &again(&scene, &BTreeMap::new()).0);
     }
 

@@ -50,6 +50,7 @@ pub struct LightTable {
     pub towards: Option<Triple>,
     pub color: Option<Triple>,
     pub intensity: Option<Number>,
+    pub on: Option<bool>,
     pub range: Option<Number>,
     pub orbit: Option<OrbitTable>,
     pub swing: Option<SwingTable>,

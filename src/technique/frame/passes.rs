@@ -36,32 +36,20 @@ impl Frame<'_> {
     /// A pass of a light into stencil alone, over the camera's depth. The first one of a light
     /// clears what the light before has left.
     pub fn stencil_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
+        self.stencil_pass_from(0, light, name, purpose, draws);
+    }
+
+    /// The same, where the first one of a light begins with another number than zero.
+    pub fn stencil_pass_from(&mut self, start: u8, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         let is_untouched = self.stencil_of.is_none();
-        let is_left_out = is_untouched && self.common.allows(Decision::Clear);
-        if is_left_out {
+        let is_cleared = start != 0 || (is_untouched && !self.common.allows(Decision::Clear));
+        if is_untouched && !is_cleared {
             self.leave_out(Decision::Clear, light.name(), "nothing has written the stencil before");
         }
         self.push_pass(light, name, purpose, None, draws);
         let target = self.plan.passes.last_mut().and_then(|pass| pass.depth_stencil.as_mut());
-        if let Some(target) = target.filter(|_| is_untouched && !is_left_out) {
-            target.clear_stencil = Some(0);
-        }
-    }
-
-    /// The pass just added begins with this in the stencil, where that is not what it holds anyway.
-    pub fn begin_stencil_at(&mut self, start: u8) {
-        let target = self.plan.passes.last_mut().and_then(|pass| pass.depth_stencil.as_mut());
-        if let Some(target) = target.filter(|_| start != 0) {
+        if let Some(target) = target.filter(|_| is_cleared) {
             target.clear_stencil = Some(start);
-        }
-    }
-
-    /// The pass just added begins to count at this, where it begins a count.
-    pub fn begin_count_at(&mut self, light: LightId, start: u32) {
-        let count = self.plan.lights[light.0].count;
-        let target = self.plan.passes.last_mut().and_then(|pass| pass.color.as_mut());
-        if let Some(clear) = target.filter(|target| Some(target.attachment) == count).and_then(|t| t.clear.as_mut()) {
-            clear[0] = f64::from(start);
         }
     }
 
@@ -102,12 +90,12 @@ impl Frame<'_> {
         self.plan.lights[light.0].count = Some(count);
     }
 
-    /// A pass of a light that adds to its count, over the camera's depth. The first clears it.
-    pub fn count_pass(&mut self, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
+    /// A pass of a light that adds to its count, over the camera's depth. The first clears it to `start`.
+    pub fn count_pass(&mut self, start: u32, light: LightId, name: &str, purpose: &str, draws: Vec<Draw>) {
         let Some(attachment) = self.plan.lights[light.0].count else { return };
         let is_same = |pass: &Pass| pass.color.as_ref().is_some_and(|target| target.attachment == attachment);
         let is_first = !self.plan.passes.iter().any(is_same);
-        let target = ColorTarget { attachment, layer: 0, clear: is_first.then_some([0.0; 4]) };
+        let target = ColorTarget { attachment, layer: 0, clear: is_first.then_some([f64::from(start), 0.0, 0.0, 0.0]) };
         self.push_pass(light, name, purpose, Some(target), draws);
     }
 

@@ -52,7 +52,7 @@ impl Frame<'_> {
                 let problem = format!("{} is too far from the eye for single precision", id.name());
                 return Err(PlanError::Unusable { problem });
             }
-            let color = light.color.map(|channel| channel * light.intensity);
+            let color = light.emitted();
             let range = light.range.map(|range| range as f32);
             self.plan.lights.push(PlanLight {
                 relative_position,

@@ -36,6 +36,8 @@ pub struct Volume {
     pub parts: VolumeParts,
     /// Which of its parts count in the volume pass.
     pub needed: Vec<NeededPart>,
+    /// Light cap and dark cap: it has one that would count, and it is not to be drawn.
+    pub lacks_caps: [bool; 2],
     /// How many of the count begin at the far end, where no dark cap is drawn for it.
     pub begins_with: u32,
 }
@@ -136,25 +138,25 @@ pub fn make(
     (mesh, parts, far_end.map(|(_, far_end)| far_end))
 }
 
-/// The parts that count in a form, but for caps that are not to be drawn; what is left out is said.
+/// The parts that count in a form; what is left out is said, but of dark caps that are not drawn anyway.
 pub fn needed_parts(
     frame: &mut Frame,
     form: Form,
     parts: &VolumeParts,
     caster: &Object,
-    ([draws_light_caps, draws_dark_caps], far_end): ([bool; 2], Option<FarEnd>),
+    (draws_dark_caps, far_end): (bool, Option<FarEnd>),
 ) -> (Vec<NeededPart>, u32) {
     let run = NeededPart::new;
     let hugging = NeededPart { hugs: true, ..run(Part::Side, false, &parts.hugging_sides) };
     let mut needed = vec![run(Part::Side, false, &parts.sides), hugging];
-    if form.light_cap && draws_light_caps {
+    if form.light_cap {
         needed.push(run(Part::LightCap, false, &parts.light_cap));
         needed.push(run(Part::LightCap, true, &parts.light_cap_turned));
     }
-    if !(form.dark_cap && draws_dark_caps) {
+    if !form.dark_cap {
         return (needed, 0);
     }
-    if let (DarkCap::Fan(..), Some(far_end)) = (&parts.dark_cap, far_end) {
+    if let (DarkCap::Fan(..), Some(far_end), true) = (&parts.dark_cap, far_end, draws_dark_caps) {
         frame.leave_out(Decision::DarkCap, &caster.name, far_end.because());
         return (needed, far_end.met);
     }
@@ -167,7 +169,7 @@ pub fn needed_parts(
         DarkCap::Fan(triangles, _) => {
             needed.push(run(Part::DarkCap, false, triangles));
             let cap = parts.light_cap.len() + parts.light_cap_turned.len();
-            if triangles.len() < cap {
+            if triangles.len() < cap && draws_dark_caps {
                 let because = format!(
                     "at infinity only its outline matters: {} triangles close what {cap} would",
                     triangles.len()

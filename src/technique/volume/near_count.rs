@@ -61,7 +61,7 @@ pub fn pass(frame: &mut Frame, light: LightId, options: &VolumeSettings, volumes
     if options.counts_in_float {
         let adding_one = DrawConstants { flat: [1.0, 0.0, 0.0, 0.0], ..DrawConstants::default() };
         let in_float = |draw: Draw| Draw { program: Program::Flat, constants: adding_one, ..draw };
-        frame.count_pass(light, "near plane", &purpose, draws.into_iter().map(in_float).collect());
+        frame.count_pass(0, light, "near plane", &purpose, draws.into_iter().map(in_float).collect());
     } else {
         frame.stencil_pass(light, "near plane", &purpose, draws);
     }

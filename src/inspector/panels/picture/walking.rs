@@ -32,14 +32,20 @@ pub fn banner(ui: &mut Ui, model: &Model, rect: Rect) {
     if !model.walk.is_on() {
         return;
     }
-    let size = vec2(380.0_f32.min(rect.width() - 16.0), BANNER_HEIGHT);
+    let size = vec2(460.0_f32.min(rect.width() - 16.0), BANNER_HEIGHT);
     let place = Rect::from_min_size(rect.center_top() + vec2(-size.x / 2.0, 12.0), size);
     ui.scope_builder(UiBuilder::new().max_rect(place).id_salt("walk banner"), |ui| {
         theme::card(ui).fill(theme::of(ui).panel.gamma_multiply(0.94)).show(ui, |ui| {
             ui.set_width((size.x - 16.0).max(1.0));
             theme::heading(ui, "Walking: Esc stops and frees the pointer");
             let walls = if model.walk.collides { "walls stop (C)" } else { "through walls (C)" };
-            let words = format!("W S A D and the mouse · {walls} · {:.1} m/s (< >) · F1 lists all", model.walk.speed);
+            let weight = match model.walk.weight.as_ref().map(|weight| weight.standing) {
+                None => "floating (G)",
+                Some(Some(standing)) if standing.is_on_ground => "on the ground (G)",
+                Some(_) => "falling (G)",
+            };
+            let speed = model.walk.speed;
+            let words = format!("W S A D and the mouse · {walls} · {speed:.1} m/s (< >) · {weight} · F1 lists all");
             let words = model.walk.nothing_because.as_ref().unwrap_or(&words);
             ui.add(egui::Label::new(theme::note(words)).truncate());
         });

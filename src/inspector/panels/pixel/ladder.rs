@@ -82,10 +82,17 @@ fn direction(ladder: &Ladder) -> String {
         (Side::InFront, None) => "Counted from the eye, and no surface ends it",
         (Side::AsNeeded, _) => "Counted along the whole ray, each volume in front of the surface or behind it",
     };
-    let start = match ladder.start {
-        0 => String::new(),
-        start if ladder.cleared_to != 0 => format!(", starting at {}, which the count was cleared to", signed(start)),
-        start => format!(", starting at {}: the volumes that hold the near plane", signed(start)),
+    let near = ladder.start - ladder.cleared_to;
+    let start = match (ladder.cleared_to, near) {
+        (0, 0) => String::new(),
+        (cleared, 0) => format!(", starting at {}, which the count was cleared to", signed(cleared)),
+        (0, near) => format!(", starting at {}: the volumes that hold the near plane", signed(near)),
+        (cleared, near) => format!(
+            ", starting at {}: cleared to {}, and {} for the volumes that hold the near plane",
+            signed(ladder.start),
+            signed(cleared),
+            signed(near)
+        ),
     };
     let all = ladder.rungs.len() as u64;
     let counted = ladder.rungs.iter().filter(|rung| rung.added != 0).count();

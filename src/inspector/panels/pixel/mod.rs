@@ -6,6 +6,7 @@ pub mod ladder;
 pub mod map;
 pub mod room;
 pub mod run;
+pub mod shading;
 pub mod told;
 
 use crate::accuracy::Finding;
@@ -62,6 +63,7 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
                 map::ui(ui, model, &capture, decision);
             }
         }
+        shading::ui(ui, model, &capture, &told);
         coordinates::ui(ui, &capture, at);
         ui.add_space(gap);
         run::ui(ui, model, &capture, at);

@@ -77,6 +77,8 @@ fn switches(ui: &mut Ui, view: &mut SceneView, anatomy: &Anatomy) {
     theme::heading(ui, "Shown");
     let triangles = |count: u64| format!("{} triangles", format::count(count));
     switch(ui, &mut shown.objects, Mark::Square(colors.dim), "Objects", &triangles(objects));
+    let hint = "Every edge of every triangle. Those behind a surface are hidden by it, until Objects are switched off";
+    switch(ui, &mut shown.wireframe, Mark::Line(colors.text, 1.0), "Wireframe", hint);
     if anatomy.is_view_assumed {
         let hint = format!("{}; sides and caps are not told apart", triangles(count(Part::Side)));
         switch(ui, &mut shown.sides, Mark::Square(colors.side), "Volumes", &hint);

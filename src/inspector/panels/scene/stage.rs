@@ -132,6 +132,9 @@ impl Stage {
                 build.object(object, holds.then_some(anatomy.camera.eye));
             }
         }
+        if shown.wireframe {
+            anatomy.objects.iter().filter(|object| is_seen(object)).for_each(|object| build.wireframe(object));
+        }
         let volumes = || anatomy.volumes.iter().filter(|volume| choice.has(volume.light, volume.caster, &holders));
         // Through many shells as much is seen as through a few.
         let strength = 1.0 / (volumes().count().max(1) as f32).sqrt();
@@ -247,6 +250,22 @@ impl Build<'_> {
         let ink = Color32::BLACK.gamma_multiply(0.55 * strength);
         for edge in &object.edges {
             self.line([edge.low, edge.high].map(at), 1.0, ink);
+        }
+    }
+
+    /// Each edge of the triangles of an object once.
+    fn wireframe(&mut self, object: &PlacedObject) {
+        let triangles = object.mesh.triangles();
+        let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let mut edges: Vec<[u32; 2]> = sides.map(|[from, to]| [from.min(to), from.max(to)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        // Of a fine mesh there are so many that they would be one surface.
+        let strength = (QUIET_EDGES / edges.len().max(1) as f32).sqrt().clamp(0.35, 1.0);
+        let ink = self.theme.text.gamma_multiply(0.8 * strength);
+        self.stage.is_cut |= self.geometry.lines.len() + edges.len() > MOST_VERTICES;
+        for edge in edges {
+            self.line(edge.map(|corner| object.positions[corner as usize]), 1.0, ink);
         }
     }
 
@@ -411,6 +430,39 @@ mod tests {
 
     fn stage() -> Stage {
         Stage { middle: DVec3::new(1.0, 0.0, 0.0), radius: 5.0, ..Stage::default() }
+    }
+
+    #[test]
+    fn a_wireframe_has_each_edge_of_each_triangle_once() {
+        let mesh = Arc::new(crate::scene::shapes::cuboid([1.0, 2.0, 3.0]).expect("a box"));
+        let cuboid = PlacedObject {
+            name: "box".to_owned(),
+            casts: true,
+            receives: true,
+            visible: true,
+            color: [0.5; 3],
+            positions: mesh.positions().to_vec(),
+            mesh,
+            edges: Vec::new(),
+        };
+        let anatomy = Anatomy {
+            technique: "none".to_owned(),
+            camera: crate::scene::Camera::looking([0.0, 0.0, 9.0], [0.0; 3]),
+            aspect: 1.0,
+            is_view_assumed: false,
+            objects: vec![cuboid],
+            lights: Vec::new(),
+            volumes: Vec::new(),
+            silhouettes: Vec::new(),
+            frusta: Vec::new(),
+            near_clips: Vec::new(),
+        };
+        let lines = |objects: bool, wireframe: bool| {
+            let shown = Toggles { objects, wireframe, silhouettes: false, frusta: false, ..Toggles::default() };
+            Stage::new(&anatomy, &shown, Choice::default(), &crate::inspector::look::theme::DARK).geometry.lines.len()
+        };
+        // Twelve of the box, and a diagonal on each of six sides.
+        assert_eq!([lines(true, false), lines(false, true), lines(true, true)], [0, 18, 18]);
     }
 
     fn light(position: DVec4) -> PlacedLight {

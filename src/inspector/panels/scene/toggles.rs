@@ -5,6 +5,8 @@
 pub struct Toggles {
     /// Objects.
     pub objects: bool,
+    /// All edges of objects' triangles.
+    pub wireframe: bool,
     /// Sides of volumes.
     pub sides: bool,
     /// Their caps near the light.
@@ -27,6 +29,7 @@ impl Default for Toggles {
     fn default() -> Toggles {
         Toggles {
             objects: true,
+            wireframe: false,
             sides: true,
             light_caps: true,
             dark_caps: true,

@@ -66,7 +66,11 @@ fn light_settings(ui: &mut Ui, index: usize, light: &mut Light, before: &Light) 
     let of = |what: &str| format!("{name} {what}");
     theme::heading(ui, &format!("Light {}", index + 1));
     grid(ui, ("light settings", index), |ui| {
-        let mut changed = row(ui, (&of("kind"), "kind"), &mut light.position.w, &before.position.w, |ui, w| {
+        let mut changed = row(ui, (&of("on"), "on"), &mut light.is_on, &before.is_on, |ui, is_on| {
+            let tick = ui.checkbox(is_on, "").accessible_name(of("is on"));
+            tick.on_hover_text("Off, it adds nothing; its passes stay, so that what they do can be seen").changed()
+        });
+        changed |= row(ui, (&of("kind"), "kind"), &mut light.position.w, &before.position.w, |ui, w| {
             light_kind(ui, &of("kind"), w)
         });
         let place = if light.is_directional() { "towards" } else { "position" };

@@ -1,49 +1,90 @@
 //! Which axis of a model is up. Many programs have z up, and what they write lies on its side here.
 //!
 //! Turning it is a change of the scene as others are. Floor, light and camera go where they would be had the file been
-//! opened so.
+//! opened so, each unless it was moved by hand, or opened elsewhere.
 
 use crate::inspector::look::{theme, widgets};
 use crate::inspector::model::scene::OpenScene;
-use crate::scene::{Camera, Object, Pose, Surroundings};
+use crate::scene::{Camera, Object, Pose, Surroundings, is_model};
 use egui::Ui;
-use glam::DVec3;
-use std::path::Path;
+use glam::{DVec3, DVec4};
 
-const LABELS: [(&str, &str); 2] =
-    [("y up", "As most models have it"), ("z up", "Turns the model; floor, light and camera go where it is then")];
+const LABELS: [(&str, &str); 2] = [
+    ("y up", "As most models have it"),
+    ("z up", "Turns the model; floor, light and camera go with it, unless you moved them"),
+];
 
 /// Draws the choice where a bare model is open; true when it changed.
 pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
-    let is_obj = |source: &String| Path::new(source).extension().is_some_and(|kind| kind.eq_ignore_ascii_case("obj"));
-    if !scene.source.as_ref().is_some_and(is_obj) {
+    if !scene.source.as_deref().is_some_and(is_model) {
         return false;
     }
     let Some(model) = scene.loaded.first() else { return false };
-    let poses = [model.pose, model.pose.with_z_up()];
+    let poses = poses(model);
     let now = scene.draft.objects.moved.get(&0).copied().unwrap_or(model.pose);
     let chosen = poses.iter().position(|pose| *pose == now);
     ui.add_space(12.0);
     theme::heading(ui, "Model");
     let clicked = ui.horizontal(|ui| widgets::segments(ui, &LABELS, chosen)).inner;
-    let Some(pose) = clicked.filter(|_| clicked != chosen).map(|index| poses[index]) else { return false };
-    turn(scene, pose);
+    let Some(index) = clicked.filter(|index| Some(*index) != chosen) else { return false };
+    turn(scene, poses[index]);
     true
 }
 
-/// The model, which comes first, and what is around it.
+/// With y up and with z up; it may have been opened either way.
+fn poses(model: &Object) -> [Pose; 2] {
+    let upright = Pose::default();
+    let y_up = if model.pose == upright.with_z_up() { upright } else { model.pose };
+    [y_up, y_up.with_z_up()]
+}
+
+/// What is made for a model at a pose.
+struct Made {
+    floor: Option<Pose>,
+    light: DVec4,
+    camera: Camera,
+}
+
+impl Made {
+    fn at(pose: Pose, scene: &OpenScene) -> Option<Made> {
+        let [opened, turned] =
+            [scene.loaded[0].pose, pose].map(|pose| Object { pose, ..scene.loaded[0].clone() }.world_positions());
+        let (before, around) = (Surroundings::of(&opened)?, Surroundings::of(&turned)?);
+        let floor = scene.loaded.get(1).map(|floor| floor.pose);
+        let lower = DVec3::Y * (around.lowest() - before.lowest());
+        Some(Made {
+            floor: floor.map(|floor| Pose { translate: floor.translate + lower, ..floor }),
+            light: around.light().position,
+            camera: around.camera(&turned),
+        })
+    }
+}
+
+/// The model, which comes first, and of what is around it all that is where it was made, whichever axis was up then:
+/// what was put elsewhere stays.
 fn turn(scene: &mut OpenScene, pose: Pose) {
-    let [opened, turned] =
-        [scene.loaded[0].pose, pose].map(|pose| Object { pose, ..scene.loaded[0].clone() }.world_positions());
+    let before = poses(&scene.loaded[0]).map(|pose| Made::at(pose, scene));
+    let made = Made::at(pose, scene);
     scene.place(0, pose);
-    let (Some(before), Some(around)) = (Surroundings::of(&opened), Surroundings::of(&turned)) else { return };
-    if let Some(floor) = scene.loaded.get(1).map(|floor| floor.pose) {
-        let translate = floor.translate + DVec3::Y * (around.lowest() - before.lowest());
-        scene.place(1, Pose { translate, ..floor });
+    let Some(made) = made else { return };
+    let before: Vec<Made> = before.into_iter().flatten().collect();
+    if let (Some(floor), Some(now)) = (made.floor, scene.object(1).map(|floor| floor.pose))
+        && before.iter().any(|one| one.floor == Some(now))
+    {
+        scene.place(1, floor);
     }
     if scene.light_opened(0).is_some() {
-        scene.draft.lights[0].position = around.light().position;
+        let position = &mut scene.draft.lights[0].position;
+        if before.iter().any(|one| one.light == *position) {
+            *position = made.light;
+        }
     }
-    let Camera { projection, fov_y_degrees, far, .. } = scene.draft.camera;
-    scene.draft.camera = Camera { projection, fov_y_degrees, far, ..around.camera(&turned) };
+    let camera = &mut scene.draft.camera;
+    let view = |camera: &Camera| (camera.eye, camera.target, camera.up);
+    if before.iter().any(|one| view(&one.camera) == view(camera)) {
+        let is_near_made = before.iter().any(|one| one.camera.near == camera.near);
+        let near = if is_near_made { made.camera.near } else { camera.near };
+        let Camera { eye, target, up, .. } = made.camera;
+        *camera = Camera { eye, target, up, near, ..*camera };
+    }
 }

@@ -1,0 +1,64 @@
+//! How the picked pixel's surface answers each light: the cosine, and the formula's terms.
+
+use super::told::Told;
+use crate::capture::Capture;
+use crate::inspector::look::theme;
+use crate::inspector::model::Model;
+use crate::reading::format;
+use crate::reading::shading::{Shaded, digits, three};
+use egui::{CollapsingHeader, Grid, Label, Ui};
+
+/// Folded until somebody asks.
+pub fn ui(ui: &mut Ui, model: &Model, capture: &Capture, told: &Told) {
+    let (Some(history), Some(plan)) = (&told.history, &model.frame.plan) else { return };
+    if capture.origin.is_some() || !told.is_of_pick || !told.wrong.is_empty() {
+        return;
+    }
+    let header = CollapsingHeader::new("Shading").id_salt("shading");
+    header.show(ui, |ui| match Shaded::of(capture, plan, history) {
+        Some(shaded) => terms(ui, &shaded),
+        None => drop(ui.label(theme::note("No surface is here."))),
+    });
+}
+
+fn terms(ui: &mut Ui, shaded: &Shaded) {
+    let words = "light = its colour × fading × (colour × diffuse + highlight)";
+    ui.add(Label::new(theme::note(words)).wrap());
+    let grid = |name: &str| Grid::new(format!("shading of {name}")).num_columns(2).spacing([12.0, 2.0]);
+    let row = |ui: &mut Ui, name: &str, value: String, hover: &str| {
+        ui.label(theme::note(name)).on_hover_text(hover);
+        ui.label(theme::number(value).color(theme::of(ui).text)).on_hover_text(hover);
+        ui.end_row();
+    };
+    grid("the surface").show(ui, |ui| {
+        let kind = format!("{}, {}", shaded.shading, shaded.diffuse);
+        row(ui, "shaded", kind, "Where light is computed, and how it falls off with its angle");
+        row(ui, "normal", three(shaded.normal), "Of unit length, world space, to the side that the eye sees");
+        row(ui, "surface colour", three(shaded.color), "Linear red, green and blue that it reflects, checks included");
+        row(ui, "without light", three(shaded.unlit), "Under ambient light, and what it sends out by itself; linear");
+    });
+    for (index, light) in shaded.lights.iter().enumerate() {
+        ui.label(theme::note(format!("From {}", format::light(index))));
+        grid(&format::light(index)).show(ui, |ui| {
+            row(ui, "cosine N·L", digits(light.cosine), "Of the angle between the normal and the way to the light");
+            if let Some(cosines) = light.corner_cosines {
+                row(ui, "at the corners", three(cosines), "Gouraud computes light there, and mixes it");
+            }
+            let diffuse = match shaded.diffuse {
+                "wrapped" => "(N·L + 1) / 2",
+                _ if light.is_turned_away => "Its triangle faces away from the light: nothing",
+                _ => "max(0, N·L)",
+            };
+            row(ui, "diffuse", digits(light.diffuse), diffuse);
+            let gloss = format!(
+                "{} × max(0, N·H)^{}, with H halfway between light and eye",
+                digits(shaded.specular),
+                digits(shaded.shininess)
+            );
+            row(ui, "highlight", digits(light.highlight), &gloss);
+            row(ui, "fading", digits(light.fading), "What is left at its distance");
+            row(ui, "its colour", three(light.color), "Linear red, green and blue, times its intensity");
+            row(ui, "adds", three(light.adds), "Where it arrives; linear");
+        });
+    }
+}

@@ -1,0 +1,282 @@
+//! What each light adds to a pixel's surface if it arrives, term by term, as `surface.wgsl` and `light.wgsl` compute it:
+//! light = colour of the light × fading × (colour of the surface × diffuse + highlight).
+
+use crate::capture::Capture;
+use crate::history::PixelHistory;
+use crate::numbers;
+use crate::plan::{Draw, FramePlan, PlanLight, Program, SurfaceData};
+use crate::reading::fragments::Surface;
+use crate::scene::Shading;
+use crate::truth::{FACES_AWAY, LABEL_NAMES};
+use glam::{DVec3, DVec4};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// How much of its colour every other check has.
+const DARK_CHECK: f64 = 1.0 / 3.0;
+
+/// How the surface of a pixel is lit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Shaded {
+    /// Name of the draw that shows it.
+    pub surface: String,
+    /// Where its light is computed: `flat`, `gouraud`, `phong`.
+    pub shading: &'static str,
+    /// `lambert`, `wrapped`.
+    pub diffuse: &'static str,
+    /// Unit normal that it is shaded with, world space, to the side that the eye sees; Gouraud's corners have their own.
+    pub normal: [f64; 3],
+    /// Linear RGB reflectance, with its checks.
+    pub color: [f64; 3],
+    /// Strength of the highlight, and its Blinn-Phong exponent.
+    pub specular: f64,
+    /// The same.
+    pub shininess: f64,
+    /// Linear RGB that it has without any light: under ambient light, and sent out by itself.
+    pub unlit: [f64; 3],
+    /// What each light adds.
+    pub lights: Vec<LightTerms>,
+}
+
+/// What a light adds to a surface, if it arrives.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LightTerms {
+    /// Linear RGB times intensity.
+    pub color: [f64; 3],
+    /// N·L: of the angle between the normal and the way to the light.
+    pub cosine: f64,
+    /// The same at the triangle's corners, where Gouraud computes light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corner_cosines: Option<[f64; 3]>,
+    /// Its triangle faces away from the light, which Lambert's light does not reach then, whatever the cosine.
+    pub is_turned_away: bool,
+    /// Lambert's max(0, N·L), or wrapped (N·L + 1) / 2; of Gouraud mixed of its corners.
+    pub diffuse: f64,
+    /// Blinn-Phong's strength × max(0, N·H)^exponent, 0 where N·L is; of Gouraud mixed of its corners.
+    pub highlight: f64,
+    /// What is left at its distance, 0 to 1.
+    pub fading: f64,
+    /// Linear RGB that it adds where it arrives.
+    pub adds: [f64; 3],
+    /// What the technique says: `lit`, `in shadow`, `faces away`; `None`: it has no mask.
+    pub label: Option<&'static str>,
+}
+
+/// A place of a surface, relative to the eye, with its unit normal.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    relative: DVec3,
+    normal: DVec3,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Terms {
+    cosine: f64,
+    diffuse: f64,
+    highlight: f64,
+    fading: f64,
+}
+
+impl Shaded {
+    /// Of the surface that a pixel's history ends with; `None` where there is none, or another program drew it.
+    #[must_use]
+    pub fn of(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<Shaded> {
+        if capture.origin.is_some() {
+            return None;
+        }
+        let (draw, triangle) = seen(plan, history)?;
+        let mesh = plan.meshes.get(draw.mesh.0)?;
+        let surface = mesh.surface.as_ref()?;
+        let first = triangle * 3;
+        let vertex = |corner: usize| {
+            let index = *mesh.indices.data().get(first + corner)?;
+            Some(wide(*mesh.vertices.data().get(index as usize)?).truncate())
+        };
+        let corners = [vertex(0)?, vertex(1)?, vertex(2)?];
+        let sides = *surface.sides.data().get(triangle)?;
+        let normals = normals(surface, first, sides)?;
+        let world = Surface::new(capture).at(history.pixel, history.computed.depth)?;
+        let relative = world - capture.camera.eye;
+        let weights = weights(corners, relative);
+        let mixed = (0..3).map(|corner| normals[corner] * weights[corner]).sum::<DVec3>();
+        let at = Point { relative, normal: mixed.try_normalize()? };
+        let material = &draw.constants.material;
+        let share = checks(draw, relative);
+        let color = material.color.map(|channel| f64::from(channel) * share);
+        let ambient = plan.ambient.map(f64::from);
+        let unlit = [0, 1, 2].map(|channel| color[channel] * ambient[channel] + f64::from(material.emission[channel]));
+        let lit = |(index, light): (usize, &PlanLight)| {
+            let is_turned_away = sides & (1 << index) != 0;
+            let here = terms(at, light, draw, plan.wraps_diffuse);
+            let of_corners = (material.shading == Shading::Gouraud).then(|| {
+                [0, 1, 2].map(|corner| {
+                    let point = Point { relative: corners[corner], normal: normals[corner] };
+                    terms(point, light, draw, plan.wraps_diffuse)
+                })
+            });
+            let mut found = of_corners.map_or(here, |corners| mix(corners, weights, here.cosine, share));
+            if is_turned_away && !plan.wraps_diffuse {
+                (found.diffuse, found.highlight) = (0.0, 0.0);
+            }
+            let light_color = light.color.map(f64::from);
+            let adds = [0, 1, 2].map(|channel| {
+                light_color[channel] * found.fading * (color[channel] * found.diffuse + found.highlight)
+            });
+            let label = capture.lights.get(index).and_then(|light| light.shadow.as_ref()?.byte_at(history.pixel));
+            LightTerms {
+                color: light_color,
+                cosine: here.cosine,
+                corner_cosines: of_corners.map(|corners| corners.map(|corner| corner.cosine)),
+                is_turned_away,
+                diffuse: found.diffuse,
+                highlight: found.highlight,
+                fading: found.fading,
+                adds,
+                label: label.and_then(|label| LABEL_NAMES.get(usize::from(label)).copied()),
+            }
+        };
+        Some(Shaded {
+            surface: draw.name.clone(),
+            shading: material.shading.name(),
+            diffuse: if plan.wraps_diffuse { "wrapped" } else { "lambert" },
+            normal: at.normal.to_array(),
+            color,
+            specular: material.specular.into(),
+            shininess: material.shininess.into(),
+            unlit,
+            lights: plan.lights.iter().enumerate().map(lit).collect(),
+        })
+    }
+
+    /// A line for the surface, and one a light.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "  {}, {} shading: normal {}, colour {}; without light {}\n",
+            self.surface,
+            self.shading,
+            three(self.normal),
+            three(self.color),
+            three(self.unlit)
+        );
+        for (index, light) in self.lights.iter().enumerate() {
+            // Writing to a string can't fail.
+            let _ = writeln!(text, "    {}: {}", numbers::light(index), light.text(self));
+        }
+        text
+    }
+}
+
+impl LightTerms {
+    /// The cosine, and the formula with its numbers.
+    fn text(&self, of: &Shaded) -> String {
+        let cosines = self.corner_cosines.map_or_else(String::new, |cosines| {
+            format!(" (at the corners, where light is computed and then mixed: {})", three(cosines))
+        });
+        let cosine = format!("cosine N·L {}{cosines}", digits(self.cosine));
+        if self.label == Some(LABEL_NAMES[usize::from(FACES_AWAY)]) && self.adds == [0.0; 3] {
+            return format!("{cosine}: it adds nothing, as the surface faces away or is out of its range");
+        }
+        let sum = format!(
+            "({}) × fading {} × (({}) × diffuse {} + highlight {}) = ({})",
+            three(self.color),
+            digits(self.fading),
+            three(of.color),
+            digits(self.diffuse),
+            digits(self.highlight),
+            three(self.adds)
+        );
+        let arrives = match self.label {
+            Some("lit") => "it arrives",
+            Some("in shadow") => "it would be added, but this is in shadow",
+            Some("faces away") => "the surface faces away from it",
+            _ => "nobody says whether it arrives",
+        };
+        format!("{cosine}; {sum}; {arrives}")
+    }
+}
+
+/// The draw and the triangle of its mesh that a pixel shows: the last that passed in ambient light, which all surfaces
+/// are drawn in first.
+fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(&'a Draw, usize)> {
+    history.events.iter().rev().find_map(|event| {
+        let one = event.triangle().filter(|one| one.fate.passed())?;
+        let draw = plan.passes.get(event.pass)?.draws.get(one.draw)?;
+        matches!(draw.program, Program::Ambient { .. }).then_some((draw, one.triangle as usize))
+    })
+}
+
+/// Unit normals of a triangle's corners, to the side that the eye sees.
+fn normals(surface: &SurfaceData, first: usize, sides: u32) -> Option<[DVec3; 3]> {
+    const SEES_BACK: u32 = 1 << 31;
+    let sign = if sides & SEES_BACK == 0 { 1.0 } else { -1.0 };
+    let all = surface.normals.data().get(first..first + 3)?;
+    Some([0, 1, 2].map(|corner| wide(all[corner]).truncate() * sign))
+}
+
+/// The shares of a triangle's corners in a point of its plane.
+fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
+    let across = (b - a).cross(c - a);
+    let area = across.length_squared();
+    [(b, c), (c, a), (a, b)].map(|(from, to)| across.dot((to - from).cross(point - from)) / area)
+}
+
+fn terms(at: Point, light: &PlanLight, draw: &Draw, wraps: bool) -> Terms {
+    let position = wide(light.relative_position);
+    let to_light = position.truncate() - at.relative * position.w;
+    let direction = to_light.normalize_or_zero();
+    let cosine = at.normal.dot(direction);
+    let halfway = (direction - at.relative.normalize_or_zero()).normalize_or_zero();
+    let material = &draw.constants.material;
+    let gloss = f64::from(material.specular) * at.normal.dot(halfway).max(0.0).powf(material.shininess.into());
+    let fading = match light.range.filter(|_| position.w != 0.0) {
+        None => 1.0,
+        Some(range) => (1.0 - to_light.length_squared() / f64::from(range).powi(2)).max(0.0).powi(2),
+    };
+    Terms {
+        cosine,
+        diffuse: if wraps { 0.5 * cosine + 0.5 } else { cosine.max(0.0) },
+        highlight: if cosine > 0.0 { gloss } else { 0.0 },
+        fading,
+    }
+}
+
+/// Light of the corners, mixed; the share of the colour that a check leaves is taken of all of it.
+fn mix(corners: [Terms; 3], weights: [f64; 3], cosine: f64, share: f64) -> Terms {
+    let sum =
+        |of: fn(&Terms) -> f64| corners.iter().zip(weights).map(|(corner, weight)| weight * of(corner)).sum::<f64>();
+    let fading = sum(|corner| corner.fading);
+    let part = |sum: f64| if fading == 0.0 { 0.0 } else { sum / fading };
+    let diffuse = part(sum(|corner| corner.fading * corner.diffuse));
+    let highlight = share * part(sum(|corner| corner.fading * corner.highlight));
+    Terms { cosine, diffuse, highlight, fading }
+}
+
+/// How much of its colour a surface has at a place.
+fn checks(draw: &Draw, relative: DVec3) -> f64 {
+    let side = f64::from(draw.constants.material.checks);
+    if side == 0.0 {
+        return 1.0;
+    }
+    let [x, z] = draw.constants.checks_from.map(f64::from);
+    let place = ((relative.x + x) / side).floor() + ((relative.z + z) / side).floor();
+    if place.rem_euclid(2.0) == 0.0 { 1.0 } else { DARK_CHECK }
+}
+
+fn wide(value: [f32; 4]) -> DVec4 {
+    DVec4::from_array(value.map(f64::from))
+}
+
+/// Four digits behind the point at most.
+#[must_use]
+pub fn digits(value: f64) -> String {
+    let text = format!("{value:.4}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
+}
+
+/// `0.25, 0.5, 1`.
+#[must_use]
+pub fn three(values: [f64; 3]) -> String {
+    values.map(digits).join(", ")
+}

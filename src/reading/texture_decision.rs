@@ -1,0 +1,136 @@
+//! Which texels of a light's textures decided how much of it arrives at a pixel: of a flat receiver's own texture, or of
+//! each silhouette that is on its way; as `arriving_by_receiver.wgsl` and `arriving_by_projection.wgsl` read them.
+
+use crate::capture::{Capture, CapturedMap};
+use crate::reading::fragments::{Fragment, Fragments};
+use crate::reading::layers::{self, MapContent};
+use crate::technique::TextureSettings;
+use crate::truth::{LIT, SHADOW};
+use glam::{DVec2, DVec4};
+
+/// Labels take light for blocked where less of it arrives.
+const BLOCKED_BELOW: f64 = 0.5;
+
+/// A texel that is read, with its share of what is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TexelShare {
+    /// Column and row.
+    pub at: [u32; 2],
+    /// Red, green, blue and alpha as stored, linear: what the texel lets through.
+    pub stored: [u8; 4],
+    /// Its weight, 0 to 1: nearer texels weigh more (bilinear).
+    pub share: f64,
+}
+
+/// What is read of one texture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayerRead {
+    /// Index of the texture among the light's.
+    pub layer: usize,
+    /// What it is of: a receiver or a caster.
+    pub name: String,
+    /// Those that have a share, row by row.
+    pub texels: Vec<TexelShare>,
+    /// Their sum: red, green, blue and alpha, 0 to 1.
+    pub lets_through: [f64; 4],
+}
+
+/// What a light's textures say of a pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextureDecision {
+    /// Index of the light.
+    pub light: usize,
+    /// Textures of receivers, or silhouettes of casters.
+    pub content: MapContent,
+    /// The textures that are on the way, in order; none where a receiver has none, or no silhouette is before it.
+    pub layers: Vec<LayerRead>,
+    /// What all of them let through together: red, green, blue, and alpha, which labels ask; 0 to 1.
+    pub lets_through: [f64; 4],
+    /// The technique's own answer, where it is another one: rounding decides.
+    pub gpu_says: Option<&'static str>,
+}
+
+impl TextureDecision {
+    /// Of a pixel under a light; `None` where it looks no texture up, or it is not known which is its own.
+    #[must_use]
+    pub fn of(capture: &Capture, fragments: &Fragments, light: usize, pixel: [u32; 2]) -> Option<TextureDecision> {
+        let content = MapContent::of(capture, light).filter(|content| *content != MapContent::Depth)?;
+        // Whose own a layer is, draws tell.
+        if capture.origin.is_some() || !fragments.are_drawn() {
+            return None;
+        }
+        let of = capture.lights.get(light)?;
+        let map = of.map.as_ref()?;
+        let fragment = fragments.at(pixel).filter(|fragment| fragment.reads)?;
+        let names = layers::layers(capture, light);
+        let is_read = |layer: &usize| match content {
+            MapContent::Textures => fragment.layer == Some(*layer as u32),
+            _ => fragment.layer != Some(*layer as u32) && names[*layer].note.is_none(),
+        };
+        let settings = match content {
+            MapContent::Textures => TextureSettings::of_receivers(&capture.settings),
+            _ => TextureSettings::of_silhouettes(&capture.settings),
+        };
+        let read = |layer: usize| {
+            let texels = texels(map, layer, &fragment, &settings, content)?;
+            let sum = |channel: usize| {
+                texels.iter().map(|one| f64::from(one.stored[channel]) / 255.0 * one.share).sum::<f64>()
+            };
+            let lets_through = [0, 1, 2, 3].map(sum);
+            Some(LayerRead { layer, name: names[layer].name.clone(), texels, lets_through })
+        };
+        let layers: Vec<LayerRead> = (0..map.faces.len()).filter(is_read).filter_map(read).collect();
+        let all = |channel: usize| layers.iter().map(|layer| layer.lets_through[channel]).product::<f64>();
+        let lets_through = [0, 1, 2, 3].map(all);
+        let is_lit = lets_through[3] >= BLOCKED_BELOW;
+        let gpu_says = match of.shadow.as_ref().and_then(|mask| mask.byte_at(pixel)) {
+            Some(LIT) if !is_lit => Some("lit"),
+            Some(SHADOW) if is_lit => Some("in shadow"),
+            _ => None,
+        };
+        Some(TextureDecision { light, content, layers, lets_through, gpu_says })
+    }
+
+    /// At least half of the light arrives: its label is lit.
+    #[must_use]
+    pub fn is_lit(&self) -> bool {
+        self.lets_through[3] >= BLOCKED_BELOW
+    }
+}
+
+/// The texels of a layer that a fragment reads; `None` where it is not looked up there.
+fn texels(
+    map: &CapturedMap,
+    layer: usize,
+    fragment: &Fragment,
+    settings: &TextureSettings,
+    content: MapContent,
+) -> Option<Vec<TexelShare>> {
+    let clip: DVec4 = *map.clip_from_light.get(layer)? * (map.light_from_world * fragment.world.extend(1.0));
+    let place = clip.truncate().truncate() / clip.w * DVec2::new(0.5, -0.5) + 0.5;
+    let is_outside = place.cmplt(DVec2::ZERO).any() || place.cmpgt(DVec2::ONE).any();
+    let is_silhouette = content == MapContent::Silhouettes;
+    let is_behind_light = clip.w <= 0.0 && !settings.projects_backwards;
+    if is_silhouette && (is_behind_light || (is_outside && !settings.repeats_edge)) {
+        return None;
+    }
+    let image = map.faces.get(layer)?;
+    let [width, height] = image.size();
+    // Texels have their values at their middles; beyond the edge its own go on.
+    let at = place * DVec2::new(f64::from(width), f64::from(height)) - 0.5;
+    let first = at.floor();
+    let part = at - first;
+    let inside = |value: f64, side: u32| value.clamp(0.0, f64::from(side.saturating_sub(1))) as u32;
+    let mut found: Vec<TexelShare> = Vec::new();
+    for (right, down) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+        let share =
+            (if right > 0.0 { part.x } else { 1.0 - part.x }) * (if down > 0.0 { part.y } else { 1.0 - part.y });
+        let at = [inside(first.x + right, width), inside(first.y + down, height)];
+        match found.iter_mut().find(|texel| texel.at == at) {
+            Some(known) => known.share += share,
+            None => found.push(TexelShare { at, stored: image.rgba_at(at)?, share }),
+        }
+    }
+    found.retain(|texel| texel.share > 0.0);
+    Some(found)
+}

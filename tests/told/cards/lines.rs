@@ -1,0 +1,272 @@
+//! Each line below a card's formula, and when it is so.
+
+use super::*;
+
+pub const LINES: &[(&str, Check)] = &[
+    ("Pick a pixel (right click) to see its own numbers.", pick_is_missing),
+    ("Pick a pixel (right click) to see the faces that made its count.", pick_is_missing),
+    ("Pick a pixel (right click) to see the texel that decides it.", pick_is_missing),
+    ("pixel {}, {}: no surface is there, and depth stays {}", |here, told| {
+        let stored =
+            here.frame.capture.frame_at(here.step).and_then(|frame| frame.depth.image.depth_at(at(told[0], told[1])));
+        let clear = if here.frame.plan.depth.mapping == DepthMapping::ReversedInfinite { 0.0 } else { 1.0 };
+        stored == Some(clear) && told[2].parse() == Ok(clear)
+    }),
+    ("pixel {}, {}: {} + {} / {} = {}", |here, told| is_sum(here, told, 1.0)),
+    ("pixel {}, {}: {} − {} / {} = {}", |here, told| is_sum(here, told, -1.0)),
+    ("pixel {}, {}: {} + {} · {} = {}", |here, told| is_linear_sum(here, told, 1.0)),
+    ("pixel {}, {}: {} − {} · {} = {}", |here, told| is_linear_sum(here, told, -1.0)),
+    ("the count began at {}, the volumes that all lines of sight end in", |here, told| {
+        let began = here.history.expect("a history").events.iter().rev().find_map(|event| match event.kind {
+            EventKind::ClearStencil => Some(f64::from(event.after.stencil)),
+            EventKind::ClearCount => Some(f64::from(event.after.count)),
+            _ => None,
+        });
+        here.frame.scene.camera.is_parallel() && began == Some(number(told[0]))
+    }),
+    ("the next depth that can be stored is {} further", |here, told| {
+        let at = here.pick.expect("a pick");
+        let stored =
+            here.frame.capture.frame_at(here.step).and_then(|frame| frame.depth.image.depth_at(at)).expect("a depth");
+        let curve = here.frame.plan.depth;
+        let away = |depth: f32| {
+            let above = f64::from(depth) - curve.offset;
+            if curve.is_linear { above / curve.scale } else { curve.scale / above }
+        };
+        let step = (away(stored.next_up()) - away(stored)).abs();
+        !step.is_finite() || is_near(told[0], step)
+    }),
+    ("{}: {} + {} · distance", |here, told| is_line(here, told, 1.0)),
+    ("{}: {} − {} · distance", |here, told| is_line(here, told, -1.0)),
+    ("{}: {} + {} / distance", |here, told| is_curve(here, told, 1.0)),
+    ("{}: {} − {} / distance", |here, told| is_curve(here, told, -1.0)),
+    ("pixel {}, {}: {} faces turn the bit over, {} do not count here", |here, told| {
+        let history = here.history.expect("a history");
+        let of_step = history.events.iter().filter(|event| event.pass == here.step);
+        let faces = of_step.filter(|event| event.triangle().is_some_and(|one| one.part.is_of_volume()));
+        let (turning, idle): (Vec<_>, Vec<_>) = faces.partition(|event| event.before.stencil != event.after.stencil);
+        let change = here.stored(at(told[0], told[1])) - here.before(at(told[0], told[1]));
+        let is_odd = turning.len() % 2 == 1;
+        [number(told[2]), number(told[3])] == [turning.len() as f64, idle.len() as f64] && is_odd == (change != 0.0)
+    }),
+    ("pixel {}, {}: {} faces add 1, {} take 1 away, {} do not count here: {} − {} = {}, kept in {}", |here, told| {
+        adds_up(here, &told[..8], f64::from(mask_of(told[8])) + 1.0)
+    }),
+    ("pixel {}, {}: {} faces add 1, {} take 1 away, {} do not count here: {} − {} = {}", |here, told| {
+        adds_up(here, told, 256.0)
+    }),
+    ("the stored count is {} then, and the pixel is {}", |here, told| {
+        let pick = here.pick.expect("a pick");
+        let label = here.frame.label(here.light(), pick);
+        let is_lit = label == Some(0);
+        let words = if is_lit { "lit" } else { "in shadow" };
+        matches!(label, Some(0 | 1))
+            && !here.volume_passes_follow()
+            && told[1] == words
+            && number(told[0]) == f64::from(here.stored(pick))
+    }),
+    ("the stored count is {} then", |here, told| {
+        let pick = here.pick.expect("a pick");
+        let in_between = here.decided_by().counts_in_floats() && here.volume_passes_follow();
+        in_between || number(told[0]) == f64::from(here.stored(pick))
+    }),
+    ("{} of {} pixels have a count other than 0", |here, told| {
+        let counts = here.all_counts();
+        let marked = counts.iter().filter(|count| **count != 0.0).count();
+        [number(told[0]), number(told[1])] == [marked as f64, counts.len() as f64]
+    }),
+    ("the highest count is {}", |here, told| {
+        let most = here.all_counts().into_iter().fold(f32::MIN, f32::max);
+        number(told[0]) == f64::from(most) && (most < 128.0 || here.decided_by().counts_in_floats())
+    }),
+    ("the highest count up to 127 is {}; {} pixels hold 128 to 255, which may be less than 0", |here, told| {
+        let bytes = here.bytes();
+        let most = bytes.iter().filter(|byte| **byte < 128).max().copied().unwrap_or(0);
+        let beyond = bytes.iter().filter(|byte| **byte > 127).count();
+        number(told[0]) == f64::from(most) && number(told[1]) == beyond as f64 && beyond > 0
+    }),
+    ("sides, between each silhouette edge and the same edge at the far end: {}", |here, told| {
+        number(told[0]) == here.triangles(Part::Side)
+    }),
+    ("light caps, the casting triangles themselves: {}", |here, told| {
+        number(told[0]) == here.triangles(Part::LightCap)
+    }),
+    ("dark caps, the casting triangles carried to the far end: {}", |here, told| {
+        let finite = here.frame.capture.settings["extrusion"].starts_with("finite");
+        finite && number(told[0]) == here.triangles(Part::DarkCap)
+    }),
+    ("dark caps: the sides of a sun's volume meet in one point at infinity, so it needs none: {}", |here, told| {
+        here.frame.capture.lights[here.light()].position.w == 0.0
+            && told[0] == "0"
+            && here.triangles(Part::DarkCap) == 0.0
+    }),
+    ("dark caps, fans over the silhouettes at infinity: {}", |here, told| {
+        here.frame.capture.lights[here.light()].position.w != 0.0 && number(told[0]) == here.triangles(Part::DarkCap)
+    }),
+    (
+        "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there: {}",
+        |here, told| told[0] == "0" && here.triangles(Part::DarkCap) == 0.0 && here.frame.scene.camera.is_parallel(),
+    ),
+    ("{} adds ({}, {}, {}) × (material × {} + highlight){}", |here, told| {
+        let index = here.light();
+        let light = &here.frame.scene.lights[index];
+        let color =
+            [0, 1, 2].map(|channel| is_near(told[1 + channel], f64::from(light.color[channel] * light.intensity)));
+        let wraps = here.frame.plan.wraps_diffuse;
+        let diffuse = if wraps { "(1 + cosine of its angle) / 2" } else { "cosine of its angle" };
+        let fades = light.range.is_some() && here.frame.capture.lights[index].position.w != 0.0;
+        let fading = if fades { " × what is left at its distance" } else { "" };
+        told[0] == format!("light {}", index + 1) && color == [true; 3] && told[4] == diffuse && told[5] == fading
+    }),
+    ("{} of {} pixels have {}: the test lets light through", |here, told| {
+        let bytes: Vec<u8> =
+            match here.step.checked_sub(1).and_then(|step| here.frame.capture.frame_at(step)?.stencil.as_ref()) {
+                Some(stencil) => stencil.image.rows().flatten().copied().collect(),
+                None => return false,
+            };
+        let is_even = told[2] == "an even number";
+        let lit = bytes.iter().filter(|byte| if is_even { **byte % 2 == 0 } else { **byte == 0 }).count();
+        let asks = if is_even {
+            asks_stencil(here, 1)
+        } else {
+            told[2] == "the count 0" && [0xff, 0xf, 3, 1].iter().any(|mask| asks_stencil(here, *mask))
+        };
+        asks && [number(told[0]), number(told[1])] == [lit as f64, bytes.len() as f64]
+    }),
+    ("pixel {}, {}: its stencil is {}, so {}", |here, told| {
+        let pixel = at(told[0], told[1]);
+        let stencil = here.frame.stencil(here.step.checked_sub(1), pixel).expect("a stencil");
+        let is_added = told[3] == "light is added";
+        let before = here.frame.capture.frame_at(here.step - 1).and_then(|frame| frame.color.image.rgba_at(pixel));
+        let after = here.frame.capture.frame_at(here.step).and_then(|frame| frame.color.image.rgba_at(pixel));
+        let is_kept_away = told[3] == "the stencil test keeps light away" && before == after;
+        let says = match here.frame.label(here.light(), pixel) {
+            Some(0) => is_added,
+            Some(1) => is_kept_away,
+            _ => is_added || is_kept_away,
+        };
+        number(told[2]) == f64::from(stencil) && says
+    }),
+    ("pixel {}, {}: its stencil is {}, but the object receives no shadow, and light is added", |here, told| {
+        let pixel = at(told[0], told[1]);
+        let has_one = here.frame.scene.objects.iter().any(|object| !object.receives);
+        number(told[2]) == f64::from(here.frame.stencil(here.step.checked_sub(1), pixel).expect("a stencil"))
+            && here.frame.label(here.light(), pixel) == Some(0)
+            && has_one
+    }),
+    ("pixel {}, {} reads texel {}", |here, told| {
+        here.map.is_some_and(|map| {
+            let texel = told[2].split(" of face").next().unwrap_or_default();
+            let [x, y] = map.middle.texel.at;
+            at(told[0], told[1]) == here.pick.expect("a pick") && texel == format!("{x}, {y}")
+        })
+    }),
+    ("stored {}, this surface {}: {}", |here, told| {
+        here.map.is_some_and(|map| {
+            let light = &here.frame.capture.lights[map.light];
+            let faces = &light.map.as_ref().expect("a map").faces;
+            let stored = faces[map.middle.texel.face].depth_at(map.middle.texel.at).expect("a depth");
+            let clear = if here.frame.plan.depth.mapping == DepthMapping::ReversedInfinite { 0.0 } else { 1.0 };
+            let first = |text: &str| text.split(' ').next().and_then(|number| number.parse::<f32>().ok());
+            let is_stored = if stored == clear { told[0] == "no caster" } else { first(told[0]) == Some(stored) };
+            let own = first(told[1]).expect("a depth");
+            let is_nearer = stored != clear && if clear == 0.0 { stored > own } else { stored < own };
+            let label = here.frame.label(map.light, here.pick.expect("a pick"));
+            let outcome = match told[2] {
+                "stored is nearer to the light: shadow" => is_nearer && label != Some(0),
+                "stored is not nearer: lit" => !is_nearer && stored != clear && label != Some(1),
+                "nothing is stored: lit" => stored == clear && label != Some(1),
+                "too close to tell anew" => matches!(label, Some(0 | 1)),
+                many => gaps("{} of {} hold nothing nearer: {}/{} lit", many).is_some_and(|told| {
+                    let width = here.frame.plan.lights[map.light]
+                        .map
+                        .as_ref()
+                        .and_then(|map| map.lookup)
+                        .map_or(0, |how| how.filter_width);
+                    let [lit, all, lit_again, all_again] = [0, 1, 2, 3].map(|gap| number(told[gap]));
+                    let of_width = f64::from(width * width);
+                    // Beyond its face a filter reads none.
+                    let lit_here = map.compared.iter().filter(|one| one.is_lit).count() as f64;
+                    width > 1
+                        && all <= of_width
+                        && (lit, all) == (lit_again, all_again)
+                        && lit == lit_here
+                        && lit <= all
+                        && match label {
+                            Some(0) => 2.0 * lit >= all,
+                            Some(1) => 2.0 * lit < all,
+                            _ => true,
+                        }
+                }),
+            };
+            is_stored && outcome
+        })
+    }),
+    ("pixel {}, {}: no texel of it is known that decides", |here, _| here.map.is_none() && here.pick.is_some()),
+    ("{} lit, {} in shadow, {} background, {} faces away", |here, told| {
+        let labels: Vec<u8> = here.frame.capture.lights[here.light()]
+            .shadow
+            .as_ref()
+            .expect("labels")
+            .rows()
+            .flatten()
+            .copied()
+            .collect();
+        (0..4)
+            .all(|label| number(told[label]) == labels.iter().filter(|one| usize::from(**one) == label).count() as f64)
+    }),
+    ("Choose the picture Truth or Error to hold it against rays.", |here, _| {
+        here.frame.capture.lights[here.light()].truth.is_none()
+    }),
+    ("layer {} of {}: {}×{} texels", |here, told| {
+        let pass = here.frame.step(here.step).1;
+        let color = pass.color.as_ref().map(|target| (target.attachment, target.layer));
+        let target = color.or_else(|| pass.depth_stencil.as_ref().map(|target| (target.attachment, target.layer)));
+        let (attachment, layer) = target.expect("a target");
+        let attachment = here.frame.plan.attachment(attachment);
+        let map = here.frame.plan.lights[here.light()].map.as_ref().expect("a map");
+        // Faces that no caster shows in have no layer; the lesson counts them.
+        let layers = map.faces.len();
+        let own = number(told[0]) - 1.0;
+        let seen = map.faces.get(own as usize).copied().flatten();
+        (seen == Some(pass.view) || own == f64::from(layer))
+            && number(told[1]) == layers as f64
+            && [told[2], told[3]].map(number) == attachment.size.map(f64::from)
+    }),
+    ("1 m from the light a texel is {} mm wide, 10 m away {} mm", |here, told| {
+        let map = here.frame.plan.lights[here.light()].map.as_ref().expect("a map");
+        let side = 2e3 / f64::from(here.frame.plan.attachment(map.attachment).size[0]);
+        let is_cube = map.faces.len() == 6 && map.lookup.is_some();
+        is_cube && is_near(told[0], side) && is_near(told[1], 10.0 * side)
+    }),
+    ("L = ({}, {}, {}, {}){}", |here, told| {
+        let light = here.frame.capture.lights[here.light()].position.to_array();
+        let is_told = (0..4).all(|axis| is_near(told[axis], light[axis]));
+        is_told && told[4] == if light[3] == 0.0 { ": a direction, as w = 0" } else { "" }
+    }),
+    ("{} flattened in {}, one for each receiver behind it", |here, told| {
+        let mut casters: Vec<&str> = here.draws(Part::PlanarShadow).filter_map(|draw| draw.caster.as_deref()).collect();
+        let draws = casters.len();
+        casters.sort_unstable();
+        casters.dedup();
+        let is = |text: &str, count: usize, noun: &str| {
+            number(text) == count as f64 && text.ends_with(&format!(" {noun}{}", if count == 1 { "" } else { "s" }))
+        };
+        is(told[0], casters.len(), "caster") && is(told[1], draws, "draw")
+    }),
+    ("{} pixels are marked", |here, told| {
+        number(told[0]) == here.bytes().iter().filter(|byte| **byte != 0).count() as f64
+    }),
+    (
+        "A count is of bodies: every caster that can darken a surface here is proven closed, and counts 1 each time the way to the light goes through it.",
+        |here, _| is_count_of(here, CountOf::Bodies),
+    ),
+    (
+        "A count is of surfaces, not of bodies: each one on the way to the light counts 1, so that a closed body whose both sides cast counts 2.",
+        |here, _| is_count_of(here, CountOf::Surfaces),
+    ),
+    (
+        "A count is of bodies and of surfaces: a caster that is proven closed counts 1 each time the way to the light goes through it, of the others each surface counts 1.",
+        |here, _| is_count_of(here, CountOf::Mixed),
+    ),
+];
