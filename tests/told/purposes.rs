@@ -169,11 +169,14 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
     let [is_z_pass, is_auto] =
         [Technique::ZPass, Technique::Auto].map(|technique| frame.plan.technique == technique.name());
     let starts_at_eye = frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
+    let is_parallel = frame.scene.camera.is_parallel();
     let is_eye_so = match eye {
-        ", if the eye itself is in none" => is_z_pass && !starts_at_eye,
+        ", if the eye itself is in none" => is_z_pass && !starts_at_eye && !is_parallel,
+        ", if the near plane is in none" => is_z_pass && !starts_at_eye && is_parallel,
+        ", as the near plane is in none" => is_auto && is_parallel && counting(pass).iter().all(|one| one.is_in_front),
         ", if the near plane cuts none" => is_z_pass && starts_at_eye,
         ", as neither the eye nor the near plane is in any" => {
-            is_auto && counting(pass).iter().all(|one| one.is_in_front)
+            is_auto && !is_parallel && counting(pass).iter().all(|one| one.is_in_front)
         }
         ", wherever the eye is" => !is_z_pass,
         _ => false,
