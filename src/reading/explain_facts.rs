@@ -4,7 +4,7 @@
 //! casters, light, or labels. Where a pixel is picked the numbers are that pixel's, else the picture's.
 
 use crate::capture::{Capture, FrameTarget, Snapshot, Step};
-use crate::history::{EventKind, PixelHistory};
+use crate::history::{Event, EventKind, PixelHistory};
 use crate::plan::{CountBits, DecidedBy, Part, Side};
 use crate::reading::counts;
 use crate::reading::depth::DepthMeasure;
@@ -125,10 +125,10 @@ fn volumes(known: &Known) -> Fact {
     let mut here = Vec::new();
     match (known.pick, known.history) {
         (Some([x, y]), Some(history)) => {
-            let began = light.map_or(0, |light| history.cleared_to(light));
-            if known.capture.camera.is_parallel() && began != 0 {
-                here.push(format!("the count began at {began}, the volumes that all lines of sight end in"));
-            }
+            let begins_here = |event: &&Event| {
+                event.pass == known.step && matches!(event.kind, EventKind::ClearStencil | EventKind::ClearCount)
+            };
+            let began = history.events.iter().find(begins_here).and(light).map_or(0, |light| history.cleared_to(light));
             let (mut up, mut down, mut idle) = (0_u32, 0_u32, 0_u32);
             let mut last = None;
             for event in history.events.iter().filter(|event| event.pass == known.step) {
@@ -149,12 +149,18 @@ fn volumes(known: &Known) -> Fact {
                 CountsBy::Inverting if !in_float => {
                     format!("pixel {x}, {y}: {up} faces turn the bit over, {idle} do not count here")
                 }
-                _ => format!(
-                    "pixel {x}, {y}: {up} faces add 1, {down} take 1 away, {idle} do not count here: {up} − {down} = \
-                     {}{}",
-                    i64::from(up) - i64::from(down),
-                    if in_float { String::new() } else { kept_in(&settings) }
-                ),
+                _ => {
+                    let (begins, first) = match began {
+                        0 => (String::new(), String::new()),
+                        _ => (format!("it begins at {began}, "), format!("{began} + ")),
+                    };
+                    format!(
+                        "pixel {x}, {y}: {begins}{up} faces add 1, {down} take 1 away, {idle} do not count here: \
+                         {first}{up} − {down} = {}{}",
+                        i64::from(began) + i64::from(up) - i64::from(down),
+                        if in_float { String::new() } else { kept_in(&settings) }
+                    )
+                }
             });
             // Of a surface that faces away, and of none, no count decides.
             let label = light.and_then(|light| known.capture.lights.get(light)?.shadow.as_ref()?.byte_at([x, y]));

@@ -160,12 +160,15 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
     let bits = CountBits::of_mask(settings.mask().into());
     let inverts = settings.operations == CountsBy::Inverting;
     let reason = match (is_dark, count) {
+        (true, 1..) if inverts && counters.begins => {
+            format!("{} leave its bit at 1, so the light pass skips this pixel.", counters.cancelling)
+        }
         (true, 1..) if inverts => format!(
             "An odd number of volume faces {side} the surface turned its bit over, so the light pass skips this pixel."
         ),
-        (true, 1..) if bits != CountBits::EIGHT => format!(
-            "The volume faces {side} the surface leave {shown} in {bits}, not 0, so the light pass skips this pixel."
-        ),
+        (true, 1..) if bits != CountBits::EIGHT => {
+            format!("{} leave {shown} in {bits}, not 0, so the light pass skips this pixel.", counters.leaving)
+        }
         (true, 1..=127) => format!("{} leave {shown}, not 0, so the light pass skips this pixel.", counters.leaving),
         (true, 128..) => format!(
             "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it skips \
@@ -175,6 +178,9 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
             let count = in_float.unwrap_or_default();
             let verb = if bits.modulus() == 2 { "reads" } else { "read" };
             format!("{count} volumes contain the surface, which {bits} {verb} as 0: the light pass adds the light.")
+        }
+        (false, 0) if inverts && counters.begins => {
+            format!("{} leave its bit at 0, so the light pass adds the light.", counters.cancelling)
         }
         (false, 0) if inverts => format!(
             "An even number of volume faces {side} the surface, or none, turned its bit over, so the light pass adds \
@@ -196,6 +202,8 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
 
 /// What a count is the sum of, as the beginning of a sentence.
 struct Counters {
+    /// The count may begin at another number than 0.
+    begins: bool,
     /// Where something is left.
     leaving: String,
     /// Where nothing is.
@@ -212,7 +220,8 @@ fn counters(capture: &Capture, side: Side) -> Counters {
         let began = if begins { "What the count began with and the" } else { "The" };
         format!("{began} volume faces {side} the surface")
     };
-    Counters { leaving: sum(begins_elsewhere), cancelling: sum(begins_elsewhere || starts_at_eye), side }
+    let begins = begins_elsewhere || starts_at_eye;
+    Counters { begins, leaving: sum(begins_elsewhere), cancelling: sum(begins), side }
 }
 
 impl Counters {

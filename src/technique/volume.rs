@@ -254,7 +254,7 @@ fn begin(frame: &Frame, light: LightId, settings: &VolumeSettings, volumes: &[Vo
         return (start, Some(Start::Eye(kept(start))));
     }
     let start = volumes.iter().map(|volume| volume.begins_with).sum();
-    (start, (start != 0).then_some(Start::FarEnd(kept(start))))
+    (start, Some(kept(start)).filter(|kept| *kept != 0).map(Start::FarEnd))
 }
 
 /// What a count of these counts at a surface; `None` if there are none.

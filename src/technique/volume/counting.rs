@@ -1,6 +1,6 @@
 //! Where volume faces count, and the raster state that makes them.
 
-use crate::plan::{ColorWrite, LightId, Part, RasterState, Side, StencilFace};
+use crate::plan::{ColorWrite, CountBits, LightId, Part, RasterState, Side, StencilFace};
 use crate::technique::Technique;
 use crate::technique::settings::{CountsBy, VolumeSettings};
 use std::ops::Range;
@@ -245,13 +245,22 @@ impl Counts<'_> {
         format!("{begins}{what} the surface{}.", self.condition())
     }
 
+    /// The bits that its count is kept in; all, where that is a float.
+    fn bits(&self) -> CountBits {
+        if self.options.counts_in_float { CountBits::EIGHT } else { CountBits::of_mask(self.options.mask().into()) }
+    }
+
     fn begins(&self) -> String {
         match self.start {
             None => String::new(),
             Some(Start::Eye(start)) => format!("It begins at {start}, for the volumes around the eye. "),
             Some(Start::FarEnd(start)) => format!(
-                "It begins at {start}: parallel lines of sight all end at one point at infinity, in the volumes of so \
-                 many casting triangles, those that a ray from {} along them meets. ",
+                "It begins at {start}{}: parallel lines of sight all end at one point at infinity, in the volumes of \
+                 so many casting triangles, those that a ray from {} along them meets. ",
+                match self.bits() {
+                    CountBits::EIGHT => String::new(),
+                    bits => format!(" in {bits}"),
+                },
                 self.light.name()
             ),
         }
