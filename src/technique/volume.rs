@@ -287,7 +287,8 @@ fn told<'a>(
 ) -> Counts<'a> {
     let chooses_side = frame.job.choice.technique() == Technique::Auto;
     let lacks = [0, 1].map(|cap| volumes.iter().any(|volume| volume.lacks_caps[cap]));
-    Counts { by, light, options, start, chooses_side, lacks }
+    let is_parallel = frame.job.scene.camera.is_parallel();
+    Counts { by, light, options, start, chooses_side, is_parallel, lacks }
 }
 
 /// The same in a float target: signed, and right beyond eight bits. It adds and takes away in one

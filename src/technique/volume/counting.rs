@@ -181,6 +181,8 @@ pub struct Counts<'a> {
     pub start: Option<Start>,
     /// Volumes are only counted in front of the surface where neither the eye nor the near plane is in them.
     pub chooses_side: bool,
+    /// Lines of sight are parallel: they begin at the near plane, and no eye is where they meet.
+    pub is_parallel: bool,
     /// Light caps, dark caps: some would count and are not drawn.
     pub lacks: [bool; 2],
 }
@@ -267,7 +269,11 @@ impl Counts<'_> {
     /// Where that is so.
     fn condition(&self) -> String {
         let eye = match (self.by, self.start) {
+            (Some(Counting::InFront), _) if self.chooses_side && self.is_parallel => ", as the near plane is in none",
             (Some(Counting::InFront), _) if self.chooses_side => ", as neither the eye nor the near plane is in any",
+            (Some(Counting::InFront), None | Some(Start::FarEnd(_))) if self.is_parallel => {
+                ", if the near plane is in none"
+            }
             (Some(Counting::InFront), None | Some(Start::FarEnd(_))) => ", if the eye itself is in none",
             (Some(Counting::InFront), Some(Start::Eye(_))) => ", if the near plane cuts none",
             _ => ", wherever the eye is",
