@@ -4,7 +4,7 @@ use crate::commands::{assert_fails, folder, run, text};
 use std::f64::consts::FRAC_1_SQRT_2;
 use stencilscope::reading::shading::Shaded;
 use stencilscope::scene::builtin::Builtin;
-use stencilscope::scene::{Light, Material, Object, Scene, SceneBuilder, Shading, shapes};
+use stencilscope::scene::{Light, Material, Object, Projection, Scene, SceneBuilder, Shading, shapes};
 use stencilscope::technique::{Choice, Technique};
 use stencilscope::testing::{Label, Rendered};
 
@@ -70,7 +70,7 @@ fn the_terms_of_a_pixel_add_up_to_its_colour() {
     }
     // A range, and a checkerboard.
     assert_terms_make_the_picture(&mut rendered(&scene("tiger-cage"), Technique::ZFail, &[]), "tiger-cage");
-    let board = Material { checks: 0.5, specular: 0.3, ..Material::default() };
+    let board = Material { checks: 0.5, specular: 0.6, shininess: 2.0, ..Material::default() };
     for shading in Shading::ALL {
         let board = Object {
             material: Material { shading, ..board },
@@ -82,6 +82,10 @@ fn the_terms_of_a_pixel_add_up_to_its_colour() {
             .seen_from([0.3, 4.0, 3.0], [0.0; 3])
             .build();
         assert_terms_make_the_picture(&mut rendered(&scene, Technique::ZFail, &[]), "checks");
+        // Lines of sight that are parallel have highlights elsewhere.
+        let mut scene = scene;
+        scene.camera.projection = Projection::Orthographic { half_height: 2.0 };
+        assert_terms_make_the_picture(&mut rendered(&scene, Technique::ZFail, &[]), "checks, parallel");
     }
 }
 

@@ -84,7 +84,7 @@ impl Shaded {
         if capture.origin.is_some() {
             return None;
         }
-        let (draw, triangle) = seen(plan, history)?;
+        let (eye, draw, triangle) = seen(plan, history)?;
         let mesh = plan.meshes.get(draw.mesh.0)?;
         let surface = mesh.surface.as_ref()?;
         let first = triangle * 3;
@@ -107,14 +107,14 @@ impl Shaded {
         let unlit = [0, 1, 2].map(|channel| color[channel] * ambient[channel] + f64::from(material.emission[channel]));
         let lit = |(index, light): (usize, &PlanLight)| {
             let is_turned_away = sides & (1 << index) != 0;
-            let here = terms(at, light, draw, plan.wraps_diffuse);
+            let here = terms(at, eye, light, draw, plan.wraps_diffuse);
             let of_corners = (material.shading == Shading::Gouraud).then(|| {
                 [0, 1, 2].map(|corner| {
                     let point = Point { relative: corners[corner], normal: normals[corner] };
-                    terms(point, light, draw, plan.wraps_diffuse)
+                    terms(point, eye, light, draw, plan.wraps_diffuse)
                 })
             });
-            let mut found = of_corners.map_or(here, |corners| mix(corners, weights, here.cosine, share));
+            let mut found = of_corners.map_or(here, |corners| mix(corners, weights, here.cosine));
             if is_turned_away && !plan.wraps_diffuse {
                 (found.diffuse, found.highlight) = (0.0, 0.0);
             }
@@ -196,13 +196,15 @@ impl LightTerms {
     }
 }
 
-/// The draw and the triangle of its mesh that a pixel shows: the last that passed in ambient light, which all surfaces
-/// are drawn in first.
-fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(&'a Draw, usize)> {
+/// Where lines of sight meet, relative to the eye point, and the draw and the triangle of its mesh that a pixel shows: the
+/// last that passed in ambient light, which all surfaces are drawn in first.
+fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(DVec4, &'a Draw, usize)> {
     history.events.iter().rev().find_map(|event| {
         let one = event.triangle().filter(|one| one.fate.passed())?;
-        let draw = plan.passes.get(event.pass)?.draws.get(one.draw)?;
-        matches!(draw.program, Program::Ambient { .. }).then_some((draw, one.triangle as usize))
+        let pass = plan.passes.get(event.pass)?;
+        let draw = pass.draws.get(one.draw)?;
+        let eye = plan.views.get(pass.view.0)?.eye.as_dvec4();
+        matches!(draw.program, Program::Ambient { .. }).then_some((eye, draw, one.triangle as usize))
     })
 }
 
@@ -221,12 +223,13 @@ fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
     [(b, c), (c, a), (a, b)].map(|(from, to)| across.dot((to - from).cross(point - from)) / area)
 }
 
-fn terms(at: Point, light: &PlanLight, draw: &Draw, wraps: bool) -> Terms {
+fn terms(at: Point, eye: DVec4, light: &PlanLight, draw: &Draw, wraps: bool) -> Terms {
     let position = wide(light.relative_position);
     let to_light = position.truncate() - at.relative * position.w;
     let direction = to_light.normalize_or_zero();
     let cosine = at.normal.dot(direction);
-    let halfway = (direction - at.relative.normalize_or_zero()).normalize_or_zero();
+    let to_eye = (eye.truncate() - at.relative * eye.w).normalize_or_zero();
+    let halfway = (direction + to_eye).normalize_or_zero();
     let material = &draw.constants.material;
     let gloss = f64::from(material.specular) * at.normal.dot(halfway).max(0.0).powf(material.shininess.into());
     let fading = match light.range.filter(|_| position.w != 0.0) {
@@ -241,14 +244,14 @@ fn terms(at: Point, light: &PlanLight, draw: &Draw, wraps: bool) -> Terms {
     }
 }
 
-/// Light of the corners, mixed; the share of the colour that a check leaves is taken of all of it.
-fn mix(corners: [Terms; 3], weights: [f64; 3], cosine: f64, share: f64) -> Terms {
+/// Light of the corners, mixed.
+fn mix(corners: [Terms; 3], weights: [f64; 3], cosine: f64) -> Terms {
     let sum =
         |of: fn(&Terms) -> f64| corners.iter().zip(weights).map(|(corner, weight)| weight * of(corner)).sum::<f64>();
     let fading = sum(|corner| corner.fading);
     let part = |sum: f64| if fading == 0.0 { 0.0 } else { sum / fading };
     let diffuse = part(sum(|corner| corner.fading * corner.diffuse));
-    let highlight = share * part(sum(|corner| corner.fading * corner.highlight));
+    let highlight = part(sum(|corner| corner.fading * corner.highlight));
     Terms { cosine, diffuse, highlight, fading }
 }
 
