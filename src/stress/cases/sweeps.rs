@@ -124,7 +124,8 @@ const LIGHT_CLOSE: Case = Case {
         fails(FINITE, "finite-extrusion", "a vertex is carried by its distance to the light, which is next to nothing")
             .at(|distance| distance < 1.0)
             .is_missing()
-            .at_most(0.95),
+            // All but what little of it is drawn on the caster itself: of a closed body the lit face alone casts.
+            .at_most(0.99),
         NO_FIT.at(|distance| distance < 1.0),
     ],
     ..PLAIN

@@ -118,14 +118,16 @@ const LIGHT_IN_NEAR_PLANE: Case = Case {
         Ok(scene)
     }),
     failures: &[
-        CUT_BY_NEAR.is_false().at_most(0.975),
+        // The board's volume holds the eye and is left once more than entered: −1 lights what the box alone darkens, as
+        // that counts one.
+        CUT_BY_NEAR.is_mixed().at_most(0.99),
         fails(
             Z_PASS_PLUS,
             "light-in-near-plane",
             "the light sees the near rectangle as a line, so what the eye is inside of is not counted",
         )
-        .is_false()
-        .at_most(0.975),
+        .is_mixed()
+        .at_most(0.99),
     ],
     ..PLAIN
 };
