@@ -4,7 +4,8 @@
 //! and the drag that follows come in one: what is grabbed would be what the pointer came to, and a handle that was
 //! pressed would stay behind, and a drag that ends in its first frame is none. So a frame ends before the pointer moves
 //! on from where a button went down or up, before the button of a movement goes up, and before a key that follows a
-//! movement: it means what the pointer is over.
+//! movement: it means what the pointer is over. A window that many such frames wait for takes all at once, as without
+//! this: what it shows is then of long ago anyway.
 
 use egui::Event;
 

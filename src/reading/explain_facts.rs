@@ -227,8 +227,12 @@ fn triangles(known: &Known, step: &Step) -> Fact {
     let is_sun = step.light.and_then(|light| known.lights.get(light)).is_some_and(Light::is_directional);
     let is_finite = known.capture.settings.get("extrusion").is_some_and(|how| how.starts_with("finite"));
     let is_parallel = known.capture.camera.is_parallel();
+    // Whose count does not begin there has none, or lacks it.
+    let side = step.light.and_then(|light| known.capture.decided_by(light).counted_side());
+    let draws_them = VolumeSettings::read(&known.capture.settings).caps[1];
+    let begins_there = is_parallel && side != Some(Side::InFront) && draws_them;
     let dark_cap = match (is_sun, is_finite) {
-        (false, false) if is_parallel => {
+        (false, false) if begins_there => {
             "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there"
         }
         (_, true) => "dark caps, the casting triangles carried to the far end",

@@ -24,6 +24,8 @@ const SAME_SURFACE: f64 = 0.01;
 /// What the shader is given at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fragment {
+    /// A triangle that was drawn is known to be the one that is seen; else `normal`, `reads` and `layer` are guesses.
+    pub is_drawn: bool,
     /// World space.
     pub world: DVec3,
     /// What it is shaded with: of unit length, to the side that the eye sees.
@@ -68,7 +70,7 @@ impl Fragments {
         let drawn = drawn.filter(|fragment| fragment.world.distance(world) <= most);
         Some(drawn.unwrap_or_else(|| {
             let plane = self.guessed(at, world);
-            Fragment { world, normal: plane, plane, reads: true, layer: None }
+            Fragment { is_drawn: false, world, normal: plane, plane, reads: true, layer: None }
         }))
     }
 
@@ -172,6 +174,7 @@ impl Drawn {
         let normal: DVec3 = normals.iter().zip(shares).map(|(normal, share)| xyz(*normal).truncate() * share).sum();
         let sees_back = data.sides.data().get(place.triangle as usize)? & SEES_BACK != 0;
         let fragment = Fragment {
+            is_drawn: true,
             world: surface.eye + relative,
             normal: if sees_back { -normal } else { normal }.try_normalize()?,
             plane: across.try_normalize()?,

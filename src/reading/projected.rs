@@ -118,10 +118,10 @@ pub fn outline(capture: &Capture, corners: [[f32; 4]; 3]) -> Vec<DVec2> {
 }
 
 /// What lies before the near plane, in clip space: near is where depth is 1, or 0; depth that is clamped has
-/// no such end.
+/// no such end, but of a parallel view, where nothing else ends it.
 #[must_use]
 pub fn near_plane(capture: &Capture) -> DVec4 {
-    match (capture.depth.mapping.clamps(), capture.depth.mapping.is_reversed()) {
+    match (capture.depth.mapping.clamps() && !capture.depth.is_linear, capture.depth.mapping.is_reversed()) {
         (true, _) => DVec4::W,
         (false, true) => DVec4::W - DVec4::Z,
         (false, false) => DVec4::Z,

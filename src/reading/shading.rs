@@ -28,9 +28,9 @@ pub struct Shaded {
     pub normal: [f64; 3],
     /// Linear RGB reflectance, with its checks.
     pub color: [f64; 3],
-    /// Strength of the highlight, and its Blinn-Phong exponent.
+    /// Strength of the highlight.
     pub specular: f64,
-    /// The same.
+    /// Its Blinn-Phong exponent.
     pub shininess: f64,
     /// Linear RGB that it has without any light: under ambient light, and sent out by itself.
     pub unlit: [f64; 3],
@@ -186,6 +186,9 @@ impl LightTerms {
             digits(self.highlight),
             three(self.adds)
         );
+        if self.color == [0.0; 3] {
+            return format!("{cosine}; it sends out nothing: it is off, or black");
+        }
         let arrives = match self.label {
             Some("lit") => "it arrives",
             Some("in shadow") => "it would be added, but this is in shadow",

@@ -61,7 +61,7 @@ impl TextureDecision {
         }
         let of = capture.lights.get(light)?;
         let map = of.map.as_ref()?;
-        let fragment = fragments.at(pixel).filter(|fragment| fragment.reads)?;
+        let fragment = fragments.at(pixel).filter(|fragment| fragment.is_drawn && fragment.reads)?;
         let names = layers::layers(capture, light);
         let is_read = |layer: &usize| match content {
             MapContent::Textures => fragment.layer == Some(*layer as u32),

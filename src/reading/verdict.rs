@@ -4,6 +4,7 @@
 //! claims nothing about geometry, which the capture does not know.
 
 use crate::capture::{Capture, FrameSnapshot, FrameTarget, Snapshot};
+use crate::geometry::Extrusion;
 use crate::history::PixelHistory;
 use crate::plan::{CountBits, DecidedBy, Side};
 use crate::reading::counts;
@@ -143,7 +144,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
     let in_float = capture.lights.get(light).and_then(|light| light.count.as_ref()?.count_at(at));
     let decides = capture.decided_by(light).counts_in_floats();
     if let Some(count) = in_float.filter(|_| decides) {
-        return counted_in_float(counters(capture, side), count, is_dark, title);
+        return counted_in_float(counters(capture, light, side), count, is_dark, title);
     }
     let Some(count) = tested_count(capture, light, at) else {
         return Verdict {
@@ -155,21 +156,21 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
     let settings = VolumeSettings::read(&capture.settings);
     let shown = crate::numbers::signed(count);
     let title = format!("{title}: its stencil count is {shown}.");
-    let counters = counters(capture, side);
+    let counters = counters(capture, light, side);
     let side = side.preposition();
     let bits = CountBits::of_mask(settings.mask().into());
     let inverts = settings.operations == CountsBy::Inverting;
     let reason = match (is_dark, count) {
         (true, 1..) if inverts && counters.begins => {
-            format!("{} leave its bit at 1, so the light pass skips this pixel.", counters.cancelling)
+            format!("{} leave its bit at 1, so the light pass skips this pixel.", counters.sum)
         }
         (true, 1..) if inverts => format!(
             "An odd number of volume faces {side} the surface turned its bit over, so the light pass skips this pixel."
         ),
         (true, 1..) if bits != CountBits::EIGHT => {
-            format!("{} leave {shown} in {bits}, not 0, so the light pass skips this pixel.", counters.leaving)
+            format!("{} leave {shown} in {bits}, not 0, so the light pass skips this pixel.", counters.sum)
         }
-        (true, 1..=127) => format!("{} leave {shown}, not 0, so the light pass skips this pixel.", counters.leaving),
+        (true, 1..=127) => format!("{} leave {shown}, not 0, so the light pass skips this pixel.", counters.sum),
         (true, 128..) => format!(
             "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it skips \
              this pixel."
@@ -180,7 +181,7 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
             format!("{count} volumes contain the surface, which {bits} {verb} as 0: the light pass adds the light.")
         }
         (false, 0) if inverts && counters.begins => {
-            format!("{} leave its bit at 0, so the light pass adds the light.", counters.cancelling)
+            format!("{} leave its bit at 0, so the light pass adds the light.", counters.sum)
         }
         (false, 0) if inverts => format!(
             "An even number of volume faces {side} the surface, or none, turned its bit over, so the light pass adds \
@@ -204,43 +205,40 @@ fn counted(capture: &Capture, light: usize, at: [u32; 2], (is_dark, side): (bool
 struct Counters {
     /// The count may begin at another number than 0.
     begins: bool,
-    /// Where something is left.
-    leaving: String,
-    /// Where nothing is.
-    cancelling: String,
+    /// What is summed.
+    sum: String,
     side: &'static str,
 }
 
 /// Parallel lines of sight begin in the volumes that they end in at infinity.
-fn counters(capture: &Capture, side: Side) -> Counters {
-    let begins_elsewhere = capture.camera.is_parallel() && side != Side::InFront;
-    let starts_at_eye = VolumeSettings::read(&capture.settings).starts_at_eye;
+fn counters(capture: &Capture, light: usize, side: Side) -> Counters {
+    let settings = VolumeSettings::read(&capture.settings);
+    let is_point = capture.lights.get(light).is_some_and(|light| light.position.w != 0.0);
+    let lacks_caps = settings.extrusion == Extrusion::Infinite && settings.caps[1];
+    let begins_at_infinity = capture.camera.is_parallel() && is_point && side != Side::InFront && lacks_caps;
+    let begins = begins_at_infinity || settings.starts_at_eye;
+    let began = if begins { "What the count began with and the" } else { "The" };
     let side = side.preposition();
-    let sum = |begins: bool| {
-        let began = if begins { "What the count began with and the" } else { "The" };
-        format!("{began} volume faces {side} the surface")
-    };
-    let begins = begins_elsewhere || starts_at_eye;
-    Counters { begins, leaving: sum(begins_elsewhere), cancelling: sum(begins), side }
+    Counters { begins, sum: format!("{began} volume faces {side} the surface"), side }
 }
 
 impl Counters {
     fn cancel_out(&self) -> String {
-        format!("{} cancel out, so the light pass adds the light.", self.cancelling)
+        format!("{} cancel out, so the light pass adds the light.", self.sum)
     }
 }
 
 /// A count that is kept in a float has a sign, and no limits.
 fn counted_in_float(counters: Counters, count: f32, is_dark: bool, title: &str) -> Verdict {
-    let Counters { leaving, side, .. } = &counters;
+    let Counters { sum, side, .. } = &counters;
     let shown = counts::text(count);
     let title = format!("{title}: its count is {shown}.");
     let reason = match is_dark {
         true if counts::reads_zero_in_eight_bits(count) => format!(
-            "{leaving} leave {shown}, so the light pass adds nothing. Eight bits would read 0 and light this pixel."
+            "{sum} leave {shown}, so the light pass adds nothing. Eight bits would read 0 and light this pixel."
         ),
         true if count > 0.0 => {
-            format!("{leaving} leave {shown}, not 0, so the light pass adds nothing.")
+            format!("{sum} leave {shown}, not 0, so the light pass adds nothing.")
         }
         true if count < 0.0 => format!(
             "More volumes were left than entered {side} the surface. Not 0 is all that the light pass asks, so it adds \

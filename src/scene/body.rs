@@ -9,6 +9,7 @@
 use super::Walls;
 use super::collision::{MOST_STEPS, PUSHES, SLACK, closest};
 use super::wall_tree::Wall;
+use crate::math::AxisBox;
 use glam::{DVec2, DVec3};
 
 /// Metres a second squared.
@@ -162,6 +163,13 @@ impl Body {
         let mut least = (self.radius * (1.0 - SLACK)).powi(2);
         let mut found = None;
         walls.any_near(axis[0] - reach, axis[1] + reach, |wall| {
+            // A box is no farther than what is in it: most of a fine mesh is looked at no closer.
+            let box_of = AxisBox::around(*wall);
+            let [low, high] = [axis[0].min(axis[1]), axis[0].max(axis[1])];
+            let apart = (box_of.low - high).max(low - box_of.high).max(DVec3::ZERO);
+            if apart.length_squared() >= least {
+                return false;
+            }
             let (own, nearest) = nearest_points(axis, *wall);
             let distance = own.distance_squared(nearest);
             if distance < least {

@@ -179,11 +179,14 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
     let [is_z_pass, is_auto] =
         [Technique::ZPass, Technique::Auto].map(|technique| frame.plan.technique == technique.name());
     let starts_at_eye = frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
+    let is_parallel = frame.scene.camera.is_parallel();
     let is_eye_so = match eye {
-        ", if the eye itself is in none" => is_z_pass && !starts_at_eye,
+        ", if the eye itself is in none" => is_z_pass && !starts_at_eye && !is_parallel,
+        ", if the near plane is in none" => is_z_pass && !starts_at_eye && is_parallel,
+        ", as the near plane is in none" => is_auto && is_parallel && counting(pass).iter().all(|one| one.is_in_front),
         ", if the near plane cuts none" => is_z_pass && starts_at_eye,
         ", as neither the eye nor the near plane is in any" => {
-            is_auto && counting(pass).iter().all(|one| one.is_in_front)
+            is_auto && !is_parallel && counting(pass).iter().all(|one| one.is_in_front)
         }
         ", wherever the eye is" => !is_z_pass,
         _ => false,
@@ -204,7 +207,6 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
         counting(pass).iter().any(|one| !one.is_in_front) || pass.draws.iter().any(|d| turns_over(d, false));
     let is_point = frame.scene.lights[light].homogeneous().w != 0.0;
     // Parallel lines of sight see it as a point.
-    let is_parallel = frame.scene.camera.is_parallel();
     let is_needed = [is_behind, is_behind && is_point && !is_parallel];
     is_eye_so
         && [0, 1]
@@ -267,13 +269,15 @@ const PURPOSES: &[(&str, Check)] = &[
         },
     ),
     (
-        "Counts the shadow volumes of {}, behind each surface where they may hold the eye, else in front of it: in front, a front face adds 1 and a back face takes 1 away, behind, it is the other way round. {}",
+        "Counts the shadow volumes of {}, behind each surface where they may hold {}, else in front of it: in front, a front face adds 1 and a back face takes 1 away, behind, it is the other way round. {}",
         |frame, pass, told| {
             let counting = counting(pass);
             let [front, behind] = [true, false].map(|side| counting.iter().any(|one| one.is_in_front == side));
             let is_right = |one: &Steps| (one.outside, one.inside) == if one.is_in_front { (1, -1) } else { (-1, 1) };
             let are_right = counting.iter().all(is_right);
-            is_light(pass, told[0]) && front && behind && are_right && is_left(frame, pass, told[1])
+            let held = if frame.scene.camera.is_parallel() { "the near plane" } else { "the eye" };
+            let is_so = front && behind && are_right && told[1] == held;
+            is_light(pass, told[0]) && is_so && is_left(frame, pass, told[2])
         },
     ),
     (

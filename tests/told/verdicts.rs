@@ -89,7 +89,9 @@ impl Here<'_> {
     /// sight end in?
     fn begins_elsewhere(&self) -> bool {
         let starts_at_eye = self.frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
-        starts_at_eye || (self.frame.capture.camera.is_parallel() && !self.says_side("in front of"))
+        let is_point = self.frame.capture.lights[self.light].position.w != 0.0;
+        let is_parallel = self.frame.capture.camera.is_parallel();
+        starts_at_eye || (is_parallel && is_point && !self.says_side("in front of"))
     }
 
     /// How often faces turned its bit over.

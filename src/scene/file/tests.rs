@@ -93,10 +93,15 @@ fn every_shape_makes_a_mesh() {
 /// Unless given, the target is as large as a pinhole shows it; cabinet projection is usual. Saved, it is read as it was.
 #[test]
 fn a_parallel_camera_has_a_half_height_and_may_be_aslant() {
+    let folder = tempfile::tempdir().expect("a folder");
     let with = |keys: &str| {
         let scene = parsed(&SCENE.replace("near = 0.05", &format!("near = 0.05\n{keys}"))).expect(keys);
         let saved = save(&scene, "saved", &BTreeMap::new()).expect("saved");
-        assert_eq!(parsed(&saved.toml).expect("read again").camera, scene.camera, "{keys}");
+        for (name, contents) in &saved.files {
+            std::fs::write(folder.path().join(name), contents).expect("a file");
+        }
+        let again = parse(&saved.toml, "saved", folder.path()).expect("read again");
+        assert_eq!(again.camera, scene.camera, "{keys}");
         scene.camera
     };
     assert_eq!(with("").projection, Projection::Perspective);

@@ -229,7 +229,8 @@ impl Counts<'_> {
             }
             Some(Counting::Behind) => format!("the shadow volumes of {light} behind each surface"),
             None => format!(
-                "the shadow volumes of {light}, behind each surface where they may hold the eye, else in front of it"
+                "the shadow volumes of {light}, behind each surface where they may hold {}, else in front of it",
+                if self.is_parallel { "the near plane" } else { "the eye" }
             ),
         }
     }

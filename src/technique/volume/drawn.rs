@@ -18,8 +18,10 @@ use std::ops::Range;
 pub struct FarEnd {
     /// Casting triangles that the light's ray along the view meets: how many of its volumes hold that end.
     pub met: u32,
-    /// How far beside the light its far vertices are carried from, metres; of a directional one, in parts of its length.
+    /// How far beside the light its far vertices are carried from, metres; of a directional one, radians off its way.
     pub beside: f64,
+    /// The light has a place.
+    pub is_point: bool,
 }
 
 /// A caster's volume, ready to be drawn.
@@ -117,14 +119,19 @@ pub fn make(
     let far_end = far_point.map(|far_point| {
         let corners = |run: Range<usize>| indices[run.start * 3..run.end * 3].chunks_exact(3);
         let place = |vertex: &u32| placed.world.get(*vertex as usize).copied();
-        let edge = |corners: &[u32]| -> Option<[DVec3; 2]> {
-            corners.iter().filter_map(place).collect::<Vec<_>>().try_into().ok()
+        // A side's triangle has two corners of the mesh, or one.
+        let edge = |corners: &[u32]| {
+            let mut near = corners.iter().filter_map(place);
+            near.next().zip(near.next()).map(|(from, to)| [from, to])
         };
         let edges: Vec<_> = corners(0..parts.hugging_sides.end).filter_map(edge).collect();
         let from = far_point.settled(position, &edges);
         let triangle = |corners: &[u32]| [0, 1, 2].map(|corner| placed.world[corners[corner] as usize]);
         let casting = corners(parts.light_cap.start..parts.light_cap_turned.end).map(triangle);
-        (from, FarEnd { met: far_point.count(from, casting), beside: (from - position).length() })
+        let is_point = position.w != 0.0;
+        let scale = if is_point { position.w } else { position.truncate().length() };
+        let beside = (from - position).length() / scale;
+        (from, FarEnd { met: far_point.count(from, casting), beside, is_point })
     });
     let extruder = far_end.map_or(extruder, |(from, _)| Extruder::new(&placed.world, from, options.extrusion));
     let vertices = extruder.vertices(&placed.world).chain(fan.iter().flat_map(Fan::vertices));
@@ -192,7 +199,11 @@ impl FarEnd {
     fn beside(self) -> String {
         match self.beside > 0.0 {
             true => {
-                format!("; as a side is seen edge-on, they lead from {} beside the light", numbers::metres(self.beside))
+                let beside = match self.is_point {
+                    true => format!("{} beside the light", numbers::metres(self.beside)),
+                    false => format!("{} radians off the light", numbers::digits(self.beside)),
+                };
+                format!("; as a side is seen edge-on, sides lead from {beside}")
             }
             false => String::new(),
         }

@@ -9,8 +9,8 @@
 //! A silhouette's edge that the light's ray meets is seen end on: pixels on one side of its line end in its volume,
 //! and those on the other do not. Where single precision can't tell on which side of such an edge the ray goes, far
 //! vertices are carried from a little beside the light, by millionths of the distance to the edge, and the ray is
-//! followed from there: sides and count then say the same. The shadow's border moves by as much as a millionth of the
-//! scene, and that is all.
+//! followed from there: sides and count then say the same. The shadow's border moves by some millionths of the scene;
+//! where many edges are in doubt, by more, at most by a fiftieth of the distance to an edge.
 
 use crate::math::{Sign, side_of_triangle};
 use crate::scene::{Camera, Projection};

@@ -107,7 +107,12 @@ pub const LINES: &[(&str, Check)] = &[
     }),
     (
         "dark caps: parallel lines of sight see infinity as one point, and the count begins at what lies there: {}",
-        |here, told| here.frame.capture.camera.is_parallel() && told[0] == "0" && here.triangles(Part::DarkCap) == 0.0,
+        |here, told| {
+            let is_behind = here.decided_by().counted_side() != Some(Side::InFront);
+            let is_point = here.frame.capture.lights[here.light()].position.w != 0.0;
+            let is_there = here.frame.capture.camera.is_parallel() && is_behind && is_point;
+            is_there && told[0] == "0" && here.triangles(Part::DarkCap) == 0.0
+        },
     ),
     ("dark caps, fans over the silhouettes at infinity: {}", |here, told| {
         here.frame.capture.lights[here.light()].position.w != 0.0 && number(told[0]) == here.triangles(Part::DarkCap)

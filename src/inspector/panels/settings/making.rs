@@ -42,8 +42,13 @@ pub fn ui(ui: &mut Ui, scene: &mut OpenScene) -> bool {
 
 /// Buttons that add: what is new stands where the eye looks, lights above it.
 fn add(ui: &mut Ui, scene: &mut OpenScene) -> bool {
-    let Camera { eye, target, .. } = scene.draft.camera;
-    let far = eye.distance(target);
+    let camera = scene.draft.camera;
+    let Camera { eye, target, .. } = camera;
+    // As far as a pinhole of 45 degrees is that shows as much.
+    let far = match camera.is_parallel() {
+        true => camera.half_height() / 22.5_f64.to_radians().tan(),
+        false => eye.distance(target),
+    };
     let mut changed = false;
     ui.horizontal_wrapped(|ui| {
         ui.label(theme::note("add"));

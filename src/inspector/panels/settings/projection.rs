@@ -15,7 +15,7 @@ pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
     if let Projection::Orthographic { half_height } | Projection::Oblique { half_height, .. } = &mut camera.projection {
         let before = half_before.unwrap_or(*half_height);
         changed |= row(ui, ("half height", "half height"), half_height, &before, |ui, half_height| {
-            let widget = DragValue::new(half_height).range(1e-6..=1e6).speed(0.01).max_decimals(4).suffix(" m");
+            let widget = DragValue::new(half_height).range(1e-30..=1e30).speed(0.01).max_decimals(4).suffix(" m");
             let shown = ui.add(widget.update_while_editing(false)).accessible_name("Half height");
             shown.on_hover_text("From the picture's middle to its upper edge").changed()
         });
@@ -28,7 +28,7 @@ pub fn rows(ui: &mut Ui, camera: &mut Camera, before: &Camera) -> bool {
             shown.on_hover_text("Of the line along which things recede, from the right and counter-clockwise").changed()
         });
         changed |= row(ui, ("oblique factor", "depth factor"), factor, &before[1], |ui, factor| {
-            let widget = DragValue::new(factor).range(0.0..=4.0).speed(0.01).max_decimals(3);
+            let widget = DragValue::new(factor).range(0.0..=100.0).speed(0.01).max_decimals(3);
             let shown = ui.add(widget.update_while_editing(false)).accessible_name("Oblique depth factor");
             shown.on_hover_text("Of a metre of depth in the picture: 1 is cavalier, 0.5 cabinet").changed()
         });
