@@ -5,7 +5,7 @@ use glam::{DVec3, Mat4};
 use std::collections::BTreeMap;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::plan::{
-    Attachment, AttachmentId, AttachmentRole, Blob, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh,
+    Attachment, AttachmentId, AttachmentRole, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh,
     FramePlan, MeshId, Part, Pass, PlanView, Program, RasterState, StencilFace, ViewId,
 };
 use stencilscope::stencil_machine::{Fragment, Stored, test};
@@ -143,7 +143,7 @@ fn pass(name: &str, clear: bool, draws: Vec<Draw>) -> Pass {
 }
 
 fn mesh(name: &str, vertices: Vec<[f32; 4]>, indices: Vec<u32>) -> DrawMesh {
-    DrawMesh { name: name.to_owned(), vertices: Blob::new(vertices), indices: Blob::new(indices), surface: None }
+    DrawMesh::of_positions(name, vertices, indices)
 }
 
 /// First every pixel is given its stored value, then every case is drawn once over its pixels.

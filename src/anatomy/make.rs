@@ -143,7 +143,13 @@ mod tests {
 
     #[test]
     fn the_volumes_of_z_fail_close_and_stand_on_the_silhouette() {
-        for settings in [&[][..], &[("extrusion", "finite:3")], &[("casters", "light-facing")]] {
+        for settings in [
+            &[][..],
+            &[("extrusion", "finite:3")],
+            &[("casters", "light-facing")],
+            &[("extruded-by", "vertex-shader")],
+            &[("extruded-by", "vertex-shader"), ("extrusion", "finite:3")],
+        ] {
             let anatomy = of("tori", Technique::ZFail, settings);
             assert!(!anatomy.volumes.is_empty());
             for (index, volume) in anatomy.volumes.iter().enumerate() {

@@ -383,7 +383,7 @@ fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, 
 }
 
 fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &PreparedDraw, light_offset: u32) {
-    if draw.program.group_count() > 1 {
+    if ready.shader.group_count() > 1 {
         pass.set_bind_group(1, &prepared.draw_group, &[prepared.draws.offset(ready.index)]);
     }
     let corners = draw.triangles.start * 3..draw.triangles.end * 3;

@@ -3,7 +3,7 @@
 //! Groups: 0 the pass's view, 1 the draw's constants, 2 a surface's data, 3 the light and, for
 //! programs that read them, its map or labels. A program has only the groups it uses.
 
-use super::shaders::source_of;
+use super::shaders::{Shader, source_of};
 use crate::plan::{ColorWrite, Program, RasterState, Visibility};
 use std::collections::HashMap;
 use wgpu::{
@@ -16,7 +16,7 @@ use wgpu::{
 /// What a pipeline is made from.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineKey {
-    pub program: Program,
+    pub shader: Shader,
     /// Its reference is set by the pass, and 0 here.
     pub raster: RasterState,
     pub color_format: Option<TextureFormat>,
@@ -44,7 +44,7 @@ pub(super) struct Pipelines {
     pub layouts: Layouts,
     /// Linear, clamped to the edge.
     pub smooth_sampler: wgpu::Sampler,
-    modules: HashMap<Program, ShaderModule>,
+    modules: HashMap<Shader, ShaderModule>,
     pipelines: HashMap<PipelineKey, RenderPipeline>,
     starts: HashMap<TextureFormat, RenderPipeline>,
 }
@@ -53,6 +53,8 @@ pub(super) struct Pipelines {
 const MOST_KEPT: usize = 512;
 
 const POSITION_ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x4];
+/// `ExtrudedCorner` of the plan.
+const EXTRUDED_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
 
 impl Pipelines {
     pub fn new(device: &Device) -> Pipelines {
@@ -91,25 +93,24 @@ impl Pipelines {
     }
 
     fn create(&mut self, device: &Device, key: &PipelineKey) -> RenderPipeline {
-        let source = source_of(key.program);
-        let module = self.modules.entry(key.program).or_insert_with(|| {
+        let (source, program) = (source_of(key.shader), key.shader.program);
+        let module = self.modules.entry(key.shader).or_insert_with(|| {
             let text = wgpu::ShaderSource::Wgsl(source.source.clone().into());
             device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(source.vertex), source: text })
         });
-        let groups = self.layouts.of(key.program);
+        let groups = self.layouts.of(program);
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(source.vertex),
-            bind_group_layouts: &groups.map(Some)[..key.program.group_count()],
+            bind_group_layouts: &groups.map(Some)[..key.shader.group_count()],
             ..wgpu::PipelineLayoutDescriptor::default()
         });
-        let positions = Some(VertexBufferLayout {
-            array_stride: 16,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &POSITION_ATTRIBUTES,
-        });
+        let (array_stride, attributes) =
+            if key.shader.extrudes { (32, &EXTRUDED_ATTRIBUTES[..]) } else { (16, &POSITION_ATTRIBUTES[..]) };
+        let positions =
+            Some(VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes });
         let color_target = key.color_format.map(|format| color_target(format, key.raster.color));
         let compilation_options = wgpu::PipelineCompilationOptions::default();
-        let is_recorded = key.program.is_recorded();
+        let is_recorded = program.is_recorded();
         let constants = key.depth_steps.map(|steps| ("steps", f64::from(steps)));
         let constants = constants.as_slice();
         // Floats are stored as they are.
@@ -121,7 +122,7 @@ impl Pipelines {
                 module,
                 entry_point: Some(source.vertex),
                 compilation_options: compilation_options.clone(),
-                buffers: if key.program.pulls_vertices() { &[] } else { std::slice::from_ref(&positions) },
+                buffers: if program.pulls_vertices() { &[] } else { std::slice::from_ref(&positions) },
             },
             primitive: wgpu::PrimitiveState {
                 cull_mode: key.raster.cull,

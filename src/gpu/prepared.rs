@@ -4,11 +4,12 @@
 use super::buffers::Buffers;
 use super::maps::{KeptMap, Maps};
 use super::pipelines::{PipelineKey, Pipelines};
+use super::shaders::Shader;
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError, start};
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, Program, RasterState, Visibility,
+    Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility,
 };
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -50,6 +51,7 @@ pub(super) struct PreparedPass {
 
 #[derive(Debug)]
 pub(super) struct PreparedDraw {
+    pub shader: Shader,
     /// With the stencil reference of each: one, or two where front and back faces have masks of their own.
     pub pipelines: Vec<(RenderPipeline, u8)>,
     /// Index among all draws of the plan.
@@ -97,13 +99,17 @@ impl<'a> Prepared<'a> {
                     continue;
                 }
                 let states = draw.raster.by_face();
+                let mesh = &plan.meshes[draw.mesh.0];
+                let shader = Shader { program: draw.program, extrudes: mesh.extruded.is_some() };
                 let of_state = |raster: &RasterState| {
                     let reference = raster.stencil_reference;
-                    (pipelines.get(device, &key_of(plan, pass, draw.program, raster)), reference)
+                    (pipelines.get(device, &key_of(plan, pass, shader, raster)), reference)
                 };
                 let states = states.iter().map(of_state).collect();
-                let mesh = &plan.meshes[draw.mesh.0];
-                let vertices = buffers.get(device, &mesh.vertices)?;
+                let vertices = match &mesh.extruded {
+                    Some(extruded) => buffers.get(device, &extruded.corners)?,
+                    None => buffers.get(device, &mesh.vertices)?,
+                };
                 let indices = buffers.get(device, &mesh.indices)?;
                 let shading = match (&mesh.surface, pass.light, draw.program.pulls_vertices()) {
                     (Some(surface), Some(light), true) => {
@@ -115,7 +121,7 @@ impl<'a> Prepared<'a> {
                     }
                     _ => None,
                 };
-                prepared.draws.push(PreparedDraw { pipelines: states, index, vertices, indices, shading });
+                prepared.draws.push(PreparedDraw { shader, pipelines: states, index, vertices, indices, shading });
             }
             passes.push(prepared);
         }
@@ -261,14 +267,14 @@ fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Prep
     }
 }
 
-fn key_of(plan: &FramePlan, pass: &Pass, program: Program, raster: &RasterState) -> PipelineKey {
+fn key_of(plan: &FramePlan, pass: &Pass, shader: Shader, raster: &RasterState) -> PipelineKey {
     let depth_stencil = pass.depth_stencil.as_ref().map(|target| plan.attachment(target.attachment));
     PipelineKey {
-        program,
+        shader,
         raster: RasterState { stencil_reference: 0, ..raster.clone() },
         color_format: pass.color.as_ref().map(|target| plan.attachment(target.attachment).format),
         depth_format: depth_stencil.map(Attachment::held_format),
-        depth_steps: depth_stencil.and_then(Attachment::depth_steps).filter(|_| program.is_recorded()),
+        depth_steps: depth_stencil.and_then(Attachment::depth_steps).filter(|_| shader.program.is_recorded()),
     }
 }
 

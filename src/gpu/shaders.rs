@@ -4,6 +4,21 @@
 
 use crate::plan::{Program, Visibility};
 
+/// What a shader module is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct Shader {
+    pub program: Program,
+    /// Its vertices are [`Extruded`](crate::plan::Extruded).
+    pub extrudes: bool,
+}
+
+impl Shader {
+    /// How many bind groups it uses, from group 0 on.
+    pub fn group_count(self) -> usize {
+        if self.extrudes { self.program.group_count().max(2) } else { self.program.group_count() }
+    }
+}
+
 /// A shader module of a program.
 #[derive(Debug, Clone)]
 pub(super) struct ProgramSource {
@@ -19,7 +34,11 @@ macro_rules! file {
     };
 }
 
-pub(super) fn source_of(program: Program) -> ProgramSource {
+pub(super) fn source_of(shader: Shader) -> ProgramSource {
+    if shader.extrudes {
+        return extruding(shader.program);
+    }
+    let program = shader.program;
     let (files, vertex, fragment) = match program {
         Program::Position => (vec![file!("position.wgsl")], "vs_position", None),
         Program::Flat | Program::FlatLabel | Program::Count => {
@@ -42,6 +61,15 @@ pub(super) fn source_of(program: Program) -> ProgramSource {
         Program::Label(visibility) => (surface_files(file!("label.wgsl"), visibility), "vs_surface", Some("fs_label")),
     };
     ProgramSource { source: [&[file!("shared.wgsl")], &files[..]].concat().join("\n"), vertex, fragment }
+}
+
+/// The same with vertices that the shader carries away from a light, for programs that are only positions and a value.
+fn extruding(program: Program) -> ProgramSource {
+    let plain = source_of(Shader { program, extrudes: false });
+    // A program that reads no value of its draw has no constants yet.
+    let constants = if program.group_count() < 2 { file!("draw.wgsl") } else { "" };
+    let source = [&plain.source, constants, file!("extruded.wgsl")].join("\n");
+    ProgramSource { source, vertex: "vs_extruded", fragment: plain.fragment }
 }
 
 fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str> {
@@ -70,7 +98,10 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid() {
-        let programs = Program::all().into_iter().map(|program| (format!("{program:?}"), source_of(program).source));
+        let plain = Program::all().into_iter().map(|program| Shader { program, extrudes: false });
+        let positions = [Program::Position, Program::Flat, Program::Count];
+        let extruding = positions.map(|program| Shader { program, extrudes: true });
+        let programs = plain.chain(extruding).map(|shader| (format!("{shader:?}"), source_of(shader).source));
         for (name, source) in
             programs.chain([("FragmentLog".to_owned(), fragment_log()), ("Start".to_owned(), START.to_owned())])
         {

@@ -48,6 +48,8 @@ named_enum! {
         EightBits = "eight-bits",
         /// Two passes and clamping, which a float count does not know.
         TwoPasses = "two-passes",
+        /// Extrusion in the vertex shader, which finds no casting triangle for the CPU.
+        VertexExtrusion = "vertex-extrusion",
         /// What z-pass-plus begins with.
         NearPlane = "near-plane",
         /// A light's shadow map: nothing would be in it.
@@ -113,6 +115,7 @@ impl Decision {
             Decision::LightFacing => "choice of light-facing triangles",
             Decision::EightBits => "eight-bit count",
             Decision::TwoPasses => "two passes and clamping",
+            Decision::VertexExtrusion => "extrusion in the vertex shader",
             Decision::NearPlane => "count at the near plane",
             Decision::Map => "shadow map",
             Decision::MapCaster => return format!("{name} in the shadow map"),

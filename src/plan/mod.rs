@@ -29,7 +29,8 @@ pub mod text;
 mod unseen;
 pub mod words;
 
-pub use buffers::{Blob, DrawMesh, SurfaceData};
+pub use crate::geometry::{Blob, Carry, Extruded, ExtrudedCorner};
+pub use buffers::{DrawMesh, SurfaceData};
 pub use count_bits::CountBits;
 pub use coverage::{Clip, Coverage, Covering, Face, FragmentLog, LoggedFragment};
 pub use decided_by::{CountOf, DecidedBy, Side};
@@ -320,6 +321,16 @@ pub struct Draw {
 }
 
 impl Draw {
+    /// Which part one of its triangles is: of caps that a vertex shader carries, light cap or dark cap.
+    #[must_use]
+    pub fn part_of(&self, mesh: &DrawMesh, corners: [u32; 3]) -> Part {
+        match (self.part, mesh.extruded.as_ref().map(|extruded| extruded.carried(corners))) {
+            (Part::Caps, Some([true, ..])) => Part::DarkCap,
+            (Part::Caps, Some([false, ..])) => Part::LightCap,
+            (part, _) => part,
+        }
+    }
+
     /// A draw of a whole mesh by position only, as into the stencil.
     #[must_use]
     pub fn of_positions(
@@ -355,6 +366,8 @@ named_enum! {
         LightCap = "light-cap",
         /// The casting triangles carried to infinity.
         DarkCap = "dark-cap",
+        /// Light cap and dark cap in one: the vertex shader tells which triangle is which.
+        Caps = "caps",
         /// A plane that planar shadows fall on.
         Receiver = "receiver",
         /// A caster flattened onto a receiver.
@@ -368,7 +381,13 @@ impl Part {
     /// Is it a part of a shadow volume?
     #[must_use]
     pub fn is_of_volume(self) -> bool {
-        matches!(self, Part::Side | Part::LightCap | Part::DarkCap)
+        matches!(self, Part::Side | Part::LightCap | Part::DarkCap | Part::Caps)
+    }
+
+    /// Is it this part, or does it hold it?
+    #[must_use]
+    pub fn includes(self, part: Part) -> bool {
+        self == part || (self == Part::Caps && matches!(part, Part::LightCap | Part::DarkCap))
     }
 }
 

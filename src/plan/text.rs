@@ -4,7 +4,7 @@
 //! in full.
 
 use super::{
-    AttachmentId, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, LightId, MapLookup, Pass,
+    AttachmentId, Carry, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, LightId, MapLookup, Pass,
     Program, RasterState, StencilFace, Viewport, Visibility,
 };
 use std::fmt::{self, Display, Formatter};
@@ -31,6 +31,9 @@ impl Display for FramePlan {
                 "mesh {index}: {}, {vertices} vertices ({infinite} at infinity), {triangles} triangles",
                 mesh.name
             )?;
+            if let Some(Carry { light, scale, offset, w }) = mesh.extruded.as_ref().map(|extruded| extruded.carry) {
+                writeln!(f, "  by its vertex shader carried from {light:?} to ({scale} v + {offset:?}, {w})")?;
+            }
         }
         for (index, light) in self.lights.iter().enumerate() {
             let kind = if light.relative_position[3] == 0.0 { "directional" } else { "point" };

@@ -208,7 +208,7 @@ impl<'a> Frame<'a> {
                 let is_in_front = self.clips_volumes || is_of_these;
                 let is_unclipped = match self.plan.depth.keeps_volumes() {
                     // Light caps are clipped as the surfaces that they coincide with.
-                    true => draw.raster.unclipped_depth && draw.part != Part::LightCap,
+                    true => draw.raster.unclipped_depth && !draw.part.includes(Part::LightCap),
                     false => mapping.clamps() && !(is_in_front && draw.part != Part::Surface),
                 };
                 draw.raster.unclipped_depth = is_of_camera && is_unclipped;

@@ -10,11 +10,11 @@ use glam::{DMat3, DVec3};
 pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene, shading: Option<Shading>) -> DrawMesh {
     let eye = scene.camera.eye;
     let normals = corner_normals(object, world, shading);
+    let vertices = world.iter().map(|position| relative::point(*position, eye)).collect();
+    let indices = object.mesh.triangles().as_flattened().to_vec();
     DrawMesh {
-        name: object.name.clone(),
-        vertices: Blob::new(world.iter().map(|position| relative::point(*position, eye)).collect()),
-        indices: Blob::new(object.mesh.triangles().as_flattened().to_vec()),
         surface: Some(SurfaceData { normals: Blob::new(normals), sides: Blob::new(sides(object, world, scene)) }),
+        ..DrawMesh::of_positions(&object.name, vertices, indices)
     }
 }
 
@@ -83,12 +83,10 @@ pub fn subset(mesh: &DrawMesh, name: &str, triangles: &[u32]) -> DrawMesh {
         Blob::new(triangles.iter().flat_map(of).collect())
     }
     DrawMesh {
-        name: name.to_owned(),
-        vertices: mesh.vertices.clone(),
-        indices: pick(&mesh.indices, triangles, 3),
         surface: mesh.surface.as_ref().map(|surface| SurfaceData {
             normals: pick(&surface.normals, triangles, 3),
             sides: pick(&surface.sides, triangles, 1),
         }),
+        ..DrawMesh::of_blobs(name, mesh.vertices.clone(), pick(&mesh.indices, triangles, 3))
     }
 }

@@ -126,7 +126,7 @@ fn begins_at_far_end(frame: &Frame, pass: &Pass, bits: u8) -> bool {
         let normal = (b - a).cross(c - a);
         (sides == [true; 3] || sides == [false; 3]) && normal.dot(a) / normal.dot(along) > 0.0
     };
-    let caps = pass.draws.iter().filter(|draw| draw.part == Part::LightCap);
+    let caps = pass.draws.iter().filter(|draw| draw.part.includes(Part::LightCap));
     let met = caps.flat_map(|draw| {
         let mesh = &frame.plan.meshes[draw.mesh.0];
         let corners = &mesh.indices.data()[draw.triangles.start as usize * 3..draw.triangles.end as usize * 3];
@@ -200,7 +200,7 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
     };
     let own = || frame.plan.passes.iter().filter(|other| other.light == pass.light && other.view.0 == 0);
     let is_drawn =
-        [Part::LightCap, Part::DarkCap].map(|part| own().any(|pass| pass.draws.iter().any(|draw| draw.part == part)));
+        [Part::LightCap, Part::DarkCap].map(|part| own().any(|pass| pass.draws.iter().any(|draw| draw.part.includes(part))));
     // Behind surfaces all volumes need a light cap, and those that do not meet in one point a dark one.
     let light = pass.light.expect("a light").0;
     let is_behind =

@@ -5,8 +5,8 @@
 use super::super::files;
 use super::{Capture, CaptureError};
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, Blob, CpuImage, DrawMesh, FramePlan, LightId, MakeImage, PlanLight,
-    StartContent, SurfaceData, lint,
+    Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, FramePlan, LightId,
+    MakeImage, PlanLight, StartContent, SurfaceData, lint,
 };
 use foldhash::quality::FixedState;
 use serde::{Deserialize, Serialize};
@@ -43,6 +43,16 @@ struct MeshEntry {
     indices: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     surface: Option<SurfaceEntry>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    extruded: Option<ExtrudedEntry>,
+}
+
+/// What the vertices are made of by a vertex shader.
+#[derive(Serialize, Deserialize)]
+struct ExtrudedEntry {
+    /// Of each vertex where it is before, and the plane that decides: (vertices, 8), `<f4`.
+    corners: String,
+    carry: Carry,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -77,7 +87,7 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
     let mut entry = FrameEntry { plan, meshes: Vec::new(), images: Vec::new(), starts: Vec::new() };
     for (index, mesh) in plan.meshes.iter().enumerate() {
         let mut put = Put { folder, stem: format!("mesh{index:03}"), written: &mut written };
-        let DrawMesh { name, vertices, indices, surface } = mesh;
+        let DrawMesh { name, vertices, indices, surface, extruded } = mesh;
         entry.meshes.push(MeshEntry {
             name: name.clone(),
             vertices: put.blob("vertices", vertices, |values| (values.as_flattened(), 4))?,
@@ -87,6 +97,13 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
                 Some(SurfaceData { normals, sides }) => Some(SurfaceEntry {
                     normals: put.blob("normals", normals, |values| (values.as_flattened(), 4))?,
                     sides: put.blob("sides", sides, |values| (values, 1))?,
+                }),
+            },
+            extruded: match extruded {
+                None => None,
+                Some(Extruded { corners, carry }) => Some(ExtrudedEntry {
+                    corners: put.blob("corners", corners, |values| (bytemuck::cast_slice::<_, f32>(values), 8))?,
+                    carry: *carry,
                 }),
             },
         });
@@ -145,15 +162,22 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
     let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let mut plan = entry.plan;
     let mut get = Get { folder, floats: BTreeMap::new(), words: BTreeMap::new() };
-    for MeshEntry { name, vertices, indices, surface } in entry.meshes {
+    for MeshEntry { name, vertices, indices, surface, extruded } in entry.meshes {
         let surface = match surface {
             None => None,
             Some(SurfaceEntry { normals, sides }) => {
                 Some(SurfaceData { normals: get.rows(&normals)?, sides: get.words(&sides, 1)? })
             }
         };
-        let (vertices, indices) = (get.rows(&vertices)?, get.words(&indices, 3)?);
-        plan.meshes.push(DrawMesh { name, vertices, indices, surface });
+        let indices = get.words(&indices, 3)?;
+        plan.meshes.push(match extruded {
+            None => DrawMesh { surface, ..DrawMesh::of_blobs(name, get.rows(&vertices)?, indices) },
+            Some(ExtrudedEntry { corners, carry }) => {
+                let values: Vec<f32> = files::read_values(&plain(folder, &corners)?, 8)?;
+                let corners = Blob::new(bytemuck::cast_slice(&values).to_vec());
+                DrawMesh::of_extruded(name, Extruded { corners, carry }, indices)
+            }
+        });
     }
     for ImageEntry { pass, name, file } in entry.images {
         let texels: Vec<u8> = files::read_values(&plain(folder, &file)?, 1)?;

@@ -350,7 +350,7 @@ fn cap_fighting(_: &Facts, case: &Case) -> Option<Suspicion> {
         let visible = history.triangles().filter(|(event, one)| event.light.is_none() && one.part == Part::Surface);
         let visible: Vec<_> = visible.filter(|(_, one)| one.fate.passed()).map(|(_, one)| one).collect();
         let visible = visible.last()?;
-        let mut caps = sample.volume_events(light).filter(|(_, one)| one.part == Part::LightCap);
+        let mut caps = sample.volume_events(light).filter(|(_, one)| one.part.includes(Part::LightCap));
         let (event, cap) = caps.find(|(_, one)| corners(one) == corners(visible))?;
         let differs = cap.depth.to_bits() != event.before.depth.to_bits();
         differs.then(|| (cap.caster.clone().unwrap_or_default(), cap.depth, event.before.depth))

@@ -27,6 +27,7 @@ pub enum Start {
 }
 
 /// A run of a volume's triangles that counts.
+#[derive(Debug, Clone)]
 pub struct NeededPart {
     pub part: Part,
     /// Its triangles face inwards: operations are swapped.

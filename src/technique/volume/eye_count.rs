@@ -13,7 +13,7 @@ use glam::{DVec3, DVec4};
 /// How many of a light's volumes hold the eye; a volume's far end is not asked about.
 pub fn at(frame: &Frame, light: LightId, volumes: &[Volume]) -> u32 {
     let (eye, light) = (frame.eye(), frame.light_position(light));
-    let casting = volumes.iter().flat_map(|volume| volume.casting_triangles(frame));
+    let casting = volumes.iter().flat_map(|volume| volume.casting_triangles(frame, light));
     casting.filter(|corners| holds(*corners, light, eye)).count() as u32
 }
 
