@@ -12,6 +12,7 @@ mod diagnosis;
 mod diff;
 mod draws;
 mod explain;
+mod extruded;
 mod help;
 mod history;
 mod import;

@@ -5,8 +5,8 @@ use glam::{DVec3, Mat4};
 use std::collections::BTreeMap;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::plan::{
-    Attachment, AttachmentId, AttachmentRole, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh,
-    FramePlan, MeshId, Part, Pass, PlanView, Program, RasterState, StencilFace, ViewId,
+    Attachment, AttachmentId, AttachmentRole, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh, FramePlan,
+    MeshId, Part, Pass, PlanView, Program, RasterState, StencilFace, ViewId,
 };
 use stencilscope::stencil_machine::{Fragment, Stored, test};
 use wgpu::{CompareFunction as Compare, StencilOperation as Operation};

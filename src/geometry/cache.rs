@@ -4,8 +4,8 @@
 use super::hugging::{has_edge_on, put_hugging_last};
 use super::planar::Flattened;
 use super::{
-    Casters, EdgeList, Extruder, ExtrudedForm, ExtrudedVolume, Facings, Fan, FarEnd, Planes, SilhouetteEdge, Topology, VolumeParts, silhouette,
-    silhouette_by_search, solid, write_indices,
+    Casters, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings, Fan, FarEnd, Planes, SilhouetteEdge, Topology,
+    VolumeParts, silhouette, silhouette_by_search, solid, write_indices,
 };
 use crate::scene::{Mesh, Pose};
 use glam::{DVec3, DVec4};

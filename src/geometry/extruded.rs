@@ -206,8 +206,7 @@ mod tests {
     use glam::DVec4;
     use std::collections::BTreeMap;
 
-    const SUN_FROM_ABOVE: Carry =
-        Carry { light: [0.0, 1.0, 0.0, 0.0], scale: 0.0, offset: [0.0, -1.0, 0.0], w: 0.0 };
+    const SUN_FROM_ABOVE: Carry = Carry { light: [0.0, 1.0, 0.0, 0.0], scale: 0.0, offset: [0.0, -1.0, 0.0], w: 0.0 };
 
     #[test]
     fn what_faces_the_light_stays_and_the_rest_is_carried() {
@@ -221,7 +220,8 @@ mod tests {
     #[test]
     fn a_light_that_moves_is_another_set_of_vertices_of_the_same_corners() {
         let corners = Blob::new(vec![ExtrudedCorner { near: [0.0; 4], plane: [0.0; 4] }]);
-        let at = |x| Extruded { corners: corners.clone(), carry: Carry { light: [x, 1.0, 0.0, 1.0], ..SUN_FROM_ABOVE } };
+        let at =
+            |x| Extruded { corners: corners.clone(), carry: Carry { light: [x, 1.0, 0.0, 1.0], ..SUN_FROM_ABOVE } };
         assert_ne!(at(0.0).vertices(), at(1.0).vertices());
         assert_eq!(at(0.0).vertices(), at(0.0).vertices());
         assert_eq!(at(0.0).corners.hash(), at(1.0).corners.hash());
@@ -281,7 +281,8 @@ mod tests {
         let light = DVec4::new(3.1, 4.3, -2.2, 1.0);
         let eye = DVec3::new(1.0, 2.0, 3.0);
         let carry = Extruder::new(world, light, Extrusion::Infinite).carry_from(eye);
-        let faces = |triangle: &[u32; 3]| side_of_triangle(triangle.map(|v| world[v as usize]), light) == Sign::Positive;
+        let faces =
+            |triangle: &[u32; 3]| side_of_triangle(triangle.map(|v| world[v as usize]), light) == Sign::Positive;
         for (casters, [front, back]) in [
             (Casters::All, [true, true]),
             (Casters::LightFacing, [true, false]),

@@ -106,8 +106,7 @@ impl Pipelines {
         });
         let (array_stride, attributes) =
             if key.shader.extrudes { (32, &EXTRUDED_ATTRIBUTES[..]) } else { (16, &POSITION_ATTRIBUTES[..]) };
-        let positions =
-            Some(VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes });
+        let positions = Some(VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes });
         let color_target = key.color_format.map(|format| color_target(format, key.raster.color));
         let compilation_options = wgpu::PipelineCompilationOptions::default();
         let is_recorded = program.is_recorded();

@@ -4,13 +4,11 @@
 use super::buffers::Buffers;
 use super::maps::{KeptMap, Maps};
 use super::pipelines::{PipelineKey, Pipelines};
-use super::shaders::Shader;
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
+use super::shaders::Shader;
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError, start};
-use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility,
-};
+use crate::plan::{Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, RasterState, Visibility};
 use std::cell::OnceCell;
 use std::sync::Arc;
 use wgpu::{

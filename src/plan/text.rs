@@ -4,8 +4,8 @@
 //! in full.
 
 use super::{
-    AttachmentId, Carry, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, LightId, MapLookup, Pass,
-    Program, RasterState, StencilFace, Viewport, Visibility,
+    AttachmentId, Carry, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, LightId, MapLookup,
+    Pass, Program, RasterState, StencilFace, Viewport, Visibility,
 };
 use std::fmt::{self, Display, Formatter};
 

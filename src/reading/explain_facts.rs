@@ -230,7 +230,10 @@ fn triangles(known: &Known, step: &Step) -> Fact {
     let settings = VolumeSettings::read(&known.capture.settings);
     if settings.by_vertex_shader && !(is_parallel && !is_finite) {
         let here = vec![
-            format!("sides, one at every edge, empty until its triangles face different ways: {}", format::count(sides)),
+            format!(
+                "sides, one at every edge, empty until its triangles face different ways: {}",
+                format::count(sides)
+            ),
             format!(
                 "caps, the triangles that face the light in their place and the others at the far end: {}",
                 format::count(of(Part::Caps))

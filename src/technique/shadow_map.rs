@@ -14,9 +14,9 @@ use super::settings::MapSettings;
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw,
-    DrawConstants, DrawMesh, FramePlan, LeftOut, LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program,
-    RasterState, ViewId, Visibility,
+    Attachment, AttachmentId, AttachmentRole, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw, DrawConstants,
+    DrawMesh, FramePlan, LeftOut, LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState,
+    ViewId, Visibility,
 };
 use glam::{DMat4, DVec3};
 use wgpu::{DepthBiasState, TextureFormat};

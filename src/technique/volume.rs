@@ -352,8 +352,7 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
         };
         let (needed, lacking): (Vec<_>, Vec<_>) =
             needed.into_iter().filter(|part| !part.triangles.is_empty()).partition(is_drawn);
-        let lacks_caps =
-            [Part::LightCap, Part::DarkCap].map(|cap| lacking.iter().any(|part| part.part.includes(cap)));
+        let lacks_caps = [Part::LightCap, Part::DarkCap].map(|cap| lacking.iter().any(|part| part.part.includes(cap)));
         let mesh = frame.add_mesh(mesh);
         let is_body = options.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
         let darkens_nothing = !is_body && !casters::can_darken(frame, index, light, Darkened::All);

@@ -199,8 +199,8 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
         _ => return false,
     };
     let own = || frame.plan.passes.iter().filter(|other| other.light == pass.light && other.view.0 == 0);
-    let is_drawn =
-        [Part::LightCap, Part::DarkCap].map(|part| own().any(|pass| pass.draws.iter().any(|draw| draw.part.includes(part))));
+    let is_drawn = [Part::LightCap, Part::DarkCap]
+        .map(|part| own().any(|pass| pass.draws.iter().any(|draw| draw.part.includes(part))));
     // Behind surfaces all volumes need a light cap, and those that do not meet in one point a dark one.
     let light = pass.light.expect("a light").0;
     let is_behind =

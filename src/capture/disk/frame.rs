@@ -5,8 +5,8 @@
 use super::super::files;
 use super::{Capture, CaptureError};
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, FramePlan, LightId,
-    MakeImage, PlanLight, StartContent, SurfaceData, lint,
+    Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, FramePlan, LightId, MakeImage,
+    PlanLight, StartContent, SurfaceData, lint,
 };
 use foldhash::quality::FixedState;
 use serde::{Deserialize, Serialize};

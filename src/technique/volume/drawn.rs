@@ -5,9 +5,7 @@ use super::far_count::FarPoint;
 use crate::geometry::{Caster, Casters, DarkCap, Extruder, Extrusion, Fan, VolumeOf, VolumeParts, relative};
 use crate::math::{Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{
-    Decision, Draw, DrawConstants, DrawMesh, LeftOut, LightId, MeshId, Part, Program, RasterState,
-};
+use crate::plan::{Decision, Draw, DrawConstants, DrawMesh, LeftOut, LightId, MeshId, Part, Program, RasterState};
 use crate::scene::Object;
 use crate::technique::casters::{self, Darkened};
 use crate::technique::frame::Frame;
