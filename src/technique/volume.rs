@@ -289,8 +289,9 @@ fn told<'a>(
 ) -> Counts<'a> {
     let chooses_side = frame.job.choice.technique() == Technique::Auto;
     let lacks = [0, 1].map(|cap| volumes.iter().any(|volume| volume.lacks_caps[cap]));
-    let is_parallel = frame.job.scene.camera.is_parallel();
-    Counts { by, light, options, start, chooses_side, is_parallel, lacks }
+    let camera = &frame.job.scene.camera;
+    let (place, is_parallel) = (camera.counting_place_name(), camera.is_parallel());
+    Counts { by, light, options, start, chooses_side, place, is_parallel, lacks }
 }
 
 /// The same in a float target: signed, and right beyond eight bits. It adds and takes away in one

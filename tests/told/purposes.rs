@@ -143,9 +143,10 @@ fn begins_at_far_end(frame: &Frame, pass: &Pass, bits: u8) -> bool {
 /// What follows of what a count is said to begin at; `None` where that is not so.
 fn begins<'t>(frame: &Frame, pass: &Pass, told: &'t str) -> Option<&'t str> {
     let cleared = cleared_to(frame, pass);
-    let (start, is_so, rest) = if let Some(told) = gaps("It begins at {}, for the volumes around the eye. {}", told) {
+    let (start, is_so, rest) = if let Some(told) = gaps("It begins at {}, for the volumes around {}. {}", told) {
         let starts_at_eye = frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
-        (told[0], starts_at_eye, told[1])
+        let place = if frame.scene.camera.is_parallel() { "the middle of the near plane" } else { "the eye" };
+        (told[0], starts_at_eye && told[1] == place, told[2])
     } else if let Some(told) = gaps(
         "It begins at {}: parallel lines of sight all end at one point at infinity, in the volumes of so many casting triangles, those that a ray from {} along them meets. {}",
         told,

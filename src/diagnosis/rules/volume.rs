@@ -75,15 +75,17 @@ fn near_plane_cut(facts: &Facts, case: &Case) -> Option<Suspicion> {
     if !begins_with_one_number(facts, light) {
         return None;
     }
-    let (eye_in, start) = holding(facts, light, facts.scene.camera.eye);
+    let camera = &facts.scene.camera;
+    let (eye_in, start) = holding(facts, light, camera.counting_place());
     if starts_at_eye(facts) {
         let (count, shown_by) = case.shown(|sample| {
             let (_, count) = holding(facts, light, facts.tracer.near_point(sample.center()));
             (count != start).then_some(count)
         })?;
         let evidence = format!(
-            "the count begins with {} around the eye, and the near plane, {} ahead, is in {count} here",
+            "the count begins with {} around {}, and the near plane, {} ahead, is in {count} here",
             amount(start, "shadow volume"),
+            camera.counting_place_name(),
             numbers::metres(facts.scene.camera.near),
         );
         return Suspicion::new(Cause::NearPlaneCut, evidence, vec![Mend::technique(Technique::ZFail)], shown_by);

@@ -113,7 +113,8 @@ const START: Words<bool> = words(
     Lesson {
         text: "`zero` is right where the eye is in no volume. `eye-count` clears the stencil to the number of volumes around \
              the eye, found by exact tests on the CPU: right where the whole near plane is in those and no others, and \
-             wrong for part of the picture where the near plane cuts a volume. Z-fail needs neither.",
+             wrong for part of the picture where the near plane cuts a volume. Lines of sight of a parallel camera begin at \
+             the near plane, and its middle is counted at in place of the eye. Z-fail needs neither.",
         formula: "count(p) = start + front faces before p - back faces before p",
         sources: &[cited::CROW, cited::EVERITT_KILGARD],
     },
