@@ -182,5 +182,6 @@ fn parallel_lines_of_sight_are_left_to_the_cpu() {
     // A volume that ends has nothing at infinity.
     let finite = both(&mut session, &scene, Technique::ZFail, &[("extrusion", "finite:4")]);
     assert_eq!(finite.each_ref().map(told), [0, 0]);
+    assert!(finite[1].left_out.iter().all(|left| left.decision != Some(Decision::AwayTriangles)));
     assert!(finite[1].steps.iter().flat_map(|step| &step.draws).any(|draw| draw.part == Part::Caps));
 }

@@ -332,7 +332,7 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
                 continue;
             }
         };
-        let casters = who_casts(frame, light, index, options);
+        let casters = who_casts(frame, light, index, options, by_vertex_shader);
         let held = decides.held_by_parts(frame, index);
         let made = match by_vertex_shader && held.is_empty() {
             true => Ok(extruded::make(frame, light, index, casters, (form, options))),
@@ -393,7 +393,13 @@ pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light
 }
 
 /// Which triangles of an object cast; for `by-topology`, with what decided it.
-fn who_casts(frame: &mut Frame, light: LightId, index: usize, options: &VolumeSettings) -> Casters {
+fn who_casts(
+    frame: &mut Frame,
+    light: LightId,
+    index: usize,
+    options: &VolumeSettings,
+    by_vertex_shader: bool,
+) -> Casters {
     if let WhoCasts::Always(casters) = options.casters {
         return casters;
     }
@@ -402,6 +408,8 @@ fn who_casts(frame: &mut Frame, light: LightId, index: usize, options: &VolumeSe
     let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed.world };
     let name = light.name();
     match frame.job.cache.light_facing_suffices(caster, position) {
+        // They are its dark cap there.
+        Ok(()) if by_vertex_shader => Casters::LightFacing,
         Ok(()) => {
             let because = format!(
                 "proven: the mesh is closed, consistently wound, nowhere inside out and does not meet itself, and \
