@@ -17,6 +17,8 @@ use wgpu::{
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineKey {
     pub program: Program,
+    /// The surface has a picture.
+    pub is_textured: bool,
     /// Its reference is set by the pass, and 0 here.
     pub raster: RasterState,
     pub color_format: Option<TextureFormat>,
@@ -31,6 +33,7 @@ pub(super) struct Layouts {
     pub view: BindGroupLayout,
     pub draw: BindGroupLayout,
     pub surface: BindGroupLayout,
+    pub textured_surface: BindGroupLayout,
     pub light: BindGroupLayout,
     pub light_with_map: BindGroupLayout,
     pub light_with_labels: BindGroupLayout,
@@ -44,7 +47,9 @@ pub(super) struct Pipelines {
     pub layouts: Layouts,
     /// Linear, clamped to the edge.
     pub smooth_sampler: wgpu::Sampler,
-    modules: HashMap<Program, ShaderModule>,
+    /// Of pictures on surfaces, between texels and levels: repeated, and clamped to the edge.
+    pub picture_samplers: [wgpu::Sampler; 2],
+    modules: HashMap<(Program, bool), ShaderModule>,
     pipelines: HashMap<PipelineKey, RenderPipeline>,
     starts: HashMap<TextureFormat, RenderPipeline>,
 }
@@ -62,9 +67,21 @@ impl Pipelines {
             min_filter: wgpu::FilterMode::Linear,
             ..wgpu::SamplerDescriptor::default()
         });
+        let picture_samplers = [wgpu::AddressMode::Repeat, wgpu::AddressMode::ClampToEdge].map(|mode| {
+            device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("picture"),
+                address_mode_u: mode,
+                address_mode_v: mode,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..wgpu::SamplerDescriptor::default()
+            })
+        });
         Pipelines {
             layouts: Layouts::new(device),
             smooth_sampler,
+            picture_samplers,
             modules: HashMap::new(),
             pipelines: HashMap::new(),
             starts: HashMap::new(),
@@ -91,15 +108,15 @@ impl Pipelines {
     }
 
     fn create(&mut self, device: &Device, key: &PipelineKey) -> RenderPipeline {
-        let source = source_of(key.program);
-        let module = self.modules.entry(key.program).or_insert_with(|| {
+        let source = source_of(key.program, key.is_textured);
+        let module = self.modules.entry((key.program, key.is_textured)).or_insert_with(|| {
             let text = wgpu::ShaderSource::Wgsl(source.source.clone().into());
             device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(source.vertex), source: text })
         });
-        let groups = self.layouts.of(key.program);
+        let groups = self.layouts.of(key.program, key.is_textured);
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(source.vertex),
-            bind_group_layouts: &groups.map(Some)[..key.program.group_count()],
+            bind_group_layouts: &groups.map(Some)[..key.program.group_count(key.is_textured)],
             ..wgpu::PipelineLayoutDescriptor::default()
         });
         let positions = Some(VertexBufferLayout {
@@ -121,7 +138,11 @@ impl Pipelines {
                 module,
                 entry_point: Some(source.vertex),
                 compilation_options: compilation_options.clone(),
-                buffers: if key.program.pulls_vertices() { &[] } else { std::slice::from_ref(&positions) },
+                buffers: if key.program.pulls_vertices(key.is_textured) {
+                    &[]
+                } else {
+                    std::slice::from_ref(&positions)
+                },
             },
             primitive: wgpu::PrimitiveState {
                 cull_mode: key.raster.cull,
@@ -145,13 +166,14 @@ impl Pipelines {
 
 impl Program {
     /// Reads vertices from storage by index, instead of a vertex buffer.
-    pub(super) fn pulls_vertices(self) -> bool {
-        self.visibility().is_some()
+    pub(super) fn pulls_vertices(self, is_textured: bool) -> bool {
+        self.visibility().is_some() || is_textured
     }
 
     /// How many bind groups it uses, from group 0 on.
-    pub(super) fn group_count(self) -> usize {
+    pub(super) fn group_count(self, is_textured: bool) -> usize {
         match self {
+            Program::Ambient { .. } if is_textured => 3,
             Program::Position | Program::Recorded { .. } => 1,
             Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
             Program::Light(_) | Program::Label(_) | Program::Through => 4,
@@ -210,6 +232,8 @@ impl Layouts {
             count: None,
         };
         let labels = texture(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
+        let picture = BindGroupLayoutEntry { binding: 5, ..texture(float(true), wgpu::TextureViewDimension::D2) };
+        let picture_sampler = BindGroupLayoutEntry { binding: 6, ..sampler };
         let layout = |label, entries: &[BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries })
         };
@@ -217,6 +241,10 @@ impl Layouts {
             view: layout("view", &[uniform(0)]),
             draw: layout("draw", &[constants(0)]),
             surface: layout("surface", &[storage(0), storage(1), storage(2), storage(3)]),
+            textured_surface: layout(
+                "textured surface",
+                &[storage(0), storage(1), storage(2), storage(3), storage(4), picture, picture_sampler],
+            ),
             light: layout("light", &[constants(0)]),
             light_with_map: layout("light with map", &[constants(0), map]),
             light_with_labels: layout("light with labels", &[constants(0), labels]),
@@ -225,7 +253,7 @@ impl Layouts {
         }
     }
 
-    fn of(&self, program: Program) -> [&BindGroupLayout; 4] {
+    fn of(&self, program: Program, is_textured: bool) -> [&BindGroupLayout; 4] {
         let light = match program.visibility() {
             Some(Visibility::Map) => &self.light_with_map,
             Some(Visibility::Labels) => &self.light_with_labels,
@@ -233,7 +261,8 @@ impl Layouts {
             Some(Visibility::ReceiverTexture | Visibility::Projected) => &self.light_with_textures,
             Some(Visibility::Everywhere) | None => &self.light,
         };
-        [&self.view, &self.draw, &self.surface, light]
+        let surface = if is_textured { &self.textured_surface } else { &self.surface };
+        [&self.view, &self.draw, surface, light]
     }
 }
 

@@ -19,7 +19,28 @@ macro_rules! file {
     };
 }
 
-pub(super) fn source_of(program: Program) -> ProgramSource {
+/// `is_textured`: the surface has a picture, which only some programs show.
+pub(super) fn source_of(program: Program, is_textured: bool) -> ProgramSource {
+    match (program, is_textured) {
+        (Program::Ambient { from_near }, true) => {
+            let fragment = if from_near { "fs_ambient_textured_from_near" } else { "fs_ambient_textured" };
+            let files = [file!("draw.wgsl"), file!("pulled.wgsl"), file!("texture.wgsl"), file!("ambient.wgsl")];
+            joined(&[&files[..], &[file!("ambient_textured.wgsl")]].concat(), "vs_ambient_textured", Some(fragment))
+        }
+        (Program::Light(visibility), true) => {
+            let files = surface_files(file!("light.wgsl"), visibility);
+            let textured = [file!("texture.wgsl"), file!("light_textured.wgsl")];
+            joined(&[&files[..], &textured].concat(), "vs_surface_textured", Some("fs_light_textured"))
+        }
+        _ => plain(program),
+    }
+}
+
+fn joined(files: &[&str], vertex: &'static str, fragment: Option<&'static str>) -> ProgramSource {
+    ProgramSource { source: [&[file!("shared.wgsl")], files].concat().join("\n"), vertex, fragment }
+}
+
+fn plain(program: Program) -> ProgramSource {
     let (files, vertex, fragment) = match program {
         Program::Position => (vec![file!("position.wgsl")], "vs_position", None),
         Program::Flat | Program::FlatLabel | Program::Count => {
@@ -41,7 +62,7 @@ pub(super) fn source_of(program: Program) -> ProgramSource {
         }
         Program::Label(visibility) => (surface_files(file!("label.wgsl"), visibility), "vs_surface", Some("fs_label")),
     };
-    ProgramSource { source: [&[file!("shared.wgsl")], &files[..]].concat().join("\n"), vertex, fragment }
+    joined(&files, vertex, fragment)
 }
 
 fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str> {
@@ -53,7 +74,7 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
         Visibility::ReceiverTexture => file!("arriving_by_receiver.wgsl"),
         Visibility::Projected => file!("arriving_by_projection.wgsl"),
     };
-    vec![file!("draw.wgsl"), file!("surface.wgsl"), arriving, own]
+    vec![file!("draw.wgsl"), file!("pulled.wgsl"), file!("surface.wgsl"), arriving, own]
 }
 
 /// What puts depths into a target.
@@ -70,7 +91,13 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid() {
-        let programs = Program::all().into_iter().map(|program| (format!("{program:?}"), source_of(program).source));
+        let variants = |program: Program| {
+            let of = move |is_textured| {
+                (format!("{program:?}, textured: {is_textured}"), source_of(program, is_textured).source)
+            };
+            [Some(of(false)), program.shows_texture().then(|| of(true))]
+        };
+        let programs = Program::all().into_iter().flat_map(variants).flatten();
         for (name, source) in
             programs.chain([("FragmentLog".to_owned(), fragment_log()), ("Start".to_owned(), START.to_owned())])
         {
