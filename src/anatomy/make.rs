@@ -4,9 +4,9 @@ use super::{Anatomy, PlacedLight, PlacedObject, Silhouette, frusta, volumes};
 use crate::geometry::{Caster, Casters, Edge, EdgeList, Facings, GeometryCache, silhouette};
 use crate::plan::FramePlan;
 use crate::recorded::Space;
-use crate::scene::{Object, Scene};
+use crate::scene::{Group, Object, Scene};
 use crate::technique::{Choice, casting};
-use glam::{DVec3, DVec4};
+use glam::{DVec3, DVec4, Vec3};
 
 /// Cosine of the angle between neighbours' normals from which on the edge between them is drawn: 25°.
 const CREASE: f64 = 0.906;
@@ -50,11 +50,24 @@ fn placed(object: &Object, cache: &mut GeometryCache) -> PlacedObject {
         casts: object.casts,
         receives: object.receives,
         visible: object.visible,
-        color: object.material.color,
+        color: color(object),
         mesh: object.mesh.clone(),
         positions,
         edges,
     }
+}
+
+/// What its parts reflect on average, pictures included.
+fn color(object: &Object) -> [f32; 3] {
+    let groups = object.mesh.groups();
+    let count = groups.iter().map(|group| group.triangles.len()).sum::<usize>().max(1) as f32;
+    let part = |group: &Group| {
+        let shown = object.texture_of(group).map_or([1.0; 3], |texture| texture.picture.mean());
+        let own = group.material.unwrap_or(object.material).color;
+        let share = group.triangles.len() as f32 / count;
+        Vec3::from(own) * Vec3::from(shown.map(|channel| channel as f32)) * share
+    };
+    groups.iter().map(part).sum::<Vec3>().to_array()
 }
 
 /// Creases, borders, and where more than two triangles meet.

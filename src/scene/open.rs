@@ -25,7 +25,7 @@ impl OpenSpec {
     }
 }
 
-/// The files that a scene is made of: none for a built-in one, a model, or a scene file with its models.
+/// The files that a scene is made of: none for a built-in one, a model, or a scene file with its models and pictures.
 #[must_use]
 pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
     if Builtin::named(&spec.name).is_some() {
