@@ -27,7 +27,8 @@ fn load(bytes: &[u8]) -> Result<Picture, PictureError> {
 #[test]
 fn every_kind_of_png_becomes_rgba() {
     use png::{BitDepth, ColorType};
-    let cases: [(ColorType, BitDepth, &[u8], [[u8; 4]; 2]); 6] = [
+    type Case = (ColorType, BitDepth, &'static [u8], [[u8; 4]; 2]);
+    let cases: [Case; 6] = [
         (ColorType::Grayscale, BitDepth::Eight, &[7, 9], [[7, 7, 7, 255], [9, 9, 9, 255]]),
         (ColorType::Grayscale, BitDepth::One, &[0b0100_0000], [[0, 0, 0, 255], [255, 255, 255, 255]]),
         (ColorType::GrayscaleAlpha, BitDepth::Eight, &[7, 8, 9, 10], [[7, 7, 7, 8], [9, 9, 9, 10]]),
@@ -38,6 +39,41 @@ fn every_kind_of_png_becomes_rgba() {
     for (color, depth, data, texels) in cases {
         let picture = load(&encode(color, depth, [2, 1], data)).expect("a picture");
         assert_eq!((picture.size(), picture.texels()), ([2, 1], &texels[..]), "{color:?} {depth:?}");
+    }
+}
+
+/// A JPEG of 8 by 8 texels of one colour (ITU-T T.81): `components` of grey, or of Y, Cb and Cr, have only their mean,
+/// whose code is either `0` and ten bits, or `10` for none; `0` ends each.
+fn jpeg_of(components: u8, bits: &[u8]) -> Vec<u8> {
+    let mut bytes = b"\xff\xd8\xff\xdb\0\x43\0".to_vec();
+    bytes.extend([1; 64]);
+    bytes.extend([0xff, 0xc0, 0, 8 + 3 * components, 8, 0, 8, 0, 8, components]);
+    (1..=components).for_each(|id| bytes.extend([id, 0x11, 0]));
+    bytes.extend(b"\xff\xc4\0\x15\0\x01\x01\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x0a\0");
+    bytes.extend(b"\xff\xc4\0\x14\x10\x01\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0");
+    bytes.extend([0xff, 0xda, 0, 6 + 2 * components, components]);
+    (1..=components).for_each(|id| bytes.extend([id, 0]));
+    bytes.extend([0, 63, 0]);
+    bytes.extend(bits);
+    bytes.extend(b"\xff\xd9");
+    bytes
+}
+
+#[test]
+fn a_jpeg_becomes_rgba_and_half_of_one_is_refused() {
+    // 8 × (200 − 128) = 0b1001000000, and Cr 8 × 64.
+    let cases = [(1, vec![0x48, 0x0f], [200, 200, 200]), (3, vec![0x48, 0x08, 0x80, 0x1f], [255, 154, 200])];
+    for (components, bits, [red, green, blue]) in cases {
+        let picture = load(&jpeg_of(components, &bits)).expect("a JPEG");
+        assert_eq!(picture.size(), [8, 8]);
+        let near = |texel: &[u8; 4]| {
+            let differs = [red, green, blue].iter().zip(texel).any(|(a, b): (&u8, &u8)| a.abs_diff(*b) > 1);
+            !differs && texel[3] == 255
+        };
+        assert!(picture.texels().iter().all(near), "{:?} is not {red}, {green}, {blue}", picture.texels()[0]);
+        let whole = jpeg_of(components, &bits);
+        let error = load(&whole[..whole.len() / 2]).expect_err("half").to_string();
+        assert!(error.starts_with("is broken (") && !error.contains('\n'), "{error}");
     }
 }
 
