@@ -19,10 +19,8 @@ pub struct ObjectMesh {
 pub fn pictures(object: &Object) -> Vec<String> {
     let line = |texture: &Texture| {
         let [width, height] = texture.picture.size();
-        let lies = texture.side.map_or_else(
-            || "as its corners say".to_owned(),
-            |side| format!("{} along X and Z", format::metres(side.into())),
-        );
+        let lies =
+            texture.side.map_or_else(|| "as its corners say".to_owned(), |side| format!("{side} m along X and Z"));
         let clamps = if texture.clamps { ", clamped" } else { "" };
         format!("shows {}, {width}×{height}, {lies}{clamps}", texture.picture.name())
     };

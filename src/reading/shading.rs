@@ -240,7 +240,7 @@ impl LightTerms {
 
 /// Where lines of sight meet, relative to the eye point, and the draw and the triangle of its mesh that a pixel shows: the
 /// last that passed in ambient light, which all surfaces are drawn in first.
-fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(DVec4, &'a Draw, usize)> {
+pub(super) fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(DVec4, &'a Draw, usize)> {
     history.events.iter().rev().find_map(|event| {
         let one = event.triangle().filter(|one| one.fate.passed())?;
         let pass = plan.passes.get(event.pass)?;

@@ -13,6 +13,7 @@ use std::sync::Arc;
 use stencilscope::ask::{Answer, HistoryOf};
 use stencilscope::history::{Event, PixelHistory};
 use stencilscope::plan::Part;
+use stencilscope::reading::coordinates::{Place, vector};
 use stencilscope::reading::shading::Shaded;
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
@@ -418,6 +419,35 @@ fn coordinates_unfold_into_every_space_and_matrix() {
     for label in ["world", "eye", "clip", "NDC", "window", "camera", "step, 24 bits", "clip from eye, then back:"] {
         harness.get_by_label(label);
     }
+}
+
+#[test]
+fn a_click_on_a_corner_shows_its_coordinates_and_another_on_the_point_brings_it_back() {
+    let (mut session, at) = (common::session(), [80, 60]);
+    let scene = open(&OpenSpec::new("tetrahedron")).expect("a scene");
+    let request = common::request(Technique::ZFail, [160, 120]);
+    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    let history = session.history(&plan, &capture, at).expect("a history");
+    let place = Place::of(&capture, at).with_vertices(&capture, &plan, &history);
+    let mut inspector = super::explain::over("tetrahedron", Technique::ZFail);
+    inspector.pick(at);
+    let mut harness = harness_of(inspector, TALL);
+    harness.get_by_label("Coordinates").click();
+    harness.run_steps(20);
+    assert!(harness.query_by_label("the point").is_none(), "until the history tells of the triangle");
+    answer(&mut harness, history);
+    harness.run_steps(4);
+    let [.., corner] = &place.vertices[..] else { panic!("three corners") };
+    let clip = vector(&corner.clip, 4);
+    assert!(harness.query_by_label(&clip).is_none());
+    harness.get_by_label(&format!("vertex {}", corner.index)).click();
+    harness.run_steps(4);
+    harness.get_by_label(&clip);
+    harness.get_by_label("in view");
+    harness.get_by_label("the point").click();
+    harness.run_steps(4);
+    harness.get_by_label(&vector(&place.point.expect("a point").clip, 4));
+    assert!(harness.query_by_label(&clip).is_none());
 }
 
 /// The floor of `pattern` is tiled: the texel is among the terms.

@@ -67,20 +67,21 @@ fn set(harness: &mut Harness<Seen>, name: &str, value: f64) {
 fn what_an_object_shows_is_told_with_how_it_lies() {
     let pattern = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/pattern.toml");
     let scene = open(&OpenSpec::new(pattern.display().to_string())).expect("a scene");
-    let mut inspector = Inspector::new(Vec::new());
-    let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
-    inspector.open_scene(&scene, request, Some("pattern".to_owned()));
-    inspector.set_capture(Arc::new(z_fail(SIZE)));
-    let mut harness = harness_of(inspector, [1280.0, 3000.0]);
-    click(&mut harness, "Scene settings");
-    click(&mut harness, "Make: add, move, delete");
-    harness.run_steps(12);
-    choose(&mut harness, "floor");
-    harness.get_by_label("shows tiles.png, 64×64, 1.2 m along X and Z");
-    choose(&mut harness, "crate");
-    harness.get_by_label("shows crate.png, 32×32, as its corners say");
-    choose(&mut harness, "ring");
-    assert!(harness.query_by_label_contains("shows ").is_none());
+    let edited = |name: &str| {
+        let mut inspector = Inspector::new(Vec::new());
+        let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
+        inspector.open_scene(&scene, request, Some("pattern".to_owned()));
+        inspector.set_capture(Arc::new(z_fail(SIZE)));
+        let mut harness = harness_of(inspector, [1280.0, 3000.0]);
+        click(&mut harness, "Scene settings");
+        click(&mut harness, "Make: add, move, delete");
+        harness.run_steps(12);
+        choose(&mut harness, name);
+        harness
+    };
+    edited("floor").get_by_label("shows tiles.png, 64×64, 1.2 m along X and Z");
+    edited("crate").get_by_label("shows crate.png, 32×32, as its corners say");
+    assert!(edited("ring").query_by_label_contains("shows ").is_none());
 }
 
 #[test]
