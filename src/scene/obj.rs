@@ -9,6 +9,7 @@ mod materials;
 mod polygon;
 mod text;
 
+use super::picture::Pictures;
 use super::read_text::{quoted, read_text};
 use super::{Group, Mesh, MeshBuilder, SceneError, Shading};
 use glam::{DVec3, Vec2, Vec3};
@@ -24,9 +25,14 @@ use text::CleanText;
 /// A missing file, a folder, a file that is not text, empty or without faces; a number that is
 /// not finite, an index out of range, a face with fewer than three corners, with its line.
 pub fn load(file: &Path) -> Result<Mesh, SceneError> {
+    load_among(file, &mut Pictures::default())
+}
+
+/// The same of a model among others, which share what room pictures have.
+pub(in crate::scene) fn load_among(file: &Path, pictures: &mut Pictures) -> Result<Mesh, SceneError> {
     let raw = read_text(file, "OBJ model")?;
     let folder = file.parent().unwrap_or(Path::new(""));
-    parse(&raw, folder).map_err(|problem| match problem {
+    parse(&raw, folder, pictures).map_err(|problem| match problem {
         ObjProblem::Line(text::LineProblem { line, reason }) => {
             SceneError::Line { file: file.to_owned(), line, reason }
         }
@@ -42,12 +48,12 @@ enum ObjProblem {
 }
 
 /// Material libraries are looked for in `folder`.
-fn parse(raw: &str, folder: &Path) -> Result<Mesh, ObjProblem> {
+fn parse(raw: &str, folder: &Path, pictures: &mut Pictures) -> Result<Mesh, ObjProblem> {
     let cleaned = text::clean(raw).map_err(ObjProblem::Line)?;
     if cleaned.has_normals.is_empty() {
         return Err(ObjProblem::File("has no faces: export the surface as `f` lines".to_owned()));
     }
-    let known = RefCell::new(Libraries::default());
+    let known = RefCell::new(Libraries::new(pictures));
     let load_library = |name: &Path| known.borrow_mut().load(&folder.join(name), &name.to_string_lossy());
     let (models, libraries) =
         tobj::load_obj_buf(&mut cleaned.text.as_bytes(), &tobj::LoadOptions::default(), load_library)

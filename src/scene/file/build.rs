@@ -282,7 +282,8 @@ impl ObjectBuilder<'_> {
         if let Some(model) = self.models.get(&path) {
             return Ok(Arc::clone(model));
         }
-        let model = obj::load(&path).map_err(|error| Problem::new(source.span(), error.to_string()))?;
+        let model = obj::load_among(&path, &mut self.pictures)
+            .map_err(|error| Problem::new(source.span(), error.to_string()))?;
         let model = Arc::new(model);
         self.models.insert(path, Arc::clone(&model));
         Ok(model)

@@ -18,13 +18,13 @@ const MOST_BYTES: u64 = 64 << 20;
 const MOST_NAMED: usize = 32;
 
 /// What a model's libraries say beside the numbers of materials.
-#[derive(Debug, Default)]
-pub struct Libraries {
+#[derive(Debug)]
+pub struct Libraries<'a> {
     /// By the material's name.
     maps: BTreeMap<String, Map>,
     /// What is asked for and not done.
     pub not_taken: Vec<NotTaken>,
-    pictures: Pictures,
+    pictures: &'a mut Pictures,
 }
 
 /// A picture of a material, and how it lies on the surface.
@@ -43,7 +43,12 @@ impl Map {
     }
 }
 
-impl Libraries {
+impl<'a> Libraries<'a> {
+    /// Nothing yet.
+    pub fn new(pictures: &'a mut Pictures) -> Libraries<'a> {
+        Libraries { maps: BTreeMap::new(), not_taken: Vec::new(), pictures }
+    }
+
     /// The picture of a material.
     pub fn map(&self, material: &str) -> Option<&Map> {
         self.maps.get(material)
