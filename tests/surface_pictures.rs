@@ -211,6 +211,37 @@ fn a_pixel_is_its_texel_times_what_arrives() {
     }
 }
 
+/// A clamped picture lies once in the world: from its origin to the right and towards −Z; far from it one that repeats
+/// is as sharp as near.
+#[test]
+fn a_picture_along_the_world_lies_where_it_is_said_to() {
+    let quarters = picture([2, 2], |x, y| [255 * x as u8, 255 * y as u8, 0]);
+    let look = |clamps: bool, at: [f64; 2]| {
+        let floor = Object {
+            texture: Some(Texture { picture: quarters.clone(), side: Some(2.0), clamps }),
+            ..Object::new("floor", Arc::new(shapes::quad([8.0; 2]).expect("a floor")), Material::matte([1.0; 3]))
+        };
+        let [x, z] = at;
+        let mut camera = Camera { up: DVec3::NEG_Z, ..Camera::looking([x, 4.0, z], [x, 0.0, z]) };
+        camera.projection = Projection::Orthographic { half_height: 0.05 };
+        let far = DVec3::new((x / 8.0).round() * 8.0, 0.0, (z / 8.0).round() * 8.0);
+        let scene =
+            SceneBuilder::new("a floor").ambient([1.0; 3]).camera(camera).object(floor.at(far)).lights([]).build();
+        let frame = Rendered::new(&scene, Choice::new(Technique::None), [9, 9]).expect("a frame");
+        let [red, green, ..] = last_color(&frame, [4, 4]);
+        [red > 128, green > 128]
+    };
+    // The middles of its texels, row 0 at the top: x right, and y down.
+    let cases = [([0.5, -1.5], [false, false]), ([1.5, -1.5], [true, false]), ([0.5, -0.5], [false, true])];
+    for ([x, z], expected) in cases {
+        assert_eq!((look(true, [x, z]), look(false, [x, z])), (expected, expected), "{x}, {z}");
+        assert_eq!(look(false, [x + 2.0e6, z - 4.0e6]), expected, "far away");
+    }
+    // Beyond it, the nearest of its texels; or the next picture's.
+    assert_eq!((look(true, [3.5, -0.5]), look(false, [2.5, -0.5])), ([true, true], [false, true]));
+    assert_eq!((look(true, [-3.5, -1.5]), look(false, [-0.5, -1.5])), ([false, false], [true, false]));
+}
+
 /// What a ray meets, computed from the board's own plane, is what the GPU shows. Mixed along the picture's lines and not
 /// in space, the middle of the board would show half of the ramp.
 #[test]

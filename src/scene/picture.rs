@@ -2,8 +2,9 @@
 //!
 //! A picture is sRGB with eight bits a channel, row 0 at the top; its alpha is not used. Level k of its pyramid has
 //! half the texels of level k − 1 along each side: averages of two by two, of linear light. A lookup mixes the four
-//! nearest texels on each of the two levels whose texels are about as large as a pixel (Williams 1983). The GPU does the
-//! same with the same levels, and [`Picture::linear_at`] tells what it finds.
+//! nearest texels on each of the two levels whose texels are about as large as a pixel is there along its longer side
+//! (Williams 1983): what lies aslant far away blurs, and does not flicker. The GPU does the same with the same levels, and
+//! [`Picture::linear_at`] tells what it finds.
 
 use crate::files::{ReadError, read_plain};
 use foldhash::quality::FixedState;

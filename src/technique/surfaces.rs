@@ -28,7 +28,8 @@ fn uvs(object: &Object, world: &[DVec3]) -> Option<Vec<[f32; 2]>> {
     mesh.groups().iter().find_map(|group| object.texture_of(group))?;
     let mut uvs = Vec::with_capacity(mesh.triangles().len() * 3);
     for group in mesh.groups() {
-        match object.texture_of(group).map(|texture| texture.side) {
+        let texture = object.texture_of(group);
+        match texture.map(|texture| texture.side) {
             None => uvs.extend(group.triangles.clone().flat_map(|_| [[0.0; 2]; 3])),
             Some(None) => {
                 let given = |triangle| mesh.corner_uvs().and_then(|uvs| uvs[triangle]).unwrap_or_default();
@@ -41,8 +42,9 @@ fn uvs(object: &Object, world: &[DVec3]) -> Option<Vec<[f32; 2]>> {
                     DVec2::new(at.x, -at.z)
                 };
                 let corners = || group.triangles.clone().flat_map(|triangle| mesh.triangles()[triangle]);
-                // Whole pictures less, which are not seen, it is small: single precision holds it.
-                let first = corners().map(place).reduce(DVec2::min).unwrap_or_default().floor();
+                // Whole pictures less, which are not seen where it repeats, it is small: single precision holds it.
+                let repeats = texture.is_some_and(|texture| !texture.clamps);
+                let first = corners().map(place).reduce(DVec2::min).filter(|_| repeats).unwrap_or_default().floor();
                 uvs.extend(corners().map(|vertex| (place(vertex) - first).as_vec2().to_array()));
             }
         }
