@@ -153,3 +153,50 @@ fn a_place_is_counted_from_the_lower_left_and_repeats_unless_clamped() {
     let blurred = picture.linear_at([0.25, 0.75], 0.5, false)[0];
     assert!((blurred - linear(0) / 2.0 - picture.mean()[0] / 2.0).abs() < 1e-12);
 }
+
+/// A small generator, so that every run sees the same bytes (Marsaglia 2003).
+fn next(state: &mut u64) -> usize {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (*state >> 8) as usize
+}
+
+#[test]
+fn no_bytes_panic_and_every_error_is_one_line() {
+    let grey: Vec<u8> = (0..16 * 16).map(|at| (at * 7) as u8).collect();
+    let whole = [
+        encode(png::ColorType::Grayscale, png::BitDepth::Eight, [16, 16], &grey),
+        encode(png::ColorType::Indexed, png::BitDepth::One, [16, 2], &[0b1010_1010; 4]),
+        jpeg_of(1, &[0x48, 0x0f]),
+        jpeg_of(3, &[0x48, 0x08, 0x80, 0x1f]),
+    ];
+    let (mut state, mut read, mut refused) = (9, 0, 0);
+    for round in 0..4000 {
+        let mut bytes = whole[round % whole.len()].clone();
+        for _ in 0..=next(&mut state) % 4 {
+            let at = next(&mut state) % bytes.len();
+            match next(&mut state) % 3 {
+                0 => bytes[at] = next(&mut state) as u8,
+                1 => bytes[at] ^= 1 << (next(&mut state) % 8),
+                _ => bytes.truncate(at.max(1)),
+            }
+        }
+        let result = match bytes[0] {
+            0x89 => png(&bytes, 1 << 16),
+            _ => jpeg(&bytes, 1 << 16),
+        };
+        match result {
+            Ok((size, texels)) => {
+                read += 1;
+                assert_eq!(texels.len(), size[0] as usize * size[1] as usize, "round {round}");
+            }
+            Err(error) => {
+                refused += 1;
+                let error = error.to_string();
+                assert!(error.starts_with("is ") && !error.contains('\n') && error.len() < 200, "{error}");
+            }
+        }
+    }
+    assert!(read > 100 && refused > 1000, "{read} read, {refused} refused");
+}
