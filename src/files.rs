@@ -31,30 +31,43 @@ pub enum ReadError {
     Failed(io::Error),
 }
 
-/// The bytes of a plain file of at most so many. A file that another names may be anything: a device or a pipe is
-/// refused before it is opened, and what grows while it is read ends at the limit.
+impl From<io::Error> for ReadError {
+    fn from(error: io::Error) -> ReadError {
+        match error.kind() {
+            ErrorKind::NotFound => ReadError::Missing,
+            ErrorKind::PermissionDenied => ReadError::Denied,
+            _ => ReadError::Failed(error),
+        }
+    }
+}
+
+/// Opens a plain file. One that another names may be anything: a device or a pipe, which opening could wait for, is
+/// refused before.
 ///
 /// # Errors
 /// As [`ReadError`] says.
-pub fn read_plain(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
-    let of_system = |error: io::Error| match error.kind() {
-        ErrorKind::NotFound => ReadError::Missing,
-        ErrorKind::PermissionDenied => ReadError::Denied,
-        _ => ReadError::Failed(error),
-    };
-    let metadata = std::fs::metadata(path).map_err(of_system)?;
+pub fn open_plain(path: &Path) -> Result<File, ReadError> {
+    let metadata = std::fs::metadata(path)?;
     if metadata.is_dir() {
         return Err(ReadError::Folder);
     }
     if !metadata.is_file() {
         return Err(ReadError::NoFile(kind(metadata.file_type())));
     }
-    if metadata.len() > most {
+    Ok(File::open(path)?)
+}
+
+/// The bytes of a plain file of at most so many; what grows while it is read ends at the limit.
+///
+/// # Errors
+/// As [`ReadError`] says.
+pub fn read_plain(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
+    let file = open_plain(path)?;
+    if file.metadata()?.len() > most {
         return Err(ReadError::TooLarge { most });
     }
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(of_system)?;
-    file.take(most + 1).read_to_end(&mut bytes).map_err(of_system)?;
+    file.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(ReadError::TooLarge { most }) } else { Ok(bytes) }
 }
 

@@ -11,7 +11,7 @@ use stencilscope::reading::pick_ray::sight;
 use stencilscope::reading::shading::Shaded;
 use stencilscope::scene::{
     Camera, Light, Material, Mesh, MeshBuilder, Object, OpenSpec, Picture, Projection, Scene, SceneBuilder, Shading,
-    Texture, obj, open, shapes,
+    Texture, files_of, obj, open, shapes,
 };
 use stencilscope::session::CaptureRequest;
 use stencilscope::technique::{Choice, Technique};
@@ -465,6 +465,40 @@ fn a_scene_file_s_texture_that_can_t_be_shown_is_a_line() {
     }
     assert!(with(quad, &format!("texture = {tiles:?}, texture_side = 0.25")).status.success());
     assert_fails(&["capture", "/dev/zero", "-o", "out"], 2, &["/dev/zero"]);
+}
+
+/// What changes on disk is offered to be read again.
+#[test]
+fn a_scene_is_made_of_its_pictures_and_libraries_too() {
+    let files = files_of(&OpenSpec::new(asset("scenes/pattern.toml")));
+    let ends = ["pattern.toml", "crate.obj", "tiles.png", "crate.mtl", "crate.png"];
+    for end in ends {
+        assert!(files.iter().any(|file| file.ends_with(end) && file.is_file()), "{end} is none of {files:?}");
+    }
+    assert_eq!(files.len(), ends.len(), "{files:?}");
+    assert_eq!(files_of(&OpenSpec::new(asset("models/crate.obj"))).len(), 3);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_with_a_pipe_in_it_is_refused_and_not_waited_for() {
+    let folder = folder();
+    let made = run(folder.path(), &["capture", "tetrahedron", "-t", "none", "--size", "32x24", "-o", "out"]);
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    for file in
+        ["manifest.json", "frame.json", "mesh000.vertices.npy", "000-ambient.color.png", "plan.txt", "scene.toml"]
+    {
+        let place = folder.path().join("out").join(file);
+        let bytes = std::fs::read(&place).expect("bytes");
+        std::fs::remove_file(&place).expect("removed");
+        let made = std::process::Command::new("mkfifo").arg(&place).status().expect("mkfifo");
+        assert!(made.success());
+        let error = read_whole(&folder.path().join("out")).expect_err("a pipe").to_string();
+        assert!(error.contains(file) && error.contains("is a pipe: only plain files are read"), "{file}: {error}");
+        std::fs::remove_file(&place).expect("removed");
+        std::fs::write(&place, bytes).expect("mended");
+    }
+    assert!(read_whole(&folder.path().join("out")).is_ok());
 }
 
 #[test]

@@ -131,6 +131,24 @@ mod tests {
     use crate::scene::{OpenSpec, open};
     use crate::technique::{Job, Technique, plan};
 
+    #[test]
+    fn an_object_with_a_picture_has_its_average_colour() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/pattern.toml");
+        let scene = open(&OpenSpec::new(file)).expect("a scene");
+        let anatomy = of(file, Technique::None, &[]);
+        let [floor, wood, .., ring] = &anatomy.objects[..] else { panic!("four objects") };
+        assert_eq!(ring.color, scene.objects[3].material.color, "as it is");
+        for (object, base, texture) in [
+            (floor, 0.75, scene.objects[0].texture.as_ref()),
+            (wood, 0.9, scene.objects[1].mesh.groups()[0].texture.as_ref()),
+        ] {
+            let mean = texture.expect("a picture").picture.mean();
+            let near =
+                object.color.iter().zip(mean).all(|(color, mean)| (f64::from(*color) - base * mean).abs() < 1e-6);
+            assert!(near && object.color[0] > object.color[2], "{}: {:?}", object.name, object.color);
+        }
+    }
+
     fn of(name: &str, technique: Technique, settings: &[(&str, &str)]) -> Anatomy {
         let scene = open(&OpenSpec::new(name)).expect("a scene");
         let mut choice = Choice::new(technique);

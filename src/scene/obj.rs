@@ -15,7 +15,7 @@ use super::{Group, Mesh, MeshBuilder, SceneError, Shading};
 use glam::{DVec3, Vec2, Vec3};
 use materials::Libraries;
 use std::cell::RefCell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use text::CleanText;
 
 /// Loads a model as one mesh. It has corner normals if any face of the file has them; faces
@@ -38,6 +38,19 @@ pub(in crate::scene) fn load_among(file: &Path, pictures: &mut Pictures) -> Resu
         }
         ObjProblem::File(reason) => SceneError::Read { file: file.to_owned(), reason },
     })
+}
+
+/// The libraries of a model, and the pictures that they show; none of what can't be read, which loading tells.
+#[must_use]
+pub fn files_of(file: &Path) -> Vec<PathBuf> {
+    let Ok(raw) = read_text(file, "OBJ model") else { return Vec::new() };
+    let named = raw.lines().filter_map(|line| line.trim().strip_prefix("mtllib"));
+    let libraries: Vec<PathBuf> = named.map(|name| file.with_file_name(name.trim())).collect();
+    let pictures = libraries.iter().flat_map(|library| materials::pictures_of(library));
+    let mut files: Vec<PathBuf> = pictures.chain(libraries.iter().cloned()).collect();
+    files.sort();
+    files.dedup();
+    files
 }
 
 /// What is wrong with the text of a model.

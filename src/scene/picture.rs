@@ -9,6 +9,7 @@
 use crate::files::{ReadError, read_plain};
 use foldhash::quality::FixedState;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::hash::{BuildHasher, Hasher};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -22,7 +23,6 @@ const MOST_SIDE: u32 = 8192;
 const MOST_TEXELS: u64 = 1 << 27;
 
 /// A picture that surfaces show.
-#[derive(Debug)]
 pub struct Picture {
     name: String,
     size: [u32; 2],
@@ -69,6 +69,14 @@ pub enum PictureError {
     /// With those before it.
     #[error("is one picture too many: together they may have {} million texels", MOST_TEXELS >> 20)]
     TooMany,
+}
+
+impl fmt::Debug for Picture {
+    /// Without its texels.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Picture { name, size, hash, .. } = self;
+        f.debug_struct("Picture").field("name", name).field("size", size).field("hash", hash).finish_non_exhaustive()
+    }
 }
 
 impl PartialEq for Picture {

@@ -13,7 +13,6 @@ use crate::scene::Picture;
 use foldhash::quality::FixedState;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::hash::BuildHasher;
 use std::path::Path;
 use std::sync::Arc;
@@ -168,7 +167,7 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
         return Ok(None);
     }
     let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
-    let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
+    let text = files::read_text(&file)?;
     let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let mut plan = entry.plan;
     let mut get = Get { folder, floats: BTreeMap::new(), words: BTreeMap::new() };

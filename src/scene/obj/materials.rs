@@ -10,7 +10,7 @@ use crate::scene::read_text::quoted;
 use crate::scene::{Material, NotTaken, Shading, Texture};
 use glam::Vec2;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Bytes of the largest library.
 const MOST_BYTES: u64 = 64 << 20;
@@ -99,8 +99,7 @@ impl<'a> Libraries<'a> {
         if line.file.is_empty() {
             return self.refuse(what, "it names no file");
         }
-        // Written on another system.
-        let name = line.file.replace('\\', "/");
+        let name = line.path();
         match self.pictures.load(&folder.join(&name)) {
             Ok(picture) => {
                 if picture.has_alpha() {
@@ -112,6 +111,14 @@ impl<'a> Libraries<'a> {
             Err(error) => self.refuse(what, format!("{} {error}", quoted(&name))),
         }
     }
+}
+
+/// The pictures that a library shows; none where it can't be read.
+pub fn pictures_of(library: &Path) -> Vec<PathBuf> {
+    let Ok(bytes) = read_plain(library, MOST_BYTES) else { return Vec::new() };
+    let text = String::from_utf8_lossy(&bytes);
+    let maps = text.lines().filter_map(|line| line.trim().strip_prefix("map_Kd"));
+    maps.map(|rest| library.with_file_name(MapLine::parse(rest).path())).collect()
 }
 
 /// A picture other than that of the diffuse colour.
@@ -145,6 +152,11 @@ struct MapLine<'a> {
 }
 
 impl<'a> MapLine<'a> {
+    /// The file's path, which may have been written on another system.
+    fn path(&self) -> String {
+        self.file.replace('\\', "/")
+    }
+
     /// Options come first; what follows is the file, whose name may have spaces.
     fn parse(rest: &'a str) -> MapLine<'a> {
         let mut unused = Vec2::ZERO;
