@@ -8,6 +8,7 @@
 
 use crate::files::{ReadError, read_plain};
 use foldhash::quality::FixedState;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::hash::{BuildHasher, Hasher};
@@ -282,8 +283,8 @@ fn halved([width, height]: [u32; 2], texels: &[[u8; 4]]) -> Level {
         let alpha = four.iter().map(|texel| u32::from(texel[3])).sum::<u32>();
         [mean(0), mean(1), mean(2), ((alpha + 2) / 4) as u8]
     };
-    let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
-    Level { size, texels }
+    let row = |y: u32| (0..size[0]).map(move |x| texel(x, y));
+    Level { size, texels: (0..size[1]).into_par_iter().flat_map_iter(row).collect() }
 }
 
 fn checked_size(width: u64, height: u64, most: u64) -> Result<[u32; 2], PictureError> {
