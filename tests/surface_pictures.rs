@@ -412,6 +412,7 @@ fn a_library_s_pictures_are_shown_or_it_is_said_why_not() {
         ("map_Kd .", face, "map_Kd of `a`: `.` is a folder"),
         ("map_Kd -mm 0 2 tiles.png", face, "-mm of map_Kd of `a`: nothing here does it"),
         ("map_Ks tiles.png", face, "map_Ks of `a`: of pictures, only"),
+        ("map_Kd", face, "map_Kd of `a`: it names no file"),
         ("map_Kd tiles.png", "f 1/1 2/2 3/3\nf 2 3 4\n", "map_Kd of `a`: faces have no texture coordinates"),
         ("map_Kd tiles.png", "f 1/1 2/2 3/9\n", "map_Kd of `a`: faces have no texture coordinates"),
     ];
@@ -422,6 +423,9 @@ fn a_library_s_pictures_are_shown_or_it_is_said_why_not() {
         assert_eq!(group.material.expect("a material").color, [0.2, 0.4, 0.6], "{line}");
         assert_eq!(group.texture.is_some(), line.contains("-mm"), "{line}");
     }
+    let many: String = (0..99).map(|index| format!("newmtl m{index}\nmap_Ks none.png\n")).collect();
+    let (_, told) = model(&many, face);
+    assert_eq!((told.len(), told[32].as_str()), (33, "what else its libraries ask for: 32 things of it are named"));
     // What is not taken is in the plan, by name.
     let folder = folder();
     std::fs::write(folder.path().join("m.obj"), format!("mtllib /dev/zero\n{BOX}{face}")).expect("written");

@@ -57,8 +57,12 @@ impl<'a> Libraries<'a> {
     /// Names something that is not done.
     pub fn refuse(&mut self, what: String, because: impl Into<String>) {
         let refused = NotTaken { what, because: because.into() };
-        if self.not_taken.len() < MOST_NAMED && !self.not_taken.contains(&refused) {
+        let named = self.not_taken.len();
+        if named < MOST_NAMED && !self.not_taken.contains(&refused) {
             self.not_taken.push(refused);
+        } else if named == MOST_NAMED {
+            let what = "what else its libraries ask for".to_owned();
+            self.not_taken.push(NotTaken { what, because: format!("{MOST_NAMED} things of it are named") });
         }
     }
 
@@ -75,7 +79,8 @@ impl<'a> Libraries<'a> {
         let folder = file.parent().unwrap_or(Path::new(""));
         let mut material = "";
         for line in text.lines() {
-            let Some((keyword, rest)) = line.trim().split_once(char::is_whitespace) else { continue };
+            let line = line.trim();
+            let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
             match keyword {
                 "newmtl" => material = rest.trim(),
                 "map_Kd" => self.add_map(material, rest, folder),
