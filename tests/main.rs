@@ -23,6 +23,7 @@ mod layering;
 mod memory;
 mod options;
 mod parallel;
+
 mod plan;
 mod ray_cast;
 mod readback;
@@ -34,6 +35,7 @@ mod shading;
 mod stencil_machine;
 mod step_tests;
 mod stress;
+mod surface_pictures;
 mod techniques;
 mod texels_read;
 mod told;

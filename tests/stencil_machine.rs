@@ -200,6 +200,7 @@ fn plan(cases: &[Case]) -> FramePlan {
         lights: Vec::new(),
         ambient: [0.0; 3],
         meshes: vec![stored, mesh("tested", vertices, indices)],
+        textures: Vec::new(),
         passes: vec![pass("store", true, prepare), pass("test", false, tests)],
         left_out: Vec::new(),
     }

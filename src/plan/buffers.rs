@@ -1,6 +1,8 @@
-//! Vertices and indices of draws, named by the hash of their content.
+//! Vertices, indices and pictures of draws, named by the hash of their content.
 
 use crate::geometry::{Blob, Extruded};
+use crate::scene::Picture;
+use std::sync::Arc;
 
 /// An indexed triangle list.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +53,7 @@ impl DrawMesh {
         let vertices = self.extruded.as_ref().map_or_else(|| entry(&self.vertices), |of| entry(&of.corners));
         let mut blobs = vec![vertices, entry(&self.indices)];
         blobs.extend(self.surface.iter().flat_map(|surface| [entry(&surface.normals), entry(&surface.sides)]));
+        blobs.extend(self.surface.iter().filter_map(|surface| surface.uvs.as_ref()).map(entry));
         blobs
     }
 }
@@ -64,4 +67,26 @@ pub struct SurfaceData {
     /// side of the triangle's plane (a light or eye on the plane counts as not). Bit 31: the eye
     /// sees the back.
     pub sides: Blob<u32>,
+    /// Where each corner lies in a picture, parallel to the indices: 0, 0 is its lower left, 1, 1 its upper right.
+    /// `None` where no part of it shows one.
+    pub uvs: Option<Blob<[f32; 2]>>,
+}
+
+/// A picture on surfaces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanTexture {
+    /// Its texels and their pyramid.
+    pub picture: Arc<Picture>,
+    /// Beyond it, its last texels go on; else it repeats.
+    pub clamps: bool,
+}
+
+impl PlanTexture {
+    /// Bytes that all its levels take.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let half = |side: u32, level: u32| u64::from((side >> level).max(1));
+        let [width, height] = self.picture.size();
+        (0..self.picture.level_count()).map(|level| half(width, level) * half(height, level) * 4).sum()
+    }
 }

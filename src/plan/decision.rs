@@ -72,6 +72,8 @@ named_enum! {
         SmallReceivers = "small-receivers",
         /// Darkening a pixel once only, which takes a stencil.
         BlendOnce = "blend-once",
+        /// What a model's materials ask for and no shader does.
+        Material = "material",
         /// Drawing again what is there from the frame before.
         Kept = "kept",
         /// A draw of which no sample showed in the frame before.
@@ -108,7 +110,7 @@ impl Decision {
             Decision::UnlitTriangles => return format!("{of} triangles that face away"),
             Decision::Stencil => "stencil buffer",
             Decision::Clear => "stencil clear",
-            Decision::MapFaces | Decision::Unseen => name,
+            Decision::MapFaces | Decision::Unseen | Decision::Material => name,
             Decision::Scissor => "pixels out of reach",
             Decision::VolumePass => "volume pass",
             Decision::InnerDarkCap => "inner triangles of the dark cap",

@@ -162,6 +162,13 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
         }
         Some(Visibility::Everywhere | Visibility::Labels) | None => {}
     }
+    if let Some(texture) = draw.constants.texture {
+        let uvs = mesh.surface.as_ref().and_then(|surface| surface.uvs.as_ref());
+        let is_placed = uvs.is_some_and(|uvs| uvs.data().len() == mesh.indices.data().len());
+        demand(texture.0 < plan.textures.len(), "its texture does not exist");
+        demand(is_placed, "its corners do not lie in a picture, and it has one");
+        demand(draw.program.shows_texture(), "its shader shows no texture, and it has one");
+    }
     demand(map.is_none_or(|map| map.faces.len() <= PlanMap::MOST_FACES), "its light's map has too many faces");
     problems
 }

@@ -3,15 +3,16 @@
 //! What is read is not trusted: indexes, sizes and lengths are checked before anything runs it.
 
 use super::super::files;
-use super::{Capture, CaptureError};
+use super::{Capture, CaptureError, Image};
+use crate::capture::PixelFormat;
 use crate::plan::{
     Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, FramePlan, LightId, MakeImage,
-    PlanLight, StartContent, SurfaceData, lint,
+    PlanLight, PlanTexture, StartContent, SurfaceData, lint,
 };
+use crate::scene::Picture;
 use foldhash::quality::FixedState;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::hash::BuildHasher;
 use std::path::Path;
 use std::sync::Arc;
@@ -25,6 +26,9 @@ const MOST_LAYERS: u32 = 2048;
 struct FrameEntry<P> {
     plan: P,
     meshes: Vec<MeshEntry>,
+    /// Pictures on surfaces.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    textures: Vec<TextureEntry>,
     /// Of passes whose picture comes from the CPU.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     images: Vec<ImageEntry>,
@@ -61,6 +65,17 @@ struct SurfaceEntry {
     normals: String,
     /// A word a triangle, `<u4`.
     sides: String,
+    /// Of each corner of each triangle: (3 · triangles, 2), `<f4`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    uvs: Option<String>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct TextureEntry {
+    name: String,
+    /// RGBA with 8 bits a channel.
+    file: String,
+    clamps: bool,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -84,7 +99,8 @@ struct StartEntry {
 /// Writes a plan.
 pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError> {
     let mut written = BTreeMap::new();
-    let mut entry = FrameEntry { plan, meshes: Vec::new(), images: Vec::new(), starts: Vec::new() };
+    let mut entry =
+        FrameEntry { plan, meshes: Vec::new(), textures: Vec::new(), images: Vec::new(), starts: Vec::new() };
     for (index, mesh) in plan.meshes.iter().enumerate() {
         let mut put = Put { folder, stem: format!("mesh{index:03}"), written: &mut written };
         let DrawMesh { name, vertices, indices, surface, extruded } = mesh;
@@ -94,9 +110,13 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
             indices: put.blob("indices", indices, |values| (values, 3))?,
             surface: match surface {
                 None => None,
-                Some(SurfaceData { normals, sides }) => Some(SurfaceEntry {
+                Some(SurfaceData { normals, sides, uvs }) => Some(SurfaceEntry {
                     normals: put.blob("normals", normals, |values| (values.as_flattened(), 4))?,
                     sides: put.blob("sides", sides, |values| (values, 1))?,
+                    uvs: match uvs {
+                        None => None,
+                        Some(uvs) => Some(put.blob("uvs", uvs, |values| (values.as_flattened(), 2))?),
+                    },
                 }),
             },
             extruded: match extruded {
@@ -107,6 +127,12 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
                 }),
             },
         });
+    }
+    for (index, PlanTexture { picture, clamps }) in plan.textures.iter().enumerate() {
+        let file = format!("texture{index:03}.png");
+        let texels = picture.texels().as_flattened().to_vec();
+        files::write_image(&folder.join(&file), &Image::packed(PixelFormat::Rgba8Srgb, picture.size(), texels))?;
+        entry.textures.push(TextureEntry { name: picture.name().to_owned(), file, clamps: *clamps });
     }
     for (pass, image) in plan.passes.iter().enumerate().filter_map(|(pass, of)| Some((pass, of.image.as_ref()?))) {
         let file = format!("pass{pass:03}.image.npy");
@@ -158,16 +184,18 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
         return Ok(None);
     }
     let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
-    let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
+    let text = files::read_text(&file)?;
     let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let mut plan = entry.plan;
     let mut get = Get { folder, floats: BTreeMap::new(), words: BTreeMap::new() };
     for MeshEntry { name, vertices, indices, surface, extruded } in entry.meshes {
         let surface = match surface {
             None => None,
-            Some(SurfaceEntry { normals, sides }) => {
-                Some(SurfaceData { normals: get.rows(&normals)?, sides: get.words(&sides, 1)? })
-            }
+            Some(SurfaceEntry { normals, sides, uvs }) => Some(SurfaceData {
+                normals: get.rows(&normals)?,
+                sides: get.words(&sides, 1)?,
+                uvs: uvs.map(|file| get.pairs(&file)).transpose()?,
+            }),
         };
         let indices = get.words(&indices, 3)?;
         plan.meshes.push(match extruded {
@@ -178,6 +206,13 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
                 DrawMesh::of_extruded(name, Extruded { corners, carry }, indices)
             }
         });
+    }
+    for TextureEntry { name, file, clamps } in entry.textures {
+        let image = files::read_image(&plain(folder, &file)?, PixelFormat::Rgba8Srgb)?;
+        let texels = image.rows().flat_map(|row| row.as_chunks().0).copied().collect();
+        let picture = Picture::new(name, image.size(), texels);
+        let picture = picture.ok_or_else(|| wrong(format!("{file} is larger than a texture may be")))?;
+        plan.textures.push(PlanTexture { picture: Arc::new(picture), clamps });
     }
     for ImageEntry { pass, name, file } in entry.images {
         let texels: Vec<u8> = files::read_values(&plain(folder, &file)?, 1)?;
@@ -225,6 +260,11 @@ impl Get<'_> {
         let blob = Blob::new(values.as_chunks().0.to_vec());
         self.floats.insert(file.to_owned(), blob.clone());
         Ok(blob)
+    }
+
+    fn pairs(&self, file: &str) -> Result<Blob<[f32; 2]>, CaptureError> {
+        let values: Vec<f32> = files::read_values(&plain(self.folder, file)?, 2)?;
+        Ok(Blob::new(values.as_chunks().0.to_vec()))
     }
 
     fn words(&mut self, file: &str, columns: u64) -> Result<Blob<u32>, CaptureError> {

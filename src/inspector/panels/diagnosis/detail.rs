@@ -32,7 +32,10 @@ pub fn ui(
         theme::heading(ui, &region.title());
         if region.causes.is_empty() {
             let without = diagnosis.without_cause(region);
-            wrapped(ui, theme::note(format!("Here {without}. Its history, on the right, tells how a pixel came about.")));
+            wrapped(
+                ui,
+                theme::note(format!("Here {without}. Its history, on the right, tells how a pixel came about.")),
+            );
         }
         for (index, found) in region.causes.iter().enumerate() {
             cause(ui, own, model, (diagnosis, found), index == 0, actions);
