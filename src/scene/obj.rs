@@ -10,7 +10,7 @@ mod polygon;
 mod text;
 
 use super::picture::Pictures;
-use super::read_text::{quoted, read_text};
+use super::read_text::{quoted, read_old_text};
 use super::{Group, Mesh, MeshBuilder, SceneError, Shading};
 use glam::{DVec3, Vec2, Vec3};
 use materials::Libraries;
@@ -30,7 +30,7 @@ pub fn load(file: &Path) -> Result<Mesh, SceneError> {
 
 /// The same of a model among others, which share what room pictures have.
 pub(in crate::scene) fn load_among(file: &Path, pictures: &mut Pictures) -> Result<Mesh, SceneError> {
-    let raw = read_text(file, "OBJ model")?;
+    let raw = read_old_text(file, "OBJ model")?;
     let folder = file.parent().unwrap_or(Path::new(""));
     parse(&raw, folder, pictures).map_err(|problem| match problem {
         ObjProblem::Line(text::LineProblem { line, reason }) => {
@@ -43,7 +43,7 @@ pub(in crate::scene) fn load_among(file: &Path, pictures: &mut Pictures) -> Resu
 /// The libraries of a model, and the pictures that they show; none of what can't be read, which loading tells.
 #[must_use]
 pub fn files_of(file: &Path) -> Vec<PathBuf> {
-    let Ok(raw) = read_text(file, "OBJ model") else { return Vec::new() };
+    let Ok(raw) = read_old_text(file, "OBJ model") else { return Vec::new() };
     let named = raw.lines().filter_map(|line| line.trim().strip_prefix("mtllib"));
     let libraries: Vec<PathBuf> = named.map(|name| file.with_file_name(name.trim())).collect();
     let pictures = libraries.iter().flat_map(|library| materials::pictures_of(library));

@@ -13,12 +13,33 @@ pub const MOST_TEXT: u64 = 2 << 30;
 /// A missing or unreadable file, a folder, a device, a text that is too long, bytes that are no UTF-8 text, an empty
 /// file. `kind` says what was expected: `OBJ model`.
 pub fn read_text(file: &Path, kind: &str) -> Result<String, SceneError> {
+    read(file, kind, |bytes| String::from_utf8(bytes).ok())
+}
+
+/// The same of a file in any encoding that has ASCII's letters where ASCII has them, as files of old programs are: what is
+/// no UTF-8 is read as Latin-1, which tells names apart as the file does.
+///
+/// # Errors
+/// As [`read_text`], but for bytes that are no UTF-8.
+pub fn read_old_text(file: &Path, kind: &str) -> Result<String, SceneError> {
+    read(file, kind, |bytes| Some(decoded(bytes)))
+}
+
+/// UTF-8, or else Latin-1.
+pub fn decoded(bytes: Vec<u8>) -> String {
+    String::from_utf8(bytes).unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect())
+}
+
+fn read(file: &Path, kind: &str, decode: impl FnOnce(Vec<u8>) -> Option<String>) -> Result<String, SceneError> {
     let fail = |reason: String| SceneError::Read { file: file.to_owned(), reason };
     let bytes = read_plain(file, MOST_TEXT).map_err(|error| match error {
         ReadError::Folder => fail(format!("is a folder: name an {kind} in it")),
         other => fail(other.to_string()),
     })?;
-    let text = String::from_utf8(bytes).ok().filter(|text| !text.contains('\0'));
+    if matches!(bytes[..], [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) {
+        return Err(fail(format!("is in UTF-16: save the {kind} in UTF-8")));
+    }
+    let text = decode(bytes).filter(|text| !text.contains('\0'));
     let Some(text) = text else {
         return Err(fail(format!("is not a text file: give an {kind} in UTF-8")));
     };

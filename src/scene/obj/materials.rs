@@ -6,7 +6,7 @@
 
 use crate::files::{ReadError, read_plain};
 use crate::scene::picture::Pictures;
-use crate::scene::read_text::quoted;
+use crate::scene::read_text::{decoded, quoted};
 use crate::scene::{Material, NotTaken, Shading, Texture};
 use glam::Vec2;
 use std::collections::BTreeMap;
@@ -75,7 +75,7 @@ impl<'a> Libraries<'a> {
             self.refuse(format!("the materials of {}", quoted(name)), error.to_string());
             tobj::LoadError::OpenFileFailed
         })?;
-        let text = String::from_utf8_lossy(&bytes);
+        let text = decoded(bytes);
         let folder = file.parent().unwrap_or(Path::new(""));
         let mut material = "";
         for line in text.lines() {
@@ -121,7 +121,7 @@ impl<'a> Libraries<'a> {
 /// The pictures that a library shows; none where it can't be read.
 pub fn pictures_of(library: &Path) -> Vec<PathBuf> {
     let Ok(bytes) = read_plain(library, MOST_BYTES) else { return Vec::new() };
-    let text = String::from_utf8_lossy(&bytes);
+    let text = decoded(bytes);
     let maps = text.lines().filter_map(|line| line.trim().strip_prefix("map_Kd"));
     maps.map(|rest| library.with_file_name(MapLine::parse(rest).path())).collect()
 }

@@ -205,3 +205,21 @@ fn files_that_are_no_text_say_so() {
     std::fs::write(&file, b"v 0 0 0\n\xff\xfe\x00").expect("written");
     assert!(error_of(&file).contains("not a text file"));
 }
+
+/// Of programs that knew no UTF-8: names are told apart, and found in their library.
+#[test]
+fn names_and_comments_may_be_in_latin_1_and_utf_16_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let put = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).expect("written");
+    put("farben.mtl", b"# T\xfcr\nnewmtl gr\xfcn\nKd 0 1 0\nnewmtl gr\xe4u\nKd 0.5 0.5 0.5\n");
+    let faces = b"usemtl gr\xfcn\nf 1 2 3\nusemtl gr\xe4u\nf 1 3 4\n";
+    put("haus.obj", &[b"# caf\xe9\nmtllib farben.mtl\n", SQUARE.as_bytes(), faces].concat());
+    let mesh = load(&folder.path().join("haus.obj")).expect("a mesh");
+    let color = |group: usize| mesh.groups()[group].material.expect("a material").color;
+    assert_eq!([color(0), color(1)], [[0.0, 1.0, 0.0], [0.5; 3]]);
+    for bytes in [b"\xff\xfev\x00 \x00".as_slice(), b"\xfe\xff\x00v\x00 "] {
+        put("wide.obj", bytes);
+        let error = load(&folder.path().join("wide.obj")).expect_err("UTF-16").to_string();
+        assert!(error.contains("is in UTF-16: save the OBJ model in UTF-8"), "{error}");
+    }
+}
