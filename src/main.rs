@@ -18,11 +18,13 @@ fn main() -> ExitCode {
 }
 
 /// Where there is no folder for a Wayland display, Mesa's device-select layer has libwayland look for one all the same,
-/// which complains on standard error each time that GPUs are listed. It only sorts them, and we choose by ourselves.
+/// which complains on standard error each time that GPUs are listed. It sorts them, and we choose by ourselves, unless
+/// someone has told it or the driver which to take.
 #[expect(unsafe_code, reason = "no other thread runs yet that could read the environment")]
 fn keep_mesa_quiet() {
     let is_set = |name| std::env::var_os(name).is_some();
-    if cfg!(target_os = "linux") && !is_set("XDG_RUNTIME_DIR") && !is_set("NODEVICE_SELECT") {
+    let told = ["NODEVICE_SELECT", "MESA_VK_DEVICE_SELECT", "DRI_PRIME"].into_iter().any(is_set);
+    if cfg!(target_os = "linux") && !is_set("XDG_RUNTIME_DIR") && !told {
         // Sound as the reason says: `main` calls this first.
         unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }

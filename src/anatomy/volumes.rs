@@ -74,7 +74,10 @@ fn add(volume: &mut ShadowVolume, draw: &Draw, mesh: &DrawMesh) {
     let triangles = corners(draw, mesh);
     let Some(extruded) = &mesh.extruded else { return add_part(volume, draw.part, triangles) };
     // What its vertex shader has made of them.
+    let vertices = mesh.vertices.data();
     let of = |triangle: &[u32; 3]| match extruded.carried(*triangle) {
+        // All that a sun carries to infinity is one point.
+        _ if has_equal_corners(vertices, *triangle) => None,
         [true, true, true] if draw.part == Part::Caps => Some(Part::DarkCap),
         [false, false, false] if draw.part == Part::Caps => Some(Part::LightCap),
         // Its triangles face the same way: it has no area.
@@ -88,6 +91,11 @@ fn add(volume: &mut ShadowVolume, draw: &Draw, mesh: &DrawMesh) {
             add_part(volume, part, of_part);
         }
     }
+}
+
+fn has_equal_corners(vertices: &[[f32; 4]], triangle: [u32; 3]) -> bool {
+    let [a, b, c] = triangle.map(|corner| vertices.get(corner as usize));
+    a == b || b == c || c == a
 }
 
 fn add_part(volume: &mut ShadowVolume, part: Part, triangles: impl Iterator<Item = [u32; 3]>) {

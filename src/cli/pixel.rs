@@ -20,7 +20,7 @@ pub struct PixelArguments {
     /// Column and row from the top left; repeatable
     #[arg(long, value_name = "X,Y", value_parser = pixel, required_unless_present = "vertex")]
     at: Vec<[u32; 2]>,
-    /// In place of a pixel, a vertex of an object's mesh, counted from 0, in world, eye, clip, device and window
+    /// In place of a pixel, a vertex of an object's mesh, counted from 0 as corners first name it, equal places once, in world, eye, clip, device and window
     /// coordinates with the matrices between them; repeatable
     #[arg(long, value_name = "OBJECT:INDEX", conflicts_with_all = ["at", "coordinates"])]
     vertex: Vec<String>,

@@ -144,6 +144,12 @@ impl<'a> Facts<'a> {
         2.0 * self.scene.camera.half_height_at(depth) / f64::from(self.plan.size[1])
     }
 
+    /// Radians of the view that a pixel's height is, at the least.
+    pub fn pixel_angle(&self) -> f64 {
+        let [near, away] = [0.0, 1.0].map(|depth| self.pixel_width(depth));
+        (away - near).max(1e-9)
+    }
+
     /// The names of the objects that rays have met, in order.
     pub fn names(&self, met: &[Met]) -> BTreeSet<String> {
         met.iter().map(|met| self.tracer.name(met.place).to_owned()).collect()

@@ -3,7 +3,8 @@
 //! Each belongs to one triangle and knows its plane: where that faces the light the vertex stays, else it goes to the
 //! far end (Brennan 2002, "Shadow Volume Extrusion using a Vertex Shader"). So the light may move and no vertex is
 //! written anew. What the shader makes of them, [`Extruded::vertices`] makes on the CPU with the same steps in single
-//! precision, for those who ask what was drawn.
+//! precision, for those who ask what was drawn. (A GPU that multiplies and adds in one step may tell a plane the other way
+//! that the light is in to the last bits; llvmpipe does not.)
 
 use super::{Blob, Casters, EdgeList, relative};
 use bytemuck::{Pod, Zeroable};

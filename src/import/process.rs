@@ -77,6 +77,10 @@ impl Run {
         std::fs::write(&file, script).map_err(temporary)?;
         let mut command = Command::new(python);
         command.arg(&file).arg(folder.path()).args(arguments);
+        // What `main` may have set for this process alone.
+        if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+            command.env_remove("NODEVICE_SELECT");
+        }
         // RenderDoc's log goes with the folder.
         command.env("RENDERDOC_TEMP", folder.path());
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());

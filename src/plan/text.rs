@@ -24,16 +24,15 @@ impl Display for FramePlan {
             writeln!(f, "attachment {index}: {name}, {format:?} {width}x{height}, {layers} layer(s){left_out}")?;
         }
         for (index, mesh) in self.meshes.iter().enumerate() {
-            let (vertices, triangles) = (mesh.vertices.data().len(), mesh.indices.data().len() / 3);
-            let infinite = mesh.vertices.data().iter().filter(|vertex| vertex[3] == 0.0).count();
-            writeln!(
-                f,
-                "mesh {index}: {}, {vertices} vertices ({infinite} at infinity), {triangles} triangles",
-                mesh.name
-            )?;
+            let (name, vertices, triangles) = (&mesh.name, mesh.vertices.len(), mesh.triangles());
+            // What a vertex shader makes of them is not made for this.
             if let Some(Carry { light, scale, offset, w }) = mesh.extruded.as_ref().map(|extruded| extruded.carry) {
+                writeln!(f, "mesh {index}: {name}, {vertices} vertices, {triangles} triangles")?;
                 writeln!(f, "  by its vertex shader carried from {light:?} to ({scale} v + {offset:?}, {w})")?;
+                continue;
             }
+            let infinite = mesh.vertices.data().iter().filter(|vertex| vertex[3] == 0.0).count();
+            writeln!(f, "mesh {index}: {name}, {vertices} vertices ({infinite} at infinity), {triangles} triangles")?;
         }
         for (index, light) in self.lights.iter().enumerate() {
             let kind = if light.relative_position[3] == 0.0 { "directional" } else { "point" };

@@ -106,7 +106,11 @@ impl Picture {
         Picture::load_within(path, MOST_TEXELS)
     }
 
-    fn load_within(path: &Path, most: u64) -> Result<Picture, PictureError> {
+    /// The same of at most so many texels.
+    ///
+    /// # Errors
+    /// As [`Picture::load`].
+    pub fn load_within(path: &Path, most: u64) -> Result<Picture, PictureError> {
         let bytes = read_plain(path, MOST_FILE)?;
         let (size, texels) = match bytes.as_slice() {
             [0x89, b'P', b'N', b'G', ..] => png(&bytes, most)?,
@@ -115,6 +119,15 @@ impl Picture {
         };
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         Picture::new(name, size, texels).ok_or_else(|| PictureError::Broken("texels are missing".to_owned()))
+    }
+
+    /// Texels that the pictures of one frame may have together.
+    pub const MOST_TOGETHER: u64 = MOST_TEXELS;
+
+    /// The same by another name.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Picture {
+        Picture { name: name.into(), ..self }
     }
 
     /// Its file's name, for people.
@@ -204,7 +217,8 @@ impl Picture {
     fn smooth_at(&self, [u, v]: [f64; 2], level: u32, clamps: bool) -> [f64; 3] {
         let ([width, height], texels) = self.level(level);
         let [x, y] = [u * f64::from(width) - 0.5, (1.0 - v) * f64::from(height) - 0.5];
-        let [column, row] = [x, y].map(|at| at.floor() as i64);
+        // Beyond what an integer holds, any texel is as right as another.
+        let [column, row] = [x, y].map(|at| at.floor().clamp(-1e15, 1e15) as i64);
         let [right, down] = [x - x.floor(), y - y.floor()];
         let texel = |column: i64, row: i64| {
             let [column, row] = [wrapped(column, width.into(), clamps), wrapped(row, height.into(), clamps)];
@@ -220,16 +234,18 @@ impl Picture {
     }
 }
 
-/// Reads pictures once each, and no more than fit.
+/// Reads pictures once each, broken ones too, and no more than fit.
 #[derive(Debug)]
 pub(super) struct Pictures {
     known: BTreeMap<PathBuf, Arc<Picture>>,
+    /// What is wrong with those that are none.
+    broken: BTreeMap<PathBuf, String>,
     left: u64,
 }
 
 impl Default for Pictures {
     fn default() -> Pictures {
-        Pictures { known: BTreeMap::new(), left: MOST_TEXELS }
+        Pictures { known: BTreeMap::new(), broken: BTreeMap::new(), left: MOST_TEXELS }
     }
 }
 
@@ -242,7 +258,15 @@ impl Pictures {
         if let Some(known) = self.known.get(path) {
             return Ok(Arc::clone(known));
         }
-        let picture = Arc::new(Picture::load_within(path, self.left)?);
+        if let Some(why) = self.broken.get(path) {
+            return Err(PictureError::Broken(why.clone()));
+        }
+        let picture = Picture::load_within(path, self.left).inspect_err(|error| {
+            if let PictureError::Broken(why) = error {
+                self.broken.insert(path.to_owned(), why.clone());
+            }
+        })?;
+        let picture = Arc::new(picture);
         self.left -= picture.texels.len() as u64;
         self.known.insert(path.to_owned(), Arc::clone(&picture));
         Ok(picture)

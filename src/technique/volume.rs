@@ -169,7 +169,8 @@ pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
 
 /// Refuses what would take minutes.
 fn check(settings: &VolumeSettings, scene: &Scene) -> Result<(), PlanError> {
-    let too_large = |triangles: usize| settings.silhouette == SilhouetteBy::Search && triangles > MOST_TO_SEARCH;
+    let searches = settings.silhouette == SilhouetteBy::Search && !extruded::can_serve(settings, scene);
+    let too_large = |triangles: usize| searches && triangles > MOST_TO_SEARCH;
     let casting = scene.objects.iter().filter(|object| object.casts);
     match casting.map(|object| (object, object.mesh.triangles().len())).find(|(_, count)| too_large(*count)) {
         None => Ok(()),

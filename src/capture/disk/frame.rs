@@ -6,8 +6,8 @@ use super::super::files;
 use super::{Capture, CaptureError, Image};
 use crate::capture::PixelFormat;
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, FramePlan, LightId, MakeImage,
-    PlanLight, PlanTexture, StartContent, SurfaceData, lint,
+    Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, ExtrudedCorner, FramePlan,
+    LightId, MakeImage, PlanLight, PlanTexture, StartContent, SurfaceData, lint,
 };
 use crate::scene::Picture;
 use foldhash::quality::FixedState;
@@ -187,7 +187,7 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
     let text = files::read_text(&file)?;
     let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let mut plan = entry.plan;
-    let mut get = Get { folder, floats: BTreeMap::new(), words: BTreeMap::new() };
+    let mut get = Get::new(folder);
     for MeshEntry { name, vertices, indices, surface, extruded } in entry.meshes {
         let surface = match surface {
             None => None,
@@ -201,18 +201,13 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
         plan.meshes.push(match extruded {
             None => DrawMesh { surface, ..DrawMesh::of_blobs(name, get.rows(&vertices)?, indices) },
             Some(ExtrudedEntry { corners, carry }) => {
-                let values: Vec<f32> = files::read_values(&plain(folder, &corners)?, 8)?;
-                let corners = Blob::new(bytemuck::cast_slice(&values).to_vec());
+                let corners = get.corners(&corners)?;
                 DrawMesh::of_extruded(name, Extruded { corners, carry }, indices)
             }
         });
     }
     for TextureEntry { name, file, clamps } in entry.textures {
-        let image = files::read_image(&plain(folder, &file)?, PixelFormat::Rgba8Srgb)?;
-        let texels = image.rows().flat_map(|row| row.as_chunks().0).copied().collect();
-        let picture = Picture::new(name, image.size(), texels);
-        let picture = picture.ok_or_else(|| wrong(format!("{file} is larger than a texture may be")))?;
-        plan.textures.push(PlanTexture { picture: Arc::new(picture), clamps });
+        plan.textures.push(PlanTexture { picture: get.picture(name, &file)?, clamps });
     }
     for ImageEntry { pass, name, file } in entry.images {
         let texels: Vec<u8> = files::read_values(&plain(folder, &file)?, 1)?;
@@ -247,24 +242,52 @@ fn plain(folder: &Path, file: &str) -> Result<std::path::PathBuf, CaptureError> 
 /// Reads each array once.
 struct Get<'a> {
     folder: &'a Path,
-    floats: BTreeMap<String, Blob<[f32; 4]>>,
+    rows: BTreeMap<String, Blob<[f32; 4]>>,
+    pairs: BTreeMap<String, Blob<[f32; 2]>>,
+    corners: BTreeMap<String, Blob<ExtrudedCorner>>,
     words: BTreeMap<String, Blob<u32>>,
+    pictures: BTreeMap<String, Arc<Picture>>,
+    /// How many more they may have.
+    texels_left: u64,
 }
 
 impl Get<'_> {
-    fn rows(&mut self, file: &str) -> Result<Blob<[f32; 4]>, CaptureError> {
-        if let Some(known) = self.floats.get(file) {
-            return Ok(known.clone());
+    fn new(folder: &Path) -> Get<'_> {
+        Get {
+            folder,
+            rows: BTreeMap::new(),
+            pairs: BTreeMap::new(),
+            corners: BTreeMap::new(),
+            words: BTreeMap::new(),
+            pictures: BTreeMap::new(),
+            texels_left: Picture::MOST_TOGETHER,
         }
-        let values: Vec<f32> = files::read_values(&plain(self.folder, file)?, 4)?;
-        let blob = Blob::new(values.as_chunks().0.to_vec());
-        self.floats.insert(file.to_owned(), blob.clone());
-        Ok(blob)
     }
 
-    fn pairs(&self, file: &str) -> Result<Blob<[f32; 2]>, CaptureError> {
-        let values: Vec<f32> = files::read_values(&plain(self.folder, file)?, 2)?;
-        Ok(Blob::new(values.as_chunks().0.to_vec()))
+    fn rows(&mut self, file: &str) -> Result<Blob<[f32; 4]>, CaptureError> {
+        floats(self.folder, &mut self.rows, file)
+    }
+
+    fn pairs(&mut self, file: &str) -> Result<Blob<[f32; 2]>, CaptureError> {
+        floats(self.folder, &mut self.pairs, file)
+    }
+
+    fn corners(&mut self, file: &str) -> Result<Blob<ExtrudedCorner>, CaptureError> {
+        floats(self.folder, &mut self.corners, file)
+    }
+
+    /// By the name that it was asked for by first.
+    fn picture(&mut self, name: String, file: &str) -> Result<Arc<Picture>, CaptureError> {
+        if let Some(known) = self.pictures.get(file) {
+            return Ok(Arc::clone(known));
+        }
+        let path = plain(self.folder, file)?;
+        let read = Picture::load_within(&path, self.texels_left);
+        let picture = read.map_err(|error| CaptureError::Read { file: path, reason: error.to_string() })?.named(name);
+        self.texels_left -= picture.texels().len() as u64;
+        let picture = Arc::new(picture);
+        self.pictures.insert(file.to_owned(), Arc::clone(&picture));
+        Ok(picture)
     }
 
     fn words(&mut self, file: &str, columns: u64) -> Result<Blob<u32>, CaptureError> {
@@ -275,6 +298,21 @@ impl Get<'_> {
         self.words.insert(file.to_owned(), blob.clone());
         Ok(blob)
     }
+}
+
+/// An array of rows of so many floats as a value has.
+fn floats<T: bytemuck::Pod>(
+    folder: &Path,
+    known: &mut BTreeMap<String, Blob<T>>,
+    file: &str,
+) -> Result<Blob<T>, CaptureError> {
+    if let Some(known) = known.get(file) {
+        return Ok(known.clone());
+    }
+    let values: Vec<f32> = files::read_values(&plain(folder, file)?, size_of::<T>() as u64 / 4)?;
+    let blob = Blob::new(bytemuck::cast_slice(&values).to_vec());
+    known.insert(file.to_owned(), blob.clone());
+    Ok(blob)
 }
 
 /// A picture that was made before.

@@ -3,7 +3,7 @@
 use crate::diagnosis::cause::Cause;
 use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount, listed};
 use crate::diagnosis::mend::{Mend, PlanEdit};
-use crate::geometry::{Extrusion, ViewVolume};
+use crate::geometry::{Extruder, Extrusion, ViewVolume};
 use crate::history::Fate;
 use crate::math::{AxisBox, Sign, side_of_triangle};
 use crate::numbers;
@@ -334,23 +334,25 @@ impl Carried {
         let extruded = facts.plan.meshes.get(draw.mesh.0)?.extruded.as_ref()?;
         let (_, object) = facts.object(caster)?;
         let (position, world) = (facts.tracer.light_position(light), object.world_positions());
+        let extruder = Extruder::new(&world, position, facts.volumes()?.extrusion);
+        let origin = facts.plan.views.first()?.origin;
         let triangles = object.mesh.triangles();
-        // Its fronts come first, and as often as there are copies of each.
-        let copies = (extruded.corners.len() / triangles.len().max(1)).max(3);
+        // Of each a front, or a front and a back.
+        let copies = if extruded.corners.len() == triangles.len() * 3 { 3 } else { 6 };
         let mut carried = Carried { misfaced: 0, triangles: triangles.len(), beside: 0.0 };
-        for (triangle, corners) in triangles.iter().zip(extruded.corners.data().chunks(copies)) {
+        for (triangle, corners) in triangles.iter().zip(extruded.corners.data().chunks_exact(copies)) {
             let places = triangle.map(|vertex| world[vertex as usize]);
             // Of one whose back alone casts the front has no plane.
-            let (at, casts) =
-                if corners[0].plane == [0.0; 4] { (copies - 1, Sign::Negative) } else { (0, Sign::Positive) };
+            let is_back = corners[0].plane == [0.0; 4];
+            let (at, casts) = if is_back { (copies - 1, Sign::Negative) } else { (0, Sign::Positive) };
             let stays = side_of_triangle(places, position) == casts;
             carried.misfaced += usize::from(stays == extruded.carry.carries(corners[at].plane));
             for (place, corner) in places.into_iter().zip(corners) {
-                let way = (place * position.w - position.truncate()).normalize_or_zero();
+                let far = extruder.carry(place);
+                let way = far.truncate() - place * far.w;
                 let [x, y, z, w] = extruded.carry.far(corner.near).map(f64::from);
-                let near = DVec4::from_array(corner.near.map(f64::from)).truncate();
-                let told = (DVec3::new(x, y, z) - near * w).normalize_or_zero();
-                carried.beside = carried.beside.max(way.cross(told).length());
+                let told = DVec3::new(x, y, z) + origin * w - place * w;
+                carried.beside = carried.beside.max(way.cross(told).length().atan2(way.dot(told)));
             }
         }
         Some(carried)
@@ -362,7 +364,10 @@ fn carried_in_f32(facts: &Facts, case: &Case) -> Option<Suspicion> {
     facts.volumes().filter(|settings| settings.by_vertex_shader)?;
     let (found, shown_by) = case.shown(|sample| {
         let miscounted = sample.miscounted(facts, light).into_iter();
-        miscounted.map(|(caster, ..)| caster).find_map(|caster| Some((Carried::of(facts, light, &caster)?, caster)))
+        // What goes beside its way by less moves no edge by a pixel.
+        let is_off = |of: &Carried| of.misfaced > 0 || of.beside > facts.pixel_angle() / 2.0;
+        let carried = |caster: String| Some((Carried::of(facts, light, &caster).filter(is_off)?, caster));
+        miscounted.map(|(caster, ..)| caster).find_map(carried)
     })?;
     let (Carried { misfaced, triangles, beside }, caster) = found;
     let faces = match misfaced {

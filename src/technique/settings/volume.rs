@@ -180,8 +180,9 @@ const EXTRUDED_BY: Words<bool> = words(
     Lesson {
         text: "With `cpu`, exact signs say which triangles face the light, and only the edges between those that do \
              and those that don't are carried. With `vertex-shader`, each triangle has vertices of its own that know \
-             its plane, and each edge has a quad that is empty until its triangles face different ways: nothing is \
-             made anew when the light moves, and several times as many triangles are drawn. It tells in single \
+             its plane. Of a mesh that is closed, where the triangles that face the light cast, each edge has a quad that is empty until \
+             its triangles face different ways; of any other each triangle is a prism of its own, drawn twice with a quad at each edge. \
+             No vertex is uploaded anew when the light moves, and several times as many triangles are drawn. It tells in single \
              precision which way a triangle faces, so where the light grazes one the shadow's edge may run beside its place; \
              volumes are closed all the same.",
         formula: "with the light L and the plane p of the vertex's own triangle, both relative to the eye: where p . L > 0 \
@@ -313,10 +314,11 @@ impl VolumeSettings {
             return Some("No effect: carried without end, a vertex is a direction, and no place is added to it");
         }
         if self.by_vertex_shader {
-            let both = "No effect: light cap and dark cap are one draw here, and its vertex shader tells them apart; \
-                        `none` leaves both out";
+            let both = "No effect where the vertex shader carries volumes: light cap and dark cap are one draw there, which it \
+                        tells apart; `none` leaves both out";
+            let searches = "No effect where the vertex shader carries volumes: it searches no silhouette";
             match key {
-                _ if is(SILHOUETTE.spec) => return Some("No effect: the vertex shader searches no silhouette"),
+                _ if is(SILHOUETTE.spec) => return Some(searches),
                 _ if is(LIGHT_CAPS.spec) || (is(CAPS.spec) && self.caps[0] != self.caps[1]) => return Some(both),
                 _ => {}
             }

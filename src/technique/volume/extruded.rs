@@ -13,18 +13,25 @@ use super::counting::{Form, NeededPart};
 use super::drawn::{Casting, Made};
 use crate::geometry::{Caster, Casters, Extruded, ExtrudedForm, ExtrudedVolume, Extruder, Extrusion};
 use crate::plan::{Decision, DrawMesh, LightId, Part};
+use crate::scene::Scene;
 use crate::technique::frame::Frame;
 use crate::technique::settings::VolumeSettings;
 
-/// Does a vertex shader carry a light's volumes? Told where it was asked for and can't.
+/// Does a vertex shader carry volumes, if it is to?
+pub fn can_serve(options: &VolumeSettings, scene: &Scene) -> bool {
+    let ends_in_a_point = scene.camera.is_parallel() && options.extrusion == Extrusion::Infinite;
+    options.by_vertex_shader && !ends_in_a_point
+}
+
+/// The same for a light; told where it was asked for and can't.
 pub fn serves(frame: &mut Frame, light: LightId, options: &VolumeSettings) -> bool {
-    let begins_at_far_end = frame.job.scene.camera.is_parallel() && options.extrusion == Extrusion::Infinite;
-    if options.by_vertex_shader && begins_at_far_end {
-        let because = "lines of sight are parallel, so the count begins at the casting triangles that one ray meets, \
-                       and what casts is found on the CPU";
+    let can = can_serve(options, frame.job.scene);
+    if options.by_vertex_shader && !can {
+        let because = "lines of sight are parallel and all end in one point at infinity: what is to be counted there, \
+                       and that no side is seen edge-on, is found on the CPU";
         frame.leave_out(Decision::VertexExtrusion, light.name(), because);
     }
-    options.by_vertex_shader && !begins_at_far_end
+    can
 }
 
 /// The volume of one caster.
