@@ -16,6 +16,7 @@ mod help;
 mod import;
 mod options;
 mod output;
+mod page;
 mod pictures;
 mod pixel;
 mod progress;
@@ -37,8 +38,8 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// The commands that exist.
-const COMMANDS: [&str; 14] = [
-    "view", "capture", "animate", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import", "record",
+const COMMANDS: [&str; 15] = [
+    "view", "capture", "page", "animate", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import", "record",
     "bench", "pictures", "help",
 ];
 
@@ -59,6 +60,9 @@ enum Command {
     /// Render without a window and write every pass to a folder
     #[command(after_help = help::names())]
     Capture(Box<capture::CaptureArguments>),
+    /// Put a frame into one HTML file that any browser opens
+    #[command(after_help = help::names())]
+    Page(Box<page::PageArguments>),
     /// Show a frame pass by pass, or a light going round the scene, as an animated PNG
     #[command(after_help = help::names())]
     Animate(Box<animate::AnimateArguments>),
@@ -109,6 +113,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
     match command_line.command {
         Command::View(arguments) => view::run(&arguments),
         Command::Capture(arguments) => capture::run(&arguments),
+        Command::Page(arguments) => page::run(&arguments),
         Command::Animate(arguments) => animate::run(&arguments),
         Command::Pixel(arguments) => pixel::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),

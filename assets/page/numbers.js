@@ -1,0 +1,59 @@
+// Numbers as text, as src/numbers.rs writes them.
+
+const THIN_SPACE = "\u2009";
+
+// `47 425`
+export function count(value) {
+  return String(value).replace(/\B(?=(\d{3})+$)/g, THIN_SPACE);
+}
+
+// About four digits.
+export function digits(value) {
+  const size = Math.abs(value);
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : String(value);
+  if (size === 0) return "0";
+  if (size < 1e-3 || size >= 1e5) return value.toExponential(1).replace("+", "");
+  if (size < 0.99995) return value.toFixed(4);
+  return value.toFixed(size < 99.9995 ? 3 : 1);
+}
+
+export function length(value, unit) {
+  return `${digits(value)} ${unit}`;
+}
+
+// A stored depth in the fewest digits that read back as the same bits.
+export function depth(value) {
+  if (value === 0 || !Number.isFinite(value)) return String(value);
+  let precision = 1;
+  while (Math.fround(Number(value.toPrecision(precision))) !== value) precision++;
+  const shortest = Number(value.toPrecision(precision));
+  if (Math.abs(shortest) < 1e-4) return shortest.toExponential();
+  return Number.isInteger(shortest) ? shortest.toFixed(1) : String(shortest);
+}
+
+export function lightName(index) {
+  return `light ${index + 1}`;
+}
+
+// A float count with its sign.
+export function countInFloat(value) {
+  return value < 0 ? `−${-value}` : String(value);
+}
+
+// A stencil value as people read it: 255 is `−1 (255)`.
+export function signed(value) {
+  return value < 128 ? String(value) : `−${256 - value} (${value})`;
+}
+
+// The same without the stored byte.
+export function signedAlone(value) {
+  return signed(value).split(" ")[0];
+}
+
+export function amount(value, noun) {
+  return `${value} ${noun}${value === 1 ? "" : "s"}`;
+}
+
+export function capitalized(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
