@@ -46,7 +46,7 @@ function sieve(corners, { center: [x, y], half }) {
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
 // How a triangle lies to the centre: null where it is farther than doubt reaches.
-function look(clip, { center, half, inside: insideViewport }) {
+function lie(clip, { center, half, inside: insideViewport }) {
   const seen = clip.map(([x, y, , w]) => [(x - center[0] * w) / (2 * half[0]), (y - center[1] * w) / (2 * half[1]), w]);
   const edges = [cross(seen[1], seen[2]), cross(seen[2], seen[0]), cross(seen[0], seen[1])];
   const distances = edges.map(([x, y, z]) => z / Math.hypot(x, y));
@@ -119,7 +119,7 @@ const isCulledFace = (cull, isFront) => cull !== null && (cull === "front") === 
 
 // What becomes of a triangle at a pixel: a fragment, or why there is none; null where it is elsewhere.
 function fateOf(clip, { raster }, viewport, square, pixel, isReversed) {
-  const seen = look(clip, square);
+  const seen = lie(clip, square);
   if (seen === null) return null;
   const isUnclipped = raster.unclipped_depth;
   const needsClip = isClipped(clip, isUnclipped);

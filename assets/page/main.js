@@ -11,7 +11,7 @@ import { magnify, mark, paint } from "./picture.js";
 import { showPixel } from "./pixel.js";
 import { pixelDocument } from "./pixel_document.js";
 
-const VIEW_NAMES = { color: "Colour", map: "Shadow map" };
+const VIEW_NAMES = { color: "Colour", map: "Map" };
 const capture = new Capture(JSON.parse(byId("document").textContent));
 let isWhole = false;
 let layer = null;
@@ -68,7 +68,7 @@ function show() {
   const { name } = capture.steps[look.step];
   byId("picture").setAttribute("aria-label", layer ? `${VIEW_NAMES[view] ?? capitalized(view)} ${look.phase} ${name}` : why);
   byId("frame").classList.toggle("empty", !layer);
-  byId("frame").style.aspectRatio = layer ? `${layer.size[0]} / ${layer.size[1]}` : "";
+  if (layer) byId("frame").style.setProperty("--ratio", layer.size[0] / layer.size[1]);
   const history = pickedHistory();
   showBar(view);
   showLegend();
@@ -172,8 +172,9 @@ function listen() {
     byId("help").setAttribute("aria-expanded", String(!byId("keys").hidden));
   });
   byId("theme").addEventListener("click", () => {
-    const isDark = getComputedStyle(document.documentElement).colorScheme === "dark";
-    document.documentElement.dataset.theme = isDark ? "light" : "dark";
+    const { dataset } = document.documentElement;
+    const isDark = dataset.theme ? dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+    dataset.theme = isDark ? "light" : "dark";
   });
   window.addEventListener("hashchange", () => {
     readAddress(capture);

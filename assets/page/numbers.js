@@ -22,7 +22,7 @@ export function length(value, unit) {
 }
 
 // A stored depth in the fewest digits that read back as the same bits.
-export function depth(value) {
+export function depthText(value) {
   if (value === 0 || !Number.isFinite(value)) return String(value);
   let precision = 1;
   while (Math.fround(Number(value.toPrecision(precision))) !== value) precision++;

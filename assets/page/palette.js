@@ -2,7 +2,7 @@
 
 import { FINDINGS, LABELS, distanceInMap } from "./capture.js";
 import { isOfPicture } from "./coverage.js";
-import { countInFloat, depth as depthText, length, signed, signedAlone } from "./numbers.js";
+import { countInFloat, depthText, length, signed, signedAlone } from "./numbers.js";
 
 const UP = [0xe0, 0x70, 0x3a];
 const DOWN = [0x56, 0xb4, 0xe9];

@@ -21,7 +21,7 @@ export function listSteps(capture, goTo) {
   const items = capture.steps.map((step, index) => {
     const name = step.number === null ? step.name : `${step.number} · ${step.name}`;
     const of = step.light === null ? "scene" : lightName(step.light);
-    const facts = step.number === null ? "beside the frame" : `${step.draws.length} draws · ${count(sum(step.draws))} triangles`;
+    const facts = step.number === null ? "beside the frame" : `${count(sum(step.draws))} triangles`;
     const button = element("button", { type: "button", class: "step", onclick: () => goTo(index, null) },
       thumbnail(capture, index, step.light),
       element("span", {}, element("span", { class: "name" }, name), element("span", { class: "facts" }, `${of} · ${facts}`)));

@@ -4,7 +4,7 @@ import { FINDINGS, LABELS } from "./capture.js";
 import { byId, element, swatch } from "./elements.js";
 import { doesSomething, showsOutside } from "./history.js";
 import { ladderOf } from "./ladder.js";
-import { capitalized, count, countInFloat, depth as depthText, digits, length, lightName, signed, signedAlone } from "./numbers.js";
+import { capitalized, count, countInFloat, depthText, digits, length, lightName, signed, signedAlone } from "./numbers.js";
 import { noteOf } from "./pixel_document.js";
 import { texelsRead, verdictOf } from "./verdict.js";
 import { countText } from "./why.js";

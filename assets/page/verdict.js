@@ -1,7 +1,7 @@
 // One sentence about a pixel under a light, and what stands behind it (src/reading/verdict.rs).
 
 import { BACKGROUND, FACES_AWAY, LIT, distanceInMap } from "./capture.js";
-import { capitalized, depth as depthText, length } from "./numbers.js";
+import { capitalized, depthText, length } from "./numbers.js";
 import { countText, countedAt, whyOf, whyText } from "./why.js";
 
 // The texels of a light's map that a pixel reads, row by row; null where it reads none, or that is not known.

@@ -4,7 +4,7 @@ import { BACKGROUND, FACES_AWAY } from "./capture.js";
 import { countedBy, isOfVolume, passedAll, showsOutside, stepOf } from "./history.js";
 import { amount, countInFloat, signed } from "./numbers.js";
 
-const BITS = ["one bit", "two bits", "three bits", "four bits", "five bits", "six bits", "seven bits", "eight bits"];
+const BIT_NAMES = ["one bit", "two bits", "three bits", "four bits", "five bits", "six bits", "seven bits", "eight bits"];
 const PREPOSITIONS = { "in-front": "in front of", behind: "behind", "as-needed": "on either side of" };
 const LIGHT_PASS = {
   adds: "the light pass adds the light",
@@ -127,7 +127,7 @@ function countedText(counted) {
   if (stopped > 0) text += `, of which ${stopped} found the count at its limit`;
   if (!count.inFloat && holdOtherwise(bits, sum, count.value)) {
     const verb = bits === 1 ? "holds" : "hold";
-    return `${text}; together ${minus(sum)}${Math.abs(sum)}, which ${BITS[bits - 1]} ${verb} as ${count.value}`;
+    return `${text}; together ${minus(sum)}${Math.abs(sum)}, which ${BIT_NAMES[bits - 1]} ${verb} as ${count.value}`;
   }
   return `${text}; count ${!count.inFloat && sum > 127 ? count.value : countText(count)}`;
 }
