@@ -1,7 +1,6 @@
 // What a picture shows as colours and words: a layer knows the colour and the text of each texel, and its legend.
 
 import { FINDINGS, LABELS, distanceInMap } from "./capture.js";
-import { isOfPicture } from "./coverage.js";
 import { countInFloat, depthText, length, signed, signedAlone } from "./numbers.js";
 
 const UP = [0xe0, 0x70, 0x3a];
@@ -17,8 +16,10 @@ export function autoView(capture, { step, draw }) {
   const state = capture.state(step, draw);
   if (state.kind === "map") return "map";
   if (state.target !== "picture") return state.target === "labels" ? "mask" : "count";
-  const pass = capture.plan.passes[step];
-  return isOfPicture(capture.plan, pass) && pass.color === null && state.stencil !== null ? "stencil" : "color";
+  const all = capture.plan.passes[step].draws;
+  const draws = draw === null ? all : [all[draw]];
+  if (state.stencil === null || draws.length === 0 || draws.some(({ raster }) => raster.color !== "None")) return "color";
+  return "stencil";
 }
 
 export const viewOf = (capture, look) => (look.view === "auto" ? autoView(capture, look) : look.view);

@@ -39,8 +39,8 @@ use std::path::Path;
 
 /// The commands that exist.
 const COMMANDS: [&str; 15] = [
-    "view", "capture", "page", "animate", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import", "record",
-    "bench", "pictures", "help",
+    "view", "capture", "page", "animate", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import",
+    "record", "bench", "pictures", "help",
 ];
 
 /// An interactive visual debugger for stencil shadows and shadow maps

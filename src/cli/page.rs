@@ -12,12 +12,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 #[derive(Debug, Args)]
-#[command(
-    after_help = "A scene:                stencilscope page tori -t z-fail --size 640x480 -o tori.html\n\
+#[command(after_help = "A scene:                stencilscope page tori -t z-fail --size 640x480 -o tori.html\n\
     A frame that is there:  stencilscope page DIR -o frame.html\n\n\
     The file holds all it shows and loads nothing: steps, values, and the history of every pixel, computed in the\n\
-    browser. Its address goes to a pixel of a step: tori.html#pixel=322,92&step=2."
-)]
+    browser. Its address goes to a pixel of a step: tori.html#pixel=322,92&step=2.")]
 pub struct PageArguments {
     /// A built-in scene, a scene file (.toml), a model (.obj) or a capture folder
     scene: String,

@@ -117,9 +117,8 @@ fn residuals(words: &[u32], Layout { lanes, width, .. }: Layout) -> Vec<u32> {
 
 /// The first bytes of each lane's words, the second ones, and so on, then those of the next lane.
 fn planes(words: &[u32], Layout { word, lanes, .. }: Layout) -> Vec<u8> {
-    let plane = |lane: usize, byte: usize| {
-        words.iter().skip(lane).step_by(lanes).map(move |word| word.to_le_bytes()[byte])
-    };
+    let plane =
+        |lane: usize, byte: usize| words.iter().skip(lane).step_by(lanes).map(move |word| word.to_le_bytes()[byte]);
     (0..lanes).flat_map(|lane| (0..word.bytes()).flat_map(move |byte| plane(lane, byte))).collect()
 }
 
@@ -150,7 +149,8 @@ mod tests {
         }
         for index in (0..words.len()).filter(|_| entry.predicted) {
             let (left, up) = (index % row >= lanes, index >= row);
-            let [a, b] = [left.then(|| words[index - lanes]), up.then(|| words[index - row])].map(Option::unwrap_or_default);
+            let [a, b] =
+                [left.then(|| words[index - lanes]), up.then(|| words[index - row])].map(Option::unwrap_or_default);
             let c = if left && up { words[index - lanes - row] } else { 0 };
             words[index] = words[index].wrapping_add(a).wrapping_add(b).wrapping_sub(c);
         }
@@ -168,9 +168,14 @@ mod tests {
 
     #[test]
     fn every_bit_comes_back() {
-        for (word, lanes, width) in
-            [(Word::U8, 1, 12), (Word::U8, 4, 6), (Word::F32, 1, 6), (Word::F32, 4, 0), (Word::U32, 3, 0), (Word::U32, 3, 2)]
-        {
+        for (word, lanes, width) in [
+            (Word::U8, 1, 12),
+            (Word::U8, 4, 6),
+            (Word::F32, 1, 6),
+            (Word::F32, 4, 0),
+            (Word::U32, 3, 0),
+            (Word::U32, 3, 2),
+        ] {
             let layout = Layout { word, lanes, width };
             let smooth: Vec<u8> = (0..144_u32).map(|at| (at / 12 + at % 12) as u8).collect();
             for bytes in [noise(144), smooth, vec![0xff; 144], Vec::new()] {

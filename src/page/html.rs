@@ -67,9 +67,11 @@ pub fn page(title: &str, document: &str) -> String {
 }
 
 /// All modules as one.
-fn script() -> String {
+#[must_use]
+pub fn script() -> String {
     let line = |line: &str| line.strip_prefix("export ").unwrap_or(line).to_owned() + "\n";
-    let of_module = |module: &Asset| module.text.lines().filter(|line| !line.starts_with("import ")).map(line).collect::<String>();
+    let of_module =
+        |module: &Asset| module.text.lines().filter(|line| !line.starts_with("import ")).map(line).collect::<String>();
     modules().iter().map(of_module).collect()
 }
 

@@ -17,7 +17,7 @@ mod document;
 mod html;
 mod reads;
 
-pub use html::{Asset, STYLE, TEMPLATE, modules};
+pub use html::{Asset, STYLE, TEMPLATE, modules, script};
 
 use crate::capture::Capture;
 use crate::plan::FramePlan;
