@@ -1,6 +1,6 @@
 // Which triangles lie over a pixel, and how deep (src/plan/coverage.rs): a sieve of four planes through the eye, then
-// the triangle itself. Where the window's corners say which pixels are covered, they are rounded to 1/256 of a pixel
-// with the top-left rule, as GPUs do; a triangle that is clipped is looked at unrounded.
+// the triangle itself, clipped and carried into the window in floats, its corners rounded to 1/256 of a pixel, with the
+// top-left rule. Coverage and depth have the bits of Mesa's software GPU; another's last bits may be others.
 
 const DOUBT = 1;
 const SAFE = 1 / 16;
@@ -64,21 +64,46 @@ function lie(clip, { center, half, inside: insideViewport }) {
   };
 }
 
-function isClipped(clip, isUnclipped) {
-  return clip.some(([, , z, w]) => !(w > 0) || (!isUnclipped && (z < 0 || z > w)));
+// The planes of clip space as weights of x, y, z and w: the sides first, then near and far.
+const PLANES = [[-1, 0, 0, 1], [1, 0, 0, 1], [0, -1, 0, 1], [0, 1, 0, 1], [0, 0, 1, 0], [0, 0, -1, 1]];
+
+// What a corner is from a plane, each sum rounded.
+const from = (plane, corner) => plane.reduce((sum, weight, lane) => f32(sum + f32(weight * corner[lane])), 0);
+
+// The corner where an edge goes through a plane, made from the end that is nearer to it.
+function crossing(ends, distances) {
+  const nearer = Math.abs(distances[0]) <= Math.abs(distances[1]) ? 0 : 1;
+  const share = f32((nearer === 0 ? -distances[0] : distances[1]) / f32(distances[1] - distances[0]));
+  const [start, end] = [ends[nearer], ends[1 - nearer]];
+  return { isNew: true, clip: start.clip.map((value, lane) => f32(value + f32(share * f32(end.clip[lane] - value)))) };
 }
 
-// Corners in the window, rounded as the GPU's floats are.
-function windowCorners(clip, { area: [left, top, width, height] }) {
-  const [scaleX, scaleY] = [f32(width / 2), f32(-height / 2)];
-  return clip.map(([x, y, z, w]) => {
-    const inverse = f32(1 / w);
-    return [
-      f32(f32(f32(x * inverse) * scaleX) + f32(left + width / 2)),
-      f32(f32(f32(y * inverse) * scaleY) + f32(top + height / 2)),
-      f32(z * inverse),
-    ];
-  });
+// The part of a triangle in clip space's box, as corners in order (Sutherland and Hodgman 1974).
+function clipped(triangle, isUnclipped) {
+  let corners = triangle.map((clip) => ({ clip, isNew: false }));
+  for (const plane of isUnclipped ? PLANES.slice(0, 4) : PLANES) {
+    if (triangle.every((clip) => from(plane, clip) >= 0)) continue;
+    const distances = corners.map(({ clip }) => from(plane, clip));
+    corners = corners.flatMap((corner, at) => {
+      const next = (at + 1) % corners.length;
+      const [here, there] = [distances[at], distances[next]];
+      const crossed = here >= 0 !== there >= 0 ? [crossing([corner, corners[next]], [here, there])] : [];
+      return here >= 0 ? [corner, ...crossed] : crossed;
+    });
+  }
+  return corners;
+}
+
+// A corner in the window, rounded as floats are on their way there: a new one is not multiplied and added at once.
+function inWindow({ clip: [x, y, z, w], isNew }, { area: [left, top, width, height], depth: [near, far] }) {
+  const inverse = f32(1 / w);
+  const moved = (value, scale, offset) => {
+    const product = f32(value * inverse) * scale;
+    return f32((isNew ? f32(product) : product) + offset);
+  };
+  return [
+    moved(x, width / 2, left + width / 2), moved(y, -height / 2, top + height / 2), moved(z, f32(far - near), near),
+  ];
 }
 
 function rounded(value) {
@@ -87,7 +112,7 @@ function rounded(value) {
   return above > 0.5 || (above === 0.5 && low % 2 !== 0) ? low + 1 : low;
 }
 
-// Does a triangle that is not clipped cover a pixel's centre? Rows count downwards.
+// Does a triangle in the window cover a pixel's centre? Null where it has no area. Rows count downwards.
 function covers(corners, [x, y]) {
   let [a, b, c] = corners.map(([cx, cy]) => [rounded(f32(cx - 0.5) * SUBPIXELS), rounded(f32(cy - 0.5) * SUBPIXELS)]);
   const area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
@@ -98,48 +123,52 @@ function covers(corners, [x, y]) {
     const side = dx * (y * SUBPIXELS - fromY) - dy * (x * SUBPIXELS - fromX);
     return side > 0 || (side === 0 && (dy < 0 || (dy === 0 && dx > 0)));
   };
-  return { isCovered: isLeftOf(a, b) && isLeftOf(b, c) && isLeftOf(c, a), isCounterclockwise: area < 0 };
+  return isLeftOf(a, b) && isLeftOf(b, c) && isLeftOf(c, a) ? { isCounterclockwise: area < 0 } : null;
 }
 
-// What a draw's depth bias adds, where depths are floats: steps of the largest depth's exponent, and of the slope.
-function biasOf({ constant, slope_scale: slope, clamp }, corners) {
-  if (constant === 0 && slope === 0) return 0;
-  const [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners;
-  const area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay);
-  const alongX = ((bz - az) * (cy - ay) - (cz - az) * (by - ay)) / area;
-  const alongY = ((cz - az) * (bx - ax) - (bz - az) * (cx - ax)) / area;
-  const largest = Math.max(Math.abs(az), Math.abs(bz), Math.abs(cz));
+// Depth at a pixel's centre from the plane through a triangle's corners, in floats, as Mesa's software GPU sets it up;
+// a draw's bias is steps of the largest depth's exponent, and of the slope.
+function planeDepth([a, b, c], [x, y], { constant, slope_scale: slope, clamp }) {
+  const [dx01, dy01, dz01] = [0, 1, 2].map((axis) => f32(a[axis] - b[axis]));
+  const [dx20, dy20, dz20] = [0, 1, 2].map((axis) => f32(c[axis] - a[axis]));
+  const area = f32(1 / f32(f32(dx01 * dy20) - f32(dy01 * dx20)));
+  const share = (difference) => f32(difference * area);
+  const alongX = f32(f32(dz01 * share(dy20)) - f32(dz20 * share(dy01)));
+  const alongY = f32(f32(dz20 * share(dx01)) - f32(dz01 * share(dx20)));
+  const largest = Math.max(a[2], b[2], c[2]);
   const step = largest > 0 ? 2 ** (Math.floor(Math.log2(largest)) - 23) : 0;
-  const bias = constant * step + slope * Math.max(Math.abs(alongX), Math.abs(alongY));
-  if (clamp > 0) return Math.min(bias, clamp);
-  return clamp < 0 ? Math.max(bias, clamp) : bias;
+  let bias = f32(f32(step * constant) + f32(Math.max(Math.abs(alongX), Math.abs(alongY)) * slope));
+  if (clamp !== 0) bias = clamp > 0 ? Math.min(bias, clamp) : Math.max(bias, clamp);
+  const back = f32(f32(alongX * f32(a[0] - 0.5)) + f32(alongY * f32(a[1] - 0.5)));
+  return f32(alongY * y + f32(alongX * x + f32(f32(a[2] + bias) - back)));
 }
 
-const isCulledFace = (cull, isFront) => cull !== null && (cull === "front") === isFront;
+// The fragment of a triangle at a pixel: of that part of its fan that covers it.
+function fragmentOf(clip, { raster }, viewport, pixel) {
+  const corners = clipped(clip, raster.unclipped_depth).map((corner) => inWindow(corner, viewport));
+  for (let last = 2; last < corners.length; last++) {
+    const part = [corners[0], corners[last - 1], corners[last]];
+    const covered = covers(part, pixel);
+    if (covered) return { ...covered, depth: planeDepth(part, pixel, raster.depth_bias) };
+  }
+  return null;
+}
 
 // What becomes of a triangle at a pixel: a fragment, or why there is none; null where it is elsewhere.
-function fateOf(clip, { raster }, viewport, square, pixel, isReversed) {
+function fateOf(clip, draw, viewport, square, pixel, isReversed) {
   const seen = lie(clip, square);
   if (seen === null) return null;
-  const isUnclipped = raster.unclipped_depth;
-  const needsClip = isClipped(clip, isUnclipped);
-  const corners = windowCorners(clip, viewport);
-  const raster2d = needsClip ? null : covers(corners, pixel);
-  const stored = (depth) => viewport.depth[0] + (viewport.depth[1] - viewport.depth[0]) * depth;
-  const runs = raster2d ?? seen;
-  const isFront = runs.isCounterclockwise === (raster.front_face === "ccw");
-  const face = { isFront, depth: f32(stored(seen.depth)) };
-  const outside = isUnclipped ? null
-    : seen.depth < -SAFE_DEPTH ? (isReversed ? "far" : "near")
-      : seen.depth > 1 + SAFE_DEPTH ? (isReversed ? "near" : "far") : null;
-  const isSure = seen.isInside && seen.isSafe;
-  if (isSure && outside !== null) return { ...face, kind: "clipped", clip: outside };
-  if (isCulledFace(raster.cull, isFront)) return isSure ? { ...face, kind: "culled" } : null;
-  const isInRange = isUnclipped || (seen.depth >= 0 && seen.depth <= 1);
-  const isCovered = needsClip ? seen.isInside && isInRange : raster2d !== null && raster2d.isCovered;
-  if (!isCovered) return null;
-  const depth = f32(stored(seen.depth) + biasOf(raster.depth_bias, corners));
-  return { isFront, depth, kind: "fragment" };
+  const { raster } = draw;
+  const frontOf = ({ isCounterclockwise }) => isCounterclockwise === (raster.front_face === "ccw");
+  const isCulled = (isFront) => raster.cull !== null && (raster.cull === "front") === isFront;
+  const fragment = fragmentOf(clip, draw, viewport, pixel);
+  if (fragment && !isCulled(frontOf(fragment))) return { isFront: frontOf(fragment), depth: fragment.depth, kind: "fragment" };
+  if (!seen.isInside || !seen.isSafe) return null;
+  const [near, far] = viewport.depth;
+  const face = { isFront: frontOf(seen), depth: f32(near + (far - near) * seen.depth) };
+  const isOutside = seen.depth < -SAFE_DEPTH || seen.depth > 1 + SAFE_DEPTH;
+  if (isOutside && !raster.unclipped_depth) return { ...face, kind: "clipped", clip: seen.depth < 0 === isReversed ? "far" : "near" };
+  return isCulled(face.isFront) ? { ...face, kind: "culled" } : null;
 }
 
 // Corners of a mesh as a view has them, and its triangles.

@@ -6,10 +6,10 @@ import { historyOf } from "./history.js";
 import { PHASES, VIEWS, look, readAddress, writeAddress } from "./looking.js";
 import { capitalized, count } from "./numbers.js";
 import { layerOf, missing, viewOf } from "./palette.js";
-import { listSteps, showPlace } from "./passes.js";
+import { listSteps, paintThumbnails, showPlace } from "./passes.js";
 import { magnify, mark, paint } from "./picture.js";
 import { showPixel } from "./pixel.js";
-import { pixelDocument } from "./pixel_document.js";
+import { whyOf, whyText } from "./why.js";
 
 const VIEW_NAMES = { color: "Colour", map: "Map" };
 const capture = new Capture(JSON.parse(byId("document").textContent));
@@ -182,31 +182,30 @@ function listen() {
   });
 }
 
+// The first step is shown as soon as its arrays are there; the others follow.
 async function start() {
   const [width, height] = capture.size;
   byId("title").textContent = `${capture.scene}, ${capture.technique}`;
   byId("made-by").textContent = `${width}×${height} · ${capture.adapter.name} · ${capture.program}`;
   readAddress(capture);
-  const { color, depth, stencil } = capture.frameAt(look.step, look.draw) ?? {};
   const light = capture.lights[look.light];
   const faces = capture.lights.flatMap((one) => one.faces.map((face) => face.image));
-  await capture.provide([color, depth, stencil, light?.mask, light?.count, light?.findings, ...faces]);
-  await capture.provideAll();
-  isWhole = true;
+  const frames = [capture.frameAt(look.step, look.draw), capture.frameBefore(look.step, look.draw)];
+  const shown = frames.flatMap((frame) => (frame ? [frame.color, frame.depth, frame.stencil] : []));
+  const isMap = viewOf(capture, look) === "map";
+  await capture.provide([...shown, light?.mask, light?.count, light?.findings, ...(isMap ? faces : [])]);
   listSteps(capture, (step, draw) => go({ step, draw }));
-  listen();
   show();
   performance.mark("shown");
+  await capture.provideAll();
+  isWhole = true;
+  paintThumbnails(capture);
+  listen();
+  show();
+  performance.mark("whole");
 }
 
-// For scripts and the console: what `pixel --json` prints of a pixel.
-window.stencilscope = {
-  capture,
-  pixel(x, y) {
-    const began = performance.now();
-    const history = historyOf(capture, [x, y]);
-    return pixelDocument(history, performance.now() - began);
-  },
-};
+// For scripts and the console.
+window.stencilscope = { capture, historyOf, whyOf, whyText };
 
 start();

@@ -2,7 +2,8 @@
 
 import { byId, element } from "./elements.js";
 import { capitalized, count, lightName } from "./numbers.js";
-import { thumbnail } from "./picture.js";
+import { layerOf } from "./palette.js";
+import { paint } from "./picture.js";
 
 const sum = (draws) => draws.reduce((total, { triangles }) => total + triangles, 0);
 
@@ -23,7 +24,7 @@ export function listSteps(capture, goTo) {
     const of = step.light === null ? "scene" : lightName(step.light);
     const facts = step.number === null ? "beside the frame" : `${count(sum(step.draws))} triangles`;
     const button = element("button", { type: "button", class: "step", onclick: () => goTo(index, null) },
-      thumbnail(capture, index, step.light),
+      element("canvas", { class: "thumbnail", "aria-hidden": "true" }),
       element("span", {}, element("span", { class: "name" }, name), element("span", { class: "facts" }, `${of} · ${facts}`)));
     const draws = step.draws.map((draw, at) => drawButton(capture, index, draw, at, goTo));
     return element("li", {}, button, draws.length > 0 ? element("ol", { class: "draws", hidden: true }, draws) : null);
@@ -33,6 +34,16 @@ export function listSteps(capture, goTo) {
     element("li", {}, element("b", {}, `${what}${name ? ` ${name}` : ""} of ${of}`), element("span", {}, ` ${because}`))));
   byId("left-out").hidden = capture.left_out.length === 0;
   byId("slider").max = capture.steps.length - 1;
+}
+
+// Small pictures of what the steps write.
+export function paintThumbnails(capture) {
+  document.querySelectorAll(".thumbnail").forEach((canvas, step) => {
+    const { after, light } = capture.steps[step];
+    const look = { step, draw: null, view: "auto", phase: "after", light: light ?? 0, face: after.face ?? 0, bit: null, range: null };
+    const layer = layerOf(capture, look);
+    if (layer) paint(canvas, layer, Math.max(1, Math.round(layer.size[0] / 104)));
+  });
 }
 
 const faceWords = ({ compare, failOp, depthFailOp, passOp }) => `${compare}; fail ${failOp}, depth fail ${depthFailOp}, pass ${passOp}`;

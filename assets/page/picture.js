@@ -2,7 +2,6 @@
 
 import { cornersOf, viewportOf } from "./coverage.js";
 import { byId, css, element } from "./elements.js";
-import { layerOf } from "./palette.js";
 import { texelsRead } from "./verdict.js";
 
 const TEXEL = 34;
@@ -99,12 +98,4 @@ export function magnify(layer, place) {
   context.strokeStyle = "#ffffff";
   context.strokeRect(AROUND_X * TEXEL + 1.5, AROUND_Y * TEXEL + 1.5, TEXEL - 4, TEXEL - 4);
   canvas.setAttribute("aria-label", `Values round ${place.join(", ")}; in the middle ${layer.text(place[1] * layer.size[0] + place[0])}`);
-}
-
-// A small picture of what a step writes.
-export function thumbnail(capture, step, light) {
-  const canvas = element("canvas", { class: "thumbnail", "aria-hidden": "true" });
-  const layer = layerOf(capture, { step, draw: null, view: "auto", phase: "after", light: light ?? 0, face: capture.steps[step].after.face ?? 0, bit: null, range: null });
-  if (layer) paint(canvas, layer, Math.max(1, Math.round(layer.size[0] / 104)));
-  return canvas;
 }

@@ -5,7 +5,6 @@ import { byId, element, swatch } from "./elements.js";
 import { doesSomething, showsOutside } from "./history.js";
 import { ladderOf } from "./ladder.js";
 import { capitalized, count, countInFloat, depthText, digits, length, lightName, signed, signedAlone } from "./numbers.js";
-import { noteOf } from "./pixel_document.js";
 import { texelsRead, verdictOf } from "./verdict.js";
 import { countText } from "./why.js";
 
@@ -15,6 +14,12 @@ const SHORT = {
   "decrement-clamp": "−1", "decrement-wrap": "−1",
 };
 const CLEARS = { put: "other content", "clear-depth": "clear depth", "clear-stencil": "clear stencil", "clear-count": "clear count" };
+
+const BEYOND = { near: "it is nearer than the near plane", far: "it is beyond the far plane" };
+const NOTES = {
+  culled: () => "the draw shows only the other side of triangles", clipped: (clip) => BEYOND[clip],
+  discarded: (clip) => `the shader discards it: ${BEYOND[clip]}`,
+};
 
 const distanceText = (capture, depth) => {
   const distance = capture.distance(depth);
@@ -69,7 +74,7 @@ function eventRow(capture, history, event, look, select) {
   const face = one ? element("button", { type: "button", class: "link", "aria-pressed": String(look.selected === index), onclick: () => select(index) },
     element("span", { class: `part ${one.part}`, "aria-hidden": "true" }), named(one)) : CLEARS[event.kind];
   const cells = isTested ? [sign(one.depthTest), sign(one.operation ? one.stencilTest : "always"), element("td", {}, one.operation ? SHORT[one.operation] : "")]
-    : [element("td", { colspan: 3, class: "note", title: one ? noteOf(one) : "" }, one ? `${one.kind}${one.clip ? ` at ${one.clip}` : ""}` : "")];
+    : [element("td", { colspan: 3, class: "note", title: NOTES[one?.kind]?.(one.clip) }, one ? `${one.kind}${one.clip ? ` at ${one.clip}` : ""}` : "")];
   return element("tr", { class: `${doesSomething(event) ? "" : "idle"} ${look.selected === index ? "here" : ""}` },
     element("td", {}, step.number ?? "–"), element("td", { class: "what" }, face), element("td", {}, one ? (showsOutside(one) ? "front" : "back") : ""),
     cells, element("td", { class: "change" }, changeText(capture, history, event)));

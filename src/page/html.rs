@@ -38,7 +38,6 @@ pub fn modules() -> Vec<Asset> {
         asset!("coverage.js"),
         asset!("history.js"),
         asset!("why.js"),
-        asset!("pixel_document.js"),
         asset!("ladder.js"),
         asset!("verdict.js"),
         asset!("palette.js"),

@@ -88,14 +88,14 @@ impl Browser {
         answer["result"]["value"].clone()
     }
 
-    /// Opens a file at a fragment of its address, and waits until its first step is shown.
+    /// Opens a file at a fragment of its address, and waits until all of it is there.
     pub fn open(&mut self, file: &Path, fragment: &str) {
         let address = format!("file://{}{fragment}", file.display());
         // A fragment alone would not load it anew.
         self.call("Page.navigate", json!({"url": "about:blank"}));
         self.call("Page.navigate", json!({"url": address}));
         let began = Instant::now();
-        while self.evaluate("performance.getEntriesByName('shown').length") != json!(1) {
+        while self.evaluate("performance.getEntriesByName('whole').length") != json!(1) {
             assert!(began.elapsed() < PATIENCE, "{address} shows nothing: {:?}", self.complaints());
             std::thread::sleep(Duration::from_millis(10));
         }

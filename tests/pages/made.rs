@@ -4,6 +4,7 @@ use serde_json::Value;
 use std::path::PathBuf;
 use std::sync::Arc;
 use stencilscope::capture::disk::WholeFrame;
+use stencilscope::capture::{Image, PixelFormat, Snapshot};
 use stencilscope::history::PixelDocument;
 use stencilscope::page;
 use stencilscope::progress::Progress;
@@ -47,6 +48,18 @@ impl Made {
         let judged = self.session.judged(&scene, &self.frame.capture, &Progress::default()).expect("the truth");
         self.frame.capture = Arc::new(judged);
         Made::new(self.frame, self.session)
+    }
+
+    /// Turns over the lowest bit of the stencil that was stored at a pixel after the second pass.
+    pub fn change_stencil(&mut self, pixel: [u32; 2]) {
+        let mut capture = (*self.frame.capture).clone();
+        let Snapshot::Frame(frame) = &mut capture.steps[1].snapshot else { panic!("a frame") };
+        let stencil = frame.stencil.as_mut().expect("a stencil");
+        let mut bytes: Vec<u8> = stencil.image.rows().flatten().copied().collect();
+        let size = stencil.image.size();
+        bytes[(pixel[1] * size[0] + pixel[0]) as usize] ^= 1;
+        stencil.image = Arc::new(Image::packed(PixelFormat::U8, size, bytes));
+        page::write(&capture, &self.frame.plan, &self.page()).expect("a page");
     }
 
     pub fn page(&self) -> PathBuf {
