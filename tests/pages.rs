@@ -117,7 +117,7 @@ const DOCUMENT: &str = include_str!("pages/document.js");
 fn differences(page: &Value, program: &Value, rounding: f64) -> Vec<String> {
     let mut found = Vec::new();
     let near = |a: &Value, b: &Value| match (a.as_f64(), b.as_f64()) {
-        (Some(a), Some(b)) => (a - b).abs() <= rounding,
+        (Some(a), Some(b)) => (a - b).abs() <= rounding * b.abs().max(1.0),
         _ => a == b,
     };
     let [of_page, of_program] = [page, program].map(|document| document["events"].as_array().expect("events"));

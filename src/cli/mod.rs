@@ -39,7 +39,7 @@ use std::path::Path;
 
 /// The commands that exist.
 const COMMANDS: [&str; 15] = [
-    "view", "capture", "page", "animate", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import",
+    "view", "capture", "animate", "page", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import",
     "record", "bench", "pictures", "help",
 ];
 
@@ -60,12 +60,12 @@ enum Command {
     /// Render without a window and write every pass to a folder
     #[command(after_help = help::names())]
     Capture(Box<capture::CaptureArguments>),
-    /// Put a frame into one HTML file that any browser opens
-    #[command(after_help = help::names())]
-    Page(Box<page::PageArguments>),
     /// Show a frame pass by pass, or a light going round the scene, as an animated PNG
     #[command(after_help = help::names())]
     Animate(Box<animate::AnimateArguments>),
+    /// Put a frame into one HTML file that any browser opens
+    #[command(after_help = format!("{}\n{}", page::EXAMPLES, help::names()))]
+    Page(Box<page::PageArguments>),
     /// Tell the history of a pixel, fragment by fragment
     #[command(after_help = help::names())]
     Pixel(Box<pixel::PixelArguments>),

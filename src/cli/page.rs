@@ -11,11 +11,16 @@ use clap::Args;
 use std::path::Path;
 use std::sync::Arc;
 
+/// Below its options.
+pub const EXAMPLES: &str = "\
+A scene:                stencilscope page tori -t z-fail --size 640x480 -o tori.html
+A frame that is there:  stencilscope page DIR -o frame.html
+
+The file holds all it shows and loads nothing: steps, values, and the history of every pixel, computed in the browser.
+Its address goes to a pixel of a step: tori.html#pixel=322,92&step=2.
+";
+
 #[derive(Debug, Args)]
-#[command(after_help = "A scene:                stencilscope page tori -t z-fail --size 640x480 -o tori.html\n\
-    A frame that is there:  stencilscope page DIR -o frame.html\n\n\
-    The file holds all it shows and loads nothing: steps, values, and the history of every pixel, computed in the\n\
-    browser. Its address goes to a pixel of a step: tori.html#pixel=322,92&step=2.")]
 pub struct PageArguments {
     /// A built-in scene, a scene file (.toml), a model (.obj) or a capture folder
     scene: String,
@@ -42,7 +47,11 @@ pub fn run(arguments: &PageArguments) -> Result<(), CliError> {
     let PageArguments { scene, output, overwrite, scene_options, frame, truth } = arguments;
     check_target(output, *overwrite)?;
     frame.refuse_external_capture("a page is made of one, later")?;
-    let frame = made(Subject::new(scene, scene_options, frame)?, frame, *truth)?;
+    let subject = Subject::new(scene, scene_options, frame)?;
+    if matches!(subject, Subject::Folder(_)) {
+        frame.refuse_draws("a folder holds what it holds")?;
+    }
+    let frame = made(subject, frame, *truth)?;
     let bytes = format::bytes(page::write(&frame.capture, &frame.plan, Path::new(output))?);
     let capture = &frame.capture;
     let [width, height] = capture.size;
