@@ -105,7 +105,7 @@ const MAY_USE: [(&str, &[&str]); 34] = [
             "recorded",
         ],
     ),
-    ("page", &["math", "plan", "capture", "technique", "picture", "numbers", "files", "reading"]),
+    ("page", &["math", "plan", "history", "capture", "technique", "picture", "numbers", "files", "reading"]),
     ("film", &["scene", "capture", "reading", "picture", "numbers", "files", "session"]),
     (
         "inspector",

@@ -20,7 +20,7 @@ export class Capture {
 
   // Unpacks these arrays, each once.
   async provide(indexes) {
-    await Promise.all(indexes.filter((index) => Number.isInteger(index)).map((index) => {
+    await Promise.all(indexes.filter(Number.isInteger).map((index) => {
       this.pending[index] ??= unpack(this.arrays[index]).then((array) => {
         this.unpacked[index] = array;
         this.arrays[index] = null;
@@ -33,12 +33,8 @@ export class Capture {
     return this.provide(this.arrays.map((_, index) => index));
   }
 
-  get width() {
-    return this.size[0];
-  }
-
   index([x, y]) {
-    return y * this.width + x;
+    return y * this.size[0] + x;
   }
 
   // What is there after a step, or after one of its draws where that was captured.
@@ -68,10 +64,6 @@ export class Capture {
     const { offset, scale, is_linear: isLinear } = this.depth;
     if (depth === this.clear_depth) return null;
     return isLinear ? (depth - offset) / scale : scale / (depth - offset);
-  }
-
-  get unit() {
-    return this.depth.unit;
   }
 
   get isReversed() {

@@ -2,25 +2,16 @@
 // the triangle itself, clipped and carried into the window in floats, its corners rounded to 1/256 of a pixel, with the
 // top-left rule. Coverage and depth have the bits of Mesa's software GPU; another's last bits may be others.
 
+import { roundedToEven } from "./numbers.js";
+
 const DOUBT = 1;
 const SAFE = 1 / 16;
 const SAFE_DEPTH = 1e-6;
 const SUBPIXELS = 256;
 const f32 = Math.fround;
 
-// Does a pass draw into the picture?
-export function isOfPicture(plan, pass) {
-  const isMap = (target) => target !== null && plan.attachments[target.attachment].role.Map !== undefined;
-  return !isMap(pass.color) && !isMap(pass.depth_stencil);
-}
-
-export function viewportOf(pass, size) {
-  return pass.recorded?.viewport ?? { area: [0, 0, size[0], size[1]], depth: [0, 1] };
-}
-
-function reaches(pass, [x, y]) {
-  if (!pass.scissor) return true;
-  const [left, top, columns, rows] = pass.scissor;
+function reaches({ scissor }, [x, y]) {
+  const [left, top, columns, rows] = scissor ?? [0, 0, Infinity, Infinity];
   return x >= left && x < left + columns && y >= top && y < top + rows;
 }
 
@@ -52,23 +43,17 @@ function lie(clip, { center, half, inside: insideViewport }) {
   const distances = edges.map(([x, y, z]) => z / Math.hypot(x, y));
   const [least, most] = [Math.min(...distances), Math.max(...distances)];
   if (least < -DOUBT && most > DOUBT) return null;
-  const weights = edges.map((edge) => edge[2]);
-  const sum = weights[0] + weights[1] + weights[2];
-  const interpolated = (lane) => clip.reduce((total, corner, at) => total + weights[at] * corner[lane], 0) / sum;
-  const w = interpolated(3);
-  return {
-    isInside: (least > 0 || most < 0) && w > 0,
-    isCounterclockwise: sum > 0,
-    depth: interpolated(2) / w,
-    isSafe: (least > SAFE || most < -SAFE) && insideViewport > SAFE,
-  };
+  const sum = edges[0][2] + edges[1][2] + edges[2][2];
+  const [z, w] = [2, 3].map((lane) => clip.reduce((total, corner, at) => total + edges[at][2] * corner[lane], 0) / sum);
+  const isSafe = (least > SAFE || most < -SAFE) && insideViewport > SAFE;
+  return { isInside: (least > 0 || most < 0) && w > 0, isCounterclockwise: sum > 0, depth: z / w, isSafe };
 }
 
 // The planes of clip space as weights of x, y, z and w: the sides first, then near and far.
 const PLANES = [[-1, 0, 0, 1], [1, 0, 0, 1], [0, -1, 0, 1], [0, 1, 0, 1], [0, 0, 1, 0], [0, 0, -1, 1]];
 
-// What a corner is from a plane, each sum rounded.
-const from = (plane, corner) => plane.reduce((sum, weight, lane) => f32(sum + f32(weight * corner[lane])), 0);
+// How far a corner is inside of a plane, each sum rounded.
+const insideOf = (plane, corner) => plane.reduce((sum, weight, lane) => f32(sum + f32(weight * corner[lane])), 0);
 
 // The corner where an edge goes through a plane, made from the end that is nearer to it.
 function crossing(ends, distances) {
@@ -82,8 +67,8 @@ function crossing(ends, distances) {
 function clipped(triangle, isUnclipped) {
   let corners = triangle.map((clip) => ({ clip, isNew: false }));
   for (const plane of isUnclipped ? PLANES.slice(0, 4) : PLANES) {
-    if (triangle.every((clip) => from(plane, clip) >= 0)) continue;
-    const distances = corners.map(({ clip }) => from(plane, clip));
+    if (triangle.every((clip) => insideOf(plane, clip) >= 0)) continue;
+    const distances = corners.map(({ clip }) => insideOf(plane, clip));
     corners = corners.flatMap((corner, at) => {
       const next = (at + 1) % corners.length;
       const [here, there] = [distances[at], distances[next]];
@@ -95,35 +80,28 @@ function clipped(triangle, isUnclipped) {
 }
 
 // A corner in the window, rounded as floats are on their way there: a new one is not multiplied and added at once.
-function inWindow({ clip: [x, y, z, w], isNew }, { area: [left, top, width, height], depth: [near, far] }) {
+function inWindow({ clip: [x, y, z, w], isNew }, { area: [left, top, width, height], range: [near, far] }) {
   const inverse = f32(1 / w);
   const moved = (value, scale, offset) => {
     const product = f32(value * inverse) * scale;
     return f32((isNew ? f32(product) : product) + offset);
   };
-  return [
-    moved(x, width / 2, left + width / 2), moved(y, -height / 2, top + height / 2), moved(z, f32(far - near), near),
-  ];
-}
-
-function rounded(value) {
-  const low = Math.floor(value);
-  const above = value - low;
-  return above > 0.5 || (above === 0.5 && low % 2 !== 0) ? low + 1 : low;
+  return [moved(x, width / 2, left + width / 2), moved(y, -height / 2, top + height / 2), moved(z, f32(far - near), near)];
 }
 
 // Does a triangle in the window cover a pixel's centre? Null where it has no area. Rows count downwards.
 function covers(corners, [x, y]) {
-  let [a, b, c] = corners.map(([cx, cy]) => [rounded(f32(cx - 0.5) * SUBPIXELS), rounded(f32(cy - 0.5) * SUBPIXELS)]);
+  const [a, b, c] = corners.map((corner) => [0, 1].map((axis) => roundedToEven(f32(corner[axis] - 0.5) * SUBPIXELS)));
   const area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
   if (area === 0) return null;
-  if (area < 0) [b, c] = [c, b];
   const isLeftOf = ([fromX, fromY], [toX, toY]) => {
     const [dx, dy] = [toX - fromX, toY - fromY];
     const side = dx * (y * SUBPIXELS - fromY) - dy * (x * SUBPIXELS - fromX);
     return side > 0 || (side === 0 && (dy < 0 || (dy === 0 && dx > 0)));
   };
-  return isLeftOf(a, b) && isLeftOf(b, c) && isLeftOf(c, a) ? { isCounterclockwise: area < 0 } : null;
+  const [second, third] = area < 0 ? [c, b] : [b, c];
+  const isCovered = isLeftOf(a, second) && isLeftOf(second, third) && isLeftOf(third, a);
+  return isCovered ? { isCounterclockwise: area < 0 } : null;
 }
 
 // Depth at a pixel's centre from the plane through a triangle's corners, in floats, as Mesa's software GPU sets it up;
@@ -144,8 +122,8 @@ function planeDepth([a, b, c], [x, y], { constant, slope_scale: slope, clamp }) 
 }
 
 // The fragment of a triangle at a pixel: of that part of its fan that covers it.
-function fragmentOf(clip, { raster }, viewport, pixel) {
-  const corners = clipped(clip, raster.unclipped_depth).map((corner) => inWindow(corner, viewport));
+function fragmentOf(clip, { raster }, pass, pixel) {
+  const corners = clipped(clip, raster.unclipped_depth).map((corner) => inWindow(corner, pass));
   for (let last = 2; last < corners.length; last++) {
     const part = [corners[0], corners[last - 1], corners[last]];
     const covered = covers(part, pixel);
@@ -155,64 +133,52 @@ function fragmentOf(clip, { raster }, viewport, pixel) {
 }
 
 // What becomes of a triangle at a pixel: a fragment, or why there is none; null where it is elsewhere.
-function fateOf(clip, draw, viewport, square, pixel, isReversed) {
+function fateOf(clip, draw, pass, square, pixel, isReversed) {
   const seen = lie(clip, square);
   if (seen === null) return null;
   const { raster } = draw;
   const frontOf = ({ isCounterclockwise }) => isCounterclockwise === (raster.front_face === "ccw");
   const isCulled = (isFront) => raster.cull !== null && (raster.cull === "front") === isFront;
-  const fragment = fragmentOf(clip, draw, viewport, pixel);
+  const fragment = fragmentOf(clip, draw, pass, pixel);
   if (fragment && !isCulled(frontOf(fragment))) return { isFront: frontOf(fragment), depth: fragment.depth, kind: "fragment" };
   if (!seen.isInside || !seen.isSafe) return null;
-  const [near, far] = viewport.depth;
+  const [near, far] = pass.range;
   const face = { isFront: frontOf(seen), depth: f32(near + (far - near) * seen.depth) };
   const isOutside = seen.depth < -SAFE_DEPTH || seen.depth > 1 + SAFE_DEPTH;
   if (isOutside && !raster.unclipped_depth) return { ...face, kind: "clipped", clip: seen.depth < 0 === isReversed ? "far" : "near" };
   return isCulled(face.isFront) ? { ...face, kind: "culled" } : null;
 }
 
-// Corners of a mesh as a view has them, and its triangles.
-function meshOf(capture, draw, view) {
-  const mesh = capture.meshes[draw.mesh];
-  return { corners: capture.array(mesh.corners[view]), indices: capture.array(mesh.indices) };
-}
-
+// Corners of a triangle as a view has them.
 export function cornersOf(capture, draw, view, triangle) {
-  const { corners, indices } = meshOf(capture, draw, view);
-  return [0, 1, 2].map((corner) => {
-    const from = (indices[triangle * 3 + corner] + draw.base_vertex) * 4;
-    return [corners[from], corners[from + 1], corners[from + 2], corners[from + 3]];
-  });
+  const mesh = capture.meshes[draw.mesh];
+  const [corners, indices] = [capture.array(mesh.corners[view]), capture.array(mesh.indices)];
+  const from = (corner) => (indices[triangle * 3 + corner] + draw.base_vertex) * 4;
+  return [from(0), from(1), from(2)].map((at) => [corners[at], corners[at + 1], corners[at + 2], corners[at + 3]]);
 }
 
 // Every triangle over a pixel, in the order in which it is drawn, with what becomes of it before the tests.
 export function covering(capture, pixel) {
-  const { plan } = capture;
   const found = [];
   const sieves = new Map();
-  plan.passes.forEach((pass, passIndex) => {
-    if (!isOfPicture(plan, pass) || !reaches(pass, pixel)) return;
-    const viewport = viewportOf(pass, capture.size);
-    const square = squareOf(pixel, viewport);
-    if (square.inside < -DOUBT) return;
+  capture.passes.forEach((pass, passIndex) => {
+    const square = squareOf(pixel, pass);
+    if (!pass.is_of_picture || !reaches(pass, pixel) || square.inside < -DOUBT) return;
     pass.draws.forEach((draw, drawIndex) => {
-      const { corners, indices } = meshOf(capture, draw, pass.view);
-      const key = `${draw.mesh} ${pass.view} ${viewport.area}`;
-      if (!sieves.has(key)) sieves.set(key, sieve(corners, square));
+      const mesh = capture.meshes[draw.mesh];
+      const indices = capture.array(mesh.indices);
+      const key = `${draw.mesh} ${pass.view} ${pass.area}`;
+      if (!sieves.has(key)) sieves.set(key, sieve(capture.array(mesh.corners[pass.view]), square));
       const outside = sieves.get(key);
-      const { start, end } = draw.triangles;
+      const { triangles: [start, end], base_vertex: base, is_reverse: isReverse } = draw;
       const near = [];
       for (let triangle = start, at = start * 3; triangle < end; triangle++, at += 3) {
-        const base = draw.base_vertex;
-        if ((outside[indices[at] + base] & outside[indices[at + 1] + base] & outside[indices[at + 2] + base]) === 0) {
-          near.push(triangle);
-        }
+        const bits = outside[indices[at] + base] & outside[indices[at + 1] + base] & outside[indices[at + 2] + base];
+        if (bits === 0) near.push(triangle);
       }
-      // Labels run in reverse order.
-      const isReverse = draw.program.Label !== undefined;
       for (const triangle of isReverse ? near.reverse() : near) {
         const clip = cornersOf(capture, draw, pass.view, triangle);
-        const fate = fateOf(clip, draw, viewport, square, pixel, capture.isReversed);
+        const fate = fateOf(clip, draw, pass, square, pixel, capture.isReversed);
         const primitive = isReverse ? end - 1 - triangle : triangle - start;
         if (fate !== null) found.push({ pass: passIndex, draw: drawIndex, primitive, triangle, fate });
       }

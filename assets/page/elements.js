@@ -2,16 +2,17 @@
 
 export const byId = (id) => document.getElementById(id);
 
+const SVG = ["path", "polygon"];
+
 // An element with attributes and children; text is text, never markup.
 export function element(name, attributes = {}, ...children) {
-  const isSvg = ["rect", "path", "polygon", "circle", "g"].includes(name);
-  const made = isSvg ? document.createElementNS("http://www.w3.org/2000/svg", name) : document.createElement(name);
+  const made = SVG.includes(name) ? document.createElementNS("http://www.w3.org/2000/svg", name) : document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
     if (key === "onclick") made.addEventListener("click", value);
     else if (value === true) made.setAttribute(key, "");
     else if (value !== false && value !== null && value !== undefined) made.setAttribute(key, value);
   }
-  made.append(...children.flat().filter((child) => child !== null && child !== undefined));
+  made.append(...children.flat(2).filter((child) => child !== null && child !== undefined));
   return made;
 }
 
@@ -24,17 +25,29 @@ export function swatch(color) {
   return made;
 }
 
+// The sign of a part of the frame's geometry beside its name.
+export const partSign = (part) => element("span", { class: `part ${part}`, "aria-hidden": "true" });
+
+export const button = (attributes, ...children) => element("button", { type: "button", ...attributes }, ...children);
+
+// A table with names over its columns.
+export function table(names, rows, caption = null) {
+  const head = names.map((name) => element("th", { scope: "col" }, name));
+  return element("table", {}, caption && element("caption", {}, caption), element("thead", {}, element("tr", {}, head)), element("tbody", {}, rows));
+}
+
+export const row = (attributes, ...cells) => element("tr", attributes, cells.map((cell) => (cell instanceof Element ? cell : element("td", {}, cell))));
+
 // Buttons of which one is pressed; they stay where they are, and so does the focus.
 export function choose(group, options, pressed, onChoose) {
   if (group.children.length !== options.length) {
-    group.replaceChildren(...options.map(({ id, name }) =>
-      element("button", { type: "button", "data-id": id, onclick: () => onChoose(id) }, name)));
+    group.replaceChildren(...options.map(({ id, name }) => button({ "data-id": id, onclick: () => onChoose(id) }, name)));
   }
-  options.forEach(({ id, isThere, why }, at) => {
-    const button = group.children[at];
-    button.setAttribute("aria-pressed", String(id === pressed));
-    button.disabled = !isThere;
-    button.title = isThere ? "" : why;
+  options.forEach(({ id, why }, at) => {
+    const one = group.children[at];
+    one.setAttribute("aria-pressed", String(id === pressed));
+    one.disabled = why !== null;
+    one.title = why ?? "";
   });
 }
 

@@ -11,11 +11,15 @@ import { magnify, mark, paint } from "./picture.js";
 import { showPixel } from "./pixel.js";
 import { whyOf, whyText } from "./why.js";
 
-const VIEW_NAMES = { color: "Colour", map: "Map" };
+const VIEW_NAMES = { color: "Colour" };
+const SIGNS_OF_HATCHES = ["", "╱ ", "╲ ", "╳ ", "· "];
 const capture = new Capture(JSON.parse(byId("document").textContent));
 let isWhole = false;
 let layer = null;
 let known = { pixel: null, history: null };
+
+const within = (value, most) => Math.min(Math.max(value, 0), most);
+const nameOf = (view) => VIEW_NAMES[view] ?? capitalized(view);
 
 // The history of the picked pixel; null while the frame is being unpacked.
 function pickedHistory() {
@@ -25,38 +29,32 @@ function pickedHistory() {
 }
 
 function showLegend() {
-  const hatches = ["", "╱", "╲", "╳", "·"];
-  const row = ({ color, name, count: pixels, hatch }) => element("span", { class: "entry" }, swatch(color), element("span", {}, `${hatches[hatch]} ${name}`),
-    pixels === null ? null : element("span", { class: "number" }, count(pixels)));
-  byId("legend").replaceChildren(...(layer ? layer.legend().slice(0, 24).map(row) : []));
+  const entry = ({ color, name, count: pixels, hatch }) => element("span", { class: "entry" }, swatch(color),
+    SIGNS_OF_HATCHES[hatch] + name, pixels === null ? null : element("span", { class: "number" }, count(pixels)));
+  byId("legend").replaceChildren(...(layer ? layer.legend().slice(0, 24).map(entry) : []));
 }
 
 function showBar(view) {
-  const option = (id) => ({ id, name: VIEW_NAMES[id] ?? capitalized(id), why: missing(capture, look, id), isThere: missing(capture, look, id) === null });
   const shown = VIEWS.filter((id) => id !== "count" || capture.lights.some((light) => light.count !== null));
-  choose(byId("views"), shown.map(option), look.view, (id) => go({ view: id }));
-  const hasPhases = ["color", "stencil", "depth"].includes(view);
-  const hasBefore = capture.frameBefore(look.step, look.draw) !== null;
-  const phases = PHASES.map((id) => ({ id, name: capitalized(id), isThere: hasPhases && (hasBefore || id !== "before"), why: hasPhases ? "Nothing was before the first step." : "It does not change from step to step." }));
-  choose(byId("phases"), phases, hasPhases ? look.phase : null, (id) => go({ phase: id }));
-  select("bits", view === "stencil" ? ["all", ...Array.from({ length: 8 }, (_, bit) => `bit ${bit}`)] : [], look.bit === null ? 0 : look.bit + 1);
+  choose(byId("views"), shown.map((id) => ({ id, name: nameOf(id), why: missing(capture, look, id) })), look.view, (id) => go({ view: id }));
+  const isSame = ["color", "stencil", "depth"].includes(view) ? null : "It does not change from step to step.";
+  const isFirst = capture.frameBefore(look.step, look.draw) === null ? "Nothing was before the first step." : null;
+  const phase = (id) => ({ id, name: capitalized(id), why: isSame ?? (id === "before" ? isFirst : null) });
+  choose(byId("phases"), PHASES.map(phase), isSame ? null : look.phase, (id) => go({ phase: id }));
+  const bits = Array.from({ length: 8 }, (_, bit) => `bit ${bit}`);
+  select("bits", view === "stencil" ? ["all", ...bits] : [], look.bit === null ? 0 : look.bit + 1);
   select("light", capture.lights.map((light) => light.name), look.light);
   select("face", view === "map" ? capture.lights[look.light].faces.map((face) => face.name) : [], look.face);
-  for (const [end, id] of ["near", "far"].entries()) {
+  ["near", "far"].forEach((id, end) => {
     byId(`${id}-of`).hidden = view !== "depth";
     if (view === "depth" && layer) byId(id).value = Number(layer.range[end].toPrecision(5));
-  }
-}
-
-function hoverText(place) {
-  if (!layer || !place) return "Point at a pixel for its value; click it for its history.";
-  return `${place.join(", ")} · ${layer.text(place[1] * layer.size[0] + place[0])}`;
+  });
 }
 
 function showHover() {
-  const view = viewOf(capture, look);
-  const place = look.hover ?? (view === "map" ? null : look.pixel);
-  byId("hover").textContent = hoverText(place);
+  const place = look.hover ?? (viewOf(capture, look) === "map" ? null : look.pixel);
+  byId("hover").textContent = layer && place ? `${place.join(", ")} · ${layer.text(place[1] * layer.size[0] + place[0])}`
+    : "Point at a pixel for its value; click it for its history.";
   magnify(layer, place);
 }
 
@@ -64,16 +62,18 @@ function show() {
   const view = viewOf(capture, look);
   layer = layerOf(capture, look);
   if (layer) paint(byId("picture"), layer);
-  const why = missing(capture, look, view) ?? "Nothing was before the first step.";
-  const { name } = capture.steps[look.step];
-  byId("picture").setAttribute("aria-label", layer ? `${VIEW_NAMES[view] ?? capitalized(view)} ${look.phase} ${name}` : why);
-  byId("frame").classList.toggle("empty", !layer);
   if (layer) byId("frame").style.setProperty("--ratio", layer.size[0] / layer.size[1]);
+  byId("frame").classList.toggle("empty", !layer);
+  const why = missing(capture, look, view) ?? "Nothing was before the first step.";
+  byId("picture").setAttribute("aria-label", layer ? `${nameOf(view)}, ${look.phase} ${capture.steps[look.step].name}` : why);
   const history = pickedHistory();
   showBar(view);
   showLegend();
   showPlace(capture, look);
-  showPixel(capture, look, history, { goTo: (step, draw) => go({ step, draw }), select: selectEvent, showMap: (face) => go({ view: "map", face }) });
+  showPixel(capture, look, history, {
+    goTo: (step, draw) => go({ step, draw }), showMap: (face) => go({ view: "map", face }),
+    select: (event) => go({ selected: look.selected === event ? null : event }),
+  });
   mark(capture, look, view, look.selected === null ? null : history?.events[look.selected]);
   showHover();
   writeAddress();
@@ -81,101 +81,89 @@ function show() {
 
 // Looks at something else.
 function go(changes) {
-  if (changes.step !== undefined && changes.step !== look.step) changes.draw ??= null;
-  if (changes.pixel !== undefined) changes.selected = null;
-  Object.assign(look, changes);
-  const { after, light } = capture.steps[look.step];
-  if (changes.step !== undefined && light !== null) look.light = light;
-  if (changes.step !== undefined && after.kind === "map") look.face = after.face;
-  look.face = Math.min(look.face, Math.max(0, (capture.lights[look.light]?.faces.length ?? 1) - 1));
+  const { after, light } = capture.steps[changes.step ?? look.step];
+  const ofStep = changes.step === undefined ? {} : { draw: null, light: light ?? look.light, face: after.face ?? look.face };
+  Object.assign(look, ofStep, changes, changes.pixel === undefined ? {} : { selected: null });
+  look.face = within(look.face, Math.max(0, (capture.lights[look.light]?.faces.length ?? 1) - 1));
   show();
-}
-
-function selectEvent(index) {
-  go({ selected: look.selected === index ? null : index });
 }
 
 function goStep(by) {
   const step = look.step + by;
-  if (step >= 0 && step < capture.steps.length) go({ step, draw: null });
+  if (step >= 0 && step < capture.steps.length) go({ step });
 }
 
+// Through the draws of a step: after the last one comes the step itself.
 function goDraw(by) {
   if (!capture.hasDraws(look.step)) return;
-  const last = capture.steps[look.step].draws.length - 1;
-  const draw = look.draw === null ? (by < 0 ? last : null) : look.draw + by;
-  if (look.draw === null && by > 0) go({ draw: 0 });
-  else if (draw !== null && draw >= 0) go({ draw: draw > last ? null : draw });
+  const { length } = capture.steps[look.step].draws;
+  const next = look.draw === null && by > 0 ? 0 : (look.draw ?? length) + by;
+  if (next >= 0) go({ draw: next >= length ? null : next });
 }
 
-function movePick([right, down]) {
-  const from = look.pixel ?? capture.size.map((side) => Math.floor(side / 2));
-  const within = (value, side) => Math.min(Math.max(value, 0), side - 1);
-  go({ pixel: look.pixel ? [within(from[0] + right, capture.size[0]), within(from[1] + down, capture.size[1])] : from, hover: null });
+function movePick(by) {
+  const middle = capture.size.map((side) => Math.floor(side / 2));
+  go({ hover: null, pixel: look.pixel?.map((value, axis) => within(value + by[axis], capture.size[axis] - 1)) ?? middle });
 }
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 function onKey(event) {
-  const isTyping = event.target.matches("select, input:not([type=range]), textarea");
+  const isTyping = event.target.matches("select, input:not([type=range])");
   if (isTyping || event.ctrlKey || event.altKey || event.metaKey) return;
   const arrow = ARROWS[event.key];
-  const views = byId("views").children;
+  const view = /^[1-9]$/.test(event.key) ? byId("views").children[event.key - 1] : null;
+  const phase = /^[bad]$/i.test(event.key) ? byId("phases").children["bad".indexOf(event.key.toLowerCase())] : null;
   if (arrow && event.shiftKey) movePick(arrow);
-  else if (arrow && arrow[0]) goStep(arrow[0]);
-  else if (arrow) goDraw(arrow[1]);
+  else if (arrow) (arrow[0] ? goStep : goDraw)(arrow[0] || arrow[1]);
   else if (event.key === "Escape") go({ pixel: null });
-  else if (/^[1-9]$/.test(event.key) && views[event.key - 1]) views[event.key - 1].click();
-  else if (/^[bad]$/i.test(event.key)) byId("phases").children["bad".indexOf(event.key.toLowerCase())].click();
+  else if (view || phase) (view ?? phase).click();
   else return;
   event.preventDefault();
 }
 
 // The texel under a pointer.
 function placeOf(event) {
-  if (!layer) return null;
   const box = byId("picture").getBoundingClientRect();
-  const share = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
-  return share.map((part, axis) => Math.min(Math.max(Math.floor(part * layer.size[axis]), 0), layer.size[axis] - 1));
+  const shares = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+  return layer && shares.map((share, axis) => within(Math.floor(share * layer.size[axis]), layer.size[axis] - 1));
+}
+
+function hoverAt(place) {
+  look.hover = place;
+  showHover();
+}
+
+function setRange() {
+  const range = ["near", "far"].map((id) => byId(id).valueAsNumber);
+  go({ range: range.every(Number.isFinite) ? range : null });
+}
+
+function pickTyped() {
+  const pixel = ["x", "y"].map((id, axis) => within(byId(id).valueAsNumber, capture.size[axis] - 1));
+  if (pixel.every(Number.isInteger)) go({ pixel });
+}
+
+function turnTheme() {
+  const { dataset } = document.documentElement;
+  const isDark = dataset.theme ? dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  dataset.theme = isDark ? "light" : "dark";
 }
 
 function listen() {
+  const on = (id, kind, act) => byId(id).addEventListener(kind, act);
   document.addEventListener("keydown", onKey);
-  const picture = byId("picture");
-  picture.addEventListener("pointermove", (event) => {
-    look.hover = placeOf(event);
-    showHover();
-  });
-  picture.addEventListener("pointerleave", () => {
-    look.hover = null;
-    showHover();
-  });
-  picture.addEventListener("click", (event) => {
-    if (viewOf(capture, look) !== "map") go({ pixel: placeOf(event) });
-  });
-  const onClick = { previous: () => goStep(-1), next: () => goStep(1), up: () => goDraw(-1), down: () => goDraw(1) };
-  for (const [id, act] of Object.entries(onClick)) byId(id).addEventListener("click", act);
-  byId("slider").addEventListener("input", (event) => go({ step: Number(event.target.value) }));
-  byId("bits").addEventListener("change", (event) => go({ bit: event.target.selectedIndex === 0 ? null : event.target.selectedIndex - 1 }));
-  byId("light").addEventListener("change", (event) => go({ light: event.target.selectedIndex }));
-  byId("face").addEventListener("change", (event) => go({ face: event.target.selectedIndex }));
-  for (const id of ["near", "far"]) {
-    byId(id).addEventListener("change", () => go({ range: ["near", "far"].map((end) => byId(end).valueAsNumber).every(Number.isFinite) ? [byId("near").valueAsNumber, byId("far").valueAsNumber] : null }));
-  }
-  byId("pick").addEventListener("change", () => {
-    const pixel = [byId("x"), byId("y")].map((field, axis) => Math.min(Math.max(field.valueAsNumber, 0), capture.size[axis] - 1));
-    if (pixel.every(Number.isInteger)) go({ pixel });
-  });
-  byId("pick").addEventListener("submit", (event) => event.preventDefault());
-  byId("help").addEventListener("click", () => {
-    byId("keys").hidden = !byId("keys").hidden;
-    byId("help").setAttribute("aria-expanded", String(!byId("keys").hidden));
-  });
-  byId("theme").addEventListener("click", () => {
-    const { dataset } = document.documentElement;
-    const isDark = dataset.theme ? dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-    dataset.theme = isDark ? "light" : "dark";
-  });
+  on("picture", "pointermove", (event) => hoverAt(placeOf(event)));
+  on("picture", "pointerleave", () => hoverAt(null));
+  on("picture", "click", (event) => viewOf(capture, look) !== "map" && go({ pixel: placeOf(event) }));
+  const buttons = { previous: () => goStep(-1), next: () => goStep(1), up: () => goDraw(-1), down: () => goDraw(1), theme: turnTheme };
+  for (const [id, act] of Object.entries(buttons)) on(id, "click", act);
+  on("slider", "input", ({ target }) => go({ step: Number(target.value) }));
+  on("bits", "change", ({ target }) => go({ bit: target.selectedIndex === 0 ? null : target.selectedIndex - 1 }));
+  for (const id of ["light", "face"]) on(id, "change", ({ target }) => go({ [id]: target.selectedIndex }));
+  for (const id of ["near", "far"]) on(id, "change", setRange);
+  on("pick", "change", pickTyped);
+  on("pick", "submit", (event) => event.preventDefault());
   window.addEventListener("hashchange", () => {
     readAddress(capture);
     show();
@@ -184,16 +172,15 @@ function listen() {
 
 // The first step is shown as soon as its arrays are there; the others follow.
 async function start() {
-  const [width, height] = capture.size;
   byId("title").textContent = `${capture.scene}, ${capture.technique}`;
-  byId("made-by").textContent = `${width}×${height} · ${capture.adapter.name} · ${capture.program}`;
+  const origin = capture.origin ? `${capture.origin.program ?? "another program"}, ${capture.origin.api} · ` : "";
+  byId("made-by").textContent = `${capture.size.join("×")} · ${origin}${capture.adapter.name} · ${capture.program}`;
   readAddress(capture);
   const light = capture.lights[look.light];
-  const faces = capture.lights.flatMap((one) => one.faces.map((face) => face.image));
+  const faces = viewOf(capture, look) === "map" ? capture.lights.flatMap((one) => one.faces.map((face) => face.image)) : [];
   const frames = [capture.frameAt(look.step, look.draw), capture.frameBefore(look.step, look.draw)];
   const shown = frames.flatMap((frame) => (frame ? [frame.color, frame.depth, frame.stencil] : []));
-  const isMap = viewOf(capture, look) === "map";
-  await capture.provide([...shown, light?.mask, light?.count, light?.findings, ...(isMap ? faces : [])]);
+  await capture.provide([...shown, light?.mask, light?.count, light?.findings, ...faces]);
   listSteps(capture, (step, draw) => go({ step, draw }));
   show();
   performance.mark("shown");

@@ -17,9 +17,7 @@ export function digits(value) {
   return value.toFixed(size < 99.9995 ? 3 : 1);
 }
 
-export function length(value, unit) {
-  return `${digits(value)} ${unit}`;
-}
+export const length = (value, unit) => `${digits(value)} ${unit}`;
 
 // A stored depth in the fewest digits that read back as the same bits.
 export function depthText(value) {
@@ -31,14 +29,16 @@ export function depthText(value) {
   return Number.isInteger(shortest) ? shortest.toFixed(1) : String(shortest);
 }
 
-export function lightName(index) {
-  return `light ${index + 1}`;
+// To an integer, halves to the even one.
+export function roundedToEven(value) {
+  const above = Math.round(value);
+  return above - value === 0.5 && above % 2 !== 0 ? above - 1 : above;
 }
 
+export const lightName = (index) => `light ${index + 1}`;
+
 // A float count with its sign.
-export function countInFloat(value) {
-  return value < 0 ? `−${-value}` : String(value);
-}
+export const countInFloat = (value) => (value < 0 ? `−${-value}` : String(value));
 
 // A stencil value as people read it: 255 is `−1 (255)`.
 export function signed(value) {
@@ -46,14 +46,8 @@ export function signed(value) {
 }
 
 // The same without the stored byte.
-export function signedAlone(value) {
-  return signed(value).split(" ")[0];
-}
+export const signedAlone = (value) => signed(value).split(" ")[0];
 
-export function amount(value, noun) {
-  return `${value} ${noun}${value === 1 ? "" : "s"}`;
-}
+export const amount = (value, noun) => `${value} ${noun}${value === 1 ? "" : "s"}`;
 
-export function capitalized(text) {
-  return text.charAt(0).toUpperCase() + text.slice(1);
-}
+export const capitalized = (text) => text.charAt(0).toUpperCase() + text.slice(1);

@@ -22,25 +22,12 @@ const OPERATE = {
   "decrement-wrap": (stored) => (stored - 1) & 0xff,
 };
 
-// Tests and operations of a side of triangles, with its reference and masks (plan/raster.rs).
-export function faceOf(raster, isFront) {
-  const { front, back, read_mask: read, write_mask: write } = raster.stencil;
-  const masks = { reference: raster.stencil_reference, read: read & 0xff, write: write & 0xff };
-  return isFront ? { face: front, masks } : { face: back, masks: raster.back ?? masks };
-}
-
-export function isStencilEnabled({ stencil: { front, back, read_mask: read, write_mask: write } }) {
-  const ignores = ({ compare, failOp, depthFailOp, passOp }) =>
-    compare === "always" && [failOp, depthFailOp, passOp].every((operation) => operation === "keep");
-  return !(ignores(front) && ignores(back)) && (read !== 0 || write !== 0);
-}
-
-export function testFragment(raster, { depth, isFront }, stored) {
-  const { face, masks: { reference, read, write } } = faceOf(raster, isFront);
-  const stencilPassed = COMPARE[face.compare](reference & read, stored.stencil & read);
+// Tests a fragment of a side of triangles against what is stored.
+export function testFragment(raster, side, depth, stored) {
+  const { compare, failOp, depthFailOp, passOp, reference, read, write } = side;
+  const stencilPassed = COMPARE[compare](reference & read, stored.stencil & read);
   const depthPassed = stencilPassed ? COMPARE[raster.depth_compare](depth, stored.depth) : null;
-  const operation = [[null, face.failOp], [false, face.depthFailOp], [true, face.passOp]]
-    .find(([passed]) => passed === depthPassed)[1];
+  const operation = stencilPassed ? (depthPassed ? passOp : depthFailOp) : failOp;
   const stencil = (stored.stencil & ~write & 0xff) | (OPERATE[operation](stored.stencil, reference) & write);
   const storesDepth = depthPassed === true && raster.depth_write;
   return { stencilPassed, depthPassed, operation, after: { depth: storesDepth ? depth : stored.depth, stencil } };

@@ -39,7 +39,7 @@ function mapReason(capture, light, pixel, fallback) {
   }
   const far = (value) => {
     const distance = distanceInMap(face, value);
-    return distance === null ? `depth ${depthText(value)}` : `${length(distance, capture.unit)} from the light`;
+    return distance === null ? `depth ${depthText(value)}` : `${length(distance, capture.depth.unit)} from the light`;
   };
   const told = middle.isCaster ? `holds a caster ${far(middle.stored)}` : "holds no caster";
   const lit = read.texels.filter(({ isLit }) => isLit).length;
@@ -49,26 +49,19 @@ function mapReason(capture, light, pixel, fallback) {
 }
 
 export function verdictOf(capture, history, light) {
-  const { name, decided_by: decided, reasons } = capture.lights[light];
+  const { name, decided_by: { kind }, reasons } = capture.lights[light];
   const label = history.labels[light];
   const why = whyOf(history, light);
-  const because = why && `${capitalized(whyText(why))}.`;
-  if (label === null) {
-    return { title: "No light was asked about this pixel.", reason: because ?? "The frame holds no mask of this light." };
-  }
-  if (label === BACKGROUND) {
-    return { title: "Background: no surface is at this pixel.", reason: "Nothing was drawn that a shadow could fall on." };
-  }
-  if (label === FACES_AWAY) {
-    const reason = `${capitalized(name)} shines on the other side of this surface, so shading alone leaves it dark.`;
-    return { title: `Turned away from ${name}.`, reason };
-  }
+  const because = why ? `${capitalized(whyText(why))}.` : null;
+  const verdict = (title, reason) => ({ title, reason });
+  if (label === null) return verdict("No light was asked about this pixel.", because ?? "The frame holds no mask of this light.");
+  if (label === BACKGROUND) return verdict("Background: no surface is at this pixel.", "Nothing was drawn that a shadow could fall on.");
+  const away = `${capitalized(name)} shines on the other side of this surface, so shading alone leaves it dark.`;
+  if (label === FACES_AWAY) return verdict(`Turned away from ${name}.`, away);
   const title = label === LIT ? `Lit by ${name}` : `Dark under ${name}`;
   const fallback = reasons[label === LIT ? 0 : 1];
-  if (decided.kind === "stencil-count" || decided.kind === "float-count") {
-    const kind = decided.kind === "stencil-count" ? "stencil count" : "count";
-    return { title: `${title}: its ${kind} is ${countText(countedAt(history, light))}.`, reason: because ?? fallback };
-  }
-  if (decided.kind === "map") return { title: `${title}.`, reason: mapReason(capture, light, history.pixel, fallback) };
-  return { title: `${title}.`, reason: because ?? fallback };
+  if (kind === "map") return verdict(`${title}.`, mapReason(capture, light, history.pixel, fallback));
+  const counts = { "stencil-count": "stencil count", "float-count": "count" }[kind];
+  const count = counts ? `: its ${counts} is ${countText(countedAt(history, light))}` : "";
+  return verdict(`${title}${count}.`, because ?? fallback);
 }

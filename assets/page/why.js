@@ -5,7 +5,7 @@ import { countedBy, isOfVolume, passedAll, showsOutside, stepOf } from "./histor
 import { amount, countInFloat, signed } from "./numbers.js";
 
 const BIT_NAMES = ["one bit", "two bits", "three bits", "four bits", "five bits", "six bits", "seven bits", "eight bits"];
-const PREPOSITIONS = { "in-front": "in front of", behind: "behind", "as-needed": "on either side of" };
+const PLACES = { "in-front": "in front of", behind: "behind", "as-needed": "on either side of" };
 const LIGHT_PASS = {
   adds: "the light pass adds the light",
   skips: "the light pass skips it",
@@ -23,17 +23,13 @@ export function clearedTo(history, light) {
 
 // On which side of the surface a light's faces count; null where none tells.
 export function countedSide(history, light) {
-  const faces = history.events.filter((event) =>
-    event.light === light && event.isFromCamera && isOfVolume(event) && event.triangle.kind === "tested");
-  const seen = faces.map((event) => {
-    const { triangle: { depth }, before } = event;
-    return { counts: stepOf(event) !== 0, isBehind: history.isReversed ? depth <= before.depth : depth >= before.depth };
-  });
-  if (seen.length === 0) return null;
-  const counting = (side) => seen.some(({ counts, isBehind }) => counts && isBehind === side);
-  if (counting(false) && counting(true)) return "as-needed";
-  if (counting(false)) return "in-front";
-  return counting(true) || seen[0].isBehind ? "behind" : "in-front";
+  const isFace = (event) => event.light === light && event.isFromCamera && isOfVolume(event) && event.triangle.kind === "tested";
+  const faces = history.events.filter(isFace);
+  if (faces.length === 0) return null;
+  const isBehind = ({ triangle: { depth }, before }) => (history.isReversed ? depth <= before.depth : depth >= before.depth);
+  const counting = faces.filter((event) => stepOf(event) !== 0);
+  if (counting.some(isBehind) && !counting.every(isBehind)) return "as-needed";
+  return isBehind(counting[0] ?? faces[0]) ? "behind" : "in-front";
 }
 
 // The count of a light as its light pass tests it.
@@ -66,13 +62,12 @@ function countedFaces(history, light, bits) {
 }
 
 function flattenedOf(events) {
-  const found = { casters: [], failedStencil: 0, failedDepth: 0, hidden: 0 };
+  const found = { passed: [], stencil: 0, depth: 0, hidden: 0, isMarked: events[0].before.stencil !== 0 };
   for (const { triangle } of events) {
-    if (passedAll(triangle)) found.casters.push(triangle.caster ?? triangle.drawName);
-    else if (triangle.kind !== "tested") found.hidden += 1;
-    else found[triangle.stencilTest === "failed" ? "failedStencil" : "failedDepth"] += 1;
+    if (passedAll(triangle)) found.passed.push(triangle.caster ?? triangle.drawName);
+    else found[triangle.kind !== "tested" ? "hidden" : triangle.stencilTest === "failed" ? "stencil" : "depth"] += 1;
   }
-  return { ...found, casters: [...new Set(found.casters)].sort(), isMarked: events[0].before.stencil !== 0 };
+  return { ...found, casters: [...new Set(found.passed)].sort() };
 }
 
 function lightPass(history, light, counted) {
@@ -98,59 +93,49 @@ export function whyOf(history, light) {
   return counted ? { kind: "counted", counted, pass } : { kind: "flattened", flattened: flattenedOf(flattened), pass };
 }
 
+// Do bits hold a sum as this byte although it is another number? Of eight bits, the upper half reads as negative.
 function holdOtherwise(bits, sum, byte) {
-  const modulus = 2 ** bits;
-  const least = bits === 8 ? -128 : 0;
+  const [modulus, least] = [2 ** bits, bits === 8 ? -128 : 0];
   return ((sum % modulus) + modulus) % modulus === byte && (sum < least || sum >= modulus);
 }
 
-function verbOf({ count, side }, all) {
-  const isOne = all === 1;
+function verbOf({ count, side }, isOne) {
   if (count.inFloat) return isOne ? "is counted" : "are counted";
   if (side === "as-needed") return "count as their volumes need it";
-  const verb = side === "behind" ? "fail" : "pass";
-  return `${verb}${isOne ? (verb === "pass" ? "es" : "s") : ""} the depth test`;
+  const [one, many] = side === "behind" ? ["fails", "fail"] : ["passes", "pass"];
+  return `${isOne ? one : many} the depth test`;
 }
+
+const signedAmount = (value) => `${value < 0 ? "−" : ""}${Math.abs(value)}`;
 
 function countedText(counted) {
-  const { side, faces: { front, back, onSurface, stopped }, near, sum, bits, count } = counted;
-  const minus = (value) => (value < 0 ? "−" : "");
-  let text = counted.clearedTo === 0 ? "" : `the count begins at ${counted.clearedTo}; `;
-  if (near !== null) text += `the near plane is in ${minus(near)}${amount(Math.abs(near), "volume")}; `;
-  const all = front + back;
-  const place = side === "behind" && onSurface > 0 ? "on or behind" : PREPOSITIONS[side];
-  if (all === 0) text += "no volume face on the view ray counts";
-  else {
-    const sides = side === "behind" ? `${back} back, ${front} front` : `${front} front, ${back} back`;
-    text += `${amount(all, "volume face")} ${place} the surface ${verbOf(counted, all)}: ${sides}`;
-  }
-  if (stopped > 0) text += `, of which ${stopped} found the count at its limit`;
-  if (!count.inFloat && holdOtherwise(bits, sum, count.value)) {
-    const verb = bits === 1 ? "holds" : "hold";
-    return `${text}; together ${minus(sum)}${Math.abs(sum)}, which ${BIT_NAMES[bits - 1]} ${verb} as ${count.value}`;
-  }
-  return `${text}; count ${!count.inFloat && sum > 127 ? count.value : countText(count)}`;
+  const { side, faces: { front, back, onSurface, stopped }, near, sum, bits, count, clearedTo: start } = counted;
+  const volumes = near === 1 || near === -1 ? "volume" : "volumes";
+  const begins = start === 0 ? "" : `the count begins at ${start}; `;
+  const inNear = near === null ? "" : `the near plane is in ${signedAmount(near)} ${volumes}; `;
+  const place = side === "behind" && onSurface > 0 ? "on or behind" : PLACES[side];
+  const sides = side === "behind" ? `${back} back, ${front} front` : `${front} front, ${back} back`;
+  const faces = front + back === 0 ? "no volume face on the view ray counts"
+    : `${amount(front + back, "volume face")} ${place} the surface ${verbOf(counted, front + back === 1)}: ${sides}`;
+  const lost = stopped > 0 ? `, of which ${stopped} found the count at its limit` : "";
+  const held = `which ${BIT_NAMES[bits - 1]} ${bits === 1 ? "holds" : "hold"} as ${count.value}`;
+  const left = !count.inFloat && holdOtherwise(bits, sum, count.value) ? `together ${signedAmount(sum)}, ${held}`
+    : `count ${!count.inFloat && sum > 127 ? count.value : countText(count)}`;
+  return `${begins}${inNear}${faces}${lost}; ${left}`;
 }
 
-function flattenedText({ casters, failedStencil, failedDepth, hidden, isMarked }) {
+function flattenedText({ casters, stencil, depth, hidden, isMarked }) {
   if (casters.length > 0) return `the flattened shadow of ${casters.join(" and ")} falls on the surface here`;
-  if (failedDepth > 0) {
-    const verb = failedDepth === 1 ? "fails" : "fail";
-    return `${amount(failedDepth, "flattened triangle")} over the surface ${verb} the depth test against it`;
-  }
-  if (failedStencil > 0) {
-    const why = isMarked ? "of another receiver: this surface has a mark of its own"
-      : "over the surface, which is no receiver";
-    const verb = failedStencil === 1 ? "is" : "are";
-    return `${amount(failedStencil, "flattened triangle")} ${verb} ${why}, and the stencil test keeps shadow off it`;
-  }
-  return `${amount(hidden, "flattened triangle")} over it left no fragment`;
+  const triangles = (number) => amount(number, "flattened triangle");
+  if (depth > 0) return `${triangles(depth)} over the surface ${depth === 1 ? "fails" : "fail"} the depth test against it`;
+  if (stencil === 0) return `${triangles(hidden)} over it left no fragment`;
+  const why = isMarked ? "of another receiver: this surface has a mark of its own" : "over the surface, which is no receiver";
+  return `${triangles(stencil)} ${stencil === 1 ? "is" : "are"} ${why}, and the stencil test keeps shadow off it`;
 }
 
-export function whyText(why) {
-  if (why.kind === "background") return "no surface is here that a shadow could fall on";
-  if (why.kind === "counted") return `${countedText(why.counted)}, so ${LIGHT_PASS[why.pass]}`;
-  const text = flattenedText(why.flattened);
-  const darkens = why.flattened.casters.length > 0 && why.pass === "adds";
-  return darkens ? `${text}, and darkens it after the light pass` : `${text}, so ${LIGHT_PASS[why.pass]}`;
+export function whyText({ kind, counted, flattened, pass }) {
+  if (kind === "background") return "no surface is here that a shadow could fall on";
+  if (kind === "counted") return `${countedText(counted)}, so ${LIGHT_PASS[pass]}`;
+  const darkens = flattened.casters.length > 0 && pass === "adds";
+  return `${flattenedText(flattened)}, ${darkens ? "and darkens it after the light pass" : `so ${LIGHT_PASS[pass]}`}`;
 }

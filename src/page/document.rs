@@ -3,17 +3,16 @@
 
 use super::arrays::{ArrayIndex, Arrays, Entry, Layout, Word};
 use super::clip::{self, MeshEntry};
+use super::passes::{self, PassEntry};
 use super::reads::{self, ReadsEntry};
-use crate::capture::{
-    AdapterInfo, Capture, DrawSummary, FrameSnapshot, FrameTarget, Image, Origin, PixelFormat, Snapshot,
-};
+use crate::capture::{AdapterInfo, Capture, DrawSummary, FrameSnapshot, Image, Origin, PixelFormat, Snapshot};
+use crate::history;
 use crate::math::depth::DepthCurve;
 use crate::picture::colors;
-use crate::plan::{CountOf, DecidedBy, FramePlan, LeftOut, StartContent};
+use crate::plan::{Attachment, AttachmentRole, CountOf, DecidedBy, FramePlan, LeftOut};
 use crate::reading::depth::DepthMeasure;
 use crate::reading::{layers, steps, verdict};
 use serde::Serialize;
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -31,21 +30,14 @@ struct Document<'a> {
     clear_depth: f32,
     origin: Option<&'a Origin>,
     depth_rounding: f32,
-    plan: Value,
+    has_stencil: bool,
+    passes: Vec<PassEntry<'a>>,
     meshes: Vec<Option<MeshEntry>>,
-    starts: BTreeMap<usize, StartEntry>,
     steps: Vec<StepEntry<'a>>,
     lights: Vec<LightEntry>,
     left_out: &'a [LeftOut],
     palette: Palette,
     arrays: Vec<Entry>,
-}
-
-/// What a pass's target held before.
-#[derive(Serialize)]
-struct StartEntry {
-    depth: Option<ArrayIndex>,
-    stencil: Option<ArrayIndex>,
 }
 
 #[derive(Serialize)]
@@ -83,6 +75,8 @@ struct LightEntry {
     name: String,
     decided_by: DecidedBy,
     counts: Option<&'static str>,
+    /// Bits of the stencil in which its volumes are counted.
+    bits: Option<u32>,
     /// What is said of a pixel that is lit, and of one in shadow, where its history says nothing.
     reasons: [&'static str; 2],
     mask: Option<ArrayIndex>,
@@ -141,8 +135,8 @@ pub fn json(capture: &Capture, plan: &Arc<FramePlan>) -> serde_json::Result<Stri
         steps: (0..capture.steps.len()).map(|index| step(capture, index, &mut arrays)).collect(),
         lights: (0..capture.lights.len()).map(|light| light_entry(capture, plan, light, &mut arrays)).collect(),
         meshes: clip::meshes(plan, &mut arrays),
-        starts: starts(plan, &mut arrays),
-        plan: plan_of_picture(plan)?,
+        passes: passes::passes(plan, &mut arrays),
+        has_stencil: has_stencil(plan),
         left_out: &capture.left_out,
         palette: Palette {
             stencil: (0..=255).map(colors::stencil).collect(),
@@ -155,24 +149,11 @@ pub fn json(capture: &Capture, plan: &Arc<FramePlan>) -> serde_json::Result<Stri
     serde_json::to_string(&document)
 }
 
-/// The plan without what a page does not ask: matrices, materials, and what is elsewhere in the document.
-fn plan_of_picture(plan: &FramePlan) -> serde_json::Result<Value> {
-    let mut value = serde_json::to_value(plan)?;
-    let fields = value.as_object_mut().into_iter();
-    for (name, field) in fields.flatten() {
-        match (name.as_str(), field) {
-            ("passes", Value::Array(passes)) => {
-                let draws = passes.iter_mut().filter_map(|pass| pass.get_mut("draws")?.as_array_mut()).flatten();
-                draws.filter_map(|draw| draw.get_mut("constants")?.as_object_mut()).for_each(|constants| {
-                    constants.retain(|name, _| ["flat", "count"].contains(&name.as_str()));
-                });
-            }
-            ("attachments", _) => {}
-            (_, field) => *field = Value::Null,
-        }
-    }
-    value.as_object_mut().into_iter().for_each(|fields| fields.retain(|_, field| !field.is_null()));
-    Ok(value)
+fn has_stencil(plan: &FramePlan) -> bool {
+    let is_stencil = |attachment: &Attachment| {
+        attachment.role == AttachmentRole::DepthStencil && attachment.format.has_stencil_aspect()
+    };
+    plan.attachments.iter().any(is_stencil)
 }
 
 /// How far depths may be from what was stored: one computed here is not rounded where the GPU rounds.
@@ -205,11 +186,7 @@ fn state(snapshot: &Snapshot, arrays: &mut Arrays) -> StateEntry {
     match snapshot {
         Snapshot::Map { light, face } => StateEntry::Map { light: *light, face: *face },
         Snapshot::Frame(FrameSnapshot { color, depth, stencil, target }) => StateEntry::Frame {
-            target: match target {
-                FrameTarget::Picture => "picture",
-                FrameTarget::Labels => "labels",
-                FrameTarget::Count => "count",
-            },
+            target: passes::target_name(*target),
             color: image(&color.image, arrays),
             depth: image(&depth.image, arrays),
             stencil: stencil.as_ref().map(|stencil| image(&stencil.image, arrays)),
@@ -231,6 +208,7 @@ fn light_entry(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &
         name: crate::numbers::light(light),
         decided_by: of.decided_by,
         counts: of.count_of.map(CountOf::what),
+        bits: history::counts_in(plan).get(light).copied().flatten().map(|bits| bits.modulus().unsigned_abs().ilog2()),
         reasons: [false, true].map(|is_dark| verdict::reason(of.decided_by, is_dark)),
         faces: faces.collect(),
         mask: of.shadow.as_ref().map(|labels| image(labels, arrays)),
@@ -249,18 +227,6 @@ fn measure(measure: DepthMeasure) -> Option<MeasureEntry> {
             Some(MeasureEntry { scale: length, offset: near, is_linear: true })
         }
     }
-}
-
-fn starts(plan: &FramePlan, arrays: &mut Arrays) -> BTreeMap<usize, StartEntry> {
-    let width = plan.size[0] as usize;
-    let started = plan.passes.iter().enumerate().filter_map(|(index, pass)| {
-        let StartContent { depth, stencil } = pass.recorded.as_ref()?.start.as_ref()?;
-        let mut put = |word, bytes: &[u8]| arrays.put(Layout { word, lanes: 1, width }, bytes);
-        let depth = depth.as_ref().map(|depth| put(Word::F32, depth.bytes()));
-        let stencil = stencil.as_ref().map(|stencil| put(Word::U8, stencil.bytes()));
-        Some((index, StartEntry { depth, stencil }))
-    });
-    started.collect()
 }
 
 fn image(image: &Image, arrays: &mut Arrays) -> ArrayIndex {

@@ -15,6 +15,7 @@ mod arrays;
 mod clip;
 mod document;
 mod html;
+mod passes;
 mod reads;
 
 pub use html::{Asset, STYLE, TEMPLATE, modules, script};
