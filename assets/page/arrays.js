@@ -1,29 +1,9 @@
-// Unpacks what src/page/arrays.rs packs: base64, zlib, byte planes, and words that stand for what they
-// add to their neighbours.
-
-const WORDS = { u8: Uint8Array, u32: Uint32Array, f32: Float32Array };
+// Unpacks what src/page/arrays.rs packs: base64, zlib, byte planes, words as what they add to their neighbours.
 
 function bytesOf(base64) {
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);
   for (let at = 0; at < bytes.length; at++) bytes[at] = text.charCodeAt(at);
-  return bytes;
-}
-
-async function inflated(bytes) {
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
-
-// Joins the planes of each lane's first bytes, second bytes, and so on.
-function joined(planes, size, lanes, length) {
-  const bytes = new Uint8Array(planes.length);
-  for (let lane = 0; lane < lanes; lane++) {
-    for (let byte = 0; byte < size; byte++) {
-      let from = (lane * size + byte) * length;
-      for (let to = lane * size + byte; to < bytes.length; to += lanes * size) bytes[to] = planes[from++];
-    }
-  }
   return bytes;
 }
 
@@ -38,9 +18,14 @@ function predict(words, row, lanes) {
 }
 
 export async function unpack({ word, lanes, width, length, predicted, data }) {
+  const inflating = new Blob([bytesOf(data)]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const planes = new Uint8Array(await new Response(inflating).arrayBuffer());
   const size = word === "u8" ? 1 : 4;
-  const bytes = joined(await inflated(bytesOf(data)), size, lanes, length);
-  const words = size === 1 ? bytes : new Uint32Array(bytes.buffer);
+  const words = size === 1 ? new Uint8Array(lanes * length) : new Uint32Array(lanes * length);
+  for (let plane = 0, from = 0; plane < lanes * size; plane++) {
+    const shift = (plane % size) * 8;
+    for (let to = Math.floor(plane / size); to < words.length; to += lanes) words[to] |= planes[from++] << shift;
+  }
   if (predicted) predict(words, (width || length) * lanes, lanes);
-  return new WORDS[word](bytes.buffer);
+  return word === "f32" ? new Float32Array(words.buffer) : words;
 }

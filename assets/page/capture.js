@@ -65,10 +65,6 @@ export class Capture {
     if (depth === this.clear_depth) return null;
     return isLinear ? (depth - offset) / scale : scale / (depth - offset);
   }
-
-  get isReversed() {
-    return this.depth.mapping === "reversed-infinite";
-  }
 }
 
 // Distance from the light of a depth in a face of its map; null where that is not known.

@@ -10,10 +10,9 @@ const SAFE_DEPTH = 1e-6;
 const SUBPIXELS = 256;
 const f32 = Math.fround;
 
-function reaches({ scissor }, [x, y]) {
-  const [left, top, columns, rows] = scissor ?? [0, 0, Infinity, Infinity];
-  return x >= left && x < left + columns && y >= top && y < top + rows;
-}
+// May a pass change a pixel? Outside of its scissor it does not.
+const reaches = ({ scissor }, pixel) => !scissor
+  || pixel.every((place, axis) => place >= scissor[axis] && place < scissor[axis] + scissor[axis + 2]);
 
 // A pixel's centre in normalized device coordinates, half of a pixel's sides, and how far inside of the viewport it is.
 function squareOf([x, y], { area: [left, top, width, height] }) {
@@ -24,7 +23,7 @@ function squareOf([x, y], { area: [left, top, width, height] }) {
 
 // Of each corner four bits: right of, left of, above and below the square of twice the doubt.
 function sieve(corners, { center: [x, y], half }) {
-  const [reachX, reachY] = [half[0] * 2 * DOUBT, half[1] * 2 * DOUBT];
+  const [reachX, reachY] = half.map((side) => side * 2 * DOUBT);
   const bits = new Uint8Array(corners.length / 4);
   for (let at = 0, from = 0; at < bits.length; at++, from += 4) {
     const [cx, cy, w] = [corners[from], corners[from + 1], corners[from + 3]];
@@ -82,10 +81,8 @@ function clipped(triangle, isUnclipped) {
 // A corner in the window, rounded as floats are on their way there: a new one is not multiplied and added at once.
 function inWindow({ clip: [x, y, z, w], isNew }, { area: [left, top, width, height], range: [near, far] }) {
   const inverse = f32(1 / w);
-  const moved = (value, scale, offset) => {
-    const product = f32(value * inverse) * scale;
-    return f32((isNew ? f32(product) : product) + offset);
-  };
+  const scaled = (value, scale) => (isNew ? f32(f32(value * inverse) * scale) : f32(value * inverse) * scale);
+  const moved = (value, scale, offset) => f32(scaled(value, scale) + offset);
   return [moved(x, width / 2, left + width / 2), moved(y, -height / 2, top + height / 2), moved(z, f32(far - near), near)];
 }
 
@@ -178,7 +175,7 @@ export function covering(capture, pixel) {
       }
       for (const triangle of isReverse ? near.reverse() : near) {
         const clip = cornersOf(capture, draw, pass.view, triangle);
-        const fate = fateOf(clip, draw, pass, square, pixel, capture.isReversed);
+        const fate = fateOf(clip, draw, pass, square, pixel, capture.is_reversed);
         const primitive = isReverse ? end - 1 - triangle : triangle - start;
         if (fate !== null) found.push({ pass: passIndex, draw: drawIndex, primitive, triangle, fate });
       }

@@ -1,12 +1,10 @@
 // Elements of the page.
 
 export const byId = (id) => document.getElementById(id);
-
-const SVG = ["path", "polygon"];
-
 // An element with attributes and children; text is text, never markup.
 export function element(name, attributes = {}, ...children) {
-  const made = SVG.includes(name) ? document.createElementNS("http://www.w3.org/2000/svg", name) : document.createElement(name);
+  const space = ["path", "polygon"].includes(name) ? "2000/svg" : "1999/xhtml";
+  const made = document.createElementNS(`http://www.w3.org/${space}`, name);
   for (const [key, value] of Object.entries(attributes)) {
     if (key === "onclick") made.addEventListener("click", value);
     else if (value === true) made.setAttribute(key, "");
@@ -27,16 +25,17 @@ export function swatch(color) {
 
 // The sign of a part of the frame's geometry beside its name.
 export const partSign = (part) => element("span", { class: `part ${part}`, "aria-hidden": "true" });
-
 export const button = (attributes, ...children) => element("button", { type: "button", ...attributes }, ...children);
 
 // A table with names over its columns.
 export function table(names, rows, caption = null) {
   const head = names.map((name) => element("th", { scope: "col" }, name));
-  return element("table", {}, caption && element("caption", {}, caption), element("thead", {}, element("tr", {}, head)), element("tbody", {}, rows));
+  const title = caption && element("caption", {}, caption);
+  return element("table", {}, title, element("thead", {}, element("tr", {}, head)), element("tbody", {}, rows));
 }
 
-export const row = (attributes, ...cells) => element("tr", attributes, cells.map((cell) => (cell instanceof Element ? cell : element("td", {}, cell))));
+const cellOf = (cell) => (cell instanceof Element ? cell : element("td", {}, cell));
+export const row = (attributes, ...cells) => element("tr", attributes, cells.map(cellOf));
 
 // Buttons of which one is pressed; they stay where they are, and so does the focus.
 export function choose(group, options, pressed, onChoose) {

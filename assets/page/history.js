@@ -6,9 +6,7 @@ import { roundedToEven } from "./numbers.js";
 import { testFragment } from "./stencil_machine.js";
 
 const VOLUME_PARTS = ["side", "light-cap", "dark-cap"];
-
 export const isOfVolume = (event) => VOLUME_PARTS.includes(event.triangle?.part);
-
 const STEPS = { "increment-clamp": 1, "increment-wrap": 1, invert: 1, "decrement-clamp": -1, "decrement-wrap": -1 };
 
 // How much an event added to the count of volumes.
@@ -19,22 +17,16 @@ export function countedBy({ before, after, triangle }) {
 }
 
 // What it was to add, also where the count was at its limit.
-export function stepOf(event) {
-  return event.triangle?.operation ? STEPS[event.triangle.operation] ?? 0 : countedBy(event);
-}
-
+export const stepOf = (event) => (event.triangle?.operation ? STEPS[event.triangle.operation] ?? 0 : countedBy(event));
 export const showsOutside = (triangle) => triangle.isFront !== triangle.facesInwards;
-
 export const passedAll = ({ kind, depthTest }) => kind === "tested" && (depthTest === "passed" || depthTest === "always");
 
 export function doesSomething(event) {
-  const { before, after } = event;
-  const changes = before.depth !== after.depth || before.stencil !== after.stencil || before.count !== after.count;
+  const changes = ["depth", "stencil", "count"].some((aspect) => event.before[aspect] !== event.after[aspect]);
   return changes || (event.triangle !== null && passedAll(event.triangle) && !isOfVolume(event));
 }
 
-const testWord = (passed, compare) =>
-  passed === null ? "not-reached" : passed ? (compare === "always" ? "always" : "passed") : "failed";
+const testWord = (passed, compare) => (passed === null ? "not-reached" : !passed ? "failed" : compare === "always" ? "always" : "passed");
 
 class Replay {
   constructor(capture, pixel) {
@@ -71,10 +63,9 @@ class Replay {
     const draw = pass.draws[index];
     const { isFront, depth: made } = fate;
     const beyond = made < 0 && draw.discards[0] ? "near" : made > 1 && draw.discards[1] ? "far" : null;
-    const one = {
-      draw: index, drawName: draw.name, caster: draw.caster, part: draw.part, primitive, triangle, isFront, facesInwards: draw.faces_inwards,
-      lights: draw.lights, depth: made, kind: fate.kind, clip: fate.clip ?? null, operation: null,
-    };
+    const { name: drawName, caster, part, faces_inwards: facesInwards, lights } = draw;
+    const own = { draw: index, drawName, caster, part, primitive, triangle, isFront, facesInwards, lights };
+    const one = { ...own, depth: made, kind: fate.kind, clip: fate.clip ?? null, operation: null };
     if (fate.kind !== "fragment") return this.push(pass, "triangle", this.held, one);
     if (beyond) return this.push(pass, "triangle", this.held, { ...one, kind: "discarded", clip: beyond });
     const clamped = draw.raster.unclipped_depth ? Math.min(Math.max(made, pass.range[0]), pass.range[1]) : made;
@@ -93,14 +84,10 @@ class Replay {
 // What the GPU stored at a pixel after each pass of the picture.
 function capturedAfter(capture, pixel) {
   const at = capture.index(pixel);
-  const counts = (step) => {
-    const { after } = capture.steps[step];
-    return after.kind === "frame" && after.target === "count" ? capture.passes[step].light : null;
-  };
-  return capture.steps.flatMap(({ after }, pass) => {
+  return capture.steps.flatMap(({ after, light }, pass) => {
     if (after.kind !== "frame") return [];
-    const light = counts(pass);
-    const isLast = light !== null && !capture.steps.some((_, later) => later > pass && counts(later) === light);
+    const isLast = after.target === "count" && !capture.steps.some((one, later) =>
+      later > pass && one.light === light && one.after.target === "count");
     const count = isLast ? capture.array(capture.lights[light].count)?.[at] ?? null : null;
     return [{ pass, depth: capture.array(after.depth)[at], stencil: capture.array(after.stencil)?.[at] ?? 0, count }];
   });
@@ -132,7 +119,7 @@ export function historyOf(capture, pixel) {
   const after = capturedAfter(capture, pixel);
   const history = {
     pixel, start: replay.start, events: replay.events, computed: replay.held, capturedAfter: after,
-    captured: after[after.length - 1] ?? null, isReversed: capture.isReversed, hasStencil: capture.has_stencil,
+    captured: after[after.length - 1] ?? null, isReversed: capture.is_reversed, hasStencil: capture.has_stencil,
     labels: capture.lights.map((light) => capture.array(light.mask)?.[capture.index(pixel)] ?? null),
     countsIn: capture.lights.map((light) => light.bits),
   };

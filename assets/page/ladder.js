@@ -8,8 +8,7 @@ import { clearedTo, countedAt, countedSide } from "./why.js";
 export function ladderOf(capture, history, light) {
   const ofLight = (event) => event.light === light && isOfVolume(event);
   const near = history.events.filter((event) => ofLight(event) && !event.isFromCamera);
-  const faces = history.events.map((event, index) => ({ event, index }))
-    .filter(({ event }) => ofLight(event) && event.isFromCamera);
+  const faces = history.events.map((event, index) => ({ event, index })).filter(({ event }) => ofLight(event) && event.isFromCamera);
   const first = faces[0]?.event ?? near[0];
   if (!first) return null;
   const start = clearedTo(history, light) + near.reduce((sum, event) => sum + countedBy(event), 0);
@@ -19,14 +18,11 @@ export function ladderOf(capture, history, light) {
     const distance = capture.distance(event.triangle.depth);
     const isAhead = distance !== null && distance >= 0;
     const rung = { event: index, distance: isAhead ? distance : Infinity, added: countedBy(event), running: 0 };
-    const { draw, primitive } = event.triangle;
-    const key = `${draw} ${primitive}`;
-    const known = once.get(key);
-    if (!known) once.set(key, { draw, primitive, rung });
-    else if (known.rung.added === 0 && rung.added !== 0) known.rung = rung;
+    const place = event.triangle.draw * 2 ** 32 + event.triangle.primitive;
+    if (!once.has(place) || (once.get(place).added === 0 && rung.added !== 0)) once.set(place, rung);
   }
-  const inOrder = [...once.values()].sort((a, b) => a.draw - b.draw || a.primitive - b.primitive);
-  const rungs = inOrder.map(({ rung }) => rung).sort((a, b) => (a.distance === b.distance ? 0 : a.distance - b.distance));
+  const inOrder = [...once].sort(([a], [b]) => a - b).map(([, rung]) => rung);
+  const rungs = inOrder.sort((a, b) => (a.distance === b.distance ? 0 : a.distance - b.distance));
   const side = countedSide(history, light) ?? "in-front";
   let count = start;
   for (const rung of side === "behind" ? [...rungs].reverse() : rungs) rung.running = count += rung.added;

@@ -2,16 +2,10 @@
 
 export const VIEWS = ["auto", "color", "stencil", "count", "depth", "mask", "error", "map"];
 export const PHASES = ["before", "after", "diff"];
+export const look = { step: 0, draw: null, view: "auto", phase: "after", light: 0, face: 0, bit: null, range: null };
+Object.assign(look, { pixel: null, selected: null, hover: null });
 
-export const look = {
-  step: 0, draw: null, view: "auto", phase: "after", light: 0, face: 0, bit: null, pixel: null, range: null,
-  selected: null, hover: null,
-};
-
-const whole = (text, most) => {
-  const value = Number(text);
-  return text !== null && /^\d+$/.test(text) && value <= most ? value : null;
-};
+const whole = (text, most) => (/^\d+$/.test(text) && Number(text) <= most ? Number(text) : null);
 
 // Reads the fragment; what is not of this frame is left as it was at first.
 export function readAddress(capture) {
@@ -29,12 +23,9 @@ export function readAddress(capture) {
 }
 
 export function writeAddress() {
-  const words = [];
-  if (look.pixel) words.push(`pixel=${look.pixel}`);
-  words.push(`step=${look.step + 1}`);
-  if (look.draw !== null) words.push(`draw=${look.draw + 1}`);
-  words.push(`view=${look.view}`);
-  if (look.phase !== "after") words.push(`phase=${look.phase}`);
-  if (look.light) words.push(`light=${look.light + 1}`);
-  if (location.hash.slice(1) !== words.join("&")) history.replaceState(null, "", `#${words.join("&")}`);
+  const { pixel, step, draw, view, phase, light } = look;
+  const words = { pixel, step: step + 1, draw: draw === null ? null : draw + 1, view };
+  Object.assign(words, { phase: phase === "after" ? null : phase, light: light === 0 ? null : light + 1 });
+  const told = Object.entries(words).filter(([, value]) => value !== null).map((pair) => pair.join("="));
+  if (location.hash.slice(1) !== told.join("&")) history.replaceState(null, "", `#${told.join("&")}`);
 }

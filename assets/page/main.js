@@ -36,7 +36,8 @@ function showLegend() {
 
 function showBar(view) {
   const shown = VIEWS.filter((id) => id !== "count" || capture.lights.some((light) => light.count !== null));
-  choose(byId("views"), shown.map((id) => ({ id, name: nameOf(id), why: missing(capture, look, id) })), look.view, (id) => go({ view: id }));
+  const option = (id) => ({ id, name: nameOf(id), why: missing(capture, look, id) });
+  choose(byId("views"), shown.map(option), look.view, (id) => go({ view: id }));
   const isSame = ["color", "stencil", "depth"].includes(view) ? null : "It does not change from step to step.";
   const isFirst = capture.frameBefore(look.step, look.draw) === null ? "Nothing was before the first step." : null;
   const phase = (id) => ({ id, name: capitalized(id), why: isSame ?? (id === "before" ? isFirst : null) });
@@ -129,16 +130,6 @@ function placeOf(event) {
   return layer && shares.map((share, axis) => within(Math.floor(share * layer.size[axis]), layer.size[axis] - 1));
 }
 
-function hoverAt(place) {
-  look.hover = place;
-  showHover();
-}
-
-function setRange() {
-  const range = ["near", "far"].map((id) => byId(id).valueAsNumber);
-  go({ range: range.every(Number.isFinite) ? range : null });
-}
-
 function pickTyped() {
   const pixel = ["x", "y"].map((id, axis) => within(byId(id).valueAsNumber, capture.size[axis] - 1));
   if (pixel.every(Number.isInteger)) go({ pixel });
@@ -153,15 +144,20 @@ function turnTheme() {
 function listen() {
   const on = (id, kind, act) => byId(id).addEventListener(kind, act);
   document.addEventListener("keydown", onKey);
-  on("picture", "pointermove", (event) => hoverAt(placeOf(event)));
-  on("picture", "pointerleave", () => hoverAt(null));
+  for (const kind of ["pointermove", "pointerleave"]) {
+    on("picture", kind, (event) => {
+      look.hover = kind === "pointermove" ? placeOf(event) : null;
+      showHover();
+    });
+  }
   on("picture", "click", (event) => viewOf(capture, look) !== "map" && go({ pixel: placeOf(event) }));
   const buttons = { previous: () => goStep(-1), next: () => goStep(1), up: () => goDraw(-1), down: () => goDraw(1), theme: turnTheme };
   for (const [id, act] of Object.entries(buttons)) on(id, "click", act);
   on("slider", "input", ({ target }) => go({ step: Number(target.value) }));
   on("bits", "change", ({ target }) => go({ bit: target.selectedIndex === 0 ? null : target.selectedIndex - 1 }));
   for (const id of ["light", "face"]) on(id, "change", ({ target }) => go({ [id]: target.selectedIndex }));
-  for (const id of ["near", "far"]) on(id, "change", setRange);
+  const range = () => [byId("near").valueAsNumber, byId("far").valueAsNumber];
+  for (const id of ["near", "far"]) on(id, "change", () => go({ range: range().every(Number.isFinite) ? range() : null }));
   on("pick", "change", pickTyped);
   on("pick", "submit", (event) => event.preventDefault());
   window.addEventListener("hashchange", () => {

@@ -1,11 +1,7 @@
 // Numbers as text, as src/numbers.rs writes them.
 
-const THIN_SPACE = "\u2009";
-
-// `47 425`
-export function count(value) {
-  return String(value).replace(/\B(?=(\d{3})+$)/g, THIN_SPACE);
-}
+// Thousands are apart by a thin space: `47 425`.
+export const count = (value) => String(value).replace(/\B(?=(\d{3})+$)/g, "\u2009");
 
 // About four digits.
 export function digits(value) {
@@ -41,13 +37,10 @@ export const lightName = (index) => `light ${index + 1}`;
 export const countInFloat = (value) => (value < 0 ? `−${-value}` : String(value));
 
 // A stencil value as people read it: 255 is `−1 (255)`.
-export function signed(value) {
-  return value < 128 ? String(value) : `−${256 - value} (${value})`;
-}
+export const signed = (value) => (value < 128 ? String(value) : `−${256 - value} (${value})`);
 
 // The same without the stored byte.
 export const signedAlone = (value) => signed(value).split(" ")[0];
 
 export const amount = (value, noun) => `${value} ${noun}${value === 1 ? "" : "s"}`;
-
 export const capitalized = (text) => text.charAt(0).toUpperCase() + text.slice(1);

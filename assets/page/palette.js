@@ -64,7 +64,8 @@ function ofDepth(capture, values, distance, range) {
   const color = (value) => (value === null ? capture.palette.stencil[0] : grey(high > low ? (value - low) / (high - low) : 0));
   return {
     values, range: [low, high], key: (at) => values[at], color: (at) => color(known(values[at])),
-    text: (at) => `${depthText(values[at])} · ${words(known(values[at]))}`, short: (at) => words(known(values[at])).split(" ")[0].slice(0, 5),
+    text: (at) => `${depthText(values[at])} · ${words(known(values[at]))}`,
+    short: (at) => words(known(values[at])).split(" ")[0].slice(0, 5),
     legend: () => [low, high].map((end, at) => ({ color: grey(at), name: words(end), count: null, hatch: 0 })),
   };
 }
@@ -103,7 +104,7 @@ function difference(capture, view, before, after) {
       const [was, is] = [before?.values[at] ?? capture.clear_depth, after.values[at]];
       if (was === capture.clear_depth) return [APPEARED, "appeared"];
       if (is === capture.clear_depth) return [WENT, "went"];
-      return is > was === capture.isReversed ? [UP, "nearer"] : [DOWN, "farther"];
+      return is > was === capture.is_reversed ? [UP, "nearer"] : [DOWN, "farther"];
     },
     color: (at) => [after.color(at), "changed"],
   }[view];

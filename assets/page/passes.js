@@ -20,17 +20,16 @@ export function listSteps(capture, goTo) {
     const triangles = step.draws.reduce((sum, draw) => sum + draw.triangles, 0);
     const facts = step.number === null ? "beside the frame" : `${count(triangles)} triangles`;
     const of = step.light === null ? "scene" : lightName(step.light);
-    const words = [
-      element("span", { class: "name" }, step.number === null ? step.name : `${step.number} · ${step.name}`),
-      element("span", { class: "facts" }, `${of} · ${facts}`),
-    ];
+    const name = step.number === null ? step.name : `${step.number} · ${step.name}`;
+    const words = [element("span", { class: "name" }, name), element("span", { class: "facts" }, `${of} · ${facts}`)];
     const picture = element("canvas", { class: "thumbnail", "aria-hidden": "true" });
     const draws = step.draws.map((draw, at) => drawItem(draw, () => goTo(index, at)));
     return element("li", {}, button({ class: "step", onclick: () => goTo(index, null) }, picture, element("span", {}, words)),
       element("ol", { class: "draws", hidden: true }, draws));
   });
   byId("steps").replaceChildren(...items);
-  const absent = ({ what, of, name, because }) => element("li", {}, element("b", {}, `${what}${name ? ` ${name}` : ""} of ${of}`), ` ${because}`);
+  const absent = ({ what, of, name, because }) =>
+    element("li", {}, element("b", {}, [what, name, "of", of].filter(Boolean).join(" ")), ` ${because}`);
   byId("absent").replaceChildren(...capture.left_out.map(absent));
   byId("left-out").hidden = capture.left_out.length === 0;
   byId("slider").max = capture.steps.length - 1;
@@ -39,9 +38,8 @@ export function listSteps(capture, goTo) {
 // Small pictures of what the steps write.
 export function paintThumbnails(capture) {
   document.querySelectorAll(".thumbnail").forEach((canvas, step) => {
-    const { after, light } = capture.steps[step];
-    const seen = { step, draw: null, view: "auto", phase: "after", light: light ?? 0, face: after.face ?? 0, bit: null, range: null };
-    const layer = layerOf(capture, seen);
+    const { after: { face }, light } = capture.steps[step];
+    const layer = layerOf(capture, { step, draw: null, view: "auto", phase: "after", light: light ?? 0, face, bit: null, range: null });
     if (layer) paint(canvas, layer, Math.max(1, Math.round(layer.size[0] / 104)));
   });
 }

@@ -47,11 +47,7 @@ function outline(capture, { pass: index, triangle: { draw, triangle } }) {
 }
 
 // A box round a texel, with arms that lead to it.
-function crosshair([x, y]) {
-  const [right, down] = [x + 0.5, y + 0.5];
-  const arms = `M${x - 9} ${down}H${x - 3}M${x + 4} ${down}H${x + 10}M${right} ${y - 9}V${y - 3}M${right} ${y + 4}V${y + 10}`;
-  return `M${x - 2} ${y - 2}h5v5h-5z${arms}`;
-}
+const crosshair = ([x, y]) => `M${x - 2} ${y - 2}h5v5h-5zM${x - 9} ${y + 0.5}h6m7 0h6M${x + 0.5} ${y - 9}v6m0 7v6`;
 
 // What lies over the picture: the picked pixel and the selected triangle, or the texels that the pixel reads.
 export function mark(capture, look, view, event) {

@@ -15,7 +15,6 @@ const SHORT = {
 };
 const CLEARS = { put: "other content", "clear-depth": "clear depth", "clear-stencil": "clear stencil", "clear-count": "clear count" };
 const BEYOND = { near: "nearer than the near plane", far: "beyond the far plane" };
-
 const side = (one) => (showsOutside(one) ? "front" : "back");
 
 function distanceText(capture, depth) {
@@ -96,7 +95,8 @@ function eventRow(capture, history, index, look, select) {
   const event = history.events[index];
   const one = event.triangle;
   const isSelected = look.selected === index;
-  const link = one && button({ class: "link", "aria-pressed": String(isSelected), onclick: () => select(index) }, partSign(one.part), named(one));
+  const pressed = { class: "link", "aria-pressed": String(isSelected), onclick: () => select(index) };
+  const link = one && button(pressed, partSign(one.part), named(one));
   return row({ class: `${doesSomething(event) ? "" : "idle"} ${isSelected ? "here" : ""}` }, capture.steps[event.pass].number ?? "–",
     element("td", { class: "what" }, link ?? CLEARS[event.kind]), one ? side(one) : "", ...outcome(one),
     element("td", { class: "change" }, changeText(capture, history, event)));
@@ -106,9 +106,8 @@ function historyTable(capture, history, look, select) {
   const { events, disagreements } = history;
   const isShown = (event) => capture.steps[event.pass].number !== null || event.kind !== "triangle";
   const rows = events.map((event, index) => (isShown(event) ? eventRow(capture, history, index, look, select) : null));
-  const agrees = disagreements.length === 0 ? element("p", { class: "agrees" }, `${events.length} events · as the GPU stored it`)
-    : element("div", { class: "differs", role: "note" }, element("p", {}, `${events.length} events · not as the GPU stored it:`),
-      disagreements.map((text) => element("p", {}, text)));
+  const lines = [`${events.length} events · ${disagreements.length === 0 ? "as" : "not as"} the GPU stored it`, ...disagreements];
+  const agrees = element("div", { class: disagreements.length === 0 ? "agrees" : "differs" }, lines.map((text) => element("p", {}, text)));
   const scroll = element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Events" },
     table(["#", "face", "side", "depth", "stencil", "op", "change"], rows));
   return element("section", { class: "history" }, element("h3", {}, "History"), agrees, scroll);
@@ -118,8 +117,9 @@ function ladderList(capture, history, look, select) {
   const ladder = ladderOf(capture, history, look.light);
   if (!ladder) return null;
   const isBehind = ladder.side === "behind";
-  const item = (attributes, part, name, distance, added, running) => element("li", attributes, partSign(part), name,
-    element("span", { class: "number" }, Number.isFinite(distance) ? length(distance, capture.depth.unit) : "∞"), added, element("span", { class: "running" }, running));
+  const far = (distance) => element("span", { class: "number" }, Number.isFinite(distance) ? length(distance, capture.depth.unit) : "∞");
+  const item = (attributes, part, name, distance, added, running) =>
+    element("li", attributes, partSign(part), name, far(distance), added, element("span", { class: "running" }, running));
   const rung = ({ event, distance, added, running }) => {
     const one = history.events[event].triangle;
     const isSelected = look.selected === event;
@@ -128,15 +128,17 @@ function ladderList(capture, history, look, select) {
       button({ class: "link", "aria-pressed": String(isSelected), onclick: () => select(event) }, `${named(one)}, ${side(one)}`),
       distance, element("span", { class: added > 0 ? "plus" : "minus" }, step), added === 0 ? "" : running);
   };
-  const mark = (kind, distance, running) => item({ class: `mark ${kind}` }, kind, element("span", {}, kind), distance, element("span"), running);
+  const mark = (kind, distance, running) =>
+    item({ class: `mark ${kind}` }, kind, element("span", {}, kind), distance, element("span"), running);
   const surface = ladder.surface ?? Infinity;
   const rungs = (isThere) => ladder.rungs.filter(({ distance }) => (distance < surface) === isThere).map(rung);
   const counting = ladder.rungs.filter(({ added }) => added !== 0).length;
   const way = isBehind ? "from infinity towards the surface" : "from the eye";
   const words = `Counted ${way}: ${counting} of ${ladder.rungs.length} faces count, ${countText(ladder.tested)} in all.`;
-  return element("section", { class: "ladder" }, element("h3", {}, `Ladder of ${lightName(look.light)}`), element("p", { class: "dim" }, words),
-    element("ol", {}, mark("eye", 0, isBehind ? "" : ladder.start), rungs(true), mark("surface", surface, isBehind ? ladder.count : ""),
-      rungs(false), mark("infinity", Infinity, isBehind ? ladder.start : "")));
+  const items = [mark("eye", 0, isBehind ? "" : ladder.start), ...rungs(true), mark("surface", surface, isBehind ? ladder.count : ""),
+    ...rungs(false), mark("infinity", Infinity, isBehind ? ladder.start : "")];
+  const title = element("h3", {}, `Ladder of ${lightName(look.light)}`);
+  return element("section", { class: "ladder" }, title, element("p", { class: "dim" }, words), element("ol", {}, items));
 }
 
 // Fills the panel of the picked pixel.

@@ -29,6 +29,6 @@ export function testFragment(raster, side, depth, stored) {
   const depthPassed = stencilPassed ? COMPARE[raster.depth_compare](depth, stored.depth) : null;
   const operation = stencilPassed ? (depthPassed ? passOp : depthFailOp) : failOp;
   const stencil = (stored.stencil & ~write & 0xff) | (OPERATE[operation](stored.stencil, reference) & write);
-  const storesDepth = depthPassed === true && raster.depth_write;
-  return { stencilPassed, depthPassed, operation, after: { depth: storesDepth ? depth : stored.depth, stencil } };
+  const after = { depth: depthPassed && raster.depth_write ? depth : stored.depth, stencil };
+  return { stencilPassed, depthPassed, operation, after };
 }

@@ -13,19 +13,16 @@ export function texelsRead(capture, light, pixel) {
   const [face, column, row] = [0, 1, 2].map((lane) => texels[at * 3 + lane] - 1);
   if (face < 0) return null;
   const { size: [width, height], image } = faces[face];
-  const within = (value, side) => Math.min(Math.max(value, 0), side - 1);
+  const within = (value, side) => Math.min(Math.max(value - Math.floor(reads.filter / 2), 0), side - 1);
   const own = capture.array(reads.depths)[at];
-  const first = -Math.floor(reads.filter / 2);
-  const places = Array.from({ length: reads.filter ** 2 }, (_, index) => index);
-  const texelOf = (index) => {
-    const x = within(column + first + (index % reads.filter), width);
-    const y = within(row + first + Math.floor(index / reads.filter), height);
+  const texelOf = (_, index) => {
+    const [x, y] = [within(column + index % reads.filter, width), within(row + Math.floor(index / reads.filter), height)];
     const stored = capture.array(image)[y * width + x];
     const isCaster = stored !== capture.clear_depth;
     const isNearest = capture.clear_depth === 0 ? own >= stored : own <= stored;
     return { x, y, stored, isCaster, isLit: !isCaster || isNearest };
   };
-  return { face, own, byPlane: reads.by_plane, middle: [column, row], texels: places.map(texelOf) };
+  return { face, own, byPlane: reads.by_plane, middle: [column, row], texels: Array.from({ length: reads.filter ** 2 }, texelOf) };
 }
 
 function mapReason(capture, light, pixel, fallback) {

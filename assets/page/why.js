@@ -17,8 +17,7 @@ const LIGHT_PASS = {
 export function clearedTo(history, light) {
   const clears = history.events.filter((event) => event.light === light && event.kind.startsWith("clear-"));
   const last = clears.filter(({ kind }) => kind !== "clear-depth").pop();
-  if (!last) return 0;
-  return last.kind === "clear-stencil" ? last.after.stencil : Math.trunc(last.after.count);
+  return last?.kind === "clear-stencil" ? last.after.stencil : Math.trunc(last?.after.count ?? 0);
 }
 
 // On which side of the surface a light's faces count; null where none tells.
