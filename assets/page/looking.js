@@ -16,8 +16,8 @@ export function readAddress(capture) {
   look.draw = draw && capture.hasDraws(look.step) ? draw - 1 : null;
   look.view = VIEWS.includes(words.get("view")) ? words.get("view") : "auto";
   look.phase = PHASES.includes(words.get("phase")) ? words.get("phase") : "after";
-  const light = whole(words.get("light"), capture.lights.length);
-  look.light = light ? light - 1 : 0;
+  look.light = Math.max(0, (whole(words.get("light"), capture.lights.length) ?? 1) - 1);
+  look.face = capture.steps[look.step].after.face ?? 0;
   const [x, y] = (words.get("pixel") ?? "").split(",").map((side, at) => whole(side, capture.size[at] - 1));
   look.pixel = Number.isInteger(x) && Number.isInteger(y) ? [x, y] : null;
 }

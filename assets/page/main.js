@@ -12,7 +12,6 @@ import { showPixel } from "./pixel.js";
 import { whyOf, whyText } from "./why.js";
 
 const VIEW_NAMES = { color: "Colour" };
-const SIGNS_OF_HATCHES = ["", "╱ ", "╲ ", "╳ ", "· "];
 const capture = new Capture(JSON.parse(byId("document").textContent));
 let isWhole = false;
 let layer = null;
@@ -30,7 +29,7 @@ function pickedHistory() {
 
 function showLegend() {
   const entry = ({ color, name, count: pixels, hatch }) => element("span", { class: "entry" }, swatch(color),
-    SIGNS_OF_HATCHES[hatch] + name, pixels === null ? null : element("span", { class: "number" }, count(pixels)));
+    ["", "╱ ", "╲ ", "╳ ", "· "][hatch] + name, pixels === null ? null : element("span", { class: "number" }, count(pixels)));
   byId("legend").replaceChildren(...(layer ? layer.legend().slice(0, 24).map(entry) : []));
 }
 
@@ -54,8 +53,8 @@ function showBar(view) {
 
 function showHover() {
   const place = look.hover ?? (viewOf(capture, look) === "map" ? null : look.pixel);
-  byId("hover").textContent = layer && place ? `${place.join(", ")} · ${layer.text(place[1] * layer.size[0] + place[0])}`
-    : "Point at a pixel for its value; click it for its history.";
+  const hint = layer ? "Point at a pixel for its value; click it for its history." : byId("picture").getAttribute("aria-label");
+  byId("hover").textContent = layer && place ? `${place.join(", ")} · ${layer.text(place[1] * layer.size[0] + place[0])}` : hint;
   magnify(layer, place);
 }
 
@@ -144,13 +143,14 @@ function turnTheme() {
 function listen() {
   const on = (id, kind, act) => byId(id).addEventListener(kind, act);
   document.addEventListener("keydown", onKey);
-  for (const kind of ["pointermove", "pointerleave"]) {
+  for (const kind of ["pointermove", "pointerdown", "pointerleave"]) {
     on("picture", kind, (event) => {
-      look.hover = kind === "pointermove" ? placeOf(event) : null;
+      look.hover = kind === "pointerleave" ? null : placeOf(event);
       showHover();
     });
   }
-  on("picture", "click", (event) => viewOf(capture, look) !== "map" && go({ pixel: placeOf(event) }));
+  // A click's place is rounded to whole points, a pointer's is not.
+  on("picture", "click", (event) => viewOf(capture, look) !== "map" && go({ pixel: look.hover ?? placeOf(event) }));
   const buttons = { previous: () => goStep(-1), next: () => goStep(1), up: () => goDraw(-1), down: () => goDraw(1), theme: turnTheme };
   for (const [id, act] of Object.entries(buttons)) on(id, "click", act);
   on("slider", "input", ({ target }) => go({ step: Number(target.value) }));
