@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The file holds what was captured, each array once, and the triangles in clip space, as the GPU has them
-//! ([`clip`]). A pixel's history is computed in the browser, by modules that are named after those they mirror
+//! (`clip.rs`). A pixel's history is computed in the browser, by modules that are named after those they mirror
 //! (`coverage.js`, `stencil_machine.js`, `history.js`, `ladder.js`, `why.js`), and held against what was stored.
 //! The same frame makes the same bytes: nothing in it tells of times.
 
