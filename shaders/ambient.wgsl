@@ -17,7 +17,11 @@ fn fs_ambient(at: Unlit) -> @location(0) vec4f {
 }
 
 fn under_ambient_light(at: Unlit) -> vec4f {
-    return vec4f(draw.color * in_checks(at.relative) * view.ambient.rgb + draw.emission, 1.0);
+    return in_ambient_light(draw.color * in_checks(at.relative));
+}
+
+fn in_ambient_light(color: vec3f) -> vec4f {
+    return vec4f(color * view.ambient.rgb + draw.emission, 1.0);
 }
 
 // Where depth is clamped nothing clips at the near plane: this does.

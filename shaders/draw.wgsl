@@ -23,6 +23,11 @@ struct DrawConstants {
     // What the surface sends out by itself.
     emission: vec3f,
     checks: f32,
+    // Of vertices that are extruded here: the light, homogeneous and relative to the view's origin; what is added to
+    // the fourth's multiple of a vertex that is carried, and its w.
+    extrude_from: vec4f,
+    extrude_to: vec4f,
+    extruded_w: f32,
 }
 
 const NO_LAYER: u32 = 0xffffffffu;

@@ -5,15 +5,15 @@ fn fs_light(surface: Surface) -> @location(0) vec4f {
     if is_beyond_far(surface) {
         discard;
     }
-    return vec4f(added(surface) * arriving(surface).rgb, 0.0);
+    return vec4f(added(surface, vec3f(in_checks(surface.relative))) * arriving(surface).rgb, 0.0);
 }
 
-fn added(surface: Surface) -> vec3f {
+// `share`: how much of its colour the surface has there.
+fn added(surface: Surface, share: vec3f) -> vec3f {
     // Wrapped light reaches round the edge; Lambert's ends there, and exact signs say where.
     if faces_away(surface.sides) && light.wraps == 0u {
         return vec3f(0.0);
     }
-    let share = in_checks(surface.relative);
     if draw.shading == GOURAUD {
         return surface.diffuse * share + surface.gloss;
     }

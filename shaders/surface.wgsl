@@ -1,6 +1,4 @@
-// Surfaces with what shading and labels need. Vertices are pulled: the triangle is known, so flat
-// normals and per-triangle signs need no duplicated vertices, and positions are the same bits that
-// the ambient pass read.
+// Surfaces with what shading and labels need.
 
 const NOT_REVERSED: u32 = 0xffffffffu;
 const GOURAUD: u32 = 1u;
@@ -36,10 +34,6 @@ struct Light {
     clip_from_relative: array<mat4x4f, 64>,
 }
 
-@group(2) @binding(0) var<storage, read> positions: array<vec4f>;
-@group(2) @binding(1) var<storage, read> corners: array<u32>;
-@group(2) @binding(2) var<storage, read> normals: array<vec4f>;
-@group(2) @binding(3) var<storage, read> sides: array<u32>;
 // Storage, not uniform: see `uniforms.rs`.
 @group(3) @binding(0) var<storage, read> light: Light;
 
@@ -57,6 +51,10 @@ struct Surface {
 
 @vertex
 fn vs_surface(@builtin(vertex_index) vertex_index: u32) -> Surface {
+    return surface_at(vertex_index);
+}
+
+fn surface_at(vertex_index: u32) -> Surface {
     var triangle = vertex_index / 3u;
     if draw.reversed_sum != NOT_REVERSED {
         triangle = draw.reversed_sum - triangle;

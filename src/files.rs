@@ -1,9 +1,91 @@
-//! Files that are there whole or not at all, and the way from one to another.
+//! Files that are there whole or not at all, files that another file names, and the way from one to another.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::fs::{File, FileType};
+use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Why a file is not read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// Nothing is there.
+    #[error("there is no such file: check the path")]
+    Missing,
+    /// Not for us.
+    #[error("can't be read: allow reading it")]
+    Denied,
+    /// A folder.
+    #[error("is a folder: name a file in it")]
+    Folder,
+    /// Reading it could last for ever.
+    #[error("is a {0}: only plain files are read")]
+    NoFile(&'static str),
+    /// Longer than what may be read.
+    #[error("has more than {} MiB: give a smaller file", .most >> 20)]
+    TooLarge {
+        /// Bytes.
+        most: u64,
+    },
+    /// What the system says.
+    #[error("can't be read: {0}; check the file")]
+    Failed(io::Error),
+}
+
+impl From<io::Error> for ReadError {
+    fn from(error: io::Error) -> ReadError {
+        match error.kind() {
+            ErrorKind::NotFound => ReadError::Missing,
+            ErrorKind::PermissionDenied => ReadError::Denied,
+            _ => ReadError::Failed(error),
+        }
+    }
+}
+
+/// Opens a plain file. One that another names may be anything: a device or a pipe, which opening could wait for, is
+/// refused before.
+///
+/// # Errors
+/// As [`ReadError`] says.
+pub fn open_plain(path: &Path) -> Result<File, ReadError> {
+    let metadata = std::fs::metadata(path)?;
+    if metadata.is_dir() {
+        return Err(ReadError::Folder);
+    }
+    if !metadata.is_file() {
+        return Err(ReadError::NoFile(kind(metadata.file_type())));
+    }
+    Ok(File::open(path)?)
+}
+
+/// The bytes of a plain file of at most so many; what grows while it is read ends at the limit.
+///
+/// # Errors
+/// As [`ReadError`] says.
+pub fn read_plain(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
+    let file = open_plain(path)?;
+    if file.metadata()?.len() > most {
+        return Err(ReadError::TooLarge { most });
+    }
+    let mut bytes = Vec::new();
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { Err(ReadError::TooLarge { most }) } else { Ok(bytes) }
+}
+
+#[cfg(unix)]
+fn kind(of: FileType) -> &'static str {
+    use std::os::unix::fs::FileTypeExt;
+    match of {
+        of if of.is_fifo() => "pipe",
+        of if of.is_socket() => "socket",
+        of if of.is_char_device() || of.is_block_device() => "device",
+        _ => "special file",
+    }
+}
+
+#[cfg(not(unix))]
+fn kind(_: FileType) -> &'static str {
+    "special file"
+}
 
 /// A file that is written beside its place, and is there once it is finished. One that never is leaves nothing, and what
 /// was there before stays.
@@ -132,6 +214,34 @@ mod tests {
         assert_eq!(std::fs::read(&path).expect("a file"), b"old");
         file.finish().expect("in its place");
         assert_eq!((std::fs::read(&path).expect("a file"), names()), (b"new".to_vec(), 1));
+    }
+
+    #[test]
+    fn a_plain_file_is_read_up_to_its_limit() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a");
+        std::fs::write(&path, [7; 9]).expect("written");
+        assert_eq!(read_plain(&path, 9).expect("nine bytes"), [7; 9]);
+        assert!(matches!(read_plain(&path, 8), Err(ReadError::TooLarge { most: 8 })));
+        assert!(matches!(read_plain(folder.path(), 8), Err(ReadError::Folder)));
+        assert!(matches!(read_plain(&folder.path().join("b"), 8), Err(ReadError::Missing)));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn devices_pipes_and_sockets_are_refused_by_name_and_links_are_followed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = |name: &str| folder.path().join(name);
+        let refused = |path: &Path| read_plain(path, 8).expect_err("refused").to_string();
+        assert!(refused(Path::new("/dev/zero")).starts_with("is a device: "));
+        std::os::unix::fs::symlink("/dev/zero", place("zero")).expect("a link");
+        assert!(refused(&place("zero")).starts_with("is a device: "));
+        let _listener = std::os::unix::net::UnixListener::bind(place("socket")).expect("a socket");
+        assert!(refused(&place("socket")).starts_with("is a socket: "));
+        let made = std::process::Command::new("mkfifo").arg(place("pipe")).status().expect("mkfifo");
+        assert!(made.success() && refused(&place("pipe")).starts_with("is a pipe: "), "and nobody waits for a writer");
+        // Such files say that they are empty.
+        assert!(matches!(read_plain(Path::new("/proc/self/maps"), 8), Err(ReadError::TooLarge { .. })));
     }
 
     #[test]

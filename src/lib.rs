@@ -42,6 +42,9 @@
 //!   `Model::set_capture` (`inspector/model/frame.rs`) shows it; older answers make way.
 //! - **A frame of another program**: `import/extract.py` takes it out of a RenderDoc capture, `import/read.rs` reads
 //!   that without trust, and what comes out is [`import::RawFrame`].
+//! - **A picture on a surface**: `scene/obj/materials.rs` (`map_Kd`) and `scene/file/build.rs` (`texture`) read it,
+//!   `scene/picture.rs` decodes it and makes its pyramid, `technique/surfaces.rs` says where each corner lies in it,
+//!   `shaders/texture.wgsl` looks it up, and `reading/shading.rs` computes what that finds.
 //! - **A panel**: a file in `inspector/panels/`, a field and an arm in `inspector/panels/mod.rs`, a name in
 //!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. What it says of a frame comes from [`reading`].
 //! - **A film**: [`film`] makes the pictures of an animated PNG, `picture/apng.rs` writes it as they come, for

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    keep_mesa_quiet();
     match stencilscope::cli::run(std::env::args_os()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -13,5 +14,16 @@ fn main() -> ExitCode {
             }
             ExitCode::from(error.exit_code())
         }
+    }
+}
+
+/// Where there is no folder for a Wayland display, Mesa's device-select layer has libwayland look for one all the same,
+/// which complains on standard error each time that GPUs are listed. It only sorts them, and we choose by ourselves.
+#[expect(unsafe_code, reason = "no other thread runs yet that could read the environment")]
+fn keep_mesa_quiet() {
+    let is_set = |name| std::env::var_os(name).is_some();
+    if cfg!(target_os = "linux") && !is_set("XDG_RUNTIME_DIR") && !is_set("NODEVICE_SELECT") {
+        // Sound as the reason says: `main` calls this first.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }
 }

@@ -1,10 +1,13 @@
-//! A pixel's point in every space: the chain leads back to the pixel, and the depth is the one that was stored.
+//! A pixel's point and vertices in every space: the chain leads back to the pixel, and the depth is the one that was stored.
 
-use crate::common::{request, session};
-use glam::{DMat4, DVec4};
+use crate::commands::{assert_fails, folder, run, text};
+use crate::common::{mesh, request, session};
+use glam::{DMat4, DVec3, DVec4};
+use stencilscope::capture::Capture;
 use stencilscope::math::depth::DepthMapping;
-use stencilscope::reading::coordinates::{Place, Step};
+use stencilscope::reading::coordinates::{NoVertex, Place, Step, Vertex, VertexPlaces};
 use stencilscope::scene::builtin::Builtin;
+use stencilscope::scene::{Object, Projection, Scene, SceneBuilder};
 use stencilscope::technique::Technique;
 
 fn matrix(rows: [[f64; 4]; 4]) -> DMat4 {
@@ -39,7 +42,7 @@ fn the_chain_leads_from_the_world_to_the_pixel_and_back() {
             let [eye, clip, window] = [0, 1, 2].map(|step| matrix(place.chain[step].inverse));
             let ndc = window * DVec4::new(x, y, depth, 1.0);
             let world = eye * clip * (ndc * point.clip[3]);
-            let error = (world.truncate() / world.w - glam::DVec3::from_array(point.world)).length();
+            let error = (world.truncate() / world.w - DVec3::from_array(point.world)).length();
             assert!(error < 1e-6, "{name}, {pixel:?}: {error} m");
             let steps: Vec<f64> = place.depth_steps.iter().filter_map(|step| step.metres).collect();
             assert!(steps.windows(2).take(2).all(|pair| pair[0] > pair[1]), "more bits, finer steps: {steps:?}");
@@ -65,4 +68,161 @@ fn steps_of_depth_are_those_of_the_formula() {
         assert!(share.is_none_or(|share| within.contains(&share)), "{bits} bits: {share:?}");
         assert!(share.is_some() || bits == 8, "{bits} bits");
     }
+}
+
+/// The corners of the triangle that a pixel shows are a triangle of the object's mesh, and hold the pixel between them;
+/// their products with the chain's matrices are what is told.
+#[test]
+fn the_corners_of_a_pixel_s_triangle_go_the_same_way() {
+    let mut session = session();
+    let mut found = 0;
+    for (name, projection) in [
+        ("tori", Projection::Perspective),
+        ("steps", Projection::Orthographic { half_height: 3.0 }),
+        ("table", Projection::Oblique { half_height: 2.0, angle_degrees: 45.0, factor: 0.5 }),
+    ] {
+        let mut scene = Builtin::named(name).expect(name).scene().expect("a scene");
+        scene.camera.projection = projection;
+        let (capture, plan) =
+            session.capture_with_plan(&scene, &request(Technique::ZFail, [80, 60])).expect("a capture");
+        for pixel in [[40, 30], [20, 45], [63, 21], [33, 52]] {
+            let history = session.history(&plan, &capture, pixel).expect("a history");
+            let place = Place::of(&capture, pixel).with_vertices(&capture, &plan, &history);
+            assert_eq!(place.point.is_some(), place.vertices.len() == 3, "{name} {pixel:?}");
+            let Some(point) = place.point else { continue };
+            found += 1;
+            let [a, b, c] = [0, 1, 2].map(|at: usize| DVec3::from_array(place.vertices[at].world));
+            let object =
+                scene.objects.iter().find(|object| object.name == place.vertices[0].object).expect("an object");
+            let indices = [0, 1, 2].map(|at: usize| place.vertices[at].index);
+            assert!(object.mesh.triangles().contains(&indices), "{name} {pixel:?}: {indices:?}");
+            for vertex in &place.vertices {
+                let given = object.world_positions()[vertex.index as usize];
+                assert!(given.distance(vertex.world.into()) < 1e-5, "{vertex:?} is not {given}");
+                let [eye, clip, window] = [0, 1, 2].map(|step| matrix(place.chain[step].matrix));
+                let expected = clip * eye * DVec3::from_array(vertex.world).extend(1.0);
+                assert!(expected.abs_diff_eq(DVec4::from_array(vertex.clip), 1e-9), "{vertex:?}");
+                if let (Some(ndc), Some(at)) = (vertex.ndc, vertex.window) {
+                    assert!((expected.truncate() / expected.w).abs_diff_eq(ndc.into(), 1e-9), "{vertex:?}");
+                    assert!((window * DVec3::from_array(ndc).extend(1.0)).truncate().abs_diff_eq(at.into(), 1e-6));
+                }
+            }
+            let across = (b - a).cross(c - a);
+            let [x, y, z] = point.world;
+            let share = |from: DVec3, to: DVec3| {
+                across.dot((to - from).cross(DVec3::new(x, y, z) - from)) / across.length_squared()
+            };
+            let shares = [share(b, c), share(c, a), share(a, b)];
+            assert!(shares.iter().all(|share| (-0.01..1.01).contains(share)), "{name} {pixel:?}: {shares:?}");
+        }
+    }
+    assert!(found > 8, "{found}");
+}
+
+/// A wedge that runs from before the eye to behind it; the eye looks along −Z from the origin, near plane at 0.5.
+fn wedge(projection: Projection) -> Scene {
+    let points = [[0.0, 0.0, -4.0], [1.0, 0.0, 0.0], [-1.0, 0.5, 3.0], [9.0, 0.0, -4.0], [0.0, 0.0, -0.25]];
+    let mut scene = SceneBuilder::new("wedge")
+        .object(Object::of("wedge: sharp", mesh(&points, &[[0, 1, 2], [0, 3, 1], [0, 4, 1]])))
+        .seen_from([0.0; 3], [0.0, 0.0, -1.0])
+        .build();
+    scene.camera.near = 0.5;
+    scene.camera.fov_y_degrees = 90.0;
+    scene.camera.projection = projection;
+    scene
+}
+
+fn vertices(capture: &Capture, scene: &Scene) -> Vec<Vertex> {
+    let asked: Vec<String> = (0..5).map(|index| format!("wedge: sharp:{index}")).collect();
+    VertexPlaces::of(capture, scene, &asked).expect("five vertices").vertices
+}
+
+#[test]
+fn what_is_not_before_the_eye_is_not_divided_and_says_so() {
+    let scene = wedge(Projection::Perspective);
+    let mut session = session();
+    for mapping in DepthMapping::ALL {
+        let mut frame = request(Technique::None, [64, 64]);
+        frame.choice.set("depth", mapping.name()).expect("a setting");
+        let capture = session.capture(&scene, &frame).expect("a capture");
+        let [before, beside, behind, right, too_near] =
+            <[Vertex; 5]>::try_from(vertices(&capture, &scene)).expect("five");
+        assert!(before.beyond.is_empty(), "{before:?}");
+        // Straight ahead is the middle of the picture.
+        let [x, y, _] = before.window.expect("divided");
+        assert!((x - 32.0).abs() < 1e-9 && (y - 32.0).abs() < 1e-9, "{before:?}");
+        assert_eq!((before.clip[3], beside.clip[3], behind.clip[3]), (4.0, 0.0, -3.0));
+        for vertex in [&beside, &behind] {
+            assert_eq!((vertex.ndc, vertex.window), (None, None), "{vertex:?}");
+            assert!(vertex.beyond.contains(&"near"), "{}: {vertex:?}", mapping.name());
+            let told = vertex.rows(6);
+            assert!(told.iter().any(|(name, value)| *name == "NDC" && value.starts_with("not divided: w is not")));
+        }
+        assert_eq!(right.beyond, ["right"]);
+        assert!((right.ndc.expect("divided")[0] - 2.25).abs() < 1e-9);
+        assert_eq!(too_near.beyond, ["near"], "{}", mapping.name());
+    }
+}
+
+/// Lines of sight that are parallel divide by 1, before the eye and behind it.
+#[test]
+fn parallel_cameras_divide_by_one() {
+    let mut session = session();
+    for projection in [
+        Projection::Orthographic { half_height: 2.0 },
+        Projection::Oblique { half_height: 2.0, angle_degrees: 0.0, factor: 0.5 },
+    ] {
+        let scene = wedge(projection);
+        let capture = session.capture(&scene, &request(Technique::None, [64, 64])).expect("a capture");
+        let found = vertices(&capture, &scene);
+        assert!(found.iter().all(|vertex| vertex.clip[3] == 1.0 && vertex.ndc.is_some()), "{found:?}");
+        let near: Vec<bool> = found.iter().map(|vertex| vertex.beyond.contains(&"near")).collect();
+        assert_eq!(near, [false, true, true, false, true], "{found:?}");
+        if matches!(projection, Projection::Orthographic { .. }) {
+            // Half of the half-height to the right: three quarters of the picture.
+            let at = found[1].window.expect("divided");
+            assert!((at[0] - 48.0).abs() < 1e-9 && (at[1] - 32.0).abs() < 1e-9, "{at:?}");
+        }
+    }
+}
+
+#[test]
+fn a_vertex_that_is_not_there_is_named() {
+    let scene = wedge(Projection::Perspective);
+    let capture = session().capture(&scene, &request(Technique::None, [16, 16])).expect("a capture");
+    let asked = |vertex: &str| VertexPlaces::of(&capture, &scene, &[vertex.to_owned()]).expect_err(vertex);
+    assert!(matches!(asked("wedge"), NoVertex::Form(_)) && matches!(asked("wedge: sharp:-1"), NoVertex::Form(_)));
+    assert!(asked("wedge sharp:0").to_string().contains("wedge: sharp"), "the nearest name");
+    assert_eq!(asked("wedge: sharp:5").to_string(), "wedge: sharp has no vertex 5: it has 5, counted from 0");
+}
+
+#[test]
+fn pixel_tells_vertices_and_explains_each_key() {
+    let work = folder();
+    let of = |arguments: &[&str]| {
+        let size = ["pixel", "tetrahedron", "--size", "80x60"];
+        text(&run(work.path(), &[&size[..], arguments].concat()).stdout)
+    };
+    let told = of(&["--vertex", "tetrahedron:3", "--vertex", "shaft:0"]);
+    assert!(told.contains("vertex 3 of tetrahedron\nworld ") && told.contains("vertex 0 of shaft\n"), "{told}");
+    assert!(told.contains("clip from eye, and its inverse:") && told.contains("\nview "), "{told}");
+    let json = |arguments: &[&str]| -> serde_json::Value { serde_json::from_str(&of(arguments)).expect("JSON") };
+    let document = json(&["--vertex", "tetrahedron:3", "--json"]);
+    assert_eq!((&document["vertices"][0]["index"], document["chain"].as_array().map(Vec::len)), (&3.into(), Some(3)));
+    crate::help::assert_json_is_explained("pixel", &document);
+    let document = json(&["--at", "40,30", "--coordinates", "--json"]);
+    assert_eq!(document["coordinates"]["vertices"].as_array().map(Vec::len), Some(3));
+    crate::help::assert_json_is_explained("pixel", &document);
+    let told = of(&["--at", "40,30", "--coordinates"]);
+    assert_eq!(told.matches("\nview ").count(), 3, "{told}");
+    // The folder has the scene, and says the same.
+    let made = run(work.path(), &["capture", "tetrahedron", "--size", "80x60", "-o", "out"]);
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    let of_folder = text(&run(work.path(), &["pixel", "out", "--vertex", "tetrahedron:3"]).stdout);
+    assert_eq!(of_folder, of(&["--vertex", "tetrahedron:3"]));
+    assert_fails(&["pixel", "tetrahedron", "--vertex", "tetrahedon:3"], 2, &["tetrahedon", "`tetrahedron`"]);
+    assert_fails(&["pixel", "tetrahedron", "--vertex", "tetrahedron:99"], 2, &["has no vertex 99: it has 4"]);
+    assert_fails(&["pixel", "tetrahedron", "--vertex", "a:0", "--at", "1,1"], 2, &["--at"]);
+    assert_fails(&["pixel", "tetrahedron"], 2, &["--at"]);
+    assert_fails(&["pixel", "ogre", "--vertex", "a:0"], 2, &["another program's is a guess", "leave it out"]);
 }

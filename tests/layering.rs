@@ -19,7 +19,7 @@ const MAY_USE: [(&str, &[&str]); 34] = [
     ("geometry", &["math", "scene"]),
     ("plan", &["math", "scene", "geometry", "numbers"]),
     ("technique", &["math", "scene", "geometry", "plan", "truth", "progress", "numbers"]),
-    ("capture", &["math", "scene", "plan", "accuracy", "truth"]),
+    ("capture", &["math", "scene", "plan", "accuracy", "truth", "files"]),
     ("stencil_machine", &["plan"]),
     ("recorded", &["math", "scene", "plan", "capture", "stencil_machine", "truth"]),
     ("import", &["math", "scene", "plan", "capture", "recorded", "progress"]),

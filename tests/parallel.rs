@@ -1,7 +1,8 @@
 //! Cameras whose lines of sight are parallel: every volume counted right, from anywhere.
 
 use crate::common::random::Random;
-use crate::common::{cuboid, from_above, request, session};
+use crate::common::{cuboid, from_above, request, session, square};
+use glam::DVec3;
 use std::collections::BTreeSet;
 use stencilscope::accuracy;
 use stencilscope::capture::{Capture, CapturedLight};
@@ -253,4 +254,32 @@ fn a_field_of_view_is_refused_where_there_is_none() {
     assert!(line.contains("orthographic and has no field of view"), "{line}");
     let (code, line) = run(&["--coordinates"]);
     assert_eq!(code, Some(0), "{line}");
+}
+
+/// The eye is over a board and the near plane under it: what lines of sight begin in is asked there.
+#[test]
+fn z_pass_begins_with_the_volumes_around_the_middle_of_the_near_plane() {
+    let mut session = session();
+    let board = square("board", 3.0, 4.0);
+    let mut scene = from_above(vec![board]);
+    let half_height = 1.0;
+    scene.camera = Camera {
+        projection: Projection::Orthographic { half_height },
+        eye: DVec3::new(0.3, 5.0, 0.4),
+        target: DVec3::new(0.0, 0.0, 0.1),
+        near: 2.5,
+        ..scene.camera
+    };
+    scene.lights = vec![Light::point([0.2, 9.0, 0.1])];
+    let mut wrong_from = |start: &str| {
+        let mut request = request(Technique::ZPass, SIZE);
+        request.choice.set("start", start).expect("a setting");
+        let capture = session.capture(&scene, &request).expect("a capture");
+        let told =
+            capture.steps.iter().any(|step| step.purpose.contains("1, for the volumes around the middle of the near"));
+        assert_eq!(told, start == "eye-count");
+        wrong(&session.judged(&scene, &capture, &Progress::default()).expect("a truth"))
+    };
+    assert_eq!(wrong_from("eye-count"), 0);
+    assert!(wrong_from("zero") > 1000);
 }

@@ -65,6 +65,7 @@ fn plan(format: TextureFormat, meshes: Vec<DrawMesh>, passes: Vec<Pass>) -> Fram
         lights: Vec::new(),
         ambient: [0.0; 3],
         meshes,
+        textures: Vec::new(),
         passes,
         left_out: Vec::new(),
     }

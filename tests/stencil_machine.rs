@@ -5,8 +5,8 @@ use glam::{DVec3, Mat4};
 use std::collections::BTreeMap;
 use stencilscope::capture::{Capture, Snapshot};
 use stencilscope::plan::{
-    Attachment, AttachmentId, AttachmentRole, Blob, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh,
-    FramePlan, MeshId, Part, Pass, PlanView, Program, RasterState, StencilFace, ViewId,
+    Attachment, AttachmentId, AttachmentRole, ColorWrite, DepthStencilTarget, Draw, DrawConstants, DrawMesh, FramePlan,
+    MeshId, Part, Pass, PlanView, Program, RasterState, StencilFace, ViewId,
 };
 use stencilscope::stencil_machine::{Fragment, Stored, test};
 use wgpu::{CompareFunction as Compare, StencilOperation as Operation};
@@ -143,7 +143,7 @@ fn pass(name: &str, clear: bool, draws: Vec<Draw>) -> Pass {
 }
 
 fn mesh(name: &str, vertices: Vec<[f32; 4]>, indices: Vec<u32>) -> DrawMesh {
-    DrawMesh { name: name.to_owned(), vertices: Blob::new(vertices), indices: Blob::new(indices), surface: None }
+    DrawMesh::of_positions(name, vertices, indices)
 }
 
 /// First every pixel is given its stored value, then every case is drawn once over its pixels.
@@ -200,6 +200,7 @@ fn plan(cases: &[Case]) -> FramePlan {
         lights: Vec::new(),
         ambient: [0.0; 3],
         meshes: vec![stored, mesh("tested", vertices, indices)],
+        textures: Vec::new(),
         passes: vec![pass("store", true, prepare), pass("test", false, tests)],
         left_out: Vec::new(),
     }

@@ -4,9 +4,9 @@ use super::{Anatomy, PlacedLight, PlacedObject, Silhouette, frusta, volumes};
 use crate::geometry::{Caster, Casters, Edge, EdgeList, Facings, GeometryCache, silhouette};
 use crate::plan::FramePlan;
 use crate::recorded::Space;
-use crate::scene::{Object, Scene};
+use crate::scene::{Group, Object, Scene};
 use crate::technique::{Choice, casting};
-use glam::{DVec3, DVec4};
+use glam::{DVec3, DVec4, Vec3};
 
 /// Cosine of the angle between neighbours' normals from which on the edge between them is drawn: 25°.
 const CREASE: f64 = 0.906;
@@ -50,11 +50,24 @@ fn placed(object: &Object, cache: &mut GeometryCache) -> PlacedObject {
         casts: object.casts,
         receives: object.receives,
         visible: object.visible,
-        color: object.material.color,
+        color: color(object),
         mesh: object.mesh.clone(),
         positions,
         edges,
     }
+}
+
+/// What its parts reflect on average, pictures included.
+fn color(object: &Object) -> [f32; 3] {
+    let groups = object.mesh.groups();
+    let count = groups.iter().map(|group| group.triangles.len()).sum::<usize>().max(1) as f32;
+    let part = |group: &Group| {
+        let shown = object.texture_of(group).map_or([1.0; 3], |texture| texture.picture.mean());
+        let own = group.material.unwrap_or(object.material).color;
+        let share = group.triangles.len() as f32 / count;
+        Vec3::from(own) * Vec3::from(shown.map(|channel| channel as f32)) * share
+    };
+    groups.iter().map(part).sum::<Vec3>().to_array()
 }
 
 /// Creases, borders, and where more than two triangles meet.
@@ -118,6 +131,24 @@ mod tests {
     use crate::scene::{OpenSpec, open};
     use crate::technique::{Job, Technique, plan};
 
+    #[test]
+    fn an_object_with_a_picture_has_its_average_colour() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/pattern.toml");
+        let scene = open(&OpenSpec::new(file)).expect("a scene");
+        let anatomy = of(file, Technique::None, &[]);
+        let [floor, wood, .., ring] = &anatomy.objects[..] else { panic!("four objects") };
+        assert_eq!(ring.color, scene.objects[3].material.color, "as it is");
+        for (object, base, texture) in [
+            (floor, 0.75, scene.objects[0].texture.as_ref()),
+            (wood, 0.9, scene.objects[1].mesh.groups()[0].texture.as_ref()),
+        ] {
+            let mean = texture.expect("a picture").picture.mean();
+            let near =
+                object.color.iter().zip(mean).all(|(color, mean)| (f64::from(*color) - base * mean).abs() < 1e-6);
+            assert!(near && object.color[0] > object.color[2], "{}: {:?}", object.name, object.color);
+        }
+    }
+
     fn of(name: &str, technique: Technique, settings: &[(&str, &str)]) -> Anatomy {
         let scene = open(&OpenSpec::new(name)).expect("a scene");
         let mut choice = Choice::new(technique);
@@ -143,7 +174,13 @@ mod tests {
 
     #[test]
     fn the_volumes_of_z_fail_close_and_stand_on_the_silhouette() {
-        for settings in [&[][..], &[("extrusion", "finite:3")], &[("casters", "light-facing")]] {
+        for settings in [
+            &[][..],
+            &[("extrusion", "finite:3")],
+            &[("casters", "light-facing")],
+            &[("extruded-by", "vertex-shader")],
+            &[("extruded-by", "vertex-shader"), ("extrusion", "finite:3")],
+        ] {
             let anatomy = of("tori", Technique::ZFail, settings);
             assert!(!anatomy.volumes.is_empty());
             for (index, volume) in anatomy.volumes.iter().enumerate() {

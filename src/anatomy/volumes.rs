@@ -1,7 +1,7 @@
 //! Shadow volumes out of a plan.
 
 use super::{PlacedObject, ShadowVolume, VolumePart};
-use crate::plan::{Draw, DrawMesh, FramePlan, MeshId, Pass, ViewId};
+use crate::plan::{Draw, DrawMesh, FramePlan, MeshId, Part, Pass, ViewId};
 use crate::recorded::{self, Space};
 use crate::scene::Scene;
 use glam::{DVec3, DVec4};
@@ -72,9 +72,28 @@ fn world(mesh: &DrawMesh, origin: DVec3) -> Vec<DVec4> {
 
 fn add(volume: &mut ShadowVolume, draw: &Draw, mesh: &DrawMesh) {
     let triangles = corners(draw, mesh);
-    match volume.parts.iter_mut().find(|part| part.part == draw.part) {
-        Some(part) => part.triangles.extend(triangles),
-        None => volume.parts.push(VolumePart { part: draw.part, triangles: triangles.collect() }),
+    let Some(extruded) = &mesh.extruded else { return add_part(volume, draw.part, triangles) };
+    // What its vertex shader has made of them.
+    let of = |triangle: &[u32; 3]| match extruded.carried(*triangle) {
+        [true, true, true] if draw.part == Part::Caps => Some(Part::DarkCap),
+        [false, false, false] if draw.part == Part::Caps => Some(Part::LightCap),
+        // Its triangles face the same way: it has no area.
+        [true, true, true] | [false, false, false] => None,
+        _ => Some(draw.part),
+    };
+    let triangles: Vec<_> = triangles.filter_map(|triangle| Some((of(&triangle)?, triangle))).collect();
+    for part in [Part::Side, Part::LightCap, Part::DarkCap] {
+        let mut of_part = triangles.iter().filter(|(of, _)| *of == part).map(|(_, triangle)| *triangle).peekable();
+        if of_part.peek().is_some() {
+            add_part(volume, part, of_part);
+        }
+    }
+}
+
+fn add_part(volume: &mut ShadowVolume, part: Part, triangles: impl Iterator<Item = [u32; 3]>) {
+    match volume.parts.iter_mut().find(|one| one.part == part) {
+        Some(one) => one.triangles.extend(triangles),
+        None => volume.parts.push(VolumePart { part, triangles: triangles.collect() }),
     }
 }
 

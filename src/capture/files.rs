@@ -5,6 +5,7 @@
 //! (layers, size, size, 4), `|u1`.
 
 use super::{CaptureError, Image, PixelFormat};
+use crate::files::{open_plain, read_plain};
 use npyz::WriterBuilder;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Write};
@@ -141,12 +142,21 @@ pub(super) fn read_layers(path: &Path) -> Result<Vec<Image>, CaptureError> {
     read.map_err(|reason| broken(path, reason))
 }
 
+/// Bytes of the largest text.
+const MOST_TEXT: u64 = 2 << 30;
+
+/// A text of a folder.
+pub(super) fn read_text(path: &Path) -> Result<String, CaptureError> {
+    let bytes = read_plain(path, MOST_TEXT).map_err(|error| broken(path, error.to_string()))?;
+    String::from_utf8(bytes).map_err(|_| broken(path, "it is no text".to_owned()))
+}
+
 fn broken(path: &Path, reason: String) -> CaptureError {
     CaptureError::Read { file: path.to_owned(), reason }
 }
 
 fn open(path: &Path) -> Result<npyz::NpyFile<BufReader<File>>, String> {
-    let file = File::open(path).map_err(|error| error.to_string())?;
+    let file = open_plain(path).map_err(|error| error.to_string())?;
     npyz::NpyFile::new(BufReader::new(file)).map_err(|error| format!("no NumPy array ({error})"))
 }
 
@@ -197,7 +207,7 @@ fn size(width: u64, height: u64) -> Result<[u32; 2], String> {
 }
 
 fn read_png(path: &Path) -> Result<Vec<Image>, String> {
-    let file = File::open(path).map_err(|error| error.to_string())?;
+    let file = open_plain(path).map_err(|error| error.to_string())?;
     let mut reader = png::Decoder::new(BufReader::new(file)).read_info().map_err(|error| error.to_string())?;
     size(u64::from(reader.info().width), u64::from(reader.info().height))?;
     let length = reader.output_buffer_size().ok_or("it is too large")?;

@@ -2,12 +2,13 @@
 
 use super::options::{FrameOptions, SceneOptions, Subject, pixel};
 use super::{CliError, output};
+use crate::capture::Capture;
 use crate::history::PixelDocument;
 use crate::plan::LightId;
-use crate::reading::coordinates::Place;
+use crate::reading::coordinates::{Place, VertexPlaces};
 use crate::reading::shading::Shaded;
 use crate::reading::texels_read::{TexelReaders, TexelsRead};
-use crate::session::{RunFrame, Session, SessionError};
+use crate::session::{FrameSource, RunFrame, Session, SessionError};
 use clap::Args;
 use serde::Serialize;
 use std::time::Instant;
@@ -17,14 +18,18 @@ pub struct PixelArguments {
     /// A built-in scene, a scene file (.toml), a model (.obj) or a capture folder
     scene: String,
     /// Column and row from the top left; repeatable
-    #[arg(long, value_name = "X,Y", value_parser = pixel, required = true)]
+    #[arg(long, value_name = "X,Y", value_parser = pixel, required_unless_present = "vertex")]
     at: Vec<[u32; 2]>,
+    /// In place of a pixel, a vertex of an object's mesh, counted from 0, in world, eye, clip, device and window
+    /// coordinates with the matrices between them; repeatable
+    #[arg(long, value_name = "OBJECT:INDEX", conflicts_with_all = ["at", "coordinates"])]
+    vertex: Vec<String>,
     #[command(flatten)]
     scene_options: SceneOptions,
     #[command(flatten)]
     frame: FrameOptions,
-    /// Also the pixel's point in world, eye, clip, device and window coordinates, with the matrices between them; not of
-    /// another program's frame, whose camera is a guess
+    /// Also the pixel's point and the corners of its triangle in world, eye, clip, device and window coordinates, with the
+    /// matrices between them; not of another program's frame, whose camera is a guess
     #[arg(long)]
     coordinates: bool,
     /// Machine-readable, to a file or to standard output in place of the text
@@ -47,10 +52,15 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
     let file = arguments.json.as_ref().and_then(Option::as_deref);
     file.map_or(Ok(()), output::check_target)?;
     let mut session = Session::new(arguments.frame.adapter.as_deref())?;
-    let RunFrame { capture, plan, .. } = subject.frame(&mut session)?;
-    if arguments.coordinates && capture.origin.is_some() {
-        let why = "`--coordinates` needs the frame's camera, and another program's is a guess: leave it out";
-        return Err(CliError::Usage(why.to_owned()));
+    let RunFrame { capture, plan, source } = subject.frame(&mut session)?;
+    let has_vertices = !arguments.vertex.is_empty();
+    if (arguments.coordinates || has_vertices) && capture.origin.is_some() {
+        let option = if has_vertices { "--vertex" } else { "--coordinates" };
+        let why = format!("`{option}` needs the frame's camera, and another program's is a guess: leave it out");
+        return Err(CliError::Usage(why));
+    }
+    if has_vertices {
+        return vertices(arguments, &capture, source.as_deref(), file);
     }
     let mut stories = vec![format!("{}, {}, {}x{}\n", capture.scene, capture.technique, size[0], size[1])];
     for (light, counted) in capture.lights.iter().enumerate().filter_map(|(at, light)| Some((at, light.count_of?))) {
@@ -69,7 +79,8 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         let read = texels.iter().enumerate().filter_map(|(light, read)| Some(read.as_ref()?.text(light)));
         let reasons = read.chain(shading.as_ref().map(Shaded::text)).collect::<String>();
         stories.push(history.story_with(&capture.depth, &reasons));
-        let coordinates = arguments.coordinates.then(|| Place::of(&capture, *pixel));
+        let place = || Place::of(&capture, *pixel).with_vertices(&capture, &plan, &history);
+        let coordinates = arguments.coordinates.then(place);
         stories.extend(coordinates.as_ref().map(Place::text));
         documents.push(Document { history: PixelDocument::new(&history, took), texels, shading, coordinates });
     }
@@ -79,6 +90,24 @@ pub fn run(arguments: &PixelArguments) -> Result<(), CliError> {
         (Some(_), all) => output::deliver(&json(all)?, file)?,
     }
     if wrong == 0 { Ok(()) } else { Err(CliError::WrongHistory { pixels: wrong }) }
+}
+
+/// Where the vertices are that are asked for.
+fn vertices(
+    arguments: &PixelArguments,
+    capture: &Capture,
+    source: Option<&FrameSource>,
+    file: Option<&str>,
+) -> Result<(), CliError> {
+    let no_scene =
+        || CliError::Usage("`--vertex` needs the frame's scene, which this folder has not: leave it out".to_owned());
+    let scene = &source.ok_or_else(no_scene)?.scene;
+    let places = VertexPlaces::of(capture, scene, &arguments.vertex);
+    let places = places.map_err(|error| CliError::Usage(format!("--vertex: {error}")))?;
+    match arguments.json {
+        None => output::print(&places.text()),
+        Some(_) => output::deliver(&json(&places)?, file),
+    }
 }
 
 /// A history, the texels that decided each light, how the surface answers it, and where the pixel's point is, if that was asked for.

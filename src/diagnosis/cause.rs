@@ -82,6 +82,8 @@ named_enum! {
         NotCasting = "not-casting",
         /// The scene says that an object is not drawn.
         Undrawn = "undrawn",
+        /// A vertex shader tells in single precision what faces the light, and where vertices are carried.
+        CarriedInF32 = "carried-in-f32",
     }
 }
 
@@ -116,6 +118,10 @@ impl Cause {
             Cause::LightNotAdded => {
                 "Far vertices are the way from light to vertex times a number, and the light's own place is not added \
                  back: the volumes lean towards the world's origin. Carry them from the light."
+            }
+            Cause::CarriedInF32 => {
+                "A vertex shader tells in single precision which triangles face the light and where its volumes go, and \
+                 the light is too near to the caster or to the plane of its triangles for that. Let the CPU carry them."
             }
             Cause::FiniteExtrusion => "The shadow volumes end before they reach the surface. Extrude them to infinity.",
             Cause::OpenMesh => {

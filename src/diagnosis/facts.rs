@@ -103,7 +103,7 @@ impl<'a> Facts<'a> {
     /// The draws of a part of a light's shadows, as the camera sees them.
     pub fn draws(&self, light: usize, part: Part) -> impl Iterator<Item = &'a Draw> {
         let passes = self.passes(light).filter(move |pass| part == Part::Map || pass.view.0 == 0);
-        passes.flat_map(|pass| &pass.draws).filter(move |draw| draw.part == part)
+        passes.flat_map(|pass| &pass.draws).filter(move |draw| draw.part.includes(part))
     }
 
     /// Are volumes counted for a light?

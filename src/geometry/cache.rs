@@ -4,8 +4,8 @@
 use super::hugging::{has_edge_on, put_hugging_last};
 use super::planar::Flattened;
 use super::{
-    Casters, EdgeList, Extruder, Facings, Fan, FarEnd, Planes, SilhouetteEdge, Topology, VolumeParts, silhouette,
-    silhouette_by_search, solid, write_indices,
+    Casters, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings, Fan, FarEnd, Planes, SilhouetteEdge, Topology,
+    VolumeParts, silhouette, silhouette_by_search, solid, write_indices,
 };
 use crate::scene::{Mesh, Pose};
 use glam::{DVec3, DVec4};
@@ -31,6 +31,8 @@ pub struct GeometryCache {
     planes: HashMap<(u64, PoseBits), Arc<Planes>>,
     topologies: HashMap<u64, Arc<Topology>>,
     solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
+    /// By mesh, place, form and origin, with whether the newest plan has asked for them.
+    extruded: HashMap<(u64, PoseBits, ExtrudedForm, [u64; 3]), (ExtrudedVolume, bool)>,
     triangles_kept: usize,
     facings: Facings,
     silhouette: Vec<SilhouetteEdge>,
@@ -81,8 +83,9 @@ pub struct VolumeOf<'a> {
 }
 
 impl GeometryCache {
-    /// Forgets flattened casters that the last plan did not ask for.
+    /// Forgets flattened casters and volumes for vertex shaders that the last plan did not ask for.
     pub fn next_plan(&mut self) {
+        self.extruded.retain(|_, (_, used)| std::mem::take(used));
         self.flattened.retain(|_, (_, used)| std::mem::take(used));
         self.flattened_kept = self.flattened.values().map(|(triangles, _)| triangles.len()).sum();
     }
@@ -149,6 +152,19 @@ impl GeometryCache {
             _ => FarEnd::Caps,
         };
         write_indices(triangles, caster.world.len(), &self.facings, (found, hugging), far_end, out)
+    }
+
+    /// A caster's volume for a vertex shader: made again only if caster or origin changed.
+    pub fn extruded(&mut self, caster: Caster, origin: DVec3, form: ExtrudedForm) -> ExtrudedVolume {
+        let Caster { mesh, pose, world } = caster;
+        let key = (mesh.content_hash(), pose_bits(pose), form, origin.to_array().map(f64::to_bits));
+        if let Some((volume, used)) = self.extruded.get_mut(&key) {
+            *used = true;
+            return volume.clone();
+        }
+        let volume = ExtrudedVolume::new(world, mesh.triangles(), &self.edges(mesh), origin, form);
+        self.extruded.insert(key, (volume.clone(), true));
+        volume
     }
 
     /// How `mesh` hangs together, found out on first use.

@@ -3,8 +3,10 @@
 //! Everything is computed in world space in `f64`; [`relative`] alone rounds to the GPU's `f32`,
 //! after subtracting the eye.
 
+mod blob;
 mod cache;
 mod edges;
+mod extruded;
 mod facing;
 mod far_end;
 mod hugging;
@@ -24,8 +26,10 @@ pub mod umbra;
 mod volume;
 mod winding;
 
+pub use blob::Blob;
 pub use cache::{Caster, GeometryCache, SilhouetteBy, VolumeOf};
 pub use edges::{Edge, EdgeList};
+pub use extruded::{Carry, Extruded, ExtrudedCorner, ExtrudedForm, ExtrudedVolume};
 pub use facing::{Casters, Facings, Planes};
 pub use far_end::Fan;
 pub use intersection::self_meeting;

@@ -18,7 +18,7 @@
 
 use super::facing::{MIXED, RUN};
 use super::far_end::Fan;
-use super::{Facings, SilhouetteEdge};
+use super::{Carry, Facings, SilhouetteEdge, relative};
 use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
 use rayon::prelude::*;
@@ -101,6 +101,16 @@ impl Extruder {
             Extrusion::Finite(factor) => (position + (position - light) * factor).extend(1.0),
             Extrusion::FromOrigin(factor) => ((position - light) * (factor + 1.0)).extend(1.0),
         }
+    }
+
+    /// The same in single precision for what is relative to `origin`, as a vertex shader carries it.
+    #[must_use]
+    pub fn carry_from(&self, origin: DVec3) -> Carry {
+        let light = relative::homogeneous(self.light, origin);
+        // Linear in the place: where the origin goes, and what a metre makes.
+        let (zero, one) = (self.carry(origin), self.carry(origin + DVec3::X));
+        let [x, y, z, w] = relative::homogeneous(zero, origin);
+        Carry { light, scale: (one.x - zero.x) as f32, offset: [x, y, z], w }
     }
 
     /// The caster's vertices, then the far ones. A fan's follow them.

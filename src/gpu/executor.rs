@@ -5,6 +5,7 @@ use super::buffers::Buffers;
 use super::collect::{Collector, Memory, Output, after, keep};
 use super::fragment_log::LogKeeper;
 use super::maps::Maps;
+use super::pictures::Pictures;
 use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
 use super::queries::{Notes, Samples, Timestamps};
@@ -26,6 +27,7 @@ pub struct Executor {
     pub(super) context: Arc<Context>,
     pub(super) pipelines: Pipelines,
     buffers: Buffers,
+    pictures: Pictures,
     maps: Maps,
     pub(super) log: LogKeeper,
 }
@@ -50,6 +52,7 @@ impl Executor {
         Executor {
             pipelines: Pipelines::new(&context.device),
             buffers: Buffers::default(),
+            pictures: Pictures::default(),
             maps: Maps::default(),
             log: LogKeeper::default(),
             context: Arc::new(context),
@@ -72,6 +75,7 @@ impl Executor {
     pub fn forget(&mut self) {
         self.pipelines = Pipelines::new(&self.context.device);
         self.buffers = Buffers::default();
+        self.pictures = Pictures::default();
         self.maps = Maps::default();
         self.log = LogKeeper::default();
     }
@@ -82,8 +86,8 @@ impl Executor {
     /// A plan that breaks a rule, pictures or meshes that are too large, a driver that refuses.
     pub fn prepare<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
-        let Executor { context, pipelines, buffers, maps, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, buffers, maps, plan))
+        let Executor { context, pipelines, buffers, pictures, maps, .. } = self;
+        context.guarded(|| Prepared::new(context, pipelines, buffers, pictures, maps, plan))
     }
 
     /// The same for a plan that is run once and gives way to others: its maps go with it, and those of the plan
@@ -93,8 +97,8 @@ impl Executor {
     /// As [`Executor::prepare`].
     pub fn prepare_once<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
         self.check(plan)?;
-        let Executor { context, pipelines, buffers, .. } = self;
-        context.guarded(|| Prepared::new(context, pipelines, buffers, &mut Maps::default(), plan))
+        let Executor { context, pipelines, buffers, pictures, .. } = self;
+        context.guarded(|| Prepared::new(context, pipelines, buffers, pictures, &mut Maps::default(), plan))
     }
 
     /// Finds what can't be run, and a device for what can.
@@ -383,13 +387,15 @@ fn record_pass(encoder: &mut CommandEncoder, prepared: &Prepared, index: usize, 
 }
 
 fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &PreparedDraw, light_offset: u32) {
-    if draw.program.group_count() > 1 {
+    if ready.shader.group_count() > 1 {
         pass.set_bind_group(1, &prepared.draw_group, &[prepared.draws.offset(ready.index)]);
     }
     let corners = draw.triangles.start * 3..draw.triangles.end * 3;
     if let Some((surface, light)) = &ready.shading {
         pass.set_bind_group(2, surface, &[]);
-        pass.set_bind_group(3, light, &[light_offset]);
+        if light.is_some() {
+            pass.set_bind_group(3, light, &[light_offset]);
+        }
     } else {
         pass.set_vertex_buffer(0, ready.vertices.slice(..));
         pass.set_index_buffer(ready.indices.slice(..), wgpu::IndexFormat::Uint32);

@@ -4,6 +4,7 @@
 //! Context      adapter and device
 //! Pipelines    shaders and pipelines, interned by description
 //! Buffers      vertices and indices, by the hash of their content
+//! Pictures     pictures on surfaces with their levels, by the hash of their content
 //! Maps         what lights see, kept while nothing that makes it changes
 //! features     what few plans need, asked for when one does
 //! Executor     a plan → prepared textures, bind groups and draws → one command buffer, or more
@@ -22,6 +23,7 @@ mod executor;
 mod features;
 mod fragment_log;
 mod maps;
+mod pictures;
 mod pipelines;
 mod prepared;
 mod queries;

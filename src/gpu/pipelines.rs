@@ -3,8 +3,8 @@
 //! Groups: 0 the pass's view, 1 the draw's constants, 2 a surface's data, 3 the light and, for
 //! programs that read them, its map or labels. A program has only the groups it uses.
 
-use super::shaders::source_of;
-use crate::plan::{ColorWrite, Program, RasterState, Visibility};
+use super::shaders::{Form, Shader, source_of};
+use crate::plan::{ColorWrite, RasterState, Visibility};
 use std::collections::HashMap;
 use wgpu::{
     BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendComponent, BlendFactor,
@@ -16,7 +16,7 @@ use wgpu::{
 /// What a pipeline is made from.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineKey {
-    pub program: Program,
+    pub shader: Shader,
     /// Its reference is set by the pass, and 0 here.
     pub raster: RasterState,
     pub color_format: Option<TextureFormat>,
@@ -31,6 +31,7 @@ pub(super) struct Layouts {
     pub view: BindGroupLayout,
     pub draw: BindGroupLayout,
     pub surface: BindGroupLayout,
+    pub textured_surface: BindGroupLayout,
     pub light: BindGroupLayout,
     pub light_with_map: BindGroupLayout,
     pub light_with_labels: BindGroupLayout,
@@ -44,7 +45,9 @@ pub(super) struct Pipelines {
     pub layouts: Layouts,
     /// Linear, clamped to the edge.
     pub smooth_sampler: wgpu::Sampler,
-    modules: HashMap<Program, ShaderModule>,
+    /// Of pictures on surfaces, between texels and levels: repeated, and clamped to the edge.
+    pub picture_samplers: [wgpu::Sampler; 2],
+    modules: HashMap<Shader, ShaderModule>,
     pipelines: HashMap<PipelineKey, RenderPipeline>,
     starts: HashMap<TextureFormat, RenderPipeline>,
 }
@@ -53,6 +56,8 @@ pub(super) struct Pipelines {
 const MOST_KEPT: usize = 512;
 
 const POSITION_ATTRIBUTES: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x4];
+/// `ExtrudedCorner` of the plan.
+const EXTRUDED_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
 
 impl Pipelines {
     pub fn new(device: &Device) -> Pipelines {
@@ -62,9 +67,21 @@ impl Pipelines {
             min_filter: wgpu::FilterMode::Linear,
             ..wgpu::SamplerDescriptor::default()
         });
+        let picture_samplers = [wgpu::AddressMode::Repeat, wgpu::AddressMode::ClampToEdge].map(|mode| {
+            device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("picture"),
+                address_mode_u: mode,
+                address_mode_v: mode,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..wgpu::SamplerDescriptor::default()
+            })
+        });
         Pipelines {
             layouts: Layouts::new(device),
             smooth_sampler,
+            picture_samplers,
             modules: HashMap::new(),
             pipelines: HashMap::new(),
             starts: HashMap::new(),
@@ -91,25 +108,26 @@ impl Pipelines {
     }
 
     fn create(&mut self, device: &Device, key: &PipelineKey) -> RenderPipeline {
-        let source = source_of(key.program);
-        let module = self.modules.entry(key.program).or_insert_with(|| {
+        let (source, program) = (source_of(key.shader), key.shader.program);
+        let module = self.modules.entry(key.shader).or_insert_with(|| {
             let text = wgpu::ShaderSource::Wgsl(source.source.clone().into());
             device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(source.vertex), source: text })
         });
-        let groups = self.layouts.of(key.program);
+        let groups = self.layouts.of(key.shader);
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(source.vertex),
-            bind_group_layouts: &groups.map(Some)[..key.program.group_count()],
+            bind_group_layouts: &groups.map(Some)[..key.shader.group_count()],
             ..wgpu::PipelineLayoutDescriptor::default()
         });
-        let positions = Some(VertexBufferLayout {
-            array_stride: 16,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &POSITION_ATTRIBUTES,
-        });
+        let (array_stride, attributes) = if key.shader.form == Form::Extruded {
+            (32, &EXTRUDED_ATTRIBUTES[..])
+        } else {
+            (16, &POSITION_ATTRIBUTES[..])
+        };
+        let positions = Some(VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes });
         let color_target = key.color_format.map(|format| color_target(format, key.raster.color));
         let compilation_options = wgpu::PipelineCompilationOptions::default();
-        let is_recorded = key.program.is_recorded();
+        let is_recorded = program.is_recorded();
         let constants = key.depth_steps.map(|steps| ("steps", f64::from(steps)));
         let constants = constants.as_slice();
         // Floats are stored as they are.
@@ -121,7 +139,7 @@ impl Pipelines {
                 module,
                 entry_point: Some(source.vertex),
                 compilation_options: compilation_options.clone(),
-                buffers: if key.program.pulls_vertices() { &[] } else { std::slice::from_ref(&positions) },
+                buffers: if key.shader.pulls_vertices() { &[] } else { std::slice::from_ref(&positions) },
             },
             primitive: wgpu::PrimitiveState {
                 cull_mode: key.raster.cull,
@@ -140,22 +158,6 @@ impl Pipelines {
             multiview_mask: None,
             cache: None,
         })
-    }
-}
-
-impl Program {
-    /// Reads vertices from storage by index, instead of a vertex buffer.
-    pub(super) fn pulls_vertices(self) -> bool {
-        self.visibility().is_some()
-    }
-
-    /// How many bind groups it uses, from group 0 on.
-    pub(super) fn group_count(self) -> usize {
-        match self {
-            Program::Position | Program::Recorded { .. } => 1,
-            Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
-            Program::Light(_) | Program::Label(_) | Program::Through => 4,
-        }
     }
 }
 
@@ -210,6 +212,8 @@ impl Layouts {
             count: None,
         };
         let labels = texture(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
+        let picture = BindGroupLayoutEntry { binding: 5, ..texture(float(true), wgpu::TextureViewDimension::D2) };
+        let picture_sampler = BindGroupLayoutEntry { binding: 6, ..sampler };
         let layout = |label, entries: &[BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(label), entries })
         };
@@ -217,6 +221,10 @@ impl Layouts {
             view: layout("view", &[uniform(0)]),
             draw: layout("draw", &[constants(0)]),
             surface: layout("surface", &[storage(0), storage(1), storage(2), storage(3)]),
+            textured_surface: layout(
+                "textured surface",
+                &[storage(0), storage(1), storage(2), storage(3), storage(4), picture, picture_sampler],
+            ),
             light: layout("light", &[constants(0)]),
             light_with_map: layout("light with map", &[constants(0), map]),
             light_with_labels: layout("light with labels", &[constants(0), labels]),
@@ -225,15 +233,16 @@ impl Layouts {
         }
     }
 
-    fn of(&self, program: Program) -> [&BindGroupLayout; 4] {
-        let light = match program.visibility() {
+    fn of(&self, shader: Shader) -> [&BindGroupLayout; 4] {
+        let light = match shader.program.visibility() {
             Some(Visibility::Map) => &self.light_with_map,
             Some(Visibility::Labels) => &self.light_with_labels,
             Some(Visibility::Count) => &self.light_with_count,
             Some(Visibility::ReceiverTexture | Visibility::Projected) => &self.light_with_textures,
             Some(Visibility::Everywhere) | None => &self.light,
         };
-        [&self.view, &self.draw, &self.surface, light]
+        let surface = if shader.form == Form::Textured { &self.textured_surface } else { &self.surface };
+        [&self.view, &self.draw, surface, light]
     }
 }
 

@@ -3,12 +3,14 @@
 
 use super::buffers::Buffers;
 use super::maps::{KeptMap, Maps};
-use super::pipelines::{PipelineKey, Pipelines};
+use super::pictures::Pictures;
+use super::pipelines::{Layouts, PipelineKey, Pipelines};
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
+use super::shaders::Shader;
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError, start};
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, Program, RasterState, Visibility,
+    Attachment, AttachmentId, AttachmentRole, Draw, FramePlan, LightId, Pass, PlanTexture, RasterState, Visibility,
 };
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -50,14 +52,15 @@ pub(super) struct PreparedPass {
 
 #[derive(Debug)]
 pub(super) struct PreparedDraw {
+    pub shader: Shader,
     /// With the stencil reference of each: one, or two where front and back faces have masks of their own.
     pub pipelines: Vec<(RenderPipeline, u8)>,
     /// Index among all draws of the plan.
     pub index: usize,
     pub vertices: Buffer,
     pub indices: Buffer,
-    /// Groups 2 and 3, for programs that shade.
-    pub shading: Option<(BindGroup, BindGroup)>,
+    /// Groups 2 and 3, for programs that pull their vertices and for those that light.
+    pub shading: Option<(BindGroup, Option<BindGroup>)>,
 }
 
 impl<'a> Prepared<'a> {
@@ -65,12 +68,14 @@ impl<'a> Prepared<'a> {
         context: &Arc<Context>,
         pipelines: &mut Pipelines,
         buffers: &mut Buffers,
+        pictures: &mut Pictures,
         maps: &mut Maps,
         plan: &'a FramePlan,
     ) -> Result<Prepared<'a>, GpuError> {
         let device = &context.device;
         check_size(device, plan)?;
         buffers.next_plan();
+        pictures.next_plan();
         maps.next_plan();
         let create = |index: usize| create(device, plan, AttachmentId(index));
         let attachments = 0..plan.attachments.len();
@@ -97,25 +102,42 @@ impl<'a> Prepared<'a> {
                     continue;
                 }
                 let states = draw.raster.by_face();
+                let mesh = &plan.meshes[draw.mesh.0];
+                let shader = Shader::of(draw, mesh);
                 let of_state = |raster: &RasterState| {
                     let reference = raster.stencil_reference;
-                    (pipelines.get(device, &key_of(plan, pass, draw.program, raster)), reference)
+                    (pipelines.get(device, &key_of(plan, pass, shader, raster)), reference)
                 };
                 let states = states.iter().map(of_state).collect();
-                let mesh = &plan.meshes[draw.mesh.0];
-                let vertices = buffers.get(device, &mesh.vertices)?;
+                let vertices = match &mesh.extruded {
+                    Some(extruded) => buffers.get(device, &extruded.corners)?,
+                    None => buffers.get(device, &mesh.vertices)?,
+                };
                 let indices = buffers.get(device, &mesh.indices)?;
-                let shading = match (&mesh.surface, pass.light, draw.program.pulls_vertices()) {
-                    (Some(surface), Some(light), true) => {
+                let texture = draw.constants.texture.and_then(|id| plan.textures.get(id.0));
+                let shading = match (&mesh.surface, shader.pulls_vertices()) {
+                    (Some(surface), true) => {
                         let normals = buffers.get(device, &surface.normals)?;
                         let sides = buffers.get(device, &surface.sides)?;
+                        let shown = match (&surface.uvs, texture) {
+                            (Some(uvs), Some(texture)) => {
+                                let sampler = &pipelines.picture_samplers[usize::from(texture.clamps)];
+                                let view = pictures.get(context, &texture.picture);
+                                Some((buffers.get(device, uvs)?, view, sampler.clone()))
+                            }
+                            _ => None,
+                        };
                         let storage = [&vertices, &indices, &normals, &sides];
-                        let surface = surface_group(device, pipelines, storage);
-                        Some((surface, light_group(device, pipelines, plan, &lights, &textures, draw, light)))
+                        let surface = surface_group(device, pipelines, storage, shown.as_ref());
+                        let is_lit = draw.program.visibility().is_some();
+                        let light = pass.light.filter(|_| is_lit);
+                        let light =
+                            light.map(|light| light_group(device, pipelines, plan, &lights, &textures, draw, light));
+                        Some((surface, light))
                     }
                     _ => None,
                 };
-                prepared.draws.push(PreparedDraw { pipelines: states, index, vertices, indices, shading });
+                prepared.draws.push(PreparedDraw { shader, pipelines: states, index, vertices, indices, shading });
             }
             passes.push(prepared);
         }
@@ -199,6 +221,17 @@ fn check_size(device: &Device, plan: &FramePlan) -> Result<(), GpuError> {
         let targets = targets.chain(pass.depth_stencil.iter().map(|target| target.attachment));
         bytes += targets.map(|id| plan.held_texels(id) / u64::from(plan.held_layers(id)) * 4).sum::<u64>();
     }
+    bytes += plan.textures.iter().map(PlanTexture::bytes).sum::<u64>();
+    for texture in &plan.textures {
+        let [width, height] = texture.picture.size();
+        if width > limit || height > limit {
+            return Err(GpuError::TooLarge {
+                what: texture.picture.name().to_owned(),
+                needed: format!("{width}x{height}"),
+                most: format!("{limit}x{limit}"),
+            });
+        }
+    }
     if bytes > GpuError::MOST_BYTES {
         let [needed, most] = [bytes, GpuError::MOST_BYTES].map(|bytes| format!("{} MiB", bytes >> 20));
         return Err(GpuError::TooLarge { what: "the frame".to_owned(), needed, most });
@@ -261,22 +294,34 @@ fn prepared_targets(plan: &FramePlan, pass: &Pass, textures: &[Texture]) -> Prep
     }
 }
 
-fn key_of(plan: &FramePlan, pass: &Pass, program: Program, raster: &RasterState) -> PipelineKey {
+fn key_of(plan: &FramePlan, pass: &Pass, shader: Shader, raster: &RasterState) -> PipelineKey {
     let depth_stencil = pass.depth_stencil.as_ref().map(|target| plan.attachment(target.attachment));
     PipelineKey {
-        program,
+        shader,
         raster: RasterState { stencil_reference: 0, ..raster.clone() },
         color_format: pass.color.as_ref().map(|target| plan.attachment(target.attachment).format),
         depth_format: depth_stencil.map(Attachment::held_format),
-        depth_steps: depth_stencil.and_then(Attachment::depth_steps).filter(|_| program.is_recorded()),
+        depth_steps: depth_stencil.and_then(Attachment::depth_steps).filter(|_| shader.program.is_recorded()),
     }
 }
 
-fn surface_group(device: &Device, pipelines: &Pipelines, storage: [&Buffer; 4]) -> BindGroup {
-    let bindings = (0..).zip(storage);
-    let entries: Vec<BindGroupEntry> =
-        bindings.map(|(binding, buffer)| BindGroupEntry { binding, resource: buffer.as_entire_binding() }).collect();
-    let layout = &pipelines.layouts.surface;
+/// `shown`: where its corners lie in a picture, the picture, and how it is sampled.
+fn surface_group(
+    device: &Device,
+    pipelines: &Pipelines,
+    storage: [&Buffer; 4],
+    shown: Option<&(Buffer, TextureView, wgpu::Sampler)>,
+) -> BindGroup {
+    let resources = storage.map(Buffer::as_entire_binding).into_iter();
+    let picture = shown.map(|(uvs, view, sampler)| {
+        [uvs.as_entire_binding(), BindingResource::TextureView(view), BindingResource::Sampler(sampler)]
+    });
+    let entries: Vec<BindGroupEntry> = (0..)
+        .zip(resources.chain(picture.into_iter().flatten()))
+        .map(|(binding, resource)| BindGroupEntry { binding, resource })
+        .collect();
+    let Layouts { surface, textured_surface, .. } = &pipelines.layouts;
+    let layout = if shown.is_some() { textured_surface } else { surface };
     device.create_bind_group(&BindGroupDescriptor { label: Some("surface"), layout, entries: &entries })
 }
 

@@ -2,7 +2,52 @@
 //!
 //! A program that lights or labels is its own file and one that says how much light arrives.
 
-use crate::plan::{Program, Visibility};
+use crate::plan::{Draw, DrawMesh, Program, Visibility};
+
+/// What a shader module is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct Shader {
+    pub program: Program,
+    pub form: Form,
+}
+
+/// What a program reads beside what all of its draws have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Form {
+    Plain,
+    /// The picture of the surface.
+    Textured,
+    /// The planes of vertices that are [`Extruded`](crate::plan::Extruded).
+    Extruded,
+}
+
+impl Shader {
+    /// Of a draw.
+    pub fn of(draw: &Draw, mesh: &DrawMesh) -> Shader {
+        let form = match (&mesh.extruded, draw.constants.texture) {
+            (Some(_), _) => Form::Extruded,
+            (None, Some(_)) => Form::Textured,
+            (None, None) => Form::Plain,
+        };
+        Shader { program: draw.program, form }
+    }
+
+    /// Reads vertices from storage by index, instead of a vertex buffer.
+    pub fn pulls_vertices(self) -> bool {
+        self.program.visibility().is_some() || self.form == Form::Textured
+    }
+
+    /// How many bind groups it uses, from group 0 on.
+    pub fn group_count(self) -> usize {
+        match self.program {
+            Program::Ambient { .. } if self.form == Form::Textured => 3,
+            Program::Position if self.form == Form::Extruded => 2,
+            Program::Position | Program::Recorded { .. } => 1,
+            Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
+            Program::Light(_) | Program::Label(_) | Program::Through => 4,
+        }
+    }
+}
 
 /// A shader module of a program.
 #[derive(Debug, Clone)]
@@ -19,7 +64,28 @@ macro_rules! file {
     };
 }
 
-pub(super) fn source_of(program: Program) -> ProgramSource {
+pub(super) fn source_of(shader: Shader) -> ProgramSource {
+    match (shader.form, shader.program) {
+        (Form::Extruded, program) => extruding(program),
+        (Form::Textured, Program::Ambient { from_near }) => {
+            let fragment = if from_near { "fs_ambient_textured_from_near" } else { "fs_ambient_textured" };
+            let files = [file!("draw.wgsl"), file!("pulled.wgsl"), file!("texture.wgsl"), file!("ambient.wgsl")];
+            joined(&[&files[..], &[file!("ambient_textured.wgsl")]].concat(), "vs_ambient_textured", Some(fragment))
+        }
+        (Form::Textured, Program::Light(visibility)) => {
+            let files = surface_files(file!("light.wgsl"), visibility);
+            let textured = [file!("texture.wgsl"), file!("light_textured.wgsl")];
+            joined(&[&files[..], &textured].concat(), "vs_surface_textured", Some("fs_light_textured"))
+        }
+        (_, program) => plain(program),
+    }
+}
+
+fn joined(files: &[&str], vertex: &'static str, fragment: Option<&'static str>) -> ProgramSource {
+    ProgramSource { source: [&[file!("shared.wgsl")], files].concat().join("\n"), vertex, fragment }
+}
+
+fn plain(program: Program) -> ProgramSource {
     let (files, vertex, fragment) = match program {
         Program::Position => (vec![file!("position.wgsl")], "vs_position", None),
         Program::Flat | Program::FlatLabel | Program::Count => {
@@ -41,7 +107,16 @@ pub(super) fn source_of(program: Program) -> ProgramSource {
         }
         Program::Label(visibility) => (surface_files(file!("label.wgsl"), visibility), "vs_surface", Some("fs_label")),
     };
-    ProgramSource { source: [&[file!("shared.wgsl")], &files[..]].concat().join("\n"), vertex, fragment }
+    joined(&files, vertex, fragment)
+}
+
+/// The same with vertices that the shader carries away from a light, for programs that are only positions and a value.
+fn extruding(program: Program) -> ProgramSource {
+    let plain = plain(program);
+    // A program that reads no value of its draw has no constants yet.
+    let constants = if program == Program::Position { file!("draw.wgsl") } else { "" };
+    let source = [&plain.source, constants, file!("extruded.wgsl")].join("\n");
+    ProgramSource { source, vertex: "vs_extruded", fragment: plain.fragment }
 }
 
 fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str> {
@@ -53,7 +128,7 @@ fn surface_files(own: &'static str, visibility: Visibility) -> Vec<&'static str>
         Visibility::ReceiverTexture => file!("arriving_by_receiver.wgsl"),
         Visibility::Projected => file!("arriving_by_projection.wgsl"),
     };
-    vec![file!("draw.wgsl"), file!("surface.wgsl"), arriving, own]
+    vec![file!("draw.wgsl"), file!("pulled.wgsl"), file!("surface.wgsl"), arriving, own]
 }
 
 /// What puts depths into a target.
@@ -70,7 +145,12 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid() {
-        let programs = Program::all().into_iter().map(|program| (format!("{program:?}"), source_of(program).source));
+        let with = |form| move |program| Shader { program, form };
+        let plain = Program::all().into_iter().map(with(Form::Plain));
+        let textured = Program::all().into_iter().filter(|program| program.shows_texture()).map(with(Form::Textured));
+        let extruded = [Program::Position, Program::Flat, Program::Count].into_iter().map(with(Form::Extruded));
+        let shaders = plain.chain(textured).chain(extruded);
+        let programs = shaders.map(|shader| (format!("{shader:?}"), source_of(shader).source));
         for (name, source) in
             programs.chain([("FragmentLog".to_owned(), fragment_log()), ("Start".to_owned(), START.to_owned())])
         {

@@ -4,7 +4,7 @@
 //! would put their values into the shader and compile it anew for every draw whose values differ, and keep what it
 //! compiled until the process ends: 5 MB and tens of milliseconds a frame of `tori`. It does not look into storage.
 
-use crate::plan::{Draw, FramePlan, Pass, PlanLight, PlanMap, Program};
+use crate::plan::{Carry, Draw, FramePlan, Pass, PlanLight, PlanMap, Program};
 use crate::scene::Shading;
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -40,6 +40,10 @@ struct DrawUniform {
     checks_from: [f32; 2],
     emission: [f32; 3],
     checks: f32,
+    extrude_from: [f32; 4],
+    extrude_to: [f32; 4],
+    extruded_w: f32,
+    padding: [f32; 3],
 }
 
 /// `Light` of `surface.wgsl`.
@@ -118,12 +122,15 @@ pub(super) fn views(device: &Device, plan: &FramePlan) -> UniformArray {
 pub(super) fn draws(device: &Device, plan: &FramePlan) -> UniformArray {
     let of_pass = |pass: &Pass| {
         let map = pass.light.and_then(|light| plan.lights[light.0].map.as_ref());
-        pass.draws.iter().map(|draw| draw_uniform(draw, map)).collect::<Vec<_>>()
+        let carry = |draw: &Draw| plan.meshes.get(draw.mesh.0)?.extruded.as_ref().map(|extruded| extruded.carry);
+        pass.draws.iter().map(|draw| draw_uniform(draw, map, carry(draw))).collect::<Vec<_>>()
     };
     UniformArray::new(device, "draws", &plan.passes.iter().flat_map(of_pass).collect::<Vec<_>>(), BufferUsages::STORAGE)
 }
 
-fn draw_uniform(draw: &Draw, map: Option<&PlanMap>) -> DrawUniform {
+fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> DrawUniform {
+    let carry = carry.unwrap_or_default();
+    let [x, y, z] = carry.offset;
     let material = &draw.constants.material;
     let is_label = matches!(draw.program, Program::Label(_));
     DrawUniform {
@@ -143,6 +150,10 @@ fn draw_uniform(draw: &Draw, map: Option<&PlanMap>) -> DrawUniform {
         checks_from: draw.constants.checks_from,
         emission: material.emission,
         checks: material.checks,
+        extrude_from: carry.light,
+        extrude_to: [x, y, z, carry.scale],
+        extruded_w: carry.w,
+        padding: [0.0; 3],
         reversed_sum: if is_label { draw.triangles.start + draw.triangles.end - 1 } else { NOT_REVERSED },
     }
 }

@@ -220,7 +220,7 @@ fn triangle(draw: &Draw, one: &Covering, face: Face, fate: Fate) -> EventKind {
         draw: one.draw,
         draw_name: draw.name.clone(),
         caster: draw.caster.clone(),
-        part: draw.part,
+        part: one.part,
         primitive: one.primitive,
         triangle: one.triangle,
         corners: one.corners,

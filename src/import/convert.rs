@@ -88,6 +88,7 @@ pub fn convert(frame: &RawFrame, name: &str) -> Result<Converted, ImportError> {
         lights: Vec::new(),
         ambient: [0.0; 3],
         meshes,
+        textures: Vec::new(),
         passes,
         left_out,
     };

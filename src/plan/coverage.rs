@@ -10,7 +10,7 @@
 //! tells what it must be asked about, what it must say yes to, and what it never sees: triangles
 //! that are culled, or clipped away at the near or far plane.
 
-use super::{Draw, FramePlan, MeshId, Pass, Program, ViewId, Viewport};
+use super::{Draw, FramePlan, MeshId, Part, Pass, Program, ViewId, Viewport};
 use glam::{DVec2, DVec3, DVec4, Mat4, Vec4};
 use std::collections::BTreeMap;
 
@@ -34,6 +34,8 @@ pub struct Covering {
     pub primitive: u32,
     /// Index in the mesh's triangle list.
     pub triangle: u32,
+    /// The draw's, or of caps that a vertex shader carries light cap or dark cap.
+    pub part: Part,
     /// Corners as the mesh has them: homogeneous, relative to the origin of the pass's view.
     pub corners: [[f32; 4]; 3],
     /// What geometry says.
@@ -177,11 +179,12 @@ impl Search<'_> {
         }
         let found = &self.found[&searched];
         let mut look = |triangle: u32, primitive: u32| {
-            let corners = corners_of(triangle).map(|corners| corners.map(|corner| vertices[corner]));
-            let found = corners.and_then(|corners| Some((corners, square.look(matrix, corners)?)));
-            let Some((corners, seen)) = found else { return };
+            let Some(indices) = corners_of(triangle) else { return };
+            let corners = indices.map(|corner| vertices[corner]);
+            let Some(seen) = square.look(matrix, corners) else { return };
             let coverage = self.plan.coverage(draw, viewport, seen);
-            covering.push(Covering { pass, draw: draw_index, primitive, triangle, corners, coverage });
+            let part = draw.part_of(mesh, indices.map(|corner| corner as u32));
+            covering.push(Covering { pass, draw: draw_index, primitive, triangle, part, corners, coverage });
         };
         if matches!(draw.program, Program::Label(_)) {
             // Labels run in reverse order.

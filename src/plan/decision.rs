@@ -48,6 +48,8 @@ named_enum! {
         EightBits = "eight-bits",
         /// Two passes and clamping, which a float count does not know.
         TwoPasses = "two-passes",
+        /// Extrusion in the vertex shader, which finds no casting triangle for the CPU.
+        VertexExtrusion = "vertex-extrusion",
         /// What z-pass-plus begins with.
         NearPlane = "near-plane",
         /// A light's shadow map: nothing would be in it.
@@ -70,6 +72,8 @@ named_enum! {
         SmallReceivers = "small-receivers",
         /// Darkening a pixel once only, which takes a stencil.
         BlendOnce = "blend-once",
+        /// What a model's materials ask for and no shader does.
+        Material = "material",
         /// Drawing again what is there from the frame before.
         Kept = "kept",
         /// A draw of which no sample showed in the frame before.
@@ -106,13 +110,14 @@ impl Decision {
             Decision::UnlitTriangles => return format!("{of} triangles that face away"),
             Decision::Stencil => "stencil buffer",
             Decision::Clear => "stencil clear",
-            Decision::MapFaces | Decision::Unseen => name,
+            Decision::MapFaces | Decision::Unseen | Decision::Material => name,
             Decision::Scissor => "pixels out of reach",
             Decision::VolumePass => "volume pass",
             Decision::InnerDarkCap => "inner triangles of the dark cap",
             Decision::LightFacing => "choice of light-facing triangles",
             Decision::EightBits => "eight-bit count",
             Decision::TwoPasses => "two passes and clamping",
+            Decision::VertexExtrusion => "extrusion in the vertex shader",
             Decision::NearPlane => "count at the near plane",
             Decision::Map => "shadow map",
             Decision::MapCaster => return format!("{name} in the shadow map"),

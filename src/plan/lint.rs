@@ -21,7 +21,7 @@ pub struct LintError {
 #[must_use]
 pub fn check(plan: &FramePlan) -> Vec<LintError> {
     let in_range = |mesh: &DrawMesh| {
-        let vertex_count = mesh.vertices.data().len();
+        let vertex_count = mesh.vertices.len();
         mesh.indices.data().iter().all(|index| (*index as usize) < vertex_count)
     };
     let meshes_in_range: Vec<bool> = plan.meshes.iter().map(in_range).collect();
@@ -112,7 +112,7 @@ fn recorded_problem(plan: &FramePlan, pass: &Pass, recorded: &RecordedPass) -> O
 /// Does the mesh have every vertex that the draw's moved indices ask for?
 fn base_fits(mesh: &DrawMesh, draw: &Draw) -> bool {
     let corners = draw.triangles.start as usize * 3..draw.triangles.end as usize * 3;
-    let count = mesh.vertices.data().len();
+    let count = mesh.vertices.len();
     let exists = |index: &u32| (*index as usize + draw.base_vertex as usize) < count;
     draw.base_vertex == 0 || mesh.indices.data().get(corners).is_some_and(|indices| indices.iter().all(exists))
 }
@@ -139,6 +139,8 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
         "a shader with colour and a state without, or the reverse",
     );
     demand(is_recorded || !writes_color || pass.color.is_some(), "it writes a colour that its pass does not have");
+    let is_plain = matches!(draw.program, Program::Position | Program::Flat | Program::FlatLabel | Program::Count);
+    demand(mesh.extruded.is_none() || is_plain, "it shades a mesh whose vertices are carried away from a light");
     let shades = draw.program.visibility().is_some();
     demand(!shades || mesh.surface.is_some(), "it shades a mesh without normals");
     demand(!shades || pass.light.is_some_and(|light| light.0 < plan.lights.len()), "it shades without a light");
@@ -159,6 +161,13 @@ fn check_draw(plan: &FramePlan, pass: &Pass, draw: &Draw, has_stencil: bool) -> 
             demand(light.is_some_and(|light| light.count.is_some()), "it reads a count that its light does not have");
         }
         Some(Visibility::Everywhere | Visibility::Labels) | None => {}
+    }
+    if let Some(texture) = draw.constants.texture {
+        let uvs = mesh.surface.as_ref().and_then(|surface| surface.uvs.as_ref());
+        let is_placed = uvs.is_some_and(|uvs| uvs.data().len() == mesh.indices.data().len());
+        demand(texture.0 < plan.textures.len(), "its texture does not exist");
+        demand(is_placed, "its corners do not lie in a picture, and it has one");
+        demand(draw.program.shows_texture(), "its shader shows no texture, and it has one");
     }
     demand(map.is_none_or(|map| map.faces.len() <= PlanMap::MOST_FACES), "its light's map has too many faces");
     problems

@@ -29,7 +29,8 @@ pub mod text;
 mod unseen;
 pub mod words;
 
-pub use buffers::{Blob, DrawMesh, SurfaceData};
+pub use crate::geometry::{Blob, Carry, Extruded, ExtrudedCorner};
+pub use buffers::{DrawMesh, PlanTexture, SurfaceData};
 pub use count_bits::CountBits;
 pub use coverage::{Clip, Coverage, Covering, Face, FragmentLog, LoggedFragment};
 pub use decided_by::{CountOf, DecidedBy, Side};
@@ -69,6 +70,10 @@ impl LightId {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct MeshId(pub usize);
 
+/// Index into [`FramePlan::textures`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct TextureId(pub usize);
+
 /// One frame, ready to be run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FramePlan {
@@ -93,6 +98,9 @@ pub struct FramePlan {
     /// Vertices and indices of the draws. Capture folders hold them as arrays.
     #[serde(skip)]
     pub meshes: Vec<DrawMesh>,
+    /// Pictures on surfaces. Capture folders hold them as pictures.
+    #[serde(skip)]
+    pub textures: Vec<PlanTexture>,
     /// In the order in which they run.
     pub passes: Vec<Pass>,
     /// What this scene does not need.
@@ -320,6 +328,16 @@ pub struct Draw {
 }
 
 impl Draw {
+    /// Which part one of its triangles is: of caps that a vertex shader carries, light cap or dark cap.
+    #[must_use]
+    pub fn part_of(&self, mesh: &DrawMesh, corners: [u32; 3]) -> Part {
+        match (self.part, mesh.extruded.as_ref().map(|extruded| extruded.carried(corners))) {
+            (Part::Caps, Some([true, ..])) => Part::DarkCap,
+            (Part::Caps, Some([false, ..])) => Part::LightCap,
+            (part, _) => part,
+        }
+    }
+
     /// A draw of a whole mesh by position only, as into the stencil.
     #[must_use]
     pub fn of_positions(
@@ -355,6 +373,8 @@ named_enum! {
         LightCap = "light-cap",
         /// The casting triangles carried to infinity.
         DarkCap = "dark-cap",
+        /// Light cap and dark cap in one: the vertex shader tells which triangle is which.
+        Caps = "caps",
         /// A plane that planar shadows fall on.
         Receiver = "receiver",
         /// A caster flattened onto a receiver.
@@ -368,7 +388,13 @@ impl Part {
     /// Is it a part of a shadow volume?
     #[must_use]
     pub fn is_of_volume(self) -> bool {
-        matches!(self, Part::Side | Part::LightCap | Part::DarkCap)
+        matches!(self, Part::Side | Part::LightCap | Part::DarkCap | Part::Caps)
+    }
+
+    /// Is it this part, or does it hold it?
+    #[must_use]
+    pub fn includes(self, part: Part) -> bool {
+        self == part || (self == Part::Caps && matches!(part, Part::LightCap | Part::DarkCap))
     }
 }
 
@@ -462,6 +488,12 @@ impl Program {
         }
     }
 
+    /// Does it show the picture on a surface, where there is one?
+    #[must_use]
+    pub fn shows_texture(self) -> bool {
+        matches!(self, Program::Ambient { .. } | Program::Light(_))
+    }
+
     /// Reads nothing but positions and the draw's flat colour.
     #[must_use]
     pub fn is_flat(self) -> bool {
@@ -500,6 +532,9 @@ pub struct DrawConstants {
     /// The eye's world X and Z, less whole pairs of the material's checks: where their pattern begins.
     #[serde(default)]
     pub checks_from: [f32; 2],
+    /// The picture that the material's colour is multiplied with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texture: Option<TextureId>,
 }
 
 impl FramePlan {
@@ -519,19 +554,23 @@ impl FramePlan {
         draws.map(|draw| u64::from(draw.triangles.end - draw.triangles.start)).sum()
     }
 
-    /// Bytes of GPU memory that the frame needs for attachments, vertices and indices. What only
+    /// Bytes of GPU memory that the frame needs for attachments, vertices, indices and pictures on surfaces. What only
     /// mask passes need is left out.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        let (mut attachments, mut blobs) = (BTreeSet::new(), BTreeMap::new());
+        let (mut attachments, mut blobs, mut textures) = (BTreeSet::new(), BTreeMap::new(), BTreeSet::new());
         for pass in self.timed_passes() {
             attachments.extend(pass.color.iter().map(|target| target.attachment));
             attachments.extend(pass.depth_stencil.iter().map(|target| target.attachment));
             for mesh in pass.draws.iter().filter_map(|draw| self.meshes.get(draw.mesh.0)) {
                 blobs.extend(mesh.blobs());
             }
+            textures.extend(pass.draws.iter().filter_map(|draw| draw.constants.texture));
         }
-        attachments.into_iter().map(|id| self.attachment_bytes(id)).sum::<u64>() + blobs.values().sum::<u64>()
+        let textures = textures.into_iter().filter_map(|id| self.textures.get(id.0)).map(PlanTexture::bytes);
+        attachments.into_iter().map(|id| self.attachment_bytes(id)).sum::<u64>()
+            + blobs.values().sum::<u64>()
+            + textures.sum::<u64>()
     }
 
     fn timed_passes(&self) -> impl Iterator<Item = &Pass> {

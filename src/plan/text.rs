@@ -4,8 +4,8 @@
 //! in full.
 
 use super::{
-    AttachmentId, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, LightId, MapLookup, Pass,
-    Program, RasterState, StencilFace, Viewport, Visibility,
+    AttachmentId, Carry, ColorWrite, DepthStencilTarget, Draw, DrawConstants, FaceMasks, FramePlan, LightId, MapLookup,
+    Pass, Program, RasterState, StencilFace, TextureId, Viewport, Visibility,
 };
 use std::fmt::{self, Display, Formatter};
 
@@ -31,6 +31,9 @@ impl Display for FramePlan {
                 "mesh {index}: {}, {vertices} vertices ({infinite} at infinity), {triangles} triangles",
                 mesh.name
             )?;
+            if let Some(Carry { light, scale, offset, w }) = mesh.extruded.as_ref().map(|extruded| extruded.carry) {
+                writeln!(f, "  by its vertex shader carried from {light:?} to ({scale} v + {offset:?}, {w})")?;
+            }
         }
         for (index, light) in self.lights.iter().enumerate() {
             let kind = if light.relative_position[3] == 0.0 { "directional" } else { "point" };
@@ -126,12 +129,17 @@ impl FramePlan {
         if draw.base_vertex > 0 {
             writeln!(f, "    {} added to every index", draw.base_vertex)?;
         }
-        let DrawConstants { label, flat, count, layer, .. } = draw.constants;
+        let DrawConstants { label, flat, count, layer, texture, .. } = draw.constants;
         match draw.program {
             Program::Label(_) | Program::FlatLabel => writeln!(f, "    label {label}")?,
             Program::Flat => writeln!(f, "    colour {flat:?}")?,
             Program::Count => writeln!(f, "    front faces count {count}")?,
             _ => {}
+        }
+        if let Some((TextureId(index), texture)) = texture.and_then(|id| Some((id, self.textures.get(id.0)?))) {
+            let [width, height] = texture.picture.size();
+            let beyond = if texture.clamps { "clamped" } else { "repeated" };
+            writeln!(f, "    texture {index}: {}, {width}x{height}, {beyond}", texture.picture.name())?;
         }
         if let Some(layer) = layer {
             writeln!(f, "    own layer {layer}")?;

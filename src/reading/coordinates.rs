@@ -1,12 +1,15 @@
-//! A pixel's point in every space that the camera takes it through, with the matrices between them.
+//! A pixel's point, and vertices, in every space that the camera takes them through, with the matrices between them.
 //!
 //! World space, then eye space (the eye at the origin, looking down −z), clip space, normalized device coordinates
 //! (after the division by w) and window space (pixels from the top left, and depth).
 
 use super::depth::DepthMeasure;
 use super::fragments::Surface;
+use super::shading::seen;
 use crate::capture::Capture;
-use crate::scene::Camera;
+use crate::history::PixelHistory;
+use crate::plan::FramePlan;
+use crate::scene::{Camera, Scene, suggestion};
 use glam::{DMat4, DVec3, DVec4};
 use serde::Serialize;
 use std::fmt::Write;
@@ -30,6 +33,64 @@ pub struct Coordinates {
     pub ndc: [f64; 3],
     /// Pixels from the top left of the picture, and depth.
     pub window: [f64; 3],
+}
+
+/// A vertex in every space.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Vertex {
+    /// Of the object that it is of.
+    pub object: String,
+    /// Which vertex of its mesh, counted from 0.
+    pub index: u32,
+    /// World space, metres.
+    pub world: [f64; 3],
+    /// Eye space, metres.
+    pub eye: [f64; 3],
+    /// Clip space, homogeneous.
+    pub clip: [f64; 4],
+    /// Normalized device coordinates; `None` where w is not positive: it is not before the eye, and nothing is divided.
+    pub ndc: Option<[f64; 3]>,
+    /// Pixels from the top left of the picture, and depth; `None` likewise.
+    pub window: Option<[f64; 3]>,
+    /// The planes of the view that it lies beyond: `left`, `right`, `bottom`, `top`, `near`, `far`; none: it is in view.
+    pub beyond: Vec<&'static str>,
+}
+
+/// Why there is no such vertex.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoVertex {
+    /// It is not written as one.
+    #[error("`{0}` is no vertex: give OBJECT:INDEX, as in `floor:0`")]
+    Form(String),
+    /// No object is called so.
+    #[error("no object is called `{object}`: {hint}")]
+    Object {
+        /// What was asked for.
+        object: String,
+        /// The nearest name, or all.
+        hint: String,
+    },
+    /// Its mesh has fewer.
+    #[error("{object} has no vertex {index}: it has {count}, counted from 0")]
+    Index {
+        /// Whose.
+        object: String,
+        /// What was asked for.
+        index: u32,
+        /// How many there are.
+        count: usize,
+    },
+}
+
+/// What is told of vertices alone.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VertexPlaces {
+    /// The camera around its target.
+    pub camera: Spherical,
+    /// World to window.
+    pub chain: Vec<Step>,
+    /// Those that were asked for, in order.
+    pub vertices: Vec<Vertex>,
 }
 
 /// A matrix of the chain, in rows, and its inverse.
@@ -72,6 +133,8 @@ pub struct Place {
     pub chain: Vec<Step>,
     /// The surface at the pixel's middle; `None` where the picture shows none.
     pub point: Option<Coordinates>,
+    /// The corners of the triangle that the pixel shows, as the GPU is given them; empty where it shows none.
+    pub vertices: Vec<Vertex>,
     /// How finely depth is kept there, the coarsest buffer first; empty without a surface.
     pub depth_steps: Vec<DepthStep>,
 }
@@ -81,6 +144,8 @@ struct Matrices {
     eye_from_world: DMat4,
     clip_from_eye: DMat4,
     window_from_ndc: DMat4,
+    /// Depth is 1 at the near plane.
+    is_reversed: bool,
 }
 
 impl Place {
@@ -96,8 +161,99 @@ impl Place {
             camera: Spherical::of(&capture.camera),
             chain: matrices.chain(),
             point: seen.map(|(_, world)| matrices.carry(world)),
+            vertices: Vec::new(),
             depth_steps: seen.map_or_else(Vec::new, |(depth, _)| depth_steps(measure, depth)),
         }
+    }
+
+    /// The same with the corners of the triangle that the pixel's history ends with.
+    #[must_use]
+    pub fn with_vertices(self, capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Place {
+        Place { vertices: corners(capture, plan, history).unwrap_or_default(), ..self }
+    }
+}
+
+fn corners(capture: &Capture, plan: &FramePlan, history: &PixelHistory) -> Option<Vec<Vertex>> {
+    let (_, draw, triangle) = seen(plan, history)?;
+    let matrices = Matrices::of(capture);
+    let mesh = plan.meshes.get(draw.mesh.0)?;
+    let indices = mesh.indices.data().get(triangle * 3..triangle * 3 + 3)?;
+    let object = draw.caster.as_ref().unwrap_or(&draw.name);
+    let corner = |index: &u32| {
+        let [x, y, z, _] = mesh.vertices.data().get(*index as usize)?.map(f64::from);
+        Some(matrices.vertex(object, *index, capture.camera.eye + DVec3::new(x, y, z)))
+    };
+    indices.iter().map(corner).collect()
+}
+
+impl VertexPlaces {
+    /// Of vertices of a scene's objects, `OBJECT:INDEX` each.
+    ///
+    /// # Errors
+    /// The first that is not there.
+    pub fn of(capture: &Capture, scene: &Scene, asked: &[String]) -> Result<VertexPlaces, NoVertex> {
+        let matrices = Matrices::of(capture);
+        let vertex = |asked: &String| {
+            let parts = asked.rsplit_once(':').and_then(|(object, index)| Some((object, index.parse().ok()?)));
+            let (name, index): (&str, u32) = parts.ok_or_else(|| NoVertex::Form(asked.escape_debug().to_string()))?;
+            let object = scene.objects.iter().find(|object| object.name == name).ok_or_else(|| {
+                let names: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
+                NoVertex::Object { object: name.escape_debug().to_string(), hint: suggestion(name, &names) }
+            })?;
+            let world = object.world_positions();
+            let place = world.get(index as usize).ok_or_else(|| NoVertex::Index {
+                object: name.to_owned(),
+                index,
+                count: world.len(),
+            })?;
+            Ok(matrices.vertex(name, index, *place))
+        };
+        Ok(VertexPlaces {
+            camera: Spherical::of(&capture.camera),
+            chain: matrices.chain(),
+            vertices: asked.iter().map(vertex).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// In lines, for `pixel --vertex`.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let vertices: String = self.vertices.iter().map(Vertex::text).collect();
+        self.camera.text() + &vertices + &chain_text(&self.chain)
+    }
+}
+
+impl Vertex {
+    /// `vertex 3 of floor`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        format!("vertex {} of {}", self.index, self.object)
+    }
+
+    /// Name and value of each space, in order, and where it lies in the view.
+    #[must_use]
+    pub fn rows(&self, digits: u32) -> [(&'static str, String); 6] {
+        let divided = |values: Option<[f64; 3]>| match values {
+            Some(values) => vector(&values, digits),
+            None => "not divided: w is not positive, it is not before the eye".to_owned(),
+        };
+        let view = match self.beyond.as_slice() {
+            [] => "in view".to_owned(),
+            planes => format!("beyond {}", planes.join(", ")),
+        };
+        [
+            ("world", vector(&self.world, digits)),
+            ("eye", vector(&self.eye, digits)),
+            ("clip", vector(&self.clip, digits)),
+            ("NDC", divided(self.ndc)),
+            ("window", divided(self.window)),
+            ("view", view),
+        ]
+    }
+
+    fn text(&self) -> String {
+        let rows = self.rows(DIGITS).map(|(name, value)| format!("{name:7} {value}\n")).concat();
+        format!("{}\n{rows}", self.name())
     }
 }
 
@@ -114,6 +270,7 @@ impl Matrices {
         let [width, height] = capture.size.map(f64::from);
         let rotation = camera.world_from_view().transpose();
         Matrices {
+            is_reversed: capture.depth.mapping.is_reversed(),
             eye_from_world: DMat4::from_mat3(rotation) * DMat4::from_translation(-camera.eye),
             clip_from_eye: camera.clip_from_view(width / height, &capture.depth),
             // Rows run down, as y does not.
@@ -140,6 +297,33 @@ impl Matrices {
         }
     }
 
+    fn vertex(&self, object: &str, index: u32, world: DVec3) -> Vertex {
+        let eye = self.eye_from_world * world.extend(1.0);
+        let clip = self.clip_from_eye * eye;
+        let ndc = (clip.w > 0.0).then(|| clip.truncate() / clip.w);
+        let window = ndc.map(|ndc| (self.window_from_ndc * ndc.extend(1.0)).truncate());
+        // Clip space says it without dividing: what is in view has −w ≤ x, y ≤ w and 0 ≤ z ≤ w.
+        let [least, most] = if self.is_reversed { ["far", "near"] } else { ["near", "far"] };
+        let planes = [
+            ("left", clip.x < -clip.w),
+            ("right", clip.x > clip.w),
+            ("bottom", clip.y < -clip.w),
+            ("top", clip.y > clip.w),
+            (least, clip.z < 0.0),
+            (most, clip.z > clip.w),
+        ];
+        Vertex {
+            object: object.to_owned(),
+            index,
+            world: world.to_array(),
+            eye: eye.truncate().to_array(),
+            clip: clip.to_array(),
+            ndc: ndc.map(|ndc| ndc.to_array()),
+            window: window.map(|window| window.to_array()),
+            beyond: planes.iter().filter(|(_, is_beyond)| *is_beyond).map(|(name, _)| *name).collect(),
+        }
+    }
+
     fn chain(&self) -> Vec<Step> {
         let rows = |matrix: DMat4| matrix.transpose().to_cols_array_2d();
         let step = |name, matrix: DMat4| Step { name, matrix: rows(matrix), inverse: rows(matrix.inverse()) };
@@ -152,6 +336,11 @@ impl Matrices {
 }
 
 impl Spherical {
+    fn text(&self) -> String {
+        let Spherical { r, theta_degrees, phi_degrees } = self;
+        format!("camera around its target: r {r:.4}, θ {theta_degrees:.2}° from +Y, φ {phi_degrees:.2}° from +Z\n")
+    }
+
     fn of(camera: &Camera) -> Spherical {
         let away = camera.eye - camera.target;
         let r = away.length();
@@ -167,17 +356,12 @@ impl Place {
     /// In lines, for `pixel --coordinates`.
     #[must_use]
     pub fn text(&self) -> String {
-        let mut text = String::new();
-        let Spherical { r, theta_degrees, phi_degrees } = self.camera;
-        // Writing to a string can't fail.
-        let _ = writeln!(
-            text,
-            "camera around its target: r {r:.4}, θ {theta_degrees:.2}° from +Y, φ {phi_degrees:.2}° from +Z"
-        );
+        let mut text = self.camera.text();
         match self.point {
             None => text += "no surface is here\n",
             Some(point) => {
                 for (name, values) in point.rows() {
+                    // Writing to a string can't fail.
                     let _ = writeln!(text, "{name:7} {}", vector(values, DIGITS));
                 }
             }
@@ -186,14 +370,21 @@ impl Place {
             let metres = step.metres.map_or_else(|| "to infinity".to_owned(), crate::numbers::metres);
             let _ = writeln!(text, "depth in {:13} one step is {metres}", step.stored_in);
         }
-        for step in &self.chain {
-            let _ = writeln!(text, "{}, and its inverse:", step.name);
-            for (row, back) in step.matrix.iter().zip(&step.inverse) {
-                let _ = writeln!(text, "  {}   {}", matrix_row(row, DIGITS), matrix_row(back, DIGITS));
-            }
-        }
-        text
+        text.extend(self.vertices.iter().map(Vertex::text));
+        text + &chain_text(&self.chain)
     }
+}
+
+fn chain_text(chain: &[Step]) -> String {
+    let mut text = String::new();
+    for step in chain {
+        // Writing to a string can't fail.
+        let _ = writeln!(text, "{}, and its inverse:", step.name);
+        for (row, back) in step.matrix.iter().zip(&step.inverse) {
+            let _ = writeln!(text, "  {}   {}", matrix_row(row, DIGITS), matrix_row(back, DIGITS));
+        }
+    }
+    text
 }
 
 impl Coordinates {

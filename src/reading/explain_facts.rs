@@ -227,9 +227,23 @@ fn triangles(known: &Known, step: &Step) -> Fact {
     let is_sun = step.light.and_then(|light| known.lights.get(light)).is_some_and(Light::is_directional);
     let is_finite = known.capture.settings.get("extrusion").is_some_and(|how| how.starts_with("finite"));
     let is_parallel = known.capture.camera.is_parallel();
+    let settings = VolumeSettings::read(&known.capture.settings);
+    if settings.by_vertex_shader && !(is_parallel && !is_finite) {
+        let here = vec![
+            format!(
+                "sides, one at every edge, empty until its triangles face different ways: {}",
+                format::count(sides)
+            ),
+            format!(
+                "caps, the triangles that face the light in their place and the others at the far end: {}",
+                format::count(of(Part::Caps))
+            ),
+        ];
+        return fact("a closed volume = sides + light cap + dark cap", here);
+    }
     // Whose count does not begin there has none, or lacks it.
     let side = step.light.and_then(|light| known.capture.decided_by(light).counted_side());
-    let draws_them = VolumeSettings::read(&known.capture.settings).caps[1];
+    let draws_them = settings.caps[1];
     let begins_there = is_parallel && side != Some(Side::InFront) && draws_them;
     let dark_cap = match (is_sun, is_finite) {
         (false, false) if begins_there => {

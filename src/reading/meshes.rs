@@ -2,6 +2,7 @@
 
 use crate::geometry::Topology;
 use crate::reading::format;
+use crate::scene::{Object, Texture};
 use std::sync::Arc;
 
 /// An object of the open scene, and how its mesh hangs together.
@@ -11,6 +12,22 @@ pub struct ObjectMesh {
     pub object: String,
     /// Of its mesh.
     pub topology: Arc<Topology>,
+}
+
+/// The pictures on an object, and how they lie on it, a line each.
+#[must_use]
+pub fn pictures(object: &Object) -> Vec<String> {
+    let line = |texture: &Texture| {
+        let [width, height] = texture.picture.size();
+        let lies =
+            texture.side.map_or_else(|| "as its corners say".to_owned(), |side| format!("{side} m along X and Z"));
+        let clamps = if texture.clamps { ", clamped" } else { "" };
+        format!("shows {}, {width}×{height}, {lies}{clamps}", texture.picture.name())
+    };
+    let mut lines: Vec<String> =
+        object.mesh.groups().iter().filter_map(|group| object.texture_of(group)).map(line).collect();
+    lines.dedup();
+    lines
 }
 
 /// Is there nothing to tell of it but that it is closed?

@@ -6,9 +6,10 @@ use crate::history::PixelHistory;
 use crate::numbers;
 use crate::plan::{Draw, FramePlan, PlanLight, Program, SurfaceData};
 use crate::reading::fragments::Surface;
+use crate::reading::pick_ray::sight_at;
 use crate::scene::Shading;
 use crate::truth::{FACES_AWAY, LABEL_NAMES};
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -26,8 +27,11 @@ pub struct Shaded {
     pub diffuse: &'static str,
     /// Unit normal that it is shaded with, world space, to the side that the eye sees; Gouraud's corners have their own.
     pub normal: [f64; 3],
-    /// Linear RGB reflectance, with its checks.
+    /// Linear RGB reflectance, with its checks and its texture.
     pub color: [f64; 3],
+    /// What the picture on it has there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub texture: Option<TextureTerm>,
     /// Strength of the highlight.
     pub specular: f64,
     /// Its Blinn-Phong exponent.
@@ -36,6 +40,21 @@ pub struct Shaded {
     pub unlit: [f64; 3],
     /// What each light adds.
     pub lights: Vec<LightTerms>,
+}
+
+/// What a picture has where a pixel's middle sees it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TextureTerm {
+    /// Its file's name.
+    pub name: String,
+    /// Where in it: 0, 0 is its lower left, 1, 1 its upper right, and beyond it repeats or is clamped.
+    pub uv: [f64; 2],
+    /// Column and row of the texel there, from the top left.
+    pub texel: [u32; 2],
+    /// Of its pyramid: on level k a texel is 2^k texels large, and the four nearest on the two levels beside are mixed.
+    pub level: f64,
+    /// Linear RGB that comes of it: a factor of the surface's colour.
+    pub color: [f64; 3],
 }
 
 /// What a light adds to a surface, if it arrives.
@@ -101,8 +120,16 @@ impl Shaded {
         let mixed = (0..3).map(|corner| normals[corner] * weights[corner]).sum::<DVec3>();
         let at = Point { relative, normal: mixed.try_normalize()? };
         let material = &draw.constants.material;
-        let share = checks(draw, relative);
-        let color = material.color.map(|channel| f64::from(channel) * share);
+        let seen = Seen {
+            capture,
+            pixel: history.pixel,
+            corners,
+            normal: (corners[1] - corners[0]).cross(corners[2] - corners[0]),
+        };
+        let texture = texture(plan, draw, surface, first, &seen);
+        let share =
+            texture.as_ref().map_or([1.0; 3], |texture| texture.color).map(|part| part * checks(draw, relative));
+        let color = [0, 1, 2].map(|channel| f64::from(material.color[channel]) * share[channel]);
         let ambient = plan.ambient.map(f64::from);
         let unlit = [0, 1, 2].map(|channel| color[channel] * ambient[channel] + f64::from(material.emission[channel]));
         let lit = |(index, light): (usize, &PlanLight)| {
@@ -141,6 +168,7 @@ impl Shaded {
             diffuse: if plan.wraps_diffuse { "wrapped" } else { "lambert" },
             normal: at.normal.to_array(),
             color,
+            texture,
             specular: material.specular.into(),
             shininess: material.shininess.into(),
             unlit,
@@ -159,6 +187,17 @@ impl Shaded {
             three(self.color),
             three(self.unlit)
         );
+        if let Some(TextureTerm { name, uv: [u, v], texel: [column, row], level, color }) = &self.texture {
+            // Writing to a string can't fail.
+            let _ = writeln!(
+                text,
+                "    its colour is times ({}) of {name}, at u {}, v {}: texel {column},{row}, level {}",
+                three(*color),
+                digits(*u),
+                digits(*v),
+                digits(*level)
+            );
+        }
         for (index, light) in self.lights.iter().enumerate() {
             // Writing to a string can't fail.
             let _ = writeln!(text, "    {}: {}", numbers::light(index), light.text(self));
@@ -201,7 +240,7 @@ impl LightTerms {
 
 /// Where lines of sight meet, relative to the eye point, and the draw and the triangle of its mesh that a pixel shows: the
 /// last that passed in ambient light, which all surfaces are drawn in first.
-fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(DVec4, &'a Draw, usize)> {
+pub(super) fn seen<'a>(plan: &'a FramePlan, history: &PixelHistory) -> Option<(DVec4, &'a Draw, usize)> {
     history.events.iter().rev().find_map(|event| {
         let one = event.triangle().filter(|one| one.fate.passed())?;
         let pass = plan.passes.get(event.pass)?;
@@ -256,6 +295,50 @@ fn mix(corners: [Terms; 3], weights: [f64; 3], cosine: f64) -> Terms {
     let diffuse = part(sum(|corner| corner.fading * corner.diffuse));
     let highlight = part(sum(|corner| corner.fading * corner.highlight));
     Terms { cosine, diffuse, highlight, fading }
+}
+
+/// A triangle, relative to the eye, and the pixel that shows it.
+struct Seen<'a> {
+    capture: &'a Capture,
+    pixel: [u32; 2],
+    corners: [DVec3; 3],
+    /// Of its plane, of any length.
+    normal: DVec3,
+}
+
+impl Seen<'_> {
+    /// The point of the triangle's plane behind the middle of a pixel.
+    fn point(&self, [x, y]: [u32; 2]) -> DVec3 {
+        let sight = sight_at(self.capture, [f64::from(x) + 0.5, f64::from(y) + 0.5]);
+        sight.at(self.normal.dot(self.corners[0] - sight.from) / self.normal.dot(sight.along))
+    }
+}
+
+/// What the picture on a surface has at a pixel, as `texture.wgsl` looks it up.
+fn texture(plan: &FramePlan, draw: &Draw, surface: &SurfaceData, first: usize, seen: &Seen) -> Option<TextureTerm> {
+    let shown = plan.textures.get(draw.constants.texture?.0)?;
+    let of_corners: [[f32; 2]; 3] = surface.uvs.as_ref()?.data().get(first..first + 3)?.try_into().ok()?;
+    let place = |pixel: [u32; 2]| {
+        let weights = weights(seen.corners, seen.point(pixel));
+        (0..3).map(|corner| DVec2::from_array(of_corners[corner].map(f64::from)) * weights[corner]).sum::<DVec2>()
+    };
+    let uv = place(seen.pixel);
+    let [x, y] = seen.pixel;
+    // The GPU compares pixels in blocks of two by two.
+    let size = DVec2::from_array(shown.picture.size().map(f64::from));
+    let across = (place([x | 1, y]) - place([x & !1, y])) * size;
+    let down = (place([x, y | 1]) - place([x, y & !1])) * size;
+    let longest = across.length().max(down.length());
+    let last = f64::from(shown.picture.level_count() - 1);
+    let level = if longest.is_finite() { longest.max(1.0).log2().min(last) } else { last };
+    let uv = uv.is_finite().then(|| uv.to_array())?;
+    Some(TextureTerm {
+        name: shown.picture.name().to_owned(),
+        uv,
+        texel: shown.picture.texel_at(uv, shown.clamps),
+        level,
+        color: shown.picture.linear_at(uv, level, shown.clamps),
+    })
 }
 
 /// How much of its colour a surface has at a place.

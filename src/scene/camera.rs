@@ -138,6 +138,19 @@ impl Camera {
         }
     }
 
+    /// Where a count may be taken for all lines of sight: the eye, or of a parallel camera, whose lines begin at the near
+    /// plane, the middle of that.
+    #[must_use]
+    pub fn counting_place(&self) -> DVec3 {
+        if self.is_parallel() { self.eye + self.sights(1.0).through(DVec2::ZERO).at(self.near) } else { self.eye }
+    }
+
+    /// The name of [`Camera::counting_place`], for people.
+    #[must_use]
+    pub fn counting_place_name(&self) -> &'static str {
+        if self.is_parallel() { "the middle of the near plane" } else { "the eye" }
+    }
+
     /// The lines of sight of a picture of this width over height.
     #[must_use]
     pub fn sights(&self, aspect: f64) -> Sights {

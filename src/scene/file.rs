@@ -31,13 +31,17 @@ use super::{Scene, SceneError};
 use problem::Problem;
 use std::path::{Path, PathBuf};
 
-/// The models that a scene file names; none where it can't be read, which loading it tells.
+/// The models and pictures that a scene file names; none where it can't be read, which loading it tells.
 #[must_use]
 pub fn models_of(path: &Path) -> Vec<PathBuf> {
-    let table = std::fs::read_to_string(path).ok().and_then(|text| text.parse::<toml::Table>().ok());
+    let table = read_text(path, "scene file").ok().and_then(|text| text.parse::<toml::Table>().ok());
     let objects = table.as_ref().and_then(|table| table.get("objects")?.as_array());
-    let mesh = |object: &toml::Value| Some(path.with_file_name(object.get("mesh")?.as_str()?));
-    let mut models: Vec<PathBuf> = objects.into_iter().flatten().filter_map(mesh).collect();
+    let named = |object: &toml::Value| {
+        let texture = object.get("material").and_then(|material| material.get("texture"));
+        let names = [object.get("mesh"), texture].map(|name| name.and_then(toml::Value::as_str));
+        names.map(|name| name.map(|name| path.with_file_name(name)))
+    };
+    let mut models: Vec<PathBuf> = objects.into_iter().flatten().flat_map(named).flatten().collect();
     models.sort();
     models.dedup();
     models

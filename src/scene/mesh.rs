@@ -4,10 +4,11 @@
 //! position alone, bit for bit (−0 counts as 0) and never within a tolerance: what a file splits
 //! at material seams is joined again, and what is merely close stays apart. Triangles with two
 //! equal vertices have no area and no edges to share, and are dropped; slivers are kept.
-//! Normals belong to the corners of triangles, so welding cannot blur a crease.
+//! Normals and places in a picture belong to the corners of triangles, so welding cannot blur a crease, and a seam of a
+//! picture opens no mesh.
 
-use super::Material;
-use glam::{DVec3, Vec3};
+use super::{Material, Texture};
+use glam::{DVec3, Vec2, Vec3};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Range;
@@ -18,9 +19,20 @@ pub struct Mesh {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     corner_normals: Option<Vec<[Vec3; 3]>>,
+    corner_uvs: Option<Vec<Option<[Vec2; 3]>>>,
     groups: Vec<Group>,
+    not_taken: Vec<NotTaken>,
     dropped: usize,
     hash: u64,
+}
+
+/// What a model's file asks for and nothing here does.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NotTaken {
+    /// In the file's words: `map_Kd of brick`.
+    pub what: String,
+    /// Why not.
+    pub because: String,
 }
 
 /// A named run of a mesh's triangles, as a model file groups them.
@@ -32,6 +44,8 @@ pub struct Group {
     pub triangles: Range<usize>,
     /// From the file's material library; else the object's material holds.
     pub material: Option<Material>,
+    /// The picture that this material's colour is multiplied with.
+    pub texture: Option<Texture>,
 }
 
 /// Why a mesh can't be built.
@@ -81,6 +95,31 @@ impl Mesh {
         self.corner_normals.as_deref()
     }
 
+    /// Where each triangle's corners lie in a picture, where the file says so: 0, 0 is its lower left corner, 1, 1 its
+    /// upper right.
+    #[must_use]
+    pub fn corner_uvs(&self) -> Option<&[Option<[Vec2; 3]>]> {
+        self.corner_uvs.as_deref()
+    }
+
+    /// Does every one of these triangles know where it lies in a picture?
+    #[must_use]
+    pub fn has_uvs(&self, triangles: &Range<usize>) -> bool {
+        let of_these = self.corner_uvs.as_ref().and_then(|uvs| uvs.get(triangles.clone()));
+        of_these.is_some_and(|uvs| uvs.iter().all(Option::is_some))
+    }
+
+    /// What its file asks for and nothing here does.
+    #[must_use]
+    pub fn not_taken(&self) -> &[NotTaken] {
+        &self.not_taken
+    }
+
+    /// The same mesh, of whose file this was not taken.
+    pub(super) fn without(self, not_taken: Vec<NotTaken>) -> Mesh {
+        Mesh { not_taken, ..self }
+    }
+
     /// At least one, unless the mesh has no triangle.
     #[must_use]
     pub fn groups(&self) -> &[Group] {
@@ -110,9 +149,10 @@ impl Mesh {
             positions: self.positions.clone(),
             triangles: self.triangles.clone(),
             corner_normals: self.corner_normals.clone().unwrap_or_default(),
+            corner_uvs: self.corner_uvs.clone().unwrap_or_default(),
             groups: self.groups.clone(),
         };
-        Ok(Mesh { dropped: self.dropped, ..builder.build()? })
+        Ok(Mesh { dropped: self.dropped, not_taken: self.not_taken.clone(), ..builder.build()? })
     }
 
     /// Smallest and largest corner of the bounding box; `None` without vertices.
@@ -132,6 +172,8 @@ pub struct MeshBuilder {
     pub triangles: Vec<[u32; 3]>,
     /// One entry a triangle, or empty when there are no normals.
     pub corner_normals: Vec<[Vec3; 3]>,
+    /// One entry a triangle, or empty where no triangle lies in a picture.
+    pub corner_uvs: Vec<Option<[Vec2; 3]>>,
     /// In order and without gaps; empty for one unnamed group.
     pub groups: Vec<Group>,
 }
@@ -158,6 +200,7 @@ impl MeshBuilder {
         self.check()?;
         let mut triangles = Vec::with_capacity(self.triangles.len());
         let mut corner_normals = Vec::with_capacity(self.corner_normals.len());
+        let mut corner_uvs = Vec::with_capacity(self.corner_uvs.len());
         // How many triangles are kept before each old triangle: where a group's ends move to.
         let mut kept_before = Vec::with_capacity(self.triangles.len() + 1);
         for (old, corners) in self.triangles.iter().enumerate() {
@@ -168,6 +211,7 @@ impl MeshBuilder {
             }
             triangles.push(corners.map(|index| welder.weld(index, self.positions[index as usize])));
             corner_normals.extend(self.corner_normals.get(old));
+            corner_uvs.extend(self.corner_uvs.get(old));
         }
         kept_before.push(triangles.len());
         let groups = self.groups_after(&kept_before);
@@ -179,6 +223,8 @@ impl MeshBuilder {
         Ok(Mesh {
             dropped: self.triangles.len() - triangles.len(),
             corner_normals: (!corner_normals.is_empty()).then_some(corner_normals),
+            corner_uvs: corner_uvs.iter().any(Option::is_some).then_some(corner_uvs),
+            not_taken: Vec::new(),
             positions: welder.positions,
             hash: hasher.finish(),
             triangles,
@@ -203,7 +249,7 @@ impl MeshBuilder {
     }
 
     fn groups_after(&self, kept_before: &[usize]) -> Vec<Group> {
-        let all = Group { name: String::new(), triangles: 0..self.triangles.len(), material: None };
+        let all = Group { name: String::new(), triangles: 0..self.triangles.len(), material: None, texture: None };
         let given = if self.groups.is_empty() { std::slice::from_ref(&all) } else { &self.groups };
         let moved = given.iter().map(|group| Group {
             triangles: kept_before[group.triangles.start]..kept_before[group.triangles.end],

@@ -1,6 +1,6 @@
 //! One placed mesh, and how placed things move.
 
-use super::{Material, Mesh};
+use super::{Group, Material, Mesh, Texture};
 use glam::{DMat4, DQuat, DVec3, DVec4, EulerRot};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -19,6 +19,8 @@ pub struct Object {
     pub motion: Motion,
     /// Of every group that has no material of its own.
     pub material: Material,
+    /// The picture that this material's colour is multiplied with.
+    pub texture: Option<Texture>,
     /// Throws shadows.
     pub casts: bool,
     /// Is darkened by shadows; otherwise lit as if nothing stood between.
@@ -37,6 +39,7 @@ impl Object {
             pose: Pose::default(),
             motion: Motion::default(),
             material,
+            texture: None,
             casts: true,
             receives: true,
             visible: true,
@@ -74,6 +77,12 @@ impl Object {
     #[must_use]
     pub fn unseen(self) -> Object {
         Object { visible: false, ..self }
+    }
+
+    /// The picture on a group of its mesh: its own material's, or the object's where it has none.
+    #[must_use]
+    pub fn texture_of<'a>(&'a self, group: &'a Group) -> Option<&'a Texture> {
+        if group.material.is_some() { group.texture.as_ref() } else { self.texture.as_ref() }
     }
 
     /// The welded vertices in world space. Every user of a vertex reads this one rounding.

@@ -25,7 +25,8 @@ impl OpenSpec {
     }
 }
 
-/// The files that a scene is made of: none for a built-in one, a model, or a scene file with its models.
+/// The files that a scene is made of: none for a built-in one, a model, or a scene file with its models, and their
+/// libraries and pictures.
 #[must_use]
 pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
     if Builtin::named(&spec.name).is_some() {
@@ -33,8 +34,11 @@ pub fn files_of(spec: &OpenSpec) -> Vec<PathBuf> {
     }
     let path = PathBuf::from(&spec.name);
     let is_scene_file = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-    let models = if is_scene_file { file::models_of(&path) } else { Vec::new() };
-    std::iter::once(path).chain(models).collect()
+    let named = if is_scene_file { file::models_of(&path) } else { Vec::new() };
+    let files: Vec<PathBuf> = std::iter::once(path).chain(named).collect();
+    let is_model = |file: &&PathBuf| file.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("obj"));
+    let of_models: Vec<PathBuf> = files.iter().filter(is_model).flat_map(|model| obj::files_of(model)).collect();
+    files.into_iter().chain(of_models).collect()
 }
 
 /// Does this name a bare model?

@@ -1,23 +1,22 @@
 //! Reading a text file whole, with the ways in which that fails told apart.
 
 use super::SceneError;
-use std::io::ErrorKind;
+use crate::files::{ReadError, read_plain};
 use std::path::Path;
+
+/// Bytes of the largest text that is read.
+pub const MOST_TEXT: u64 = 2 << 30;
 
 /// The text of `file`, a byte order mark removed.
 ///
 /// # Errors
-/// A missing or unreadable file, a folder, bytes that are no UTF-8 text, an empty file. `kind`
-/// says what was expected: `OBJ model`.
+/// A missing or unreadable file, a folder, a device, a text that is too long, bytes that are no UTF-8 text, an empty
+/// file. `kind` says what was expected: `OBJ model`.
 pub fn read_text(file: &Path, kind: &str) -> Result<String, SceneError> {
     let fail = |reason: String| SceneError::Read { file: file.to_owned(), reason };
-    if file.is_dir() {
-        return Err(fail(format!("is a folder: name an {kind} in it")));
-    }
-    let bytes = std::fs::read(file).map_err(|error| match error.kind() {
-        ErrorKind::NotFound => fail("there is no such file: check the path".to_owned()),
-        ErrorKind::PermissionDenied => fail("can't be read: allow reading it".to_owned()),
-        _ => fail(format!("can't be read: {error}; check the file")),
+    let bytes = read_plain(file, MOST_TEXT).map_err(|error| match error {
+        ReadError::Folder => fail(format!("is a folder: name an {kind} in it")),
+        other => fail(other.to_string()),
     })?;
     let text = String::from_utf8(bytes).ok().filter(|text| !text.contains('\0'));
     let Some(text) = text else {

@@ -83,6 +83,7 @@ fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, (is_first, before): (bool, 
         views: plan.views.clone(),
         lights: Vec::new(),
         meshes: vec![plan.meshes[draw.mesh.0].clone()],
+        textures: Vec::new(),
         passes: vec![pass],
         left_out: Vec::new(),
         ..*plan

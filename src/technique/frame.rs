@@ -12,8 +12,11 @@ use super::error::MOST_LIGHTS;
 use super::{Choice, CommonSettings, PlanError};
 use crate::geometry::{self, GeometryCache};
 use crate::math::depth::DepthMapping;
-use crate::plan::{Attachment, AttachmentId, Decision, DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, ViewId};
-use crate::scene::{Material, Object, Scene};
+use crate::plan::{
+    Attachment, AttachmentId, Decision, DrawMesh, FramePlan, LeftOut, LightId, MeshId, Part, PlanTexture, TextureId,
+    ViewId,
+};
+use crate::scene::{Material, Object, Scene, Texture};
 pub use drawn::Drawn;
 use glam::{DVec3, DVec4};
 pub use places::coincide;
@@ -58,6 +61,8 @@ pub struct Piece {
     pub triangles: Range<u32>,
     /// The layer of each light's map that is its own.
     pub layer: Option<u32>,
+    /// The picture on it.
+    pub texture: Option<TextureId>,
 }
 
 /// A plan in the making: objects and lights are placed, and passes are added in the order in which they run.
@@ -121,6 +126,7 @@ impl<'a> Frame<'a> {
             lights: Vec::new(),
             ambient: scene.ambient,
             meshes: Vec::new(),
+            textures: Vec::new(),
             passes: Vec::new(),
             left_out: Vec::new(),
         };
@@ -181,6 +187,17 @@ impl<'a> Frame<'a> {
         MeshId(self.plan.meshes.len() - 1)
     }
 
+    /// The picture of a surface as one of the plan, which has each once.
+    pub(super) fn add_texture(&mut self, texture: &Texture) -> TextureId {
+        let wanted = PlanTexture { picture: texture.picture.clone(), clamps: texture.clamps };
+        let textures = &mut self.plan.textures;
+        let known = textures.iter().position(|texture| *texture == wanted);
+        TextureId(known.unwrap_or_else(|| {
+            textures.push(wanted);
+            textures.len() - 1
+        }))
+    }
+
     /// Records that something is not needed.
     pub fn leave_out(&mut self, decision: Decision, of: impl Into<String>, because: impl Into<String>) {
         self.plan.left_out.push(LeftOut::new(decision, of, because));
@@ -208,7 +225,7 @@ impl<'a> Frame<'a> {
                 let is_in_front = self.clips_volumes || is_of_these;
                 let is_unclipped = match self.plan.depth.keeps_volumes() {
                     // Light caps are clipped as the surfaces that they coincide with.
-                    true => draw.raster.unclipped_depth && draw.part != Part::LightCap,
+                    true => draw.raster.unclipped_depth && !draw.part.includes(Part::LightCap),
                     false => mapping.clamps() && !(is_in_front && draw.part != Part::Surface),
                 };
                 draw.raster.unclipped_depth = is_of_camera && is_unclipped;

@@ -45,6 +45,7 @@ pub(super) mod cited {
         "Coherent Hierarchical Culling: Hardware Occlusion Queries Made Useful",
     );
     pub const BLINN: Source = source("Blinn", 1988, "Me and My (Fake) Shadow");
+    pub const BRENNAN: Source = source("Brennan", 2002, "Shadow Volume Extrusion using a Vertex Shader");
     pub const CARMACK: Source = source("Carmack", 2000, "Unpublished correspondence on shadow volumes");
     pub const CROW: Source = source("Crow", 1977, "Shadow Algorithms for Computer Graphics");
     pub const EVERITT_KILGARD: Source = source(

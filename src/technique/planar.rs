@@ -158,8 +158,7 @@ fn mark_pass(frame: &mut Frame, marked: &[Marked], light: LightId) {
         let corners = receiver.triangles.iter().flat_map(|t| placed.object.mesh.triangles()[*t as usize]).collect();
         let caster = Some(placed.object.name.clone());
         let vertices = frame.plan.meshes[surface.0].vertices.clone();
-        let mesh =
-            frame.add_mesh(DrawMesh { name: name.clone(), vertices, indices: Blob::new(corners), surface: None });
+        let mesh = frame.add_mesh(DrawMesh::of_blobs(name.as_str(), vertices, Blob::new(corners)));
         let replace =
             StencilFace { compare: CompareFunction::Always, pass_op: StencilOperation::Replace, ..StencilFace::IGNORE };
         draws.push(Draw {
@@ -250,12 +249,7 @@ fn shadow_draw(
     let count = triangles.len() as u32;
     let name = format!("shadow of {} on {}", frame.placed[caster].object.name, one.receiver.name);
     let caster = Some(frame.placed[caster].object.name.clone());
-    let mesh = frame.add_mesh(DrawMesh {
-        name: name.clone(),
-        vertices: Blob::new(vertices),
-        indices: Blob::new((0..count * 3).collect()),
-        surface: None,
-    });
+    let mesh = frame.add_mesh(DrawMesh::of_positions(name.as_str(), vertices, (0..count * 3).collect()));
     Some(Draw {
         name,
         caster,

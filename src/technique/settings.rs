@@ -31,7 +31,8 @@ impl Technique {
             Technique::Planar => &planar::SETTINGS,
             Technique::PlanarTexture => &maps::PLANAR_TEXTURE,
             Technique::ZPass => &volume::Z_PASS,
-            Technique::ZFail | Technique::ZPassPlus => &volume::VOLUME,
+            Technique::ZFail => &volume::Z_FAIL,
+            Technique::ZPassPlus => &volume::Z_PASS_PLUS,
             Technique::ShadowMap => &maps::SHADOW_MAP,
             Technique::Projective => &maps::PROJECTIVE,
         }

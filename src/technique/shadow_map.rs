@@ -14,9 +14,9 @@ use super::settings::MapSettings;
 use crate::geometry::light_frame::{self, CUBE_FACES, LightFrame, MapStorage};
 use crate::geometry::relative;
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, Blob, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw,
-    DrawConstants, DrawMesh, FramePlan, LeftOut, LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program,
-    RasterState, ViewId, Visibility,
+    Attachment, AttachmentId, AttachmentRole, ColorWrite, DecidedBy, Decision, DepthStencilTarget, Draw, DrawConstants,
+    DrawMesh, FramePlan, LeftOut, LightId, MapLookup, MeshId, Part, Pass, PlanMap, PlanView, Program, RasterState,
+    ViewId, Visibility,
 };
 use glam::{DMat4, DVec3};
 use wgpu::{DepthBiasState, TextureFormat};
@@ -173,13 +173,9 @@ fn darkening_casters(frame: &mut Frame, light: LightId) -> Vec<usize> {
 fn add_caster_mesh(frame: &mut Frame, index: usize, origin: DVec3) -> MeshId {
     let placed = &frame.placed[index];
     let vertices = placed.world.iter().map(|position| relative::point(*position, origin)).collect();
-    let mesh = DrawMesh {
-        name: format!("{} from the light", placed.object.name),
-        vertices: Blob::new(vertices),
-        indices: Blob::new(placed.object.mesh.triangles().as_flattened().to_vec()),
-        surface: None,
-    };
-    frame.add_mesh(mesh)
+    let name = format!("{} from the light", placed.object.name);
+    let indices = placed.object.mesh.triangles().as_flattened().to_vec();
+    frame.add_mesh(DrawMesh::of_positions(name, vertices, indices))
 }
 
 /// The pass of one face; `None` and no pass where it sees no caster.

@@ -97,7 +97,7 @@ pub fn draws(frame: &mut Frame, caster: usize, of: &[u32]) -> Vec<Draw> {
         }
         let indices = Blob::new(own.iter().flat_map(|triangle| triangles[*triangle as usize]).collect());
         let name = format!("silhouette of {}", object.name);
-        let mesh = frame.add_mesh(DrawMesh { name, vertices: vertices.clone(), indices, surface: None });
+        let mesh = frame.add_mesh(DrawMesh::of_blobs(name, vertices.clone(), indices));
         draws.push(Draw {
             name: object.name.clone(),
             caster: Some(object.name.clone()),

@@ -4,18 +4,52 @@ use crate::geometry::relative;
 use crate::math::{Sign, side_of_triangle};
 use crate::plan::{Blob, DrawMesh, SurfaceData};
 use crate::scene::{Light, Mesh, Object, Scene, Shading};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// The surface of `object`, relative to the eye; shaded as its materials say unless told otherwise.
 pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene, shading: Option<Shading>) -> DrawMesh {
     let eye = scene.camera.eye;
     let normals = corner_normals(object, world, shading);
+    let vertices = world.iter().map(|position| relative::point(*position, eye)).collect();
+    let indices = object.mesh.triangles().as_flattened().to_vec();
     DrawMesh {
-        name: object.name.clone(),
-        vertices: Blob::new(world.iter().map(|position| relative::point(*position, eye)).collect()),
-        indices: Blob::new(object.mesh.triangles().as_flattened().to_vec()),
-        surface: Some(SurfaceData { normals: Blob::new(normals), sides: Blob::new(sides(object, world, scene)) }),
+        surface: Some(SurfaceData {
+            normals: Blob::new(normals),
+            sides: Blob::new(sides(object, world, scene)),
+            uvs: uvs(object, world).map(Blob::new),
+        }),
+        ..DrawMesh::of_positions(&object.name, vertices, indices)
     }
+}
+
+/// [`SurfaceData::uvs`].
+fn uvs(object: &Object, world: &[DVec3]) -> Option<Vec<[f32; 2]>> {
+    let mesh = &object.mesh;
+    mesh.groups().iter().find_map(|group| object.texture_of(group))?;
+    let mut uvs = Vec::with_capacity(mesh.triangles().len() * 3);
+    for group in mesh.groups() {
+        let texture = object.texture_of(group);
+        match texture.map(|texture| texture.side) {
+            None => uvs.extend(group.triangles.clone().flat_map(|_| [[0.0; 2]; 3])),
+            Some(None) => {
+                let given = |triangle| mesh.corner_uvs().and_then(|uvs| uvs[triangle]).unwrap_or_default();
+                uvs.extend(group.triangles.clone().flat_map(given).map(|uv| uv.to_array()));
+            }
+            // As seen from above, with X to the right: its upper edge lies towards −Z.
+            Some(Some(side)) => {
+                let place = |vertex: u32| {
+                    let at = world[vertex as usize] / f64::from(side);
+                    DVec2::new(at.x, -at.z)
+                };
+                let corners = || group.triangles.clone().flat_map(|triangle| mesh.triangles()[triangle]);
+                // Whole pictures less, which are not seen where it repeats, it is small: single precision holds it.
+                let repeats = texture.is_some_and(|texture| !texture.clamps);
+                let first = corners().map(place).reduce(DVec2::min).filter(|_| repeats).unwrap_or_default().floor();
+                uvs.extend(corners().map(|vertex| (place(vertex) - first).as_vec2().to_array()));
+            }
+        }
+    }
+    Some(uvs)
 }
 
 /// [`SurfaceData::sides`].
@@ -83,12 +117,11 @@ pub fn subset(mesh: &DrawMesh, name: &str, triangles: &[u32]) -> DrawMesh {
         Blob::new(triangles.iter().flat_map(of).collect())
     }
     DrawMesh {
-        name: name.to_owned(),
-        vertices: mesh.vertices.clone(),
-        indices: pick(&mesh.indices, triangles, 3),
         surface: mesh.surface.as_ref().map(|surface| SurfaceData {
             normals: pick(&surface.normals, triangles, 3),
             sides: pick(&surface.sides, triangles, 1),
+            uvs: surface.uvs.as_ref().map(|uvs| pick(uvs, triangles, 3)),
         }),
+        ..DrawMesh::of_blobs(name, mesh.vertices.clone(), pick(&mesh.indices, triangles, 3))
     }
 }

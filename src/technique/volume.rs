@@ -14,6 +14,7 @@
 
 mod counting;
 mod drawn;
+mod extruded;
 mod eye_count;
 mod far_count;
 mod near_count;
@@ -29,7 +30,7 @@ use crate::plan::{CountBits, CountOf, DecidedBy, Decision, Draw, FramePlan, Left
 use crate::scene::Scene;
 pub use counting::{Counting, Form};
 use counting::{Counts, NeededPart, Start, Step};
-use drawn::{Volume, make, needed_parts};
+use drawn::{Made, Volume};
 use glam::{DVec3, DVec4};
 
 /// What is said of z-pass.
@@ -70,6 +71,7 @@ pub(super) const Z_FAIL: Description = Description {
         &[],
         &[("casters", "all")],
         &[("casters", "light-facing")],
+        &[("extruded-by", "vertex-shader")],
         &[("faces", "two-pass")],
         &[("counter", "float")],
         &[("extrusion", "finite:100")],
@@ -287,8 +289,9 @@ fn told<'a>(
 ) -> Counts<'a> {
     let chooses_side = frame.job.choice.technique() == Technique::Auto;
     let lacks = [0, 1].map(|cap| volumes.iter().any(|volume| volume.lacks_caps[cap]));
-    let is_parallel = frame.job.scene.camera.is_parallel();
-    Counts { by, light, options, start, chooses_side, is_parallel, lacks }
+    let camera = &frame.job.scene.camera;
+    let (place, is_parallel) = (camera.counting_place_name(), camera.is_parallel());
+    Counts { by, light, options, start, chooses_side, place, is_parallel, lacks }
 }
 
 /// The same in a float target: signed, and right beyond eight bits. It adds and takes away in one
@@ -316,6 +319,7 @@ fn count_in_float(frame: &mut Frame, light: LightId, counting: Counting, options
 /// All volumes of a light, and whether they may count beyond eight bits although nobody asked for that.
 fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides: &impl Decides) -> (Vec<Volume>, bool) {
     let mut volumes = Vec::new();
+    let (position, by_vertex_shader) = (frame.light_position(light), extruded::serves(frame, light, options));
     for index in 0..frame.placed.len() {
         let object = frame.placed[index].object;
         if !object.casts || object.mesh.triangles().is_empty() {
@@ -328,51 +332,46 @@ fn volumes(frame: &mut Frame, light: LightId, options: &VolumeSettings, decides:
                 continue;
             }
         };
-        let casters = who_casts(frame, light, index, options);
+        let casters = who_casts(frame, light, index, options, by_vertex_shader);
         let held = decides.held_by_parts(frame, index);
-        let (mesh, parts, far_end) = make(frame, light, index, (casters, &held), options);
-        if parts.light_cap_turned.end == 0 {
-            let because = match casters {
-                Casters::All => "every triangle is edge-on to the light",
-                Casters::LightFacing => "no triangle faces the light",
-                Casters::LightBackFacing => "no triangle faces away from the light",
-            };
-            frame.leave_out(Decision::NothingCasts, &object.name, because);
-            continue;
-        }
-        // A bias of sides that hug it is a few steps, and rounding may be more.
-        if !parts.hugging_sides.is_empty() && !casters::can_darken(frame, index, light, Darkened::All) {
-            let because = "the light grazes it, so that depth can't tell it from its sides, and nothing is behind it";
-            frame.leave_out(Decision::Caster, &object.name, because);
-            continue;
-        }
-        let (needed, begins_with) = needed_parts(frame, form, &parts, object, (options.caps[1], far_end));
+        let made = match by_vertex_shader && held.is_empty() {
+            true => Ok(extruded::make(frame, light, index, casters, (form, options))),
+            false => drawn::make(frame, light, index, (casters, &held), (form, options)),
+        };
+        let Made { mesh, casting, needed, begins_with } = match made {
+            Ok(made) => made,
+            Err(left_out) => {
+                frame.plan.left_out.push(left_out);
+                continue;
+            }
+        };
         let is_drawn = |part: &NeededPart| match part.part {
             Part::LightCap => options.caps[0],
             Part::DarkCap => options.caps[1],
+            Part::Caps => options.caps != [false; 2],
             _ => true,
         };
         let (needed, lacking): (Vec<_>, Vec<_>) =
             needed.into_iter().filter(|part| !part.triangles.is_empty()).partition(is_drawn);
-        let lacks_caps = [Part::LightCap, Part::DarkCap].map(|cap| lacking.iter().any(|part| part.part == cap));
+        let lacks_caps = [Part::LightCap, Part::DarkCap].map(|cap| lacking.iter().any(|part| part.part.includes(cap)));
         let mesh = frame.add_mesh(mesh);
         let is_body = options.casters == WhoCasts::ByTopology && casters == Casters::LightFacing;
         let darkens_nothing = !is_body && !casters::can_darken(frame, index, light, Darkened::All);
-        let (caster, counting) = (object.name.clone(), form.counting);
+        let (object, caster, counting) = (index, object.name.clone(), form.counting);
         volumes.push(Volume {
-            object: index,
+            object,
             caster,
             counting,
             is_body,
             darkens_nothing,
             mesh,
-            parts,
+            casting,
             needed,
             lacks_caps,
             begins_with,
         });
     }
-    let mut casting = volumes.iter().flat_map(|volume: &Volume| volume.casting_triangles(frame));
+    let mut casting = volumes.iter().flat_map(|volume: &Volume| volume.casting_triangles(frame, position));
     let may_overflow = decides.may_overflow(&mut casting);
     drop(casting);
     if may_overflow {
@@ -394,7 +393,13 @@ pub fn casting(choice: &Choice, cache: &mut GeometryCache, caster: Caster, light
 }
 
 /// Which triangles of an object cast; for `by-topology`, with what decided it.
-fn who_casts(frame: &mut Frame, light: LightId, index: usize, options: &VolumeSettings) -> Casters {
+fn who_casts(
+    frame: &mut Frame,
+    light: LightId,
+    index: usize,
+    options: &VolumeSettings,
+    by_vertex_shader: bool,
+) -> Casters {
     if let WhoCasts::Always(casters) = options.casters {
         return casters;
     }
@@ -403,6 +408,8 @@ fn who_casts(frame: &mut Frame, light: LightId, index: usize, options: &VolumeSe
     let caster = Caster { mesh: &object.mesh, pose: &object.pose, world: &placed.world };
     let name = light.name();
     match frame.job.cache.light_facing_suffices(caster, position) {
+        // They are its dark cap there.
+        Ok(()) if by_vertex_shader => Casters::LightFacing,
         Ok(()) => {
             let because = format!(
                 "proven: the mesh is closed, consistently wound, nowhere inside out and does not meet itself, and \

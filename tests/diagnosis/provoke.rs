@@ -2,7 +2,7 @@
 
 use super::faults;
 use crate::common::random::Random;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::sync::Arc;
 use stencilscope::diagnosis::Cause;
 use stencilscope::plan::{FramePlan, Part};
@@ -192,6 +192,9 @@ pub fn provoke(cause: Cause, seed: u64) -> Provocation {
             set(Technique::ZFail, &[("extrusion", "finite:100"), ("far-vertices", "from-origin")]),
             None,
         ),
+        Cause::CarriedInF32 => {
+            (lamp_on_a_sheet(dice), set(Technique::ZFail, &[("extruded-by", "vertex-shader")]), None)
+        }
         Cause::FewBits => {
             let bits = dice.one_of(3);
             let count = [2, 4, 16][bits];
@@ -354,6 +357,15 @@ fn panes(light: DVec3, onto: DVec3, half: f64, count: u32) -> impl Iterator<Item
         let at = onto + (light - onto) * up;
         Object { visible: false, ..Object::of(format!("pane {}", index + 1), pane).at(at.to_array()) }
     })
+}
+
+/// The lamp is a ten-millionth of a metre over a tilted sheet.
+fn lamp_on_a_sheet(dice: &mut Dice) -> Scene {
+    let tilt = dice.between(20.0, 40.0);
+    let sheet = Object::of("sheet", shapes::quad([0.8; 2]).expect("a sheet")).turned([tilt, 0.0, 0.0]);
+    let over = DVec3::new(dice.between(-0.1, 0.1), 1e-7, dice.between(-0.1, 0.1));
+    let lamp = DVec3::Y + DMat3::from_rotation_x(tilt.to_radians()) * over;
+    scene(dice.eye(), [0.0, 0.3, 0.0], Light::point(lamp), vec![floor(), sheet.at([0.0, 1.0, 0.0])])
 }
 
 fn under_panes(dice: &mut Dice, count: u32) -> Scene {

@@ -70,6 +70,10 @@ fn pixels_agree_by_every_technique_and_setting_that_draws_otherwise() {
         ("steps", Technique::ZFail, &[("depth", "standard-finite-clamp")]),
         ("steps", Technique::ZPassPlus, &[("depth", "standard-infinite-epsilon"), ("extrusion", "finite:20")]),
         ("tiger-cage", Technique::ZFail, &[("light-caps", "never")]),
+        ("inside", Technique::ZFail, &[("extruded-by", "vertex-shader")]),
+        ("teapot-like", Technique::ZPass, &[("extruded-by", "vertex-shader")]),
+        ("gate", Technique::ZFail, &[("extruded-by", "vertex-shader"), ("counter", "float")]),
+        ("steps", Technique::ZFail, &[("extruded-by", "vertex-shader"), ("extrusion", "finite:20")]),
     ];
     for (name, technique, settings) in forms {
         agreeing(&mut session, &builtin(name), *technique, settings, 30);

@@ -13,6 +13,8 @@ use std::sync::Arc;
 use stencilscope::ask::{Answer, HistoryOf};
 use stencilscope::history::{Event, PixelHistory};
 use stencilscope::plan::Part;
+use stencilscope::reading::coordinates::{Place, vector};
+use stencilscope::reading::shading::Shaded;
 use stencilscope::scene::{OpenSpec, open};
 use stencilscope::technique::Technique;
 
@@ -415,6 +417,60 @@ fn coordinates_unfold_into_every_space_and_matrix() {
     harness.get_by_label("Coordinates").click();
     harness.run_steps(20);
     for label in ["world", "eye", "clip", "NDC", "window", "camera", "step, 24 bits", "clip from eye, then back:"] {
+        harness.get_by_label(label);
+    }
+}
+
+#[test]
+fn a_click_on_a_corner_shows_its_coordinates_and_another_on_the_point_brings_it_back() {
+    let (mut session, at) = (common::session(), [80, 60]);
+    let scene = open(&OpenSpec::new("tetrahedron")).expect("a scene");
+    let request = common::request(Technique::ZFail, [160, 120]);
+    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    let history = session.history(&plan, &capture, at).expect("a history");
+    let place = Place::of(&capture, at).with_vertices(&capture, &plan, &history);
+    let mut inspector = super::explain::over("tetrahedron", Technique::ZFail);
+    inspector.pick(at);
+    let mut harness = harness_of(inspector, TALL);
+    harness.get_by_label("Coordinates").click();
+    harness.run_steps(20);
+    assert!(harness.query_by_label("the point").is_none(), "until the history tells of the triangle");
+    answer(&mut harness, history);
+    harness.run_steps(4);
+    let [.., corner] = &place.vertices[..] else { panic!("three corners") };
+    let clip = vector(&corner.clip, 4);
+    assert!(harness.query_by_label(&clip).is_none());
+    harness.get_by_label(&format!("vertex {}", corner.index)).click();
+    harness.run_steps(4);
+    harness.get_by_label(&clip);
+    harness.get_by_label("in view");
+    harness.get_by_label("the point").click();
+    harness.run_steps(4);
+    harness.get_by_label(&vector(&place.point.expect("a point").clip, 4));
+    assert!(harness.query_by_label(&clip).is_none());
+}
+
+/// The floor of `pattern` is tiled: the texel is among the terms.
+#[test]
+fn shading_unfolds_into_its_terms_with_the_texel() {
+    let pattern = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/pattern.toml");
+    let name = pattern.display().to_string();
+    let mut inspector = super::explain::over(&name, Technique::ZFail);
+    let (mut session, at) = (common::session(), [100, 100]);
+    let scene = open(&OpenSpec::new(name)).expect("a scene");
+    let request = common::request(Technique::ZFail, [160, 120]);
+    let (capture, plan) = session.capture_with_plan(&scene, &request).expect("a capture");
+    let history = session.history(&plan, &capture, at).expect("a history");
+    let shaded = Shaded::of(&capture, &plan, &history).expect("a surface");
+    let [column, row] = shaded.texture.expect("a picture").texel;
+    inspector.pick(at);
+    let mut harness = harness_of(inspector, TALL);
+    answer(&mut harness, history);
+    assert!(harness.query_by_label("texture").is_none(), "folded at first");
+    harness.get_by_label("Shading").click();
+    harness.run_steps(20);
+    harness.get_by_label(&format!("tiles.png, texel {column},{row}"));
+    for label in ["texture", "u, v", "level", "texel's colour"] {
         harness.get_by_label(label);
     }
 }

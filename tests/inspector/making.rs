@@ -7,11 +7,12 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
+use std::path::Path;
 use std::sync::Arc;
 use stencilscope::ask::{MeshesOf, RunRequest};
 use stencilscope::glam;
 use stencilscope::inspector::{Action, Inspector};
-use stencilscope::scene::{Light, Object, Pose, Scene, SceneBuilder, UpAxis, model_scene, shapes};
+use stencilscope::scene::{Light, Object, OpenSpec, Pose, Scene, SceneBuilder, UpAxis, model_scene, open, shapes};
 use stencilscope::technique::{Choice, Technique};
 
 /// A floor and a box, seen from two metres away.
@@ -60,6 +61,27 @@ fn choose(harness: &mut Harness<Seen>, name: &str) {
 fn set(harness: &mut Harness<Seen>, name: &str, value: f64) {
     harness.get_by_role_and_label(Role::SpinButton, name).set_value_accesskit(value);
     harness.run_steps(2);
+}
+
+#[test]
+fn what_an_object_shows_is_told_with_how_it_lies() {
+    let pattern = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/pattern.toml");
+    let scene = open(&OpenSpec::new(pattern.display().to_string())).expect("a scene");
+    let edited = |name: &str| {
+        let mut inspector = Inspector::new(Vec::new());
+        let request = RunRequest::of(&scene, Choice::new(Technique::ZFail), SIZE);
+        inspector.open_scene(&scene, request, Some("pattern".to_owned()));
+        inspector.set_capture(Arc::new(z_fail(SIZE)));
+        let mut harness = harness_of(inspector, [1280.0, 3000.0]);
+        click(&mut harness, "Scene settings");
+        click(&mut harness, "Make: add, move, delete");
+        harness.run_steps(12);
+        choose(&mut harness, name);
+        harness
+    };
+    edited("floor").get_by_label("shows tiles.png, 64×64, 1.2 m along X and Z");
+    edited("crate").get_by_label("shows crate.png, 32×32, as its corners say");
+    assert!(edited("ring").query_by_label_contains("shows ").is_none());
 }
 
 #[test]

@@ -43,6 +43,12 @@ impl Here<'_> {
         self.frame.step(self.step).1.draws.iter().filter(move |draw| draw.part == part)
     }
 
+    /// Everything that this step draws is carried by its vertex shader.
+    fn is_extruded(&self) -> bool {
+        let draws = &self.frame.step(self.step).1.draws;
+        draws.iter().all(|draw| self.frame.plan.meshes[draw.mesh.0].extruded.is_some())
+    }
+
     fn triangles(&self, part: Part) -> f64 {
         self.draws(part).map(|draw| f64::from(draw.triangles.end - draw.triangles.start)).sum()
     }

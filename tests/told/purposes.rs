@@ -126,7 +126,7 @@ fn begins_at_far_end(frame: &Frame, pass: &Pass, bits: u8) -> bool {
         let normal = (b - a).cross(c - a);
         (sides == [true; 3] || sides == [false; 3]) && normal.dot(a) / normal.dot(along) > 0.0
     };
-    let caps = pass.draws.iter().filter(|draw| draw.part == Part::LightCap);
+    let caps = pass.draws.iter().filter(|draw| draw.part.includes(Part::LightCap));
     let met = caps.flat_map(|draw| {
         let mesh = &frame.plan.meshes[draw.mesh.0];
         let corners = &mesh.indices.data()[draw.triangles.start as usize * 3..draw.triangles.end as usize * 3];
@@ -143,9 +143,10 @@ fn begins_at_far_end(frame: &Frame, pass: &Pass, bits: u8) -> bool {
 /// What follows of what a count is said to begin at; `None` where that is not so.
 fn begins<'t>(frame: &Frame, pass: &Pass, told: &'t str) -> Option<&'t str> {
     let cleared = cleared_to(frame, pass);
-    let (start, is_so, rest) = if let Some(told) = gaps("It begins at {}, for the volumes around the eye. {}", told) {
+    let (start, is_so, rest) = if let Some(told) = gaps("It begins at {}, for the volumes around {}. {}", told) {
         let starts_at_eye = frame.plan.settings.get("start").is_some_and(|start| start == "eye-count");
-        (told[0], starts_at_eye, told[1])
+        let place = if frame.scene.camera.is_parallel() { "the middle of the near plane" } else { "the eye" };
+        (told[0], starts_at_eye && told[1] == place, told[2])
     } else if let Some(told) = gaps(
         "It begins at {}: parallel lines of sight all end at one point at infinity, in the volumes of so many casting triangles, those that a ray from {} along them meets. {}",
         told,
@@ -199,8 +200,8 @@ fn is_so_where(frame: &Frame, pass: &Pass, told: &str) -> bool {
         _ => return false,
     };
     let own = || frame.plan.passes.iter().filter(|other| other.light == pass.light && other.view.0 == 0);
-    let is_drawn =
-        [Part::LightCap, Part::DarkCap].map(|part| own().any(|pass| pass.draws.iter().any(|draw| draw.part == part)));
+    let is_drawn = [Part::LightCap, Part::DarkCap]
+        .map(|part| own().any(|pass| pass.draws.iter().any(|draw| draw.part.includes(part))));
     // Behind surfaces all volumes need a light cap, and those that do not meet in one point a dark one.
     let light = pass.light.expect("a light").0;
     let is_behind =

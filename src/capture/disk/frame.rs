@@ -3,15 +3,16 @@
 //! What is read is not trusted: indexes, sizes and lengths are checked before anything runs it.
 
 use super::super::files;
-use super::{Capture, CaptureError};
+use super::{Capture, CaptureError, Image};
+use crate::capture::PixelFormat;
 use crate::plan::{
-    Attachment, AttachmentId, AttachmentRole, Blob, CpuImage, DrawMesh, FramePlan, LightId, MakeImage, PlanLight,
-    StartContent, SurfaceData, lint,
+    Attachment, AttachmentId, AttachmentRole, Blob, Carry, CpuImage, DrawMesh, Extruded, FramePlan, LightId, MakeImage,
+    PlanLight, PlanTexture, StartContent, SurfaceData, lint,
 };
+use crate::scene::Picture;
 use foldhash::quality::FixedState;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::hash::BuildHasher;
 use std::path::Path;
 use std::sync::Arc;
@@ -25,6 +26,9 @@ const MOST_LAYERS: u32 = 2048;
 struct FrameEntry<P> {
     plan: P,
     meshes: Vec<MeshEntry>,
+    /// Pictures on surfaces.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    textures: Vec<TextureEntry>,
     /// Of passes whose picture comes from the CPU.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     images: Vec<ImageEntry>,
@@ -43,6 +47,16 @@ struct MeshEntry {
     indices: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     surface: Option<SurfaceEntry>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    extruded: Option<ExtrudedEntry>,
+}
+
+/// What the vertices are made of by a vertex shader.
+#[derive(Serialize, Deserialize)]
+struct ExtrudedEntry {
+    /// Of each vertex where it is before, and the plane that decides: (vertices, 8), `<f4`.
+    corners: String,
+    carry: Carry,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -51,6 +65,17 @@ struct SurfaceEntry {
     normals: String,
     /// A word a triangle, `<u4`.
     sides: String,
+    /// Of each corner of each triangle: (3 · triangles, 2), `<f4`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    uvs: Option<String>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct TextureEntry {
+    name: String,
+    /// RGBA with 8 bits a channel.
+    file: String,
+    clamps: bool,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -74,22 +99,40 @@ struct StartEntry {
 /// Writes a plan.
 pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError> {
     let mut written = BTreeMap::new();
-    let mut entry = FrameEntry { plan, meshes: Vec::new(), images: Vec::new(), starts: Vec::new() };
+    let mut entry =
+        FrameEntry { plan, meshes: Vec::new(), textures: Vec::new(), images: Vec::new(), starts: Vec::new() };
     for (index, mesh) in plan.meshes.iter().enumerate() {
         let mut put = Put { folder, stem: format!("mesh{index:03}"), written: &mut written };
-        let DrawMesh { name, vertices, indices, surface } = mesh;
+        let DrawMesh { name, vertices, indices, surface, extruded } = mesh;
         entry.meshes.push(MeshEntry {
             name: name.clone(),
             vertices: put.blob("vertices", vertices, |values| (values.as_flattened(), 4))?,
             indices: put.blob("indices", indices, |values| (values, 3))?,
             surface: match surface {
                 None => None,
-                Some(SurfaceData { normals, sides }) => Some(SurfaceEntry {
+                Some(SurfaceData { normals, sides, uvs }) => Some(SurfaceEntry {
                     normals: put.blob("normals", normals, |values| (values.as_flattened(), 4))?,
                     sides: put.blob("sides", sides, |values| (values, 1))?,
+                    uvs: match uvs {
+                        None => None,
+                        Some(uvs) => Some(put.blob("uvs", uvs, |values| (values.as_flattened(), 2))?),
+                    },
+                }),
+            },
+            extruded: match extruded {
+                None => None,
+                Some(Extruded { corners, carry }) => Some(ExtrudedEntry {
+                    corners: put.blob("corners", corners, |values| (bytemuck::cast_slice::<_, f32>(values), 8))?,
+                    carry: *carry,
                 }),
             },
         });
+    }
+    for (index, PlanTexture { picture, clamps }) in plan.textures.iter().enumerate() {
+        let file = format!("texture{index:03}.png");
+        let texels = picture.texels().as_flattened().to_vec();
+        files::write_image(&folder.join(&file), &Image::packed(PixelFormat::Rgba8Srgb, picture.size(), texels))?;
+        entry.textures.push(TextureEntry { name: picture.name().to_owned(), file, clamps: *clamps });
     }
     for (pass, image) in plan.passes.iter().enumerate().filter_map(|(pass, of)| Some((pass, of.image.as_ref()?))) {
         let file = format!("pass{pass:03}.image.npy");
@@ -141,19 +184,35 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
         return Ok(None);
     }
     let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
-    let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
+    let text = files::read_text(&file)?;
     let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let mut plan = entry.plan;
     let mut get = Get { folder, floats: BTreeMap::new(), words: BTreeMap::new() };
-    for MeshEntry { name, vertices, indices, surface } in entry.meshes {
+    for MeshEntry { name, vertices, indices, surface, extruded } in entry.meshes {
         let surface = match surface {
             None => None,
-            Some(SurfaceEntry { normals, sides }) => {
-                Some(SurfaceData { normals: get.rows(&normals)?, sides: get.words(&sides, 1)? })
-            }
+            Some(SurfaceEntry { normals, sides, uvs }) => Some(SurfaceData {
+                normals: get.rows(&normals)?,
+                sides: get.words(&sides, 1)?,
+                uvs: uvs.map(|file| get.pairs(&file)).transpose()?,
+            }),
         };
-        let (vertices, indices) = (get.rows(&vertices)?, get.words(&indices, 3)?);
-        plan.meshes.push(DrawMesh { name, vertices, indices, surface });
+        let indices = get.words(&indices, 3)?;
+        plan.meshes.push(match extruded {
+            None => DrawMesh { surface, ..DrawMesh::of_blobs(name, get.rows(&vertices)?, indices) },
+            Some(ExtrudedEntry { corners, carry }) => {
+                let values: Vec<f32> = files::read_values(&plain(folder, &corners)?, 8)?;
+                let corners = Blob::new(bytemuck::cast_slice(&values).to_vec());
+                DrawMesh::of_extruded(name, Extruded { corners, carry }, indices)
+            }
+        });
+    }
+    for TextureEntry { name, file, clamps } in entry.textures {
+        let image = files::read_image(&plain(folder, &file)?, PixelFormat::Rgba8Srgb)?;
+        let texels = image.rows().flat_map(|row| row.as_chunks().0).copied().collect();
+        let picture = Picture::new(name, image.size(), texels);
+        let picture = picture.ok_or_else(|| wrong(format!("{file} is larger than a texture may be")))?;
+        plan.textures.push(PlanTexture { picture: Arc::new(picture), clamps });
     }
     for ImageEntry { pass, name, file } in entry.images {
         let texels: Vec<u8> = files::read_values(&plain(folder, &file)?, 1)?;
@@ -201,6 +260,11 @@ impl Get<'_> {
         let blob = Blob::new(values.as_chunks().0.to_vec());
         self.floats.insert(file.to_owned(), blob.clone());
         Ok(blob)
+    }
+
+    fn pairs(&self, file: &str) -> Result<Blob<[f32; 2]>, CaptureError> {
+        let values: Vec<f32> = files::read_values(&plain(self.folder, file)?, 2)?;
+        Ok(Blob::new(values.as_chunks().0.to_vec()))
     }
 
     fn words(&mut self, file: &str, columns: u64) -> Result<Blob<u32>, CaptureError> {

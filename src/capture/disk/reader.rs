@@ -9,7 +9,6 @@ use super::{CaptureError, MANIFEST, PLAN, SCENE, WholeFrame, frame};
 use crate::math::depth::DepthMapping;
 use crate::scene;
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -32,7 +31,7 @@ pub fn read_whole(folder: &Path) -> Result<WholeFrame, CaptureError> {
 pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
     let file = folder.join(MANIFEST);
     let wrong = |reason: String| CaptureError::Read { file: file.clone(), reason };
-    let text = fs::read_to_string(&file).map_err(|error| wrong(error.to_string()))?;
+    let text = files::read_text(&file)?;
     let manifest: Manifest = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     if !manifest::SCHEMAS.contains(&manifest.schema) {
         return Err(wrong(format!("its schema is {}, of which this version knows nothing", manifest.schema)));
@@ -68,11 +67,7 @@ pub fn read(folder: &Path) -> Result<Capture, CaptureError> {
 /// The plan's text, where there is one.
 fn read_plan(folder: &Path) -> Result<String, CaptureError> {
     let file = folder.join(PLAN);
-    match fs::read_to_string(&file) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
-        Err(error) => Err(CaptureError::Read { file, reason: error.to_string() }),
-        Ok(text) => Ok(text),
-    }
+    if file.exists() { files::read_text(&file) } else { Ok(String::new()) }
 }
 
 /// What a manifest may say that no frame leaves behind.

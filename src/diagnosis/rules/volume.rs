@@ -5,7 +5,7 @@ use crate::diagnosis::facts::{Case, Facts, Rule, Sample, Suspicion, amount, list
 use crate::diagnosis::mend::{Mend, PlanEdit};
 use crate::geometry::{Extrusion, ViewVolume};
 use crate::history::Fate;
-use crate::math::AxisBox;
+use crate::math::{AxisBox, Sign, side_of_triangle};
 use crate::numbers;
 use crate::plan::{Clip, Decision, Draw, Part, Pass};
 use crate::technique::Technique;
@@ -20,6 +20,7 @@ pub(crate) const RULES: &[Rule] = &[
     missing_light_cap,
     far_clip,
     light_not_added,
+    carried_in_f32,
     finite_extrusion,
     cap_fighting,
 ];
@@ -74,15 +75,17 @@ fn near_plane_cut(facts: &Facts, case: &Case) -> Option<Suspicion> {
     if !begins_with_one_number(facts, light) {
         return None;
     }
-    let (eye_in, start) = holding(facts, light, facts.scene.camera.eye);
+    let camera = &facts.scene.camera;
+    let (eye_in, start) = holding(facts, light, camera.counting_place());
     if starts_at_eye(facts) {
         let (count, shown_by) = case.shown(|sample| {
             let (_, count) = holding(facts, light, facts.tracer.near_point(sample.center()));
             (count != start).then_some(count)
         })?;
         let evidence = format!(
-            "the count begins with {} around the eye, and the near plane, {} ahead, is in {count} here",
+            "the count begins with {} around {}, and the near plane, {} ahead, is in {count} here",
             amount(start, "shadow volume"),
+            camera.counting_place_name(),
             numbers::metres(facts.scene.camera.near),
         );
         return Suspicion::new(Cause::NearPlaneCut, evidence, vec![Mend::technique(Technique::ZFail)], shown_by);
@@ -315,6 +318,66 @@ fn finite_extrusion(facts: &Facts, case: &Case) -> Option<Suspicion> {
     Suspicion::new(Cause::FiniteExtrusion, evidence, vec![Mend::setting("extrusion", "infinite")], shown_by)
 }
 
+/// What single precision makes of a volume that a vertex shader carries.
+struct Carried {
+    /// Triangles that are told to face another way than they do.
+    misfaced: usize,
+    triangles: usize,
+    /// How far the farthest vertex goes beside its way, radians.
+    beside: f64,
+}
+
+impl Carried {
+    /// `None` where the CPU carries it.
+    fn of(facts: &Facts, light: usize, caster: &str) -> Option<Carried> {
+        let draw = part_of(facts, light, caster, Part::Side).next()?;
+        let extruded = facts.plan.meshes.get(draw.mesh.0)?.extruded.as_ref()?;
+        let (_, object) = facts.object(caster)?;
+        let (position, world) = (facts.tracer.light_position(light), object.world_positions());
+        let triangles = object.mesh.triangles();
+        // Its fronts come first, and as often as there are copies of each.
+        let copies = (extruded.corners.len() / triangles.len().max(1)).max(3);
+        let mut carried = Carried { misfaced: 0, triangles: triangles.len(), beside: 0.0 };
+        for (triangle, corners) in triangles.iter().zip(extruded.corners.data().chunks(copies)) {
+            let places = triangle.map(|vertex| world[vertex as usize]);
+            // Of one whose back alone casts the front has no plane.
+            let (at, casts) =
+                if corners[0].plane == [0.0; 4] { (copies - 1, Sign::Negative) } else { (0, Sign::Positive) };
+            let stays = side_of_triangle(places, position) == casts;
+            carried.misfaced += usize::from(stays == extruded.carry.carries(corners[at].plane));
+            for (place, corner) in places.into_iter().zip(corners) {
+                let way = (place * position.w - position.truncate()).normalize_or_zero();
+                let [x, y, z, w] = extruded.carry.far(corner.near).map(f64::from);
+                let near = DVec4::from_array(corner.near.map(f64::from)).truncate();
+                let told = (DVec3::new(x, y, z) - near * w).normalize_or_zero();
+                carried.beside = carried.beside.max(way.cross(told).length());
+            }
+        }
+        Some(carried)
+    }
+}
+
+fn carried_in_f32(facts: &Facts, case: &Case) -> Option<Suspicion> {
+    let light = case.light();
+    facts.volumes().filter(|settings| settings.by_vertex_shader)?;
+    let (found, shown_by) = case.shown(|sample| {
+        let miscounted = sample.miscounted(facts, light).into_iter();
+        miscounted.map(|(caster, ..)| caster).find_map(|caster| Some((Carried::of(facts, light, &caster)?, caster)))
+    })?;
+    let (Carried { misfaced, triangles, beside }, caster) = found;
+    let faces = match misfaced {
+        0 => "each triangle is told to face as it does".to_owned(),
+        1 => format!("1 of {} is told to face the wrong way", amount(triangles as u64, "triangle")),
+        _ => format!("{misfaced} of {} are told to face the wrong way", amount(triangles as u64, "triangle")),
+    };
+    let evidence = format!(
+        "the volume of {caster} is carried by a vertex shader, in single precision: {faces}, and a vertex goes up to {} \
+         radians beside its way",
+        numbers::digits(beside)
+    );
+    Suspicion::new(Cause::CarriedInF32, evidence, vec![Mend::setting("extruded-by", "cpu")], shown_by)
+}
+
 fn light_not_added(facts: &Facts, case: &Case) -> Option<Suspicion> {
     let Extrusion::FromOrigin(factor) = facts.volumes()?.extrusion else { return None };
     let position = facts.tracer.light_position(case.light());
@@ -350,7 +413,7 @@ fn cap_fighting(_: &Facts, case: &Case) -> Option<Suspicion> {
         let visible = history.triangles().filter(|(event, one)| event.light.is_none() && one.part == Part::Surface);
         let visible: Vec<_> = visible.filter(|(_, one)| one.fate.passed()).map(|(_, one)| one).collect();
         let visible = visible.last()?;
-        let mut caps = sample.volume_events(light).filter(|(_, one)| one.part == Part::LightCap);
+        let mut caps = sample.volume_events(light).filter(|(_, one)| one.part.includes(Part::LightCap));
         let (event, cap) = caps.find(|(_, one)| corners(one) == corners(visible))?;
         let differs = cap.depth.to_bits() != event.before.depth.to_bits();
         differs.then(|| (cap.caster.clone().unwrap_or_default(), cap.depth, event.before.depth))

@@ -121,7 +121,7 @@ impl Theme {
     pub fn part(&self, part: Part) -> Option<Color32> {
         match part {
             Part::Side => Some(self.side),
-            Part::LightCap => Some(self.light_cap),
+            Part::LightCap | Part::Caps => Some(self.light_cap),
             Part::DarkCap => Some(self.dark_cap),
             Part::Surface | Part::Receiver | Part::PlanarShadow | Part::Map => None,
         }

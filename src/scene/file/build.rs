@@ -6,11 +6,13 @@ use super::tables::{
     CameraTable, LightTable, MaterialTable, MeshSource, Number, ObjectTable, OrbitTable, SceneTable, SwingTable,
     TechniqueTable, Text, Triple,
 };
+use crate::scene::picture::Pictures;
 use crate::scene::placement::Surroundings;
 use crate::scene::suggestion;
 use crate::scene::{
-    Camera, Light, Material, Mesh, Motion, Object, Orbit, Pose, Projection, Scene, Shading, Swing, TechniqueRequest,
-    obj, read_text::stem,
+    Camera, Group, Light, Material, Mesh, Motion, Object, Orbit, Pose, Projection, Scene, Shading, Swing,
+    TechniqueRequest, Texture, obj,
+    read_text::{quoted, stem},
 };
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -33,7 +35,8 @@ const DEFAULT_NEAR: f64 = 0.01;
 /// # Errors
 /// The first value that can't be used.
 pub fn scene(table: SceneTable, name: &str, folder: &Path) -> Result<Scene, Problem> {
-    let mut builder = ObjectBuilder { folder, models: BTreeMap::new(), objects: Vec::new() };
+    let mut builder =
+        ObjectBuilder { folder, models: BTreeMap::new(), pictures: Pictures::default(), objects: Vec::new() };
     for object in &table.objects {
         builder.add(object)?;
     }
@@ -236,6 +239,7 @@ fn technique(table: &TechniqueTable) -> Result<TechniqueRequest, Problem> {
 struct ObjectBuilder<'a> {
     folder: &'a Path,
     models: BTreeMap<PathBuf, Arc<Mesh>>,
+    pictures: Pictures,
     objects: Vec<Object>,
 }
 
@@ -243,6 +247,7 @@ impl ObjectBuilder<'_> {
     fn add(&mut self, table: &ObjectTable) -> Result<(), Problem> {
         let mesh = self.mesh(&table.mesh)?;
         let material = material(table.material.as_ref(), &mesh)?;
+        let texture = table.material.as_ref().map_or(Ok(None), |table| self.texture(table, &mesh))?;
         let triple = |value: &Option<Triple>, default: DVec3| value.as_ref().map_or(Ok(default), finite);
         let object = Object {
             pose: Pose {
@@ -258,6 +263,7 @@ impl ObjectBuilder<'_> {
             casts: table.casts.unwrap_or(true),
             receives: table.receives.unwrap_or(true),
             visible: table.visible.unwrap_or(true),
+            texture,
             ..Object::new(self.name(table)?, mesh, material)
         };
         if !object.world_positions().iter().all(|position| position.is_finite()) {
@@ -276,10 +282,42 @@ impl ObjectBuilder<'_> {
         if let Some(model) = self.models.get(&path) {
             return Ok(Arc::clone(model));
         }
-        let model = obj::load(&path).map_err(|error| Problem::new(source.span(), error.to_string()))?;
+        let model = obj::load_among(&path, &mut self.pictures)
+            .map_err(|error| Problem::new(source.span(), error.to_string()))?;
         let model = Arc::new(model);
         self.models.insert(path, Arc::clone(&model));
         Ok(model)
+    }
+
+    /// The picture on those parts of a mesh that have no material of their own.
+    fn texture(&mut self, table: &MaterialTable, mesh: &Mesh) -> Result<Option<Texture>, Problem> {
+        let Some(file) = &table.texture else {
+            let side = table.texture_side.as_ref().map(|side| ("texture_side", side.span()));
+            let clamps = table.texture_clamps.as_ref().map(|clamps| ("texture_clamps", clamps.span()));
+            return side.or(clamps).map_or(Ok(None), |(key, span)| {
+                Err(Problem::new(span, format!("`{key}` is of a `texture`: give that too, or leave it out")))
+            });
+        };
+        let problem = |reason: String| Problem::new(file.span(), reason);
+        let own: Vec<&Group> = mesh.groups().iter().filter(|group| group.material.is_none()).collect();
+        if own.is_empty() {
+            let reason = "every part of the model has a material of its own: name the picture in its library (map_Kd)";
+            return Err(problem(reason.to_owned()));
+        }
+        let side = table.texture_side.as_ref().map(|side| within(side, 1e-3, 1e6)).transpose()?;
+        if side.is_none() && !own.iter().all(|group| mesh.has_uvs(&group.triangles)) {
+            let reason = "the mesh does not say where it lies in a picture: give a model with texture coordinates (vt), or \
+                          `texture_side`, the metres of X and Z that the picture covers";
+            return Err(problem(reason.to_owned()));
+        }
+        let path = self.folder.join(file.get_ref());
+        let picture =
+            self.pictures.load(&path).map_err(|error| problem(format!("{} {error}", quoted(file.get_ref()))))?;
+        Ok(Some(Texture {
+            picture,
+            side,
+            clamps: table.texture_clamps.as_ref().is_some_and(|clamps| *clamps.get_ref()),
+        }))
     }
 
     /// As given, else after the mesh, with a number where that is taken.

@@ -3,11 +3,13 @@
 //! Numbers are written in the fewest digits that read back as the same bits, so that the scene that is
 //! read is the one that was written. Small meshes stand in the file itself; others become models.
 
-use crate::scene::{Group, Light, Material, Mesh, Motion, Object, Projection, Scene};
-use glam::{DVec3, Vec3};
+use crate::scene::{Group, Light, Material, Mesh, Motion, Object, Picture, Projection, Scene, Texture};
+use glam::{DVec3, Vec2, Vec3};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::path::Path;
+use std::sync::Arc;
 
 /// Triangles of the largest mesh that stands in the scene file.
 const MOST_INLINE: usize = 32;
@@ -17,14 +19,20 @@ const MOST_INLINE: usize = 32;
 pub struct SavedScene {
     /// The scene file.
     pub toml: String,
-    /// Models and their materials: name, beside the scene file, and contents.
-    pub files: Vec<(String, String)>,
+    /// Pictures, models and their materials: name, beside the scene file, and contents.
+    pub files: Vec<(String, Vec<u8>)>,
 }
 
 /// Why a scene can't be written.
 #[derive(Debug, thiserror::Error)]
-#[error("the scene can't be written as a scene file ({0})")]
-pub struct SaveError(#[from] toml::ser::Error);
+pub enum SaveError {
+    /// What the serialiser refuses.
+    #[error("the scene can't be written as a scene file ({0})")]
+    Scene(#[from] toml::ser::Error),
+    /// What the encoder refuses.
+    #[error("a picture can't be written ({0})")]
+    Picture(#[from] png::EncodingError),
+}
 
 /// Writes a scene. New models are called `stem-object.obj`; meshes that are there as files already are named by
 /// `known`, by their content's hash.
@@ -32,12 +40,13 @@ pub struct SaveError(#[from] toml::ser::Error);
 /// # Errors
 /// What the serialiser refuses; nothing here is known to be refused.
 pub fn save(scene: &Scene, stem: &str, known: &BTreeMap<u64, String>) -> Result<SavedScene, SaveError> {
-    let mut names = known.clone();
-    let mut files: Vec<(String, String)> = Vec::new();
+    let mut beside = Beside { stem, known, files: Vec::new(), meshes: Vec::new(), pictures: Vec::new() };
     let mut objects = Vec::with_capacity(scene.objects.len());
     for object in &scene.objects {
-        let mesh = mesh(object, stem, &mut names, &mut files);
-        objects.push(object_table(object, mesh));
+        let mesh = beside.mesh(object)?;
+        let texture = object.texture.as_ref();
+        let file = texture.map(|texture| beside.picture(&texture.picture)).transpose()?;
+        objects.push(object_table(object, mesh, file));
     }
     let camera = &scene.camera;
     let oblique = match camera.projection {
@@ -66,7 +75,7 @@ pub fn save(scene: &Scene, stem: &str, known: &BTreeMap<u64, String>) -> Result<
             .as_ref()
             .map(|technique| TechniqueTable { name: &technique.name, settings: &technique.settings }),
     };
-    Ok(SavedScene { toml: toml::to_string(&table)?, files })
+    Ok(SavedScene { toml: toml::to_string(&table)?, files: beside.files })
 }
 
 #[derive(Serialize)]
@@ -156,6 +165,12 @@ struct MaterialTable {
     emission: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     checks: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    texture: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    texture_side: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    texture_clamps: Option<bool>,
 }
 
 #[derive(Serialize)]
@@ -189,7 +204,9 @@ fn motion(motion: &Motion) -> (Option<OrbitTable>, Option<SwingTable>) {
     (orbit, swing)
 }
 
-fn object_table(object: &Object, mesh: MeshSource) -> ObjectTable<'_> {
+/// `texture`: the file of its picture.
+fn object_table(object: &Object, mesh: MeshSource, texture: Option<String>) -> ObjectTable<'_> {
+    let lies = object.texture.as_ref();
     let (orbit, swing) = motion(&object.motion);
     let spin = object.motion.spin_degrees_per_second;
     let Material { color, specular, shininess, shading, opacity, emission, checks } = object.material;
@@ -213,41 +230,89 @@ fn object_table(object: &Object, mesh: MeshSource) -> ObjectTable<'_> {
             opacity: short(opacity),
             emission: (emission != [0.0; 3]).then(|| emission.map(short)),
             checks: (checks != 0.0).then(|| short(checks)),
+            texture,
+            texture_side: lies.and_then(|texture| texture.side).map(short),
+            texture_clamps: lies.filter(|texture| texture.clamps).map(|_| true),
         },
     }
 }
 
-/// The file of a mesh, which is made unless an earlier object has it; or its triangles.
-fn mesh(
-    object: &Object,
-    stem: &str,
-    names: &mut BTreeMap<u64, String>,
-    files: &mut Vec<(String, String)>,
-) -> MeshSource {
-    let mesh = &object.mesh;
-    if let Some(name) = names.get(&mesh.content_hash()) {
-        return MeshSource::File(name.clone());
+/// The files beside a scene file.
+struct Beside<'a> {
+    stem: &'a str,
+    /// Meshes that are files already, by their content's hash.
+    known: &'a BTreeMap<u64, String>,
+    files: Vec<(String, Vec<u8>)>,
+    meshes: Vec<(Arc<Mesh>, String)>,
+    pictures: Vec<(Arc<Picture>, String)>,
+}
+
+impl Beside<'_> {
+    /// The file of a mesh, which is made unless an earlier object has it; or its triangles.
+    fn mesh(&mut self, object: &Object) -> Result<MeshSource, SaveError> {
+        let mesh = &object.mesh;
+        if let Some(name) = self.known.get(&mesh.content_hash()) {
+            return Ok(MeshSource::File(name.clone()));
+        }
+        if let Some((_, name)) = self.meshes.iter().find(|(other, _)| other == mesh) {
+            return Ok(MeshSource::File(name.clone()));
+        }
+        let has_parts = mesh.groups().iter().any(|group| group.material.is_some() || !group.name.is_empty());
+        let has_more = has_parts || mesh.corner_normals().is_some() || mesh.corner_uvs().is_some();
+        if mesh.triangles().len() <= MOST_INLINE && !has_more {
+            let points = mesh.positions().iter().map(|point| point.to_array()).collect();
+            return Ok(MeshSource::Triangles { shape: "triangles", points, indices: mesh.triangles().to_vec() });
+        }
+        let name = self.unused(&object.name, "obj");
+        let pictures = |group: &Group| group.texture.as_ref().map(|texture| self.picture(&texture.picture)).transpose();
+        let pictures = mesh.groups().iter().map(pictures).collect::<Result<Vec<_>, _>>()?;
+        let library = library(mesh, &pictures);
+        let of_library = (!library.is_empty()).then(|| format!("{name}.mtl"));
+        self.files.push((format!("{name}.obj"), obj(mesh, of_library.as_deref()).into_bytes()));
+        self.files.extend(of_library.map(|file| (file, library.into_bytes())));
+        self.meshes.push((mesh.clone(), format!("{name}.obj")));
+        Ok(MeshSource::File(format!("{name}.obj")))
     }
-    let has_parts = mesh.groups().iter().any(|group| group.material.is_some() || !group.name.is_empty());
-    if mesh.triangles().len() <= MOST_INLINE && mesh.corner_normals().is_none() && !has_parts {
-        let points = mesh.positions().iter().map(|point| point.to_array()).collect();
-        return MeshSource::Triangles { shape: "triangles", points, indices: mesh.triangles().to_vec() };
+
+    /// The file of a picture, which is made unless it is there.
+    fn picture(&mut self, picture: &Arc<Picture>) -> Result<String, SaveError> {
+        if let Some((_, name)) = self.pictures.iter().find(|(other, _)| other == picture) {
+            return Ok(name.clone());
+        }
+        let of = Path::new(picture.name()).file_stem().map_or_else(String::new, |of| of.to_string_lossy().into_owned());
+        let name = format!("{}.png", self.unused(&of, "png"));
+        self.files.push((name.clone(), png(picture)?));
+        self.pictures.push((picture.clone(), name.clone()));
+        Ok(name)
     }
-    let plain: String = object.name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
-    let taken = |name: &str| files.iter().any(|(other, _)| other == &format!("{name}.obj"));
-    let base = format!("{stem}-{plain}");
-    let mut name = base.clone();
-    let mut number = 2;
-    while taken(&name) {
-        name = format!("{base}-{number}");
-        number += 1;
+
+    /// A name for something, without its ending, that no other file has.
+    fn unused(&self, of: &str, ending: &str) -> String {
+        let plain: String = of.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
+        let taken = |name: &str| self.files.iter().any(|(other, _)| other == &format!("{name}.{ending}"));
+        let base = format!("{}-{plain}", self.stem);
+        let mut name = base.clone();
+        let mut number = 2;
+        while taken(&name) {
+            name = format!("{base}-{number}");
+            number += 1;
+        }
+        name
     }
-    let library = library(mesh);
-    let of_library = (!library.is_empty()).then(|| format!("{name}.mtl"));
-    files.push((format!("{name}.obj"), obj(mesh, of_library.as_deref())));
-    files.extend(of_library.map(|file| (file, library)));
-    names.insert(mesh.content_hash(), format!("{name}.obj"));
-    MeshSource::File(format!("{name}.obj"))
+}
+
+fn png(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let [width, height] = picture.size();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.set_compression(png::Compression::Fast);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(picture.texels().as_flattened())?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 /// A mesh as an OBJ model.
@@ -261,12 +326,17 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
         line(format_args!("mtllib {library}"));
     }
     mesh.positions().iter().for_each(|DVec3 { x, y, z }| line(format_args!("v {x:?} {y:?} {z:?}")));
+    let uvs = mesh.corner_uvs();
+    for Vec2 { x, y } in uvs.into_iter().flatten().flatten().flatten() {
+        line(format_args!("vt {x:?} {y:?}"));
+    }
     let normals = mesh.corner_normals();
     for Vec3 { x, y, z } in normals.into_iter().flatten().flatten() {
         line(format_args!("vn {x:?} {y:?} {z:?}"));
     }
-    let whole = [Group { name: String::new(), triangles: 0..mesh.triangles().len(), material: None }];
+    let whole = [Group { name: String::new(), triangles: 0..mesh.triangles().len(), material: None, texture: None }];
     let groups = if mesh.groups().is_empty() { &whole } else { mesh.groups() };
+    let mut next_uv = 1;
     for (index, group) in groups.iter().enumerate() {
         if groups.len() > 1 || !group.name.is_empty() {
             let name = if group.name.is_empty() { "unnamed_object" } else { &group.name };
@@ -277,22 +347,28 @@ fn obj(mesh: &Mesh, library: Option<&str>) -> String {
         }
         for triangle in group.triangles.clone() {
             let Some(corners) = mesh.triangles().get(triangle) else { continue };
-            let [a, b, c] = corners.map(|vertex| vertex + 1);
-            if normals.is_some() {
-                let first = 3 * triangle + 1;
-                line(format_args!("f {a}//{first} {b}//{} {c}//{}", first + 1, first + 2));
-            } else {
-                line(format_args!("f {a} {b} {c}"));
-            }
+            let has_uvs = uvs.is_some_and(|uvs| uvs[triangle].is_some());
+            let corner = |at: usize| {
+                let normal = 3 * triangle + 1 + at;
+                let vertex = corners[at] + 1;
+                match (has_uvs, normals.is_some()) {
+                    (false, false) => format!("{vertex}"),
+                    (true, false) => format!("{vertex}/{}", next_uv + at),
+                    (false, true) => format!("{vertex}//{normal}"),
+                    (true, true) => format!("{vertex}/{}/{normal}", next_uv + at),
+                }
+            };
+            line(format_args!("f {} {} {}", corner(0), corner(1), corner(2)));
+            next_uv += if has_uvs { 3 } else { 0 };
         }
     }
     out
 }
 
-/// The materials of a mesh's groups; empty where they have none.
-fn library(mesh: &Mesh) -> String {
+/// The materials of a mesh's groups with the files of their pictures; empty where they have none.
+fn library(mesh: &Mesh, pictures: &[Option<String>]) -> String {
     let mut out = String::new();
-    for (index, group) in mesh.groups().iter().enumerate() {
+    for (index, (group, picture)) in mesh.groups().iter().zip(pictures).enumerate() {
         let Some(Material { color: [red, green, blue], specular, shininess, opacity, .. }) = group.material else {
             continue;
         };
@@ -302,6 +378,9 @@ fn library(mesh: &Mesh) -> String {
             "newmtl {}\nKd {red} {green} {blue}\nKs {specular} {specular} {specular}\nNs {shininess}\nd {opacity}",
             material_name(index)
         );
+        if let (Some(file), Some(Texture { clamps, .. })) = (picture, &group.texture) {
+            let _ = writeln!(out, "map_Kd {}{file}", if *clamps { "-clamp on " } else { "" });
+        }
     }
     out
 }
@@ -326,9 +405,9 @@ mod tests {
     fn again(scene: &Scene, known: &BTreeMap<u64, String>) -> (Scene, SavedScene) {
         let folder = tempfile::tempdir().expect("a folder");
         let saved = save(scene, "fixed", known).expect("saved");
-        let put = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");
-        saved.files.iter().for_each(|(name, text)| put(name, text));
-        put("fixed.toml", &saved.toml);
+        let put = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).expect("written");
+        saved.files.iter().for_each(|(name, bytes)| put(name, bytes));
+        put("fixed.toml", saved.toml.as_bytes());
         (load(&folder.path().join("fixed.toml")).expect("it opens again"), saved)
     }
 
@@ -337,6 +416,9 @@ mod tests {
         for (object, other) in scene.objects.iter().zip(&again.objects) {
             assert_eq!(other.mesh.content_hash(), object.mesh.content_hash(), "{}: {}", scene.name, object.name);
             assert_eq!(other.mesh.corner_normals(), object.mesh.corner_normals());
+            assert_eq!(other.mesh.corner_uvs(), object.mesh.corner_uvs());
+            let textures = |mesh: &Mesh| mesh.groups().iter().map(|group| group.texture.clone()).collect::<Vec<_>>();
+            assert_eq!(textures(&other.mesh), textures(&object.mesh));
             assert_eq!(Object { mesh: object.mesh.clone(), ..other.clone() }, *object, "{}", scene.name);
         }
         assert_eq!(Scene { objects: scene.objects.clone(), ..again.clone() }, *scene);
@@ -353,7 +435,7 @@ mod tests {
     #[test]
     fn scene_files_with_models_materials_and_motion_read_back_as_they_were() {
         let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes");
-        for file in ["knot.toml", "shade.toml"] {
+        for file in ["knot.toml", "shade.toml", "pattern.toml"] {
             let scene = load(&scenes.join(file)).expect("a scene");
             assert_same(&scene, &again(&scene, &BTreeMap::new()).0);
         }

@@ -1,7 +1,7 @@
-//! Puts a scene into a file: the scene file, and the models that it needs beside it.
+//! Puts a scene into a file: the scene file, and the models and pictures that it needs beside it.
 
 use super::save::{SaveError, SavedScene, save};
-use crate::files::{from_beside, write_whole};
+use crate::files::{from_beside, read_plain, write_whole};
 use crate::scene::read_text::stem;
 use crate::scene::{Scene, obj};
 use std::collections::BTreeMap;
@@ -14,8 +14,8 @@ pub enum StoreError {
     /// The name is none of a scene file.
     #[error("`{0}` can't be a scene file: give it a name that ends in .toml")]
     NoSceneFile(String),
-    /// A model of that name is there, and another.
-    #[error("`{0}` is another model, and stays as it is: choose another name for the scene")]
+    /// A model or picture of that name is there, and another.
+    #[error("`{0}` is another file, and stays as it is: choose another name for the scene")]
     ModelInTheWay(String),
     /// The scene can't be told as text.
     #[error(transparent)]
@@ -43,7 +43,7 @@ pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), St
     // The model comes first, the floor after it. A mesh that was changed is another, and not named.
     if let (Some(path), Some(object)) = (model, scene.objects.first())
         && let Ok(original) = obj::load(path)
-        && original.content_hash() == object.mesh.content_hash()
+        && original == *object.mesh
     {
         known.insert(original.content_hash(), from_beside(file, path));
     }
@@ -54,18 +54,18 @@ pub fn store(scene: &Scene, source: Option<&Path>, file: &Path) -> Result<(), St
 /// The models first, so that the scene file is never there without them; what was not there before goes again
 /// where something fails.
 fn write_files(saved: &SavedScene, file: &Path) -> Result<(), StoreError> {
-    let mut models: Vec<(PathBuf, &String)> =
-        saved.files.iter().map(|(name, text)| (file.with_file_name(name), text)).collect();
+    let mut models: Vec<(PathBuf, &[u8])> =
+        saved.files.iter().map(|(name, bytes)| (file.with_file_name(name), bytes.as_slice())).collect();
     // A model that holds the same already stays; another may be somebody's work, or what the scene is made of.
-    models.retain(|(file, text)| !std::fs::read(file).is_ok_and(|bytes| bytes == text.as_bytes()));
+    models.retain(|(file, bytes)| !read_plain(file, bytes.len() as u64).is_ok_and(|there| there == *bytes));
     if let Some((taken, _)) = models.iter().find(|(file, _)| file.exists()) {
         return Err(StoreError::ModelInTheWay(taken.display().to_string().escape_debug().to_string()));
     }
-    let all = models.iter().map(|(file, text)| (file.as_path(), *text)).chain([(file, &saved.toml)]);
+    let all = models.iter().map(|(file, bytes)| (file.as_path(), *bytes)).chain([(file, saved.toml.as_bytes())]);
     let mut written: Vec<&Path> = Vec::new();
-    for (file, text) in all {
+    for (file, bytes) in all {
         let is_new = !file.exists();
-        if let Err(source) = write_whole(file, text.as_bytes()) {
+        if let Err(source) = write_whole(file, bytes) {
             // What failed is the error already.
             written.iter().for_each(|file| drop(std::fs::remove_file(file)));
             return Err(StoreError::Write { file: file.display().to_string().escape_debug().to_string(), source });

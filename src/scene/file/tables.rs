@@ -100,6 +100,9 @@ pub struct MaterialTable {
     pub opacity: Option<Number>,
     pub emission: Option<Triple>,
     pub checks: Option<Number>,
+    pub texture: Option<Text>,
+    pub texture_side: Option<Number>,
+    pub texture_clamps: Option<Spanned<bool>>,
 }
 
 #[derive(Debug, Deserialize)]

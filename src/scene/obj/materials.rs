@@ -1,29 +1,237 @@
 //! Material libraries (`.mtl`) of OBJ files.
 //!
 //! Only the lines that a [`Material`] can hold are read, and broken ones are passed over: a model
-//! is worth seeing without its colours.
+//! is worth seeing without its colours. Of pictures, `map_Kd` is shown; what else the library asks for is named
+//! ([`NotTaken`]).
 
-use crate::scene::{Material, Shading};
-use std::path::Path;
+use crate::files::{ReadError, read_plain};
+use crate::scene::picture::Pictures;
+use crate::scene::read_text::quoted;
+use crate::scene::{Material, NotTaken, Shading, Texture};
+use glam::Vec2;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
-/// Reads a library; a missing one is an error that the caller may ignore.
-///
-/// # Errors
-/// A file that can't be opened.
-pub fn load_library(file: &Path) -> tobj::MTLLoadResult {
-    let bytes = std::fs::read(file).map_err(|_| tobj::LoadError::OpenFileFailed)?;
-    let text: String = String::from_utf8_lossy(&bytes).lines().filter_map(usable_line).collect();
-    tobj::load_mtl_buf(&mut text.as_bytes())
+/// Bytes of the largest library.
+const MOST_BYTES: u64 = 64 << 20;
+/// Things that are named, of a library that asks for more than anybody reads.
+const MOST_NAMED: usize = 32;
+
+/// What a model's libraries say beside the numbers of materials.
+#[derive(Debug)]
+pub struct Libraries<'a> {
+    /// By the material's name.
+    maps: BTreeMap<String, Map>,
+    /// What is asked for and not done.
+    pub not_taken: Vec<NotTaken>,
+    pictures: &'a mut Pictures,
 }
 
-/// The material of a library for surfaces that have normals of their own (`Phong`) or not.
+/// A picture of a material, and how it lies on the surface.
+#[derive(Debug, Clone)]
+pub struct Map {
+    /// What is shown.
+    pub texture: Texture,
+    scale: Vec2,
+    offset: Vec2,
+}
+
+impl Map {
+    /// Where a place of the surface lies in the picture.
+    pub fn place(&self, uv: Vec2) -> Vec2 {
+        uv * self.scale + self.offset
+    }
+}
+
+impl<'a> Libraries<'a> {
+    /// Nothing yet.
+    pub fn new(pictures: &'a mut Pictures) -> Libraries<'a> {
+        Libraries { maps: BTreeMap::new(), not_taken: Vec::new(), pictures }
+    }
+
+    /// The picture of a material.
+    pub fn map(&self, material: &str) -> Option<&Map> {
+        self.maps.get(material)
+    }
+
+    /// Names something that is not done.
+    pub fn refuse(&mut self, what: String, because: impl Into<String>) {
+        let refused = NotTaken { what, because: because.into() };
+        let named = self.not_taken.len();
+        if named < MOST_NAMED && !self.not_taken.contains(&refused) {
+            self.not_taken.push(refused);
+        } else if named == MOST_NAMED {
+            let what = "what else its libraries ask for".to_owned();
+            self.not_taken.push(NotTaken { what, because: format!("{MOST_NAMED} things of it are named") });
+        }
+    }
+
+    /// Reads a library; pictures are looked for beside it.
+    ///
+    /// # Errors
+    /// A file that can't be read, which is named.
+    pub fn load(&mut self, file: &Path, name: &str) -> tobj::MTLLoadResult {
+        let bytes = read_plain(file, MOST_BYTES).map_err(|error: ReadError| {
+            self.refuse(format!("the materials of {}", quoted(name)), error.to_string());
+            tobj::LoadError::OpenFileFailed
+        })?;
+        let text = String::from_utf8_lossy(&bytes);
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let mut material = "";
+        for line in text.lines() {
+            let line = line.trim();
+            let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+            match keyword {
+                "newmtl" => material = rest.trim(),
+                "map_Kd" => self.add_map(material, rest, folder),
+                keyword if is_map(keyword) => {
+                    let of = format!("{} of {}", quoted(keyword).replace('`', ""), quoted(material));
+                    self.refuse(of, "of pictures, only that of the diffuse colour (map_Kd) is shown");
+                }
+                _ => {}
+            }
+        }
+        let plain: String = text.lines().filter_map(usable_line).collect();
+        tobj::load_mtl_buf(&mut plain.as_bytes())
+    }
+
+    fn add_map(&mut self, material: &str, rest: &str, folder: &Path) {
+        let what = format!("map_Kd of {}", quoted(material));
+        let line = MapLine::parse(rest);
+        for option in &line.passed_over {
+            self.refuse(format!("{option} of map_Kd of {}", quoted(material)), "nothing here does it");
+        }
+        if line.file.is_empty() {
+            return self.refuse(what, "it names no file");
+        }
+        let name = line.path();
+        match self.pictures.load(&folder.join(&name)) {
+            Ok(picture) => {
+                if picture.has_alpha() {
+                    self.refuse(format!("the alpha of {}", quoted(&name)), "opacity is the material's (d)");
+                }
+                let texture = Texture { picture, side: None, clamps: line.clamps };
+                self.maps.insert(material.to_owned(), Map { texture, scale: line.scale, offset: line.offset });
+            }
+            Err(error) => self.refuse(what, format!("{} {error}", quoted(&name))),
+        }
+    }
+}
+
+/// The pictures that a library shows; none where it can't be read.
+pub fn pictures_of(library: &Path) -> Vec<PathBuf> {
+    let Ok(bytes) = read_plain(library, MOST_BYTES) else { return Vec::new() };
+    let text = String::from_utf8_lossy(&bytes);
+    let maps = text.lines().filter_map(|line| line.trim().strip_prefix("map_Kd"));
+    maps.map(|rest| library.with_file_name(MapLine::parse(rest).path())).collect()
+}
+
+/// A picture other than that of the diffuse colour.
+fn is_map(keyword: &str) -> bool {
+    keyword.starts_with("map_") || ["bump", "norm", "disp", "decal", "refl"].contains(&keyword)
+}
+
+/// Options with so many words that are passed over. What they are where they change nothing; `None`: how a picture is
+/// filtered, which is ours to say.
+const OTHER_OPTIONS: [(&str, usize, Option<&str>); 9] = [
+    ("-mm", 2, Some("0 1")),
+    ("-cc", 1, Some("off")),
+    ("-imfchan", 1, Some("")),
+    ("-type", 1, Some("")),
+    ("-blendu", 1, None),
+    ("-blendv", 1, None),
+    ("-boost", 1, None),
+    ("-texres", 1, None),
+    ("-bm", 1, None),
+];
+
+/// The arguments of `map_Kd`.
+#[derive(Debug, PartialEq)]
+struct MapLine<'a> {
+    file: &'a str,
+    scale: Vec2,
+    offset: Vec2,
+    clamps: bool,
+    /// Options that change what is shown, and are not done.
+    passed_over: Vec<&'static str>,
+}
+
+impl<'a> MapLine<'a> {
+    /// The file's path, which may have been written on another system.
+    fn path(&self) -> String {
+        self.file.replace('\\', "/")
+    }
+
+    /// Options come first; what follows is the file, whose name may have spaces.
+    fn parse(rest: &'a str) -> MapLine<'a> {
+        let mut unused = Vec2::ZERO;
+        let mut line =
+            MapLine { file: rest.trim(), scale: Vec2::ONE, offset: Vec2::ZERO, clamps: false, passed_over: Vec::new() };
+        while let Some((option, after)) = next_word(line.file).filter(|(word, _)| word.starts_with('-')) {
+            line.file = match option {
+                "-s" => numbers(after, &mut line.scale),
+                "-o" => numbers(after, &mut line.offset),
+                "-clamp" => next_word(after).map_or(after, |(word, after)| {
+                    line.clamps = word == "on";
+                    after
+                }),
+                "-t" => {
+                    line.passed_over.push("-t");
+                    numbers(after, &mut unused)
+                }
+                _ => match OTHER_OPTIONS.iter().find(|(name, ..)| *name == option) {
+                    Some((name, count, plain)) => {
+                        let is_plain =
+                            plain.is_none_or(|plain| after.split_whitespace().take(*count).eq(plain.split(' ')));
+                        line.passed_over.extend((!is_plain).then_some(*name));
+                        skip(after, *count)
+                    }
+                    // A file may be called so.
+                    None => break,
+                },
+            };
+        }
+        line
+    }
+}
+
+/// The first word and what follows it.
+fn next_word(text: &str) -> Option<(&str, &str)> {
+    let text = text.trim_start();
+    let end = text.find(char::is_whitespace).unwrap_or(text.len());
+    (end > 0).then(|| (&text[..end], text[end..].trim_start()))
+}
+
+fn skip(text: &str, count: usize) -> &str {
+    (0..count).fold(text, |text, _| next_word(text).map_or("", |(_, after)| after))
+}
+
+/// Up to three numbers, of which the first two are put into `into`; what follows them.
+fn numbers<'a>(mut text: &'a str, into: &mut Vec2) -> &'a str {
+    for axis in 0..3 {
+        // A name that begins with digits is followed by nothing: it is the file.
+        let number = next_word(text).filter(|(_, after)| !after.is_empty());
+        let Some((number, after)) = number.and_then(|(word, after)| Some((word.parse::<f32>().ok()?, after))) else {
+            break;
+        };
+        if axis < 2 && number.is_finite() {
+            into[axis] = number;
+        }
+        text = after;
+    }
+    text
+}
+
+/// The material of a library for surfaces that have normals of their own (`Phong`) or not. One that has a picture and
+/// no colour shows the picture as it is.
 #[must_use]
-pub fn material(from: &tobj::Material, shading: Shading) -> Material {
+pub fn material(from: &tobj::Material, shading: Shading, has_map: bool) -> Material {
     let default = Material::default();
     let within = |low: f32, value: f64, high: f32| (value as f32).clamp(low, high);
     let specular = from.specular.map_or(0.0, |[r, g, b]| (r + g + b) / 3.0);
+    let plain = if has_map { [1.0; 3] } else { default.color };
     Material {
-        color: from.diffuse.map_or(default.color, |rgb| rgb.map(|c| within(0.0, c, 1.0))),
+        color: from.diffuse.map_or(plain, |rgb| rgb.map(|c| within(0.0, c, 1.0))),
         specular: within(0.0, specular, 1.0),
         shininess: from.shininess.map_or(default.shininess, |exponent| within(1.0, exponent, 1000.0)),
         opacity: from.dissolve.map_or(1.0, |opacity| within(0.0, opacity, 1.0)),
@@ -44,4 +252,38 @@ fn usable_line(line: &str) -> Option<String> {
     let words: Vec<&str> = rest.split_whitespace().take(count).collect();
     let numbers_are_usable = words.iter().all(|word| word.parse().is_ok_and(f64::is_finite));
     (words.len() == count && numbers_are_usable).then(|| format!("{keyword} {}\n", words.join(" ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_of_a_map_come_before_its_file_whose_name_may_have_spaces() {
+        let plain =
+            MapLine { file: "a b.png", scale: Vec2::ONE, offset: Vec2::ZERO, clamps: false, passed_over: Vec::new() };
+        let cases = [
+            ("a b.png", plain),
+            ("-s 2 a.png", MapLine { file: "a.png", scale: Vec2::new(2.0, 1.0), ..MapLine::parse("") }),
+            (
+                "-s 2 3 1 -o 0.5 -clamp on 7.png",
+                MapLine {
+                    file: "7.png",
+                    scale: Vec2::new(2.0, 3.0),
+                    offset: Vec2::new(0.5, 0.0),
+                    clamps: true,
+                    passed_over: Vec::new(),
+                },
+            ),
+            ("-o 1 2", MapLine { file: "2", offset: Vec2::new(1.0, 0.0), ..MapLine::parse("") }),
+            ("-mm 0 1 -bm 2 x", MapLine { file: "x", ..MapLine::parse("") }),
+            ("-mm 0 2 -cc on x", MapLine { file: "x", passed_over: vec!["-mm", "-cc"], ..MapLine::parse("") }),
+            ("-t 1 1 1 x", MapLine { file: "x", passed_over: vec!["-t"], ..MapLine::parse("") }),
+            ("-odd.png", MapLine { file: "-odd.png", ..MapLine::parse("") }),
+            ("-clamp", MapLine::parse("")),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(MapLine::parse(text), expected, "{text}");
+        }
+    }
 }

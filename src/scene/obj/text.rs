@@ -2,12 +2,16 @@
 //!
 //! `tobj` names neither the line of an error nor survives every broken number, so each line is
 //! checked here first. What is left is plain: finite coordinates, faces of at least three corners
-//! with absolute indices in range, group and material lines. Texture coordinates, vertex colours,
-//! points, lines and curves are left out. A face keeps its normals only if all its corners have
-//! one.
+//! with absolute indices in range, group and material lines. Vertex colours, points, lines and
+//! curves are left out. A face keeps its normals only if all its corners have one; so its places in a
+//! picture, which are read here, as no mesh is worth less without.
 
 use crate::scene::read_text::quoted;
+use glam::Vec2;
 use std::borrow::Cow;
+
+/// Beyond it, a place in a picture is no number worth having in single precision.
+const MOST_UV: f32 = 1e5;
 
 /// An OBJ file that `tobj` reads without an error.
 #[derive(Debug, Default)]
@@ -16,6 +20,8 @@ pub struct CleanText {
     pub text: String,
     /// For each face, in order: do all its corners have a normal?
     pub has_normals: Vec<bool>,
+    /// For each face, in order: where each corner lies in a picture, if all of them do.
+    pub uvs: Vec<Option<Vec<Vec2>>>,
 }
 
 /// What is wrong with a line.
@@ -39,12 +45,14 @@ pub fn clean(raw: &str) -> Result<CleanText, LineProblem> {
         let vector = vector_line(line).map_err(|reason| LineProblem { line: *number, reason })?;
         cleaned.text.extend(vector);
     }
+    let places: Vec<Option<Vec2>> = lines.iter().filter_map(|(_, line)| place_line(line)).collect();
     let mut before = Counts::default();
     for (number, line) in &lines {
         let (keyword, rest) = split_keyword(line);
         match keyword {
-            "v" | "vn" => before.add(keyword),
+            "v" | "vn" | "vt" => before.add(keyword),
             "f" => {
+                cleaned.uvs.push(words(rest).map(|word| place(word, before, &places)).collect());
                 let face = face_line(rest, before, all).map_err(|reason| LineProblem { line: *number, reason })?;
                 cleaned.has_normals.push(face.contains("//"));
                 cleaned.text.push_str(&face);
@@ -57,11 +65,12 @@ pub fn clean(raw: &str) -> Result<CleanText, LineProblem> {
     Ok(cleaned)
 }
 
-/// How many vertices and normals there are.
+/// How many vertices, normals and places in a picture there are.
 #[derive(Debug, Clone, Copy, Default)]
 struct Counts {
     vertices: usize,
     normals: usize,
+    places: usize,
 }
 
 impl Counts {
@@ -75,6 +84,7 @@ impl Counts {
         match keyword {
             "v" => self.vertices += 1,
             "vn" => self.normals += 1,
+            "vt" => self.places += 1,
             _ => {}
         }
     }
@@ -127,6 +137,29 @@ fn vector_line(line: &str) -> Result<Option<String>, String> {
         }
     }
     Ok(Some(format!("{keyword} {x} {y} {z}\n")))
+}
+
+/// The place of a `vt` line: `None` inside where it can't be used, outside for any other line.
+fn place_line(line: &str) -> Option<Option<Vec2>> {
+    let (keyword, rest) = split_keyword(line);
+    (keyword == "vt").then(|| {
+        let mut numbers = words(rest).map(|word| word.parse().ok());
+        // The second is 0 unless given.
+        let place = Vec2::new(numbers.next()??, numbers.next().unwrap_or(Some(0.0))?);
+        is_usable(&place).then_some(place)
+    })
+}
+
+/// Is it a place that single precision tells from others?
+pub fn is_usable(place: &Vec2) -> bool {
+    place.to_array().iter().all(|part| part.abs() <= MOST_UV)
+}
+
+/// Where a corner, `v/vt` or `v/vt/vn`, lies in a picture, if that can be told.
+fn place(word: &str, before: Counts, places: &[Option<Vec2>]) -> Option<Vec2> {
+    let named = word.split('/').nth(1).filter(|named| !named.is_empty())?;
+    let index = index("place", "places", named, before.places, places.len()).ok()?;
+    *places.get(index - 1)?
 }
 
 /// A face line with absolute indices, as `v` or, where every corner has a normal, `v//vn`.

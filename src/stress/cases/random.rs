@@ -1,7 +1,7 @@
 //! A thousand random scenes: soups of up to two hundred triangles, closed and open, under random
 //! eyes, lights and near planes. The value of the case is the seed, so any of them can be looked at.
 
-use super::who::PLAIN;
+use super::who::{BY_VERTEX_SHADER, PLAIN, TOLD_IN_F32};
 use crate::scene::{Camera, Light, Mesh, MeshError, Object, Scene, shapes};
 use crate::stress::{Case, Drives, Least};
 use crate::technique::Technique;
@@ -24,6 +24,8 @@ pub const RANDOM: Case = Case {
         (Technique::PlanarTexture, OTHERS),
         (Technique::Projective, OTHERS),
     ],
+    also: &[BY_VERTEX_SHADER],
+    failures: &[TOLD_IN_F32.at_most(1e-4).perhaps()],
     least: |_| Least::nothing("many eyes look past all there is, and many soups lie wholly in light or shadow"),
     ..PLAIN
 };

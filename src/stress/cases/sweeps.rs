@@ -261,7 +261,9 @@ const THIN_GAP: Case = Case {
         let light = Light::point([0.0, 1.0 + 10.0 * width, 0.0]);
         Ok(scene([0.013, 3.0, 4.0], [0.013, 0.0, 0.0], light, vec![floor(3.0)?, halves]))
     }),
+    also: &[BY_VERTEX_SHADER],
     failures: &[
+        TOLD_IN_F32.at(|width| width < 5e-6).at_most(0.01),
         fails(SILHOUETTE, "aliasing", "a slit between two texels of the silhouette is in neither")
             .at(|width| width < 5e-3)
             .is_false()
@@ -345,7 +347,7 @@ const TRIANGLE_COUNT: Case = Case {
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.0, 4.0, 1.5]), vec![floor(3.0)?, ball]))
     }),
     timed: true,
-    also: &[EDGE_LIST],
+    also: &[EDGE_LIST, BY_VERTEX_SHADER],
     up_to: &[
         (EDGE_LIST, 1e4, "every edge is searched for: with more it is refused"),
         (PLANAR, 1e5, "each triangle is a receiver: a million take half a minute"),

@@ -25,6 +25,7 @@ pub const PARITY: Entrant = Entrant::with(Technique::ZFail, &[("operations", "in
 pub const FOUR_BITS: Entrant = Entrant::with(Technique::ZFail, &[("stencil-bits", "4")]);
 pub const EYE_COUNT: Entrant = Entrant::with(Technique::ZPass, &[("start", "eye-count")]);
 pub const EDGE_LIST: Entrant = Entrant::with(Technique::ZFail, &[("silhouette", "edge-list")]);
+pub const BY_VERTEX_SHADER: Entrant = Entrant::with(Technique::ZFail, &[("extruded-by", "vertex-shader")]);
 pub const LIGHT_FACING: Entrant = Entrant::with(Technique::ZFail, &[("casters", "light-facing")]);
 pub const ALL_CAST: Entrant = Entrant::with(Technique::ZFail, &[("casters", "all")]);
 pub const CAPS_NEVER: Entrant = Entrant::with(Technique::ZFail, &[("light-caps", "never")]);
@@ -38,6 +39,13 @@ pub const REVERSED: Entrant = Entrant::with(Technique::Projective, &[("reverse",
 pub const fn fails(of: Entrant, name: &'static str, because: &'static str) -> Failure {
     Failure::new(of, name, because)
 }
+
+/// What tells facing and far vertices in 24 bits.
+pub const TOLD_IN_F32: Failure = fails(
+    BY_VERTEX_SHADER,
+    "f32-limit",
+    "a vertex shader tells in 24 bits which way a triangle faces and its vertices go, and the light is too near its plane",
+);
 
 pub const NOT_PLANAR: Failure =
     fails(PLANAR, "not-planar", "a receiver that is not flat gets no shadow").is_missing().at_most(0.007);

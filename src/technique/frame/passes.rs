@@ -224,6 +224,7 @@ impl Frame<'_> {
                     label: drawn.label,
                     layer,
                     checks_from: checks_from(self.eye(), material.checks),
+                    texture: piece.texture.filter(|_| drawn.program.shows_texture()),
                     ..DrawConstants::default()
                 },
             })

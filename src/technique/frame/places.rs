@@ -3,8 +3,8 @@
 use super::{Frame, Piece, Placed};
 use crate::geometry::{ViewVolume, relative};
 use crate::math::depth::DepthCurve;
-use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, MeshId, PlanLight, PlanView};
-use crate::scene::{Material, Object, Scene, Shading};
+use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, LeftOut, MeshId, PlanLight, PlanView};
+use crate::scene::{Group, Material, Object, Scene};
 use crate::technique::{PlanError, outside, surfaces};
 use glam::{DMat4, DVec3, DVec4};
 use std::collections::HashSet;
@@ -79,12 +79,39 @@ impl Frame<'_> {
             let drawn = object.visible && !object.mesh.triangles().is_empty();
             let surface =
                 drawn.then(|| self.add_mesh(surfaces::draw_mesh(object, &world, self.job.scene, self.common.shading)));
-            self.pieces.extend(
-                surface.into_iter().flat_map(|mesh| pieces_of(object, self.placed.len(), mesh, self.common.shading)),
-            );
+            for not_taken in object.mesh.not_taken() {
+                let left_out =
+                    LeftOut::named(Decision::Material, &not_taken.what, &object.name, not_taken.because.as_str());
+                self.plan.left_out.push(left_out);
+            }
+            if let Some(mesh) = surface {
+                let pieces = self.pieces_of(object, mesh);
+                self.pieces.extend(pieces);
+            }
             self.placed.push(Placed { object, world, surface });
         }
         Ok(())
+    }
+
+    /// One piece a group of the object that is placed next.
+    fn pieces_of(&mut self, object: &Object, mesh: MeshId) -> Vec<Piece> {
+        let (shading, index) = (self.common.shading, self.placed.len());
+        let piece = |group: &Group| Piece {
+            name: match group.name.as_str() {
+                "" => object.name.clone(),
+                group => format!("{} · {group}", object.name),
+            },
+            object: index,
+            material: {
+                let material = group.material.unwrap_or(object.material);
+                Material { shading: shading.unwrap_or(material.shading), ..material }
+            },
+            mesh,
+            triangles: group.triangles.start as u32..group.triangles.end as u32,
+            layer: None,
+            texture: object.texture_of(group).map(|texture| self.add_texture(texture)),
+        };
+        object.mesh.groups().iter().map(piece).collect()
     }
 
     /// How depth is stored, as the settings say. Without a far plane of its own, the camera's is put
@@ -119,24 +146,6 @@ impl Frame<'_> {
             takes_part && view.outside(&relative).is_none()
         })
     }
-}
-
-/// One piece a group.
-fn pieces_of(object: &Object, index: usize, mesh: MeshId, shading: Option<Shading>) -> impl Iterator<Item = Piece> {
-    object.mesh.groups().iter().map(move |group| Piece {
-        name: match group.name.as_str() {
-            "" => object.name.clone(),
-            group => format!("{} · {group}", object.name),
-        },
-        object: index,
-        material: {
-            let material = group.material.unwrap_or(object.material);
-            Material { shading: shading.unwrap_or(material.shading), ..material }
-        },
-        mesh,
-        triangles: group.triangles.start as u32..group.triangles.end as u32,
-        layer: None,
-    })
 }
 
 pub(super) fn camera_view(scene: &Scene, size: [u32; 2], depth: &DepthCurve) -> PlanView {

@@ -113,7 +113,8 @@ const START: Words<bool> = words(
     Lesson {
         text: "`zero` is right where the eye is in no volume. `eye-count` clears the stencil to the number of volumes around \
              the eye, found by exact tests on the CPU: right where the whole near plane is in those and no others, and \
-             wrong for part of the picture where the near plane cuts a volume. Z-fail needs neither.",
+             wrong for part of the picture where the near plane cuts a volume. Lines of sight of a parallel camera begin at \
+             the near plane, and its middle is counted at in place of the eye. Z-fail needs neither.",
         formula: "count(p) = start + front faces before p - back faces before p",
         sources: &[cited::CROW, cited::EVERITT_KILGARD],
     },
@@ -171,7 +172,25 @@ const SILHOUETTE: Words<SilhouetteBy> = words(
     },
 );
 
-const OWN: [SettingSpec; 12] = [
+const EXTRUDED_BY: Words<bool> = words(
+    "extruded-by",
+    &["cpu", "vertex-shader"],
+    &[false, true],
+    "who carries volumes away from the light: the CPU, which finds silhouettes, or a vertex shader",
+    Lesson {
+        text: "With `cpu`, exact signs say which triangles face the light, and only the edges between those that do \
+             and those that don't are carried. With `vertex-shader`, each triangle has vertices of its own that know \
+             its plane, and each edge has a quad that is empty until its triangles face different ways: nothing is \
+             made anew when the light moves, and several times as many triangles are drawn. It tells in single \
+             precision which way a triangle faces, so where the light grazes one the shadow's edge may run beside its place; \
+             volumes are closed all the same.",
+        formula: "with the light L and the plane p of the vertex's own triangle, both relative to the eye: where p . L > 0 \
+             the vertex stays, else it goes where `extrusion` says",
+        sources: &[cited::BRENNAN],
+    },
+);
+
+const OWN: [SettingSpec; 13] = [
     CASTERS.spec,
     EXTRUSION.spec,
     FAR_VERTICES.spec,
@@ -183,14 +202,20 @@ const OWN: [SettingSpec; 12] = [
     COUNTER.spec,
     LIGHT_CAPS.spec,
     SILHOUETTE.spec,
+    EXTRUDED_BY.spec,
     START.spec,
 ];
 
 /// In the order in which they are shown.
-pub(super) const Z_PASS: [SettingSpec; 18] = with_own(OWN);
+pub(super) const Z_PASS: [SettingSpec; 19] = with_own(OWN);
 /// The same without the start: what counts from infinity, or asks at the near plane, has no other.
-pub(super) const VOLUME: [SettingSpec; 17] = with_own({
+pub(super) const Z_FAIL: [SettingSpec; 18] = with_own({
     let [own @ .., _] = OWN;
+    own
+});
+/// And without vertex shaders: at the near plane casting triangles are drawn, and the CPU knows them.
+pub(super) const Z_PASS_PLUS: [SettingSpec; 17] = with_own({
+    let [own @ .., _, _] = OWN;
     own
 });
 
@@ -219,6 +244,8 @@ pub struct VolumeSettings {
     pub light_caps_never_pass: bool,
     /// How shared edges are found.
     pub silhouette: SilhouetteBy,
+    /// A vertex shader carries volumes away from the light.
+    pub by_vertex_shader: bool,
 }
 
 /// What a volume's face does to the stencil.
@@ -269,6 +296,7 @@ impl VolumeSettings {
             counts_in_float: COUNTER.read(values),
             light_caps_never_pass: LIGHT_CAPS.read(values),
             silhouette: SILHOUETTE.read(values),
+            by_vertex_shader: EXTRUDED_BY.read(values),
         }
     }
 
@@ -283,6 +311,15 @@ impl VolumeSettings {
         let is = |spec: SettingSpec| key == spec.key;
         if is(FAR_VERTICES.spec) && self.extrusion == Extrusion::Infinite {
             return Some("No effect: carried without end, a vertex is a direction, and no place is added to it");
+        }
+        if self.by_vertex_shader {
+            let both = "No effect: light cap and dark cap are one draw here, and its vertex shader tells them apart; \
+                        `none` leaves both out";
+            match key {
+                _ if is(SILHOUETTE.spec) => return Some("No effect: the vertex shader searches no silhouette"),
+                _ if is(LIGHT_CAPS.spec) || (is(CAPS.spec) && self.caps[0] != self.caps[1]) => return Some(both),
+                _ => {}
+            }
         }
         if self.counts_in_float {
             return match key {

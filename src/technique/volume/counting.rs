@@ -27,6 +27,7 @@ pub enum Start {
 }
 
 /// A run of a volume's triangles that counts.
+#[derive(Debug, Clone)]
 pub struct NeededPart {
     pub part: Part,
     /// Its triangles face inwards: operations are swapped.
@@ -181,6 +182,8 @@ pub struct Counts<'a> {
     pub start: Option<Start>,
     /// Volumes are only counted in front of the surface where neither the eye nor the near plane is in them.
     pub chooses_side: bool,
+    /// What [`Start::Eye`] is counted around.
+    pub place: &'static str,
     /// Lines of sight are parallel: they begin at the near plane, and no eye is where they meet.
     pub is_parallel: bool,
     /// Light caps, dark caps: some would count and are not drawn.
@@ -254,7 +257,7 @@ impl Counts<'_> {
     fn begins(&self) -> String {
         match self.start {
             None => String::new(),
-            Some(Start::Eye(start)) => format!("It begins at {start}, for the volumes around the eye. "),
+            Some(Start::Eye(start)) => format!("It begins at {start}, for the volumes around {}. ", self.place),
             Some(Start::FarEnd(start)) => format!(
                 "It begins at {start}{}: parallel lines of sight all end at one point at infinity, in the volumes of \
                  so many casting triangles, those that a ray from {} along them meets. ",

@@ -3,14 +3,14 @@
 use super::counting::{Counting, Form, NeededPart, Step};
 use super::far_count::FarPoint;
 use crate::geometry::{Caster, Casters, DarkCap, Extruder, Extrusion, Fan, VolumeOf, VolumeParts, relative};
+use crate::math::{Sign, side_of_triangle};
 use crate::numbers;
-use crate::plan::{
-    Blob, Decision, Draw, DrawConstants, DrawMesh, LeftOut, LightId, MeshId, Part, Program, RasterState,
-};
+use crate::plan::{Decision, Draw, DrawConstants, DrawMesh, LeftOut, LightId, MeshId, Part, Program, RasterState};
 use crate::scene::Object;
+use crate::technique::casters::{self, Darkened};
 use crate::technique::frame::Frame;
 use crate::technique::settings::VolumeSettings;
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 use std::ops::Range;
 
 /// What a volume's far end takes where lines of sight are parallel.
@@ -35,7 +35,7 @@ pub struct Volume {
     /// No surface is behind it: at each its count is 0.
     pub darkens_nothing: bool,
     pub mesh: MeshId,
-    pub parts: VolumeParts,
+    pub casting: Casting,
     /// Which of its parts count in the volume pass.
     pub needed: Vec<NeededPart>,
     /// Light cap and dark cap: it has one that would count, and it is not to be drawn.
@@ -44,20 +44,52 @@ pub struct Volume {
     pub begins_with: u32,
 }
 
+/// The casting triangles of a volume.
+#[derive(Debug, Clone)]
+pub enum Casting {
+    /// Runs of its mesh: those that face the light, and those that are turned.
+    Runs([Range<usize>; 2]),
+    /// Those of its caster, of which its vertex shader picks.
+    Picked(Casters),
+}
+
+/// A volume's mesh, and what of it counts.
+pub struct Made {
+    pub mesh: DrawMesh,
+    pub casting: Casting,
+    pub needed: Vec<NeededPart>,
+    /// How many of the count begin at the far end, where no dark cap is drawn for it.
+    pub begins_with: u32,
+}
+
 impl Volume {
-    /// The casting triangles themselves.
+    /// The casting triangles themselves, where it is known which they are.
     pub fn casting(&self) -> impl Iterator<Item = NeededPart> {
-        let runs = [(false, &self.parts.light_cap), (true, &self.parts.light_cap_turned)];
-        let parts = runs.map(|(turned, triangles)| NeededPart::new(Part::LightCap, turned, triangles));
-        parts.into_iter().filter(|part| !part.triangles.is_empty())
+        let runs = match &self.casting {
+            Casting::Runs([light_cap, turned]) => vec![(false, light_cap), (true, turned)],
+            Casting::Picked(_) => Vec::new(),
+        };
+        let parts = runs.into_iter().map(|(turned, triangles)| NeededPart::new(Part::LightCap, turned, triangles));
+        parts.filter(|part| !part.triangles.is_empty())
     }
 
     /// The casting triangles in world space.
-    pub fn casting_triangles(&self, frame: &Frame) -> impl Iterator<Item = [DVec3; 3]> {
-        let world = &frame.placed[self.object].world;
-        let corners = frame.plan.meshes[self.mesh.0].indices.data();
-        let casting = self.parts.light_cap.start * 3..self.parts.light_cap_turned.end * 3;
-        corners[casting].chunks_exact(3).map(|corners| [0, 1, 2].map(|corner| world[corners[corner] as usize]))
+    pub fn casting_triangles(&self, frame: &Frame, light: DVec4) -> impl Iterator<Item = [DVec3; 3]> {
+        let placed = &frame.placed[self.object];
+        let (corners, casters) = match &self.casting {
+            Casting::Runs([light_cap, turned]) => {
+                let indices = frame.plan.meshes[self.mesh.0].indices.data();
+                (&indices[light_cap.start * 3..turned.end * 3], Casters::All)
+            }
+            Casting::Picked(casters) => (placed.object.mesh.triangles().as_flattened(), *casters),
+        };
+        let triangles = corners.chunks_exact(3);
+        let places = triangles.map(|corners| [0, 1, 2].map(|corner| placed.world[corners[corner] as usize]));
+        places.filter(move |corners| match casters {
+            Casters::All => true,
+            Casters::LightFacing => side_of_triangle(*corners, light) == Sign::Positive,
+            Casters::LightBackFacing => side_of_triangle(*corners, light) == Sign::Negative,
+        })
     }
 
     pub fn draws(&self, options: &VolumeSettings, step: Step) -> Vec<Draw> {
@@ -79,6 +111,8 @@ impl Volume {
             (Part::Side, _) => "sides",
             (Part::LightCap, false) => "light cap",
             (Part::LightCap, true) => "turned light cap",
+            (Part::Caps, false) => "caps",
+            (Part::Caps, true) => "turned caps",
             // What faces the light faces inwards at the far end.
             (_, false) if part.base_vertex != 0 => "turned dark cap",
             (_, _) => "dark cap",
@@ -98,8 +132,38 @@ impl Volume {
     }
 }
 
-/// The mesh of a volume, and which of its triangles are what.
+/// A volume that the CPU carries away from the light.
+///
+/// # Errors
+/// Why there is none.
 pub fn make(
+    frame: &mut Frame,
+    light: LightId,
+    index: usize,
+    (casters, held): (Casters, &[bool]),
+    (form, options): (Form, &VolumeSettings),
+) -> Result<Made, LeftOut> {
+    let (mesh, parts, far_end) = outlined(frame, light, index, (casters, held), options);
+    let object = frame.placed[index].object;
+    if parts.light_cap_turned.end == 0 {
+        let because = match casters {
+            Casters::All => "every triangle is edge-on to the light",
+            Casters::LightFacing => "no triangle faces the light",
+            Casters::LightBackFacing => "no triangle faces away from the light",
+        };
+        return Err(LeftOut::new(Decision::NothingCasts, &object.name, because));
+    }
+    // A bias of sides that hug it is a few steps, and rounding may be more.
+    if !parts.hugging_sides.is_empty() && !casters::can_darken(frame, index, light, Darkened::All) {
+        let because = "the light grazes it, so that depth can't tell it from its sides, and nothing is behind it";
+        return Err(LeftOut::new(Decision::Caster, &object.name, because));
+    }
+    let (needed, begins_with) = needed_parts(frame, form, &parts, object, (options.caps[1], far_end));
+    Ok(Made { mesh, casting: Casting::Runs([parts.light_cap, parts.light_cap_turned]), needed, begins_with })
+}
+
+/// The mesh of a volume, and which of its triangles are what.
+fn outlined(
     frame: &mut Frame,
     light: LightId,
     index: usize,
@@ -136,17 +200,12 @@ pub fn make(
     let extruder = far_end.map_or(extruder, |(from, _)| Extruder::new(&placed.world, from, options.extrusion));
     let vertices = extruder.vertices(&placed.world).chain(fan.iter().flat_map(Fan::vertices));
     let vertices = vertices.map(|vertex| relative::homogeneous(vertex, eye)).collect();
-    let mesh = DrawMesh {
-        name: format!("volume of {}", placed.object.name),
-        vertices: Blob::new(vertices),
-        indices: Blob::new(indices),
-        surface: None,
-    };
+    let mesh = DrawMesh::of_positions(format!("volume of {}", placed.object.name), vertices, indices);
     (mesh, parts, far_end.map(|(_, far_end)| far_end))
 }
 
 /// The parts that count in a form; what is left out is said, but of dark caps that are not drawn anyway.
-pub fn needed_parts(
+fn needed_parts(
     frame: &mut Frame,
     form: Form,
     parts: &VolumeParts,

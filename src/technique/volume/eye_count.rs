@@ -10,11 +10,12 @@ use crate::plan::LightId;
 use crate::technique::frame::Frame;
 use glam::{DVec3, DVec4};
 
-/// How many of a light's volumes hold the eye; a volume's far end is not asked about.
+/// How many of a light's volumes hold the eye, or where lines of sight are parallel the middle of the near plane; a
+/// volume's far end is not asked about.
 pub fn at(frame: &Frame, light: LightId, volumes: &[Volume]) -> u32 {
-    let (eye, light) = (frame.eye(), frame.light_position(light));
-    let casting = volumes.iter().flat_map(|volume| volume.casting_triangles(frame));
-    casting.filter(|corners| holds(*corners, light, eye)).count() as u32
+    let (place, light) = (frame.job.scene.camera.counting_place(), frame.light_position(light));
+    let casting = volumes.iter().flat_map(|volume| volume.casting_triangles(frame, light));
+    casting.filter(|corners| holds(*corners, light, place)).count() as u32
 }
 
 /// Is a point in the volume of a triangle: beyond it, seen from the light? On a side plane it is not.

@@ -93,6 +93,12 @@ pub const LINES: &[(&str, Check)] = &[
     ("sides, between each silhouette edge and the same edge at the far end: {}", |here, told| {
         number(told[0]) == here.triangles(Part::Side)
     }),
+    ("sides, one at every edge, empty until its triangles face different ways: {}", |here, told| {
+        here.is_extruded() && number(told[0]) == here.triangles(Part::Side)
+    }),
+    ("caps, the triangles that face the light in their place and the others at the far end: {}", |here, told| {
+        here.is_extruded() && number(told[0]) == here.triangles(Part::Caps)
+    }),
     ("light caps, the casting triangles themselves: {}", |here, told| {
         number(told[0]) == here.triangles(Part::LightCap)
     }),

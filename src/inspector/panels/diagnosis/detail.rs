@@ -31,7 +31,11 @@ pub fn ui(
     if let Some(region) = selected {
         theme::heading(ui, &region.title());
         if region.causes.is_empty() {
-            wrapped(ui, theme::note("No known cause fits: its history, on the right, tells how a pixel came about."));
+            let without = diagnosis.without_cause(region);
+            wrapped(
+                ui,
+                theme::note(format!("Here {without}. Its history, on the right, tells how a pixel came about.")),
+            );
         }
         for (index, found) in region.causes.iter().enumerate() {
             cause(ui, own, model, (diagnosis, found), index == 0, actions);

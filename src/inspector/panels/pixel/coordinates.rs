@@ -1,8 +1,10 @@
-//! The picked pixel's point in every space, with the matrices between them.
+//! The picked pixel's point, or a corner of its triangle, in every space, with the matrices between them.
 
+use super::told::{Pixel, Told};
 use crate::capture::Capture;
 use crate::inspector::look::theme;
-use crate::reading::coordinates::{Place, Spherical, matrix_row, vector};
+use crate::inspector::model::Model;
+use crate::reading::coordinates::{Place, Spherical, Vertex, matrix_row, vector};
 use crate::reading::format;
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
@@ -10,15 +12,20 @@ use egui::{CollapsingHeader, Grid, Label, Ui};
 const DIGITS: u32 = 4;
 
 /// Folded until somebody asks.
-pub fn ui(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
+pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &Model, (capture, at): (&Capture, [u32; 2]), told: &Told) {
     // Another program's camera is a guess, and so is its unit.
     if capture.origin.is_some() {
         return;
     }
     let header = CollapsingHeader::new("Coordinates").id_salt("coordinates");
     header.show(ui, |ui| {
-        let place = Place::of(capture, at);
-        points(ui, &place);
+        let history = told.history.as_ref().filter(|_| told.is_of_pick && told.wrong.is_empty());
+        let place = match (history, &model.frame.plan) {
+            (Some(history), Some(plan)) => Place::of(capture, at).with_vertices(capture, plan, history),
+            _ => Place::of(capture, at),
+        };
+        choose(ui, &mut own.corner, &place.vertices);
+        points(ui, &place, place.vertices.iter().find(|vertex| Some(vertex.index) == own.corner));
         for step in &place.chain {
             ui.label(theme::note(format!("{}, then back:", step.name)));
             for rows in [&step.matrix, &step.inverse] {
@@ -29,18 +36,38 @@ pub fn ui(ui: &mut Ui, capture: &Capture, at: [u32; 2]) {
     });
 }
 
-fn points(ui: &mut Ui, place: &Place) {
+/// Whose coordinates are shown: the point's, or a corner's.
+fn choose(ui: &mut Ui, corner: &mut Option<u32>, vertices: &[Vertex]) {
+    let Some(first) = vertices.first() else { return };
+    // Of another triangle than before, the point comes first.
+    *corner = corner.filter(|index| vertices.iter().any(|vertex| vertex.index == *index));
+    ui.horizontal_wrapped(|ui| {
+        let mut option = |ui: &mut Ui, value, text: String, hover: String| {
+            ui.selectable_value(corner, value, text).on_hover_text(hover);
+        };
+        option(ui, None, "the point".to_owned(), "Of the surface at the pixel's middle".to_owned());
+        for vertex in vertices {
+            let hover = format!("A corner of the triangle of {} that the pixel shows", first.object);
+            option(ui, Some(vertex.index), format!("vertex {}", vertex.index), hover);
+        }
+    });
+}
+
+fn points(ui: &mut Ui, place: &Place, corner: Option<&Vertex>) {
     Grid::new("coordinates of the point").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
         let mut row = |name: &str, value: String| {
             ui.label(theme::note(name));
             ui.label(theme::number(value).color(theme::of(ui).text));
             ui.end_row();
         };
-        match place.point {
-            None => row("point", "no surface".to_owned()),
-            Some(point) => point.rows().into_iter().for_each(|(name, values)| row(name, vector(values, DIGITS))),
+        match (corner, place.point) {
+            (Some(vertex), _) => vertex.rows(DIGITS).into_iter().for_each(|(name, value)| row(name, value)),
+            (None, None) => row("point", "no surface".to_owned()),
+            (None, Some(point)) => {
+                point.rows().into_iter().for_each(|(name, values)| row(name, vector(values, DIGITS)))
+            }
         }
-        for step in &place.depth_steps {
+        for step in place.depth_steps.iter().filter(|_| corner.is_none()) {
             row(
                 &format!("step, {}", step.stored_in),
                 step.metres.map_or_else(|| "to infinity".to_owned(), format::metres),

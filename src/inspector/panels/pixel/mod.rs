@@ -64,7 +64,7 @@ pub fn ui(ui: &mut Ui, own: &mut Pixel, model: &mut Model) {
             }
         }
         shading::ui(ui, model, &capture, &told);
-        coordinates::ui(ui, &capture, at);
+        coordinates::ui(ui, own, model, (&capture, at), &told);
         ui.add_space(gap);
         run::ui(ui, model, &capture, at);
         ui.add_space(gap);

@@ -5,7 +5,7 @@ use crate::capture::Capture;
 use crate::inspector::look::theme;
 use crate::inspector::model::Model;
 use crate::reading::format;
-use crate::reading::shading::{Shaded, digits, three};
+use crate::reading::shading::{Shaded, TextureTerm, digits, three};
 use egui::{CollapsingHeader, Grid, Label, Ui};
 
 /// Folded until somebody asks.
@@ -34,7 +34,29 @@ fn terms(ui: &mut Ui, shaded: &Shaded) {
         let kind = format!("{}, {}", shaded.shading, shaded.diffuse);
         row(ui, "shaded", kind, "Where light is computed, and how it falls off with its angle");
         row(ui, "normal", three(shaded.normal), "Of unit length, world space, to the side that the eye sees");
-        row(ui, "surface colour", three(shaded.color), "Linear red, green and blue that it reflects, checks included");
+        row(
+            ui,
+            "surface colour",
+            three(shaded.color),
+            "Linear red, green and blue that it reflects, with checks and texture",
+        );
+        if let Some(TextureTerm { name, uv: [u, v], texel: [column, line], level, color }) = &shaded.texture {
+            row(
+                ui,
+                "texture",
+                format!("{name}, texel {column},{line}"),
+                "The picture on it, and the texel there from its top left",
+            );
+            row(
+                ui,
+                "u, v",
+                format!("{}, {}", digits(*u), digits(*v)),
+                "From the picture's lower left to its upper right",
+            );
+            let hover = "Of the picture's pyramid: on level k a texel is 2^k texels large, and two levels are mixed";
+            row(ui, "level", digits(*level), hover);
+            row(ui, "texel's colour", three(*color), "Linear; the surface's colour is multiplied with it");
+        }
         row(ui, "without light", three(shaded.unlit), "Under ambient light, and what it sends out by itself; linear");
     });
     for (index, light) in shaded.lights.iter().enumerate() {

@@ -22,6 +22,8 @@ pub struct Pixel {
     wrong: Vec<String>,
     /// The row of the selected event has to be scrolled to.
     pub scrolls_to_selected: bool,
+    /// The corner whose coordinates are shown, a vertex of the mesh; `None`: those of the pixel's point.
+    pub corner: Option<u32>,
     /// The sentence on top as it was last said with a history.
     pub sentence: Option<Verdict>,
 }

@@ -5,6 +5,7 @@
 use crate::inspector::look::theme;
 use crate::inspector::model::scene::OpenScene;
 use crate::reading::format;
+use crate::reading::meshes::pictures;
 use crate::scene::{Camera, Light, Material, Mesh, MeshError, Object, Pose, Projection, Shading, shapes};
 use egui::{CollapsingHeader, DragValue, Ui};
 use glam::DVec3;
@@ -121,6 +122,9 @@ fn edited(ui: &mut Ui, scene: &mut OpenScene) -> bool {
         }
     });
     combo.response.accessible_name("Object");
+    for line in pictures(object) {
+        ui.add(egui::Label::new(theme::note(line)).wrap());
+    }
     let mut pose = object.pose;
     let mut changed = pose_settings(ui, &mut pose);
     if changed {

@@ -37,7 +37,9 @@ const LIGHT_AT_SHEET: Case = Case {
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], light, vec![floor(3.0)?, sheet]))
     }),
     least: |_| Least { lit: 0.005, because: "only the sheet's top is lit", ..Least::USUAL },
+    also: &[BY_VERTEX_SHADER],
     failures: &[
+        TOLD_IN_F32.at(|distance| distance < 5e-6).at_most(0.1),
         NEARER_THAN_MAP.at(|distance| distance < 5e-7).at_most(0.99),
         FAR_CORNERS,
         ONE_MATRIX.at_most(0.99),
@@ -76,6 +78,7 @@ const TURNED_SHEET: Case = Case {
     }),
     least: |_| Least::USUAL,
     failures: &[
+        TOLD_IN_F32.at(|distance| distance < 5e-6).at_most(0.9),
         NEARER_THAN_MAP.at(|distance| distance < 5e-7).at_most(0.62),
         NEARER_THAN_MAP.at(|distance| distance < 5e-6).at_most(0.1),
         fails(MAP, "aliasing", "the sheet's edge is a few texels from where the map begins")
@@ -140,7 +143,7 @@ const LIGHT_INSIDE_MESH: Case = Case {
         scene.lights = vec![Light::point([0.1, 0.85, 0.05])];
         Ok(scene)
     }),
-    also: &[LIGHT_FACING, ALL_CAST],
+    also: &[LIGHT_FACING, ALL_CAST, BY_VERTEX_SHADER],
     least: |_| Least::all_dark("outside the mesh all is dark"),
     failures: &[
         CUT_BY_NEAR.is_missing().at_most(0.999),
@@ -173,7 +176,8 @@ const LIGHT_IN_FACE_PLANE: Case = Case {
         let objects = vec![floor(3.0)?, cuboid("box", [0.0, 0.75, 0.0], [0.5; 3])?];
         Ok(scene([1.5, 3.0, 5.0], [0.0, 0.3, 0.0], Light::point([1.5, ulps(1.0, steps), 0.25]), objects))
     }),
-    also: &[LIGHT_FACING],
+    also: &[LIGHT_FACING, BY_VERTEX_SHADER],
+    failures: &[TOLD_IN_F32.at(|step| step > 0.0).is_false().at_most(0.01)],
     ..PLAIN
 };
 

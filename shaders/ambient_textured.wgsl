@@ -1,0 +1,28 @@
+// The same of a surface with a picture.
+
+struct UnlitTextured {
+    @invariant @builtin(position) clip: vec4f,
+    @location(0) relative: vec3f,
+    @location(1) uv: vec2f,
+}
+
+@vertex
+fn vs_ambient_textured(@builtin(vertex_index) corner: u32) -> UnlitTextured {
+    let relative = positions[corners[corner]];
+    return UnlitTextured(clip_position(relative), relative.xyz, uvs[corner]);
+}
+
+@fragment
+fn fs_ambient_textured(at: UnlitTextured) -> @location(0) vec4f {
+    return in_ambient_light(draw.color * in_picture(at.uv) * in_checks(at.relative));
+}
+
+// Where depth is clamped nothing clips at the near plane: this does.
+@fragment
+fn fs_ambient_textured_from_near(at: UnlitTextured) -> @location(0) vec4f {
+    let shown = in_picture(at.uv);
+    if at.clip.z < 0.0 {
+        discard;
+    }
+    return in_ambient_light(draw.color * shown * in_checks(at.relative));
+}

@@ -1,0 +1,90 @@
+//! Shared values, named by the hash of their content.
+
+use foldhash::quality::FixedState;
+use std::fmt::{self, Debug, Formatter};
+use std::hash::{BuildHasher, Hasher};
+use std::sync::{Arc, LazyLock};
+
+/// Shared data with its hash: the executor uploads equal data once and keeps it while it is used.
+#[derive(Debug, Clone)]
+pub struct Blob<T> {
+    data: Data<T>,
+    len: usize,
+    hash: u64,
+}
+
+/// Values, or what makes them when they are first asked for.
+#[derive(Clone)]
+enum Data<T> {
+    Given(Arc<[T]>),
+    Made(Arc<LazyLock<Vec<T>, MakeValues<T>>>),
+}
+
+type MakeValues<T> = Box<dyn FnOnce() -> Vec<T> + Send + Sync>;
+
+impl<T: Debug> Debug for Data<T> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Data::Given(values) => values.fmt(f),
+            Data::Made(values) => values.fmt(f),
+        }
+    }
+}
+
+impl<T: bytemuck::Pod> Blob<T> {
+    /// Hashes `data`.
+    #[must_use]
+    pub fn new(data: Vec<T>) -> Blob<T> {
+        Blob { hash: hashed(bytemuck::cast_slice(&data)), len: data.len(), data: Data::Given(data.into()) }
+    }
+
+    /// `len` values that `make` makes when they are first asked for. What has the same `identity` is taken for equal.
+    pub fn made(identity: &[u8], len: usize, make: impl FnOnce() -> Vec<T> + Send + Sync + 'static) -> Blob<T> {
+        Blob { hash: hashed(identity), len, data: Data::Made(Arc::new(LazyLock::new(Box::new(make)))) }
+    }
+
+    /// The values.
+    #[must_use]
+    pub fn data(&self) -> &[T] {
+        match &self.data {
+            Data::Given(values) => values,
+            Data::Made(values) => values,
+        }
+    }
+
+    /// How many values there are; none is made for the answer.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Are there none?
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The same as bytes.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(self.data())
+    }
+
+    /// Of the bytes. Stable within a process only.
+    #[must_use]
+    pub fn hash(&self) -> u64 {
+        self.hash
+    }
+}
+
+impl<T> PartialEq for Blob<T> {
+    fn eq(&self, other: &Blob<T>) -> bool {
+        self.hash == other.hash && self.len == other.len
+    }
+}
+
+fn hashed(bytes: &[u8]) -> u64 {
+    let mut hasher = FixedState::default().build_hasher();
+    hasher.write(bytes);
+    hasher.finish()
+}

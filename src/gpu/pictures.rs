@@ -1,0 +1,54 @@
+//! Pictures on surfaces, with their pyramids, by the hash of their content.
+//!
+//! Equal pictures are uploaded once, and stay as long as the newest plan uses them. Levels are made on the CPU
+//! ([`Picture::levels`]), so that a lookup can be computed again.
+
+use super::Context;
+use crate::scene::Picture;
+use std::collections::HashMap;
+use wgpu::{Extent3d, TextureUsages, TextureView, TextureViewDescriptor};
+
+/// Hash and size.
+type Key = (u64, [u32; 2]);
+
+#[derive(Debug, Default)]
+pub(super) struct Pictures {
+    kept: HashMap<Key, (TextureView, bool)>,
+}
+
+impl Pictures {
+    /// Forgets what has not been asked for since the last call.
+    pub fn next_plan(&mut self) {
+        self.kept.retain(|_, (_, used)| std::mem::take(used));
+    }
+
+    /// The texture of a picture, all levels of it.
+    pub fn get(&mut self, context: &Context, picture: &Picture) -> TextureView {
+        let key = (picture.hash(), picture.size());
+        let (view, used) = self.kept.entry(key).or_insert_with(|| (upload(context, picture), true));
+        *used = true;
+        view.clone()
+    }
+}
+
+fn upload(context: &Context, picture: &Picture) -> TextureView {
+    let extent = |[width, height]: [u32; 2]| Extent3d { width, height, depth_or_array_layers: 1 };
+    let texture = context.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(picture.name()),
+        size: extent(picture.size()),
+        mip_level_count: picture.level_count(),
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8UnormSrgb,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let first = (picture.size(), picture.texels());
+    let others = picture.levels().iter().map(|level| (level.size, level.texels.as_slice()));
+    for (mip_level, (size, texels)) in (0..).zip(std::iter::once(first).chain(others)) {
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size[0] * 4), rows_per_image: None };
+        let target = wgpu::TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() };
+        context.queue.write_texture(target, texels.as_flattened(), layout, extent(size));
+    }
+    texture.create_view(&TextureViewDescriptor::default())
+}

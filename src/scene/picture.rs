@@ -1,0 +1,355 @@
+//! Pictures on surfaces: files decoded to texels, the levels of their pyramid, and how they are looked up.
+//!
+//! A picture is sRGB with eight bits a channel, row 0 at the top; its alpha is not used. Level k of its pyramid has
+//! half the texels of level k − 1 along each side: averages of two by two, of linear light. A lookup mixes the four
+//! nearest texels on each of the two levels whose texels are about as large as a pixel is there along its longer side
+//! (Williams 1983): what lies aslant far away blurs, and does not flicker. The GPU does the same with the same levels, and
+//! [`Picture::linear_at`] tells what it finds.
+
+use crate::files::{ReadError, read_plain};
+use foldhash::quality::FixedState;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::hash::{BuildHasher, Hasher};
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+/// Bytes of the largest file.
+const MOST_FILE: u64 = 64 << 20;
+/// Texels along a side of the largest picture: what every GPU takes.
+const MOST_SIDE: u32 = 8192;
+/// Texels of all pictures of a model or a scene file.
+const MOST_TEXELS: u64 = 1 << 27;
+
+/// A picture that surfaces show.
+pub struct Picture {
+    name: String,
+    size: [u32; 2],
+    texels: Vec<[u8; 4]>,
+    hash: u64,
+    levels: OnceLock<Vec<Level>>,
+}
+
+/// A level of a picture's pyramid.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Level {
+    /// Width and height in texels.
+    pub size: [u32; 2],
+    /// sRGB and alpha, row by row.
+    pub texels: Vec<[u8; 4]>,
+}
+
+/// A picture on a surface, repeated without end unless it is clamped.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Texture {
+    /// What is shown.
+    pub picture: Arc<Picture>,
+    /// Metres of world X and Z that the picture covers; `None`: the mesh says where each corner lies in it.
+    pub side: Option<f32>,
+    /// Beyond the picture its last texels go on.
+    pub clamps: bool,
+}
+
+/// Why a file is no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    /// It can't be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// Of another kind.
+    #[error("is neither PNG nor JPEG: convert it")]
+    Kind,
+    /// It breaks its format's rules.
+    #[error("is broken ({0}): write it again")]
+    Broken(String),
+    /// Its head claims what no GPU takes.
+    #[error("is {0}x{1} texels, and at most {MOST_SIDE} are taken along a side: scale it down")]
+    Size(u64, u64),
+    /// With those before it.
+    #[error("is one picture too many: together they may have {} million texels", MOST_TEXELS >> 20)]
+    TooMany,
+}
+
+impl fmt::Debug for Picture {
+    /// Without its texels.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Picture { name, size, hash, .. } = self;
+        f.debug_struct("Picture").field("name", name).field("size", size).field("hash", hash).finish_non_exhaustive()
+    }
+}
+
+impl PartialEq for Picture {
+    fn eq(&self, other: &Picture) -> bool {
+        self.hash == other.hash && self.size == other.size
+    }
+}
+
+impl Picture {
+    /// A picture of these sRGB texels; `None` where their number is not that of the size, or none.
+    #[must_use]
+    pub fn new(name: impl Into<String>, size: [u32; 2], texels: Vec<[u8; 4]>) -> Option<Picture> {
+        let is_sized = size.iter().all(|side| (1..=MOST_SIDE).contains(side))
+            && texels.len() as u64 == u64::from(size[0]) * u64::from(size[1]);
+        let mut hasher = FixedState::default().build_hasher();
+        hasher.write(texels.as_flattened());
+        let (name, hash) = (name.into(), hasher.finish());
+        is_sized.then(|| Picture { name, size, texels, hash, levels: OnceLock::new() })
+    }
+
+    /// Reads a PNG or a JPEG.
+    ///
+    /// # Errors
+    /// As [`PictureError`] says; sizes are refused before memory is taken for them.
+    pub fn load(path: &Path) -> Result<Picture, PictureError> {
+        Picture::load_within(path, MOST_TEXELS)
+    }
+
+    fn load_within(path: &Path, most: u64) -> Result<Picture, PictureError> {
+        let bytes = read_plain(path, MOST_FILE)?;
+        let (size, texels) = match bytes.as_slice() {
+            [0x89, b'P', b'N', b'G', ..] => png(&bytes, most)?,
+            [0xff, 0xd8, 0xff, ..] => jpeg(&bytes, most)?,
+            _ => return Err(PictureError::Kind),
+        };
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        Picture::new(name, size, texels).ok_or_else(|| PictureError::Broken("texels are missing".to_owned()))
+    }
+
+    /// Its file's name, for people.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Width and height in texels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// sRGB and alpha, row by row from the top.
+    #[must_use]
+    pub fn texels(&self) -> &[[u8; 4]] {
+        &self.texels
+    }
+
+    /// Of the texels. Stable within a process only.
+    #[must_use]
+    pub fn hash(&self) -> u64 {
+        self.hash
+    }
+
+    /// Does it have an alpha other than 1, which nobody looks at?
+    #[must_use]
+    pub fn has_alpha(&self) -> bool {
+        self.texels.iter().any(|texel| texel[3] != u8::MAX)
+    }
+
+    /// How many levels its pyramid has, itself among them.
+    #[must_use]
+    pub fn level_count(&self) -> u32 {
+        self.size[0].max(self.size[1]).ilog2() + 1
+    }
+
+    /// The levels above it, from half its size down to one texel.
+    #[must_use]
+    pub fn levels(&self) -> &[Level] {
+        self.levels.get_or_init(|| {
+            let mut levels: Vec<Level> = Vec::new();
+            while levels.len() + 1 < self.level_count() as usize {
+                let level = levels
+                    .last()
+                    .map_or_else(|| halved(self.size, &self.texels), |last| halved(last.size, &last.texels));
+                levels.push(level);
+            }
+            levels
+        })
+    }
+
+    /// Size and texels of a level; that of the last beyond it.
+    fn level(&self, index: u32) -> ([u32; 2], &[[u8; 4]]) {
+        match index.min(self.level_count() - 1).checked_sub(1).map(|above| &self.levels()[above as usize]) {
+            None => (self.size, &self.texels),
+            Some(level) => (level.size, &level.texels),
+        }
+    }
+
+    /// Linear RGB at a place of the picture (0, 0 at its lower left, 1, 1 at its upper right), on a level that may lie
+    /// between two.
+    #[must_use]
+    pub fn linear_at(&self, uv: [f64; 2], level: f64, clamps: bool) -> [f64; 3] {
+        let level = level.clamp(0.0, f64::from(self.level_count() - 1));
+        let [near, far] = [level.floor(), level.floor() + 1.0].map(|index| self.smooth_at(uv, index as u32, clamps));
+        let share = level.fract();
+        [0, 1, 2].map(|channel| near[channel] * (1.0 - share) + far[channel] * share)
+    }
+
+    /// Column and row of the texel of the picture itself that a place lies in.
+    #[must_use]
+    pub fn texel_at(&self, [u, v]: [f64; 2], clamps: bool) -> [u32; 2] {
+        let [width, height] = self.size.map(i64::from);
+        let inside = |at: f64, count: i64| wrapped((at * count as f64).floor() as i64, count, clamps) as u32;
+        [inside(u, width), inside(1.0 - v, height)]
+    }
+
+    /// The average of all of it, linear.
+    #[must_use]
+    pub fn mean(&self) -> [f64; 3] {
+        self.linear_at([0.5; 2], f64::from(self.level_count()), false)
+    }
+
+    /// The four nearest texels of a level, mixed.
+    fn smooth_at(&self, [u, v]: [f64; 2], level: u32, clamps: bool) -> [f64; 3] {
+        let ([width, height], texels) = self.level(level);
+        let [x, y] = [u * f64::from(width) - 0.5, (1.0 - v) * f64::from(height) - 0.5];
+        let [column, row] = [x, y].map(|at| at.floor() as i64);
+        let [right, down] = [x - x.floor(), y - y.floor()];
+        let texel = |column: i64, row: i64| {
+            let [column, row] = [wrapped(column, width.into(), clamps), wrapped(row, height.into(), clamps)];
+            texels[(row * i64::from(width) + column) as usize]
+        };
+        let four = [
+            (texel(column, row), (1.0 - right) * (1.0 - down)),
+            (texel(column + 1, row), right * (1.0 - down)),
+            (texel(column, row + 1), (1.0 - right) * down),
+            (texel(column + 1, row + 1), right * down),
+        ];
+        [0, 1, 2].map(|channel| four.iter().map(|(texel, share)| linear(texel[channel]) * share).sum())
+    }
+}
+
+/// Reads pictures once each, and no more than fit.
+#[derive(Debug)]
+pub(super) struct Pictures {
+    known: BTreeMap<PathBuf, Arc<Picture>>,
+    left: u64,
+}
+
+impl Default for Pictures {
+    fn default() -> Pictures {
+        Pictures { known: BTreeMap::new(), left: MOST_TEXELS }
+    }
+}
+
+impl Pictures {
+    /// The picture in a file.
+    ///
+    /// # Errors
+    /// As [`Picture::load`]; too many of them.
+    pub fn load(&mut self, path: &Path) -> Result<Arc<Picture>, PictureError> {
+        if let Some(known) = self.known.get(path) {
+            return Ok(Arc::clone(known));
+        }
+        let picture = Arc::new(Picture::load_within(path, self.left)?);
+        self.left -= picture.texels.len() as u64;
+        self.known.insert(path.to_owned(), Arc::clone(&picture));
+        Ok(picture)
+    }
+}
+
+/// Where a column or row lies that is beyond the picture.
+fn wrapped(at: i64, count: i64, clamps: bool) -> i64 {
+    if clamps { at.clamp(0, count - 1) } else { at.rem_euclid(count) }
+}
+
+/// The linear value of an sRGB value (IEC 61966-2-1).
+fn decoded(value: f64) -> f64 {
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The same of a byte.
+fn linear(byte: u8) -> f64 {
+    static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
+    TABLE.get_or_init(|| std::array::from_fn(|byte| decoded(byte as f64 / 255.0)))[usize::from(byte)]
+}
+
+/// The nearest sRGB byte of a linear value.
+fn encoded(value: f64) -> u8 {
+    /// Halfway from each byte to the next.
+    static ENDS: OnceLock<[f64; 255]> = OnceLock::new();
+    let ends = ENDS.get_or_init(|| std::array::from_fn(|byte| decoded((byte as f64 + 0.5) / 255.0)));
+    ends.partition_point(|end| *end <= value) as u8
+}
+
+/// Half as many texels along each side, and at least one; of an odd number the last are dropped, as GPUs do.
+fn halved([width, height]: [u32; 2], texels: &[[u8; 4]]) -> Level {
+    let size = [width, height].map(|side| (side / 2).max(1));
+    let at = |x: u32, y: u32| texels[(y.min(height - 1) * width + x.min(width - 1)) as usize];
+    let texel = |x: u32, y: u32| {
+        let four = [at(2 * x, 2 * y), at(2 * x + 1, 2 * y), at(2 * x, 2 * y + 1), at(2 * x + 1, 2 * y + 1)];
+        let mean = |channel: usize| encoded(four.iter().map(|texel| linear(texel[channel])).sum::<f64>() / 4.0);
+        let alpha = four.iter().map(|texel| u32::from(texel[3])).sum::<u32>();
+        [mean(0), mean(1), mean(2), ((alpha + 2) / 4) as u8]
+    };
+    let row = |y: u32| (0..size[0]).map(move |x| texel(x, y));
+    Level { size, texels: (0..size[1]).into_par_iter().flat_map_iter(row).collect() }
+}
+
+fn checked_size(width: u64, height: u64, most: u64) -> Result<[u32; 2], PictureError> {
+    let side = |n: u64| u32::try_from(n).ok().filter(|n| (1..=MOST_SIDE).contains(n));
+    match [side(width), side(height)] {
+        [Some(_), Some(_)] if width * height > most => Err(PictureError::TooMany),
+        [Some(width), Some(height)] => Ok([width, height]),
+        _ => Err(PictureError::Size(width, height)),
+    }
+}
+
+type Decoded = ([u32; 2], Vec<[u8; 4]>);
+
+fn png(bytes: &[u8], most: u64) -> Result<Decoded, PictureError> {
+    let broken = |error: png::DecodingError| PictureError::Broken(in_a_line(&error.to_string()));
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let info = decoder.read_header_info().map_err(broken)?;
+    let size = checked_size(info.width.into(), info.height.into(), most)?;
+    let mut reader = decoder.read_info().map_err(broken)?;
+    let length = reader.output_buffer_size().ok_or(PictureError::Size(size[0].into(), size[1].into()))?;
+    let mut data = vec![0; length];
+    let frame = reader.next_frame(&mut data).map_err(broken)?;
+    data.truncate(frame.buffer_size());
+    let texels = with_alpha(&data, frame.color_type.samples());
+    Ok((size, texels))
+}
+
+fn jpeg(bytes: &[u8], most: u64) -> Result<Decoded, PictureError> {
+    use zune_jpeg::zune_core::{colorspace::ColorSpace, options::DecoderOptions};
+    let broken = |error: zune_jpeg::errors::DecodeErrors| PictureError::Broken(in_a_line(&error.to_string()));
+    // Sizes are ours to refuse.
+    let options = DecoderOptions::default()
+        .set_max_width(usize::from(u16::MAX))
+        .set_max_height(usize::from(u16::MAX))
+        .set_strict_mode(true)
+        .jpeg_set_out_colorspace(ColorSpace::RGB);
+    let mut decoder = zune_jpeg::JpegDecoder::new_with_options(Cursor::new(bytes), options);
+    decoder.decode_headers().map_err(broken)?;
+    let info = decoder.info().ok_or_else(|| PictureError::Broken("it has no size".to_owned()))?;
+    let size = checked_size(info.width.into(), info.height.into(), most)?;
+    let data = decoder.decode().map_err(broken)?;
+    Ok((size, with_alpha(&data, 3)))
+}
+
+/// Grey, grey and alpha, RGB or RGBA as RGBA.
+fn with_alpha(data: &[u8], samples: usize) -> Vec<[u8; 4]> {
+    let texel = |of: &[u8]| match *of {
+        [grey] => [grey, grey, grey, u8::MAX],
+        [grey, alpha] => [grey, grey, grey, alpha],
+        [red, green, blue] => [red, green, blue, u8::MAX],
+        [red, green, blue, alpha, ..] => [red, green, blue, alpha],
+        [] => [0; 4],
+    };
+    data.chunks_exact(samples.max(1)).map(texel).collect()
+}
+
+/// What a decoder says, short and without line ends.
+fn in_a_line(text: &str) -> String {
+    const MOST: usize = 100;
+    let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    line.trim().trim_end_matches('.').chars().take(MOST).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,59 @@
+//! A caster's volume that a vertex shader carries away from the light (Brennan 2002).
+//!
+//! Its mesh holds what any light could need, and stays as it is while the light moves: every triangle, and at every
+//! edge a quad that is empty until the triangles beside it face different ways. What is proven closed is drawn as it
+//! is: triangles that face the light are its light cap, and the others, carried away, its dark cap. Of anything else
+//! each triangle is a prism of its own.
+//!
+//! Which way a triangle faces is told in single precision: where the light grazes it, it may be told wrong. Its volume
+//! closes all the same, and the error is that of an edge beside its place. Sides that hug their surface are no run of
+//! their own here, so nothing keeps their depths apart from it.
+
+use super::counting::{Form, NeededPart};
+use super::drawn::{Casting, Made};
+use crate::geometry::{Caster, Casters, Extruded, ExtrudedForm, ExtrudedVolume, Extruder, Extrusion};
+use crate::plan::{Decision, DrawMesh, LightId, Part};
+use crate::technique::frame::Frame;
+use crate::technique::settings::VolumeSettings;
+
+/// Does a vertex shader carry a light's volumes? Told where it was asked for and can't.
+pub fn serves(frame: &mut Frame, light: LightId, options: &VolumeSettings) -> bool {
+    let begins_at_far_end = frame.job.scene.camera.is_parallel() && options.extrusion == Extrusion::Infinite;
+    if options.by_vertex_shader && begins_at_far_end {
+        let because = "lines of sight are parallel, so the count begins at the casting triangles that one ray meets, \
+                       and what casts is found on the CPU";
+        frame.leave_out(Decision::VertexExtrusion, light.name(), because);
+    }
+    options.by_vertex_shader && !begins_at_far_end
+}
+
+/// The volume of one caster.
+pub fn make(
+    frame: &mut Frame,
+    light: LightId,
+    index: usize,
+    casters: Casters,
+    (form, options): (Form, &VolumeSettings),
+) -> Made {
+    let (position, eye) = (frame.light_position(light), frame.eye());
+    let placed = &frame.placed[index];
+    let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
+    let cache = &mut *frame.job.cache;
+    let topology = cache.topology(caster.mesh);
+    let is_closed = topology.is_closed() && topology.is_oriented() && casters == Casters::LightFacing;
+    let of = if is_closed { ExtrudedForm::Closed } else { ExtrudedForm::Prisms(casters) };
+    let ExtrudedVolume { corners, indices, sides, caps, turned_caps } = cache.extruded(caster, eye, of);
+    let carry = Extruder::new(&placed.world, position, options.extrusion).carry_from(eye);
+    let name = format!("volume of {}", placed.object.name);
+    let mut needed = vec![NeededPart::new(Part::Side, false, &sides)];
+    if form.light_cap || form.dark_cap {
+        let runs = [(false, &caps), (true, &turned_caps)];
+        needed.extend(runs.map(|(turned, triangles)| NeededPart::new(Part::Caps, turned, triangles)));
+    }
+    Made {
+        mesh: DrawMesh::of_extruded(name, Extruded { corners, carry }, indices),
+        casting: Casting::Picked(casters),
+        needed,
+        begins_with: 0,
+    }
+}

@@ -1,0 +1,519 @@
+//! Pictures on surfaces: the colour changes by the texel that a ray meets, and nothing else of a frame does.
+
+use crate::commands::{assert_fails, folder, run, text};
+use crate::common::{request, session};
+use glam::{DVec3, Vec2};
+use std::path::Path;
+use std::sync::Arc;
+use stencilscope::capture::disk::{read_whole, write};
+use stencilscope::plan::{Blob, FramePlan};
+use stencilscope::reading::pick_ray::sight;
+use stencilscope::reading::shading::Shaded;
+use stencilscope::scene::{
+    Camera, Light, Material, Mesh, MeshBuilder, Object, OpenSpec, Picture, Projection, Scene, SceneBuilder, Shading,
+    Texture, files_of, obj, open, shapes,
+};
+use stencilscope::session::CaptureRequest;
+use stencilscope::technique::{Choice, Technique};
+use stencilscope::testing::Rendered;
+
+const SIZE: [u32; 2] = [96, 72];
+
+fn picture(size: [u32; 2], of: impl Fn(u32, u32) -> [u8; 3]) -> Arc<Picture> {
+    let texels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    let texels = texels.map(|(x, y)| of(x, y)).map(|[r, g, b]| [r, g, b, 255]).collect();
+    Arc::new(Picture::new("a picture", size, texels).expect("a picture"))
+}
+
+/// Red grows to the right and green to the top.
+fn ramp() -> Arc<Picture> {
+    picture([256, 256], |x, y| [x as u8, 255 - y as u8, 90])
+}
+
+fn along_world(picture: &Arc<Picture>, side: f32) -> Option<Texture> {
+    Some(Texture { picture: picture.clone(), side: Some(side), clamps: false })
+}
+
+/// A slanted board whose corners say where they lie in a picture: all of it, three times as wide as high.
+fn slanted() -> Mesh {
+    let uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from_array);
+    let builder = MeshBuilder {
+        positions: [[-3.0, 0.0, 1.0], [3.0, 0.0, 1.0], [3.0, 2.0, -6.0], [-3.0, 2.0, -6.0]].map(DVec3::from).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        corner_uvs: [[0, 1, 2], [0, 2, 3]].map(|corners| Some(corners.map(|corner| uvs[corner]))).to_vec(),
+        ..MeshBuilder::default()
+    };
+    builder.build().expect("a board")
+}
+
+fn on_board(picture: &Arc<Picture>) -> Object {
+    let texture = Some(Texture { picture: picture.clone(), side: None, clamps: false });
+    Object { texture, ..Object::new("board", Arc::new(slanted()), Material::matte([1.0; 3])) }
+}
+
+fn rendered(scene: &Scene, technique: Technique) -> Rendered {
+    Rendered::new(scene, Choice::new(technique), SIZE).expect("a frame")
+}
+
+fn shaded(frame: &mut Rendered, at: [u32; 2]) -> Option<Shaded> {
+    let history = frame.at(at).history().clone();
+    Shaded::of(frame.capture(), frame.plan(), &history)
+}
+
+fn last_color(frame: &Rendered, at: [u32; 2]) -> [u8; 4] {
+    let capture = frame.capture();
+    let last = capture.frame_at(capture.steps.len() - 1).expect("a picture");
+    last.color.image.rgba_at(at).expect("a pixel")
+}
+
+fn linear(byte: u8) -> f64 {
+    let value = f64::from(byte) / 255.0;
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
+fn srgb(linear: f64) -> f64 {
+    let linear = linear.clamp(0.0, 1.0);
+    255.0 * if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+fn asset(path: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(path).display().to_string()
+}
+
+fn pattern() -> Scene {
+    open(&OpenSpec::new(asset("scenes/pattern.toml"))).expect("a scene")
+}
+
+/// The plan with every picture taken off.
+fn bare(plan: &FramePlan) -> FramePlan {
+    let mut plan = plan.clone();
+    plan.textures.clear();
+    let surfaces = plan.meshes.iter_mut().filter_map(|mesh| mesh.surface.as_mut());
+    surfaces.for_each(|surface| surface.uvs = None);
+    plan.passes.iter_mut().flat_map(|pass| &mut pass.draws).for_each(|draw| draw.constants.texture = None);
+    plan.passes.iter_mut().for_each(|pass| pass.image = None);
+    plan
+}
+
+/// The scene with every picture taken off.
+fn plain(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    for object in &mut scene.objects {
+        object.texture = None;
+        let mut groups = object.mesh.groups().to_vec();
+        groups.iter_mut().for_each(|group| group.texture = None);
+        let builder = MeshBuilder {
+            positions: object.mesh.positions().to_vec(),
+            triangles: object.mesh.triangles().to_vec(),
+            corner_normals: object.mesh.corner_normals().map_or_else(Vec::new, <[_]>::to_vec),
+            groups,
+            ..MeshBuilder::default()
+        };
+        object.mesh = Arc::new(builder.build().expect("the same mesh"));
+    }
+    scene
+}
+
+#[test]
+fn seams_of_a_picture_split_no_vertex() {
+    let crate_of_eight = obj::load(Path::new(&asset("models/crate.obj"))).expect("a crate");
+    assert_eq!((crate_of_eight.positions().len(), crate_of_eight.triangles().len()), (8, 12));
+    let uvs = crate_of_eight.corner_uvs().expect("places");
+    assert!(crate_of_eight.has_uvs(&(0..12)) && crate_of_eight.not_taken().is_empty());
+    // A vertex lies in other places of the picture on each of its sides.
+    let of_first: Vec<Vec2> = crate_of_eight
+        .triangles()
+        .iter()
+        .zip(uvs)
+        .flat_map(|(corners, uvs)| corners.iter().zip(uvs.expect("places")))
+        .filter_map(|(vertex, uv)| (*vertex == 0).then_some(uv))
+        .collect();
+    assert!(of_first.iter().any(|uv| *uv != of_first[0]), "{of_first:?}");
+    // Every edge has both its triangles.
+    let mut edges = std::collections::BTreeMap::new();
+    for [a, b, c] in crate_of_eight.triangles() {
+        [(a, b), (b, c), (c, a)].iter().for_each(|(from, to)| *edges.entry((*from, *to)).or_insert(0) += 1);
+    }
+    assert!(edges.iter().all(|((from, to), count)| *count == 1 && edges.contains_key(&(*to, *from))));
+    assert_eq!(edges.len(), 36);
+}
+
+#[test]
+fn a_picture_changes_colours_and_nothing_else() {
+    let (with, mut session) = (pattern(), session());
+    let without = plain(&with);
+    for technique in Technique::ALL {
+        let [with, without] =
+            [&with, &without].map(|scene| session.render(scene.clone(), request(technique, SIZE)).expect("a frame"));
+        let name = technique.name();
+        assert!(with.plan.textures.len() == 2 && without.plan.textures.is_empty(), "{name}");
+        assert!(bare(&with.plan) == bare(&without.plan) && without.plan.bytes() < with.plan.bytes(), "{name}");
+        let mut colors_differ = false;
+        for step in 0..with.capture.steps.len() {
+            let [one, other] = [&with, &without].map(|frame| frame.capture.frame_at(step));
+            let (Some(one), Some(other)) = (one, other) else { continue };
+            assert!(one.depth.image == other.depth.image, "{name}, depth of step {step}");
+            let stencils = [one, other].map(|frame| frame.stencil.as_ref().map(|stencil| &stencil.image));
+            assert!(stencils[0] == stencils[1], "{name}, stencil of step {step}");
+            colors_differ |= one.color.image != other.color.image;
+        }
+        assert!(colors_differ, "{name}");
+        let labels = [&with, &without].map(|frame| frame.capture.lights[0].shadow.clone());
+        assert!(labels[0].is_some() && labels[0] == labels[1], "{name}");
+    }
+}
+
+/// Four texels of a metre each, seen from above: at the middle of one nothing is mixed.
+#[test]
+fn a_pixel_is_its_texel_times_what_arrives() {
+    let texels = [[255, 0, 0], [0, 128, 255], [90, 90, 90], [255, 255, 255]];
+    let four = picture([2, 2], |x, y| texels[(2 * y + x) as usize]);
+    let color = [0.5, 0.8, 1.0];
+    let floor = Object {
+        texture: along_world(&four, 2.0),
+        material: Material::matte(color),
+        ..Object::of("floor", shapes::quad([8.0; 2]).expect("a floor"))
+    };
+    let mut camera = Camera { up: DVec3::NEG_Z, ..Camera::looking([0.0, 10.0, 0.0], [0.0; 3]) };
+    camera.projection = Projection::Orthographic { half_height: 2.0 };
+    let scene = SceneBuilder::new("four")
+        .ambient([0.25; 3])
+        .camera(camera)
+        .object(floor)
+        .light(Light { intensity: 0.5, ..Light::directional([0.0, 1.0, 1.0]) })
+        .build();
+    let mut frame = Rendered::new(&scene, Choice::new(Technique::ZFail), [80, 80]).expect("a frame");
+    // 20 pixels a metre; up is −Z, and so is the upper side of the picture.
+    for (index, [row, column]) in [[0, 0], [0, 1], [1, 0], [1, 1]].into_iter().enumerate() {
+        for repeated in [0, 40] {
+            // Between two pixels is the middle of a texel: a fortieth of it away next to nothing is mixed.
+            let at = [column * 20 + 10 + repeated, row * 20 + 10];
+            let stored = last_color(&frame, at);
+            let light = 0.25 + 0.5 * std::f64::consts::FRAC_1_SQRT_2;
+            for channel in 0..3 {
+                let share = |index: usize| linear(texels[index][channel]);
+                let (beside, below) = (index ^ 1, index ^ 2);
+                let near = 0.975;
+                let mixed = near * near * share(index)
+                    + near * (1.0 - near) * (share(beside) + share(below))
+                    + (1.0 - near) * (1.0 - near) * share(index ^ 3);
+                let expected = srgb(mixed * f64::from(color[channel]) * light);
+                let found = f64::from(stored[channel]);
+                assert!((found - expected).abs() <= 3.0, "{at:?}, channel {channel}: {found} is not {expected}");
+            }
+            let term = shaded(&mut frame, at).expect("a surface").texture.expect("a picture");
+            assert_eq!((term.texel, term.level), ([column, row], 0.0), "{at:?}: {term:?}");
+            let inside = term.uv.map(|part| part.rem_euclid(1.0));
+            let expected = [0.25 + 0.5 * f64::from(column), 0.75 - 0.5 * f64::from(row)];
+            let near = inside.iter().zip(expected).all(|(part, expected)| (part - expected).abs() < 0.02);
+            assert!(near, "{at:?}: {inside:?}");
+        }
+    }
+}
+
+/// A clamped picture lies once in the world: from its origin to the right and towards −Z; far from it one that repeats
+/// is as sharp as near.
+#[test]
+fn a_picture_along_the_world_lies_where_it_is_said_to() {
+    let quarters = picture([2, 2], |x, y| [255 * x as u8, 255 * y as u8, 0]);
+    let look = |clamps: bool, at: [f64; 2]| {
+        let floor = Object {
+            texture: Some(Texture { picture: quarters.clone(), side: Some(2.0), clamps }),
+            ..Object::new("floor", Arc::new(shapes::quad([8.0; 2]).expect("a floor")), Material::matte([1.0; 3]))
+        };
+        let [x, z] = at;
+        let mut camera = Camera { up: DVec3::NEG_Z, ..Camera::looking([x, 4.0, z], [x, 0.0, z]) };
+        camera.projection = Projection::Orthographic { half_height: 0.05 };
+        let far = DVec3::new((x / 8.0).round() * 8.0, 0.0, (z / 8.0).round() * 8.0);
+        let scene =
+            SceneBuilder::new("a floor").ambient([1.0; 3]).camera(camera).object(floor.at(far)).lights([]).build();
+        let frame = Rendered::new(&scene, Choice::new(Technique::None), [9, 9]).expect("a frame");
+        let [red, green, ..] = last_color(&frame, [4, 4]);
+        [red > 128, green > 128]
+    };
+    // The middles of its texels, row 0 at the top: x right, and y down.
+    let cases = [([0.5, -1.5], [false, false]), ([1.5, -1.5], [true, false]), ([0.5, -0.5], [false, true])];
+    for ([x, z], expected) in cases {
+        assert_eq!((look(true, [x, z]), look(false, [x, z])), (expected, expected), "{x}, {z}");
+        assert_eq!(look(false, [x + 2.0e6, z - 4.0e6]), expected, "far away");
+    }
+    // Beyond it, the nearest of its texels; or the next picture's.
+    assert_eq!((look(true, [3.5, -0.5]), look(false, [2.5, -0.5])), ([true, true], [false, true]));
+    assert_eq!((look(true, [-3.5, -1.5]), look(false, [-0.5, -1.5])), ([false, false], [true, false]));
+}
+
+/// What a ray meets, computed from the board's own plane, is what the GPU shows. Mixed along the picture's lines and not
+/// in space, the middle of the board would show half of the ramp.
+#[test]
+fn places_in_a_picture_are_in_perspective() {
+    let scene = SceneBuilder::new("slanted")
+        .ambient([1.0; 3])
+        .object(on_board(&ramp()))
+        .lights([])
+        .seen_from([0.4, 2.2, 4.0], [0.0, 0.8, -2.0])
+        .build();
+    let mut frame = rendered(&scene, Technique::None);
+    let [corner, right, up] = [DVec3::new(-3.0, 0.0, 1.0), DVec3::new(6.0, 0.0, 0.0), DVec3::new(0.0, 2.0, -7.0)];
+    let normal = right.cross(up);
+    let (mut compared, mut bent) = (0, 0.0_f64);
+    for [x, y] in (1..SIZE[1]).step_by(3).flat_map(|y| (1..SIZE[0]).step_by(4).map(move |x| [x, y])) {
+        let sight = sight(frame.capture(), [x, y]);
+        let from = scene.camera.eye + sight.from;
+        let distance = normal.dot(corner - from) / normal.dot(sight.along);
+        let at = from + sight.along * distance - corner;
+        let uv = [at.dot(right) / right.length_squared(), at.dot(up) / up.length_squared()];
+        if !uv.iter().all(|part| (0.06..0.94).contains(part)) {
+            continue;
+        }
+        let stored = last_color(&frame, [x, y]);
+        // The ramp's middle texels are wide where a pixel is small; sRGB bytes are a step a texel.
+        for (found, expected) in [(stored[0], uv[0] * 256.0 - 0.5), (stored[1], uv[1] * 256.0 - 0.5)] {
+            assert!((f64::from(found) - expected).abs() < 2.0, "{x},{y}: {found} is not {expected}");
+        }
+        let term = shaded(&mut frame, [x, y]).expect("a surface").texture.expect("a picture");
+        assert!(term.uv.iter().zip(uv).all(|(found, uv)| (found - uv).abs() < 1e-5), "{term:?} is not {uv:?}");
+        compared += 1;
+        let height = f64::from(y) / f64::from(SIZE[1]);
+        bent = bent.max((uv[1] - (1.0 - height)).abs());
+    }
+    assert!(compared > 150 && bent > 0.1, "{compared} pixels, bent by {bent}");
+}
+
+/// From the terms of every pixel that is looked at comes its colour, whichever way the surface is shaded.
+#[test]
+fn the_terms_of_a_pixel_with_a_picture_add_up_to_its_colour() {
+    let noisy = picture([64, 32], |x, y| [(x * 4) as u8, (y * 8) as u8, (x * 37 + y * 91) as u8]);
+    for (shading, clamps) in [(Shading::Flat, false), (Shading::Gouraud, true), (Shading::Phong, false)] {
+        let mut board = on_board(&noisy);
+        board.material = Material { shading, specular: 0.4, shininess: 8.0, checks: 0.7, ..board.material };
+        board.texture = board.texture.map(|texture| Texture { clamps, ..texture });
+        let floor = Object {
+            texture: along_world(&noisy, 3.0),
+            material: Material { emission: [0.02, 0.0, 0.05], ..Material::default() },
+            ..Object::of("floor", shapes::quad([30.0; 2]).expect("a floor"))
+        };
+        let mut scene = SceneBuilder::new("noisy")
+            .objects([floor.at([0.0, -0.5, 0.0]), board])
+            .lights([Light::point([1.0, 4.0, 2.0]), Light::directional([-1.0, 2.0, 0.3])])
+            .seen_from([0.4, 2.2, 4.0], [0.0, 0.8, -2.0])
+            .build();
+        for projection in [Projection::Perspective, Projection::Orthographic { half_height: 3.0 }] {
+            scene.camera.projection = projection;
+            let mut frame = rendered(&scene, Technique::ZFail);
+            let mut blurred = 0;
+            for [x, y] in (2..SIZE[1]).step_by(4).flat_map(|y| (2..SIZE[0]).step_by(5).map(move |x| [x, y])) {
+                let Some(found) = shaded(&mut frame, [x, y]) else { continue };
+                let term = found.texture.as_ref().expect("a picture");
+                // Where a level is many texels larger than a pixel is wide, how a GPU tells how wide shows.
+                blurred += u32::from(term.level > 0.0);
+                let stored = last_color(&frame, [x, y]);
+                let lit = found.lights.iter().filter(|light| light.label == Some("lit"));
+                let lights: Vec<[f64; 3]> = lit.map(|light| light.adds).collect();
+                for channel in 0..3 {
+                    let sum = found.unlit[channel] + lights.iter().map(|adds| adds[channel]).sum::<f64>();
+                    // Each pass rounds to eight bits of sRGB; filters have eight bits too.
+                    let most = 2.5 + 2.0 * lights.len() as f64;
+                    let (found_here, expected) = (f64::from(stored[channel]), srgb(sum));
+                    let differs = (found_here - expected).abs();
+                    assert!(differs <= most, "{shading:?} {x},{y}: {found_here} is not {expected}: {found:?}");
+                }
+            }
+            assert!(blurred > 20, "{blurred}");
+        }
+    }
+}
+
+#[test]
+fn a_folder_holds_the_pictures_and_runs_again_as_it_was() {
+    let (folder, mut session) = (tempfile::tempdir().expect("a folder"), session());
+    for technique in [Technique::ZFail, Technique::PlanarTexture, Technique::Projective] {
+        let place = folder.path().join(technique.name());
+        let frame = session.render(pattern(), CaptureRequest::new(Choice::new(technique), SIZE)).expect("a frame");
+        write(frame.contents(), &place, false).expect("written");
+        let whole = read_whole(&place).expect("read");
+        let (plan, scene) = (whole.plan.expect("a plan"), whole.scene.expect("a scene"));
+        assert!(plan == *frame.plan, "{}", technique.name());
+        assert_eq!(plan.textures[0].picture.name(), "tiles.png");
+        let again = session.capture_plan(&scene, &plan).expect("a capture");
+        let of_scene = session.capture(&scene, &request(technique, SIZE)).expect("a capture");
+        for step in 0..again.steps.len() {
+            let color = |capture: &stencilscope::capture::Capture| {
+                capture.frame_at(step).map(|frame| frame.color.image.clone())
+            };
+            assert!(color(&again) == color(&frame.capture), "{}, step {step}", technique.name());
+            assert!(color(&of_scene) == color(&frame.capture), "{}, step {step} of its scene", technique.name());
+        }
+    }
+    // A texel less, and it is no frame.
+    let file = folder.path().join("z-fail/texture000.png");
+    let bytes = std::fs::read(&file).expect("bytes");
+    std::fs::write(&file, &bytes[..bytes.len() / 2]).expect("cut");
+    let error = read_whole(&folder.path().join("z-fail")).expect_err("cut off").to_string();
+    assert!(error.contains("texture000.png") && !error.contains('\n'), "{error}");
+    let frame = folder.path().join("planar-texture/frame.json");
+    let told = std::fs::read_to_string(&frame).expect("text");
+    std::fs::write(&frame, told.replace("\"texture\":0", "\"texture\":7")).expect("broken");
+    let error = read_whole(&folder.path().join("planar-texture")).expect_err("no such texture").to_string();
+    assert!(error.contains("its texture does not exist"), "{error}");
+}
+
+#[test]
+fn a_texture_without_places_or_with_a_shader_that_shows_none_is_found_by_the_lint() {
+    let frame = session().render(pattern(), request(Technique::ZFail, SIZE)).expect("a frame");
+    let problems = |change: &dyn Fn(&mut FramePlan)| {
+        let mut plan = FramePlan::clone(&frame.plan);
+        change(&mut plan);
+        stencilscope::plan::lint::check(&plan).iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(problems(&|_| {}), "");
+    let short = problems(&|plan| {
+        let surfaces = plan.meshes.iter_mut().filter_map(|mesh| mesh.surface.as_mut());
+        surfaces.for_each(|surface| surface.uvs = Some(Blob::new(vec![[0.0; 2]; 2])));
+    });
+    assert!(short.contains("its corners do not lie in a picture"), "{short}");
+    let volumes = problems(&|plan| {
+        let texture = plan.passes[0].draws[0].constants.texture;
+        plan.passes[1].draws[0].constants.texture = texture;
+    });
+    assert!(volumes.contains("its shader shows no texture"), "{volumes}");
+}
+
+const BOX: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
+
+/// The model of a library's text, and what was not taken of it.
+fn model(library: &str, faces: &str) -> (Mesh, Vec<String>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let put = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).expect("written");
+    let tiles = std::fs::read(asset("textures/tiles.png")).expect("a picture");
+    put("tiles.png", &tiles);
+    put("two words.png", &tiles);
+    put("cut.png", &tiles[..90]);
+    put("m.mtl", library.as_bytes());
+    put("m.obj", format!("mtllib m.mtl\n{BOX}usemtl a\n{faces}").as_bytes());
+    let mesh = obj::load(&folder.path().join("m.obj")).expect("a mesh");
+    let told = mesh.not_taken().iter().map(|one| format!("{}: {}", one.what, one.because)).collect();
+    (mesh, told)
+}
+
+#[test]
+fn a_library_s_pictures_are_shown_or_it_is_said_why_not() {
+    let face = "f 1/1 2/2 3/3\n";
+    let (mesh, told) = model("newmtl a\nmap_Kd -s 2 4 -o 0.5 0 -clamp on two words.png\n", face);
+    let texture = mesh.groups()[0].texture.as_ref().expect("a picture");
+    assert!(told.is_empty() && texture.clamps && texture.picture.name() == "two words.png", "{told:?}");
+    assert_eq!(mesh.groups()[0].material.expect("a material").color, [1.0; 3], "no Kd: as it is");
+    let uvs = mesh.corner_uvs().expect("places")[0].expect("three");
+    assert_eq!(uvs, [[0.5, 0.0], [2.5, 0.0], [0.5, 4.0]].map(Vec2::from_array));
+    let cases = [
+        ("map_Kd none.png", face, "map_Kd of `a`: `none.png` there is no such file"),
+        ("map_Kd /dev/zero", face, "map_Kd of `a`: `/dev/zero` is a device: only plain files are read"),
+        ("map_Kd cut.png", face, "map_Kd of `a`: `cut.png` is broken ("),
+        ("map_Kd m.obj", face, "map_Kd of `a`: `m.obj` is neither PNG nor JPEG: convert it"),
+        ("map_Kd .", face, "map_Kd of `a`: `.` is a folder"),
+        ("map_Kd -mm 0 2 tiles.png", face, "-mm of map_Kd of `a`: nothing here does it"),
+        ("map_Ks tiles.png", face, "map_Ks of `a`: of pictures, only"),
+        ("map_Kd", face, "map_Kd of `a`: it names no file"),
+        ("map_Kd tiles.png", "f 1/1 2/2 3/3\nf 2 3 4\n", "map_Kd of `a`: faces have no texture coordinates"),
+        ("map_Kd tiles.png", "f 1/1 2/2 3/9\n", "map_Kd of `a`: faces have no texture coordinates"),
+    ];
+    for (line, faces, words) in cases {
+        let (mesh, told) = model(&format!("newmtl a\nKd 0.2 0.4 0.6\n{line}\n"), faces);
+        assert!(told.len() == 1 && told[0].starts_with(words) && !told[0].contains('\n'), "{line}: {told:?}");
+        let group = &mesh.groups()[0];
+        assert_eq!(group.material.expect("a material").color, [0.2, 0.4, 0.6], "{line}");
+        assert_eq!(group.texture.is_some(), line.contains("-mm"), "{line}");
+    }
+    let many: String = (0..99).map(|index| format!("newmtl m{index}\nmap_Ks none.png\n")).collect();
+    let (_, told) = model(&many, face);
+    assert_eq!((told.len(), told[32].as_str()), (33, "what else its libraries ask for: 32 things of it are named"));
+    // What is not taken is in the plan, by name.
+    let folder = folder();
+    std::fs::write(folder.path().join("m.obj"), format!("mtllib /dev/zero\n{BOX}{face}")).expect("written");
+    let made = run(folder.path(), &["capture", "m.obj", "-t", "none", "--size", "32x24", "-o", "out"]);
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    let manifest = std::fs::read_to_string(folder.path().join("out/manifest.json")).expect("a manifest");
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("JSON");
+    let left_out = manifest["left_out"].as_array().expect("a list");
+    let named = left_out.iter().find(|one| one["decision"] == "material").expect("it is named");
+    assert_eq!(named["what"], "the materials of `/dev/zero`");
+    assert_eq!(named["because"], "is a device: only plain files are read");
+}
+
+#[test]
+fn a_scene_file_s_texture_that_can_t_be_shown_is_a_line() {
+    let tiles = asset("textures/tiles.png");
+    let with = |mesh: &str, material: &str| {
+        let folder = folder();
+        let text = format!("[[objects]]\nmesh = {mesh}\nmaterial = {{ {material} }}\n");
+        std::fs::write(folder.path().join("a.toml"), text).expect("written");
+        run(folder.path(), &["capture", "a.toml", "-t", "none", "--size", "32x24", "-o", "out"])
+    };
+    let quad = "{ shape = \"quad\" }";
+    let crate_obj = format!("{:?}", asset("models/crate.obj"));
+    let cases = [
+        (quad, format!("texture = {tiles:?}"), 3, "does not say where it lies in a picture"),
+        (quad, "texture_side = 2".to_owned(), 3, "`texture_side` is of a `texture`"),
+        (quad, "texture_clamps = true".to_owned(), 3, "`texture_clamps` is of a `texture`"),
+        (quad, format!("texture = {tiles:?}, texture_side = 0"), 3, "must be from 0.001"),
+        (quad, "texture = \"/dev/zero\", texture_side = 1".to_owned(), 3, "`/dev/zero` is a device"),
+        (quad, "texture = \"none.png\", texture_side = 1".to_owned(), 3, "there is no such file"),
+        (&crate_obj, format!("texture = {tiles:?}"), 3, "every part of the model has a material of its own"),
+        ("\"/dev/zero\"", "specular = 0".to_owned(), 2, "is a device: only plain files are read"),
+    ];
+    for (mesh, material, line, words) in cases {
+        let output = with(mesh, &material);
+        let told = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{material}: {told}");
+        assert!(told.contains(&format!("a.toml:{line}: ")) && told.contains(words), "{material}: {told}");
+        assert_eq!(told.trim_end().lines().filter(|line| line.contains("a.toml")).count(), 1, "{told}");
+    }
+    assert!(with(quad, &format!("texture = {tiles:?}, texture_side = 0.25")).status.success());
+    assert_fails(&["capture", "/dev/zero", "-o", "out"], 2, &["/dev/zero"]);
+}
+
+/// What changes on disk is offered to be read again.
+#[test]
+fn a_scene_is_made_of_its_pictures_and_libraries_too() {
+    let files = files_of(&OpenSpec::new(asset("scenes/pattern.toml")));
+    let ends = ["pattern.toml", "crate.obj", "tiles.png", "crate.mtl", "crate.png"];
+    for end in ends {
+        assert!(files.iter().any(|file| file.ends_with(end) && file.is_file()), "{end} is none of {files:?}");
+    }
+    assert_eq!(files.len(), ends.len(), "{files:?}");
+    assert_eq!(files_of(&OpenSpec::new(asset("models/crate.obj"))).len(), 3);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_with_a_pipe_in_it_is_refused_and_not_waited_for() {
+    let folder = folder();
+    let made = run(folder.path(), &["capture", "tetrahedron", "-t", "none", "--size", "32x24", "-o", "out"]);
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    for file in
+        ["manifest.json", "frame.json", "mesh000.vertices.npy", "000-ambient.color.png", "plan.txt", "scene.toml"]
+    {
+        let place = folder.path().join("out").join(file);
+        let bytes = std::fs::read(&place).expect("bytes");
+        std::fs::remove_file(&place).expect("removed");
+        let made = std::process::Command::new("mkfifo").arg(&place).status().expect("mkfifo");
+        assert!(made.success());
+        let error = read_whole(&folder.path().join("out")).expect_err("a pipe").to_string();
+        assert!(error.contains(file) && error.contains("is a pipe: only plain files are read"), "{file}: {error}");
+        std::fs::remove_file(&place).expect("removed");
+        std::fs::write(&place, bytes).expect("mended");
+    }
+    assert!(read_whole(&folder.path().join("out")).is_ok());
+}
+
+#[test]
+fn pixel_tells_the_texel_and_explains_each_key() {
+    let folder = folder();
+    let scene = asset("scenes/pattern.toml");
+    let arguments = ["pixel", &scene, "--size", "96x72", "--at", "60,60"];
+    let told = text(&run(folder.path(), &arguments).stdout);
+    assert!(told.contains("its colour is times (") && told.contains(") of tiles.png, at u "), "{told}");
+    let document = text(&run(folder.path(), &[&arguments[..], &["--json"]].concat()).stdout);
+    let document: serde_json::Value = serde_json::from_str(&document).expect("JSON");
+    assert_eq!(document["shading"]["texture"]["name"], "tiles.png");
+    crate::help::assert_json_is_explained("pixel", &document);
+}
