@@ -171,9 +171,11 @@ fn assert_same_histories(made: &mut Made, name: &str) -> f64 {
 
 #[test]
 fn histories_are_those_of_the_program_whatever_the_technique() {
-    let settings: [(&str, &[(&str, &str)]); 14] = [
+    let settings: [(&str, &[(&str, &str)]); 16] = [
         ("z-fail", &[]),
         ("z-fail", &[("counter", "float")]),
+        ("z-fail", &[("extruded-by", "vertex-shader")]),
+        ("z-pass", &[("extruded-by", "vertex-shader")]),
         ("z-fail", &[("faces", "two-pass")]),
         ("z-fail", &[("depth", "standard-finite-clamp")]),
         ("z-fail", &[("depth", "standard-infinite")]),

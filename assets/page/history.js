@@ -5,7 +5,7 @@ import { covering } from "./coverage.js";
 import { roundedToEven } from "./numbers.js";
 import { testFragment } from "./stencil_machine.js";
 
-const VOLUME_PARTS = ["side", "light-cap", "dark-cap"];
+const VOLUME_PARTS = ["side", "light-cap", "dark-cap", "caps"];
 export const isOfVolume = (event) => VOLUME_PARTS.includes(event.triangle?.part);
 const STEPS = { "increment-clamp": 1, "increment-wrap": 1, invert: 1, "decrement-clamp": -1, "decrement-wrap": -1 };
 
@@ -44,9 +44,8 @@ class Replay {
   }
 
   push(pass, kind, after, triangle = null) {
-    const { name: passName, light, view, target } = pass;
-    const index = this.capture.passes.indexOf(pass);
-    this.events.push({ pass: index, passName, light, isFromCamera: view === 0, target, kind, triangle, before: this.held, after });
+    const place = { pass: this.capture.passes.indexOf(pass), passName: pass.name, light: pass.light, target: pass.target };
+    this.events.push({ ...place, isFromCamera: pass.view === 0, kind, triangle, before: this.held, after });
     this.held = after;
   }
 
@@ -63,7 +62,8 @@ class Replay {
     const draw = pass.draws[index];
     const { isFront, depth: made } = fate;
     const beyond = made < 0 && draw.discards[0] ? "near" : made > 1 && draw.discards[1] ? "far" : null;
-    const { name: drawName, caster, part, faces_inwards: facesInwards, lights } = draw;
+    const { name: drawName, caster, faces_inwards: facesInwards, lights } = draw;
+    const part = draw.is_dark === null ? draw.part : ["light-cap", "dark-cap"][this.capture.array(draw.is_dark)[primitive]];
     const own = { draw: index, drawName, caster, part, primitive, triangle, isFront, facesInwards, lights };
     const one = { ...own, depth: made, kind: fate.kind, clip: fate.clip ?? null, operation: null };
     if (fate.kind !== "fragment") return this.push(pass, "triangle", this.held, one);

@@ -128,9 +128,10 @@ mod tests {
                 }
                 let declared = line.strip_prefix("export ").unwrap_or(line);
                 let words = ["function ", "async function ", "const ", "let ", "class "];
-                let name = words.iter().find_map(|word| declared.strip_prefix(word));
-                if let Some(name) = name.map(|name| name.split(|c: char| !c.is_alphanumeric() && c != '_').next()) {
-                    assert!(names.insert(name), "{}: {name:?} is declared elsewhere too", module.name);
+                let declared = words.iter().find_map(|word| declared.strip_prefix(word)).unwrap_or_default();
+                let declared = declared.split(['=', '(']).next().unwrap_or_default();
+                for name in declared.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|name| !name.is_empty()) {
+                    assert!(names.insert(name), "{}: {name} is declared elsewhere too", module.name);
                 }
             }
             before.insert(module.name);

@@ -4,7 +4,9 @@
 use super::arrays::{ArrayIndex, Arrays, Layout, Word};
 use crate::capture::FrameTarget;
 use crate::history;
-use crate::plan::{Draw, FaceMasks, FramePlan, Pass, Program, RasterState, StartContent, StencilFace, Visibility};
+use crate::plan::{
+    Draw, FaceMasks, FramePlan, Part, Pass, Program, RasterState, StartContent, StencilFace, Visibility,
+};
 use serde::Serialize;
 
 /// A pass.
@@ -43,6 +45,8 @@ struct DrawEntry<'a> {
     name: &'a str,
     caster: Option<&'a str>,
     part: &'static str,
+    /// Of caps that a vertex shader carries, for each triangle: 1 in the dark cap, 0 in the light cap.
+    is_dark: Option<ArrayIndex>,
     mesh: usize,
     /// First triangle and the one after the last.
     triangles: [u32; 2],
@@ -95,7 +99,7 @@ fn entry<'a>(plan: &'a FramePlan, pass: &'a Pass, arrays: &mut Arrays) -> PassEn
         clear_stencil: target.and_then(|target| target.clear_stencil),
         clear_count: clear_count.map(|clear| clear[0] as f32),
         depth_steps: target.and_then(|target| plan.attachment(target.attachment).depth_steps()),
-        draws: pass.draws.iter().map(draw).collect(),
+        draws: pass.draws.iter().map(|one| draw(plan, one, arrays)).collect(),
     }
 }
 
@@ -114,7 +118,7 @@ fn put_start(StartContent { depth, stencil }: &StartContent, width: u32, arrays:
     StartEntry { depth, stencil: stencil.as_ref().map(|stencil| put(Word::U8, stencil.bytes())) }
 }
 
-fn draw(draw: &Draw) -> DrawEntry<'_> {
+fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut Arrays) -> DrawEntry<'a> {
     let side = |is_front| {
         let (face, masks) = draw.raster.face(is_front);
         SideEntry { face, masks }
@@ -123,6 +127,7 @@ fn draw(draw: &Draw) -> DrawEntry<'_> {
         name: &draw.name,
         caster: draw.caster.as_deref(),
         part: draw.part.name(),
+        is_dark: (draw.part == Part::Caps).then(|| dark_caps(plan, draw, arrays)),
         mesh: draw.mesh.0,
         triangles: [draw.triangles.start, draw.triangles.end],
         base_vertex: draw.base_vertex,
@@ -136,4 +141,17 @@ fn draw(draw: &Draw) -> DrawEntry<'_> {
         lights: history::asks(draw),
         adds: [true, false].map(|is_front| history::count_of(draw, is_front)),
     }
+}
+
+/// Which triangles of a draw are in the dark cap.
+fn dark_caps(plan: &FramePlan, draw: &Draw, arrays: &mut Arrays) -> ArrayIndex {
+    let mesh = &plan.meshes[draw.mesh.0];
+    let corners = mesh.indices.data().as_chunks::<3>().0;
+    let range = draw.triangles.start as usize..draw.triangles.end as usize;
+    let is_dark = |corners: &[u32; 3]| {
+        let part = draw.part_of(mesh, corners.map(|corner| corner + draw.base_vertex));
+        u8::from(part == Part::DarkCap)
+    };
+    let dark: Vec<u8> = corners.get(range).into_iter().flatten().map(is_dark).collect();
+    arrays.put(Layout { word: Word::U8, lanes: 1, width: 0 }, &dark)
 }
