@@ -119,7 +119,7 @@ function ladderList(capture, history, look, select) {
   const isBehind = ladder.side === "behind";
   const far = (distance) => element("span", { class: "number" }, Number.isFinite(distance) ? length(distance, capture.depth.unit) : "∞");
   const item = (attributes, part, name, distance, added, running) =>
-    element("li", attributes, partSign(part), name, far(distance), added, element("span", { class: "running" }, running));
+    element("li", attributes, partSign(part), name, far(distance), added, element("span", { class: "running" }, String(running).replace("-", "−")));
   const rung = ({ event, distance, added, running }) => {
     const one = history.events[event].triangle;
     const isSelected = look.selected === event;
