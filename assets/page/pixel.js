@@ -6,7 +6,6 @@ import { doesSomething, showsOutside } from "./history.js";
 import { ladderOf } from "./ladder.js";
 import { count, countInFloat, depthText, digits, length, lightName, signed, signedAlone } from "./numbers.js";
 import { texelsRead, verdictOf } from "./verdict.js";
-import { countText } from "./why.js";
 
 const SIGNS = { passed: "✓", failed: "✗", always: "always", "not-reached": "–" };
 const SHORT = {
@@ -117,24 +116,24 @@ function ladderList(capture, history, look, select) {
   const ladder = ladderOf(capture, history, look.light);
   if (!ladder) return null;
   const isBehind = ladder.side === "behind";
-  const far = (distance) => element("span", { class: "number" }, Number.isFinite(distance) ? length(distance, capture.depth.unit) : "∞");
+  const span = (kind, text) => element("span", { class: kind }, String(text).replace("-", "−"));
+  const far = (distance) => span("number", Number.isFinite(distance) ? length(distance, capture.depth.unit) : "∞");
   const item = (attributes, part, name, distance, added, running) =>
-    element("li", attributes, partSign(part), name, far(distance), added, element("span", { class: "running" }, String(running).replace("-", "−")));
+    element("li", attributes, partSign(part), name, far(distance), added, span("running", running));
   const rung = ({ event, distance, added, running }) => {
     const one = history.events[event].triangle;
     const isSelected = look.selected === event;
     const step = added === 0 ? "" : added > 0 ? `▲ +${added}` : `▼ −${-added}`;
     return item({ class: `${added === 0 ? "idle" : ""} ${isSelected ? "here" : ""}` }, one.part,
       button({ class: "link", "aria-pressed": String(isSelected), onclick: () => select(event) }, `${named(one)}, ${side(one)}`),
-      distance, element("span", { class: added > 0 ? "plus" : "minus" }, step), added === 0 ? "" : running);
+      distance, span(added > 0 ? "plus" : "minus", step), added === 0 ? "" : running);
   };
   const mark = (kind, distance, running) =>
     item({ class: `mark ${kind}` }, kind, element("span", {}, kind), distance, element("span"), running);
   const surface = ladder.surface ?? Infinity;
   const rungs = (isThere) => ladder.rungs.filter(({ distance }) => (distance < surface) === isThere).map(rung);
   const counting = ladder.rungs.filter(({ added }) => added !== 0).length;
-  const way = isBehind ? "from infinity towards the surface" : "from the eye";
-  const words = `Counted ${way}: ${counting} of ${ladder.rungs.length} faces count, ${countText(ladder.tested)} in all.`;
+  const words = `Counted from ${isBehind ? "infinity towards the surface" : "the eye"}: ${counting} of ${ladder.rungs.length} faces count.`;
   const items = [mark("eye", 0, isBehind ? "" : ladder.start), ...rungs(true), mark("surface", surface, isBehind ? ladder.count : ""),
     ...rungs(false), mark("infinity", Infinity, isBehind ? ladder.start : "")];
   const title = element("h3", {}, `Ladder of ${lightName(look.light)}`);
