@@ -57,13 +57,13 @@ fn tori_are_a_megabyte_and_a_half_and_five_with_every_draw() {
     assert!(draws > passes, "draws are in it");
 }
 
-/// Nothing is named that a browser would load; two names of XML's are no addresses.
+/// Nothing is named that a browser would load; the beginning of XML's names is no address.
 #[test]
 fn no_address_is_in_it() {
     let mut session = session();
     let page = html(&frame(&mut session, "two-lights", request(Technique::ShadowMap, SIZE)));
     let addresses: Vec<&str> = page.match_indices("://").map(|(at, _)| &page[at.saturating_sub(8)..at + 30]).collect();
-    assert!(addresses.iter().all(|text| text.contains("http://www.w3.org/2000/svg")), "{addresses:?}");
+    assert!(addresses.iter().all(|text| text.contains("http://www.w3.org/")), "{addresses:?}");
     for loads in
         ["src=", "href=\"h", "@import", "url(", "fetch(", "import(", "eval(", "innerHTML", "XMLHttp", "WebSocket"]
     {
