@@ -49,6 +49,8 @@
 //!   `inspector/action.rs`, and its place in `inspector/shell/dock.rs`. What it says of a frame comes from [`reading`].
 //! - **A film**: [`film`] makes the pictures of an animated PNG, `picture/apng.rs` writes it as they come, for
 //!   `cli/animate.rs` and for the window's worker (`app/worker/film.rs`, a picture a turn).
+//! - **A page**: [`page`] puts a frame and `assets/page/` into one HTML file; its modules of JavaScript are named after
+//!   what they mirror, so a change of `history/` or `plan/coverage.rs` is one of theirs (`tests/pages.rs` holds them equal).
 //! - **A docking**: `inspector/shell/arrangement.rs` says what it may come to.
 //! - **The Scene tab**: `inspector/panels/scene/stage.rs` makes faces and lines of a frame's [`anatomy`], and `viewport.rs`
 //!   draws them with a depth buffer on the GPU that draws the window, whichever device has made the frame.
@@ -79,6 +81,7 @@ pub mod import;
 pub mod inspector;
 pub mod math;
 mod numbers;
+pub mod page;
 pub mod picture;
 pub mod plan;
 pub mod progress;

@@ -113,7 +113,7 @@ fn broken_usage_is_refused_in_one_line_with_the_mend() {
     }
     assert_fails(&["capture", "tori"], 2, &["--output"]);
     assert_fails(&["captur", "tori"], 2, &["did you mean `capture`?"]);
-    let commands = "Commands are view, capture, animate, pixel";
+    let commands = "Commands are view, capture, animate, page, pixel";
     let nothing = ["no command and no scene is called `wibble`", commands, "`stencilscope scenes` lists scenes"];
     assert_fails(&["wibble"], 2, &nothing);
     assert_fails(&["wibble", "tori", "--size", "16x9"], 2, &nothing);

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 33] = [
+const MAY_USE: [(&str, &[&str]); 34] = [
     ("named", &[]),
     ("math", &[]),
     ("progress", &[]),
@@ -105,6 +105,7 @@ const MAY_USE: [(&str, &[&str]); 33] = [
             "recorded",
         ],
     ),
+    ("page", &["math", "plan", "history", "capture", "technique", "picture", "numbers", "files", "reading"]),
     ("film", &["scene", "capture", "reading", "picture", "numbers", "files", "session"]),
     (
         "inspector",
@@ -138,6 +139,7 @@ const MAY_USE: [(&str, &[&str]); 33] = [
             "import",
             "session",
             "film",
+            "page",
             "inspector",
             "progress",
             "report",
@@ -157,6 +159,7 @@ const MAY_USE: [(&str, &[&str]); 33] = [
             "recorded",
             "files",
             "film",
+            "page",
             "numbers",
             "import",
             "scene",

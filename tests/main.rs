@@ -22,6 +22,7 @@ mod layering;
 #[cfg(target_os = "linux")]
 mod memory;
 mod options;
+mod page;
 mod parallel;
 
 mod plan;

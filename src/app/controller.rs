@@ -217,6 +217,9 @@ impl Controller {
                         (ExportData::Capture(capture), Some(run)) => {
                             export::Data::Frame(Box::new(RunFrame { capture, ..run.clone() }))
                         }
+                        (ExportData::Page(capture), Some(run)) => {
+                            export::Data::Page(Box::new(RunFrame { capture, ..run.clone() }))
+                        }
                         (data, _) => export::Data::Panels(data),
                     };
                     if let Err(error) = export::start(data, path, replace, Arc::clone(&self.tell)) {

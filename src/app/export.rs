@@ -4,6 +4,7 @@ use super::news::{Exported, Tell, WindowNews};
 use crate::capture::disk::{self, Contents};
 use crate::files::write_whole;
 use crate::inspector::ExportData;
+use crate::page;
 use crate::picture::Picture;
 use crate::report::Report;
 use crate::session::RunFrame;
@@ -14,6 +15,8 @@ use std::path::{Path, PathBuf};
 pub enum Data {
     /// A frame with what it was made from.
     Frame(Box<RunFrame>),
+    /// The same, for a browser.
+    Page(Box<RunFrame>),
     /// What the panels know.
     Panels(ExportData),
 }
@@ -39,6 +42,7 @@ pub fn check(path: &Path, replace: bool) -> Option<Exported> {
 fn write(data: &Data, path: &str, replace: bool) -> Exported {
     match data {
         Data::Frame(run) => write_folder(run.contents(), path, replace),
+        Data::Page(run) => write_page(run, path, replace),
         Data::Panels(ExportData::Capture(capture)) => write_folder(capture.as_ref().into(), path, replace),
         Data::Panels(data) => write_file(data, path, replace),
     }
@@ -51,6 +55,17 @@ fn write_folder(contents: Contents, path: &str, replace: bool) -> Exported {
     }
     match disk::write(contents, &folder, replace) {
         Ok(_) => Exported::Done(format!("wrote the capture to {path}")),
+        Err(error) => Exported::Failed(error.to_string()),
+    }
+}
+
+fn write_page(run: &RunFrame, path: &str, replace: bool) -> Exported {
+    let file = PathBuf::from(path);
+    if let Some(problem) = check(&file, replace) {
+        return problem;
+    }
+    match page::write(&run.capture, &run.plan, &file) {
+        Ok(_) => Exported::Done(format!("wrote {path}: open it in a browser")),
         Err(error) => Exported::Failed(error.to_string()),
     }
 }
@@ -72,6 +87,7 @@ fn write_file(data: &ExportData, path: &str, replace: bool) -> Exported {
         ExportData::Report(report) => {
             report_bytes(report, &file).and_then(|bytes| write_whole(&file, &bytes).map_err(|error| failed(&error)))
         }
+        ExportData::Page(_) => Err("this folder holds pictures alone: capture the scene again".to_owned()),
         ExportData::Capture(_) | ExportData::Scene(_) | ExportData::Film(_) => {
             Err("it is written elsewhere".to_owned())
         }
@@ -116,6 +132,23 @@ mod tests {
         assert!(matches!(write(&data, &path, true), Exported::Done(_)));
         let is_png = std::fs::read(&path).expect("a file").starts_with(b"\x89PNG");
         assert!(is_png);
+    }
+
+    #[test]
+    fn a_page_needs_the_frame_and_not_pictures_alone() {
+        let scene = crate::scene::open(&crate::scene::OpenSpec::new("tori")).expect("a scene");
+        let choice = crate::technique::Choice::new(crate::technique::Technique::ZFail);
+        let request = crate::session::CaptureRequest::new(choice, [32, 24]);
+        let run = crate::session::Session::new(None).expect("a GPU").render(scene, request).expect("a frame");
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.html").display().to_string();
+        let alone = Data::Panels(ExportData::Page(Arc::clone(&run.capture)));
+        let answer = write(&alone, &path, false);
+        assert!(matches!(answer, Exported::Failed(reason) if reason.contains("capture the scene again")));
+        let page = Data::Page(Box::new(run));
+        assert!(matches!(write(&page, &path, false), Exported::Done(said) if said.contains("browser")));
+        assert!(matches!(write(&page, &path, false), Exported::Taken(_)));
+        assert!(std::fs::read_to_string(&path).expect("a file").starts_with("<!doctype html>"));
     }
 
     #[test]

@@ -5,12 +5,15 @@ use super::progress::with_bar;
 use super::{CliError, output};
 use crate::capture::Capture;
 use crate::capture::disk::{self, Contents};
+use crate::page;
 use crate::plan::DecidedBy;
 use crate::progress::Progress;
+use crate::reading::format;
 use crate::scene::Scene;
 use crate::session::{CaptureRequest, Session};
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
@@ -30,6 +33,9 @@ pub struct CaptureArguments {
     /// Also trace the ground truth, and tell the technique's errors
     #[arg(long)]
     truth: bool,
+    /// Also put the frame into one HTML file that any browser opens; one that is there is replaced with --overwrite
+    #[arg(long, value_name = "FILE.html")]
+    page: Option<String>,
 }
 
 /// Captures a scene.
@@ -37,8 +43,11 @@ pub struct CaptureArguments {
 /// # Errors
 /// A scene, option or folder that can't be used; no GPU; a frame that can't be made.
 pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
-    let CaptureArguments { scene, scene_options, frame, output, overwrite, truth } = arguments;
-    let how = Writing { folder: output, overwrite: *overwrite, truth: *truth };
+    let CaptureArguments { scene, scene_options, frame, output, overwrite, truth, page } = arguments;
+    if let Some(page) = page {
+        super::page::check_target(page, *overwrite)?;
+    }
+    let how = Writing { folder: output, overwrite: *overwrite, truth: *truth, page: page.as_deref() };
     Job::new(scene, scene_options, frame, how)?.run()
 }
 
@@ -59,6 +68,8 @@ pub struct Writing<'a> {
     pub overwrite: bool,
     /// The ground truth goes with it.
     pub truth: bool,
+    /// The page that is made too.
+    pub page: Option<&'a str>,
 }
 
 impl<'a> Job<'a> {
@@ -87,7 +98,7 @@ impl<'a> Job<'a> {
         let mut session = Session::new(self.adapter)?;
         let before = self.started.elapsed().as_secs_f64() * 1e3;
         let (mut capture, plan) = session.capture_with_plan(&self.scene, &self.request)?;
-        let Writing { folder, overwrite, truth } = self.writing;
+        let Writing { folder, overwrite, truth, page } = self.writing;
         if truth {
             capture = with_bar("ground truth", &Progress::default(), |progress| {
                 session.judged(&self.scene, &capture, progress)
@@ -96,7 +107,12 @@ impl<'a> Job<'a> {
         // Loading the scene and opening the GPU come before the first frame too.
         capture.timing.setup_ms = capture.timing.setup_ms.map(|setup| setup + before);
         disk::write(Contents { capture: &capture, plan: Some(&plan), scene: Some(&self.scene) }, folder, overwrite)?;
-        output::print(&summary(&capture, folder))
+        let mut said = summary(&capture, folder);
+        if let Some(page) = page {
+            let bytes = page::write(&capture, &Arc::new(plan), Path::new(page))?;
+            said += &format!("{page}: {}\n", format::bytes(bytes));
+        }
+        output::print(&said)
     }
 }
 

@@ -29,6 +29,9 @@ pub enum CliError {
     /// The animation can't be made.
     #[error(transparent)]
     Film(#[from] crate::film::FilmError),
+    /// The page can't be made.
+    #[error(transparent)]
+    Page(#[from] crate::page::PageError),
     /// The report can't take the form asked for.
     #[error(transparent)]
     Report(#[from] crate::report::ReportError),

@@ -95,7 +95,7 @@ fn scenes() -> String {
     let scenes: Vec<&str> = builtin::ALL.iter().map(|builtin| builtin.name).collect();
     let recordings: Vec<&str> = SHIPPED.iter().map(|shipped| shipped.name).collect();
     format!(
-        "Scenes:\n{}\nRecorded frames of other programs (`view`, `pixel`, `diagnose`, `diff`):\n{}",
+        "Scenes:\n{}\nRecorded frames of other programs (`view`, `pixel`, `page`, `diagnose`, `diff`):\n{}",
         indented(&scenes.join(" ")),
         indented(&recordings.join(" "))
     )

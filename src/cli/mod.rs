@@ -16,6 +16,7 @@ mod help;
 mod import;
 mod options;
 mod output;
+mod page;
 mod pictures;
 mod pixel;
 mod progress;
@@ -37,9 +38,9 @@ use std::ffi::OsString;
 use std::path::Path;
 
 /// The commands that exist.
-const COMMANDS: [&str; 14] = [
-    "view", "capture", "animate", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import", "record",
-    "bench", "pictures", "help",
+const COMMANDS: [&str; 15] = [
+    "view", "capture", "animate", "page", "pixel", "diagnose", "diff", "report", "stress", "scenes", "import",
+    "record", "bench", "pictures", "help",
 ];
 
 /// An interactive visual debugger for stencil shadows and shadow maps
@@ -62,6 +63,9 @@ enum Command {
     /// Show a frame pass by pass, or a light going round the scene, as an animated PNG
     #[command(after_help = help::names())]
     Animate(Box<animate::AnimateArguments>),
+    /// Put a frame into one HTML file that any browser opens
+    #[command(after_help = format!("{}\n{}", page::EXAMPLES, help::names()))]
+    Page(Box<page::PageArguments>),
     /// Tell the history of a pixel, fragment by fragment
     #[command(after_help = help::names())]
     Pixel(Box<pixel::PixelArguments>),
@@ -109,6 +113,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Result<(), CliError
     match command_line.command {
         Command::View(arguments) => view::run(&arguments),
         Command::Capture(arguments) => capture::run(&arguments),
+        Command::Page(arguments) => page::run(&arguments),
         Command::Animate(arguments) => animate::run(&arguments),
         Command::Pixel(arguments) => pixel::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),

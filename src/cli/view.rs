@@ -47,7 +47,7 @@ fn capture_instead(arguments: &ViewArguments, reason: &str) -> Result<(), CliErr
         let mend = "read its manifest.json, .npy and .png files, or open it where there is a display";
         return Err(CliError::Usage(format!("a capture folder can only be shown in a window, but {reason}: {mend}")));
     }
-    let writing = capture::Writing { folder, overwrite: true, truth: arguments.truth };
+    let writing = capture::Writing { folder, overwrite: true, truth: arguments.truth, page: None };
     let job = capture::Job::new(&arguments.scene, &arguments.scene_options, &arguments.frame, writing)?;
     output::note(&format!("{reason}: capturing into ./{FALLBACK_FOLDER} instead"));
     job.run()

@@ -181,7 +181,7 @@ fn held_in(start: &StartContent, plan: &FramePlan, [x, y]: [u32; 2], held: Held)
 }
 
 /// What a pass of the picture draws into.
-fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
+pub(crate) fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
     match pass.color.as_ref().map(|target| plan.attachment(target.attachment).role) {
         Some(AttachmentRole::Labels(_)) => FrameTarget::Labels,
         Some(AttachmentRole::Count(_)) => FrameTarget::Count,
@@ -190,7 +190,7 @@ fn target_of(plan: &FramePlan, pass: &Pass) -> FrameTarget {
 }
 
 /// For each light, the bits that parts of its shadow volumes write, if any pass draws some, over this pixel or elsewhere.
-fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
+pub(crate) fn counts_in(plan: &FramePlan) -> Vec<Option<CountBits>> {
     let counts = |light: usize| {
         let passes = plan.passes.iter().filter(|pass| pass.light == Some(LightId(light)));
         let mut draws = passes.flat_map(|pass| &pass.draws).filter(|draw| draw.part.is_of_volume());
@@ -226,15 +226,20 @@ fn triangle(draw: &Draw, one: &Covering, face: Face, fate: Fate) -> EventKind {
         corners: one.corners,
         is_front: face.is_front,
         faces_inwards: draw.faces_inwards,
-        lights: match draw.program {
-            Program::Light(visibility) => Some(visibility),
-            // Whatever else another program's shader asks is not known.
-            Program::Recorded { .. } if draw.part == Part::Surface => Some(Visibility::Everywhere),
-            _ => None,
-        },
+        lights: asks(draw),
         depth: face.depth,
         fate,
     }))
+}
+
+/// Whom a draw asks how much of the light arrives, where it adds the light.
+pub(crate) fn asks(draw: &Draw) -> Option<Visibility> {
+    match draw.program {
+        Program::Light(visibility) => Some(visibility),
+        // Whatever else another program's shader asks is not known.
+        Program::Recorded { .. } if draw.part == Part::Surface => Some(Visibility::Everywhere),
+        _ => None,
+    }
 }
 
 fn test_of(passed: Option<bool>, function: CompareFunction) -> Test {
@@ -247,7 +252,7 @@ fn test_of(passed: Option<bool>, function: CompareFunction) -> Test {
 }
 
 /// What a draw into a float count adds.
-fn count_of(draw: &Draw, is_front: bool) -> f32 {
+pub(crate) fn count_of(draw: &Draw, is_front: bool) -> f32 {
     match (draw.raster.color, draw.program) {
         (ColorWrite::None, _) => 0.0,
         (_, Program::Count) if is_front => draw.constants.count,

@@ -194,6 +194,8 @@ pub enum ExportKind {
     Steps,
     /// A light once round the scene: animated PNG.
     LightRound,
+    /// The frame in one file for a browser: HTML.
+    Page,
     /// The whole capture: a folder.
     Capture,
     /// The scene as it is now, with its technique: a scene file.
@@ -204,12 +206,13 @@ pub enum ExportKind {
 
 impl ExportKind {
     /// All, in the order of the menu.
-    pub const ALL: [ExportKind; 8] = [
+    pub const ALL: [ExportKind; 9] = [
         ExportKind::Picture,
         ExportKind::AsShown,
         ExportKind::Data,
         ExportKind::Steps,
         ExportKind::LightRound,
+        ExportKind::Page,
         ExportKind::Capture,
         ExportKind::Scene,
         ExportKind::Report,
@@ -224,6 +227,7 @@ impl ExportKind {
             ExportKind::Data => "Shown values (.npy)…",
             ExportKind::Steps => "Frame pass by pass (animated PNG)…",
             ExportKind::LightRound => "Light going round (animated PNG)…",
+            ExportKind::Page => "Page (HTML)…",
             ExportKind::Capture => "Capture folder…",
             ExportKind::Scene => "Scene file (TOML)…",
             ExportKind::Report => "Report (table or plot)…",
@@ -243,6 +247,9 @@ impl ExportKind {
             ExportKind::LightRound => {
                 "The shown light once round the scene's vertical axis, as the scene is run now; colours are rounded by \
                  at most 1 of 255"
+            }
+            ExportKind::Page => {
+                "The frame in one file that any browser opens: steps, values, and the history of every pixel"
             }
             ExportKind::Capture => {
                 "Every buffer after every pass, with a manifest, to be opened again or scripted against"

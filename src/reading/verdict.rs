@@ -101,9 +101,23 @@ pub fn verdict(capture: &Capture, light: usize, at: [u32; 2]) -> Verdict {
 fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verdict {
     let name = format::light(light);
     let title = if is_dark { format!("Dark under {name}") } else { format!("Lit by {name}") };
-    let reason = match (capture.decided_by(light), is_dark) {
-        (DecidedBy::StencilCount { side } | DecidedBy::FloatCount { side }, _) => {
-            return counted(capture, light, at, (is_dark, side), &title);
+    if let DecidedBy::StencilCount { side } | DecidedBy::FloatCount { side } = capture.decided_by(light) {
+        return counted(capture, light, at, (is_dark, side), &title);
+    }
+    let reason = reason(capture.decided_by(light), is_dark);
+    let by_history = if capture.decided_by(light) == DecidedBy::Map { ByHistory::Map } else { ByHistory::Replaced };
+    Verdict { title: format!("{title}."), reason: reason.to_owned(), by_history }
+}
+
+/// Why a light is dark or not, as far as what decides about it tells; of counts no more than that they decided.
+#[must_use]
+pub fn reason(decided_by: DecidedBy, is_dark: bool) -> &'static str {
+    match (decided_by, is_dark) {
+        (DecidedBy::StencilCount { .. } | DecidedBy::FloatCount { .. }, true) => {
+            "More volumes are counted at the surface than none, so the light pass skips this pixel."
+        }
+        (DecidedBy::StencilCount { .. } | DecidedBy::FloatCount { .. }, false) => {
+            "No volume is counted at the surface, so the light pass adds the light."
         }
         (DecidedBy::Map, true) => {
             "The light's map holds something nearer to the light here, so the light pass adds nothing."
@@ -134,9 +148,7 @@ fn decided(capture: &Capture, light: usize, at: [u32; 2], is_dark: bool) -> Verd
             "The technique's mask says that something lies between the surface and the light."
         }
         (DecidedBy::Labels, false) => "The technique's mask says that nothing lies between the surface and the light.",
-    };
-    let by_history = if capture.decided_by(light) == DecidedBy::Map { ByHistory::Map } else { ByHistory::Replaced };
-    Verdict { title: format!("{title}."), reason: reason.to_owned(), by_history }
+    }
 }
 
 /// Shadow volumes: the count that the light pass tested.

@@ -64,6 +64,7 @@ impl ExportDialog {
             ExportKind::Data => format!("{stem}-{}.npy", model.shown(capture)?.title),
             ExportKind::Steps => format!("{stem}-passes.png"),
             ExportKind::LightRound => format!("{stem}-{}-round.png", numbers::light(turned(model)?)),
+            ExportKind::Page => format!("{stem}.html"),
             ExportKind::Capture => format!("{stem}-capture"),
             ExportKind::Scene => format!("{}.toml", model.scene.as_ref()?.name),
             ExportKind::Report => return None,
@@ -82,6 +83,8 @@ pub enum ExportData {
     Data(Vec<Arc<Image>>),
     /// All of it.
     Capture(Arc<Capture>),
+    /// All of it, for a browser.
+    Page(Arc<Capture>),
     /// To be made, and written as it is made.
     Film(FilmSubject),
     /// The scene as this runs it.
@@ -105,6 +108,7 @@ pub fn data(own: &mut PicturePanel, model: &mut Model, kind: ExportKind) -> Opti
     let capture = model.frame.capture.clone()?;
     match kind {
         ExportKind::Capture => return Some(ExportData::Capture(capture)),
+        ExportKind::Page => return Some(ExportData::Page(capture)),
         ExportKind::Scene => return Some(ExportData::Scene(Box::new(runnable(model)?))),
         ExportKind::Steps => return Some(ExportData::Film(FilmSubject::Steps(capture))),
         ExportKind::LightRound => {

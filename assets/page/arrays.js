@@ -1,0 +1,31 @@
+// Unpacks what src/page/arrays.rs packs: base64, zlib, byte planes, words as what they add to their neighbours.
+
+function bytesOf(base64) {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let at = 0; at < bytes.length; at++) bytes[at] = text.charCodeAt(at);
+  return bytes;
+}
+
+// Each word gets left + above - above left added; the typed array wraps as the packer's integers do.
+function predict(words, row, lanes) {
+  for (let at = 0; at < words.length; at++) {
+    const hasLeft = at % row >= lanes;
+    const left = hasLeft ? words[at - lanes] : 0;
+    if (at < row) words[at] += left;
+    else words[at] += left + words[at - row] - (hasLeft ? words[at - row - lanes] : 0);
+  }
+}
+
+export async function unpack({ word, lanes, width, length, predicted, data }) {
+  const inflating = new Blob([bytesOf(data)]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const planes = new Uint8Array(await new Response(inflating).arrayBuffer());
+  const size = word === "u8" ? 1 : 4;
+  const words = size === 1 ? new Uint8Array(lanes * length) : new Uint32Array(lanes * length);
+  for (let plane = 0, from = 0; plane < lanes * size; plane++) {
+    const shift = (plane % size) * 8;
+    for (let to = Math.floor(plane / size); to < words.length; to += lanes) words[to] |= planes[from++] << shift;
+  }
+  if (predicted) predict(words, (width || length) * lanes, lanes);
+  return word === "f32" ? new Float32Array(words.buffer) : words;
+}

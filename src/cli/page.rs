@@ -1,0 +1,94 @@
+//! `stencilscope page`: one HTML file of a frame, which opens in any browser.
+
+use super::options::{FrameOptions, SceneOptions, Subject};
+use super::progress::with_bar;
+use super::{CliError, output};
+use crate::page;
+use crate::progress::Progress;
+use crate::reading::format;
+use crate::session::{RunFrame, Session};
+use clap::Args;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Below its options.
+pub const EXAMPLES: &str = "\
+A scene:                stencilscope page tori -t z-fail --size 640x480 -o tori.html
+A frame that is there:  stencilscope page DIR -o frame.html
+
+The file holds all it shows and loads nothing: steps, values, and the history of every pixel, computed in the browser.
+Its address goes to a pixel of a step: tori.html#pixel=322,92&step=2.
+";
+
+#[derive(Debug, Args)]
+pub struct PageArguments {
+    /// A built-in scene, a scene file (.toml), a model (.obj) or a capture folder
+    scene: String,
+    /// The file to make
+    #[arg(short, long, value_name = "FILE.html")]
+    output: String,
+    /// Replace the file if it is there
+    #[arg(long)]
+    overwrite: bool,
+    #[command(flatten)]
+    scene_options: SceneOptions,
+    #[command(flatten)]
+    frame: FrameOptions,
+    /// Also trace the ground truth, and show the technique's errors
+    #[arg(long)]
+    truth: bool,
+}
+
+/// Makes the page and says what it is.
+///
+/// # Errors
+/// A scene, option or file that can't be used; no GPU; a frame that can't be made.
+pub fn run(arguments: &PageArguments) -> Result<(), CliError> {
+    let PageArguments { scene, output, overwrite, scene_options, frame, truth } = arguments;
+    check_target(output, *overwrite)?;
+    frame.refuse_external_capture("a page is made of one, later")?;
+    let subject = Subject::new(scene, scene_options, frame)?;
+    if matches!(subject, Subject::Folder(_)) {
+        frame.refuse_draws("a folder holds what it holds")?;
+    }
+    let frame = made(subject, frame, *truth)?;
+    let bytes = format::bytes(page::write(&frame.capture, &frame.plan, Path::new(output))?);
+    let capture = &frame.capture;
+    let [width, height] = capture.size;
+    let (scene, technique, passes) = (&capture.scene, &capture.technique, capture.steps.len());
+    output::print(&format!("{output}: {scene}, {technique}, {width}x{height}, {passes} passes, {bytes}\n"))
+}
+
+/// Checks, before long work, that the file may be made.
+pub fn check_target(file: &str, overwrite: bool) -> Result<(), CliError> {
+    let name = file.escape_debug();
+    let ending = Path::new(file).extension().unwrap_or_default().to_ascii_lowercase();
+    if ending != "html" && ending != "htm" {
+        return Err(CliError::Usage(format!("`{name}`: a page is an HTML file: give it a name that ends in .html")));
+    }
+    output::check_target(file)?;
+    if Path::new(file).exists() && !overwrite {
+        return Err(CliError::Usage(format!("`{name}` is there already: choose another file, or add --overwrite")));
+    }
+    Ok(())
+}
+
+/// The frame; one that was captured needs no GPU unless its truth is asked for.
+fn made(subject: Subject, options: &FrameOptions, truth: bool) -> Result<RunFrame, CliError> {
+    let mut session = match &subject {
+        Subject::Folder(frame) if !truth || frame.capture.error().is_some() => None,
+        _ => Some(Session::new(options.adapter.as_deref())?),
+    };
+    let mut frame = match (subject, &mut session) {
+        (Subject::Folder(frame), _) => frame,
+        (scene @ Subject::Scene(_), Some(session)) => scene.frame(session)?,
+        (scene @ Subject::Scene(_), None) => scene.frame(&mut Session::new(options.adapter.as_deref())?)?,
+    };
+    if let Some(session) = session.as_mut().filter(|_| truth) {
+        let scene = frame.scene()?;
+        let judged =
+            with_bar("ground truth", &Progress::default(), |progress| session.judged(scene, &frame.capture, progress))?;
+        frame.capture = Arc::new(judged);
+    }
+    Ok(frame)
+}

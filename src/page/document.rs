@@ -1,0 +1,242 @@
+//! What a page knows, as JSON: the plan, what was captured after each step and draw, and the palette. Arrays are
+//! named by their index.
+
+use super::arrays::{ArrayIndex, Arrays, Entry, Layout, Word};
+use super::clip::{self, MeshEntry};
+use super::passes::{self, PassEntry};
+use super::reads::{self, ReadsEntry};
+use crate::capture::{AdapterInfo, Capture, DrawSummary, FrameSnapshot, Image, Origin, PixelFormat, Snapshot};
+use crate::history;
+use crate::math::depth::DepthCurve;
+use crate::picture::colors;
+use crate::plan::{Attachment, AttachmentRole, CountOf, DecidedBy, FramePlan, LeftOut};
+use crate::reading::depth::DepthMeasure;
+use crate::reading::{layers, steps, verdict};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: u32,
+    program: String,
+    scene: &'a str,
+    technique: &'a str,
+    settings: &'a BTreeMap<String, String>,
+    size: [u32; 2],
+    adapter: &'a AdapterInfo,
+    near: f64,
+    depth: &'a DepthCurve,
+    clear_depth: f32,
+    is_reversed: bool,
+    origin: Option<&'a Origin>,
+    depth_rounding: f32,
+    has_stencil: bool,
+    passes: Vec<PassEntry<'a>>,
+    meshes: Vec<Option<MeshEntry>>,
+    steps: Vec<StepEntry<'a>>,
+    lights: Vec<LightEntry>,
+    left_out: &'a [LeftOut],
+    palette: Palette,
+    arrays: Vec<Entry>,
+}
+
+#[derive(Serialize)]
+struct StepEntry<'a> {
+    name: &'a str,
+    /// From 1; null for what stands beside the frame.
+    number: Option<usize>,
+    purpose: &'a str,
+    light: Option<usize>,
+    after: StateEntry,
+    draws: Vec<DrawEntry<'a>>,
+}
+
+#[derive(Serialize)]
+struct DrawEntry<'a> {
+    name: &'a str,
+    part: &'static str,
+    triangles: u64,
+    /// Null where it was not captured.
+    after: Option<StateEntry>,
+    /// Pixels at which another program's draw, computed anew, left something else.
+    differs: Option<u64>,
+}
+
+/// What is there after a step or a draw.
+#[derive(Serialize)]
+#[serde(rename_all = "kebab-case", tag = "kind")]
+enum StateEntry {
+    Frame { target: &'static str, color: ArrayIndex, depth: ArrayIndex, stencil: Option<ArrayIndex> },
+    Map { light: usize, face: usize },
+}
+
+#[derive(Serialize)]
+struct LightEntry {
+    name: String,
+    decided_by: DecidedBy,
+    counts: Option<&'static str>,
+    /// Bits of the stencil in which its volumes are counted.
+    bits: Option<u32>,
+    /// What is said of a pixel that is lit, and of one in shadow, where its history says nothing.
+    reasons: [&'static str; 2],
+    mask: Option<ArrayIndex>,
+    count: Option<ArrayIndex>,
+    truth: Option<ArrayIndex>,
+    findings: Option<ArrayIndex>,
+    faces: Vec<FaceEntry>,
+    reads: Option<ReadsEntry>,
+}
+
+#[derive(Serialize)]
+struct FaceEntry {
+    name: String,
+    size: [u32; 2],
+    is_color: bool,
+    image: ArrayIndex,
+    /// `distance = scale / (depth − offset)`, or `(depth − offset) · scale` where it is linear.
+    measure: Option<MeasureEntry>,
+}
+
+#[derive(Serialize)]
+struct MeasureEntry {
+    scale: f64,
+    offset: f64,
+    is_linear: bool,
+}
+
+/// The program's own colours.
+#[derive(Serialize)]
+struct Palette {
+    stencil: Vec<colors::Rgb>,
+    labels: Vec<colors::Rgb>,
+    findings: Vec<colors::Rgb>,
+    linear: Vec<u8>,
+}
+
+/// The document of a frame.
+///
+/// # Errors
+/// A frame with numbers that are none.
+pub fn json(capture: &Capture, plan: &Arc<FramePlan>) -> serde_json::Result<String> {
+    let mut arrays = Arrays::default();
+    let document = Document {
+        schema: 1,
+        program: format!("stencilscope {}", env!("CARGO_PKG_VERSION")),
+        scene: &capture.scene,
+        technique: &capture.technique,
+        settings: &capture.settings,
+        size: capture.size,
+        adapter: &capture.adapter,
+        near: capture.camera.near,
+        depth: &capture.depth,
+        is_reversed: capture.depth.mapping.is_reversed(),
+        clear_depth: capture.depth.mapping.clear_depth(),
+        origin: capture.origin.as_ref(),
+        depth_rounding: depth_rounding(plan),
+        steps: (0..capture.steps.len()).map(|index| step(capture, index, &mut arrays)).collect(),
+        lights: (0..capture.lights.len()).map(|light| light_entry(capture, plan, light, &mut arrays)).collect(),
+        meshes: clip::meshes(plan, &mut arrays),
+        passes: passes::passes(plan, &mut arrays),
+        has_stencil: has_stencil(plan),
+        left_out: &capture.left_out,
+        palette: Palette {
+            stencil: (0..=255).map(colors::stencil).collect(),
+            labels: (0..4).map(colors::label).collect(),
+            findings: (0..6).map(colors::finding).collect(),
+            linear: (0..=255).map(|byte| colors::linear([byte; 3])[0]).collect(),
+        },
+        arrays: arrays.into_entries(),
+    };
+    serde_json::to_string(&document)
+}
+
+fn has_stencil(plan: &FramePlan) -> bool {
+    let is_stencil = |attachment: &Attachment| {
+        attachment.role == AttachmentRole::DepthStencil && attachment.format.has_stencil_aspect()
+    };
+    plan.attachments.iter().any(is_stencil)
+}
+
+/// How far depths may be from what was stored: one computed here is not rounded where the GPU rounds.
+fn depth_rounding(plan: &FramePlan) -> f32 {
+    let pass = plan.passes.iter().filter(|pass| plan.is_of_picture(pass)).find_map(|pass| pass.depth_stencil.as_ref());
+    pass.map_or(0.0, |target| plan.attachment(target.attachment).depth_rounding())
+}
+
+fn step<'a>(capture: &'a Capture, index: usize, arrays: &mut Arrays) -> StepEntry<'a> {
+    let step = &capture.steps[index];
+    let draw = |draw: &'a DrawSummary| DrawEntry {
+        name: &draw.name,
+        part: draw.part.name(),
+        triangles: draw.triangles,
+        after: draw.after.as_ref().map(|after| state(&after.snapshot, arrays)),
+        differs: draw.differs.map(|differs| differs.depth + differs.stencil),
+    };
+    let draws = step.draws.iter().map(draw).collect();
+    StepEntry {
+        name: &step.name,
+        number: steps::number(capture, index),
+        purpose: &step.purpose,
+        light: step.light,
+        after: state(&step.snapshot, arrays),
+        draws,
+    }
+}
+
+fn state(snapshot: &Snapshot, arrays: &mut Arrays) -> StateEntry {
+    match snapshot {
+        Snapshot::Map { light, face } => StateEntry::Map { light: *light, face: *face },
+        Snapshot::Frame(FrameSnapshot { color, depth, stencil, target }) => StateEntry::Frame {
+            target: passes::target_name(*target),
+            color: image(&color.image, arrays),
+            depth: image(&depth.image, arrays),
+            stencil: stencil.as_ref().map(|stencil| image(&stencil.image, arrays)),
+        },
+    }
+}
+
+fn light_entry(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mut Arrays) -> LightEntry {
+    let of = &capture.lights[light];
+    let faces = of.map.iter().flat_map(|map| &map.faces).zip(layers::layers(capture, light)).enumerate();
+    let faces = faces.map(|(index, (face, layer))| FaceEntry {
+        name: layer.full_name,
+        size: face.size(),
+        is_color: face.format() == PixelFormat::Rgba8,
+        image: image(face, arrays),
+        measure: DepthMeasure::of_map(capture, light, index).and_then(measure),
+    });
+    LightEntry {
+        name: crate::numbers::light(light),
+        decided_by: of.decided_by,
+        counts: of.count_of.map(CountOf::what),
+        bits: history::counts_in(plan).get(light).copied().flatten().map(|bits| bits.modulus().unsigned_abs().ilog2()),
+        reasons: [false, true].map(|is_dark| verdict::reason(of.decided_by, is_dark)),
+        faces: faces.collect(),
+        mask: of.shadow.as_ref().map(|labels| image(labels, arrays)),
+        count: of.count.as_ref().map(|count| image(count, arrays)),
+        truth: of.truth.as_ref().map(|truth| image(&truth.labels, arrays)),
+        findings: of.truth.as_ref().map(|truth| image(&truth.findings, arrays)),
+        reads: reads::reads(capture, plan, light, arrays),
+    }
+}
+
+fn measure(measure: DepthMeasure) -> Option<MeasureEntry> {
+    match measure {
+        DepthMeasure::Raw => None,
+        DepthMeasure::Perspective { scale, offset, .. } => Some(MeasureEntry { scale, offset, is_linear: false }),
+        DepthMeasure::Parallel { near, length, .. } => {
+            Some(MeasureEntry { scale: length, offset: near, is_linear: true })
+        }
+    }
+}
+
+fn image(image: &Image, arrays: &mut Arrays) -> ArrayIndex {
+    let (word, lanes) = match image.format() {
+        PixelFormat::Rgba8Srgb | PixelFormat::Rgba8 => (Word::U8, 4),
+        PixelFormat::Depth32F | PixelFormat::Count32F => (Word::F32, 1),
+        PixelFormat::U8 => (Word::U8, 1),
+    };
+    let bytes: Vec<u8> = image.rows().flatten().copied().collect();
+    arrays.put(Layout { word, lanes, width: image.size()[0] as usize }, &bytes)
+}

@@ -1,0 +1,148 @@
+//! The file: the template with style, script and document put in, and a policy that lets nothing else run or load.
+//!
+//! The modules are ES modules in `assets/page/`. A file from disk can't load another, so they become one script in the
+//! order of [`modules`]: lines that import are left out, and `export` before what is exported.
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use sha2::{Digest, Sha256};
+
+/// A file of the page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Asset {
+    /// Its name in `assets/page/`.
+    pub name: &'static str,
+    /// What it holds.
+    pub text: &'static str,
+}
+
+macro_rules! asset {
+    ($name:literal) => {
+        Asset { name: $name, text: include_str!(concat!("../../assets/page/", $name)) }
+    };
+}
+
+/// The page with places for all that goes into it.
+pub const TEMPLATE: &str = include_str!("../../assets/page/page.html");
+/// How it looks.
+pub const STYLE: &str = include_str!("../../assets/page/style.css");
+
+/// The modules, each after those that it imports.
+#[must_use]
+pub fn modules() -> Vec<Asset> {
+    vec![
+        asset!("arrays.js"),
+        asset!("numbers.js"),
+        asset!("capture.js"),
+        asset!("stencil_machine.js"),
+        asset!("coverage.js"),
+        asset!("history.js"),
+        asset!("why.js"),
+        asset!("ladder.js"),
+        asset!("verdict.js"),
+        asset!("palette.js"),
+        asset!("looking.js"),
+        asset!("elements.js"),
+        asset!("picture.js"),
+        asset!("passes.js"),
+        asset!("pixel.js"),
+        asset!("main.js"),
+    ]
+}
+
+/// The page of a document of that title.
+pub fn page(title: &str, document: &str) -> String {
+    let script = script();
+    filled(TEMPLATE, |place| match place {
+        "title" => escaped(title),
+        "script" => script.clone(),
+        "script-hash" => hash(&script),
+        "style" => STYLE.to_owned(),
+        "style-hash" => hash(STYLE),
+        // `<` begins tags within a script; in a string of JSON it may be written so.
+        "document" => document.replace('<', "\\u003c"),
+        _ => String::new(),
+    })
+}
+
+/// All modules as one.
+#[must_use]
+pub fn script() -> String {
+    let line = |line: &str| line.strip_prefix("export ").unwrap_or(line).to_owned() + "\n";
+    let of_module =
+        |module: &Asset| module.text.lines().filter(|line| !line.starts_with("import ")).map(line).collect::<String>();
+    modules().iter().map(of_module).collect()
+}
+
+/// A template with what stands for each `{{place}}`; what is put in is not looked at again.
+fn filled(template: &str, content: impl Fn(&str) -> String) -> String {
+    let mut text = String::new();
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once("{{") {
+        let (place, after) = after.split_once("}}").unwrap_or((after, ""));
+        text.push_str(before);
+        text.push_str(&content(place));
+        rest = after;
+    }
+    text + rest
+}
+
+/// As a content security policy names a text.
+fn hash(text: &str) -> String {
+    format!("sha256-{}", BASE64_STANDARD.encode(Sha256::digest(text)))
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn what_is_put_in_is_not_looked_at_again() {
+        let text = filled("a {{one}} b {{two}}", |place| format!("{{{{{place}}}}}"));
+        assert_eq!(text, "a {{one}} b {{two}}");
+    }
+
+    #[test]
+    fn no_text_of_a_frame_ends_its_element() {
+        let page = page("</title><b>", "{\"scene\":\"</script><img src=x>\"}");
+        assert!(page.contains("&lt;/title&gt;") && page.contains("\\u003c/script>"));
+        assert!(!page.contains("</title><b>") && !page.contains("</script><img"));
+    }
+
+    /// One script has no other file to import from, and its names are those of all modules.
+    #[test]
+    fn modules_import_what_stands_before_them_and_share_no_name() {
+        let (mut before, mut names) = (BTreeSet::new(), BTreeSet::new());
+        for module in modules() {
+            for line in module.text.lines() {
+                if let Some(import) = line.strip_prefix("import ") {
+                    let from = import.rsplit('"').nth(1).expect("a file in quotes");
+                    assert!(before.contains(from.trim_start_matches("./")), "{}: {line}", module.name);
+                    assert!(import.ends_with("\";"), "{}: an import is one line: {line}", module.name);
+                    assert!(!import.contains(" as "), "{}: names stay: {line}", module.name);
+                }
+                let declared = line.strip_prefix("export ").unwrap_or(line);
+                let words = ["function ", "async function ", "const ", "let ", "class "];
+                let declared = words.iter().find_map(|word| declared.strip_prefix(word)).unwrap_or_default();
+                let declared = declared.split(['=', '(']).next().unwrap_or_default();
+                for name in declared.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|name| !name.is_empty()) {
+                    assert!(names.insert(name), "{}: {name} is declared elsewhere too", module.name);
+                }
+            }
+            before.insert(module.name);
+        }
+        assert!(!script().lines().any(|line| line.starts_with("import ") || line.starts_with("export ")));
+    }
+
+    #[test]
+    fn the_script_is_small_and_ends_no_element() {
+        let lines: usize = modules().iter().map(|module| module.text.lines().count()).sum();
+        assert!(lines <= 1500, "{lines} lines");
+        assert!(!script().contains("</script") && !STYLE.contains("</style"));
+    }
+}

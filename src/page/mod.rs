@@ -1,0 +1,62 @@
+//! One HTML file of a frame: it opens in a browser, from disk, and asks no network for anything.
+//!
+//! ```text
+//! Capture, FramePlan ─► document (JSON) ─┐
+//!        pictures, triangles ─► arrays ──┼─► html ─► one file
+//!        assets/page/*.{html,css,js} ────┘
+//! ```
+//!
+//! The file holds what was captured, each array once, and the triangles in clip space, as the GPU has them
+//! (`clip.rs`). A pixel's history is computed in the browser, by modules that are named after those they mirror
+//! (`coverage.js`, `stencil_machine.js`, `history.js`, `ladder.js`, `why.js`), and held against what was stored.
+//! The same frame makes the same bytes: nothing in it tells of times.
+
+mod arrays;
+mod clip;
+mod document;
+mod html;
+mod passes;
+mod reads;
+
+pub use html::{Asset, STYLE, TEMPLATE, modules, script};
+
+use crate::capture::Capture;
+use crate::plan::FramePlan;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+pub enum PageError {
+    /// A number that JSON does not have, or no memory.
+    #[error("the frame can't be put into a page ({0}): capture it again")]
+    Document(#[from] serde_json::Error),
+    /// The disk.
+    #[error("{path}: can't be written ({source}): choose another file")]
+    Write {
+        /// Where to.
+        path: String,
+        /// What happened.
+        source: std::io::Error,
+    },
+}
+
+/// The page of a frame.
+///
+/// # Errors
+/// A frame with numbers that are none.
+pub fn html(capture: &Capture, plan: &Arc<FramePlan>) -> Result<String, PageError> {
+    let title = format!("{}, {}", capture.scene, capture.technique);
+    Ok(html::page(&title, &document::json(capture, plan)?))
+}
+
+/// Writes the page of a frame, and says how many bytes it has.
+///
+/// # Errors
+/// As [`html`]; a file that can't be written.
+pub fn write(capture: &Capture, plan: &Arc<FramePlan>, path: &Path) -> Result<u64, PageError> {
+    let text = html(capture, plan)?;
+    let failed = |source| PageError::Write { path: path.display().to_string(), source };
+    crate::files::write_whole(path, text.as_bytes()).map_err(failed)?;
+    Ok(text.len() as u64)
+}

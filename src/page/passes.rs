@@ -1,0 +1,157 @@
+//! The passes of a plan as the page's history goes through them: what follows from programs and states is said here, so
+//! that the page need not know them.
+
+use super::arrays::{ArrayIndex, Arrays, Layout, Word};
+use crate::capture::FrameTarget;
+use crate::history;
+use crate::plan::{
+    Draw, FaceMasks, FramePlan, Part, Pass, Program, RasterState, StartContent, StencilFace, Visibility,
+};
+use serde::Serialize;
+
+/// A pass.
+#[derive(Debug, Serialize)]
+pub struct PassEntry<'a> {
+    name: &'a str,
+    light: Option<usize>,
+    view: usize,
+    /// It draws into the picture, or tests against its depth and stencil.
+    is_of_picture: bool,
+    has_depth: bool,
+    target: &'static str,
+    /// Left, top, width and height in pixels.
+    area: [f32; 4],
+    /// The stored depths of clip depth 0 and 1.
+    range: [f32; 2],
+    scissor: Option<[u32; 4]>,
+    /// What its depth and stencil hold as it begins, where that is not what the pass before left.
+    start: Option<StartEntry>,
+    clear_depth: Option<f32>,
+    clear_stencil: Option<u8>,
+    clear_count: Option<f32>,
+    /// The largest stored depth, where depths are integers.
+    depth_steps: Option<u32>,
+    draws: Vec<DrawEntry<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct StartEntry {
+    depth: Option<ArrayIndex>,
+    stencil: Option<ArrayIndex>,
+}
+
+#[derive(Debug, Serialize)]
+struct DrawEntry<'a> {
+    name: &'a str,
+    caster: Option<&'a str>,
+    part: &'static str,
+    /// Of caps that a vertex shader carries, for each triangle: 1 in the dark cap, 0 in the light cap.
+    is_dark: Option<ArrayIndex>,
+    mesh: usize,
+    /// First triangle and the one after the last.
+    triangles: [u32; 2],
+    base_vertex: u32,
+    /// Triangles run from the last to the first.
+    is_reverse: bool,
+    faces_inwards: bool,
+    raster: &'a RasterState,
+    /// Of fronts and of backs.
+    sides: [SideEntry<'a>; 2],
+    tests_stencil: bool,
+    /// Its shader throws away what is nearer than the near plane, and what is beyond the far plane.
+    discards: [bool; 2],
+    /// Whom it asks how much light arrives, where it adds the light.
+    lights: Option<Visibility>,
+    /// What fronts and backs add to a float count.
+    adds: [f32; 2],
+}
+
+#[derive(Debug, Serialize)]
+struct SideEntry<'a> {
+    #[serde(flatten)]
+    face: &'a StencilFace,
+    #[serde(flatten)]
+    masks: FaceMasks,
+}
+
+/// The passes of a plan.
+pub fn passes<'a>(plan: &'a FramePlan, arrays: &mut Arrays) -> Vec<PassEntry<'a>> {
+    plan.passes.iter().map(|pass| entry(plan, pass, arrays)).collect()
+}
+
+fn entry<'a>(plan: &'a FramePlan, pass: &'a Pass, arrays: &mut Arrays) -> PassEntry<'a> {
+    let viewport = pass.viewport(plan.size);
+    let target = pass.depth_stencil.as_ref();
+    let clear_count = pass.color.as_ref().filter(|_| plan.counts_in_float(pass)).and_then(|color| color.clear);
+    let start = pass.recorded.as_ref().and_then(|recorded| recorded.start.as_ref());
+    PassEntry {
+        name: &pass.name,
+        light: pass.light.map(|light| light.0),
+        view: pass.view.0,
+        is_of_picture: plan.is_of_picture(pass),
+        has_depth: target.is_some(),
+        target: target_name(history::target_of(plan, pass)),
+        area: viewport.area,
+        range: viewport.depth,
+        scissor: pass.scissor,
+        start: start.map(|start| put_start(start, plan.size[0], arrays)),
+        clear_depth: target.and_then(|target| target.clear_depth),
+        clear_stencil: target.and_then(|target| target.clear_stencil),
+        clear_count: clear_count.map(|clear| clear[0] as f32),
+        depth_steps: target.and_then(|target| plan.attachment(target.attachment).depth_steps()),
+        draws: pass.draws.iter().map(|one| draw(plan, one, arrays)).collect(),
+    }
+}
+
+/// As the page calls what a pass draws into.
+pub fn target_name(target: FrameTarget) -> &'static str {
+    match target {
+        FrameTarget::Picture => "picture",
+        FrameTarget::Labels => "labels",
+        FrameTarget::Count => "count",
+    }
+}
+
+fn put_start(StartContent { depth, stencil }: &StartContent, width: u32, arrays: &mut Arrays) -> StartEntry {
+    let mut put = |word, bytes: &[u8]| arrays.put(Layout { word, lanes: 1, width: width as usize }, bytes);
+    let depth = depth.as_ref().map(|depth| put(Word::F32, depth.bytes()));
+    StartEntry { depth, stencil: stencil.as_ref().map(|stencil| put(Word::U8, stencil.bytes())) }
+}
+
+fn draw<'a>(plan: &FramePlan, draw: &'a Draw, arrays: &mut Arrays) -> DrawEntry<'a> {
+    let side = |is_front| {
+        let (face, masks) = draw.raster.face(is_front);
+        SideEntry { face, masks }
+    };
+    DrawEntry {
+        name: &draw.name,
+        caster: draw.caster.as_deref(),
+        part: draw.part.name(),
+        is_dark: (draw.part == Part::Caps).then(|| dark_caps(plan, draw, arrays)),
+        mesh: draw.mesh.0,
+        triangles: [draw.triangles.start, draw.triangles.end],
+        base_vertex: draw.base_vertex,
+        is_reverse: matches!(draw.program, Program::Label(_)),
+        faces_inwards: draw.faces_inwards,
+        raster: &draw.raster,
+        sides: [true, false].map(side),
+        tests_stencil: draw.raster.stencil.is_enabled(),
+        // Whatever is outside of the range on either side.
+        discards: [-1.0, 2.0].map(|depth| draw.program.discards(depth).is_some()),
+        lights: history::asks(draw),
+        adds: [true, false].map(|is_front| history::count_of(draw, is_front)),
+    }
+}
+
+/// Which triangles of a draw are in the dark cap.
+fn dark_caps(plan: &FramePlan, draw: &Draw, arrays: &mut Arrays) -> ArrayIndex {
+    let mesh = &plan.meshes[draw.mesh.0];
+    let corners = mesh.indices.data().as_chunks::<3>().0;
+    let range = draw.triangles.start as usize..draw.triangles.end as usize;
+    let is_dark = |corners: &[u32; 3]| {
+        let part = draw.part_of(mesh, corners.map(|corner| corner + draw.base_vertex));
+        u8::from(part == Part::DarkCap)
+    };
+    let dark: Vec<u8> = corners.get(range).into_iter().flatten().map(is_dark).collect();
+    arrays.put(Layout { word: Word::U8, lanes: 1, width: 0 }, &dark)
+}

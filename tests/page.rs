@@ -1,0 +1,143 @@
+//! Pages of frames, as files: what stands in them, how large they are, and the command that makes them. What they do in a
+//! browser is in `pages.rs`.
+
+use crate::commands::{assert_fails, folder, run, text};
+use crate::common::{names, request, session};
+use std::fs;
+use std::path::Path;
+use stencilscope::capture::disk;
+use stencilscope::page;
+use stencilscope::scene::builtin::Builtin;
+use stencilscope::session::{CaptureRequest, Every, RunFrame, Session};
+use stencilscope::technique::Technique;
+
+const SIZE: [u32; 2] = [96, 64];
+
+fn frame(session: &mut Session, scene: &str, request: CaptureRequest) -> RunFrame {
+    session.render(Builtin::named(scene).expect("a scene").scene().expect("its objects"), request).expect("a frame")
+}
+
+fn html(frame: &RunFrame) -> String {
+    page::html(&frame.capture, &frame.plan).expect("a page")
+}
+
+/// The bytes of a file that the program made.
+fn made(folder: &Path, arguments: &[&str], file: &str) -> Vec<u8> {
+    let output = run(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+    assert!(text(&output.stdout).contains(file), "{arguments:?}: {}", text(&output.stdout));
+    fs::read(folder.join(file)).expect("a file")
+}
+
+#[test]
+fn a_frame_makes_the_same_bytes_again_whatever_it_took_and_wherever_it_lay() {
+    let mut session = session();
+    let mut once = || frame(&mut session, "tori", request(Technique::ZFail, SIZE));
+    let (first, second) = (once(), once());
+    let page = html(&first);
+    assert_eq!(page, html(&second));
+    let parent = tempfile::tempdir().expect("a folder");
+    let folder = parent.path().join("capture");
+    disk::write(first.contents(), &folder, false).expect("written");
+    let opened = RunFrame::from_folder(disk::read_whole(&folder).expect("read")).expect("a whole frame");
+    assert!(page == html(&opened), "of the folder");
+}
+
+/// The figures of the README's page.
+#[test]
+fn tori_are_a_megabyte_and_a_half_and_five_with_every_draw() {
+    let mut session = session();
+    let mut bytes = |every| {
+        let request = CaptureRequest { every, ..request(Technique::ZFail, [640, 480]) };
+        html(&frame(&mut session, "tori", request)).len()
+    };
+    let [passes, draws] = [bytes(Every::Pass), bytes(Every::Draw)];
+    println!("every pass {passes} bytes, every draw {draws}");
+    assert!(passes <= 1_500_000 && draws <= 5_000_000, "{passes} and {draws} bytes");
+    assert!(draws > passes, "draws are in it");
+}
+
+/// Nothing is named that a browser would load; the beginning of XML's names is no address.
+#[test]
+fn no_address_is_in_it() {
+    let mut session = session();
+    let page = html(&frame(&mut session, "two-lights", request(Technique::ShadowMap, SIZE)));
+    let addresses: Vec<&str> = page.match_indices("://").map(|(at, _)| &page[at.saturating_sub(8)..at + 30]).collect();
+    assert!(addresses.iter().all(|text| text.contains("http://www.w3.org/")), "{addresses:?}");
+    for loads in
+        ["src=", "href=\"h", "@import", "url(", "fetch(", "import(", "eval(", "innerHTML", "XMLHttp", "WebSocket"]
+    {
+        assert!(!page.contains(loads), "{loads}");
+    }
+    assert!(page.contains("default-src 'none'") && !page.contains("unsafe-"));
+}
+
+#[test]
+fn text_of_a_scene_ends_no_element() {
+    let mut session = session();
+    let mut scene = Builtin::named("tori").expect("a scene").scene().expect("its objects");
+    scene.name = "</script></title>{{script}}<b>".to_owned();
+    let frame = session.render(scene, request(Technique::ZFail, SIZE)).expect("a frame");
+    let page = html(&frame);
+    assert_eq!(page.matches("</script>").count(), 2, "the document's end and the script's");
+    assert_eq!(page.matches("</title>").count(), 1);
+    assert!(!page.contains("<b>"));
+}
+
+#[test]
+fn the_command_makes_one_of_a_scene_a_folder_and_another_programs_frame() {
+    let folder = folder();
+    let of_scene = ["-t", "z-fail", "--size", "64x48"];
+    let page = made(folder.path(), &[&["page", "tori", "-o", "a.html"], &of_scene[..]].concat(), "a.html");
+    made(folder.path(), &[&["capture", "tori", "-o", "c", "--page", "b.html"], &of_scene[..]].concat(), "b.html");
+    assert!(fs::read(folder.path().join("b.html")).expect("a file") == page, "beside a folder");
+    assert!(made(folder.path(), &["page", "c", "-o", "c.html"], "c.html") == page, "of the folder");
+    let foreign = made(folder.path(), &["page", "ogre-short", "-o", "ogre.html"], "ogre.html");
+    assert!(text(&foreign).contains("OpenGL"));
+    let judged = made(folder.path(), &[&["page", "tori", "--truth", "-o", "t.html"], &of_scene[..]].concat(), "t.html");
+    let has_findings = |page: &[u8]| !text(page).contains("\"findings\":null");
+    assert!(has_findings(&judged) && !has_findings(&page));
+}
+
+#[test]
+fn a_page_that_is_there_is_replaced_only_where_that_is_wished() {
+    let folder = folder();
+    fs::write(folder.path().join("a.html"), "mine").expect("written");
+    for arguments in [&["page", "ogre", "-o", "a.html"][..], &["capture", "tori", "-o", "c", "--page", "a.html"]] {
+        let output = run(folder.path(), arguments);
+        let line = text(&output.stderr);
+        assert!(output.status.code() == Some(2) && line.contains("`a.html` is there already"), "{line}");
+        assert_eq!(fs::read(folder.path().join("a.html")).expect("a file"), b"mine");
+    }
+    let before = names(folder.path());
+    made(folder.path(), &["page", "ogre", "-o", "a.html", "--overwrite"], "a.html");
+    assert_eq!(names(folder.path()), before, "nothing is left beside it");
+}
+
+#[test]
+fn what_makes_no_page_is_refused_in_one_line_with_the_mend() {
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["page", "tori", "-o", "a.png"], &["`a.png`", "ends in .html"]),
+        (&["page", "tori", "-o", "nowhere/a.html"], &["nowhere/a.html", "can't be written", "choose another"]),
+        (&["page", "tori"], &["--output"]),
+        (&["page", "nothing.toml", "-o", "a.html"], &["nothing.toml", "no such file"]),
+        (&["page", "ogre", "-o", "a.html", "-t", "z-pass"], &["`ogre`", "captured already"]),
+        (&["page", "ogre", "-o", "a.html", "--every", "draw"], &["--every draw", "leave it out"]),
+        (&["page", "tori", "-o", "a.html", "--external-capture"], &["--external-capture", "leave it out"]),
+        (&["capture", "tori", "-o", "c", "--page", "a.txt"], &["`a.txt`", "ends in .html"]),
+    ];
+    for (arguments, words) in cases {
+        assert_fails(arguments, 2, words);
+    }
+}
+
+/// Its modules are read: no line is longer than these, and each says what it is for.
+#[test]
+fn the_modules_are_small_and_say_what_they_are() {
+    for module in page::modules() {
+        assert!(module.text.starts_with("// "), "{}", module.name);
+        assert!(module.text.lines().count() <= 250, "{}", module.name);
+        let longest = module.text.lines().map(|line| line.chars().count()).max().unwrap_or(0);
+        assert!(longest <= 140, "{}: a line of {longest}", module.name);
+    }
+}

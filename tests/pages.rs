@@ -1,0 +1,468 @@
+//! Pages in a real browser: a test program of its own, as it needs one. `.ci/pages` installs it and runs this.
+
+#[path = "pages/browser.rs"]
+mod browser;
+#[path = "pages/made.rs"]
+mod made;
+
+use browser::Browser;
+use made::{Made, pixels, scene, tori};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+use std::path::Path;
+use stencilscope::capture::disk;
+use stencilscope::import::SHIPPED;
+use stencilscope::page;
+use stencilscope::scene::{OpenSpec, open};
+
+const WIDE: [u32; 2] = [1280, 900];
+const PHONE: [u32; 2] = [390, 844];
+
+/// The value that the picture shows at a texel, as it stands under it.
+fn hovered(browser: &mut Browser, texel: [u32; 2], size: [u32; 2]) -> String {
+    browser.point_at(texel, size);
+    let text = browser.text("#hover");
+    let place = format!("{}, {} · ", texel[0], texel[1]);
+    text.strip_prefix(&place).unwrap_or_else(|| panic!("{text} at {texel:?}")).to_owned()
+}
+
+/// A `.npy` of a folder: its bytes and its width.
+fn array(folder: &Path, name: &str) -> (Vec<u8>, usize) {
+    let bytes = std::fs::read(folder.join(name)).expect("an array");
+    let header = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    let text = String::from_utf8_lossy(&bytes[..header]).into_owned();
+    let shape = text.split("'shape': (").nth(1).and_then(|text| text.split(')').next()).expect("a shape");
+    let sides: Vec<usize> = shape.split(',').filter_map(|side| side.trim().parse().ok()).collect();
+    (bytes[header..].to_vec(), *sides.last().expect("a side"))
+}
+
+/// Colours of a PNG of a folder, three bytes a pixel.
+fn colors(folder: &Path, name: &str) -> (Vec<u8>, usize) {
+    let file = std::io::BufReader::new(std::fs::File::open(folder.join(name)).expect("a picture"));
+    let mut reader = png::Decoder::new(file).read_info().expect("a PNG");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut bytes).expect("pixels");
+    let channels = info.color_type.samples();
+    (bytes.chunks_exact(channels).flat_map(|pixel| pixel[..3].to_vec()).collect(), info.width as usize)
+}
+
+/// What the text under the picture must say of an aspect's value.
+fn says(aspect: &str, (bytes, width): &(Vec<u8>, usize), [x, y]: [u32; 2], text: &str) -> bool {
+    const LABELS: [&str; 4] = ["lit", "shadow", "background", "faces away"];
+    const FINDINGS: [&str; 6] =
+        ["agrees", "false shadow", "missing shadow", "wrong surface", "edge band", "not compared"];
+    let at = y as usize * width + x as usize;
+    let float = |text: &str| text.split(" · ").next().and_then(|text| text.parse::<f32>().ok());
+    match aspect {
+        "color" => text == format!("{} {} {}", bytes[3 * at], bytes[3 * at + 1], bytes[3 * at + 2]),
+        "stencil" => text == stencilscope_signed(bytes[at]),
+        "mask" => text == LABELS[usize::from(bytes[at])],
+        "error" => text == FINDINGS[usize::from(bytes[at])],
+        _ => float(text) == Some(bytemuck::pod_read_unaligned(&bytes[4 * at..4 * at + 4])),
+    }
+}
+
+/// 255 is `−1 (255)`.
+fn stencilscope_signed(value: u8) -> String {
+    if value < 128 { value.to_string() } else { format!("−{} ({value})", 256 - u32::from(value)) }
+}
+
+#[test]
+fn what_is_said_of_a_pixel_is_what_the_capture_folder_holds() {
+    let size = [640, 480];
+    let shadow_map = Made::of_scene(scene("tori"), "shadow-map", &[("size", "256")], size);
+    for made in [tori().judged(), shadow_map] {
+        let folder = made.folder.path().join("capture");
+        disk::write(made.frame.contents(), &folder, false).expect("a folder");
+        let text = std::fs::read_to_string(folder.join("manifest.json")).expect("a manifest");
+        let manifest: Value = serde_json::from_str(&text).expect("JSON");
+        let mut browser = Browser::new(WIDE, "dark");
+        browser.open(&made.page(), "");
+        let mut look = |aspect: &str, step: usize, file: &Value, size: [u32; 2], count: u32| {
+            let name = file.as_str().expect("a name");
+            let values = if name.ends_with(".png") { colors(&folder, name) } else { array(&folder, name) };
+            browser.evaluate(&format!("location.hash = '#view={aspect}&step={}'", step + 1));
+            browser.evaluate("new Promise((done) => setTimeout(done, 50))");
+            for texel in pixels(count, size) {
+                let text = hovered(&mut browser, texel, size);
+                assert!(says(aspect, &values, texel, &text), "{aspect} after step {step} at {texel:?}: {text}");
+            }
+        };
+        let passes = manifest["passes"].as_array().expect("passes");
+        let frames = || passes.iter().enumerate().filter(|(_, pass)| pass["color"].is_string());
+        for (step, pass) in frames() {
+            look("color", step, &pass["color"], size, 100);
+            look("depth", step, &pass["depth"], size, 100);
+            if pass["stencil"].is_string() {
+                look("stencil", step, &pass["stencil"], size, 100);
+            }
+        }
+        let light = &manifest["lights"][0];
+        look("mask", 0, &light["shadow"], size, 100);
+        if light["error_picture"].is_string() {
+            look("error", 0, &light["error_picture"], size, 100);
+        }
+        if light["map"].is_string() {
+            look("map", 0, &light["map"], [256, 256], 100);
+        }
+        assert_eq!(browser.complaints(), Vec::<String>::new());
+    }
+}
+
+/// A pixel's history in a page, as `pixel --json` prints it.
+const DOCUMENT: &str = include_str!("pages/document.js");
+
+/// Events in which two documents differ; depths may differ in their last bits, as a browser does not round as a GPU.
+fn differences(page: &Value, program: &Value, rounding: f64) -> Vec<String> {
+    let mut found = Vec::new();
+    let near = |a: &Value, b: &Value| match (a.as_f64(), b.as_f64()) {
+        (Some(a), Some(b)) => (a - b).abs() <= rounding * b.abs().max(1.0),
+        _ => a == b,
+    };
+    let [of_page, of_program] = [page, program].map(|document| document["events"].as_array().expect("events"));
+    if of_page.len() != of_program.len() {
+        found.push(format!("{} events and not {}", of_page.len(), of_program.len()));
+    }
+    for (a, b) in of_page.iter().zip(of_program) {
+        let names: BTreeSet<&String> =
+            [a, b].into_iter().flat_map(|event| event.as_object().expect("fields").keys()).collect();
+        for name in names {
+            let same = if (name.starts_with("depth") || name.starts_with("count")) && a[name].is_number() {
+                near(&a[name], &b[name])
+            } else {
+                a[name] == b[name]
+            };
+            if !same {
+                found.push(format!("{name}: {} and not {}", a[name], b[name]));
+            }
+        }
+    }
+    for name in ["final", "captured"] {
+        let is_same =
+            page[name]["stencil"] == program[name]["stencil"] && near(&page[name]["depth"], &program[name]["depth"]);
+        if !is_same {
+            found.push(format!("{name}: {} and not {}", page[name], program[name]));
+        }
+    }
+    if [&page["why"], &page["agrees"]] != [&program["why"], &program["agrees"]] {
+        found.push(format!("{} and not {}", page["why"], program["why"]));
+    }
+    found
+}
+
+/// Holds the histories of 100 random pixels against those of the program, and says how long the slowest took, in
+/// milliseconds.
+fn assert_same_histories(made: &mut Made, name: &str) -> f64 {
+    let (rounding, plan) = (16.0 / f64::from(0xff_ffff), made.frame.plan.clone());
+    let places = pixels(100, plan.size);
+    let mut browser = Browser::new(WIDE, "dark");
+    browser.open(&made.page(), "");
+    let documents = browser.evaluate(&format!("{}.map({DOCUMENT})", json!(places)));
+    let mut slowest: f64 = 0.0;
+    for (pixel, document) in places.iter().zip(documents.as_array().expect("documents")) {
+        let program = made.document(*pixel);
+        assert_eq!(differences(document, &program, rounding), Vec::<String>::new(), "{name} at {pixel:?}");
+        slowest = slowest.max(document["milliseconds"].as_f64().expect("a time"));
+    }
+    assert_eq!(browser.complaints(), Vec::<String>::new(), "{name}");
+    slowest
+}
+
+#[test]
+fn histories_are_those_of_the_program_whatever_the_technique() {
+    let settings: [(&str, &[(&str, &str)]); 16] = [
+        ("z-fail", &[]),
+        ("z-fail", &[("counter", "float")]),
+        ("z-fail", &[("extruded-by", "vertex-shader")]),
+        ("z-pass", &[("extruded-by", "vertex-shader")]),
+        ("z-fail", &[("faces", "two-pass")]),
+        ("z-fail", &[("depth", "standard-finite-clamp")]),
+        ("z-fail", &[("depth", "standard-infinite")]),
+        ("z-fail", &[("stencil-bits", "1")]),
+        ("z-pass", &[]),
+        ("z-pass-plus", &[]),
+        ("auto", &[]),
+        ("planar", &[]),
+        ("shadow-map", &[]),
+        ("projective", &[]),
+        ("ray-traced", &[]),
+        ("none", &[]),
+    ];
+    for (technique, settings) in settings {
+        let mut made = Made::of_scene(scene("tori"), technique, settings, [320, 240]);
+        assert_same_histories(&mut made, &format!("{technique} {settings:?}"));
+    }
+    for name in ["inside", "two-lights", "steps", "tiger-cage"] {
+        assert_same_histories(&mut Made::of_scene(scene(name), "auto", &[], [320, 240]), name);
+    }
+}
+
+#[test]
+fn histories_of_another_programs_frames_are_those_of_the_program() {
+    for shipped in SHIPPED {
+        assert_same_histories(&mut Made::of_folder(shipped.open().expect("a frame")), shipped.name);
+    }
+}
+
+/// Shadow and receiver in one plane: which is nearer is up to the last bit, and the page has it too.
+#[test]
+fn depths_are_those_of_the_gpu_to_the_last_bit() {
+    let mut made = Made::of_scene(scene("tori"), "planar", &[("z-fighting", "none")], [160, 120]);
+    let mut browser = Browser::new(WIDE, "dark");
+    browser.open(&made.page(), "");
+    for pixel in pixels(100, [160, 120]) {
+        let document = browser.evaluate(&format!("({DOCUMENT})({})", json!(pixel)));
+        assert_eq!(differences(&document, &made.document(pixel), 0.0), Vec::<String>::new(), "{pixel:?}");
+    }
+}
+
+/// A bit of the stored stencil turned over: the page says at which pixel.
+#[test]
+fn where_the_page_computes_something_else_it_says_so() {
+    let mut made = tori();
+    let changed = [322, 92];
+    made.change_stencil(changed);
+    let mut browser = Browser::new(WIDE, "dark");
+    browser.open(&made.page(), "#pixel=322,92&step=2");
+    let said = browser.text(".differs");
+    assert!(said.contains("not as the GPU stored it") && said.contains("after pass 2 the events make"), "{said}");
+    assert!(said.contains("stencil 2") && said.contains("stencil 3"), "{said}");
+    browser.open(&made.page(), "#pixel=323,92&step=2");
+    assert!(browser.text(".agrees").contains("as the GPU stored it"));
+}
+
+#[test]
+fn it_is_there_in_less_than_a_second_and_a_history_in_milliseconds() {
+    let mut made = tori();
+    let mut browser = Browser::new(WIDE, "dark");
+    browser.open(&made.page(), "");
+    let shown = browser.evaluate("performance.getEntriesByName('shown')[0].startTime").as_f64().expect("a time");
+    let slowest = assert_same_histories(&mut made, "tori");
+    println!("tori: its first step after {shown:.0} ms, the slowest of 100 histories {slowest:.1} ms");
+    assert!(shown < 1000.0 && slowest < 50.0, "{shown} ms, {slowest} ms");
+    // 188 times 188 squares round a ring: 70 688 triangles.
+    let sides = 188;
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut text = String::new();
+    for index in 0..sides * sides {
+        let [round, about] = [index / sides, index % sides].map(|step| f64::from(step) * TAU / f64::from(sides));
+        let out = 1.0 + 0.4 * about.cos();
+        text += &format!("v {} {} {}\n", out * round.cos(), 0.4 * about.sin(), out * round.sin());
+    }
+    for index in 0..sides * sides {
+        let (round, about) = (index / sides, index % sides);
+        let at = |round: u32, about: u32| (round % sides) * sides + about % sides + 1;
+        let corners = [at(round, about), at(round, about + 1), at(round + 1, about + 1), at(round + 1, about)];
+        text += &format!("f {} {} {} {}\n", corners[0], corners[1], corners[2], corners[3]);
+    }
+    let file = folder.path().join("ring.obj");
+    std::fs::write(&file, text).expect("written");
+    let ring = open(&OpenSpec::new(file.to_str().expect("a path"))).expect("a scene");
+    let mut made = Made::of_scene(ring, "z-fail", &[], [640, 480]);
+    let slowest = assert_same_histories(&mut made, "70 688 triangles");
+    println!("70 688 triangles: the slowest of 100 histories {slowest:.1} ms");
+    assert!(slowest < 300.0, "{slowest} ms");
+}
+
+#[test]
+fn nothing_is_loaded_and_nothing_could_be() {
+    let made = tori();
+    let mut browser = Browser::new(WIDE, "dark");
+    browser.open(&made.page(), "#pixel=322,92&step=2");
+    let own = format!("file://{}", made.page().display());
+    let asked: Vec<String> = browser
+        .requests()
+        .into_iter()
+        .filter(|address| !address.starts_with(&own) && address != "about:blank")
+        .collect();
+    assert_eq!(asked, Vec::<String>::new());
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+    // The policy keeps away what an extension, or a mistake, could add.
+    for attempt in [
+        "fetch('http://127.0.0.1:9/').then(() => 'loaded', () => 'refused')",
+        "new Promise((done) => { const one = new Image(); one.onload = () => done('loaded'); one.onerror = () => done('refused'); one.src = 'http://127.0.0.1:9/'; })",
+        "new Promise((done) => { const one = document.createElement('script'); one.textContent = 'window.ran = true'; document.body.append(one); setTimeout(() => done(window.ran ? 'loaded' : 'refused'), 50); })",
+    ] {
+        assert_eq!(browser.evaluate(attempt), json!("refused"), "{attempt}");
+    }
+    let refusals = browser.complaints();
+    assert!(refusals.iter().filter(|text| text.contains("Content Security Policy")).count() >= 3, "{refusals:?}");
+}
+
+#[test]
+fn keys_step_and_the_address_goes_to_the_pixel() {
+    let made = tori();
+    let mut browser = Browser::new(WIDE, "dark");
+    browser.open(&made.page(), "");
+    let steps = &made.frame.capture.steps;
+    let place = |browser: &mut Browser| browser.text("#place");
+    assert!(place(&mut browser).starts_with("Step 1: ambient"));
+    for step in &steps[1..] {
+        browser.press("ArrowRight", false);
+        assert!(place(&mut browser).to_lowercase().contains(&step.name), "{}", step.name);
+    }
+    browser.press("ArrowRight", false);
+    assert!(place(&mut browser).starts_with("Step 3: light"), "there is none after the last");
+    for _ in 0..2 {
+        browser.press("ArrowLeft", false);
+    }
+    assert!(place(&mut browser).starts_with("Step 2: volumes · after its 15 draws"));
+    // Down into the draws, the last one from below, and out of them again.
+    browser.press("ArrowDown", false);
+    assert!(place(&mut browser).contains(&format!("after draw 1, {}", steps[1].draws[0].name)));
+    browser.press("ArrowUp", false);
+    assert!(place(&mut browser).contains("draw 1,"), "there is none before the first");
+    browser.press("ArrowDown", false);
+    assert!(place(&mut browser).contains(&format!("after draw 2, {}", steps[1].draws[1].name)));
+    // A click picks, Shift and arrows move the pick, keys choose view and phase.
+    browser.click_at([322, 92], [640, 480]);
+    browser.press("ArrowDown", true);
+    browser.press("ArrowRight", true);
+    browser.press("3", false);
+    browser.press("d", false);
+    assert_eq!(browser.evaluate("location.hash"), json!("#pixel=323,93&step=2&draw=2&view=stencil&phase=diff"));
+    let looked = "[document.querySelector('#told').textContent, document.querySelector('#hover').textContent, document.querySelector('#place').textContent]";
+    browser.call("Input.dispatchMouseEvent", json!({"type": "mouseMoved", "x": 2, "y": 2}));
+    let seen = browser.evaluate(looked);
+    let mut other = Browser::new(WIDE, "light");
+    other.open(&made.page(), "#pixel=323,93&step=2&draw=2&view=stencil&phase=diff");
+    assert_eq!(other.evaluate(looked), seen, "a link goes to this pixel of this draw");
+    browser.press("Escape", false);
+    assert_eq!(browser.evaluate("location.hash"), json!("#step=2&draw=2&view=stencil&phase=diff"));
+    for nonsense in ["#pixel=9999,3&step=77&view=x&draw=y", "#%", "#pixel=-1,1e3&light=9"] {
+        other.open(&made.page(), nonsense);
+        assert!(place(&mut other).starts_with("Step 1: ambient"), "{nonsense}");
+    }
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+    assert_eq!(other.complaints(), Vec::<String>::new());
+}
+
+/// What can be focused, in words that tell one from the other, where it is shown and not switched off.
+const CONTROLS: &str = "(() => { const all = [...document.querySelectorAll('button, input, select, summary, [tabindex]')]; \
+    const shown = all.filter((one) => !one.disabled && one.checkVisibility()); \
+    shown.forEach((one, at) => { one.dataset.at = at; }); return shown.length; })()";
+
+#[test]
+fn the_keyboard_alone_reaches_every_control() {
+    let made = tori().judged();
+    for screen in [WIDE, PHONE] {
+        let mut browser = Browser::new(screen, "dark");
+        browser.open(&made.page(), "#pixel=322,92&step=2");
+        let count = browser.evaluate(CONTROLS).as_u64().expect("a count");
+        let mut reached = BTreeSet::new();
+        for _ in 0..count + 3 {
+            browser.press("Tab", false);
+            reached.extend(
+                browser.evaluate("Number(document.activeElement.dataset.at ?? -1)").as_i64().filter(|at| *at >= 0),
+            );
+        }
+        assert_eq!(reached.len() as u64, count, "of {count} controls on {screen:?}");
+        // A button is pressed with Enter, and keeps the focus.
+        browser.evaluate("document.querySelector('[data-id=depth]').focus()");
+        browser.press("Enter", false);
+        let looked = "[document.activeElement.dataset.id, location.hash]";
+        assert_eq!(browser.evaluate(looked), json!(["depth", "#pixel=322,92&step=2&view=depth"]));
+        browser.evaluate("document.querySelector('.history .link').focus()");
+        browser.press("Enter", false);
+        assert_eq!(
+            browser.evaluate("document.querySelectorAll('#marks polygon').length"),
+            json!(2),
+            "its triangle is outlined"
+        );
+        assert_eq!(browser.complaints(), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn every_control_has_a_name_and_none_is_the_name_of_another() {
+    let made = Made::of_scene(scene("two-lights"), "shadow-map", &[], [320, 240]).judged();
+    let mut browser = Browser::new(WIDE, "dark");
+    browser.open(&made.page(), "#pixel=160,120&view=map&step=1");
+    let tree = browser.call("Accessibility.getFullAXTree", json!({}));
+    let nodes = tree["nodes"].as_array().expect("nodes");
+    let controls = [
+        "button",
+        "slider",
+        "combobox",
+        "spinbutton",
+        "checkbox",
+        "radio",
+        "textbox",
+        "DisclosureTriangle",
+        "image",
+        "region",
+        "navigation",
+        "complementary",
+        "toolbar",
+    ];
+    let mut names = Vec::new();
+    for node in nodes.iter().filter(|node| node["ignored"] == json!(false)) {
+        let role = node["role"]["value"].as_str().unwrap_or_default();
+        if controls.contains(&role) {
+            let name = node["name"]["value"].as_str().unwrap_or_default().trim().to_owned();
+            assert!(name.chars().any(char::is_alphanumeric), "{role} has no name: {node}");
+            names.push((role.to_owned(), name));
+        }
+    }
+    assert!(names.len() > 40, "{names:?}");
+    for role in ["slider", "combobox", "spinbutton", "image"] {
+        let of_role: Vec<&String> = names.iter().filter(|(of, _)| of == role).map(|(_, name)| name).collect();
+        assert_eq!(of_role.iter().collect::<BTreeSet<_>>().len(), of_role.len(), "{role}: {of_role:?}");
+    }
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+/// The contrast of every text with what is behind it (WCAG 2, 1.4.3), those of large pictures and of what is switched off left out.
+const CONTRASTS: &str = include_str!("pages/contrasts.js");
+
+#[test]
+fn texts_are_read_in_both_themes_and_nothing_is_wider_than_a_phone() {
+    let made = tori().judged();
+    for screen in [WIDE, PHONE] {
+        for theme in ["dark", "light"] {
+            let mut browser = Browser::new(screen, theme);
+            browser.open(&made.page(), "#pixel=322,92&step=2");
+            browser.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })");
+            let scheme = "(() => { const [red] = getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g).map(Number); return red < 128 ? 'dark' : 'light'; })()";
+            assert_eq!(browser.evaluate(scheme), json!(theme));
+            for _ in 0..2 {
+                let poor = browser.evaluate(CONTRASTS);
+                assert_eq!(poor, json!([]), "{theme} on {screen:?}");
+                // The switch turns it round.
+                browser.evaluate("document.querySelector('#theme').click()");
+            }
+            let wide = browser.evaluate("document.documentElement.scrollWidth").as_u64().expect("a width");
+            assert!(wide <= u64::from(screen[0]), "{wide} points on {screen:?}");
+            assert_eq!(browser.complaints(), Vec::<String>::new());
+        }
+    }
+}
+
+#[test]
+fn text_of_a_scene_is_text() {
+    let mut named = scene("tori");
+    named.name = "</script><script>window.ran = true</script><!-- {{script}} & \"it\" \u{2028}".to_owned();
+    named.objects[0].name = "<img src=x onerror='window.ran = true'>".to_owned();
+    let name = named.name.clone();
+    let made = Made::of_scene(named, "z-fail", &[], [64, 48]);
+    let mut browser = Browser::new(WIDE, "dark");
+    browser.open(&made.page(), "#pixel=30,30");
+    assert_eq!(browser.text("#title"), format!("{name}, z-fail"));
+    assert_eq!(browser.evaluate("[window.ran ?? null, document.querySelectorAll('img').length]"), json!([null, 0]));
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+/// The one that the README links to.
+#[test]
+fn the_committed_page_is_what_the_program_makes() {
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/pages/tori.html");
+    let mut browser = Browser::new(WIDE, "dark");
+    browser.open(&committed, "#pixel=322,92&step=2");
+    assert!(browser.text("#told").contains("Dark under light 1: its stencil count is 2."));
+    assert!(browser.text(".agrees").contains("as the GPU stored it"));
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+    let script = page::script();
+    let text = std::fs::read_to_string(committed).expect("the page");
+    assert!(text.contains(&script), "made by an older program: see its command in assets/pages/README.md");
+}
