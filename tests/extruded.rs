@@ -139,6 +139,33 @@ fn histories_in_a_folder_are_those_of_the_run_and_name_each_cap() {
     assert_eq!(parts.into_iter().collect::<Vec<_>>(), ["dark-cap", "light-cap", "side"]);
 }
 
+/// A folder that lies of such a volume, or of pictures, is refused in a line, or asked about without a panic.
+#[test]
+fn a_folder_that_lies_about_corners_is_no_panic() {
+    let (parent, mut session) = (tempfile::tempdir().expect("a folder"), session());
+    let scene = from_above(vec![square("sheet", 2.0, 1.0)]);
+    let frame = session.render(scene, with(Technique::ZFail, &[BY_SHADER])).expect("a frame");
+    let folder = parent.path().join("frame");
+    write(frame.contents(), &folder, true).expect("written");
+    let mut files = std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let corners = files.find(|file| file.to_string_lossy().ends_with("corners.npy")).expect("corners");
+    let bytes = std::fs::read(&corners).expect("read");
+    // NumPy's own: a mark of eight bytes, and how long the rest of its head is.
+    let (head, values) = bytes.split_at(10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]])));
+    let told = |values: Vec<u8>| {
+        std::fs::write(&corners, [head, &values].concat()).expect("written");
+        let opened = read_whole(&folder).map(RunFrame::from_folder);
+        opened.map_err(|error| error.to_string())
+    };
+    let cut = told(values[..values.len() / 2].to_vec()).expect_err("half of them");
+    assert!(!cut.contains('\n') && cut.contains("corners"), "{cut}");
+    let odd = told(values.chunks(4).flat_map(|_| f32::NAN.to_le_bytes()).collect()).expect("numbers or not");
+    let odd = odd.expect("a whole frame");
+    for pixel in [[10, 10], [48, 36], [90, 70]] {
+        session.history(&odd.plan, &odd.capture, pixel).expect("a history");
+    }
+}
+
 /// What the light decides is decided by the GPU: its vertices stay as they are while it moves.
 #[test]
 fn a_light_that_moves_changes_no_vertex_that_is_uploaded() {
@@ -179,6 +206,11 @@ fn parallel_lines_of_sight_are_left_to_the_cpu() {
     let captures = both(&mut session, &scene, Technique::ZFail, &[]);
     assert_eq!(captures.each_ref().map(told), [0, scene.lights.len()]);
     assert!(labels(&captures[0]) == labels(&captures[1]) && other_counts(&captures)[0] == 0);
+    // Z-pass begins at nothing, and no sentence says that it does.
+    let in_front = both(&mut session, &scene, Technique::ZPass, &[]);
+    assert!(labels(&in_front[0]) == labels(&in_front[1]));
+    let left = in_front[1].left_out.iter().find(|left| left.decision == Some(Decision::VertexExtrusion)).expect("told");
+    assert!(left.because.contains("no side is seen edge-on") && !left.because.contains("begins"), "{}", left.because);
     // A volume that ends has nothing at infinity.
     let finite = both(&mut session, &scene, Technique::ZFail, &[("extrusion", "finite:4")]);
     assert_eq!(finite.each_ref().map(told), [0, 0]);

@@ -31,8 +31,8 @@ pub struct GeometryCache {
     planes: HashMap<(u64, PoseBits), Arc<Planes>>,
     topologies: HashMap<u64, Arc<Topology>>,
     solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
-    /// By mesh, place, form and origin, with whether the newest plan has asked for them.
-    extruded: HashMap<(u64, PoseBits, ExtrudedForm, [u64; 3]), (ExtrudedVolume, bool)>,
+    /// With whether the newest plan has asked for them.
+    extruded: HashMap<ExtrudedKey, (ExtrudedVolume, bool)>,
     triangles_kept: usize,
     facings: Facings,
     silhouette: Vec<SilhouetteEdge>,
@@ -42,6 +42,9 @@ pub struct GeometryCache {
 type FlattenedTriangles = Arc<Vec<[DVec4; 3]>>;
 
 type PoseBits = [u64; 9];
+
+/// Mesh, place, form and origin.
+type ExtrudedKey = (u64, PoseBits, ExtrudedForm, [u64; 3]);
 
 /// How a volume's silhouette is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -228,15 +228,15 @@ fn triangles(known: &Known, step: &Step) -> Fact {
     let is_finite = known.capture.settings.get("extrusion").is_some_and(|how| how.starts_with("finite"));
     let is_parallel = known.capture.camera.is_parallel();
     let settings = VolumeSettings::read(&known.capture.settings);
-    if settings.by_vertex_shader && !(is_parallel && !is_finite) {
+    if settings.by_vertex_shader && (is_finite || !is_parallel) {
+        let (sides, caps) = (format::count(sides), format::count(of(Part::Caps)));
         let here = vec![
             format!(
-                "sides, one at every edge, empty until its triangles face different ways: {}",
-                format::count(sides)
+                "sides, two triangles at every edge of what is one closed volume, and at those of each triangle of what is \
+                 not: {sides}"
             ),
             format!(
-                "caps, the triangles that face the light in their place and the others at the far end: {}",
-                format::count(of(Part::Caps))
+                "caps, every triangle of the former once and of the latter twice, in its place or at the far end: {caps}"
             ),
         ];
         return fact("a closed volume = sides + light cap + dark cap", here);

@@ -215,6 +215,9 @@ fn a_setting_of_the_technique_goes_back_to_its_default() {
 fn a_light_is_switched_off_and_on_again() {
     let mut harness = settings_of("z-fail");
     let before = harness.state().inspector.draft().expect("a draft").lights.clone();
+    // Below the technique's settings.
+    harness.get_by_label("light 1 is on").scroll_to_me();
+    harness.run_steps(3);
     click(&mut harness, "light 1 is on");
     let off = last_run(&harness).lights.clone();
     assert_eq!(off.iter().map(|light| light.is_on).collect::<Vec<_>>(), [false]);

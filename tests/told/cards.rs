@@ -43,10 +43,15 @@ impl Here<'_> {
         self.frame.step(self.step).1.draws.iter().filter(move |draw| draw.part == part)
     }
 
-    /// Everything that this step draws is carried by its vertex shader.
-    fn is_extruded(&self) -> bool {
-        let draws = &self.frame.step(self.step).1.draws;
-        draws.iter().all(|draw| self.frame.plan.meshes[draw.mesh.0].extruded.is_some())
+    /// Of each volume that its vertex shader carries, how many triangles its caster has, how many copies of each it has,
+    /// and its sides' triangles; of any other all nothing.
+    fn copies_and_sides(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+        self.draws(Part::Side).map(|draw| {
+            let caster = self.frame.scene.objects.iter().find(|object| draw.caster.as_ref() == Some(&object.name));
+            let triangles = caster.map_or(0, |object| object.mesh.triangles().len());
+            let corners = self.frame.plan.meshes[draw.mesh.0].extruded.as_ref().map_or(0, |of| of.corners.len());
+            (triangles, corners / (3 * triangles.max(1)), draw.triangles.len())
+        })
     }
 
     fn triangles(&self, part: Part) -> f64 {

@@ -93,12 +93,18 @@ pub const LINES: &[(&str, Check)] = &[
     ("sides, between each silhouette edge and the same edge at the far end: {}", |here, told| {
         number(told[0]) == here.triangles(Part::Side)
     }),
-    ("sides, one at every edge, empty until its triangles face different ways: {}", |here, told| {
-        here.is_extruded() && number(told[0]) == here.triangles(Part::Side)
-    }),
-    ("caps, the triangles that face the light in their place and the others at the far end: {}", |here, told| {
-        here.is_extruded() && number(told[0]) == here.triangles(Part::Caps)
-    }),
+    (
+        "sides, two triangles at every edge of what is one closed volume, and at those of each triangle of what is not: {}",
+        |here, told| number(told[0]) == here.triangles(Part::Side) && here.copies_and_sides().all(is_closed_or_prism),
+    ),
+    (
+        "caps, every triangle of the former once and of the latter twice, in its place or at the far end: {}",
+        |here, told| {
+            let caps: usize = here.copies_and_sides().map(|(triangles, copies, _)| triangles * copies).sum();
+            let drawn = here.triangles(Part::Caps);
+            number(told[0]) == drawn && (drawn == 0.0 || drawn == caps as f64)
+        },
+    ),
     ("light caps, the casting triangles themselves: {}", |here, told| {
         number(told[0]) == here.triangles(Part::LightCap)
     }),
@@ -286,3 +292,8 @@ pub const LINES: &[(&str, Check)] = &[
         |here, _| is_count_of(here, CountOf::Mixed),
     ),
 ];
+
+/// Two triangles at each of 3n/2 edges, or at each of 3n.
+fn is_closed_or_prism((triangles, copies, sides): (usize, usize, usize)) -> bool {
+    sides == 3 * triangles * copies && (1..=2).contains(&copies)
+}
