@@ -44,6 +44,7 @@ fn cast_nothing_in_every_case() {
         "nested few-bits",
         "nested parity",
         "light-at-sheet f32-limit",
+        "turned-sheet f32-limit",
         "light-at-sheet map-near-plane",
         "light-inside-mesh near-plane",
         "light-inside-mesh light-facing-inside",
