@@ -517,3 +517,33 @@ fn pixel_tells_the_texel_and_explains_each_key() {
     assert_eq!(document["shading"]["texture"]["name"], "tiles.png");
     crate::help::assert_json_is_explained("pixel", &document);
 }
+
+/// A folder that names one picture thousands of times, and one whose places lie beyond all integers.
+#[test]
+fn a_folder_that_lies_about_pictures_takes_no_memory_and_is_no_panic() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pixel = |name: &str| run(folder.path(), &["pixel", name, "--at", "32,40"]);
+    let scene = asset("scenes/pattern.toml");
+    let capture = ["capture", &scene, "-t", "z-fail", "--size", "64x48", "-o", "frame"];
+    assert!(run(folder.path(), &capture).status.success());
+    let plan = folder.path().join("frame/frame.json");
+    let mut entry: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&plan).expect("a plan")).expect("an object");
+    let textures = entry["textures"].as_array_mut().expect("textures");
+    let one = textures[0].clone();
+    textures.resize(5000, one);
+    std::fs::write(&plan, entry.to_string()).expect("written");
+    let output = pixel("frame");
+    assert!(output.status.success() && text(&output.stdout).contains("texel"), "{}", text(&output.stderr));
+    for file in std::fs::read_dir(folder.path().join("frame")).expect("a folder") {
+        let file = file.expect("an entry").path();
+        if file.to_string_lossy().ends_with("uvs.npy") {
+            let mut bytes = std::fs::read(&file).expect("places");
+            let head = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+            bytes[head..].chunks_exact_mut(4).for_each(|place| place.copy_from_slice(&3e38_f32.to_le_bytes()));
+            std::fs::write(&file, bytes).expect("written");
+        }
+    }
+    let output = pixel("frame");
+    assert!(output.status.success() && text(&output.stdout).contains("texel"), "{}", text(&output.stderr));
+}
