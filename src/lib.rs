@@ -86,6 +86,8 @@ pub mod picture;
 pub mod plan;
 pub mod progress;
 pub mod reading;
+#[cfg(feature = "record")]
+pub mod record;
 pub mod recorded;
 pub mod report;
 pub mod scene;

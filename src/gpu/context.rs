@@ -34,7 +34,7 @@ impl Context {
     /// # Errors
     /// No such adapter, none that can render and copy depth with stencil, or no device.
     pub fn new(wanted: Option<&str>) -> Result<Context, GpuError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        let instance = instance(wgpu::InstanceDescriptor {
             backends: BACKENDS,
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
@@ -113,6 +113,15 @@ impl Context {
     fn stop_debugger_capture(&self) {
         unsafe { self.device.stop_graphics_debugger_capture() }
     }
+}
+
+/// wgpu's own; or one that is recorded, where the tests of that ask for it.
+fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
+    #[cfg(feature = "record")]
+    if std::env::var_os("STENCILSCOPE_TEST_WRAPPED").is_some() {
+        return crate::record::instance(descriptor);
+    }
+    wgpu::Instance::new(descriptor)
 }
 
 fn choose(adapters: Vec<Adapter>, wanted: Option<&str>) -> Result<Adapter, GpuError> {

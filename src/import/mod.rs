@@ -15,14 +15,14 @@ mod document;
 mod error;
 mod geometry;
 mod list;
-mod pictures;
+pub(crate) mod pictures;
 mod process;
 mod raw;
 mod read;
 mod shader;
 mod shipped;
 mod states;
-mod unroll;
+pub(crate) mod unroll;
 
 pub use convert::{Converted, RECORDED, convert};
 pub use error::ImportError;

@@ -16,6 +16,8 @@ named_enum! {
         OpenGl = "OpenGL",
         /// OpenGL ES.
         Gles = "OpenGLES",
+        /// wgpu, recorded from within the program.
+        Wgpu = "wgpu",
     }
 }
 

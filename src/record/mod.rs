@@ -1,0 +1,63 @@
+//! Frames of any wgpu program, with one line changed: `record::instance(descriptor)` in place of `wgpu::Instance::new`.
+//!
+//! ```text
+//! program ─► wrap/        hands every call to the real wgpu; keeps a list beside while a frame is recorded
+//!              └► recorder.rs   which frame that is, and what becomes of it
+//!                   └► replay.rs     does the list draw by draw, and reads what each draw left
+//!                        ├ probe.rs      where a draw's vertices land: its shader, rewritten by rewrite.rs, writes it down
+//!                        ├ states.rs     wgpu's states as a `RawFrame` has them
+//!                        └ readback.rs   textures and buffers as bytes
+//!                   └► RawFrame ─► import::convert ─► capture folder
+//! ```
+//!
+//! Which frame is recorded says [`next_frame`], or the environment: `STENCILSCOPE_RECORD=DIR` for the first frame,
+//! `STENCILSCOPE_RECORD=DIR:N` for the one after `N` others. [`frame`] records what a closure encodes, as tests do. A
+//! frame ends where it is shown; in a program without a surface, with each submission that draws.
+//!
+//! While it records, a program draws what it draws anyway. It may do a little more than it asked for: copy from its
+//! targets, bind one more group. Acceleration structures and mesh shaders are hidden from it.
+
+mod command;
+mod error;
+mod probe;
+mod readback;
+mod recorder;
+mod replay;
+mod rewrite;
+mod states;
+mod wrap;
+
+pub use error::RecordError;
+pub use recorder::{Recorded, next_frame};
+
+use std::path::Path;
+
+/// The variable of the environment that asks for a frame.
+pub const VARIABLE: &str = "STENCILSCOPE_RECORD";
+
+/// An instance of wgpu whose frames can be recorded.
+#[must_use]
+pub fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
+    recorder::ask_environment();
+    wgpu::Instance::from_custom(<wrap::Instance as wgpu::custom::InstanceInterface>::new(descriptor))
+}
+
+/// Records what `draw` encodes, and writes it to `folder` as a capture folder. What else is submitted meanwhile is
+/// part of it.
+///
+/// # Errors
+/// The device is of another instance than [`instance`] makes; the frame has no depth buffer to follow or draws nothing
+/// that can be followed; the folder can't be written.
+pub fn frame(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    folder: &Path,
+    draw: impl FnOnce(&mut wgpu::CommandEncoder),
+) -> Result<Recorded, RecordError> {
+    let shared = &device.as_custom::<wrap::Device>().ok_or(RecordError::NotWrapped)?.shared;
+    shared.recorder.begin(folder.to_owned())?;
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("recorded frame") });
+    draw(&mut encoder);
+    queue.submit([encoder.finish()]);
+    shared.recorder.end(shared)
+}

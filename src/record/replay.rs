@@ -1,0 +1,305 @@
+//! A recorded frame done draw by draw, with what each draw left read back.
+
+use super::command::{Command, ComputeCommand, DrawCommand, PassCommand, Targets, Timestamps};
+use super::probe::{Gpu, Landed, Probes};
+use super::states::{self, PassState};
+use super::wrap::{Described, Finished, Part};
+use super::{readback, rewrite};
+use crate::import::{
+    Api, RawContents, RawDraw, RawEvent, RawFragment, RawFrame, RawKind, RawMay, RawTarget, RawTexture, pictures,
+};
+use std::collections::{BTreeMap, HashMap};
+
+/// A frame in the making.
+#[derive(Debug, Default)]
+pub struct Replay {
+    textures: HashMap<wgpu::Texture, usize>,
+    raw: Vec<RawTexture>,
+    of_target: BTreeMap<RawTarget, wgpu::Texture>,
+    before: Vec<(RawTarget, RawContents)>,
+    /// What each target held last.
+    held: BTreeMap<RawTarget, RawContents>,
+    events: Vec<RawEvent>,
+    groups: Vec<String>,
+    limits: Vec<String>,
+    probes: Probes,
+    draws: usize,
+}
+
+/// What a pass draws into.
+#[derive(Debug, Clone, Default)]
+struct Into {
+    colors: Vec<RawTarget>,
+    depth: Option<RawTarget>,
+}
+
+impl Replay {
+    /// Has anything been drawn yet?
+    pub fn has_drawn(&self) -> bool {
+        self.draws > 0
+    }
+
+    /// Does what encoders have made, in order.
+    pub fn submit(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        buffers: Vec<Finished>,
+    ) -> wgpu::SubmissionIndex {
+        for Finished { inner, list } in buffers {
+            let Some(list) = list else {
+                self.limit("some commands were encoded before the frame began, and are not recorded");
+                queue.submit([inner]);
+                continue;
+            };
+            // An encoder with an error does nothing: the program is told so by submitting it.
+            let scopes = FILTERS.map(|filter| device.push_error_scope(filter));
+            self.play(Gpu { device, queue }, list.take());
+            let errors = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).count();
+            if errors > 0 {
+                self.limit("wgpu refused some of its commands");
+                queue.submit([inner]);
+            }
+        }
+        queue.submit([])
+    }
+
+    fn limit(&mut self, limit: &str) {
+        if !self.limits.iter().any(|known| known == limit) {
+            self.limits.push(limit.to_owned());
+        }
+    }
+
+    fn play(&mut self, gpu: Gpu<'_>, commands: Vec<Command>) {
+        let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut pending = encoder();
+        let depth = self.groups.len();
+        for command in commands {
+            match command {
+                Command::Encode(command) => command(&mut pending),
+                Command::PushGroup(name) => self.groups.push(name),
+                Command::PopGroup => drop(self.groups.pop()),
+                Command::ComputePass { label, timestamps, commands } => {
+                    compute(&mut pending, label.as_deref(), timestamps.as_ref(), &commands);
+                    self.event(label.unwrap_or_else(|| "compute pass".into()), RawKind::Compute, &Into::default());
+                }
+                Command::RenderPass(targets, commands) => {
+                    gpu.queue.submit([std::mem::replace(&mut pending, encoder()).finish()]);
+                    self.pass(gpu, &targets, &commands);
+                }
+            }
+        }
+        self.groups.truncate(depth);
+        gpu.queue.submit([pending.finish()]);
+    }
+
+    /// A pass in as many parts as it has draws.
+    fn pass(&mut self, gpu: Gpu<'_>, targets: &Targets, commands: &[PassCommand]) {
+        let into = self.targets(gpu, targets);
+        let name = targets.label.clone().unwrap_or_else(|| "render pass".to_owned());
+        let depth = self.groups.len();
+        self.groups.push(name.clone());
+        // What spans draws can't be taken apart.
+        let is_whole = targets.occlusion.is_some() || commands.iter().any(PassCommand::spans);
+        if is_whole {
+            self.limit("passes with queries are not taken apart: what their draws leave one by one is not known");
+        }
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        if !is_whole {
+            drop(targets.begin(&mut encoder, true, false));
+            gpu.queue.submit([encoder.finish()]);
+            self.after(gpu, name.clone(), RawKind::BeginPass, &into);
+            encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        }
+        let mut state = PassState::default();
+        let mut between: Vec<&PassCommand> = Vec::new();
+        for command in commands {
+            match command {
+                PassCommand::PushGroup(name) => self.groups.push(name.clone()),
+                PassCommand::PopGroup => drop(self.groups.pop()),
+                PassCommand::Draw(draw) => {
+                    let raw = self.draw(gpu, targets, &state, draw);
+                    if !is_whole {
+                        let mut pass = targets.begin(&mut encoder, false, false);
+                        state.commands().chain(between.drain(..)).for_each(|command| command.encode(&mut pass));
+                        draw.encode(&mut pass);
+                        drop(pass);
+                        gpu.queue.submit([encoder.finish()]);
+                        encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                    }
+                    let label = state.pipeline().map_or("", |pipeline| &pipeline.label);
+                    let name =
+                        if label.is_empty() { draw.name().to_owned() } else { format!("{}({label})", draw.name()) };
+                    self.draws += 1;
+                    match is_whole {
+                        true => self.event(name, RawKind::Draw(Box::new(raw)), &into),
+                        false => self.after(gpu, name, RawKind::Draw(Box::new(raw)), &into),
+                    }
+                }
+                command => {
+                    if !state.note(command) {
+                        between.push(command);
+                    }
+                }
+            }
+        }
+        let mut pass = targets.begin(&mut encoder, is_whole, true);
+        if is_whole {
+            // Groups are balanced here, as all of the pass is.
+            commands.iter().for_each(|command| command.encode(&mut pass));
+        } else {
+            between.into_iter().for_each(|command| command.encode(&mut pass));
+        }
+        drop(pass);
+        gpu.queue.submit([encoder.finish()]);
+        self.after(gpu, name, RawKind::EndPass, &into);
+        self.groups.truncate(depth);
+    }
+
+    /// The targets of a pass; what they hold is read where they are met for the first time.
+    fn targets(&mut self, gpu: Gpu<'_>, targets: &Targets) -> Into {
+        let colors = targets.colors.iter().flatten();
+        let colors: Vec<RawTarget> = colors.map(|color| self.target(gpu, color.view.texture(), color.part)).collect();
+        let depth = targets.depth_stencil.as_ref();
+        Into { colors, depth: depth.map(|depth| self.target(gpu, depth.view.texture(), depth.part)) }
+    }
+
+    fn target(&mut self, gpu: Gpu<'_>, texture: &wgpu::Texture, Part { mip, layer }: Part) -> RawTarget {
+        let index = *self.textures.entry(texture.clone()).or_insert_with(|| {
+            self.raw.push(RawTexture {
+                name: format!("texture {}", self.raw.len() + 1),
+                format: readback::format(texture.format()),
+                size: [texture.width(), texture.height()],
+                layers: texture.depth_or_array_layers(),
+                samples: texture.sample_count(),
+            });
+            self.raw.len() - 1
+        });
+        let target = RawTarget { texture: index, mip, layer };
+        if !self.of_target.contains_key(&target) {
+            self.of_target.insert(target, texture.clone());
+            let contents = self.read(gpu, target);
+            self.before.push((target, contents));
+        }
+        target
+    }
+
+    /// What a target holds; rows that stay are in the memory of what it held before.
+    fn read(&mut self, gpu: Gpu<'_>, target: RawTarget) -> RawContents {
+        let Some(texture) = self.of_target.get(&target) else { return RawContents::default() };
+        let format = texture.format();
+        let mut contents = readback::contents(gpu.device, gpu.queue, texture, target.mip, target.layer);
+        if format.has_depth_aspect() && contents.depth.is_none() {
+            self.limit(&format!("what {format:?} holds can't be copied, so that its depths are not known"));
+        }
+        let held = self.held.entry(target).or_default();
+        pictures::share(&mut contents, held);
+        held.clone_from(&contents);
+        contents
+    }
+
+    fn event(&mut self, name: String, kind: RawKind, into: &Into) {
+        let id = self.events.len() as u32 + 1;
+        let (groups, after) = (self.groups.clone(), RawContents::default());
+        let (color_targets, depth_target) = (into.colors.clone(), into.depth);
+        self.events.push(RawEvent { id, name, groups, kind, color_targets, depth_target, after });
+    }
+
+    /// An event, with what it left.
+    fn after(&mut self, gpu: Gpu<'_>, name: String, kind: RawKind, into: &Into) {
+        self.event(name, kind, into);
+        let color = into.colors.first().and_then(|target| self.read(gpu, *target).color);
+        let of_depth = into.depth.map(|target| self.read(gpu, target)).unwrap_or_default();
+        if let Some(event) = self.events.last_mut() {
+            event.after = RawContents { color, ..of_depth };
+        }
+    }
+
+    fn draw(&mut self, gpu: Gpu<'_>, targets: &Targets, state: &PassState, draw: &DrawCommand) -> RawDraw {
+        let landed = self.probes.landed(gpu, state, draw);
+        let Landed { positions, triangles, instances } = landed.unwrap_or_else(|why| {
+            self.limit(&format!("a draw has states alone: {why}"));
+            Landed::default()
+        });
+        let size = |view: &wgpu::TextureView, part: Part| {
+            [view.texture().width(), view.texture().height()].map(|side| (side >> part.mip).max(1))
+        };
+        let of_color = targets.colors.iter().flatten().next().map(|color| size(&color.view, color.part));
+        let of_depth = targets.depth_stencil.as_ref().map(|depth| size(&depth.view, depth.part));
+        let view = state.view(of_depth.or(of_color).unwrap_or([1, 1]));
+        let described = state.pipeline().cloned();
+        let described = described.as_deref();
+        RawDraw {
+            topology: described.map_or(crate::import::RawTopology::Other, states::topology),
+            positions,
+            triangles,
+            instances,
+            view,
+            shape: described.map_or_else(no_shape, states::shape),
+            depth: described.and_then(states::depth),
+            stencil: described.and_then(|described| state.stencil(described)),
+            blend: described.and_then(states::blend),
+            fragment: described.map_or(UNKNOWN, fragment),
+            samples: described.map_or(1, |described| described.multisample.count),
+        }
+    }
+
+    /// All of it, as an import has it.
+    pub fn frame(self, adapter: &wgpu::AdapterInfo) -> RawFrame {
+        let program = std::env::current_exe().ok();
+        let program = program.and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
+        RawFrame {
+            api: Api::Wgpu,
+            adapter: adapter.name.clone(),
+            recorder: format!("stencilscope {}", env!("CARGO_PKG_VERSION")),
+            program,
+            textures: self.raw,
+            before: self.before,
+            events: self.events,
+            limits: self.limits,
+        }
+    }
+}
+
+const FILTERS: [wgpu::ErrorFilter; 3] =
+    [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
+
+const UNKNOWN: RawFragment = RawFragment { may_discard: RawMay::Unknown, writes_depth: RawMay::Unknown };
+
+/// Of a draw without a pipeline, which wgpu refuses.
+fn no_shape() -> crate::import::RawShape {
+    crate::import::RawShape {
+        cull: crate::import::RawCull::Both,
+        front_is_counter_clockwise: true,
+        fill: crate::import::RawFill::Solid,
+        bias: [0.0; 3],
+        depth_clamp: false,
+        depth_clip: true,
+        clip_planes: false,
+    }
+}
+
+/// What a pipeline's fragment shader may do.
+fn fragment(described: &Described) -> RawFragment {
+    let Some(stage) = &described.fragment else {
+        return RawFragment { may_discard: RawMay::No, writes_depth: RawMay::No };
+    };
+    let module = stage.source.module();
+    let Some(found) = module.and_then(|module| rewrite::fragment(&module, stage.entry_point.as_deref())) else {
+        return UNKNOWN;
+    };
+    let may = |does: bool| if does { RawMay::Yes } else { RawMay::No };
+    let discards = found.discards || described.multisample.alpha_to_coverage_enabled;
+    RawFragment { may_discard: may(discards), writes_depth: may(found.writes_depth) }
+}
+
+fn compute(
+    encoder: &mut wgpu::CommandEncoder,
+    label: Option<&str>,
+    timestamps: Option<&Timestamps>,
+    commands: &[ComputeCommand],
+) {
+    let timestamp_writes = timestamps.map(Timestamps::of_compute);
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
+    commands.iter().for_each(|ComputeCommand(command)| command(&mut pass));
+}

@@ -1,0 +1,222 @@
+//! wgpu's states as a raw frame has them.
+
+use super::command::PassCommand;
+use super::wrap::Described;
+use crate::import::{
+    RawBlend, RawBlendEquation, RawCompare, RawCull, RawDepth, RawFill, RawShape, RawStencilFace, RawStencilOperation,
+    RawTopology, RawView,
+};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use wgpu::{BlendFactor, BlendOperation, CompareFunction, StencilOperation};
+
+/// What a pass has been told and still holds.
+#[derive(Debug, Clone, Default)]
+pub struct PassState {
+    held: BTreeMap<Slot, PassCommand>,
+}
+
+/// What a state is of: the kind, and which of its kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Slot {
+    Pipeline,
+    BindGroup(u32),
+    IndexBuffer,
+    VertexBuffer(u32),
+    Immediates(u32),
+    BlendConstant,
+    Scissor,
+    Viewport,
+    StencilReference,
+}
+
+fn slot(command: &PassCommand) -> Option<Slot> {
+    Some(match command {
+        PassCommand::Pipeline { .. } => Slot::Pipeline,
+        PassCommand::BindGroup { index, .. } => Slot::BindGroup(*index),
+        PassCommand::IndexBuffer { .. } => Slot::IndexBuffer,
+        PassCommand::VertexBuffer { slot, .. } => Slot::VertexBuffer(*slot),
+        PassCommand::Immediates { offset, .. } => Slot::Immediates(*offset),
+        PassCommand::BlendConstant(_) => Slot::BlendConstant,
+        PassCommand::Scissor(_) => Slot::Scissor,
+        PassCommand::Viewport { .. } => Slot::Viewport,
+        PassCommand::StencilReference(_) => Slot::StencilReference,
+        _ => return None,
+    })
+}
+
+impl PassState {
+    /// Notes a command; is it a state?
+    pub fn note(&mut self, command: &PassCommand) -> bool {
+        let slot = slot(command);
+        if let Some(slot) = slot {
+            self.held.insert(slot, command.clone());
+        }
+        slot.is_some()
+    }
+
+    /// All of it, the pipeline first.
+    pub fn commands(&self) -> impl Iterator<Item = &PassCommand> {
+        self.held.values()
+    }
+
+    pub fn pipeline(&self) -> Option<&Arc<Described>> {
+        match self.held.get(&Slot::Pipeline) {
+            Some(PassCommand::Pipeline { described, .. }) => Some(described),
+            _ => None,
+        }
+    }
+
+    /// The index buffer, its format, where it begins.
+    pub fn index_buffer(&self) -> Option<(&wgpu::Buffer, wgpu::IndexFormat, u64)> {
+        match self.held.get(&Slot::IndexBuffer) {
+            Some(PassCommand::IndexBuffer { buffer, format, offset, .. }) => Some((buffer, *format, *offset)),
+            _ => None,
+        }
+    }
+
+    fn reference(&self) -> u8 {
+        match self.held.get(&Slot::StencilReference) {
+            Some(PassCommand::StencilReference(reference)) => *reference as u8,
+            _ => 0,
+        }
+    }
+
+    /// Where clip space lands in a target of that size.
+    pub fn view(&self, [width, height]: [u32; 2]) -> RawView {
+        let (viewport, depth_range) = match self.held.get(&Slot::Viewport) {
+            Some(PassCommand::Viewport { area, depth }) => (*area, *depth),
+            _ => ([0.0, 0.0, width as f32, height as f32], [0.0, 1.0]),
+        };
+        let scissor = match self.held.get(&Slot::Scissor) {
+            Some(PassCommand::Scissor(area)) => Some(area.map(|value| value.min(i32::MAX as u32) as i32)),
+            _ => None,
+        };
+        RawView { viewport, depth_range, scissor, y_up: true, z_from_minus_w: false }
+    }
+
+    /// The stencil test, where it does something.
+    pub fn stencil(&self, pipeline: &Described) -> Option<[RawStencilFace; 2]> {
+        let state = &pipeline.depth_stencil.as_ref()?.stencil;
+        let face = |face: &wgpu::StencilFaceState| RawStencilFace {
+            compare: compare(face.compare),
+            reference: self.reference(),
+            compare_mask: state.read_mask as u8,
+            write_mask: state.write_mask as u8,
+            fail: operation(face.fail_op),
+            depth_fail: operation(face.depth_fail_op),
+            pass: operation(face.pass_op),
+        };
+        state.is_enabled().then(|| [face(&state.front), face(&state.back)])
+    }
+}
+
+/// Which triangles make fragments.
+pub fn shape(pipeline: &Described) -> RawShape {
+    let primitive = &pipeline.primitive;
+    let bias = pipeline.depth_stencil.as_ref().map(|state| state.bias).unwrap_or_default();
+    RawShape {
+        cull: match primitive.cull_mode {
+            None => RawCull::None,
+            Some(wgpu::Face::Front) => RawCull::Front,
+            Some(wgpu::Face::Back) => RawCull::Back,
+        },
+        front_is_counter_clockwise: primitive.front_face == wgpu::FrontFace::Ccw,
+        fill: match primitive.polygon_mode {
+            wgpu::PolygonMode::Fill => RawFill::Solid,
+            wgpu::PolygonMode::Line => RawFill::Lines,
+            wgpu::PolygonMode::Point => RawFill::Points,
+        },
+        bias: [bias.constant as f32, bias.slope_scale, bias.clamp],
+        depth_clamp: primitive.unclipped_depth,
+        depth_clip: !primitive.unclipped_depth,
+        clip_planes: false,
+    }
+}
+
+pub fn topology(pipeline: &Described) -> RawTopology {
+    match pipeline.primitive.topology {
+        wgpu::PrimitiveTopology::PointList => RawTopology::Points,
+        wgpu::PrimitiveTopology::LineList | wgpu::PrimitiveTopology::LineStrip => RawTopology::Lines,
+        wgpu::PrimitiveTopology::TriangleList => RawTopology::TriangleList,
+        wgpu::PrimitiveTopology::TriangleStrip => RawTopology::TriangleStrip,
+    }
+}
+
+/// The depth test.
+pub fn depth(pipeline: &Described) -> Option<RawDepth> {
+    let state = pipeline.depth_stencil.as_ref().filter(|state| state.format.has_depth_aspect())?;
+    let (compare_with, write) = (state.depth_compare?, state.depth_write_enabled.unwrap_or(false));
+    Some(RawDepth { compare: compare(compare_with), write, bounds: false })
+}
+
+/// How the first colour target is written.
+pub fn blend(pipeline: &Described) -> Option<RawBlend> {
+    let target = pipeline.targets.first()?.as_ref()?;
+    let write = [wgpu::ColorWrites::RED, wgpu::ColorWrites::GREEN, wgpu::ColorWrites::BLUE, wgpu::ColorWrites::ALPHA];
+    Some(RawBlend {
+        equations: target.blend.map(|blend| [equation(blend.color), equation(blend.alpha)]),
+        write: write.map(|part| target.write_mask.contains(part)),
+    })
+}
+
+fn equation(of: wgpu::BlendComponent) -> RawBlendEquation {
+    let operation = match of.operation {
+        BlendOperation::Add => "Add",
+        BlendOperation::Subtract => "Subtract",
+        BlendOperation::ReverseSubtract => "ReversedSubtract",
+        BlendOperation::Min => "Minimum",
+        BlendOperation::Max => "Maximum",
+    };
+    let [source, target] = [of.src_factor, of.dst_factor].map(|factor| factor_name(factor).to_owned());
+    RawBlendEquation { source, target, operation: operation.to_owned() }
+}
+
+/// RenderDoc's names, as imports have them.
+fn factor_name(factor: BlendFactor) -> &'static str {
+    match factor {
+        BlendFactor::Zero => "Zero",
+        BlendFactor::One => "One",
+        BlendFactor::Src => "SrcCol",
+        BlendFactor::OneMinusSrc => "InvSrcCol",
+        BlendFactor::SrcAlpha => "SrcAlpha",
+        BlendFactor::OneMinusSrcAlpha => "InvSrcAlpha",
+        BlendFactor::Dst => "DstCol",
+        BlendFactor::OneMinusDst => "InvDstCol",
+        BlendFactor::DstAlpha => "DstAlpha",
+        BlendFactor::OneMinusDstAlpha => "InvDstAlpha",
+        BlendFactor::SrcAlphaSaturated => "SrcAlphaSat",
+        BlendFactor::Constant => "FactorRGB",
+        BlendFactor::OneMinusConstant => "InvFactorRGB",
+        BlendFactor::Src1 => "Src1Col",
+        BlendFactor::OneMinusSrc1 => "InvSrc1Col",
+        BlendFactor::Src1Alpha => "Src1Alpha",
+        BlendFactor::OneMinusSrc1Alpha => "InvSrc1Alpha",
+    }
+}
+
+fn compare(of: CompareFunction) -> RawCompare {
+    match of {
+        CompareFunction::Never => RawCompare::Never,
+        CompareFunction::Less => RawCompare::Less,
+        CompareFunction::LessEqual => RawCompare::LessEqual,
+        CompareFunction::Equal => RawCompare::Equal,
+        CompareFunction::GreaterEqual => RawCompare::GreaterEqual,
+        CompareFunction::Greater => RawCompare::Greater,
+        CompareFunction::NotEqual => RawCompare::NotEqual,
+        CompareFunction::Always => RawCompare::Always,
+    }
+}
+
+fn operation(of: StencilOperation) -> RawStencilOperation {
+    match of {
+        StencilOperation::Keep => RawStencilOperation::Keep,
+        StencilOperation::Zero => RawStencilOperation::Zero,
+        StencilOperation::Replace => RawStencilOperation::Replace,
+        StencilOperation::IncrementClamp => RawStencilOperation::IncrementClamp,
+        StencilOperation::DecrementClamp => RawStencilOperation::DecrementClamp,
+        StencilOperation::Invert => RawStencilOperation::Invert,
+        StencilOperation::IncrementWrap => RawStencilOperation::IncrementWrap,
+        StencilOperation::DecrementWrap => RawStencilOperation::DecrementWrap,
+    }
+}

@@ -1,0 +1,85 @@
+use std::ops::Range;
+use wgpu::custom::{BufferInterface, BufferMapCallback, BufferMappedRangeInterface, DispatchBufferMappedRange};
+
+#[derive(Debug)]
+pub struct Buffer {
+    pub inner: wgpu::Buffer,
+}
+
+/// What a buffer is made with, so that a recorded draw's indices and counts can be read.
+pub fn usage(asked: wgpu::BufferUsages) -> wgpu::BufferUsages {
+    let is_read = asked.intersects(wgpu::BufferUsages::INDEX | wgpu::BufferUsages::INDIRECT);
+    // Mappable buffers take a copy's part only in their own direction.
+    let can_be_copied = !asked.contains(wgpu::BufferUsages::MAP_READ);
+    if is_read && can_be_copied { asked | wgpu::BufferUsages::COPY_SRC } else { asked }
+}
+
+impl BufferInterface for Buffer {
+    fn map_async(&self, mode: wgpu::MapMode, range: Range<u64>, callback: BufferMapCallback) {
+        self.inner.map_async(mode, range, callback);
+    }
+
+    fn get_mapped_range(&self, range: Range<u64>) -> Result<DispatchBufferMappedRange, wgpu::MapRangeError> {
+        // Whether it is for reading or writing is told later: what may go wrong does so now.
+        let view = self.inner.get_mapped_range(range.clone())?;
+        Ok(DispatchBufferMappedRange::custom(MappedRange { buffer: self.inner.clone(), range, view: View::Read(view) }))
+    }
+
+    fn unmap(&self) {
+        self.inner.unmap();
+    }
+
+    fn destroy(&self) {
+        self.inner.destroy();
+    }
+}
+
+#[derive(Debug)]
+struct MappedRange {
+    buffer: wgpu::Buffer,
+    range: Range<u64>,
+    view: View,
+}
+
+#[derive(Debug)]
+enum View {
+    Read(wgpu::BufferView),
+    Write(wgpu::BufferViewMut),
+    /// The buffer was taken away in between: what is written goes nowhere.
+    Gone(Vec<u8>),
+}
+
+impl MappedRange {
+    fn length(&self) -> usize {
+        (self.range.end - self.range.start) as usize
+    }
+}
+
+#[expect(unsafe_code, reason = "wgpu's interface: it reads only read mappings, and writes only write mappings")]
+impl BufferMappedRangeInterface for MappedRange {
+    fn len(&self) -> usize {
+        self.length()
+    }
+
+    unsafe fn read_slice(&self) -> &[u8] {
+        match &self.view {
+            View::Read(view) => view,
+            View::Write(_) => &[],
+            View::Gone(bytes) => bytes,
+        }
+    }
+
+    unsafe fn write_slice(&mut self) -> wgpu::WriteOnly<'_, [u8]> {
+        if matches!(self.view, View::Read(_)) {
+            // One view at a time may be of these bytes: the first goes before the second comes.
+            self.view = View::Gone(Vec::new());
+            let view = self.buffer.get_mapped_range_mut(self.range.clone());
+            self.view = view.map_or_else(|_| View::Gone(vec![0; self.length()]), View::Write);
+        }
+        match &mut self.view {
+            View::Write(view) => view.slice(..),
+            View::Gone(bytes) => wgpu::WriteOnly::from_mut(&mut bytes[..]),
+            View::Read(_) => wgpu::WriteOnly::from_mut(&mut []),
+        }
+    }
+}

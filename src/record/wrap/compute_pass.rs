@@ -1,0 +1,142 @@
+use super::Real;
+use crate::record::command::{Command, CommandList, ComputeCommand, Timestamps};
+use wgpu::custom::{
+    ComputePassInterface, DispatchBindGroup, DispatchBuffer, DispatchComputePipeline, DispatchQuerySet,
+    DispatchTextureView,
+};
+
+#[derive(Debug)]
+pub struct ComputePass {
+    /// `None` where the encoder had been finished.
+    inner: Option<wgpu::ComputePass<'static>>,
+    kept: Option<Kept>,
+}
+
+/// What is written beside.
+#[derive(Debug)]
+struct Kept {
+    list: CommandList,
+    label: Option<String>,
+    timestamps: Option<Timestamps>,
+    commands: Vec<ComputeCommand>,
+}
+
+impl ComputePass {
+    pub fn begin(
+        encoder: &mut Option<wgpu::CommandEncoder>,
+        list: Option<&CommandList>,
+        descriptor: &wgpu::ComputePassDescriptor<'_>,
+    ) -> ComputePass {
+        let timestamps = descriptor.timestamp_writes.as_ref().map(|writes| Timestamps {
+            queries: writes.query_set.real().clone(),
+            begin: writes.beginning_of_pass_write_index,
+            end: writes.end_of_pass_write_index,
+        });
+        let inner = encoder.as_mut().map(|encoder| {
+            let timestamp_writes = timestamps.as_ref().map(Timestamps::of_compute);
+            let descriptor = wgpu::ComputePassDescriptor { label: descriptor.label, timestamp_writes };
+            encoder.begin_compute_pass(&descriptor).forget_lifetime()
+        });
+        let kept = list.map(|list| Kept {
+            list: list.clone(),
+            label: descriptor.label.map(str::to_owned),
+            timestamps,
+            commands: Vec::new(),
+        });
+        ComputePass { inner, kept }
+    }
+
+    fn call(&mut self, command: impl Fn(&mut wgpu::ComputePass<'_>) + Send + Sync + 'static) {
+        if let Some(pass) = &mut self.inner {
+            command(pass);
+        }
+        if let Some(kept) = &mut self.kept {
+            kept.commands.push(ComputeCommand(Box::new(command)));
+        }
+    }
+}
+
+impl Drop for ComputePass {
+    fn drop(&mut self) {
+        // The real pass ends here.
+        self.inner = None;
+        if let Some(Kept { list, label, timestamps, commands }) = self.kept.take() {
+            list.push(Command::ComputePass { label, timestamps, commands });
+        }
+    }
+}
+
+impl ComputePassInterface for ComputePass {
+    fn set_pipeline(&mut self, pipeline: &DispatchComputePipeline) {
+        let pipeline = pipeline.real().clone();
+        self.call(move |pass| pass.set_pipeline(&pipeline));
+    }
+
+    fn set_bind_group(&mut self, index: u32, group: Option<&DispatchBindGroup>, offsets: &[u32]) {
+        let (group, offsets) = (group.map(|group| group.real().clone()), offsets.to_vec());
+        self.call(move |pass| pass.set_bind_group(index, group.as_ref(), &offsets));
+    }
+
+    fn set_immediates(&mut self, offset: u32, data: &[u8]) {
+        let data = data.to_vec();
+        self.call(move |pass| pass.set_immediates(offset, &data));
+    }
+
+    fn insert_debug_marker(&mut self, label: &str) {
+        let label = label.to_owned();
+        self.call(move |pass| pass.insert_debug_marker(&label));
+    }
+
+    fn push_debug_group(&mut self, label: &str) {
+        let label = label.to_owned();
+        self.call(move |pass| pass.push_debug_group(&label));
+    }
+
+    fn pop_debug_group(&mut self) {
+        self.call(|pass| pass.pop_debug_group());
+    }
+
+    fn write_timestamp(&mut self, queries: &DispatchQuerySet, index: u32) {
+        let queries = queries.real().clone();
+        self.call(move |pass| pass.write_timestamp(&queries, index));
+    }
+
+    fn begin_pipeline_statistics_query(&mut self, queries: &DispatchQuerySet, index: u32) {
+        let queries = queries.real().clone();
+        self.call(move |pass| pass.begin_pipeline_statistics_query(&queries, index));
+    }
+
+    fn end_pipeline_statistics_query(&mut self) {
+        self.call(|pass| pass.end_pipeline_statistics_query());
+    }
+
+    fn dispatch_workgroups(&mut self, x: u32, y: u32, z: u32) {
+        self.call(move |pass| pass.dispatch_workgroups(x, y, z));
+    }
+
+    fn dispatch_workgroups_indirect(&mut self, buffer: &DispatchBuffer, offset: u64) {
+        let buffer = buffer.real().clone();
+        self.call(move |pass| pass.dispatch_workgroups_indirect(&buffer, offset));
+    }
+
+    fn transition_resources<'a>(
+        &mut self,
+        buffers: &mut dyn Iterator<Item = wgpu::BufferTransition<&'a DispatchBuffer>>,
+        textures: &mut dyn Iterator<Item = wgpu::TextureTransition<&'a DispatchTextureView>>,
+    ) {
+        let buffers: Vec<(wgpu::Buffer, wgpu::BufferUses)> =
+            buffers.map(|one| (one.buffer.real().clone(), one.state)).collect();
+        let textures: Vec<(wgpu::TextureView, Option<wgpu_types::TextureSelector>, wgpu::TextureUses)> =
+            textures.map(|one| (one.texture.real().clone(), one.selector, one.state)).collect();
+        self.call(move |pass| {
+            pass.transition_resources(
+                buffers.iter().map(|(buffer, state)| wgpu::BufferTransition { buffer, state: *state }),
+                textures.iter().map(|(texture, selector, state)| wgpu::TextureTransition {
+                    texture,
+                    selector: selector.clone(),
+                    state: *state,
+                }),
+            );
+        });
+    }
+}

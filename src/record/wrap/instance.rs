@@ -1,0 +1,57 @@
+use super::adapter::Adapter;
+use super::surface::Surface;
+use super::{Real, device::Frames};
+use std::future::ready;
+use std::pin::Pin;
+use std::sync::Arc;
+use wgpu::custom::{DispatchAdapter, DispatchSurface, EnumerateAdapterFuture, InstanceInterface, RequestAdapterFuture};
+
+#[derive(Debug)]
+pub struct Instance {
+    inner: wgpu::Instance,
+    frames: Arc<Frames>,
+}
+
+impl Instance {
+    fn wrap(&self, inner: wgpu::Adapter) -> DispatchAdapter {
+        DispatchAdapter::custom(Adapter { inner, frames: self.frames.clone() })
+    }
+}
+
+impl InstanceInterface for Instance {
+    fn new(descriptor: wgpu::InstanceDescriptor) -> Self {
+        Instance { inner: wgpu::Instance::new(descriptor), frames: Arc::default() }
+    }
+
+    #[expect(unsafe_code, reason = "the program promises what wgpu asks for, and it is handed on")]
+    unsafe fn create_surface(
+        &self,
+        target: wgpu::SurfaceTargetUnsafe,
+    ) -> Result<DispatchSurface, wgpu::CreateSurfaceError> {
+        let inner = unsafe { self.inner.create_surface_unsafe(target) }?;
+        self.frames.are_presented();
+        Ok(DispatchSurface::custom(Surface { inner }))
+    }
+
+    fn request_adapter(&self, options: &wgpu::RequestAdapterOptions<'_, '_>) -> Pin<Box<dyn RequestAdapterFuture>> {
+        let compatible_surface = options.compatible_surface.map(|surface| surface.real() as &wgpu::Surface<'_>);
+        let options = wgpu::RequestAdapterOptions { compatible_surface, ..options.clone() };
+        // Native backends answer at once.
+        let found = pollster::block_on(self.inner.request_adapter(&options));
+        Box::pin(ready(found.map(|adapter| self.wrap(adapter))))
+    }
+
+    fn poll_all_devices(&self, force_wait: bool) -> bool {
+        self.inner.poll_all(force_wait)
+    }
+
+    fn wgsl_language_features(&self) -> wgpu::WgslLanguageFeatures {
+        self.inner.wgsl_language_features()
+    }
+
+    fn enumerate_adapters(&self, backends: wgpu::Backends) -> Pin<Box<dyn EnumerateAdapterFuture>> {
+        let found = pollster::block_on(self.inner.enumerate_adapters(backends));
+        let wrapped: Vec<DispatchAdapter> = found.into_iter().map(|adapter| self.wrap(adapter)).collect();
+        Box::pin(ready(wrapped))
+    }
+}

@@ -1,0 +1,119 @@
+//! A backend of wgpu that holds the real objects and hands every call on: one file an interface, as `wgpu::custom` has them.
+//!
+//! What is not a plain forward:
+//! - targets can be copied from and sampled, index and indirect buffers can be copied from (`texture.rs`, `buffer.rs`);
+//! - a device has one more bind group and storage buffer than was asked for, where the adapter has them (`adapter.rs`);
+//! - pipelines, bind groups and bundles keep what they were made from;
+//! - while a frame is recorded, an encoder writes a list beside what it encodes (`encoder.rs`), and the queue plays the list.
+
+mod adapter;
+mod binding;
+mod buffer;
+mod bundle;
+mod compute_pass;
+mod device;
+mod encoder;
+mod instance;
+mod pipeline;
+mod query;
+mod queue;
+mod ray_tracing;
+mod render_pass;
+mod shader;
+mod surface;
+mod texture;
+
+pub(super) use binding::{BindGroup, Bound, real_group};
+pub(super) use device::{Device, Shared};
+pub(super) use encoder::Finished;
+pub(super) use instance::Instance;
+pub(super) use pipeline::{Described, RenderPipeline};
+use shader::ShaderModule;
+pub(super) use texture::Part;
+
+use wgpu::custom::{
+    DispatchAdapter, DispatchBindGroup, DispatchBlas, DispatchBuffer, DispatchComputePipeline, DispatchDevice,
+    DispatchQuerySet, DispatchRenderBundle, DispatchRenderPipeline, DispatchSurface, DispatchTexture,
+    DispatchTextureView,
+};
+
+/// The real object within one that the program holds.
+pub(super) trait Real {
+    type Object;
+
+    /// # Panics
+    /// The object is of an instance that is not recorded: wgpu's own backends can't mix those either.
+    fn real(&self) -> &Self::Object;
+}
+
+const FOREIGN: &str = "an object of another instance than the one that is recorded";
+
+macro_rules! real {
+    ($($held:ty: $wrap:ty => $real:ty;)*) => { $(
+        impl Real for $held {
+            type Object = $real;
+
+            fn real(&self) -> &$real {
+                &self.as_custom::<$wrap>().expect(FOREIGN).inner
+            }
+        }
+    )* };
+}
+
+real! {
+    wgpu::BindGroup: BindGroup => wgpu::BindGroup;
+    wgpu::BindGroupLayout: binding::BindGroupLayout => wgpu::BindGroupLayout;
+    wgpu::Buffer: buffer::Buffer => wgpu::Buffer;
+    wgpu::ExternalTexture: texture::ExternalTexture => wgpu::ExternalTexture;
+    wgpu::PipelineCache: pipeline::PipelineCache => wgpu::PipelineCache;
+    wgpu::PipelineLayout: binding::PipelineLayout => wgpu::PipelineLayout;
+    wgpu::QuerySet: query::QuerySet => wgpu::QuerySet;
+    wgpu::Sampler: texture::Sampler => wgpu::Sampler;
+    wgpu::ShaderModule: ShaderModule => wgpu::ShaderModule;
+    wgpu::Surface<'_>: surface::Surface => wgpu::Surface<'static>;
+    wgpu::Texture: texture::Texture => wgpu::Texture;
+    wgpu::TextureView: texture::TextureView => wgpu::TextureView;
+    wgpu::Tlas: ray_tracing::Tlas => wgpu::Tlas;
+    DispatchAdapter: adapter::Adapter => wgpu::Adapter;
+    DispatchBindGroup: BindGroup => wgpu::BindGroup;
+    DispatchBlas: ray_tracing::Blas => wgpu::Blas;
+    DispatchBuffer: buffer::Buffer => wgpu::Buffer;
+    DispatchComputePipeline: pipeline::ComputePipeline => wgpu::ComputePipeline;
+    DispatchDevice: Device => wgpu::Device;
+    DispatchQuerySet: query::QuerySet => wgpu::QuerySet;
+    DispatchRenderPipeline: RenderPipeline => wgpu::RenderPipeline;
+    DispatchSurface: surface::Surface => wgpu::Surface<'static>;
+    DispatchTexture: texture::Texture => wgpu::Texture;
+    DispatchTextureView: texture::TextureView => wgpu::TextureView;
+}
+
+/// What the program's object keeps beside the real one.
+pub(super) fn pipeline_of(pipeline: &DispatchRenderPipeline) -> &RenderPipeline {
+    pipeline.as_custom().expect(FOREIGN)
+}
+
+pub(super) fn bind_group_of(group: &DispatchBindGroup) -> &BindGroup {
+    group.as_custom().expect(FOREIGN)
+}
+
+fn bundle_of(bundle: &DispatchRenderBundle) -> &bundle::RenderBundle {
+    bundle.as_custom().expect(FOREIGN)
+}
+
+fn module_of(module: &wgpu::ShaderModule) -> &ShaderModule {
+    module.as_custom().expect(FOREIGN)
+}
+
+/// A real view, and where it begins.
+pub(super) fn view_of(view: &wgpu::TextureView) -> (wgpu::TextureView, Part) {
+    let texture::TextureView { inner, part } = view.as_custom().expect(FOREIGN);
+    (inner.clone(), *part)
+}
+
+/// The bytes of a buffer from an offset on, of a size or to its end.
+pub(super) fn slice(buffer: &wgpu::Buffer, offset: u64, size: Option<wgpu::BufferSize>) -> wgpu::BufferSlice<'_> {
+    match size {
+        Some(size) => buffer.slice(offset..offset + size.get()),
+        None => buffer.slice(offset..),
+    }
+}

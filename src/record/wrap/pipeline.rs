@@ -1,0 +1,165 @@
+use super::binding::{BindGroupLayout, PipelineLayout};
+use super::shader::Source;
+use super::{FOREIGN, Real, module_of};
+use std::sync::Arc;
+use wgpu::custom::{
+    ComputePipelineInterface, DispatchBindGroupLayout, PipelineCacheInterface, RenderPipelineInterface,
+};
+
+#[derive(Debug)]
+pub struct RenderPipeline {
+    pub inner: wgpu::RenderPipeline,
+    pub described: Arc<Described>,
+}
+
+/// What a render pipeline was made from.
+#[derive(Debug)]
+pub struct Described {
+    pub label: String,
+    /// Layouts of its groups and bytes of immediates; `None` where wgpu made them from the shaders.
+    pub layout: Option<(Vec<Option<wgpu::BindGroupLayout>>, u32)>,
+    pub vertex: Stage,
+    pub buffers: Vec<Option<VertexBuffer>>,
+    pub primitive: wgpu::PrimitiveState,
+    pub depth_stencil: Option<wgpu::DepthStencilState>,
+    pub multisample: wgpu::MultisampleState,
+    pub fragment: Option<Stage>,
+    pub targets: Vec<Option<wgpu::ColorTargetState>>,
+    pub multiview_mask: Option<std::num::NonZeroU32>,
+}
+
+/// A programmable stage.
+#[derive(Debug, Clone)]
+pub struct Stage {
+    pub source: Source,
+    pub entry_point: Option<String>,
+    pub constants: Vec<(String, f64)>,
+}
+
+impl Stage {
+    fn of(
+        module: &wgpu::ShaderModule,
+        entry_point: Option<&str>,
+        options: &wgpu::PipelineCompilationOptions<'_>,
+    ) -> Stage {
+        let constants = options.constants.iter().map(|(name, value)| ((*name).to_owned(), *value));
+        Stage {
+            source: module_of(module).source.clone(),
+            entry_point: entry_point.map(str::to_owned),
+            constants: constants.collect(),
+        }
+    }
+}
+
+/// How a vertex buffer is read.
+#[derive(Debug, Clone)]
+pub struct VertexBuffer {
+    pub stride: u64,
+    pub step: wgpu::VertexStepMode,
+    pub attributes: Vec<wgpu::VertexAttribute>,
+}
+
+impl Described {
+    fn of(descriptor: &wgpu::RenderPipelineDescriptor<'_>) -> Described {
+        let wgpu::RenderPipelineDescriptor { vertex, fragment, .. } = descriptor;
+        let layout = descriptor.layout.map(|layout| layout.as_custom::<PipelineLayout>().expect(FOREIGN));
+        let buffer = |buffer: &wgpu::VertexBufferLayout<'_>| VertexBuffer {
+            stride: buffer.array_stride,
+            step: buffer.step_mode,
+            attributes: buffer.attributes.to_vec(),
+        };
+        Described {
+            label: descriptor.label.unwrap_or_default().to_owned(),
+            layout: layout.map(|layout| (layout.groups.clone(), layout.immediate_size)),
+            vertex: Stage::of(vertex.module, vertex.entry_point, &vertex.compilation_options),
+            buffers: vertex.buffers.iter().map(|one| one.as_ref().map(buffer)).collect(),
+            primitive: descriptor.primitive,
+            depth_stencil: descriptor.depth_stencil.clone(),
+            multisample: descriptor.multisample,
+            fragment: fragment.as_ref().map(|of| Stage::of(of.module, of.entry_point, &of.compilation_options)),
+            targets: fragment.as_ref().map_or_else(Vec::new, |fragment| fragment.targets.to_vec()),
+            multiview_mask: descriptor.multiview_mask,
+        }
+    }
+}
+
+impl RenderPipeline {
+    pub fn new(device: &wgpu::Device, asked: &wgpu::RenderPipelineDescriptor<'_>) -> RenderPipeline {
+        let fragment = asked.fragment.clone();
+        let inner = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            layout: asked.layout.map(Real::real),
+            vertex: wgpu::VertexState { module: asked.vertex.module.real(), ..asked.vertex.clone() },
+            fragment: fragment.map(|of| wgpu::FragmentState { module: of.module.real(), ..of }),
+            cache: asked.cache.map(Real::real),
+            ..asked.clone()
+        });
+        RenderPipeline { inner, described: Arc::new(Described::of(asked)) }
+    }
+
+    /// Of mesh shaders: no device has their feature, and wgpu says so.
+    pub fn of_meshlets(device: &wgpu::Device, asked: &wgpu::MeshPipelineDescriptor<'_>) -> RenderPipeline {
+        let fragment = asked.fragment.clone();
+        let inner = device.create_mesh_pipeline(&wgpu::MeshPipelineDescriptor {
+            layout: asked.layout.map(Real::real),
+            task: asked.task.clone().map(|of| wgpu::TaskState { module: of.module.real(), ..of }),
+            mesh: wgpu::MeshState { module: asked.mesh.module.real(), ..asked.mesh.clone() },
+            fragment: fragment.map(|of| wgpu::FragmentState { module: of.module.real(), ..of }),
+            cache: asked.cache.map(Real::real),
+            ..asked.clone()
+        });
+        let vertex = Stage { source: Source::Unread, entry_point: None, constants: Vec::new() };
+        let described = Described {
+            label: asked.label.unwrap_or_default().to_owned(),
+            layout: None,
+            vertex,
+            buffers: Vec::new(),
+            primitive: asked.primitive,
+            depth_stencil: asked.depth_stencil.clone(),
+            multisample: asked.multisample,
+            fragment: None,
+            targets: Vec::new(),
+            multiview_mask: asked.multiview,
+        };
+        RenderPipeline { inner, described: Arc::new(described) }
+    }
+}
+
+impl RenderPipelineInterface for RenderPipeline {
+    fn get_bind_group_layout(&self, index: u32) -> DispatchBindGroupLayout {
+        DispatchBindGroupLayout::custom(BindGroupLayout { inner: self.inner.get_bind_group_layout(index) })
+    }
+}
+
+#[derive(Debug)]
+pub struct ComputePipeline {
+    pub inner: wgpu::ComputePipeline,
+}
+
+impl ComputePipeline {
+    pub fn new(device: &wgpu::Device, asked: &wgpu::ComputePipelineDescriptor<'_>) -> ComputePipeline {
+        let inner = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            layout: asked.layout.map(Real::real),
+            module: asked.module.real(),
+            cache: asked.cache.map(Real::real),
+            ..asked.clone()
+        });
+        ComputePipeline { inner }
+    }
+}
+
+impl ComputePipelineInterface for ComputePipeline {
+    fn get_bind_group_layout(&self, index: u32) -> DispatchBindGroupLayout {
+        DispatchBindGroupLayout::custom(BindGroupLayout { inner: self.inner.get_bind_group_layout(index) })
+    }
+}
+
+#[derive(Debug)]
+pub struct PipelineCache {
+    pub inner: wgpu::PipelineCache,
+}
+
+impl PipelineCacheInterface for PipelineCache {
+    fn get_data(&self) -> Option<Vec<u8>> {
+        self.inner.get_data()
+    }
+}

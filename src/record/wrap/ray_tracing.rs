@@ -1,0 +1,30 @@
+//! Acceleration structures. What builds them can't be handed on (wgpu keeps an instance's parts to itself), so that
+//! adapters hide the features that need it.
+
+use wgpu::custom::{BlasCompactCallback, BlasInterface, TlasInterface};
+
+/// Features that programs do not get.
+pub const NOT_WRAPPED: wgpu::Features =
+    wgpu::Features::EXPERIMENTAL_RAY_QUERY.union(wgpu::Features::EXPERIMENTAL_MESH_SHADER);
+
+#[derive(Debug)]
+pub struct Blas {
+    pub inner: wgpu::Blas,
+}
+
+impl BlasInterface for Blas {
+    fn prepare_compact_async(&self, callback: BlasCompactCallback) {
+        self.inner.prepare_compaction_async(callback);
+    }
+
+    fn ready_for_compaction(&self) -> bool {
+        self.inner.ready_for_compaction()
+    }
+}
+
+#[derive(Debug)]
+pub struct Tlas {
+    pub inner: wgpu::Tlas,
+}
+
+impl TlasInterface for Tlas {}

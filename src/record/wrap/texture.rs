@@ -1,0 +1,66 @@
+//! Textures, their views, samplers, and pictures from outside.
+
+use wgpu::custom::{
+    DispatchTextureView, ExternalTextureInterface, SamplerInterface, TextureInterface, TextureViewInterface,
+};
+
+#[derive(Debug)]
+pub struct Texture {
+    pub inner: wgpu::Texture,
+}
+
+/// What a texture is made with, so that what passes draw into it can be read afterwards: colours are copied, depths
+/// that can't be are sampled.
+pub fn usage(asked: &wgpu::TextureDescriptor<'_>) -> wgpu::TextureUsages {
+    use wgpu::TextureUsages as Usages;
+    let is_target = asked.usage.contains(Usages::RENDER_ATTACHMENT);
+    if !is_target || asked.usage.contains(Usages::TRANSIENT_ATTACHMENT) || asked.sample_count > 1 {
+        return asked.usage;
+    }
+    let sampled = if asked.format.has_depth_aspect() { Usages::TEXTURE_BINDING } else { Usages::empty() };
+    asked.usage | Usages::COPY_SRC | sampled
+}
+
+impl TextureInterface for Texture {
+    fn create_view(&self, descriptor: &wgpu::TextureViewDescriptor<'_>) -> DispatchTextureView {
+        let part = Part { mip: descriptor.base_mip_level, layer: descriptor.base_array_layer };
+        DispatchTextureView::custom(TextureView { inner: self.inner.create_view(descriptor), part })
+    }
+
+    fn destroy(&self) {
+        self.inner.destroy();
+    }
+}
+
+/// Which level and layer a view begins at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    pub mip: u32,
+    pub layer: u32,
+}
+
+#[derive(Debug)]
+pub struct TextureView {
+    pub inner: wgpu::TextureView,
+    pub part: Part,
+}
+
+impl TextureViewInterface for TextureView {}
+
+#[derive(Debug)]
+pub struct Sampler {
+    pub inner: wgpu::Sampler,
+}
+
+impl SamplerInterface for Sampler {}
+
+#[derive(Debug)]
+pub struct ExternalTexture {
+    pub inner: wgpu::ExternalTexture,
+}
+
+impl ExternalTextureInterface for ExternalTexture {
+    fn destroy(&self) {
+        self.inner.destroy();
+    }
+}

@@ -1,0 +1,98 @@
+//! Frames of a wgpu program that knows nothing of us but its instance.
+
+#[path = "record/renderer.rs"]
+mod renderer;
+
+use renderer::{Fault, Renderer};
+use std::path::PathBuf;
+use stencilscope::capture::{Capture, DrawSummary};
+use stencilscope::history::PixelHistory;
+use stencilscope::import::Converted;
+use stencilscope::record::{self, RecordError, Recorded};
+use stencilscope::session::Session;
+use stencilscope::wgpu;
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("stencilscope-record-{}-{name}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    folder
+}
+
+fn recorded(name: &str, renderer: &Renderer) -> Recorded {
+    let folder = folder(name);
+    record::frame(&renderer.device, &renderer.queue, &folder, |encoder| renderer.encode(encoder)).expect("a frame")
+}
+
+fn draws(capture: &Capture) -> Vec<&DrawSummary> {
+    capture.steps.iter().flat_map(|step| &step.draws).collect()
+}
+
+/// What the stencil holds after the last step that has one.
+fn last_stencil(capture: &Capture) -> Vec<u8> {
+    let frames = (0..capture.steps.len()).rev().filter_map(|step| capture.frame_at(step));
+    let stencil = frames.filter_map(|frame| frame.stencil.as_ref()).next().expect("a stencil");
+    stencil.image.rows().flatten().copied().collect()
+}
+
+/// Every draw is followed, computed anew to the last bit, and what was stored is what the program itself reads back.
+#[test]
+fn a_frame_is_recorded_draw_by_draw() {
+    let renderer = Renderer::new(record::instance, Fault::None);
+    let Recorded { frame: Converted { capture, plan, lights, .. }, folder } = recorded("whole", &renderer);
+    assert_eq!(draws(&capture).len(), 4, "{}", capture.plan_text);
+    for draw in draws(&capture) {
+        let differs = draw.differs.unwrap_or_else(|| panic!("{} is not computed anew", draw.name));
+        assert!(differs.is_nowhere() && differs.rounded == 0, "{}: {differs:?}", draw.name);
+    }
+    assert_eq!(capture.origin.as_ref().map(|origin| origin.limits.clone()), Some(Vec::new()));
+    assert_eq!(last_stencil(&capture), renderer.stencil());
+    assert_eq!(plan.passes.iter().map(|pass| pass.draws.len()).sum::<usize>(), 4);
+    // The volume's sides run away from the light.
+    assert!(lights.iter().any(Option::is_some), "{lights:?}");
+    assert!(folder.join("manifest.json").is_file());
+    std::fs::remove_dir_all(folder).expect("removed");
+}
+
+/// The picture, the depth and the stencil are the same with and without a wrapper, recorded or not.
+#[test]
+fn a_frame_is_drawn_as_without_us() {
+    let plain = Renderer::new(wgpu::Instance::new, Fault::None);
+    let wrapped = Renderer::new(record::instance, Fault::None);
+    plain.draw();
+    wrapped.draw();
+    let expected = plain.picture();
+    assert!(expected == wrapped.picture());
+    let Recorded { folder, .. } = recorded("same", &wrapped);
+    assert!(expected == wrapped.picture() && plain.stencil() == wrapped.stencil());
+    std::fs::remove_dir_all(folder).expect("removed");
+}
+
+/// The history of a pixel ends in what the program has stored there.
+#[test]
+fn histories_end_in_what_was_stored() {
+    let renderer = Renderer::new(record::instance, Fault::None);
+    let Recorded { frame: Converted { capture, plan, .. }, folder } = recorded("history", &renderer);
+    let mut session = Session::new(None).expect("an adapter");
+    let [width, height] = capture.size;
+    let mut fragments = 0;
+    for index in 0..200 {
+        // Spread by the golden ratio.
+        let pixel = [index * 7919 % width, ((f64::from(index) * 0.618_033_988_75).fract() * f64::from(height)) as u32];
+        let history: PixelHistory = session.history(&plan, &capture, pixel).expect("a history");
+        assert!(history.agrees(), "{pixel:?}: {history:#?}");
+        fragments += history.triangles().count();
+    }
+    assert!(fragments > 200, "{fragments} fragments over 200 pixels");
+    std::fs::remove_dir_all(folder).expect("removed");
+}
+
+/// A device of an instance that is not ours can't be recorded, and says how it can.
+#[test]
+fn a_device_that_is_not_wrapped_is_named() {
+    let renderer = Renderer::new(wgpu::Instance::new, Fault::None);
+    let refused =
+        record::frame(&renderer.device, &renderer.queue, &folder("plain"), |encoder| renderer.encode(encoder));
+    let error = refused.expect_err("no recording");
+    assert!(matches!(error, RecordError::NotWrapped));
+    assert!(error.to_string().contains("record::instance"), "{error}");
+}
