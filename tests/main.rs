@@ -29,6 +29,7 @@ mod plan;
 mod ray_cast;
 mod readback;
 mod readme;
+mod record;
 mod recorded;
 mod report;
 mod scenes;

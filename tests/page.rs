@@ -57,6 +57,16 @@ fn tori_are_a_megabyte_and_a_half_and_five_with_every_draw() {
     assert!(draws > passes, "draws are in it");
 }
 
+/// The README's page is made of today's modules and style.
+#[test]
+fn the_committed_page_holds_what_pages_are_made_of_now() {
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/pages/tori.html");
+    let committed = fs::read_to_string(committed).expect("a page");
+    for (what, text) in [("script", page::script()), ("style", page::STYLE.to_owned())] {
+        assert!(committed.contains(&text), "an older {what}: `stencilscope page tori -o assets/pages/tori.html`");
+    }
+}
+
 /// Nothing is named that a browser would load; the beginning of XML's names is no address.
 #[test]
 fn no_address_is_in_it() {

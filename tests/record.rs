@@ -1,6 +1,5 @@
 //! Frames of a wgpu program that knows nothing of us but its instance.
 
-#[path = "record/renderer.rs"]
 mod renderer;
 
 use renderer::{Fault, Renderer};

@@ -176,8 +176,7 @@ impl Replay {
             self.raw.len() - 1
         });
         let target = RawTarget { texture: index, mip, layer };
-        if !self.of_target.contains_key(&target) {
-            self.of_target.insert(target, texture.clone());
+        if self.of_target.insert(target, texture.clone()).is_none() {
             let contents = self.read(gpu, target);
             self.before.push((target, contents));
         }
