@@ -42,6 +42,8 @@
 //!   `Model::set_capture` (`inspector/model/frame.rs`) shows it; older answers make way.
 //! - **A frame of another program**: `import/extract.py` takes it out of a RenderDoc capture, `import/read.rs` reads
 //!   that without trust, and what comes out is [`import::RawFrame`].
+//! - **A frame of a wgpu program**: `wrap/` hands every call of the program on, and keeps a list while a frame is recorded;
+//!   `record/replay.rs` does the list draw by draw. It comes out as [`import::RawFrame`], too.
 //! - **A picture on a surface**: `scene/obj/materials.rs` (`map_Kd`) and `scene/file/build.rs` (`texture`) read it,
 //!   `scene/picture.rs` decodes it and makes its pyramid, `technique/surfaces.rs` says where each corner lies in it,
 //!   `shaders/texture.wgsl` looks it up, and `reading/shading.rs` computes what that finds.
@@ -99,6 +101,8 @@ pub mod testing;
 pub mod truth;
 #[cfg(feature = "inspector")]
 pub mod viewport;
+#[cfg(feature = "record")]
+mod wrap;
 
 /// The vectors and matrices, and the raster states, that this crate's types are made of.
 pub use {glam, wgpu};

@@ -1,11 +1,11 @@
-//! Dependencies between modules point one way, and only `gpu`, `app` and `viewport` hold a device.
+//! Dependencies between modules point one way, and only `gpu`, `app`, `viewport`, `wrap` and `record` hold a device.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 34] = [
+const MAY_USE: [(&str, &[&str]); 36] = [
     ("named", &[]),
     ("math", &[]),
     ("progress", &[]),
@@ -23,7 +23,8 @@ const MAY_USE: [(&str, &[&str]); 34] = [
     ("stencil_machine", &["plan"]),
     ("recorded", &["math", "scene", "plan", "capture", "stencil_machine", "truth"]),
     ("import", &["math", "scene", "plan", "capture", "recorded", "progress"]),
-    ("gpu", &["math", "scene", "plan", "capture"]),
+    ("wrap", &[]),
+    ("gpu", &["math", "scene", "plan", "capture", "wrap"]),
     ("history", &["math", "numbers", "plan", "capture", "stencil_machine", "truth"]),
     ("difference", &["capture", "accuracy", "numbers", "picture", "truth"]),
     (
@@ -149,6 +150,7 @@ const MAY_USE: [(&str, &[&str]); 34] = [
             "reading",
         ],
     ),
+    ("record", &["wrap", "capture", "import", "progress", "session"]),
     (
         "testing",
         &["scene", "technique", "plan", "capture", "history", "session", "truth", "numbers", "math", "reading"],
@@ -257,7 +259,7 @@ fn violations(module: &str, text: &str) -> Vec<String> {
     let code = code_of(text);
     let forbidden = named_modules(&code).into_iter().filter(|used| used != module && !allowed.contains(&used.as_str()));
     let mut found: Vec<String> = forbidden.map(|used| format!("`{module}` uses `{used}`")).collect();
-    if holds_device(&code) && !["gpu", "app", "viewport"].contains(&module) {
+    if holds_device(&code) && !["gpu", "app", "viewport", "wrap", "record"].contains(&module) {
         found.push(format!("`{module}` names a device"));
     }
     found

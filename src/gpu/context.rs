@@ -115,11 +115,11 @@ impl Context {
     }
 }
 
-/// wgpu's own; or one that is recorded, where the tests of that ask for it.
+/// wgpu's own; or one that hands every call on to it, where the tests of that ask for it.
 fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
     #[cfg(feature = "record")]
     if std::env::var_os("STENCILSCOPE_TEST_WRAPPED").is_some() {
-        return crate::record::instance(descriptor);
+        return crate::wrap::instance(descriptor);
     }
     wgpu::Instance::new(descriptor)
 }

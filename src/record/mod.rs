@@ -1,7 +1,7 @@
 //! Frames of any wgpu program, with one line changed: `record::instance(descriptor)` in place of `wgpu::Instance::new`.
 //!
 //! ```text
-//! program ─► wrap/        hands every call to the real wgpu; keeps a list beside while a frame is recorded
+//! program ─► crate::wrap   hands every call to the real wgpu; keeps a list beside while a frame is recorded
 //!              └► recorder.rs   which frame that is, and what becomes of it
 //!                   └► replay.rs     does the list draw by draw, and reads what each draw left
 //!                        ├ probe.rs      where a draw's vertices land: its shader, rewritten by rewrite.rs, writes it down
@@ -17,7 +17,6 @@
 //! While it records, a program draws what it draws anyway. It may do a little more than it asked for: copy from its
 //! targets, bind one more group. Acceleration structures and mesh shaders are hidden from it.
 
-mod command;
 mod error;
 mod probe;
 mod readback;
@@ -25,11 +24,13 @@ mod recorder;
 mod replay;
 mod rewrite;
 mod states;
-mod wrap;
 
 pub use error::RecordError;
 pub use recorder::{Recorded, next_frame};
 
+use crate::wrap;
+use recorder::Recorder;
+use std::any::Any;
 use std::path::Path;
 
 /// The variable of the environment that asks for a frame.
@@ -39,7 +40,7 @@ pub const VARIABLE: &str = "STENCILSCOPE_RECORD";
 #[must_use]
 pub fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
     recorder::ask_environment();
-    wgpu::Instance::from_custom(<wrap::Instance as wgpu::custom::InstanceInterface>::new(descriptor))
+    wgpu::Instance::from_custom(wrap::Instance::recorded_by(descriptor, || Box::new(Recorder::new())))
 }
 
 /// Records what `draw` encodes, and writes it to `folder` as a capture folder. What else is submitted meanwhile is
@@ -55,9 +56,11 @@ pub fn frame(
     draw: impl FnOnce(&mut wgpu::CommandEncoder),
 ) -> Result<Recorded, RecordError> {
     let shared = &device.as_custom::<wrap::Device>().ok_or(RecordError::NotWrapped)?.shared;
-    shared.recorder.begin(folder.to_owned())?;
+    let recorder: &dyn Any = &*shared.recorder;
+    let recorder = recorder.downcast_ref::<Recorder>().ok_or(RecordError::NotWrapped)?;
+    recorder.begin(folder.to_owned())?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("recorded frame") });
     draw(&mut encoder);
     queue.submit([encoder.finish()]);
-    shared.recorder.end(shared)
+    recorder.end(shared)
 }

@@ -1,12 +1,12 @@
 //! Where a draw's vertices land: the draw is done once more into a target of one pixel that nobody looks at, by a shader
 //! that writes it down.
 
-use super::command::{DrawCommand, PassCommand};
 use super::readback;
 use super::rewrite::{self, HEAD, Logging, RECORD};
 use super::states::{PassState, topology};
-use super::wrap::{Described, real_group};
 use crate::import::unroll;
+use crate::wrap::command::{DrawCommand, PassCommand};
+use crate::wrap::{Described, real_group};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;

@@ -2,11 +2,12 @@
 
 use super::RecordError;
 use super::replay::Replay;
-use super::wrap::{Finished, Shared};
 use crate::capture::disk::{self, Contents};
 use crate::import::{Converted, convert};
 use crate::progress::Progress;
 use crate::session::Session;
+use crate::wrap::command::Finished;
+use crate::wrap::{Record, Shared};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -81,10 +82,6 @@ impl Recorder {
         recorder
     }
 
-    pub fn is_recording(&self) -> bool {
-        self.is_recording.load(Ordering::Acquire)
-    }
-
     fn running(&self) -> MutexGuard<'_, Option<Running>> {
         self.running.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -121,23 +118,6 @@ impl Recorder {
         Ok(())
     }
 
-    /// Submits what encoders have made: as it is, or draw by draw.
-    pub fn submit(&self, shared: &Shared, buffers: Vec<Finished>) -> wgpu::SubmissionIndex {
-        let index = match self.running().as_mut() {
-            Some(Running { replay, .. }) => replay.submit(&shared.device, &shared.queue, buffers),
-            None => shared.queue.submit(buffers.into_iter().map(|finished| finished.inner)),
-        };
-        if !shared.frames.end_where_shown() {
-            self.frame_ends(shared);
-        }
-        index
-    }
-
-    /// A picture was shown.
-    pub fn presented(&self, shared: &Shared) {
-        self.frame_ends(shared);
-    }
-
     fn frame_ends(&self, shared: &Shared) {
         let is_waited_for = self.running().as_ref().is_some_and(|running| running.is_closure);
         if is_waited_for {
@@ -172,6 +152,27 @@ impl Recorder {
         converted.capture = session.held_against_itself(plan, capture, &Progress::default())?;
         write(&converted, &folder)?;
         Ok(Recorded { frame: converted, folder })
+    }
+}
+
+impl Record for Recorder {
+    fn is_recording(&self) -> bool {
+        self.is_recording.load(Ordering::Acquire)
+    }
+
+    fn submit(&self, shared: &Shared, buffers: Vec<Finished>) -> wgpu::SubmissionIndex {
+        let index = match self.running().as_mut() {
+            Some(Running { replay, .. }) => replay.submit(&shared.device, &shared.queue, buffers),
+            None => shared.queue.submit(buffers.into_iter().map(|finished| finished.inner)),
+        };
+        if !shared.frames.end_where_shown() {
+            self.frame_ends(shared);
+        }
+        index
+    }
+
+    fn presented(&self, shared: &Shared) {
+        self.frame_ends(shared);
     }
 }
 

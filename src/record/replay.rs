@@ -1,13 +1,13 @@
 //! A recorded frame done draw by draw, with what each draw left read back.
 
-use super::command::{Command, ComputeCommand, DrawCommand, PassCommand, Targets, Timestamps};
 use super::probe::{Gpu, Landed, Probes};
 use super::states::{self, PassState};
-use super::wrap::{Described, Finished, Part};
 use super::{readback, rewrite};
 use crate::import::{
     Api, RawContents, RawDraw, RawEvent, RawFragment, RawFrame, RawKind, RawMay, RawTarget, RawTexture, pictures,
 };
+use crate::wrap::command::{Command, ComputeCommand, DrawCommand, Finished, PassCommand, Targets, Timestamps};
+use crate::wrap::{Described, Part};
 use std::collections::{BTreeMap, HashMap};
 
 /// A frame in the making.

@@ -1,11 +1,11 @@
 //! wgpu's states as a raw frame has them.
 
-use super::command::PassCommand;
-use super::wrap::Described;
 use crate::import::{
     RawBlend, RawBlendEquation, RawCompare, RawCull, RawDepth, RawFill, RawShape, RawStencilFace, RawStencilOperation,
     RawTopology, RawView,
 };
+use crate::wrap::Described;
+use crate::wrap::command::PassCommand;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use wgpu::{BlendFactor, BlendOperation, CompareFunction, StencilOperation};

@@ -3,93 +3,16 @@ use super::bundle::RenderBundleEncoder;
 use super::encoder::CommandEncoder;
 use super::pipeline::{ComputePipeline, PipelineCache, RenderPipeline};
 use super::shader::{ShaderModule, Source};
+use super::shared::Shared;
 use super::{Real, buffer, query, ray_tracing, texture};
-use crate::record::recorder::Recorder;
 use std::cell::RefCell;
-use std::collections::{HashMap, VecDeque};
+use std::collections::HashMap;
 use std::future::ready;
 use std::mem::ManuallyDrop;
 use std::pin::Pin;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::custom::*;
-
-/// What instance, devices and surfaces know together of frames.
-#[derive(Debug, Default)]
-pub struct Frames {
-    is_presented: AtomicBool,
-}
-
-impl Frames {
-    /// From now on a frame ends where it is shown, not where it is submitted.
-    pub fn are_presented(&self) {
-        self.is_presented.store(true, Ordering::Relaxed);
-    }
-
-    /// Does a frame end where it is shown?
-    pub fn end_where_shown(&self) -> bool {
-        self.is_presented.load(Ordering::Relaxed)
-    }
-}
-
-/// What a device, its queue and its encoders have in common.
-#[derive(Debug)]
-pub struct Shared {
-    pub device: wgpu::Device,
-    pub queue: wgpu::Queue,
-    pub adapter: wgpu::Adapter,
-    pub frames: Arc<Frames>,
-    pub recorder: Recorder,
-    submissions: Mutex<Submissions>,
-}
-
-impl Shared {
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, adapter: &wgpu::Adapter, frames: Arc<Frames>) -> Shared {
-        Shared {
-            device: device.clone(),
-            queue: queue.clone(),
-            adapter: adapter.clone(),
-            frames,
-            recorder: Recorder::new(),
-            submissions: Mutex::default(),
-        }
-    }
-
-    /// The program's number of a submission.
-    pub fn submitted(&self, index: wgpu::SubmissionIndex) -> u64 {
-        self.submissions().add(index)
-    }
-
-    fn submissions(&self) -> MutexGuard<'_, Submissions> {
-        self.submissions.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-/// Submissions that a program may wait for. What is older than all that are kept is waited for with the oldest: it ends no later.
-#[derive(Debug, Default)]
-struct Submissions {
-    kept: VecDeque<wgpu::SubmissionIndex>,
-    /// The number of the first that is kept.
-    first: u64,
-}
-
-impl Submissions {
-    const MOST: usize = 1024;
-
-    fn add(&mut self, index: wgpu::SubmissionIndex) -> u64 {
-        self.kept.push_back(index);
-        if self.kept.len() > Self::MOST {
-            self.kept.pop_front();
-            self.first += 1;
-        }
-        self.first + self.kept.len() as u64 - 1
-    }
-
-    fn real(&self, number: u64) -> Option<wgpu::SubmissionIndex> {
-        let at = number.saturating_sub(self.first) as usize;
-        self.kept.get(at).cloned()
-    }
-}
 
 thread_local! {
     /// Error scopes belong to the thread that opens them. A guard that is dropped closes its scope, so that those that
@@ -267,7 +190,7 @@ impl DeviceInterface for Device {
     fn poll(&self, kind: wgpu_types::PollType<u64>) -> Result<wgpu::PollStatus, wgpu::PollError> {
         let kind = match kind {
             wgpu_types::PollType::Wait { submission_index, timeout } => {
-                let submission_index = submission_index.and_then(|number| self.shared.submissions().real(number));
+                let submission_index = submission_index.and_then(|number| self.shared.submission(number));
                 wgpu::PollType::Wait { submission_index, timeout }
             }
             wgpu_types::PollType::Poll => wgpu::PollType::Poll,

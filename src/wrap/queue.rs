@@ -1,5 +1,7 @@
+use super::encoder::CommandBuffer;
+use super::shared::Shared;
 use super::surface::SurfaceOutput;
-use super::{Real, Shared, encoder::CommandBuffer};
+use super::{Real, copy_end};
 use std::sync::Arc;
 use wgpu::custom::{
     BoxSubmittedWorkDoneCallback, DispatchBlas, DispatchBuffer, DispatchCommandBuffer, DispatchQueueWriteBuffer,
@@ -10,12 +12,6 @@ use wgpu::custom::{
 pub struct Queue {
     pub inner: wgpu::Queue,
     pub shared: Arc<Shared>,
-}
-
-/// A copy's two ends, real.
-pub fn texture<'a>(end: wgpu::TexelCopyTextureInfo<'a>) -> wgpu::TexelCopyTextureInfo<'a> {
-    let wgpu::TexelCopyTextureInfo { texture, mip_level, origin, aspect } = end;
-    wgpu::TexelCopyTextureInfo { texture: texture.real(), mip_level, origin, aspect }
 }
 
 impl QueueInterface for Queue {
@@ -52,7 +48,7 @@ impl QueueInterface for Queue {
         layout: wgpu::TexelCopyBufferLayout,
         size: wgpu::Extent3d,
     ) {
-        self.inner.write_texture(texture(end), data, layout, size);
+        self.inner.write_texture(copy_end(end), data, layout, size);
     }
 
     fn submit(&self, buffers: &mut dyn Iterator<Item = DispatchCommandBuffer>) -> u64 {

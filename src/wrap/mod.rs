@@ -4,12 +4,13 @@
 //! - targets can be copied from and sampled, index and indirect buffers can be copied from (`texture.rs`, `buffer.rs`);
 //! - a device has one more bind group and storage buffer than was asked for, where the adapter has them (`adapter.rs`);
 //! - pipelines, bind groups and bundles keep what they were made from;
-//! - while a frame is recorded, an encoder writes a list beside what it encodes (`encoder.rs`), and the queue plays the list.
+//! - while a frame is recorded, an encoder writes a list beside what it encodes (`encoder.rs`), and who records the device does that instead.
 
 mod adapter;
 mod binding;
 mod buffer;
 mod bundle;
+pub(crate) mod command;
 mod compute_pass;
 mod device;
 mod encoder;
@@ -20,16 +21,17 @@ mod queue;
 mod ray_tracing;
 mod render_pass;
 mod shader;
+mod shared;
 mod surface;
 mod texture;
 
-pub(super) use binding::{BindGroup, Bound, real_group};
-pub(super) use device::{Device, Shared};
-pub(super) use encoder::Finished;
-pub(super) use instance::Instance;
-pub(super) use pipeline::{Described, RenderPipeline};
+pub(crate) use binding::{BindGroup, real_group};
+pub(crate) use device::Device;
+pub(crate) use instance::Instance;
+pub(crate) use pipeline::{Described, RenderPipeline};
 use shader::ShaderModule;
-pub(super) use texture::Part;
+pub(crate) use shared::{Record, Shared};
+pub(crate) use texture::Part;
 
 use wgpu::custom::{
     DispatchAdapter, DispatchBindGroup, DispatchBlas, DispatchBuffer, DispatchComputePipeline, DispatchDevice,
@@ -38,7 +40,7 @@ use wgpu::custom::{
 };
 
 /// The real object within one that the program holds.
-pub(super) trait Real {
+pub(crate) trait Real {
     type Object;
 
     /// # Panics
@@ -88,11 +90,11 @@ real! {
 }
 
 /// What the program's object keeps beside the real one.
-pub(super) fn pipeline_of(pipeline: &DispatchRenderPipeline) -> &RenderPipeline {
+pub(crate) fn pipeline_of(pipeline: &DispatchRenderPipeline) -> &RenderPipeline {
     pipeline.as_custom().expect(FOREIGN)
 }
 
-pub(super) fn bind_group_of(group: &DispatchBindGroup) -> &BindGroup {
+pub(crate) fn bind_group_of(group: &DispatchBindGroup) -> &BindGroup {
     group.as_custom().expect(FOREIGN)
 }
 
@@ -104,16 +106,27 @@ fn module_of(module: &wgpu::ShaderModule) -> &ShaderModule {
     module.as_custom().expect(FOREIGN)
 }
 
+/// An end of a copy, real.
+fn copy_end<'a>(end: wgpu::TexelCopyTextureInfo<'a>) -> wgpu::TexelCopyTextureInfo<'a> {
+    let wgpu::TexelCopyTextureInfo { texture, mip_level, origin, aspect } = end;
+    wgpu::TexelCopyTextureInfo { texture: texture.real(), mip_level, origin, aspect }
+}
+
 /// A real view, and where it begins.
-pub(super) fn view_of(view: &wgpu::TextureView) -> (wgpu::TextureView, Part) {
+pub(crate) fn view_of(view: &wgpu::TextureView) -> (wgpu::TextureView, Part) {
     let texture::TextureView { inner, part } = view.as_custom().expect(FOREIGN);
     (inner.clone(), *part)
 }
 
 /// The bytes of a buffer from an offset on, of a size or to its end.
-pub(super) fn slice(buffer: &wgpu::Buffer, offset: u64, size: Option<wgpu::BufferSize>) -> wgpu::BufferSlice<'_> {
+pub(crate) fn slice(buffer: &wgpu::Buffer, offset: u64, size: Option<wgpu::BufferSize>) -> wgpu::BufferSlice<'_> {
     match size {
         Some(size) => buffer.slice(offset..offset + size.get()),
         None => buffer.slice(offset..),
     }
+}
+
+/// An instance that hands every call on, and keeps nothing.
+pub(crate) fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
+    wgpu::Instance::from_custom(<Instance as wgpu::custom::InstanceInterface>::new(descriptor))
 }

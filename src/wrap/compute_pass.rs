@@ -1,5 +1,5 @@
 use super::Real;
-use crate::record::command::{Command, CommandList, ComputeCommand, Timestamps};
+use super::command::{Command, CommandList, ComputeCommand, Timestamps};
 use wgpu::custom::{
     ComputePassInterface, DispatchBindGroup, DispatchBuffer, DispatchComputePipeline, DispatchQuerySet,
     DispatchTextureView,

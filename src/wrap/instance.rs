@@ -1,6 +1,7 @@
+use super::Real;
 use super::adapter::Adapter;
+use super::shared::{Frames, HandsOn, Record};
 use super::surface::Surface;
-use super::{Real, device::Frames};
 use std::future::ready;
 use std::pin::Pin;
 use std::sync::Arc;
@@ -13,6 +14,11 @@ pub struct Instance {
 }
 
 impl Instance {
+    /// An instance whose devices have such recorders.
+    pub fn recorded_by(descriptor: wgpu::InstanceDescriptor, recorder: fn() -> Box<dyn Record>) -> Instance {
+        Instance { inner: wgpu::Instance::new(descriptor), frames: Arc::new(Frames::new(recorder)) }
+    }
+
     fn wrap(&self, inner: wgpu::Adapter) -> DispatchAdapter {
         DispatchAdapter::custom(Adapter { inner, frames: self.frames.clone() })
     }
@@ -20,7 +26,7 @@ impl Instance {
 
 impl InstanceInterface for Instance {
     fn new(descriptor: wgpu::InstanceDescriptor) -> Self {
-        Instance { inner: wgpu::Instance::new(descriptor), frames: Arc::default() }
+        Instance::recorded_by(descriptor, || Box::new(HandsOn))
     }
 
     #[expect(unsafe_code, reason = "the program promises what wgpu asks for, and it is handed on")]

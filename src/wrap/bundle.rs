@@ -1,5 +1,5 @@
+use super::command::{DrawCommand, PassCommand};
 use super::{Real, bind_group_of, pipeline_of};
-use crate::record::command::{DrawCommand, PassCommand};
 use std::ops::Range;
 use std::sync::Arc;
 use wgpu::custom::{

@@ -1,5 +1,5 @@
+use super::command::{Command, CommandList, DrawCommand, PassCommand, Targets};
 use super::{Real, bind_group_of, bundle_of, pipeline_of};
-use crate::record::command::{Command, CommandList, DrawCommand, PassCommand, Targets};
 use std::ops::Range;
 use wgpu::custom::{
     DispatchBindGroup, DispatchBuffer, DispatchQuerySet, DispatchRenderBundle, DispatchRenderPipeline,

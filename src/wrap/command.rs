@@ -1,6 +1,9 @@
 //! What a recorded frame was told, kept so that it can be done draw by draw.
 
-use super::wrap::{BindGroup, Bound, Described, Part, RenderPipeline, slice, view_of};
+use super::binding::{BindGroup, Bound};
+use super::pipeline::{Described, RenderPipeline};
+use super::texture::Part;
+use super::{Real, slice, view_of};
 use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -18,6 +21,13 @@ impl CommandList {
     pub fn take(&self) -> Vec<Command> {
         std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
+}
+
+/// What an encoder has made: the real commands, and the list of a recorded frame.
+#[derive(Debug)]
+pub struct Finished {
+    pub inner: wgpu::CommandBuffer,
+    pub list: Option<CommandList>,
 }
 
 /// One call of an encoder, or a pass.
@@ -116,7 +126,7 @@ impl Targets {
             DepthTarget { view, part, depth_ops: depth.depth_ops, stencil_ops: depth.stencil_ops }
         };
         let timestamps = |writes: &wgpu::RenderPassTimestampWrites<'_>| Timestamps {
-            queries: super::wrap::Real::real(writes.query_set).clone(),
+            queries: Real::real(writes.query_set).clone(),
             begin: writes.beginning_of_pass_write_index,
             end: writes.end_of_pass_write_index,
         };
@@ -125,7 +135,7 @@ impl Targets {
             colors: descriptor.color_attachments.iter().map(|one| one.as_ref().map(color)).collect(),
             depth_stencil: descriptor.depth_stencil_attachment.as_ref().map(depth),
             timestamps: descriptor.timestamp_writes.as_ref().map(timestamps),
-            occlusion: descriptor.occlusion_query_set.map(|queries| super::wrap::Real::real(queries).clone()),
+            occlusion: descriptor.occlusion_query_set.map(|queries| Real::real(queries).clone()),
             multiview: descriptor.multiview_mask,
         }
     }

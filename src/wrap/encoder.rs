@@ -1,7 +1,8 @@
+use super::command::{Command, CommandList, Finished, Targets};
 use super::compute_pass::ComputePass;
 use super::render_pass::RenderPass;
-use super::{Real, Shared, queue};
-use crate::record::command::{Command, CommandList, Targets};
+use super::shared::Shared;
+use super::{Real, copy_end};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use wgpu::custom::{
     CommandBufferInterface, CommandEncoderInterface, DispatchBuffer, DispatchCommandBuffer, DispatchComputePass,
@@ -51,7 +52,7 @@ struct TextureEnd {
 
 impl TextureEnd {
     fn of(end: wgpu::TexelCopyTextureInfo<'_>) -> TextureEnd {
-        let wgpu::TexelCopyTextureInfo { texture, mip_level, origin, aspect } = queue::texture(end);
+        let wgpu::TexelCopyTextureInfo { texture, mip_level, origin, aspect } = copy_end(end);
         TextureEnd { texture: texture.clone(), mip_level, origin, aspect }
     }
 
@@ -223,13 +224,6 @@ impl CommandEncoderInterface for CommandEncoder {
             );
         });
     }
-}
-
-/// What an encoder has made: the real commands, and the list of a recorded frame.
-#[derive(Debug)]
-pub struct Finished {
-    pub inner: wgpu::CommandBuffer,
-    pub list: Option<CommandList>,
 }
 
 #[derive(Debug)]

@@ -1,5 +1,6 @@
-use super::device::{Device, Frames, Shared};
+use super::device::Device;
 use super::queue::Queue;
+use super::shared::{Frames, Shared};
 use super::{Real, ray_tracing};
 use std::future::ready;
 use std::pin::Pin;

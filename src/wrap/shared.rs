@@ -1,0 +1,125 @@
+//! What a device, its queue, its encoders and its surfaces have in common.
+
+use super::command::Finished;
+use std::any::Any;
+use std::collections::VecDeque;
+use std::fmt::Debug;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Who may keep what a device is told.
+pub trait Record: Any + Debug + Send + Sync {
+    /// Do encoders keep lists now?
+    fn is_recording(&self) -> bool;
+
+    /// Does what encoders have made.
+    fn submit(&self, shared: &Shared, buffers: Vec<Finished>) -> wgpu::SubmissionIndex;
+
+    /// A picture was shown.
+    fn presented(&self, shared: &Shared);
+}
+
+/// Nobody keeps anything.
+#[derive(Debug)]
+pub struct HandsOn;
+
+impl Record for HandsOn {
+    fn is_recording(&self) -> bool {
+        false
+    }
+
+    fn submit(&self, shared: &Shared, buffers: Vec<Finished>) -> wgpu::SubmissionIndex {
+        shared.queue.submit(buffers.into_iter().map(|finished| finished.inner))
+    }
+
+    fn presented(&self, _: &Shared) {}
+}
+
+/// What instance, devices and surfaces know together of frames.
+#[derive(Debug)]
+pub struct Frames {
+    is_presented: AtomicBool,
+    /// Makes the recorder of a device.
+    recorder: fn() -> Box<dyn Record>,
+}
+
+impl Frames {
+    /// Of an instance whose devices have such recorders.
+    pub fn new(recorder: fn() -> Box<dyn Record>) -> Frames {
+        Frames { is_presented: AtomicBool::new(false), recorder }
+    }
+
+    /// From now on a frame ends where it is shown, not where it is submitted.
+    pub fn are_presented(&self) {
+        self.is_presented.store(true, Ordering::Relaxed);
+    }
+
+    /// Does a frame end where it is shown?
+    pub fn end_where_shown(&self) -> bool {
+        self.is_presented.load(Ordering::Relaxed)
+    }
+}
+
+/// What a device, its queue and its encoders have in common.
+#[derive(Debug)]
+pub struct Shared {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    pub adapter: wgpu::Adapter,
+    pub frames: Arc<Frames>,
+    pub recorder: Box<dyn Record>,
+    submissions: Mutex<Submissions>,
+}
+
+impl Shared {
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, adapter: &wgpu::Adapter, frames: Arc<Frames>) -> Shared {
+        Shared {
+            device: device.clone(),
+            queue: queue.clone(),
+            adapter: adapter.clone(),
+            recorder: (frames.recorder)(),
+            frames,
+            submissions: Mutex::default(),
+        }
+    }
+
+    /// The program's number of a submission.
+    pub fn submitted(&self, index: wgpu::SubmissionIndex) -> u64 {
+        self.submissions().add(index)
+    }
+
+    /// The real submission of the program's number.
+    pub fn submission(&self, number: u64) -> Option<wgpu::SubmissionIndex> {
+        self.submissions().real(number)
+    }
+
+    fn submissions(&self) -> MutexGuard<'_, Submissions> {
+        self.submissions.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Submissions that a program may wait for. What is older than all that are kept is waited for with the oldest: it ends no later.
+#[derive(Debug, Default)]
+struct Submissions {
+    kept: VecDeque<wgpu::SubmissionIndex>,
+    /// The number of the first that is kept.
+    first: u64,
+}
+
+impl Submissions {
+    const MOST: usize = 1024;
+
+    fn add(&mut self, index: wgpu::SubmissionIndex) -> u64 {
+        self.kept.push_back(index);
+        if self.kept.len() > Self::MOST {
+            self.kept.pop_front();
+            self.first += 1;
+        }
+        self.first + self.kept.len() as u64 - 1
+    }
+
+    fn real(&self, number: u64) -> Option<wgpu::SubmissionIndex> {
+        let at = number.saturating_sub(self.first) as usize;
+        self.kept.get(at).cloned()
+    }
+}
