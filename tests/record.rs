@@ -1,6 +1,8 @@
 //! Frames of a wgpu program that knows nothing of us but its instance.
 
+mod errors;
 mod renderer;
+mod ways;
 
 use renderer::{Fault, Renderer};
 use std::path::PathBuf;

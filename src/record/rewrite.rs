@@ -259,3 +259,59 @@ fn kills(module: &Module, block: &Block, seen: &mut BTreeSet<Handle<Function>>) 
         _ => false,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHADER: &str = "
+        @group(0) @binding(0) var<uniform> used: vec4<f32>;
+        @group(0) @binding(1) var<uniform> unused: vec4<f32>;
+        @group(1) @binding(0) var<storage, read_write> counter: atomic<u32>;
+
+        struct Out { @location(0) color: vec4<f32>, @builtin(position) position: vec4<f32> }
+        @vertex fn structured(@builtin(instance_index) instance: u32) -> Out { return Out(used, used * f32(instance)); }
+        @vertex fn plain() -> @invariant @builtin(position) vec4<f32> { return used; }
+        @vertex fn counts() -> @builtin(position) vec4<f32> { atomicAdd(&counter, 1u); return used; }
+
+        fn drops(x: f32) { if x > 1.0 { loop { discard; } } }
+        @fragment fn keeps() -> @location(0) vec4<f32> { return used; }
+        @fragment fn may_drop() -> @location(0) vec4<f32> { drops(used.x); return used; }
+        @fragment fn deep() -> @builtin(frag_depth) f32 { return used.x; }
+    ";
+
+    fn module() -> Module {
+        naga::front::wgsl::parse_str(SHADER).expect("a module")
+    }
+
+    /// What comes out is valid, binds what the entry point reads and no more, and has the log in its group.
+    #[test]
+    fn positions_are_noted_wherever_the_result_has_them() {
+        for name in ["structured", "plain"] {
+            let Logging { module, entry_point, bindings } = vertex_log(&module(), Some(name), 2).expect("rewritten");
+            assert_eq!((entry_point.as_str(), bindings), (name, BTreeSet::from([(0, 0)])));
+            assert_eq!(module.entry_points.len(), 1);
+            let log = module.global_variables.iter().find(|(_, of)| of.binding.is_some_and(|of| of.group == 2));
+            assert!(log.is_some());
+            validated(&module).expect("valid");
+        }
+    }
+
+    #[test]
+    fn what_must_not_run_twice_is_named() {
+        let refused = |name| vertex_log(&module(), Some(name), 2).map(drop);
+        assert_eq!(refused("counts"), Err("its vertex shader writes to storage, and must not run twice"));
+        assert_eq!(refused("nobody"), Err("its shader has no such vertex entry point"));
+        // A fragment entry point is no vertex entry point.
+        assert_eq!(refused("keeps"), Err("its shader has no such vertex entry point"));
+    }
+
+    #[test]
+    fn a_discard_is_found_in_what_a_shader_calls() {
+        let found = |name| fragment(&module(), Some(name));
+        assert_eq!(found("keeps"), Some(Fragment { discards: false, writes_depth: false }));
+        assert_eq!(found("may_drop"), Some(Fragment { discards: true, writes_depth: false }));
+        assert_eq!(found("deep"), Some(Fragment { discards: false, writes_depth: true }));
+        assert_eq!(found("nobody"), None);
+    }
+}

@@ -1,0 +1,208 @@
+//! Every way in which wgpu draws is followed: where vertices land, which triangles they make, what they leave.
+
+use super::{draws, folder, record};
+use stencilscope::import::Converted;
+use stencilscope::record::Recorded;
+use stencilscope::wgpu::util::{BufferInitDescriptor, DeviceExt};
+use stencilscope::wgpu::{self, BufferUsages, IndexFormat, PrimitiveTopology};
+
+const SHADER: &str = "
+override shift: f32 = 0.0;
+@group(0) @binding(0) var<storage, read> places: array<vec4<f32>>;
+
+fn moved(at: vec4<f32>, instance: u32) -> vec4<f32> {
+    return at + vec4(0.25 * f32(instance) + shift, 0.0, 0.125 * f32(instance), 0.0);
+}
+@vertex fn pulled(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> @builtin(position) vec4<f32> {
+    return moved(places[vertex], instance);
+}
+struct In { @location(0) at: vec4<f32>, @builtin(instance_index) instance: u32 }
+struct Out { @location(0) unused: f32, @builtin(position) position: vec4<f32> }
+@vertex fn fed(in: In) -> Out {
+    if in.at.x > 100.0 { return Out(1.0, vec4(0.0)); }
+    return Out(0.0, moved(in.at, in.instance));
+}
+@fragment fn none() {}
+";
+
+struct Stage {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    module: wgpu::ShaderModule,
+    places: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    arguments: wgpu::Buffer,
+    depth: wgpu::TextureView,
+}
+
+/// How the pipeline of a way is unlike the others.
+#[derive(Clone, Copy)]
+struct Look {
+    vertex: &'static str,
+    topology: PrimitiveTopology,
+    shift: f64,
+}
+
+const PULLED: Look = Look { vertex: "pulled", topology: PrimitiveTopology::TriangleList, shift: 0.0 };
+const FED: Look = Look { vertex: "fed", ..PULLED };
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+impl Stage {
+    fn new() -> Stage {
+        let instance = record::instance(wgpu::InstanceDescriptor::new_without_display_handle());
+        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+        let asked = wgpu::DeviceDescriptor::default();
+        let (device, queue) =
+            pollster::block_on(adapter.expect("an adapter").request_device(&asked)).expect("a device");
+        let source = wgpu::ShaderSource::Wgsl(SHADER.into());
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        let buffer =
+            |contents: &[u8], usage| device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
+        let places: [[f32; 4]; 4] =
+            [[-0.75, -0.75, 0.5, 1.0], [0.25, -0.75, 0.5, 1.0], [-0.75, 0.75, 0.25, 1.0], [0.25, 0.75, 0.25, 1.0]];
+        let indices: [u16; 8] = [0, 1, 2, 3, 0xffff, 2, 1, 3];
+        // A plain draw of two instances, then an indexed one of one, from index 1 on.
+        let arguments: [u32; 9] = [3, 2, 0, 0, 3, 1, 1, 0, 0];
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: 64, height: 48, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        Stage {
+            places: buffer(bytemuck::cast_slice(&places), BufferUsages::STORAGE | BufferUsages::VERTEX),
+            indices: buffer(bytemuck::cast_slice(&indices), BufferUsages::INDEX),
+            arguments: buffer(bytemuck::cast_slice(&arguments), BufferUsages::INDIRECT),
+            depth: texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            device,
+            queue,
+            module,
+        }
+    }
+
+    /// With layouts of its own.
+    fn pipeline(&self, look: Look) -> wgpu::RenderPipeline {
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4];
+        let step_mode = wgpu::VertexStepMode::Vertex;
+        let buffers = [Some(wgpu::VertexBufferLayout { array_stride: 16, step_mode, attributes: &attributes })];
+        let is_strip = look.topology == PrimitiveTopology::TriangleStrip;
+        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(look.vertex),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &self.module,
+                entry_point: Some(look.vertex),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &[("shift", look.shift)],
+                    ..wgpu::PipelineCompilationOptions::default()
+                },
+                buffers: if look.vertex == "fed" { &buffers } else { &[] },
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: look.topology,
+                strip_index_format: is_strip.then_some(IndexFormat::Uint16),
+                ..wgpu::PrimitiveState::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: FORMAT,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Less),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: None,
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+
+    fn group(&self, pipeline: &wgpu::RenderPipeline) -> wgpu::BindGroup {
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: self.places.as_entire_binding() }],
+        })
+    }
+
+    /// The triangles of the frame's draws, each computed anew to the last bit.
+    fn triangles(&self, name: &str, look: Look, draw: impl Fn(&mut wgpu::RenderPass<'_>)) -> Vec<usize> {
+        let pipeline = self.pipeline(look);
+        let target = folder(name);
+        let recorded = record::frame(&self.device, &self.queue, &target, |encoder| {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                    view: &self.depth,
+                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                    stencil_ops: None,
+                }),
+                ..wgpu::RenderPassDescriptor::default()
+            });
+            pass.set_pipeline(&pipeline);
+            match look.vertex {
+                "fed" => pass.set_vertex_buffer(0, self.places.slice(..)),
+                _ => pass.set_bind_group(0, &self.group(&pipeline), &[]),
+            }
+            pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint16);
+            draw(&mut pass);
+        });
+        let Recorded { frame: Converted { capture, plan, .. }, folder } = recorded.expect(name);
+        for draw in draws(&capture) {
+            let differs = draw.differs.unwrap_or_else(|| panic!("{name}: not computed anew"));
+            assert!(differs.is_nowhere() && differs.rounded == 0, "{name}: {differs:?}");
+        }
+        let limits = capture.origin.as_ref().map_or(0, |origin| {
+            origin.limits.iter().filter(|limit| limit.contains("states alone") || limit.contains("refused")).count()
+        });
+        assert_eq!(limits, 0, "{name}: {:?}", capture.origin);
+        std::fs::remove_dir_all(folder).expect("removed");
+        plan.passes.iter().flat_map(|pass| &pass.draws).map(|draw| draw.triangles.len()).collect()
+    }
+}
+
+#[test]
+fn every_way_of_drawing_is_followed() {
+    let stage = Stage::new();
+    let strip = Look { topology: PrimitiveTopology::TriangleStrip, ..FED };
+    assert_eq!(stage.triangles("pulled", PULLED, |pass| pass.draw(0..3, 0..1)), [1]);
+    assert_eq!(stage.triangles("instanced", PULLED, |pass| pass.draw(1..4, 1..4)), [3]);
+    assert_eq!(stage.triangles("fed", FED, |pass| pass.draw(0..3, 0..2)), [2]);
+    assert_eq!(stage.triangles("indexed", FED, |pass| pass.draw_indexed(5..8, 0, 0..1)), [1]);
+    assert_eq!(stage.triangles("based", PULLED, |pass| pass.draw_indexed(0..3, 1, 0..1)), [1]);
+    assert_eq!(stage.triangles("strip", strip, |pass| pass.draw_indexed(0..8, 0, 0..1)), [3]);
+    assert_eq!(stage.triangles("indirect", FED, |pass| pass.draw_indirect(&stage.arguments, 0)), [2]);
+    let indirect = stage.triangles("indexed-indirect", PULLED, |pass| {
+        pass.draw_indexed_indirect(&stage.arguments, 16);
+    });
+    assert_eq!(indirect, [1]);
+    let shifted = Look { shift: 0.5, ..FED };
+    assert_eq!(stage.triangles("override", shifted, |pass| pass.draw(0..3, 0..1)), [1]);
+}
+
+/// A bundle's draws are draws like others.
+#[test]
+fn bundles_are_followed_draw_by_draw() {
+    let stage = Stage::new();
+    let pipeline = stage.pipeline(FED);
+    let mut bundle = stage.device.create_render_bundle_encoder(&wgpu::RenderBundleEncoderDescriptor {
+        label: None,
+        color_formats: &[],
+        depth_stencil: Some(wgpu::RenderBundleDepthStencil {
+            format: FORMAT,
+            depth_read_only: false,
+            stencil_read_only: true,
+        }),
+        sample_count: 1,
+        multiview: None,
+    });
+    bundle.set_pipeline(&pipeline);
+    bundle.set_vertex_buffer(0, stage.places.slice(..));
+    bundle.draw(0..3, 0..1);
+    bundle.draw(1..4, 0..1);
+    let bundle = bundle.finish(&wgpu::RenderBundleDescriptor::default());
+    assert_eq!(stage.triangles("bundle", FED, |pass| pass.execute_bundles([&bundle])), [1, 1]);
+}
