@@ -6,11 +6,12 @@ mod ways;
 
 use renderer::{Fault, Renderer};
 use std::path::PathBuf;
-use stencilscope::capture::{Capture, DrawSummary};
-use stencilscope::history::PixelHistory;
+use stencilscope::capture::{Capture, DrawSummary, disk};
+use stencilscope::history::{Fate, PixelHistory, TriangleEvent};
 use stencilscope::import::Converted;
 use stencilscope::record::{self, RecordError, Recorded};
 use stencilscope::session::Session;
+use stencilscope::testing::Rendered;
 use stencilscope::wgpu;
 
 fn folder(name: &str) -> PathBuf {
@@ -68,6 +69,22 @@ fn a_frame_is_drawn_as_without_us() {
     std::fs::remove_dir_all(folder).expect("removed");
 }
 
+/// A program that draws as it does anyway: of three frames the one after the call is recorded, with what it stored.
+#[test]
+fn the_next_frame_is_recorded_without_a_closure() {
+    let renderer = Renderer::new(record::instance, Fault::None);
+    let target = folder("next");
+    renderer.draw();
+    record::next_frame(&renderer.device, &target).expect("a wrapped device");
+    assert!(!target.exists());
+    renderer.draw();
+    let opened = disk::read_whole(&target).expect("a folder");
+    assert_eq!(last_stencil(&opened.capture), renderer.stencil());
+    std::fs::remove_dir_all(&target).expect("removed");
+    renderer.draw();
+    assert!(!target.exists(), "one frame and no more");
+}
+
 /// The history of a pixel ends in what the program has stored there.
 #[test]
 fn histories_end_in_what_was_stored() {
@@ -85,6 +102,30 @@ fn histories_end_in_what_was_stored() {
     }
     assert!(fragments > 200, "{fragments} fragments over 200 pixels");
     std::fs::remove_dir_all(folder).expect("removed");
+}
+
+/// As a test author would: assert on a pixel, and read in its history why it is wrong.
+#[test]
+fn a_culled_face_shows_in_the_history_of_a_pixel_that_lacks_its_shadow() {
+    let of = |fault, name| {
+        let renderer = Renderer::new(record::instance, fault);
+        let Recorded { frame: Converted { capture, plan, .. }, folder } = recorded(name, &renderer);
+        std::fs::remove_dir_all(folder).expect("removed");
+        (renderer.stencil(), Rendered::recorded(plan, capture).expect("an adapter"))
+    };
+    let (counts, mut right) = of(Fault::None, "right");
+    let (_, mut wrong) = of(Fault::CullsBack, "culls-back");
+    let width = right.capture().size[0] as usize;
+    let shadowed = counts.iter().position(|count| *count == 1).expect("a shadow");
+    let pixel = [shadowed % width, shadowed / width].map(|at| at as u32);
+    right.at(pixel).stencil(1).agrees();
+    wrong.at(pixel).stencil(0).agrees();
+    let is_culled_back = |triangle: &TriangleEvent| triangle.fate == Fate::Culled && !triangle.is_front;
+    let of_volume = |frame: &mut Rendered| {
+        let history = frame.at(pixel).history().clone();
+        history.triangles().filter(|(event, triangle)| event.pass_name == "volumes" && is_culled_back(triangle)).count()
+    };
+    assert_eq!([of_volume(&mut right), of_volume(&mut wrong)], [0, 1]);
 }
 
 /// A device of an instance that is not ours can't be recorded, and says how it can.

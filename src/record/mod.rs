@@ -12,7 +12,8 @@
 //!
 //! Which frame is recorded says [`next_frame`], or the environment: `STENCILSCOPE_RECORD=DIR` for the first frame,
 //! `STENCILSCOPE_RECORD=DIR:N` for the one after `N` others. [`frame`] records what a closure encodes, as tests do. A
-//! frame ends where it is shown; in a program without a surface, with each submission that draws.
+//! frame ends where it is shown; in a program without a surface with each submission, of which a recorded one goes on
+//! until something is drawn.
 //!
 //! While it records, a program draws what it draws anyway. It may do a little more than it asked for: copy from its
 //! targets, bind one more group. Acceleration structures and mesh shaders are hidden from it.
@@ -26,7 +27,7 @@ mod rewrite;
 mod states;
 
 pub use error::RecordError;
-pub use recorder::{Recorded, next_frame};
+pub use recorder::Recorded;
 
 use crate::wrap;
 use recorder::Recorder;
@@ -39,7 +40,6 @@ pub const VARIABLE: &str = "STENCILSCOPE_RECORD";
 /// An instance of wgpu whose frames can be recorded.
 #[must_use]
 pub fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
-    recorder::ask_environment();
     wgpu::Instance::from_custom(wrap::Instance::recorded_by(descriptor, || Box::new(Recorder::new())))
 }
 
@@ -55,12 +55,26 @@ pub fn frame(
     folder: &Path,
     draw: impl FnOnce(&mut wgpu::CommandEncoder),
 ) -> Result<Recorded, RecordError> {
-    let shared = &device.as_custom::<wrap::Device>().ok_or(RecordError::NotWrapped)?.shared;
-    let recorder: &dyn Any = &*shared.recorder;
-    let recorder = recorder.downcast_ref::<Recorder>().ok_or(RecordError::NotWrapped)?;
+    let (shared, recorder) = recorder_of(device)?;
     recorder.begin(folder.to_owned())?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("recorded frame") });
     draw(&mut encoder);
     queue.submit([encoder.finish()]);
     recorder.end(shared)
+}
+
+/// Records the next frame that the program begins on a device, and writes it to `folder` as a capture folder. Whether that
+/// went well is said on standard error, in a line: nobody waits for it.
+///
+/// # Errors
+/// The device is of another instance than [`instance`] makes.
+pub fn next_frame(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
+    recorder_of(device)?.1.wish(folder.to_owned());
+    Ok(())
+}
+
+fn recorder_of(device: &wgpu::Device) -> Result<(&wrap::Shared, &Recorder), RecordError> {
+    let shared = &device.as_custom::<wrap::Device>().ok_or(RecordError::NotWrapped)?.shared;
+    let recorder: &dyn Any = &*shared.recorder;
+    Ok((shared, recorder.downcast_ref().ok_or(RecordError::NotWrapped)?))
 }

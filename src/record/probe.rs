@@ -22,17 +22,13 @@ pub struct Landed {
     pub instances: Vec<Range<usize>>,
 }
 
-/// Pipelines by the program's own.
+/// Pipelines by the address of what the program's own were made from.
 #[derive(Debug, Default)]
 pub struct Probes {
-    made: HashMap<*const Described, Result<Arc<Probe>, &'static str>>,
+    made: HashMap<usize, Result<Arc<Probe>, &'static str>>,
     /// So that no other pipeline gets the address of one.
     held: Vec<Arc<Described>>,
 }
-
-// The addresses are compared, never followed.
-#[expect(unsafe_code, reason = "the pointers are keys, and are never followed")]
-unsafe impl Send for Probes {}
 
 #[derive(Debug)]
 struct Probe {
@@ -164,7 +160,7 @@ impl Probes {
     }
 
     fn probe(&mut self, device: &wgpu::Device, described: &Arc<Described>) -> Result<Arc<Probe>, &'static str> {
-        let key = Arc::as_ptr(described);
+        let key = Arc::as_ptr(described) as usize;
         if !self.made.contains_key(&key) {
             self.held.push(described.clone());
             self.made.insert(key, probe(device, described).map(Arc::new));

@@ -28,26 +28,11 @@ impl Wish {
     }
 }
 
-/// The next device that begins a frame looks here.
-static WISH: Mutex<Option<Wish>> = Mutex::new(None);
-
-fn wish() -> MutexGuard<'static, Option<Wish>> {
-    WISH.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Takes the wish of the environment; once a process.
-pub fn ask_environment() {
-    static ASKED: AtomicBool = AtomicBool::new(false);
-    if !ASKED.swap(true, Ordering::Relaxed) {
-        let text = std::env::var(super::VARIABLE).ok().filter(|text| !text.is_empty());
-        *wish() = text.map(|text| Wish::of(&text));
-    }
-}
-
-/// Records the next frame that begins, on whichever device, and writes it to `folder`, which must not be there yet.
-/// What can't be done is said on standard error: nobody waits for it.
-pub fn next_frame(folder: impl Into<PathBuf>) {
-    *wish() = Some(Wish { folder: folder.into(), frames_before: 0 });
+/// The wish of the environment, which the first device takes.
+fn of_environment() -> Option<Wish> {
+    static TAKEN: AtomicBool = AtomicBool::new(false);
+    let text = std::env::var(super::VARIABLE).ok().filter(|text| !text.is_empty())?;
+    (!TAKEN.swap(true, Ordering::Relaxed)).then(|| Wish::of(&text))
 }
 
 /// What was recorded.
@@ -62,8 +47,10 @@ pub struct Recorded {
 /// The recording of a device.
 #[derive(Debug)]
 pub struct Recorder {
-    /// What encoders ask.
     is_recording: AtomicBool,
+    /// An encoder was made since the last frame ended.
+    has_begun: AtomicBool,
+    wish: Mutex<Option<Wish>>,
     running: Mutex<Option<Running>>,
 }
 
@@ -77,9 +64,21 @@ struct Running {
 
 impl Recorder {
     pub fn new() -> Recorder {
-        let recorder = Recorder { is_recording: AtomicBool::new(false), running: Mutex::new(None) };
-        recorder.begin_if_wished();
-        recorder
+        Recorder {
+            is_recording: AtomicBool::new(false),
+            has_begun: AtomicBool::new(false),
+            wish: Mutex::new(of_environment()),
+            running: Mutex::new(None),
+        }
+    }
+
+    /// Wishes for the next frame that begins.
+    pub fn wish(&self, folder: PathBuf) {
+        *self.wishes() = Some(Wish { folder, frames_before: 0 });
+    }
+
+    fn wishes(&self) -> MutexGuard<'_, Option<Wish>> {
+        self.wish.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn running(&self) -> MutexGuard<'_, Option<Running>> {
@@ -88,14 +87,12 @@ impl Recorder {
 
     /// A frame begins: is it the one?
     fn begin_if_wished(&self) {
-        let mut wish = wish();
-        match wish.as_mut() {
-            Some(Wish { frames_before: 0, folder }) => {
-                let folder = std::mem::take(folder);
-                *wish = None;
-                self.start(folder, false);
+        let mut wish = self.wishes();
+        match wish.take() {
+            Some(Wish { frames_before: 0, folder }) => self.start(folder, false),
+            Some(Wish { frames_before, folder }) => {
+                *wish = Some(Wish { frames_before: frames_before - 1, folder });
             }
-            Some(Wish { frames_before, .. }) => *frames_before -= 1,
             None => {}
         }
     }
@@ -110,7 +107,7 @@ impl Recorder {
     /// # Errors
     /// A frame is being recorded; the folder can't be written.
     pub fn begin(&self, folder: PathBuf) -> Result<(), RecordError> {
-        if self.is_recording() {
+        if self.is_recording.load(Ordering::Acquire) {
             return Err(RecordError::Busy);
         }
         disk::check_target(&folder, false)?;
@@ -125,14 +122,14 @@ impl Recorder {
         }
         // A submission that draws nothing, such as an upload, is no frame.
         let has_drawn = self.running().as_ref().is_none_or(|running| running.replay.has_drawn());
-        if self.is_recording() && has_drawn {
+        if self.is_recording.load(Ordering::Acquire) && has_drawn {
             match self.end(shared) {
                 Ok(Recorded { folder, .. }) => eprintln!("stencilscope: recorded a frame to {}", folder.display()),
                 Err(error) => eprintln!("stencilscope: no frame is recorded: {error}"),
             }
         }
-        if !self.is_recording() {
-            self.begin_if_wished();
+        if !self.is_recording.load(Ordering::Acquire) {
+            self.has_begun.store(false, Ordering::Release);
         }
     }
 
@@ -142,6 +139,7 @@ impl Recorder {
     /// Nothing that can be followed was drawn; the folder can't be written.
     pub fn end(&self, shared: &Shared) -> Result<Recorded, RecordError> {
         self.is_recording.store(false, Ordering::Release);
+        self.has_begun.store(false, Ordering::Release);
         let Some(Running { folder, replay, .. }) = self.running().take() else { return Err(RecordError::Busy) };
         let frame = replay.frame(&shared.adapter.get_info());
         let name = folder.file_name().map_or_else(|| "frame".into(), |name| name.to_string_lossy().into_owned());
@@ -157,6 +155,10 @@ impl Recorder {
 
 impl Record for Recorder {
     fn is_recording(&self) -> bool {
+        // An encoder asks: the first since the last frame begins the next.
+        if !self.has_begun.swap(true, Ordering::AcqRel) {
+            self.begin_if_wished();
+        }
         self.is_recording.load(Ordering::Acquire)
     }
 

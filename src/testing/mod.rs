@@ -134,6 +134,15 @@ impl Rendered {
         Ok(Rendered { session, plan, capture })
     }
 
+    /// A frame that another program drew: what `record` or an import made of it, or a capture folder holds.
+    /// Its world is that of its clip space, so that it is asked about pixels, not about points.
+    ///
+    /// # Errors
+    /// No adapter, with what to install.
+    pub fn recorded(plan: FramePlan, capture: Capture) -> Result<Rendered, SessionError> {
+        Ok(Rendered { session: Session::new(None)?, plan, capture })
+    }
+
     /// The session, for the next scene.
     #[must_use]
     pub fn into_session(self) -> Session {
