@@ -1,7 +1,7 @@
 //! Files that are there whole or not at all, files that another file names, and the way from one to another.
 
 use std::fs::{File, FileType};
-use std::io::{self, BufWriter, ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -126,8 +126,9 @@ impl WholeFile {
     ///
     /// # Errors
     /// The system has no more handles.
-    pub fn writer(&self) -> io::Result<BufWriter<File>> {
-        Ok(BufWriter::new(self.file.try_clone()?))
+    #[cfg(feature = "program")]
+    pub fn writer(&self) -> io::Result<io::BufWriter<File>> {
+        Ok(io::BufWriter::new(self.file.try_clone()?))
     }
 
     /// Puts it in its place.

@@ -70,10 +70,12 @@ pub mod anatomy;
 mod app;
 pub mod ask;
 pub mod capture;
+#[cfg(feature = "program")]
 pub mod cli;
 pub mod diagnosis;
 pub mod difference;
 mod files;
+#[cfg(feature = "program")]
 pub mod film;
 pub mod geometry;
 mod gpu;
@@ -83,6 +85,7 @@ pub mod import;
 pub mod inspector;
 pub mod math;
 mod numbers;
+#[cfg(feature = "program")]
 pub mod page;
 pub mod picture;
 pub mod plan;

@@ -4,9 +4,9 @@
 //! maps; stencil and labels are `|u1`, depth and counts `<f4`. A light's textures are
 //! (layers, size, size, 4), `|u1`.
 
+use super::npy::{self, Array, Element};
 use super::{CaptureError, Image, PixelFormat};
 use crate::files::{open_plain, read_plain};
-use npyz::WriterBuilder;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Write};
 use std::path::Path;
@@ -41,30 +41,25 @@ pub(super) fn write_array(path: &Path, image: &Image) -> Result<(), CaptureError
 }
 
 /// Values as an array of rows of `columns`, or of one dimension where that is 1.
-pub(super) fn write_values<T: npyz::AutoSerialize + Copy>(
-    path: &Path,
-    values: &[T],
-    columns: u64,
-) -> Result<(), CaptureError> {
+pub(super) fn write_values<T: Element>(path: &Path, values: &[T], columns: u64) -> Result<(), CaptureError> {
     let shape = [values.len() as u64 / columns, columns];
     let shape = if columns == 1 { &shape[..1] } else { &shape[..] };
     write(path, |out| {
-        let mut array = npyz::WriteOptions::new().default_dtype().shape(shape).writer(out).begin_nd()?;
-        array.extend(values.iter().copied())?;
-        array.finish()
+        npy::write_header::<T>(out, shape)?;
+        out.write_all(bytemuck::cast_slice(values))
     })
 }
 
 /// What [`write_values`] wrote.
-pub(super) fn read_values<T: npyz::Deserialize>(path: &Path, columns: u64) -> Result<Vec<T>, CaptureError> {
+pub(super) fn read_values<T: Element>(path: &Path, columns: u64) -> Result<Vec<T>, CaptureError> {
     let read = || {
-        let array = open(path)?;
-        let shape = checked_shape(path, &array, size_of::<T>() as u64)?;
+        let (array, bytes) = open(path)?;
+        let shape = array.shape();
         let is_expected = if columns == 1 { shape.len() == 1 } else { shape.len() == 2 && shape[1] == columns };
         if !is_expected {
             return Err(format!("its rows have not {columns} values"));
         }
-        array.into_vec::<T>().map_err(|error| format!("it is cut off ({error})"))
+        array.into_vec(bytes)
     };
     read().map_err(|reason| broken(path, reason))
 }
@@ -87,26 +82,15 @@ fn write_arrays<'a>(
     let [width, height] = first.size();
     let mut shape = [outer, &[u64::from(height), u64::from(width)]].concat();
     match first.format() {
-        PixelFormat::Depth32F | PixelFormat::Count32F => {
-            let mut array = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(out).begin_nd()?;
-            for image in images {
-                for row in image.rows() {
-                    array.extend(row.chunks_exact(4).map(bytemuck::pod_read_unaligned::<f32>))?;
-                }
-            }
-            array.finish()
-        }
+        PixelFormat::Depth32F | PixelFormat::Count32F => npy::write_header::<f32>(out, &shape)?,
         format => {
             if format != PixelFormat::U8 {
                 shape.push(format.texel_bytes() as u64);
             }
-            let mut array = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(out).begin_nd()?;
-            for image in images {
-                image.rows().try_for_each(|row| array.extend(row.iter().copied()))?;
-            }
-            array.finish()
+            npy::write_header::<u8>(out, &shape)?;
         }
     }
+    images.into_iter().flat_map(Image::rows).try_for_each(|row| out.write_all(row))
 }
 
 fn write_png(out: &mut impl Write, image: &Image) -> io::Result<()> {
@@ -135,7 +119,7 @@ pub(super) fn read_image(path: &Path, format: PixelFormat) -> Result<Image, Capt
 
 /// The faces of a shadow map, or the layers of a light's textures.
 pub(super) fn read_layers(path: &Path) -> Result<Vec<Image>, CaptureError> {
-    let read = open(path).and_then(|array| match array.shape().len() {
+    let read = open(path).and_then(|(array, _)| match array.shape().len() {
         3 => read_floats(path, PixelFormat::Depth32F, 3),
         _ => read_bytes(path, PixelFormat::Rgba8, 3),
     });
@@ -155,37 +139,27 @@ fn broken(path: &Path, reason: String) -> CaptureError {
     CaptureError::Read { file: path.to_owned(), reason }
 }
 
-fn open(path: &Path) -> Result<npyz::NpyFile<BufReader<File>>, String> {
+/// An array, and the bytes of its file.
+fn open(path: &Path) -> Result<(Array<BufReader<File>>, u64), String> {
     let file = open_plain(path).map_err(|error| error.to_string())?;
-    npyz::NpyFile::new(BufReader::new(file)).map_err(|error| format!("no NumPy array ({error})"))
-}
-
-/// The array's length is checked against the file's before anything is allocated for it.
-fn checked_shape(path: &Path, array: &npyz::NpyFile<BufReader<File>>, bytes: u64) -> Result<Vec<u64>, String> {
-    let file_bytes = path.metadata().map_err(|error| error.to_string())?.len();
-    let count = array.shape().iter().try_fold(1u64, |product, n| product.checked_mul(*n));
-    match count.and_then(|count| count.checked_mul(bytes)) {
-        Some(needed) if needed <= file_bytes && array.order() == npyz::Order::C => Ok(array.shape().to_vec()),
-        _ => Err("it is cut off or not in C order".to_owned()),
-    }
+    let bytes = file.metadata().map_err(|error| error.to_string())?.len();
+    Ok((Array::open(BufReader::new(file))?, bytes))
 }
 
 fn read_floats(path: &Path, format: PixelFormat, dimensions: usize) -> Result<Vec<Image>, String> {
-    let array = open(path)?;
-    let shape = checked_shape(path, &array, 4)?;
-    let values = array.into_vec::<f32>().map_err(|error| error.to_string())?;
-    layers(&shape, bytemuck::cast_slice(&values), format, dimensions)
+    let (array, bytes) = open(path)?;
+    let shape = array.shape().to_vec();
+    layers(&shape, bytemuck::cast_slice(&array.into_vec::<f32>(bytes)?), format, dimensions)
 }
 
 fn read_bytes(path: &Path, format: PixelFormat, dimensions: usize) -> Result<Vec<Image>, String> {
-    let array = open(path)?;
-    let mut shape = checked_shape(path, &array, 1)?;
-    let values = array.into_vec::<u8>().map_err(|error| error.to_string())?;
+    let (array, bytes) = open(path)?;
+    let mut shape = array.shape().to_vec();
     let channels = format.texel_bytes() as u64;
     if channels > 1 && shape.pop() != Some(channels) {
         return Err(format!("its texels have not {channels} channels"));
     }
-    layers(&shape, &values, format, dimensions)
+    layers(&shape, &array.into_vec::<u8>(bytes)?, format, dimensions)
 }
 
 fn layers(shape: &[u64], bytes: &[u8], format: PixelFormat, dimensions: usize) -> Result<Vec<Image>, String> {

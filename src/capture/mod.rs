@@ -10,6 +10,7 @@ mod error;
 mod files;
 mod image;
 mod manifest;
+mod npy;
 mod step_tests;
 
 pub use error::CaptureError;

@@ -24,6 +24,7 @@ mod why;
 pub use check::Disagreement;
 pub use json::PixelDocument;
 pub use ladder::{Ladder, Rung};
+#[cfg(feature = "program")]
 pub(crate) use replay::{asks, count_of, counts_in, target_of};
 pub use story::operation_name;
 pub use why::{Count, Counted, Faces, Flattened, LightPass, Why};

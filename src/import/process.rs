@@ -6,7 +6,7 @@
 //! removes the folder and ends its group itself.
 
 use super::error::ImportError;
-use super::{Options, Recording};
+use super::renderdoc::{Options, Recording};
 use crate::progress::Progress;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Read};

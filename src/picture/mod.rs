@@ -6,6 +6,7 @@
 
 pub mod apng;
 pub mod colors;
+#[cfg(feature = "program")]
 pub mod svg;
 
 use colors::Rgb;

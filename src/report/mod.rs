@@ -11,6 +11,7 @@
 mod csv;
 mod page;
 pub mod plot;
+#[cfg(feature = "program")]
 mod svg;
 mod table;
 
@@ -116,6 +117,7 @@ pub enum ReportError {
     },
     /// The plot's SVG was refused, or is too large.
     #[error("the plot can't be drawn as pixels: {0}; save it as .svg instead")]
+    #[cfg(feature = "program")]
     Svg(#[from] crate::picture::svg::SvgError),
     /// The PNG encoder refused.
     #[error("the plot can't be written as PNG: {0}; save it as .svg instead")]
@@ -223,6 +225,7 @@ impl Report {
 
     /// The plot for paper, as SVG.
     #[must_use]
+    #[cfg(feature = "program")]
     pub fn to_svg(&self) -> String {
         svg::svg(&plot::layout(self, &plot::Page::PAPER))
     }
@@ -231,6 +234,7 @@ impl Report {
     ///
     /// # Errors
     /// More charts than memory has room for.
+    #[cfg(feature = "program")]
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         Ok(crate::picture::svg::picture(&self.to_svg(), 2.0)?.to_png()?)
     }
@@ -239,6 +243,7 @@ impl Report {
 impl plot::Plot {
     /// On paper, as SVG.
     #[must_use]
+    #[cfg(feature = "program")]
     pub fn to_svg(&self) -> String {
         svg::svg(self)
     }
@@ -247,6 +252,7 @@ impl plot::Plot {
     ///
     /// # Errors
     /// More charts than memory has room for.
+    #[cfg(feature = "program")]
     pub fn to_png(&self) -> Result<Vec<u8>, ReportError> {
         Ok(crate::picture::svg::picture(&self.to_svg(), 2.0)?.to_png()?)
     }

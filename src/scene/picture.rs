@@ -61,6 +61,10 @@ pub enum PictureError {
     /// Of another kind.
     #[error("is neither PNG nor JPEG: convert it")]
     Kind,
+    /// A JPEG, in a build of the library without its program.
+    #[cfg(not(feature = "program"))]
+    #[error("is a JPEG, which is read with the feature `program`: convert it to PNG, or switch that on")]
+    Jpeg,
     /// It breaks its format's rules.
     #[error("is broken ({0}): write it again")]
     Broken(String),
@@ -339,6 +343,7 @@ fn png(bytes: &[u8], most: u64) -> Result<Decoded, PictureError> {
     Ok((size, texels))
 }
 
+#[cfg(feature = "program")]
 fn jpeg(bytes: &[u8], most: u64) -> Result<Decoded, PictureError> {
     use zune_jpeg::zune_core::{colorspace::ColorSpace, options::DecoderOptions};
     let broken = |error: zune_jpeg::errors::DecodeErrors| PictureError::Broken(in_a_line(&error.to_string()));
@@ -354,6 +359,11 @@ fn jpeg(bytes: &[u8], most: u64) -> Result<Decoded, PictureError> {
     let size = checked_size(info.width.into(), info.height.into(), most)?;
     let data = decoder.decode().map_err(broken)?;
     Ok((size, with_alpha(&data, 3)))
+}
+
+#[cfg(not(feature = "program"))]
+fn jpeg(_: &[u8], _: u64) -> Result<Decoded, PictureError> {
+    Err(PictureError::Jpeg)
 }
 
 /// Grey, grey and alpha, RGB or RGBA as RGBA.

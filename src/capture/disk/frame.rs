@@ -2,7 +2,7 @@
 //!
 //! What is read is not trusted: indexes, sizes and lengths are checked before anything runs it.
 
-use super::super::files;
+use super::super::{files, npy::Element};
 use super::{Capture, CaptureError, Image};
 use crate::capture::PixelFormat;
 use crate::plan::{
@@ -159,7 +159,7 @@ struct Put<'a> {
 }
 
 impl Put<'_> {
-    fn blob<T: bytemuck::Pod, V: npyz::AutoSerialize + Copy>(
+    fn blob<T: bytemuck::Pod, V: Element>(
         &mut self,
         kind: &'static str,
         blob: &Blob<T>,
