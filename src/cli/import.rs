@@ -123,7 +123,8 @@ fn summary(plan: &FramePlan, capture: &Capture, folder: &Path, lights: &[Option<
             None => format!("{name}: not found: no shadow volumes tell where it is\n"),
         };
     }
-    for draw in plan.passes.iter().flat_map(|pass| &pass.draws).filter(|draw| draw.may_discard()) {
+    let draws = plan.passes.iter().flat_map(|pass| &pass.draws);
+    for draw in draws.filter(|draw| draw.discards_unknown(&plan.meshes[draw.mesh.0])) {
         text += &format!("  {}: its shader may discard fragments, which histories do not know\n", draw.name);
     }
     for limit in capture.origin.iter().flat_map(|origin| &origin.limits) {

@@ -31,6 +31,9 @@ impl Buffers {
             return Err(GpuError::TooLarge { what: "a mesh".to_owned(), needed, most });
         }
         let usage = BufferUsages::VERTEX | BufferUsages::INDEX | BufferUsages::STORAGE;
+        // Nothing can't be bound: it is one entry that nothing is like.
+        let nothing = [u8::MAX; 16];
+        let contents = if contents.is_empty() { &nothing[..] } else { contents };
         let upload = || (device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage }), true);
         let (buffer, used) = self.kept.entry((blob.hash(), contents.len())).or_insert_with(upload);
         *used = true;

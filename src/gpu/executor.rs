@@ -396,16 +396,18 @@ fn record_draw(pass: &mut RenderPass, prepared: &Prepared, draw: &Draw, ready: &
         if light.is_some() {
             pass.set_bind_group(3, light, &[light_offset]);
         }
-    } else {
+    }
+    let pulls_vertices = ready.shader.pulls_vertices();
+    if !pulls_vertices {
         pass.set_vertex_buffer(0, ready.vertices.slice(..));
         pass.set_index_buffer(ready.indices.slice(..), wgpu::IndexFormat::Uint32);
     }
     for (pipeline, reference) in &ready.pipelines {
         pass.set_pipeline(pipeline);
         pass.set_stencil_reference(u32::from(*reference));
-        match ready.shading {
-            Some(_) => pass.draw(corners.clone(), 0..1),
-            None => pass.draw_indexed(corners.clone(), draw.base_vertex as i32, 0..1),
+        match pulls_vertices {
+            true => pass.draw(corners.clone(), 0..1),
+            false => pass.draw_indexed(corners.clone(), draw.base_vertex as i32, 0..1),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Pipelines and bind-group layouts, made once for each description.
 //!
-//! Groups: 0 the pass's view, 1 the draw's constants, 2 a surface's data, 3 the light and, for
+//! Groups: 0 the pass's view, 1 the draw's constants, 2 a surface's data or which fragments are kept, 3 the light and, for
 //! programs that read them, its map or labels. A program has only the groups it uses.
 
 use super::shaders::{Form, Shader, source_of};
@@ -32,6 +32,7 @@ pub(super) struct Layouts {
     pub draw: BindGroupLayout,
     pub surface: BindGroupLayout,
     pub textured_surface: BindGroupLayout,
+    pub kept: BindGroupLayout,
     pub light: BindGroupLayout,
     pub light_with_map: BindGroupLayout,
     pub light_with_labels: BindGroupLayout,
@@ -131,7 +132,11 @@ impl Pipelines {
         let constants = key.depth_steps.map(|steps| ("steps", f64::from(steps)));
         let constants = constants.as_slice();
         // Floats are stored as they are.
-        let fragment = source.fragment.filter(|_| !is_recorded || key.depth_steps.is_some());
+        let fragment = match key.shader.form {
+            Form::Kept if key.depth_steps.is_some() => Some("fs_recorded_kept_steps"),
+            Form::Kept => source.fragment,
+            _ => source.fragment.filter(|_| !is_recorded || key.depth_steps.is_some()),
+        };
         device.create_render_pipeline(&RenderPipelineDescriptor {
             label: Some(source.vertex),
             layout: Some(&layout),
@@ -225,6 +230,10 @@ impl Layouts {
                 "textured surface",
                 &[storage(0), storage(1), storage(2), storage(3), storage(4), picture, picture_sampler],
             ),
+            kept: layout(
+                "kept fragments",
+                &[entry(0, ShaderStages::FRAGMENT, BufferBindingType::Storage { read_only: true }, false)],
+            ),
             light: layout("light", &[constants(0)]),
             light_with_map: layout("light with map", &[constants(0), map]),
             light_with_labels: layout("light with labels", &[constants(0), labels]),
@@ -241,7 +250,11 @@ impl Layouts {
             Some(Visibility::ReceiverTexture | Visibility::Projected) => &self.light_with_textures,
             Some(Visibility::Everywhere) | None => &self.light,
         };
-        let surface = if shader.form == Form::Textured { &self.textured_surface } else { &self.surface };
+        let surface = match shader.form {
+            Form::Textured => &self.textured_surface,
+            Form::Kept => &self.kept,
+            Form::Plain | Form::Extruded => &self.surface,
+        };
         [&self.view, &self.draw, surface, light]
     }
 }

@@ -6,7 +6,7 @@ use super::maps::{KeptMap, Maps};
 use super::pictures::Pictures;
 use super::pipelines::{Layouts, PipelineKey, Pipelines};
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
-use super::shaders::Shader;
+use super::shaders::{Form, Shader};
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError, start};
 use crate::plan::{
@@ -59,7 +59,7 @@ pub(super) struct PreparedDraw {
     pub index: usize,
     pub vertices: Buffer,
     pub indices: Buffer,
-    /// Groups 2 and 3, for programs that pull their vertices and for those that light.
+    /// Groups 2 and 3, for programs that pull their vertices or keep some fragments, and for those that light.
     pub shading: Option<(BindGroup, Option<BindGroup>)>,
 }
 
@@ -135,6 +135,10 @@ impl<'a> Prepared<'a> {
                             light.map(|light| light_group(device, pipelines, plan, &lights, &textures, draw, light));
                         Some((surface, light))
                     }
+                    _ if shader.form == Form::Kept => match &mesh.kept {
+                        Some(kept) => Some((kept_group(device, pipelines, &buffers.get(device, kept)?), None)),
+                        None => None,
+                    },
                     _ => None,
                 };
                 prepared.draws.push(PreparedDraw { shader, pipelines: states, index, vertices, indices, shading });
@@ -303,6 +307,12 @@ fn key_of(plan: &FramePlan, pass: &Pass, shader: Shader, raster: &RasterState) -
         depth_format: depth_stencil.map(Attachment::held_format),
         depth_steps: depth_stencil.and_then(Attachment::depth_steps).filter(|_| shader.program.is_recorded()),
     }
+}
+
+fn kept_group(device: &Device, pipelines: &Pipelines, kept: &Buffer) -> BindGroup {
+    let entries = [BindGroupEntry { binding: 0, resource: kept.as_entire_binding() }];
+    let layout = &pipelines.layouts.kept;
+    device.create_bind_group(&BindGroupDescriptor { label: Some("kept fragments"), layout, entries: &entries })
 }
 
 /// `shown`: where its corners lie in a picture, the picture, and how it is sampled.

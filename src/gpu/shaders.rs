@@ -19,15 +19,18 @@ pub(super) enum Form {
     Textured,
     /// The planes of vertices that are [`Extruded`](crate::plan::Extruded).
     Extruded,
+    /// The fragments that another program's shader has kept.
+    Kept,
 }
 
 impl Shader {
     /// Of a draw.
     pub fn of(draw: &Draw, mesh: &DrawMesh) -> Shader {
-        let form = match (&mesh.extruded, draw.constants.texture) {
-            (Some(_), _) => Form::Extruded,
-            (None, Some(_)) => Form::Textured,
-            (None, None) => Form::Plain,
+        let form = match (&mesh.extruded, &mesh.kept, draw.constants.texture) {
+            (Some(_), ..) => Form::Extruded,
+            (None, Some(_), _) if draw.program.is_recorded() => Form::Kept,
+            (None, _, Some(_)) => Form::Textured,
+            (None, _, None) => Form::Plain,
         };
         Shader { program: draw.program, form }
     }
@@ -41,6 +44,7 @@ impl Shader {
     pub fn group_count(self) -> usize {
         match self.program {
             Program::Ambient { .. } if self.form == Form::Textured => 3,
+            Program::Recorded { .. } if self.form == Form::Kept => 3,
             Program::Position if self.form == Form::Extruded => 2,
             Program::Position | Program::Recorded { .. } => 1,
             Program::Flat | Program::FlatLabel | Program::Count | Program::Ambient { .. } => 2,
@@ -77,7 +81,8 @@ pub(super) fn source_of(shader: Shader) -> ProgramSource {
             let textured = [file!("texture.wgsl"), file!("light_textured.wgsl")];
             joined(&[&files[..], &textured].concat(), "vs_surface_textured", Some("fs_light_textured"))
         }
-        (_, program) => plain(program),
+        (Form::Kept, _) => joined(&[file!("recorded_kept.wgsl")], "vs_recorded_kept", Some("fs_recorded_kept")),
+        (Form::Plain, program) | (Form::Textured, program) => plain(program),
     }
 }
 
@@ -149,7 +154,8 @@ mod tests {
         let plain = Program::all().into_iter().map(with(Form::Plain));
         let textured = Program::all().into_iter().filter(|program| program.shows_texture()).map(with(Form::Textured));
         let extruded = [Program::Position, Program::Flat, Program::Count].into_iter().map(with(Form::Extruded));
-        let shaders = plain.chain(textured).chain(extruded);
+        let recorded = Program::all().into_iter().filter(|program| program.is_recorded()).map(with(Form::Kept));
+        let shaders = plain.chain(textured).chain(extruded).chain(recorded);
         let programs = shaders.map(|shader| (format!("{shader:?}"), source_of(shader).source));
         for (name, source) in
             programs.chain([("FragmentLog".to_owned(), fragment_log()), ("Start".to_owned(), START.to_owned())])

@@ -126,8 +126,9 @@ impl Fate {
             Fate::Culled => Some("culled: the draw shows only the other side of triangles"),
             Fate::Clipped(Clip::Near) => Some("clipped: it is nearer than the near plane"),
             Fate::Clipped(Clip::Far) => Some("clipped: it is beyond the far plane"),
-            Fate::Discarded(Clip::Near) => Some("discarded by the shader: it is nearer than the near plane"),
-            Fate::Discarded(Clip::Far) => Some("discarded by the shader: it is beyond the far plane"),
+            Fate::Discarded(Some(Clip::Near)) => Some("discarded by the shader: it is nearer than the near plane"),
+            Fate::Discarded(Some(Clip::Far)) => Some("discarded by the shader: it is beyond the far plane"),
+            Fate::Discarded(None) => Some("discarded by the shader"),
         }
     }
 }

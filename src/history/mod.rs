@@ -176,8 +176,9 @@ pub enum Fate {
         /// The operation that ran on the stencil; `None` where the draw tests no stencil.
         operation: Option<StencilOperation>,
     },
-    /// The shader discarded its fragment.
-    Discarded(Clip),
+    /// The shader discarded its fragment: on that side of the depths that are drawn, or of another program for reasons of
+    /// its own.
+    Discarded(Option<Clip>),
     /// The draw shows only the other side of triangles.
     Culled,
     /// It lies before the near or behind the far plane.

@@ -110,7 +110,8 @@ impl Replay<'_> {
 
     fn test(&mut self, pass: &Pass, one: &Covering, is_front: bool, depth: f32) {
         let draw = &pass.draws[one.draw];
-        if let Some(clip) = draw.program.discards(depth) {
+        let clip = draw.program.discards(depth);
+        if clip.is_some() || !self.plan.meshes[draw.mesh.0].keeps(self.pixel, one.triangle) {
             self.push(one.pass, triangle(draw, one, Face { is_front, depth }, Fate::Discarded(clip)), self.held);
             return;
         }

@@ -256,6 +256,7 @@ impl Reader {
             stencil: states.stencil,
             blend: states.blend,
             fragment,
+            kept: None,
             samples,
         })
     }

@@ -17,6 +17,9 @@ pub struct DrawMesh {
     pub surface: Option<SurfaceData>,
     /// The vertex shader makes the vertices of these; [`DrawMesh::vertices`] are what comes of it.
     pub extruded: Option<Extruded>,
+    /// The fragments that another program's shader has not discarded, where that was noted, in order: the pixel
+    /// ([`DrawMesh::pixel_word`]) and the triangle. Corners are not shared then: the three of triangle `t` begin at `3t`.
+    pub kept: Option<Blob<[u32; 2]>>,
 }
 
 impl DrawMesh {
@@ -29,7 +32,7 @@ impl DrawMesh {
     /// The same of data that may be shared.
     #[must_use]
     pub fn of_blobs(name: impl Into<String>, vertices: Blob<[f32; 4]>, indices: Blob<u32>) -> DrawMesh {
-        DrawMesh { name: name.into(), vertices, indices, surface: None, extruded: None }
+        DrawMesh { name: name.into(), vertices, indices, surface: None, extruded: None, kept: None }
     }
 
     /// A mesh whose vertices a vertex shader carries away from a light.
@@ -37,6 +40,19 @@ impl DrawMesh {
     pub fn of_extruded(name: impl Into<String>, extruded: Extruded, indices: Blob<u32>) -> DrawMesh {
         let vertices = extruded.vertices();
         DrawMesh { extruded: Some(extruded), ..DrawMesh::of_blobs(name, vertices, indices) }
+    }
+
+    /// Column and row of a pixel in one word, as [`DrawMesh::kept`] has it.
+    #[must_use]
+    pub fn pixel_word([x, y]: [u32; 2]) -> u32 {
+        x | y << 16
+    }
+
+    /// Is a fragment of a triangle there after the shader, as far as is known?
+    #[must_use]
+    pub fn keeps(&self, pixel: [u32; 2], triangle: u32) -> bool {
+        let wanted = [DrawMesh::pixel_word(pixel), triangle];
+        self.kept.as_ref().is_none_or(|kept| kept.data().binary_search(&wanted).is_ok())
     }
 
     /// How many triangles it has.
@@ -54,6 +70,7 @@ impl DrawMesh {
         let mut blobs = vec![vertices, entry(&self.indices)];
         blobs.extend(self.surface.iter().flat_map(|surface| [entry(&surface.normals), entry(&surface.sides)]));
         blobs.extend(self.surface.iter().filter_map(|surface| surface.uvs.as_ref()).map(entry));
+        blobs.extend(self.kept.as_ref().map(entry));
         blobs
     }
 }

@@ -1,7 +1,7 @@
 //! What only the frames of other programs need: a viewport, targets that hold something before a pass begins,
 //! depths stored in 16 or 24 bits, shaders of which no more is known than where their vertices land.
 
-use super::{Attachment, Blob, Draw, Pass, Program};
+use super::{Attachment, Blob, Draw, DrawMesh, Pass, Program};
 use serde::{Deserialize, Serialize};
 use wgpu::TextureFormat;
 
@@ -119,9 +119,9 @@ impl Pass {
 }
 
 impl Draw {
-    /// May its shader drop fragments that it is shown with here?
+    /// May its shader discard fragments without it being known which? `mesh` is the draw's.
     #[must_use]
-    pub fn may_discard(&self) -> bool {
-        matches!(self.program, Program::Recorded { may_discard: May::Yes | May::Unknown, .. })
+    pub fn discards_unknown(&self, mesh: &DrawMesh) -> bool {
+        matches!(self.program, Program::Recorded { may_discard: May::Yes | May::Unknown, .. }) && mesh.kept.is_none()
     }
 }

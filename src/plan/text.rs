@@ -119,7 +119,7 @@ impl FramePlan {
             draw.part.name(),
             draw.mesh.0
         )?;
-        if draw.may_discard() {
+        if draw.discards_unknown(&self.meshes[draw.mesh.0]) {
             writeln!(f, "    its shader may discard fragments")?;
         }
         if draw.faces_inwards {

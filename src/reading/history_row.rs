@@ -138,8 +138,9 @@ fn outcome(fate: Fate) -> Outcome {
         Fate::Culled => Outcome::Nothing("culled"),
         Fate::Clipped(Clip::Near) => Outcome::Nothing("clipped at near"),
         Fate::Clipped(Clip::Far) => Outcome::Nothing("clipped at far"),
-        Fate::Discarded(Clip::Near) => Outcome::Nothing("discarded before near"),
-        Fate::Discarded(Clip::Far) => Outcome::Nothing("discarded beyond far"),
+        Fate::Discarded(Some(Clip::Near)) => Outcome::Nothing("discarded before near"),
+        Fate::Discarded(Some(Clip::Far)) => Outcome::Nothing("discarded beyond far"),
+        Fate::Discarded(None) => Outcome::Nothing("discarded by the shader"),
     }
 }
 

@@ -5,6 +5,7 @@
 //!              └► recorder.rs   which frame that is, and what becomes of it
 //!                   └► replay.rs     does the list draw by draw, and reads what each draw left
 //!                        ├ probe.rs      where a draw's vertices land: its shader, rewritten by rewrite.rs, writes it down
+//!                        ├ fragments.rs  which of its fragments its shader keeps, where it may discard some
 //!                        ├ states.rs     wgpu's states as a `RawFrame` has them
 //!                        └ readback.rs   textures and buffers as bytes
 //!                   └► RawFrame ─► import::convert ─► capture folder
@@ -19,6 +20,7 @@
 //! targets, bind one more group. Acceleration structures and mesh shaders are hidden from it.
 
 mod error;
+mod fragments;
 mod probe;
 mod readback;
 mod recorder;

@@ -1,13 +1,13 @@
 //! Where a draw's vertices land: the draw is done once more into a target of one pixel that nobody looks at, by a shader
 //! that writes it down.
 
-use super::readback;
 use super::rewrite::{self, HEAD, Logging, RECORD};
 use super::states::{PassState, topology};
+use super::{fragments, readback};
 use crate::import::unroll;
 use crate::wrap::command::{DrawCommand, PassCommand};
-use crate::wrap::{Described, real_group};
-use std::collections::HashMap;
+use crate::wrap::{Described, Stage, VertexBuffer, real_group};
+use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -25,114 +25,241 @@ pub struct Landed {
 /// Pipelines by the address of what the program's own were made from.
 #[derive(Debug, Default)]
 pub struct Probes {
-    made: HashMap<usize, Result<Arc<Probe>, &'static str>>,
+    of_vertices: HashMap<usize, Result<Arc<Probe>, &'static str>>,
+    of_fragments: HashMap<usize, Result<Arc<Probe>, &'static str>>,
     /// So that no other pipeline gets the address of one.
     held: Vec<Arc<Described>>,
 }
 
+/// A pipeline that writes a log while it does what the program's own does.
 #[derive(Debug)]
-struct Probe {
-    pipeline: wgpu::RenderPipeline,
-    logging: Logging,
+pub(super) struct Probe {
+    pub pipeline: wgpu::RenderPipeline,
+    /// Group and binding of what its stages read.
+    bindings: BTreeSet<(u32, u32)>,
     /// Which group the log is bound as.
     group: u32,
     /// The layouts are the pipeline's own.
     is_automatic: bool,
 }
 
-fn probe(device: &wgpu::Device, described: &Described) -> Result<Probe, &'static str> {
+/// Which group of a pipeline's is free for a log.
+///
+/// # Errors
+/// None is; or it draws in a way that is not followed.
+pub(super) fn free_group(
+    device: &wgpu::Device,
+    described: &Described,
+    modules: &[&naga::Module],
+) -> Result<u32, &'static str> {
     if described.multiview_mask.is_some() {
         return Err("draws into several views at once are not followed");
     }
-    let module = described.vertex.source.module().ok_or("its vertex shader is in no language that is read")?;
-    let entry_point = described.vertex.entry_point.as_deref();
-    let limits = device.limits();
-    let features = device.features();
-    if !features.contains(wgpu::Features::VERTEX_WRITABLE_STORAGE) {
-        return Err("vertex shaders can't write to storage on this GPU");
-    }
     // A pipeline with layouts of its own has as many groups as its shaders use.
-    let automatic = || module.global_variables.iter().filter_map(|(_, of)| of.binding).map(|of| of.group + 1).max();
+    let variables = modules.iter().flat_map(|module| module.global_variables.iter());
+    let automatic = || variables.filter_map(|(_, of)| of.binding).map(|of| of.group + 1).max();
     let group = match &described.layout {
         Some((groups, _)) => groups.len() as u32,
         None => automatic().unwrap_or(0),
     };
-    if group >= limits.max_bind_groups {
-        return Err("it binds as many groups as this GPU has");
-    }
-    let logging = rewrite::vertex_log(&module, entry_point, group)?;
-    let source = wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(logging.module.clone()));
-    let module =
-        device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("stencilscope probe"), source });
-    let layout = described.layout.as_ref().map(|(groups, immediate_size)| {
-        let log = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("stencilscope log"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Storage { read_only: false },
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
-        });
-        let groups: Vec<Option<&wgpu::BindGroupLayout>> =
-            groups.iter().map(Option::as_ref).chain([Some(&log)]).collect();
-        device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("stencilscope probe"),
-            bind_group_layouts: &groups,
-            immediate_size: *immediate_size,
-        })
-    });
-    let constants: Vec<(&str, f64)> =
-        described.vertex.constants.iter().map(|(name, value)| (&**name, *value)).collect();
-    let buffers: Vec<Option<wgpu::VertexBufferLayout<'_>>> = described
-        .buffers
-        .iter()
-        .map(|buffer| {
-            buffer.as_ref().map(|buffer| wgpu::VertexBufferLayout {
-                array_stride: buffer.stride,
-                step_mode: buffer.step,
-                attributes: &buffer.attributes,
-            })
-        })
-        .collect();
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("stencilscope probe"),
-        layout: layout.as_ref(),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some(&logging.entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &constants,
-                ..wgpu::PipelineCompilationOptions::default()
-            },
-            buffers: &buffers,
-        },
-        primitive: wgpu::PrimitiveState {
-            topology: described.primitive.topology,
-            strip_index_format: described.primitive.strip_index_format,
-            ..wgpu::PrimitiveState::default()
-        },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: FORMAT,
-            depth_write_enabled: Some(false),
-            depth_compare: Some(wgpu::CompareFunction::Never),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: None,
-        multiview_mask: None,
-        cache: None,
-    });
-    Ok(Probe { pipeline, logging, group, is_automatic: described.layout.is_none() })
+    let is_free = group < device.limits().max_bind_groups;
+    is_free.then_some(group).ok_or("it binds as many groups as this GPU has")
 }
 
-/// Of the target of one pixel.
+/// A stage that is rewritten, or goes on as it is.
+pub(super) struct ProbeStage {
+    pub module: wgpu::ShaderModule,
+    pub entry_point: Option<String>,
+    pub constants: Vec<(String, f64)>,
+}
+
+impl ProbeStage {
+    /// Of a stage of the program's, with another module.
+    pub fn of(device: &wgpu::Device, stage: &Stage, module: naga::Module, entry_point: Option<String>) -> ProbeStage {
+        let source = wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module));
+        let label = Some("stencilscope probe");
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
+        ProbeStage { module, entry_point, constants: stage.constants.clone() }
+    }
+
+    fn constants(&self) -> Vec<(&str, f64)> {
+        self.constants.iter().map(|(name, value)| (&**name, *value)).collect()
+    }
+}
+
+/// How a pipeline of a probe differs from the program's.
+pub(super) struct ProbeParts {
+    pub vertex: ProbeStage,
+    pub fragment: Option<ProbeStage>,
+    pub primitive: wgpu::PrimitiveState,
+    pub bias: wgpu::DepthBiasState,
+    pub compare: wgpu::CompareFunction,
+    pub group: u32,
+    /// What is bound in that group, all of it storage: who sees it, and whether it is only read.
+    pub log: Vec<(wgpu::ShaderStages, bool)>,
+    pub bindings: BTreeSet<(u32, u32)>,
+}
+
+impl Probe {
+    /// `described` is the program's.
+    pub fn new(device: &wgpu::Device, described: &Described, parts: ProbeParts) -> Probe {
+        let layout = described.layout.as_ref().map(|(groups, immediate_size)| {
+            let entry = |(binding, (visibility, read_only)): (u32, &(wgpu::ShaderStages, bool))| {
+                let ty = wgpu::BufferBindingType::Storage { read_only: *read_only };
+                let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+                wgpu::BindGroupLayoutEntry { binding, visibility: *visibility, ty, count: None }
+            };
+            let entries: Vec<_> = (0..).zip(&parts.log).map(entry).collect();
+            let log = wgpu::BindGroupLayoutDescriptor { label: Some("stencilscope log"), entries: &entries };
+            let log = device.create_bind_group_layout(&log);
+            let groups: Vec<Option<&wgpu::BindGroupLayout>> =
+                groups.iter().map(Option::as_ref).chain([Some(&log)]).collect();
+            device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("stencilscope probe"),
+                bind_group_layouts: &groups,
+                immediate_size: *immediate_size,
+            })
+        });
+        let buffers: Vec<_> = described.buffers.iter().map(|buffer| buffer.as_ref().map(layout_of)).collect();
+        let of_vertex = parts.vertex.constants();
+        let of_fragment = parts.fragment.as_ref().map(ProbeStage::constants).unwrap_or_default();
+        let options = |constants| wgpu::PipelineCompilationOptions { constants, ..Default::default() };
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("stencilscope probe"),
+            layout: layout.as_ref(),
+            vertex: wgpu::VertexState {
+                module: &parts.vertex.module,
+                entry_point: parts.vertex.entry_point.as_deref(),
+                compilation_options: options(&of_vertex),
+                buffers: &buffers,
+            },
+            primitive: parts.primitive,
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: FORMAT,
+                depth_write_enabled: Some(false),
+                depth_compare: Some(parts.compare),
+                stencil: wgpu::StencilState::default(),
+                bias: parts.bias,
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: parts.fragment.as_ref().map(|stage| wgpu::FragmentState {
+                module: &stage.module,
+                entry_point: stage.entry_point.as_deref(),
+                compilation_options: options(&of_fragment),
+                targets: &[],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let is_automatic = described.layout.is_none();
+        Probe { pipeline, bindings: parts.bindings, group: parts.group, is_automatic }
+    }
+
+    /// Sets the pipeline, and of the program's states those that `is_wanted`.
+    pub fn set(
+        &self,
+        device: &wgpu::Device,
+        pass: &mut wgpu::RenderPass<'_>,
+        state: &PassState,
+        is_wanted: impl Fn(&PassCommand) -> bool,
+    ) {
+        pass.set_pipeline(&self.pipeline);
+        for command in state.commands() {
+            match command {
+                PassCommand::IndexBuffer { .. } | PassCommand::VertexBuffer { .. } | PassCommand::Immediates { .. } => {
+                    command.encode(pass);
+                }
+                PassCommand::BindGroup { index, group: Some(group), offsets } if *index < self.group => {
+                    if self.is_automatic {
+                        let is_read = |(binding, _): &&(u32, _)| self.bindings.contains(&(*index, *binding));
+                        let entries: Vec<_> = group.entries.iter().filter(is_read).cloned().collect();
+                        if !entries.is_empty() {
+                            let layout = self.pipeline.get_bind_group_layout(*index);
+                            pass.set_bind_group(*index, &real_group(device, None, &layout, &entries), offsets);
+                        }
+                    } else {
+                        pass.set_bind_group(*index, &group.real, offsets);
+                    }
+                }
+                other if is_wanted(other) => other.encode(pass),
+                _ => {}
+            }
+        }
+    }
+
+    /// Binds its own group.
+    pub fn bind(&self, device: &wgpu::Device, pass: &mut wgpu::RenderPass<'_>, log: &[wgpu::BindingResource<'_>]) {
+        let log =
+            (0..).zip(log).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() });
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("stencilscope log"),
+            layout: &self.pipeline.get_bind_group_layout(self.group),
+            entries: &log.collect::<Vec<_>>(),
+        });
+        pass.set_bind_group(self.group, &group, &[]);
+    }
+}
+
+fn layout_of(buffer: &VertexBuffer) -> wgpu::VertexBufferLayout<'_> {
+    let VertexBuffer { stride, step, attributes } = buffer;
+    wgpu::VertexBufferLayout { array_stride: *stride, step_mode: *step, attributes }
+}
+
+fn of_vertices(device: &wgpu::Device, described: &Described) -> Result<Probe, &'static str> {
+    if !device.features().contains(wgpu::Features::VERTEX_WRITABLE_STORAGE) {
+        return Err("vertex shaders can't write to storage on this GPU");
+    }
+    let module = described.vertex.source.module().ok_or("its vertex shader is in no language that is read")?;
+    let group = free_group(device, described, &[&module])?;
+    let Logging { module, entry_point, bindings } =
+        rewrite::vertex_log(&module, described.vertex.entry_point.as_deref(), group)?;
+    let primitive = wgpu::PrimitiveState {
+        topology: described.primitive.topology,
+        strip_index_format: described.primitive.strip_index_format,
+        ..wgpu::PrimitiveState::default()
+    };
+    let parts = ProbeParts {
+        vertex: ProbeStage::of(device, &described.vertex, module, Some(entry_point)),
+        fragment: None,
+        primitive,
+        bias: wgpu::DepthBiasState::default(),
+        compare: wgpu::CompareFunction::Never,
+        group,
+        log: vec![(wgpu::ShaderStages::VERTEX, false)],
+        bindings,
+    };
+    Ok(Probe::new(device, described, parts))
+}
+
+/// Of the target, of which nothing is kept.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// A target of which nothing is kept.
+pub(super) fn target(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let target = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("stencilscope probe"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    });
+    target.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+pub(super) fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &wgpu::TextureView) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("stencilscope probe"),
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: target,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            stencil_ops: None,
+        }),
+        ..wgpu::RenderPassDescriptor::default()
+    })
+}
 
 /// The two devices' ends that everything here needs.
 #[derive(Debug, Clone, Copy)]
@@ -148,7 +275,9 @@ impl Probes {
     /// Why that can't be found, in words.
     pub fn landed(&mut self, gpu: Gpu<'_>, state: &PassState, draw: &DrawCommand) -> Result<Landed, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
-        let probe = self.probe(gpu.device, described)?;
+        let key = self.key(described);
+        let made = self.of_vertices.entry(key);
+        let probe = made.or_insert_with(|| of_vertices(gpu.device, described).map(Arc::new)).clone()?;
         let parts = direct(gpu, draw)?;
         let mut all = Landed::default();
         for part in &parts {
@@ -159,14 +288,46 @@ impl Probes {
         Ok(all)
     }
 
-    fn probe(&mut self, device: &wgpu::Device, described: &Arc<Described>) -> Result<Arc<Probe>, &'static str> {
-        let key = Arc::as_ptr(described) as usize;
-        if !self.made.contains_key(&key) {
-            self.held.push(described.clone());
-            self.made.insert(key, probe(device, described).map(Arc::new));
-        }
-        self.made[&key].clone()
+    /// Which fragments of a draw, whose triangles `landed`, its shader keeps, of a target of that size.
+    ///
+    /// # Errors
+    /// Why that can't be found, in words.
+    pub fn kept(
+        &mut self,
+        gpu: Gpu<'_>,
+        state: &PassState,
+        draw: &DrawCommand,
+        landed: &Landed,
+        size: [u32; 2],
+    ) -> Result<Vec<([u16; 2], u32)>, &'static str> {
+        let described = state.pipeline().ok_or("it has no pipeline")?;
+        let key = self.key(described);
+        let made = self.of_fragments.entry(key);
+        let probe = made.or_insert_with(|| fragments::probe(gpu.device, described).map(Arc::new)).clone()?;
+        let one_by_one = direct(gpu, draw)?.iter().flat_map(single).collect::<Vec<_>>();
+        let first: Vec<u32> = landed.instances.iter().map(|triangles| triangles.start as u32).collect();
+        fragments::kept(&probe, gpu, state, &one_by_one.into_iter().zip(first).collect::<Vec<_>>(), size)
     }
+
+    fn key(&mut self, described: &Arc<Described>) -> usize {
+        let key = Arc::as_ptr(described) as usize;
+        if !self.of_vertices.contains_key(&key) && !self.of_fragments.contains_key(&key) {
+            self.held.push(described.clone());
+        }
+        key
+    }
+}
+
+/// A draw of each instance.
+fn single(draw: &DrawCommand) -> Vec<DrawCommand> {
+    let one = |instance: u32| match draw.clone() {
+        DrawCommand::Vertices { vertices, .. } => DrawCommand::Vertices { vertices, instances: instance..instance + 1 },
+        DrawCommand::Indexed { indices, base_vertex, .. } => {
+            DrawCommand::Indexed { indices, base_vertex, instances: instance..instance + 1 }
+        }
+        other => other,
+    };
+    instances(draw).map(one).collect()
 }
 
 impl Probe {
@@ -185,55 +346,11 @@ impl Probe {
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        let target = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("stencilscope probe"),
-            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
-        let view = target.create_view(&wgpu::TextureViewDescriptor::default());
+        let view = target(device, [1, 1]);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("stencilscope probe"),
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &view,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
-                stencil_ops: None,
-            }),
-            ..wgpu::RenderPassDescriptor::default()
-        });
-        pass.set_pipeline(&self.pipeline);
-        for command in state.commands() {
-            match command {
-                PassCommand::IndexBuffer { .. } | PassCommand::VertexBuffer { .. } | PassCommand::Immediates { .. } => {
-                    command.encode(&mut pass);
-                }
-                PassCommand::BindGroup { index, group: Some(group), offsets } if *index < self.group => {
-                    if self.is_automatic {
-                        let of_vertex = |(binding, _): &&(u32, _)| self.logging.bindings.contains(&(*index, *binding));
-                        let entries: Vec<_> = group.entries.iter().filter(of_vertex).cloned().collect();
-                        if !entries.is_empty() {
-                            let layout = self.pipeline.get_bind_group_layout(*index);
-                            pass.set_bind_group(*index, &real_group(device, None, &layout, &entries), offsets);
-                        }
-                    } else {
-                        pass.set_bind_group(*index, &group.real, offsets);
-                    }
-                }
-                _ => {}
-            }
-        }
-        let layout = self.pipeline.get_bind_group_layout(self.group);
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("stencilscope log"),
-            layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: log.as_entire_binding() }],
-        });
-        pass.set_bind_group(self.group, &group, &[]);
+        let mut pass = begin(&mut encoder, &view);
+        self.set(device, &mut pass, state, |_| false);
+        self.bind(device, &mut pass, &[log.as_entire_binding()]);
         draw.encode(&mut pass);
         drop(pass);
         queue.submit([encoder.finish()]);

@@ -215,8 +215,7 @@ impl Replay {
     }
 
     fn draw(&mut self, gpu: Gpu<'_>, targets: &Targets, state: &PassState, draw: &DrawCommand) -> RawDraw {
-        let landed = self.probes.landed(gpu, state, draw);
-        let Landed { positions, triangles, instances } = landed.unwrap_or_else(|why| {
+        let landed = self.probes.landed(gpu, state, draw).unwrap_or_else(|why| {
             self.limit(&format!("a draw has states alone: {why}"));
             Landed::default()
         });
@@ -225,9 +224,19 @@ impl Replay {
         };
         let of_color = targets.colors.iter().flatten().next().map(|color| size(&color.view, color.part));
         let of_depth = targets.depth_stencil.as_ref().map(|depth| size(&depth.view, depth.part));
-        let view = state.view(of_depth.or(of_color).unwrap_or([1, 1]));
+        let size = of_depth.or(of_color).unwrap_or([1, 1]);
+        let view = state.view(size);
         let described = state.pipeline().cloned();
         let described = described.as_deref();
+        let fragment = described.map_or(UNKNOWN, fragment);
+        // What is not followed has no fragments to tell apart.
+        let is_followed =
+            !landed.triangles.is_empty() && described.is_some_and(|described| described.multisample.count == 1);
+        let is_asked = is_followed && fragment.may_discard == RawMay::Yes;
+        let kept = is_asked.then(|| self.probes.kept(gpu, state, draw, &landed, size)).and_then(|kept| {
+            kept.map_err(|why| self.limit(&format!("which fragments a draw discards is not known: {why}"))).ok()
+        });
+        let Landed { positions, triangles, instances } = landed;
         RawDraw {
             topology: described.map_or(crate::import::RawTopology::Other, states::topology),
             positions,
@@ -238,7 +247,8 @@ impl Replay {
             depth: described.and_then(states::depth),
             stencil: described.and_then(|described| state.stencil(described)),
             blend: described.and_then(states::blend),
-            fragment: described.map_or(UNKNOWN, fragment),
+            fragment,
+            kept,
             samples: described.map_or(1, |described| described.multisample.count),
         }
     }

@@ -1,10 +1,16 @@
-//! A vertex shader that writes down where its vertices land: the entry point becomes a function that a new one calls.
+//! Shaders that write down where their vertices land, and which fragments they keep: the entry point becomes a function
+//! that a new one calls.
 //!
 //! ```text
 //! fn vs(…same inputs…, vertex, instance) -> …same outputs… {
 //!     let result = inner(…);
 //!     note(result.position, vertex, instance);
 //!     return result;
+//! }
+//!
+//! fn fs(…same inputs…, position, primitive) {
+//!     inner(…);                  // what is discarded here does not come back
+//!     note(pixel of position, first triangle + primitive);
 //! }
 //! ```
 
@@ -17,10 +23,12 @@ use std::collections::BTreeSet;
 
 /// Bytes of the log before its records: the count, padded.
 pub const HEAD: u64 = 16;
-/// Bytes of a record: a position, the vertex, the instance, padding.
+/// Bytes of a record of a vertex: a position, the vertex, the instance, padding.
 pub const RECORD: u64 = 32;
+/// Bytes of a record of a fragment: column and row of its pixel in one word, its triangle.
+pub const FRAGMENT_RECORD: u64 = 8;
 
-/// A module with a vertex entry point that writes a log.
+/// A module with an entry point that writes a log.
 #[derive(Debug)]
 pub struct Logging {
     pub module: Module,
@@ -29,27 +37,76 @@ pub struct Logging {
     pub bindings: BTreeSet<(u32, u32)>,
 }
 
-/// The vertex entry point of that name, or the only one, with a log in a group of its own.
+/// The vertex entry point of that name, or the only one, with a log as binding 0 of a group of its own.
 ///
 /// # Errors
 /// Why it can't be rewritten.
 pub fn vertex_log(module: &Module, name: Option<&str>, group: u32) -> Result<Logging, &'static str> {
-    let mut module = module.clone();
-    let is_meant =
-        |entry: &EntryPoint| entry.stage == ShaderStage::Vertex && name.is_none_or(|name| entry.name == name);
-    let entry = module.entry_points.iter().find(|entry| is_meant(entry)).cloned();
-    let mut entry = entry.ok_or("its shader has no such vertex entry point")?;
-    let before = used(&module, &entry)?;
+    let entry = entry_of(module, ShaderStage::Vertex, name).ok_or("its shader has no such vertex entry point")?;
+    let before = used(module, entry)?;
     if before.writes {
         return Err("its vertex shader writes to storage, and must not run twice");
     }
+    let rewritten = logging(module, entry, before, |module, function| {
+        let scalar = TypeInner::Scalar(Scalar::U32);
+        let position = TypeInner::Vector { size: VectorSize::Quad, scalar: Scalar::F32 };
+        let fields = [("position", position, 0), ("vertex", scalar.clone(), 16), ("instance", scalar, 20)];
+        let note = note(module, group, &fields, RECORD as u32);
+        noting_vertices(module, function, note)
+    });
+    rewritten.ok_or("its vertex shader can't be rewritten")
+}
+
+/// Group and binding of what the vertex entry point of that name, or the only one, reads.
+///
+/// # Errors
+/// It must not run twice.
+pub fn vertex_bindings(module: &Module, name: Option<&str>) -> Result<BTreeSet<(u32, u32)>, &'static str> {
+    let entry = entry_of(module, ShaderStage::Vertex, name).ok_or("its shader has no such vertex entry point")?;
+    let used = used(module, entry)?;
+    if used.writes { Err("its vertex shader writes to storage, and must not run twice") } else { Ok(used.bindings) }
+}
+
+/// The fragment entry point of that name, or the only one, with a log as binding 0 and the number of the first triangle
+/// as binding 1 of a group of its own. It has no outputs.
+///
+/// # Errors
+/// Why it can't be rewritten.
+pub fn fragment_log(module: &Module, name: Option<&str>, group: u32) -> Result<Logging, &'static str> {
+    let entry = entry_of(module, ShaderStage::Fragment, name).ok_or("its shader has no such fragment entry point")?;
+    let before = used(module, entry)?;
+    if before.writes {
+        return Err("its fragment shader writes to storage, and must not run twice");
+    }
+    let rewritten = logging(module, entry, before, |module, function| {
+        let scalar = TypeInner::Scalar(Scalar::U32);
+        let fields = [("pixel", scalar.clone(), 0), ("triangle", scalar, 4)];
+        let note = note(module, group, &fields, FRAGMENT_RECORD as u32);
+        Some(noting_fragments(module, function, note, group))
+    });
+    rewritten.ok_or("its fragment shader can't be rewritten")
+}
+
+/// The entry point of a stage with that name, or the only one.
+fn entry_of<'a>(module: &'a Module, stage: ShaderStage, name: Option<&str>) -> Option<&'a EntryPoint> {
+    module.entry_points.iter().find(|entry| entry.stage == stage && name.is_none_or(|name| entry.name == name))
+}
+
+/// A module with nothing but an entry point, whose function `rewrite` makes from what it was; `None` where it can't, or
+/// nothing valid comes of it.
+fn logging(
+    module: &Module,
+    entry: &EntryPoint,
+    before: Used,
+    rewrite: impl FnOnce(&mut Module, &Function) -> Option<Function>,
+) -> Option<Logging> {
+    let (mut module, mut entry) = (module.clone(), entry.clone());
     module.entry_points.clear();
-    let note = note(&mut module, group);
-    entry.function = calling(&mut module, &entry.function, note).ok_or("its vertex shader has no position")?;
+    entry.function = rewrite(&mut module, &entry.function)?;
     let entry_point = entry.name.clone();
     module.entry_points.push(entry);
-    validated(&module).map_err(|_| "its vertex shader can't be rewritten")?;
-    Ok(Logging { module, entry_point, bindings: before.bindings })
+    validated(&module).ok()?;
+    Some(Logging { module, entry_point, bindings: before.bindings })
 }
 
 fn validated(module: &Module) -> Result<naga::valid::ModuleInfo, Box<naga::WithSpan<naga::valid::ValidationError>>> {
@@ -86,36 +143,32 @@ fn member(name: &str, ty: Handle<Type>, offset: u32) -> StructMember {
     StructMember { name: Some(name.to_owned()), ty, binding: None, offset }
 }
 
-/// `fn note(position, vertex, instance)`: appends a record while there is room, and counts on when there is none.
-fn note(module: &mut Module, group: u32) -> Handle<Function> {
+/// `fn note(…fields…)`: appends a record of them while there is room, and counts on when there is none. Of each field: its
+/// name, its type, and where it is in the record.
+fn note(module: &mut Module, group: u32, fields: &[(&str, TypeInner, u32)], record_bytes: u32) -> Handle<Function> {
     let unsigned = add_type(module, TypeInner::Scalar(Scalar::U32));
     let counter = add_type(module, TypeInner::Atomic(Scalar::U32));
-    let position = add_type(module, TypeInner::Vector { size: VectorSize::Quad, scalar: Scalar::F32 });
-    let members =
-        vec![member("position", position, 0), member("vertex", unsigned, 16), member("instance", unsigned, 20)];
+    let mut arguments = Vec::new();
+    let mut members = Vec::new();
+    for (name, inner, offset) in fields {
+        let ty = add_type(module, inner.clone());
+        arguments.push(FunctionArgument { name: Some((*name).to_owned()), ty, binding: None });
+        members.push(member(name, ty, *offset));
+    }
     let record =
-        Type { name: Some("StencilscopeRecord".into()), inner: TypeInner::Struct { members, span: RECORD as u32 } };
+        Type { name: Some("StencilscopeRecord".into()), inner: TypeInner::Struct { members, span: record_bytes } };
     let record = module.types.insert(record, Span::UNDEFINED);
-    let records = TypeInner::Array { base: record, size: naga::ArraySize::Dynamic, stride: RECORD as u32 };
+    let records = TypeInner::Array { base: record, size: naga::ArraySize::Dynamic, stride: record_bytes };
     let records = add_type(module, records);
     let members = vec![member("count", counter, 0), member("records", records, HEAD as u32)];
-    let span = (HEAD + RECORD) as u32;
+    let span = HEAD as u32 + record_bytes;
     let log = Type { name: Some("StencilscopeLog".into()), inner: TypeInner::Struct { members, span } };
     let log = module.types.insert(log, Span::UNDEFINED);
-    let variable = GlobalVariable {
-        name: Some("stencilscope_log".into()),
-        space: AddressSpace::Storage { access: StorageAccess::LOAD | StorageAccess::STORE },
-        binding: Some(ResourceBinding { group, binding: 0 }),
-        ty: log,
-        init: None,
-        memory_decorations: naga::MemoryDecorations::empty(),
-    };
-    let variable = module.global_variables.append(variable, Span::UNDEFINED);
-    let argument = |name: &str, ty| FunctionArgument { name: Some(name.to_owned()), ty, binding: None };
-    let arguments = vec![argument("position", position), argument("vertex", unsigned), argument("instance", unsigned)];
+    let access = StorageAccess::LOAD | StorageAccess::STORE;
+    let variable = global(module, "stencilscope_log", access, [group, 0], log);
     let mut function = Function { name: Some("stencilscope_note".into()), arguments, ..Function::default() };
     let mut code = Code { expressions: &mut function.expressions, body: Block::new() };
-    let [position, vertex, instance] = [0, 1, 2].map(|index| code.plain(Expression::FunctionArgument(index)));
+    let components = (0..fields.len() as u32).map(|index| code.plain(Expression::FunctionArgument(index))).collect();
     let log = code.plain(Expression::GlobalVariable(variable));
     let one = code.plain(Expression::Literal(Literal::U32(1)));
     let count = code.emitted(Expression::AccessIndex { base: log, index: 0 });
@@ -126,7 +179,6 @@ fn note(module: &mut Module, group: u32) -> Handle<Function> {
     let fits = code.emitted(Expression::Binary { op: BinaryOperator::Less, left: at, right: room });
     let outer = std::mem::replace(&mut code.body, Block::new());
     let pointer = code.emitted(Expression::Access { base: records, index: at });
-    let components = vec![position, vertex, instance];
     let value = code.emitted(Expression::Compose { ty: record, components });
     code.push(Statement::Store { pointer, value });
     let accept = std::mem::replace(&mut code.body, outer);
@@ -134,6 +186,25 @@ fn note(module: &mut Module, group: u32) -> Handle<Function> {
     code.push(Statement::Return { value: None });
     function.body = code.body;
     module.functions.append(function, Span::UNDEFINED)
+}
+
+/// A variable in storage.
+fn global(
+    module: &mut Module,
+    name: &str,
+    access: StorageAccess,
+    [group, binding]: [u32; 2],
+    ty: Handle<Type>,
+) -> Handle<GlobalVariable> {
+    let variable = GlobalVariable {
+        name: Some(name.to_owned()),
+        space: AddressSpace::Storage { access },
+        binding: Some(ResourceBinding { group, binding }),
+        ty,
+        init: None,
+        memory_decorations: naga::MemoryDecorations::empty(),
+    };
+    module.global_variables.append(variable, Span::UNDEFINED)
 }
 
 /// A function's code in the making.
@@ -155,6 +226,21 @@ impl Code<'_> {
         let range = self.expressions.range_from(before);
         self.push(Statement::Emit(range));
         handle
+    }
+
+    /// The arguments of the function.
+    fn arguments(&mut self, count: usize) -> Vec<Handle<Expression>> {
+        (0..count as u32).map(|index| self.plain(Expression::FunctionArgument(index))).collect()
+    }
+
+    /// One of the arguments, or a member of one.
+    fn given(&mut self, arguments: &[Handle<Expression>], place: Place) -> Handle<Expression> {
+        match place {
+            Place::Whole(index) => arguments[index as usize],
+            Place::Member(base, index) => {
+                self.emitted(Expression::AccessIndex { base: arguments[base as usize], index })
+            }
+        }
     }
 
     fn push(&mut self, statement: Statement) {
@@ -183,33 +269,45 @@ fn is_same(built_in: BuiltIn, wanted: BuiltIn) -> bool {
     std::mem::discriminant(&built_in) == std::mem::discriminant(&wanted)
 }
 
-/// A function in place of an entry point's, that calls it and notes what comes out; `None` where no position does.
-fn calling(module: &mut Module, entry: &Function, note: Handle<Function>) -> Option<Function> {
-    let result = entry.result.clone()?;
-    let position = place(module, 0, result.ty, result.binding.as_ref(), BuiltIn::Position { invariant: false })?;
+/// What an entry point does, as a function that another can call.
+fn inner(module: &mut Module, entry: &Function) -> Handle<Function> {
     let mut inner = entry.clone();
     inner.name = Some("stencilscope_inner".into());
     inner.arguments.iter_mut().for_each(|argument| argument.binding = None);
     inner.result.iter_mut().for_each(|result| result.binding = None);
-    let inner = module.functions.append(inner, Span::UNDEFINED);
+    module.functions.append(inner, Span::UNDEFINED)
+}
+
+/// Where a built-in value comes in: as the program has it, or as an argument more.
+fn input(
+    module: &mut Module,
+    arguments: &mut Vec<FunctionArgument>,
+    wanted: BuiltIn,
+    name: &str,
+    inner: TypeInner,
+) -> Place {
+    let found = (0..)
+        .zip(&*arguments)
+        .find_map(|(index, argument)| place(module, index, argument.ty, argument.binding.as_ref(), wanted));
+    found.unwrap_or_else(|| {
+        let (name, ty) = (Some(name.to_owned()), add_type(module, inner));
+        arguments.push(FunctionArgument { name, ty, binding: Some(Binding::BuiltIn(wanted)) });
+        Place::Whole(arguments.len() as u32 - 1)
+    })
+}
+
+/// A function in place of an entry point's, that calls it and notes what comes out; `None` where no position does.
+fn noting_vertices(module: &mut Module, entry: &Function, note: Handle<Function>) -> Option<Function> {
+    let result = entry.result.clone()?;
+    let position = place(module, 0, result.ty, result.binding.as_ref(), BuiltIn::Position { invariant: false })?;
+    let inner = inner(module, entry);
     let mut arguments = entry.arguments.clone();
-    let unsigned = add_type(module, TypeInner::Scalar(Scalar::U32));
-    let mut number = |wanted: BuiltIn, name: &str| {
-        let found = (0..)
-            .zip(&arguments)
-            .find_map(|(index, argument)| place(module, index, argument.ty, argument.binding.as_ref(), wanted));
-        found.unwrap_or_else(|| {
-            let binding = Some(Binding::BuiltIn(wanted));
-            arguments.push(FunctionArgument { name: Some(name.to_owned()), ty: unsigned, binding });
-            Place::Whole(arguments.len() as u32 - 1)
-        })
-    };
+    let numbers = [(BuiltIn::VertexIndex, "stencilscope_vertex"), (BuiltIn::InstanceIndex, "stencilscope_instance")];
     let numbers =
-        [number(BuiltIn::VertexIndex, "stencilscope_vertex"), number(BuiltIn::InstanceIndex, "stencilscope_instance")];
+        numbers.map(|(wanted, name)| input(module, &mut arguments, wanted, name, TypeInner::Scalar(Scalar::U32)));
     let mut function = Function { name: entry.name.clone(), arguments, result: Some(result), ..Function::default() };
     let mut code = Code { expressions: &mut function.expressions, body: Block::new() };
-    let given: Vec<Handle<Expression>> =
-        (0..function.arguments.len() as u32).map(|index| code.plain(Expression::FunctionArgument(index))).collect();
+    let given = code.arguments(function.arguments.len());
     let made = code.plain(Expression::CallResult(inner));
     let arguments = given[..entry.arguments.len()].to_vec();
     code.push(Statement::Call { function: inner, arguments, result: Some(made) });
@@ -217,14 +315,50 @@ fn calling(module: &mut Module, entry: &Function, note: Handle<Function>) -> Opt
         Place::Whole(_) => made,
         Place::Member(_, index) => code.emitted(Expression::AccessIndex { base: made, index }),
     };
-    let [vertex, instance] = numbers.map(|place| match place {
-        Place::Whole(index) => given[index as usize],
-        Place::Member(base, index) => code.emitted(Expression::AccessIndex { base: given[base as usize], index }),
-    });
+    let [vertex, instance] = numbers.map(|place| code.given(&given, place));
     code.push(Statement::Call { function: note, arguments: vec![position, vertex, instance], result: None });
     code.push(Statement::Return { value: Some(made) });
     function.body = code.body;
     Some(function)
+}
+
+/// A function in place of an entry point's, that calls it and notes the fragment, if that has come back.
+fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function>, group: u32) -> Function {
+    let inner = inner(module, entry);
+    let mut arguments = entry.arguments.clone();
+    let position = TypeInner::Vector { size: VectorSize::Quad, scalar: Scalar::F32 };
+    let at = BuiltIn::Position { invariant: false };
+    let at = input(module, &mut arguments, at, "stencilscope_at", position);
+    let scalar = TypeInner::Scalar(Scalar::U32);
+    let primitive = input(module, &mut arguments, BuiltIn::PrimitiveIndex, "stencilscope_primitive", scalar.clone());
+    let unsigned = add_type(module, scalar);
+    let members = vec![member("triangle", unsigned, 0)];
+    let first = Type { name: Some("StencilscopeFirst".into()), inner: TypeInner::Struct { members, span: 4 } };
+    let first = module.types.insert(first, Span::UNDEFINED);
+    let first = global(module, "stencilscope_first", StorageAccess::LOAD, [group, 1], first);
+    let mut function = Function { name: entry.name.clone(), arguments, ..Function::default() };
+    let mut code = Code { expressions: &mut function.expressions, body: Block::new() };
+    let given = code.arguments(function.arguments.len());
+    let made = entry.result.as_ref().map(|_| code.plain(Expression::CallResult(inner)));
+    let arguments = given[..entry.arguments.len()].to_vec();
+    code.push(Statement::Call { function: inner, arguments, result: made });
+    let at = code.given(&given, at);
+    let [column, row] = [0, 1].map(|axis| {
+        let side = code.emitted(Expression::AccessIndex { base: at, index: axis });
+        code.emitted(Expression::As { expr: side, kind: naga::ScalarKind::Uint, convert: Some(4) })
+    });
+    let sixteen = code.plain(Expression::Literal(Literal::U32(16)));
+    let row = code.emitted(Expression::Binary { op: BinaryOperator::ShiftLeft, left: row, right: sixteen });
+    let pixel = code.emitted(Expression::Binary { op: BinaryOperator::InclusiveOr, left: column, right: row });
+    let first = code.plain(Expression::GlobalVariable(first));
+    let first = code.emitted(Expression::AccessIndex { base: first, index: 0 });
+    let first = code.emitted(Expression::Load { pointer: first });
+    let primitive = code.given(&given, primitive);
+    let triangle = code.emitted(Expression::Binary { op: BinaryOperator::Add, left: first, right: primitive });
+    code.push(Statement::Call { function: note, arguments: vec![pixel, triangle], result: None });
+    code.push(Statement::Return { value: None });
+    function.body = code.body;
+    function
 }
 
 /// What a fragment shader may do.
@@ -236,9 +370,7 @@ pub struct Fragment {
 
 /// What the fragment entry point of that name, or the only one, may do; `None` where there is no such.
 pub fn fragment(module: &Module, name: Option<&str>) -> Option<Fragment> {
-    let is_meant =
-        |entry: &&EntryPoint| entry.stage == ShaderStage::Fragment && name.is_none_or(|name| entry.name == name);
-    let entry = module.entry_points.iter().find(is_meant)?;
+    let entry = entry_of(module, ShaderStage::Fragment, name)?;
     let result = entry.function.result.as_ref();
     let depth = result.and_then(|result| place(module, 0, result.ty, result.binding.as_ref(), BuiltIn::FragDepth));
     let mut seen = BTreeSet::new();
@@ -278,6 +410,9 @@ mod tests {
         @fragment fn keeps() -> @location(0) vec4<f32> { return used; }
         @fragment fn may_drop() -> @location(0) vec4<f32> { drops(used.x); return used; }
         @fragment fn deep() -> @builtin(frag_depth) f32 { return used.x; }
+        struct In { @location(0) @interpolate(flat) x: u32, @builtin(position) at: vec4<f32> }
+        @fragment fn knows(in: In, @builtin(front_facing) front: bool) { if front { drops(in.at.x * used.x); } }
+        @fragment fn counts_too() { atomicAdd(&counter, 1u); }
     ";
 
     fn module() -> Module {
@@ -295,6 +430,19 @@ mod tests {
             assert!(log.is_some());
             validated(&module).expect("valid");
         }
+    }
+
+    /// Whatever it puts out, and whether or not it asks where it is.
+    #[test]
+    fn kept_fragments_are_noted() {
+        for name in ["keeps", "may_drop", "deep", "knows"] {
+            let Logging { module, bindings, .. } = fragment_log(&module(), Some(name), 2).expect("rewritten");
+            assert_eq!(bindings, BTreeSet::from([(0, 0)]));
+            assert!(module.entry_points[0].function.result.is_none());
+            validated(&module).expect("valid");
+        }
+        let refused = fragment_log(&module(), Some("counts_too"), 2).map(drop);
+        assert_eq!(refused, Err("its fragment shader writes to storage, and must not run twice"));
     }
 
     #[test]

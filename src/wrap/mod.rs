@@ -28,7 +28,7 @@ mod texture;
 pub(crate) use binding::{BindGroup, real_group};
 pub(crate) use device::Device;
 pub(crate) use instance::Instance;
-pub(crate) use pipeline::{Described, RenderPipeline};
+pub(crate) use pipeline::{Described, RenderPipeline, Stage, VertexBuffer};
 use shader::ShaderModule;
 pub(crate) use shared::{Record, Shared};
 pub(crate) use texture::Part;

@@ -1,8 +1,11 @@
 //! Every way in which wgpu draws is followed: where vertices land, which triangles they make, what they leave.
 
 use super::{draws, folder, record};
+use stencilscope::capture::disk::{self, WholeFrame};
+use stencilscope::history::Fate;
 use stencilscope::import::Converted;
 use stencilscope::record::Recorded;
+use stencilscope::session::Session;
 use stencilscope::wgpu::util::{BufferInitDescriptor, DeviceExt};
 use stencilscope::wgpu::{self, BufferUsages, IndexFormat, PrimitiveTopology};
 
@@ -23,6 +26,16 @@ struct Out { @location(0) unused: f32, @builtin(position) position: vec4<f32> }
     return Out(0.0, moved(in.at, in.instance));
 }
 @fragment fn none() {}
+@fragment fn sieve(@builtin(position) at: vec4<f32>) {
+    if (u32(at.x) + u32(at.y)) % 3 == 0 { discard; }
+}
+struct Seen { @builtin(front_facing) front: bool, @builtin(position) at: vec4<f32> }
+fn drop_left_of(x: f32, at: vec4<f32>) { if at.x < x { discard; } }
+@fragment fn half(seen: Seen) -> @location(0) vec4<f32> {
+    drop_left_of(20.0 + places[0].w * 4.0, seen.at);
+    return vec4(1.0);
+}
+@fragment fn nothing() { discard; }
 ";
 
 struct Stage {
@@ -41,9 +54,10 @@ struct Look {
     vertex: &'static str,
     topology: PrimitiveTopology,
     shift: f64,
+    fragment: Option<&'static str>,
 }
 
-const PULLED: Look = Look { vertex: "pulled", topology: PrimitiveTopology::TriangleList, shift: 0.0 };
+const PULLED: Look = Look { vertex: "pulled", topology: PrimitiveTopology::TriangleList, shift: 0.0, fragment: None };
 const FED: Look = Look { vertex: "fed", ..PULLED };
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -115,7 +129,12 @@ impl Stage {
                 bias: wgpu::DepthBiasState::default(),
             }),
             multisample: wgpu::MultisampleState::default(),
-            fragment: None,
+            fragment: look.fragment.map(|name| wgpu::FragmentState {
+                module: &self.module,
+                entry_point: Some(name),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[],
+            }),
             multiview_mask: None,
             cache: None,
         })
@@ -131,6 +150,11 @@ impl Stage {
 
     /// The triangles of the frame's draws, each computed anew to the last bit.
     fn triangles(&self, name: &str, look: Look, draw: impl Fn(&mut wgpu::RenderPass<'_>)) -> Vec<usize> {
+        let Converted { plan, .. } = self.recorded(name, look, draw);
+        plan.passes.iter().flat_map(|pass| &pass.draws).map(|draw| draw.triangles.len()).collect()
+    }
+
+    fn recorded(&self, name: &str, look: Look, draw: impl Fn(&mut wgpu::RenderPass<'_>)) -> Converted {
         let pipeline = self.pipeline(look);
         let target = folder(name);
         let recorded = record::frame(&self.device, &self.queue, &target, |encoder| {
@@ -143,24 +167,29 @@ impl Stage {
                 ..wgpu::RenderPassDescriptor::default()
             });
             pass.set_pipeline(&pipeline);
-            match look.vertex {
-                "fed" => pass.set_vertex_buffer(0, self.places.slice(..)),
-                _ => pass.set_bind_group(0, &self.group(&pipeline), &[]),
+            if look.vertex == "fed" {
+                pass.set_vertex_buffer(0, self.places.slice(..));
+            }
+            if look.vertex == "pulled" || look.fragment == Some("half") {
+                pass.set_bind_group(0, &self.group(&pipeline), &[]);
             }
             pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint16);
             draw(&mut pass);
         });
-        let Recorded { frame: Converted { capture, plan, .. }, folder } = recorded.expect(name);
-        for draw in draws(&capture) {
+        let Recorded { frame, folder } = recorded.expect(name);
+        for draw in draws(&frame.capture) {
             let differs = draw.differs.unwrap_or_else(|| panic!("{name}: not computed anew"));
             assert!(differs.is_nowhere() && differs.rounded == 0, "{name}: {differs:?}");
         }
-        let limits = capture.origin.as_ref().map_or(0, |origin| {
-            origin.limits.iter().filter(|limit| limit.contains("states alone") || limit.contains("refused")).count()
-        });
-        assert_eq!(limits, 0, "{name}: {:?}", capture.origin);
+        let limits =
+            frame.capture.origin.as_ref().map_or(0, |origin| {
+                origin.limits.iter().filter(|limit| !limit.contains("no light is looked for")).count()
+            });
+        assert_eq!(limits, 0, "{name}: {:?}", frame.capture.origin);
+        let WholeFrame { capture, plan, .. } = disk::read_whole(&folder).expect("a capture folder");
         std::fs::remove_dir_all(folder).expect("removed");
-        plan.passes.iter().flat_map(|pass| &pass.draws).map(|draw| draw.triangles.len()).collect()
+        assert!(plan.as_ref() == Some(&frame.plan) && capture.steps == frame.capture.steps);
+        frame
     }
 }
 
@@ -181,6 +210,40 @@ fn every_way_of_drawing_is_followed() {
     assert_eq!(indirect, [1]);
     let shifted = Look { shift: 0.5, ..FED };
     assert_eq!(stage.triangles("override", shifted, |pass| pass.draw(0..3, 0..1)), [1]);
+}
+
+/// A shader that discards is followed fragment by fragment: what it leaves is computed anew, to the last bit, and the history
+/// of each pixel names those that it has discarded.
+#[test]
+fn what_a_shader_discards_is_known() {
+    let stage = Stage::new();
+    let of = |fragment, look| Look { fragment: Some(fragment), ..look };
+    let strip = Look { topology: PrimitiveTopology::TriangleStrip, ..FED };
+    let mut session = Session::new(None).expect("a GPU");
+    let mut found = |frame: &Converted| {
+        let [width, height] = frame.plan.size;
+        let pixels = (0..width * height).step_by(7).map(|at| [at % width, at / width]);
+        let mut fates = [0; 2];
+        for pixel in pixels {
+            let history = session.history(&frame.plan, &frame.capture, pixel).expect("a history");
+            assert_eq!(history.disagreements(), [], "{pixel:?}");
+            for (_, one) in history.triangles() {
+                fates[usize::from(matches!(one.fate, Fate::Discarded(None)))] += 1;
+            }
+        }
+        fates.map(|count| count > 0)
+    };
+    assert_eq!(found(&stage.recorded("sieve", of("sieve", PULLED), |pass| pass.draw(0..3, 0..3))), [true, true]);
+    assert_eq!(found(&stage.recorded("half", of("half", FED), |pass| pass.draw(0..3, 0..2))), [true, true]);
+    let both = stage.recorded("both", of("sieve", strip), |pass| {
+        pass.draw_indexed(0..8, 0, 0..2);
+        pass.draw_indexed_indirect(&stage.arguments, 16);
+    });
+    assert_eq!(found(&both), [true, true]);
+    assert_eq!(found(&stage.recorded("nothing", of("nothing", FED), |pass| pass.draw(0..3, 0..1))), [false, true]);
+    // Of a shader that can't, nothing is noted.
+    let plain = stage.recorded("plain", of("none", FED), |pass| pass.draw(0..3, 0..1));
+    assert!(plain.plan.meshes.iter().all(|mesh| mesh.kept.is_none()) && found(&plain) == [true, false]);
 }
 
 /// A bundle's draws are draws like others.

@@ -49,6 +49,9 @@ struct MeshEntry {
     surface: Option<SurfaceEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     extruded: Option<ExtrudedEntry>,
+    /// Pixels and triangles: (fragments, 2), `<u4`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    kept: Option<String>,
 }
 
 /// What the vertices are made of by a vertex shader.
@@ -103,7 +106,7 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
         FrameEntry { plan, meshes: Vec::new(), textures: Vec::new(), images: Vec::new(), starts: Vec::new() };
     for (index, mesh) in plan.meshes.iter().enumerate() {
         let mut put = Put { folder, stem: format!("mesh{index:03}"), written: &mut written };
-        let DrawMesh { name, vertices, indices, surface, extruded } = mesh;
+        let DrawMesh { name, vertices, indices, surface, extruded, kept } = mesh;
         entry.meshes.push(MeshEntry {
             name: name.clone(),
             vertices: put.blob("vertices", vertices, |values| (values.as_flattened(), 4))?,
@@ -125,6 +128,10 @@ pub(super) fn write(plan: &FramePlan, folder: &Path) -> Result<(), CaptureError>
                     corners: put.blob("corners", corners, |values| (bytemuck::cast_slice::<_, f32>(values), 8))?,
                     carry: *carry,
                 }),
+            },
+            kept: match kept {
+                None => None,
+                Some(kept) => Some(put.blob("kept", kept, |values| (values.as_flattened(), 2))?),
             },
         });
     }
@@ -188,7 +195,7 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
     let entry: FrameEntry<FramePlan> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let mut plan = entry.plan;
     let mut get = Get::new(folder);
-    for MeshEntry { name, vertices, indices, surface, extruded } in entry.meshes {
+    for MeshEntry { name, vertices, indices, surface, extruded, kept } in entry.meshes {
         let surface = match surface {
             None => None,
             Some(SurfaceEntry { normals, sides, uvs }) => Some(SurfaceData {
@@ -199,7 +206,10 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
         };
         let indices = get.words(&indices, 3)?;
         plan.meshes.push(match extruded {
-            None => DrawMesh { surface, ..DrawMesh::of_blobs(name, get.rows(&vertices)?, indices) },
+            None => {
+                let kept = kept.map(|file| kept_fragments(folder, &file)).transpose()?;
+                DrawMesh { surface, kept, ..DrawMesh::of_blobs(name, get.rows(&vertices)?, indices) }
+            }
             Some(ExtrudedEntry { corners, carry }) => {
                 let corners = get.corners(&corners)?;
                 DrawMesh::of_extruded(name, Extruded { corners, carry }, indices)
@@ -225,6 +235,17 @@ pub(super) fn read(folder: &Path, capture: &Capture) -> Result<Option<FramePlan>
     match inconsistency(&plan, capture) {
         Some(reason) => Err(wrong(reason)),
         None => Ok(Some(plan)),
+    }
+}
+
+/// The fragments that a shader has kept; they are searched, so that their order counts.
+fn kept_fragments(folder: &Path, file: &str) -> Result<Blob<[u32; 2]>, CaptureError> {
+    let path = plain(folder, file)?;
+    let words: Vec<u32> = files::read_values(&path, 2)?;
+    let kept = words.as_chunks::<2>().0.to_vec();
+    match kept.is_sorted() {
+        true => Ok(Blob::new(kept)),
+        false => Err(CaptureError::Read { file: path, reason: "its fragments are not in order".to_owned() }),
     }
 }
 

@@ -224,8 +224,7 @@ impl<'a> Making<'a> {
         };
         let (name, triangles) = (format!("event {}", event.id), draw.triangles.len() as u32);
         let mesh = MeshId(self.meshes.len());
-        let indices = draw.triangles.as_flattened().to_vec();
-        self.meshes.push(DrawMesh::of_positions(name.clone(), states::vertices(draw), indices));
+        self.meshes.push(mesh_of(draw, name.clone()));
         let target = self.frame.textures[self.stage.target(place).texture].format.clone();
         let raster = states::raster(draw, cull, place != Place::Colors && target.has_stencil());
         let program = Program::Recorded {
@@ -266,6 +265,19 @@ impl<'a> Making<'a> {
             target: FrameTarget::Picture,
         }
     }
+}
+
+/// A draw's triangles. Where it is known which of their fragments were kept, the shader that draws them anew tells a
+/// triangle by its corners: none is shared.
+fn mesh_of(draw: &RawDraw, name: String) -> DrawMesh {
+    let (vertices, indices) = (states::vertices(draw), draw.triangles.as_flattened());
+    let Some(kept) = &draw.kept else { return DrawMesh::of_positions(name, vertices, indices.to_vec()) };
+    let corners = indices.iter().map(|index| vertices[*index as usize]).collect();
+    let word = |(pixel, triangle): &([u16; 2], u32)| [DrawMesh::pixel_word(pixel.map(u32::from)), *triangle];
+    let mut kept: Vec<[u32; 2]> = kept.iter().map(word).collect();
+    kept.sort_unstable();
+    let all = (0..indices.len() as u32).collect();
+    DrawMesh { kept: Some(Blob::new(kept)), ..DrawMesh::of_positions(name, corners, all) }
 }
 
 /// The state after draws that left `before`, and one more that left `after`: what none of them changed is unchanged.

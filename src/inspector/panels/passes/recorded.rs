@@ -126,13 +126,17 @@ pub fn explained(model: &Model, draw: &DrawSummary, index: usize) -> String {
     }
     let plan = model.frame.plan.as_ref();
     let draw = plan.and_then(|plan| plan.passes.get(model.selection.step)?.draws.get(index));
-    if let Some(Program::Recorded { may_discard, writes_depth }) = draw.map(|draw| draw.program) {
+    if let Some((plan, draw)) = plan.zip(draw)
+        && let Program::Recorded { may_discard, writes_depth } = draw.program
+    {
         let mut tell = |may: May, what: &str| match may {
             May::No => {}
             May::Yes => words += &format!("\nIts shader may {what}, which is not followed"),
             May::Unknown => words += &format!("\nIts shader could not be read: it may {what}"),
         };
-        tell(may_discard, "discard fragments");
+        if draw.discards_unknown(&plan.meshes[draw.mesh.0]) {
+            tell(may_discard, "discard fragments");
+        }
         tell(writes_depth, "write its own depth");
     }
     words

@@ -1,0 +1,54 @@
+// Another program's draw whose shader has discarded fragments: those that it has kept are known.
+
+// The largest depth as an integer, where depths are stored as integers; 0 where they are floats.
+override steps: f32 = 0.0;
+
+// Column and row of the pixel in one word, and the triangle; in order.
+@group(2) @binding(0) var<storage, read> kept: array<vec2u>;
+
+struct Corner {
+    @invariant @builtin(position) clip: vec4f,
+    @location(0) @interpolate(flat) triangle: u32,
+}
+
+// Corners are not shared.
+@vertex
+fn vs_recorded_kept(@location(0) clip: vec4f, @builtin(vertex_index) index: u32) -> Corner {
+    return Corner(clip, index / 3);
+}
+
+fn is_before(one: vec2u, other: vec2u) -> bool {
+    return one.x < other.x || (one.x == other.x && one.y < other.y);
+}
+
+fn is_kept(fragment: vec2u) -> bool {
+    var low = 0u;
+    var high = arrayLength(&kept);
+    while low < high {
+        let middle = (low + high) / 2;
+        if is_before(kept[middle], fragment) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low < arrayLength(&kept) && all(kept[low] == fragment);
+}
+
+@fragment
+fn fs_recorded_kept(corner: Corner) {
+    let at = vec2u(corner.clip.xy);
+    if !is_kept(vec2u(at.x | at.y << 16, corner.triangle)) {
+        discard;
+    }
+}
+
+// Of depths that are integers, the nearest.
+@fragment
+fn fs_recorded_kept_steps(corner: Corner) -> @builtin(frag_depth) f32 {
+    let at = vec2u(corner.clip.xy);
+    if !is_kept(vec2u(at.x | at.y << 16, corner.triangle)) {
+        discard;
+    }
+    return round(corner.clip.z * steps) / steps;
+}
