@@ -63,7 +63,7 @@ fn the_committed_page_holds_what_pages_are_made_of_now() {
     let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/pages/tori.html");
     let committed = fs::read_to_string(committed).expect("a page");
     for (what, text) in [("script", page::script()), ("style", page::STYLE.to_owned())] {
-        assert!(committed.contains(&text), "an older {what}: `stencilscope page tori -o assets/pages/tori.html`");
+        assert!(committed.contains(&text), "an older {what}: assets/pages/README.md has the command");
     }
 }
 

@@ -1,5 +1,6 @@
 //! What is written about the program: links lead somewhere, numbers hold, and comments cite only what is there.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -38,6 +39,47 @@ fn the_readme_names_every_technique_and_the_number_of_cases() {
     }
     let cases = stencilscope::stress::cases::all().count();
     assert!(readme.contains(&format!("has the {cases} cases")), "{cases}");
+}
+
+/// Cargo's own list: what a program gets that only records, beside what its wgpu brings. The features of wgpu that are
+/// needed bring four packages more, which cargo has within wgpu.
+#[test]
+fn the_readme_lists_the_packages_of_a_build_that_records() {
+    const OF_WGPU: [&str; 4] = ["serde", "serde_core", "serde_derive", "termcolor"];
+    let arguments =
+        "tree --locked --offline -e normal,build --no-default-features --features record --no-dedupe --prefix depth";
+    let mut cargo = std::process::Command::new(env!("CARGO"));
+    let output = cargo.args(arguments.split(' ')).args(["-f", " {p}"]).current_dir(root()).output().expect("cargo");
+    let tree = String::from_utf8(output.stdout).expect("text");
+    let (mut all, mut of_wgpu, mut within) = (BTreeSet::new(), BTreeSet::new(), None);
+    for line in tree.lines() {
+        let (depth, package) = line.split_once(' ').expect("a depth");
+        let depth: u32 = depth.parse().expect("a depth");
+        let package: Vec<&str> = package.split(' ').take(2).collect();
+        within = within.filter(|top| depth > *top);
+        if within.is_none() && package[0] == "wgpu" {
+            within = Some(depth);
+        }
+        all.insert(package.clone());
+        of_wgpu.extend(within.map(|_| package));
+    }
+    let ours: Vec<&str> =
+        all.difference(&of_wgpu).map(|package| package[0]).filter(|name| *name != "stencilscope").collect();
+    assert!(ours.len() > 10 && ours.len() + OF_WGPU.len() <= 40, "{ours:?}");
+    let names: BTreeSet<&str> = ours.iter().copied().chain(OF_WGPU).collect();
+    let readme = read("README.md");
+    let list = readme
+        .split("packages beside plain wgpu's: ")
+        .nth(1)
+        .and_then(|after| after.split(".\n").next())
+        .expect("a list");
+    let listed: BTreeSet<&str> = list
+        .split([',', '\n'])
+        .map(|name| name.trim().trim_end_matches(" (two)"))
+        .filter(|name| !name.is_empty())
+        .collect();
+    assert_eq!(listed, names);
+    assert!(readme.contains(&format!("brings {} packages beside", ours.len() + OF_WGPU.len())), "{}", ours.len());
 }
 
 /// Pages that the program has written say how.

@@ -7,13 +7,14 @@ function bytesOf(base64) {
   return bytes;
 }
 
-// Each word gets left + above - above left added; the typed array wraps as the packer's integers do.
+// The lowest bit is a word's sign; then it gets left + above - above left added. The typed array wraps as the packer's
+// integers do.
 function predict(words, row, lanes) {
   for (let at = 0; at < words.length; at++) {
     const hasLeft = at % row >= lanes;
     const left = hasLeft ? words[at - lanes] : 0;
-    if (at < row) words[at] += left;
-    else words[at] += left + words[at - row] - (hasLeft ? words[at - row - lanes] : 0);
+    const above = at < row ? 0 : words[at - row] - (hasLeft ? words[at - row - lanes] : 0);
+    words[at] = ((words[at] >>> 1) ^ -(words[at] & 1)) + left + above;
   }
 }
 

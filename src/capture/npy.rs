@@ -165,7 +165,6 @@ fn quoted(words: &str) -> Option<(&str, &str)> {
 }
 
 #[cfg(test)]
-#[expect(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::{Array, write_header};
 

@@ -2,7 +2,7 @@
 //!
 //! An array is rows of elements, an element is lanes of words, a word one byte or four. Packed, a word is
 //! what it adds to its neighbours (left + above − above left, as integers: stored depth and most colours are nearly
-//! planes), then all first bytes of all words stand together, then all second ones, then zlib, then base64.
+//! planes) with the sign as its lowest bit, so that what is small has zeros above; then all first bytes of all words stand together, then all second ones, then zlib, then base64.
 //! `assets/page/arrays.js` goes the same way back. Integers wrap, so every bit comes back.
 
 use base64::Engine;
@@ -102,7 +102,7 @@ fn words(word: Word, bytes: &[u8]) -> Vec<u32> {
 }
 
 /// What each word adds to what its neighbours foretell; beyond the first row and column are zeros.
-fn residuals(words: &[u32], Layout { lanes, width, .. }: Layout) -> Vec<u32> {
+fn residuals(words: &[u32], Layout { word, lanes, width }: Layout) -> Vec<u32> {
     let row = if width == 0 { words.len().max(1) } else { width * lanes };
     let at = |index: usize, left: usize, up: usize| {
         let is_inside = index % row >= left && index >= up;
@@ -110,7 +110,14 @@ fn residuals(words: &[u32], Layout { lanes, width, .. }: Layout) -> Vec<u32> {
     };
     let residual = |index: usize| {
         let foretold = at(index, lanes, 0).wrapping_add(at(index, 0, row)).wrapping_sub(at(index, lanes, row));
-        words[index].wrapping_sub(foretold)
+        let residual = words[index].wrapping_sub(foretold);
+        match word {
+            Word::U8 => {
+                let signed = (residual as u8).cast_signed();
+                u32::from((signed << 1 ^ signed >> 7).cast_unsigned())
+            }
+            Word::U32 | Word::F32 => (residual.cast_signed() << 1 ^ residual.cast_signed() >> 31).cast_unsigned(),
+        }
     };
     (0..words.len()).map(residual).collect()
 }
@@ -152,7 +159,8 @@ mod tests {
             let [a, b] =
                 [left.then(|| words[index - lanes]), up.then(|| words[index - row])].map(Option::unwrap_or_default);
             let c = if left && up { words[index - lanes - row] } else { 0 };
-            words[index] = words[index].wrapping_add(a).wrapping_add(b).wrapping_sub(c);
+            let own = words[index] >> 1 ^ (words[index] & 1).wrapping_neg();
+            words[index] = own.wrapping_add(a).wrapping_add(b).wrapping_sub(c);
         }
         words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(size)).collect()
     }

@@ -60,15 +60,19 @@ pub fn kept(
     // Enough for one layer of fragments; more where they are more.
     let mut room = u64::from(size[0]) * u64::from(size[1]);
     loop {
-        let bytes = log(probe, gpu, state, draws, size, room)?;
-        let (head, records) = bytes.split_at(HEAD as usize);
-        let count = u64::from(word(head, 0));
+        let log = log(probe, gpu, state, draws, size, room)?;
+        let read = |offset: u64, bytes: u64| {
+            let read = readback::buffer(gpu.device, gpu.queue, &log, offset, bytes);
+            read.ok_or("the GPU did not say which fragments it keeps")
+        };
+        let count = u64::from(word(&read(0, HEAD)?, 0));
         if count <= room {
             let record = |record: &[u8]| {
                 let pixel = word(record, 0);
                 ([pixel as u16, (pixel >> 16) as u16], word(record, 1))
             };
-            return Ok(records.chunks_exact(FRAGMENT_RECORD as usize).take(count as usize).map(record).collect());
+            let records = read(HEAD, FRAGMENT_RECORD * count)?;
+            return Ok(records.chunks_exact(FRAGMENT_RECORD as usize).map(record).collect());
         }
         room = count;
     }
@@ -85,7 +89,7 @@ fn log(
     draws: &[(DrawCommand, u32)],
     size: [u32; 2],
     room: u64,
-) -> Result<Vec<u8>, &'static str> {
+) -> Result<wgpu::Buffer, &'static str> {
     let bytes = HEAD + FRAGMENT_RECORD * room.max(1);
     if room > MOST || bytes > device.limits().max_storage_buffer_binding_size {
         return Err("it has more fragments than are followed");
@@ -111,5 +115,5 @@ fn log(
     }
     drop(pass);
     queue.submit([encoder.finish()]);
-    readback::buffer(device, queue, &log, 0, bytes).ok_or("the GPU did not say which fragments it keeps")
+    Ok(log)
 }

@@ -22,13 +22,44 @@ pub struct Landed {
     pub instances: Vec<Range<usize>>,
 }
 
-/// Pipelines by the address of what the program's own were made from.
+/// The pipelines that write logs.
 #[derive(Debug, Default)]
 pub struct Probes {
-    of_vertices: HashMap<usize, Result<Arc<Probe>, &'static str>>,
-    of_fragments: HashMap<usize, Result<Arc<Probe>, &'static str>>,
-    /// So that no other pipeline gets the address of one.
-    held: Vec<Arc<Described>>,
+    of_vertices: Made,
+    of_fragments: Made,
+}
+
+/// Pipelines of one kind: those of the program that differ in nothing that counts here share one.
+#[derive(Debug, Default)]
+struct Made(Vec<(Arc<Described>, Result<Arc<Probe>, &'static str>)>);
+
+impl Made {
+    fn get(
+        &mut self,
+        described: &Arc<Described>,
+        is_alike: impl Fn(&Described, &Described) -> bool,
+        make: impl FnOnce() -> Result<Probe, &'static str>,
+    ) -> Result<Arc<Probe>, &'static str> {
+        if let Some((_, made)) = self.0.iter().find(|(of, _)| Arc::ptr_eq(of, described) || is_alike(of, described)) {
+            return made.clone();
+        }
+        let made = make().map(Arc::new);
+        self.0.push((described.clone(), made.clone()));
+        made
+    }
+}
+
+/// Have two pipelines the same vertices?
+fn have_same_vertices(one: &Described, other: &Described) -> bool {
+    let of = |of: &Described| (of.primitive.topology, of.primitive.strip_index_format, of.multiview_mask);
+    of(one) == of(other) && one.vertex == other.vertex && one.buffers == other.buffers && one.layout == other.layout
+}
+
+/// And the same fragments, before any test?
+fn have_same_fragments(one: &Described, other: &Described) -> bool {
+    let bias = |of: &Described| of.depth_stencil.as_ref().map(|state| state.bias);
+    let of = |of: &Described| (of.primitive, of.multisample, bias(of));
+    have_same_vertices(one, other) && of(one) == of(other) && one.fragment == other.fragment
 }
 
 /// A pipeline that writes a log while it does what the program's own does.
@@ -275,9 +306,7 @@ impl Probes {
     /// Why that can't be found, in words.
     pub fn landed(&mut self, gpu: Gpu<'_>, state: &PassState, draw: &DrawCommand) -> Result<Landed, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
-        let key = self.key(described);
-        let made = self.of_vertices.entry(key);
-        let probe = made.or_insert_with(|| of_vertices(gpu.device, described).map(Arc::new)).clone()?;
+        let probe = self.of_vertices.get(described, have_same_vertices, || of_vertices(gpu.device, described))?;
         let parts = direct(gpu, draw)?;
         let mut all = Landed::default();
         for part in &parts {
@@ -301,20 +330,11 @@ impl Probes {
         size: [u32; 2],
     ) -> Result<Vec<([u16; 2], u32)>, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
-        let key = self.key(described);
-        let made = self.of_fragments.entry(key);
-        let probe = made.or_insert_with(|| fragments::probe(gpu.device, described).map(Arc::new)).clone()?;
+        let make = || fragments::probe(gpu.device, described);
+        let probe = self.of_fragments.get(described, have_same_fragments, make)?;
         let one_by_one = direct(gpu, draw)?.iter().flat_map(single).collect::<Vec<_>>();
         let first: Vec<u32> = landed.instances.iter().map(|triangles| triangles.start as u32).collect();
         fragments::kept(&probe, gpu, state, &one_by_one.into_iter().zip(first).collect::<Vec<_>>(), size)
-    }
-
-    fn key(&mut self, described: &Arc<Described>) -> usize {
-        let key = Arc::as_ptr(described) as usize;
-        if !self.of_vertices.contains_key(&key) && !self.of_fragments.contains_key(&key) {
-            self.held.push(described.clone());
-        }
-        key
     }
 }
 

@@ -29,7 +29,7 @@ pub struct Described {
 }
 
 /// A programmable stage.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Stage {
     pub source: Source,
     pub entry_point: Option<String>,
@@ -52,7 +52,7 @@ impl Stage {
 }
 
 /// How a vertex buffer is read.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct VertexBuffer {
     pub stride: u64,
     pub step: wgpu::VertexStepMode,

@@ -19,6 +19,17 @@ pub enum Source {
     Unread,
 }
 
+/// The same module, not one that says the same.
+impl PartialEq for Source {
+    fn eq(&self, other: &Source) -> bool {
+        match (self, other) {
+            (Source::Wgsl(_, one), Source::Wgsl(_, other)) => Arc::ptr_eq(one, other),
+            (Source::Naga(one), Source::Naga(other)) => Arc::ptr_eq(one, other),
+            _ => false,
+        }
+    }
+}
+
 impl Source {
     pub fn of(source: &wgpu::ShaderSource<'_>) -> Source {
         match source {
