@@ -140,6 +140,15 @@ pub struct RawContents {
     pub color: Option<Arc<Image>>,
 }
 
+impl RawContents {
+    /// These, and of another what these lack.
+    #[must_use]
+    pub fn or(self, other: RawContents) -> RawContents {
+        let RawContents { depth, stencil, color } = other;
+        RawContents { depth: self.depth.or(depth), stencil: self.stencil.or(stencil), color: self.color.or(color) }
+    }
+}
+
 /// One thing that the frame does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RawEvent {

@@ -61,62 +61,95 @@ pub fn format(format: Format) -> RawFormat {
     }
 }
 
-/// The pictures of a level of a layer.
-pub fn contents(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    texture: &wgpu::Texture,
-    mip: u32,
-    layer: u32,
-) -> RawContents {
-    let of = texture.format();
-    let aspect = |aspect, format: RawFormat| {
-        let bytes = texels(device, queue, texture, [mip, layer], aspect, pictures::texel_bytes(&format)?)?;
-        let size = [0, 1].map(|axis| ([texture.width(), texture.height()][axis] >> mip).max(1));
-        let layout = pictures::Layout { bottom_row_first: false, depth_above_stencil: false };
-        Some(pictures::read(&format, &bytes, size, layout))
+/// A level of a layer of a texture.
+#[derive(Debug, Clone, Copy)]
+pub struct Part<'a> {
+    pub texture: &'a wgpu::Texture,
+    pub mip: u32,
+    pub layer: u32,
+}
+
+/// The pictures of some parts, all of them copied before any is waited for.
+pub fn contents(device: &wgpu::Device, queue: &wgpu::Queue, parts: &[Part<'_>]) -> Vec<RawContents> {
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let copies: Vec<Vec<Copy>> = parts
+        .iter()
+        .map(|part| aspects(part, |aspect, format| part.copy(device, &mut encoder, aspect, format)))
+        .collect();
+    queue.submit([encoder.finish()]);
+    // A failure shows when a range is asked for.
+    copies.iter().flatten().for_each(|copy| copy.buffer.map_async(wgpu::MapMode::Read, .., |_| {}));
+    let is_done = device.poll(wgpu::PollType::wait_indefinitely()).is_ok();
+    let read = |copies: Vec<Copy>| {
+        let read = copies.iter().filter(|_| is_done).filter_map(Copy::read);
+        read.fold(RawContents::default(), RawContents::or)
     };
-    let depth_format = match of {
+    copies.into_iter().map(read).collect()
+}
+
+/// What is copied of a part: depth, stencil or colour, each as far as it can be read.
+fn aspects(part: &Part<'_>, mut copy: impl FnMut(wgpu::TextureAspect, RawFormat) -> Option<Copy>) -> Vec<Copy> {
+    let of = part.texture.format();
+    let depth = match of {
         Format::Depth16Unorm => Some(RawFormat::D16),
         Format::Depth32Float | Format::Depth32FloatStencil8 => Some(RawFormat::D32F),
         // Nothing copies depths of 24 bits.
         _ => None,
     };
-    let depth = depth_format.and_then(|format| aspect(wgpu::TextureAspect::DepthOnly, format)?.depth);
-    let has_stencil = of.has_stencil_aspect();
-    let stencil = has_stencil.then(|| aspect(wgpu::TextureAspect::StencilOnly, RawFormat::S8)?.stencil).flatten();
-    let is_color = !of.is_depth_stencil_format();
-    let color = is_color.then(|| aspect(wgpu::TextureAspect::All, format(of))?.color).flatten();
-    RawContents { depth, stencil, color }
+    let depth = depth.map(|depth| (wgpu::TextureAspect::DepthOnly, depth));
+    let stencil = of.has_stencil_aspect().then_some((wgpu::TextureAspect::StencilOnly, RawFormat::S8));
+    let color = (!of.is_depth_stencil_format()).then(|| (wgpu::TextureAspect::All, format(of)));
+    [depth, stencil, color].into_iter().flatten().filter_map(|(aspect, format)| copy(aspect, format)).collect()
 }
 
-/// The texels of an aspect without padding.
-fn texels(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    texture: &wgpu::Texture,
-    [mip_level, layer]: [u32; 2],
-    aspect: wgpu::TextureAspect,
-    texel: usize,
-) -> Option<Vec<u8>> {
-    let can_be_copied = texture.usage().contains(wgpu::TextureUsages::COPY_SRC) && texture.sample_count() == 1;
-    if !can_be_copied || texture.dimension() != wgpu::TextureDimension::D2 {
-        return None;
+/// An aspect on its way.
+struct Copy {
+    buffer: wgpu::Buffer,
+    format: RawFormat,
+    size: [u32; 2],
+    /// Bytes of a row, and of one with its padding.
+    row: usize,
+    stride: usize,
+}
+
+impl Part<'_> {
+    fn copy(
+        self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        aspect: wgpu::TextureAspect,
+        format: RawFormat,
+    ) -> Option<Copy> {
+        let Part { texture, mip: mip_level, layer } = self;
+        let can_be_copied = texture.usage().contains(wgpu::TextureUsages::COPY_SRC) && texture.sample_count() == 1;
+        if !can_be_copied || texture.dimension() != wgpu::TextureDimension::D2 {
+            return None;
+        }
+        let [width, height] = [texture.width(), texture.height()].map(|side| (side >> mip_level).max(1));
+        let row = width as usize * pictures::texel_bytes(&format)?;
+        let stride = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+        let buffer = readable(device, (stride * height as usize) as u64);
+        let origin = wgpu::Origin3d { x: 0, y: 0, z: layer };
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride as u32), rows_per_image: None };
+        encoder.copy_texture_to_buffer(
+            wgpu::TexelCopyTextureInfo { texture, mip_level, origin, aspect },
+            wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+        Some(Copy { buffer, format, size: [width, height], row, stride })
     }
-    let [width, height] = [texture.width(), texture.height()].map(|side| (side >> mip_level).max(1));
-    let row = width as usize * texel;
-    let stride = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
-    let readable = readable(device, (stride * height as usize) as u64);
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.copy_texture_to_buffer(
-        wgpu::TexelCopyTextureInfo { texture, mip_level, origin: wgpu::Origin3d { x: 0, y: 0, z: layer }, aspect },
-        wgpu::TexelCopyBufferInfo {
-            buffer: &readable,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride as u32), rows_per_image: None },
-        },
-        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-    );
-    queue.submit([encoder.finish()]);
-    let bytes = mapped(device, &readable)?;
-    Some(bytes.chunks_exact(stride).flat_map(|padded| &padded[..row]).copied().collect())
+}
+
+impl Copy {
+    fn read(&self) -> Option<RawContents> {
+        let Copy { buffer, format, size, row, stride } = self;
+        let mapped = buffer.get_mapped_range(..).ok()?;
+        let bytes: Vec<u8> = match row == stride {
+            true => mapped.to_vec(),
+            false => mapped.chunks_exact(*stride).map(|padded| &padded[..*row]).collect::<Vec<_>>().concat(),
+        };
+        let layout = pictures::Layout { bottom_row_first: false, depth_above_stencil: false };
+        Some(pictures::read(format, &bytes, *size, layout))
+    }
 }

@@ -177,24 +177,29 @@ impl Replay {
         });
         let target = RawTarget { texture: index, mip, layer };
         if self.of_target.insert(target, texture.clone()).is_none() {
-            let contents = self.read(gpu, target);
-            self.before.push((target, contents));
+            let contents = self.read(gpu, &[target]);
+            self.before.extend(contents.into_iter().map(|contents| (target, contents)));
         }
         target
     }
 
-    /// What a target holds; rows that stay are in the memory of what it held before.
-    fn read(&mut self, gpu: Gpu<'_>, target: RawTarget) -> RawContents {
-        let Some(texture) = self.of_target.get(&target) else { return RawContents::default() };
-        let format = texture.format();
-        let mut contents = readback::contents(gpu.device, gpu.queue, texture, target.mip, target.layer);
-        if format.has_depth_aspect() && contents.depth.is_none() {
-            self.limit(&format!("what {format:?} holds can't be copied, so that its depths are not known"));
+    /// What targets hold, each of which has been met; rows that stay are in the memory of what it held before.
+    fn read(&mut self, gpu: Gpu<'_>, targets: &[RawTarget]) -> Vec<RawContents> {
+        let part = |RawTarget { mip, layer, .. }: RawTarget, texture| readback::Part { texture, mip, layer };
+        let met: Vec<_> =
+            targets.iter().filter_map(|target| Some((*target, self.of_target.get(target)?.clone()))).collect();
+        let parts: Vec<_> = met.iter().map(|(target, texture)| part(*target, texture)).collect();
+        let mut all = readback::contents(gpu.device, gpu.queue, &parts);
+        for ((target, texture), contents) in met.iter().zip(&mut all) {
+            let format = texture.format();
+            if format.has_depth_aspect() && contents.depth.is_none() {
+                self.limit(&format!("what {format:?} holds can't be copied, so that its depths are not known"));
+            }
+            let held = self.held.entry(*target).or_default();
+            pictures::share(contents, held);
+            held.clone_from(contents);
         }
-        let held = self.held.entry(target).or_default();
-        pictures::share(&mut contents, held);
-        held.clone_from(&contents);
-        contents
+        all
     }
 
     fn event(&mut self, name: String, kind: RawKind, into: &Into) {
@@ -207,10 +212,10 @@ impl Replay {
     /// An event, with what it left.
     fn after(&mut self, gpu: Gpu<'_>, name: String, kind: RawKind, into: &Into) {
         self.event(name, kind, into);
-        let color = into.colors.first().and_then(|target| self.read(gpu, *target).color);
-        let of_depth = into.depth.map(|target| self.read(gpu, target)).unwrap_or_default();
+        let targets: Vec<RawTarget> = into.depth.into_iter().chain(into.colors.first().copied()).collect();
+        let after = self.read(gpu, &targets).into_iter().fold(RawContents::default(), RawContents::or);
         if let Some(event) = self.events.last_mut() {
-            event.after = RawContents { color, ..of_depth };
+            event.after = after;
         }
     }
 

@@ -71,8 +71,9 @@ fn alone(plan: &FramePlan, pass: &Pass, draw: &Draw, (is_first, before): (bool, 
     }
     if let Some(recorded) = &mut pass.recorded {
         let given = recorded.start.take().filter(|_| is_first).unwrap_or_default();
-        let depth = || Some(Blob::new(before?.depth.image.rows().flat_map(depths).collect()));
-        let stencil = || Some(Blob::new(before?.stencil.as_ref()?.image.rows().collect::<Vec<_>>().concat()));
+        let rows = |image: &Image| image.rows().collect::<Vec<_>>().concat();
+        let depth = || Some(Blob::new(bytemuck::pod_collect_to_vec(&rows(&before?.depth.image))));
+        let stencil = || Some(Blob::new(rows(&before?.stencil.as_ref()?.image)));
         let start = StartContent { depth: given.depth.or_else(depth), stencil: given.stencil.or_else(stencil) };
         recorded.start = Some(start).filter(|start| *start != StartContent::default());
     }
