@@ -12,8 +12,7 @@ function predict(words, row, lanes) {
   for (let at = 0; at < words.length; at++) {
     const hasLeft = at % row >= lanes;
     const left = hasLeft ? words[at - lanes] : 0;
-    if (at < row) words[at] += left;
-    else words[at] += left + words[at - row] - (hasLeft ? words[at - row - lanes] : 0);
+    words[at] += left + (at < row ? 0 : words[at - row] - (hasLeft ? words[at - row - lanes] : 0));
   }
 }
 
