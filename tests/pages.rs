@@ -14,6 +14,7 @@ use std::path::Path;
 use stencilscope::capture::disk;
 use stencilscope::import::SHIPPED;
 use stencilscope::page;
+use stencilscope::reading::map_readers::{MapReaders, MapTexel};
 use stencilscope::scene::{OpenSpec, open};
 
 const WIDE: [u32; 2] = [1280, 900];
@@ -336,6 +337,45 @@ fn keys_step_and_the_address_goes_to_the_pixel() {
     }
     assert_eq!(browser.complaints(), Vec::<String>::new());
     assert_eq!(other.complaints(), Vec::<String>::new());
+}
+
+/// Texel and reader point at each other as in the window, also where each texel has a depth of its own.
+#[test]
+fn a_clicked_texel_tells_the_pixels_that_read_it_and_a_pixel_what_it_is_compared_with() {
+    let size = [160, 120];
+    for (filter, by_plane) in [("pcf:3", "off"), ("pcf:3", "on"), ("pcf:2", "on")] {
+        let settings = [("size", "64"), ("filter", filter), ("bias-receiver-plane", by_plane)];
+        let made = Made::of_scene(scene("tori"), "shadow-map", &settings, size);
+        let readers = MapReaders::new(&made.frame.capture, Some(&made.frame.plan), 0).expect("a map");
+        let mut browser = Browser::new(WIDE, "dark");
+        let places = pixels(40, size);
+        let read = places.iter().filter_map(|pixel| Some((*pixel, readers.texel_of(*pixel)?)));
+        let read: Vec<([u32; 2], MapTexel)> = read.take(8).collect();
+        assert_eq!(read.len(), 8, "pixels that read a texel");
+        for (pixel, texel) in read {
+            browser.open(&made.page(), &format!("#pixel={},{}", pixel[0], pixel[1]));
+            let rows = "[...document.querySelectorAll('.reads tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent))";
+            let rows: Vec<[String; 4]> = serde_json::from_value(browser.evaluate(rows)).expect("rows of four");
+            let compared = readers.compared(pixel);
+            assert_eq!(rows.len(), compared.len(), "{pixel:?}");
+            for ([place, _, depth, _], (texel, expected)) in rows.iter().zip(compared) {
+                assert_eq!(*place, format!("{}, {}", texel.at[0], texel.at[1]), "{pixel:?}");
+                let depth: f64 = depth.parse().expect("a depth");
+                assert!((depth - expected).abs() < 1e-6, "{pixel:?}, {place}: {depth} and not {expected}");
+            }
+            browser.evaluate("document.querySelector('.reads button').click()");
+            browser.click_at(texel.at, [64, 64]);
+            let of_texel = readers.of_texel(texel);
+            assert!(of_texel.contains(&pixel));
+            let told: String = browser.text(".texel p").chars().filter(char::is_ascii_digit).collect();
+            assert_eq!(told, of_texel.len().to_string(), "{texel:?}");
+            browser.evaluate("document.querySelector('.texel button').click()");
+            let marks = browser.evaluate("document.querySelector('#marks .linked').getAttribute('d')");
+            let expected: String = of_texel.iter().map(|[x, y]| format!("M{x} {y}h1v1h-1z")).collect();
+            assert_eq!(marks, json!(expected), "{texel:?}");
+        }
+        assert_eq!(browser.complaints(), Vec::<String>::new());
+    }
 }
 
 /// What can be focused, in words that tell one from the other, where it is shown and not switched off.

@@ -7,8 +7,7 @@ function bytesOf(base64) {
   return bytes;
 }
 
-// The lowest bit is a word's sign; then it gets left + above - above left added. The typed array wraps as the packer's
-// integers do.
+// A word's lowest bit is its sign; it gets left + above - above left added. The array wraps as the packer's integers do.
 function predict(words, row, lanes) {
   for (let at = 0; at < words.length; at++) {
     const hasLeft = at % row >= lanes;

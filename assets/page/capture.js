@@ -9,14 +9,11 @@ export const FINDINGS = ["agrees", "false shadow", "missing shadow", "wrong surf
 export class Capture {
   constructor(document) {
     Object.assign(this, document);
-    this.unpacked = document.arrays.map(() => null);
-    this.pending = document.arrays.map(() => null);
+    [this.unpacked, this.pending] = [[], []];
   }
 
   // The array of an index; null before it is unpacked.
-  array(index) {
-    return index === null || index === undefined ? null : this.unpacked[index];
-  }
+  array(index) { return this.unpacked[index] ?? null; }
 
   // Unpacks these arrays, each once.
   async provide(indexes) {
@@ -29,18 +26,11 @@ export class Capture {
     }));
   }
 
-  provideAll() {
-    return this.provide(this.arrays.map((_, index) => index));
-  }
-
-  index([x, y]) {
-    return y * this.size[0] + x;
-  }
+  provideAll() { return this.provide([...this.arrays.keys()]); }
+  index([x, y]) { return y * this.size[0] + x; }
 
   // What is there after a step, or after one of its draws where that was captured.
-  state(step, draw) {
-    return (draw === null ? null : this.steps[step].draws[draw].after) ?? this.steps[step].after;
-  }
+  state(step, draw) { return (draw === null ? null : this.steps[step].draws[draw].after) ?? this.steps[step].after; }
 
   // The picture after a step or draw: that of an earlier step where this one made a map.
   frameAt(step, draw = null) {
@@ -50,9 +40,7 @@ export class Capture {
   }
 
   // The picture before a step, or before one of its draws.
-  frameBefore(step, draw = null) {
-    return draw ? this.frameAt(step, draw - 1) : this.frameAt(step - 1);
-  }
+  frameBefore(step, draw = null) { return draw ? this.frameAt(step, draw - 1) : this.frameAt(step - 1); }
 
   hasDraws(step) {
     const { draws } = this.steps[step];
@@ -62,8 +50,7 @@ export class Capture {
   // Distance along the view axis of a stored depth; null where nothing was drawn (math/depth.rs).
   distance(depth) {
     const { offset, scale, is_linear: isLinear } = this.depth;
-    if (depth === this.clear_depth) return null;
-    return isLinear ? (depth - offset) / scale : scale / (depth - offset);
+    return depth === this.clear_depth ? null : isLinear ? (depth - offset) / scale : scale / (depth - offset);
   }
 }
 

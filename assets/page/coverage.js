@@ -5,8 +5,7 @@
 import { roundedToEven } from "./numbers.js";
 
 const DOUBT = 1;
-const SAFE = 1 / 16;
-const SAFE_DEPTH = 1e-6;
+const [SAFE, SAFE_DEPTH] = [1 / 16, 1e-6];
 const SUBPIXELS = 256;
 const f32 = Math.fround;
 

@@ -7,8 +7,7 @@ export function element(name, attributes = {}, ...children) {
   const made = document.createElementNS(`http://www.w3.org/${space}`, name);
   for (const [key, value] of Object.entries(attributes)) {
     if (key === "onclick") made.addEventListener("click", value);
-    else if (value === true) made.setAttribute(key, "");
-    else if (value !== false && value !== null && value !== undefined) made.setAttribute(key, value);
+    else if ((value ?? false) !== false) made.setAttribute(key, value === true ? "" : value);
   }
   made.append(...children.flat(2).filter((child) => child !== null && child !== undefined));
   return made;

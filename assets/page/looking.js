@@ -3,7 +3,7 @@
 export const VIEWS = ["auto", "color", "stencil", "count", "depth", "mask", "error", "map"];
 export const PHASES = ["before", "after", "diff"];
 export const look = { step: 0, draw: null, view: "auto", phase: "after", light: 0, face: 0, bit: null, range: null };
-Object.assign(look, { pixel: null, selected: null, hover: null });
+Object.assign(look, { pixel: null, texel: null, selected: null, hover: null });
 
 const whole = (text, most) => (/^\d+$/.test(text) && Number(text) <= most ? Number(text) : null);
 

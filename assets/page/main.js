@@ -9,16 +9,18 @@ import { layerOf, missing, viewOf } from "./palette.js";
 import { listSteps, paintThumbnails, showPlace } from "./passes.js";
 import { magnify, mark, paint } from "./picture.js";
 import { showPixel } from "./pixel.js";
+import { readersOf } from "./verdict.js";
 import { whyOf, whyText } from "./why.js";
 
-const VIEW_NAMES = { color: "Colour" };
 const capture = new Capture(JSON.parse(byId("document").textContent));
 let isWhole = false;
 let layer = null;
 let known = { pixel: null, history: null };
 
 const within = (value, most) => Math.min(Math.max(value, 0), most);
-const nameOf = (view) => VIEW_NAMES[view] ?? capitalized(view);
+const nameOf = (view) => (view === "color" ? "Colour" : capitalized(view));
+// What is picked where one stands: a texel of a shown map, or a pixel.
+const picked = () => (layer && viewOf(capture, look) === "map" ? "texel" : "pixel");
 
 // The history of the picked pixel; null while the frame is being unpacked.
 function pickedHistory() {
@@ -51,8 +53,9 @@ function showBar(view) {
   });
 }
 
-function showHover() {
-  const place = look.hover ?? (viewOf(capture, look) === "map" ? null : look.pixel);
+function showHover(hover = look.hover) {
+  look.hover = hover;
+  const place = look.hover ?? look[picked()];
   const hint = layer ? "Point at a pixel for its value; click it for its history." : byId("picture").getAttribute("aria-label");
   byId("hover").textContent = layer && place ? `${place.join(", ")} · ${layer.text(place[1] * layer.size[0] + place[0])}` : hint;
   magnify(layer, place);
@@ -67,14 +70,15 @@ function show() {
   const why = missing(capture, look, view) ?? "Nothing was before the first step.";
   byId("picture").setAttribute("aria-label", layer ? `${nameOf(view)}, ${look.phase} ${capture.steps[look.step].name}` : why);
   const history = pickedHistory();
+  const readers = look.texel && readersOf(capture, look);
   showBar(view);
   showLegend();
   showPlace(capture, look);
-  showPixel(capture, look, history, {
+  showPixel(capture, look, history, readers, {
     goTo: (step, draw) => go({ step, draw }), showMap: (face) => go({ view: "map", face }),
-    select: (event) => go({ selected: look.selected === event ? null : event }),
+    showReaders: () => go({ view: "color", hover: null }), select: (event) => go({ selected: look.selected === event ? null : event }),
   });
-  mark(capture, look, view, look.selected === null ? null : history?.events[look.selected]);
+  mark(capture, look, view, look.selected === null ? null : history?.events[look.selected], readers);
   showHover();
   writeAddress();
 }
@@ -83,15 +87,14 @@ function show() {
 function go(changes) {
   const { after, light } = capture.steps[changes.step ?? look.step];
   const ofStep = changes.step === undefined ? {} : { draw: null, light: light ?? look.light, face: after.face ?? look.face };
+  const was = String([look.light, look.face]);
   Object.assign(look, ofStep, changes, changes.pixel === undefined ? {} : { selected: null });
   look.face = within(look.face, Math.max(0, (capture.lights[look.light]?.faces.length ?? 1) - 1));
+  if (String([look.light, look.face]) !== was) look.texel = null;
   show();
 }
 
-function goStep(by) {
-  const step = look.step + by;
-  if (step >= 0 && step < capture.steps.length) go({ step });
-}
+const goStep = (by) => capture.steps[look.step + by] && go({ step: look.step + by });
 
 // Through the draws of a step: after the last one comes the step itself.
 function goDraw(by) {
@@ -102,8 +105,9 @@ function goDraw(by) {
 }
 
 function movePick(by) {
-  const middle = capture.size.map((side) => Math.floor(side / 2));
-  go({ hover: null, pixel: look.pixel?.map((value, axis) => within(value + by[axis], capture.size[axis] - 1)) ?? middle });
+  const { size } = layer ?? capture;
+  const moved = look[picked()]?.map((value, axis) => within(value + by[axis], size[axis] - 1));
+  go({ hover: null, [picked()]: moved ?? size.map((side) => Math.floor(side / 2)) });
 }
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
@@ -116,7 +120,7 @@ function onKey(event) {
   const phase = /^[bad]$/i.test(event.key) ? byId("phases").children["bad".indexOf(event.key.toLowerCase())] : null;
   if (arrow && event.shiftKey) movePick(arrow);
   else if (arrow) (arrow[0] ? goStep : goDraw)(arrow[0] || arrow[1]);
-  else if (event.key === "Escape") go({ pixel: null });
+  else if (event.key === "Escape") go({ pixel: null, texel: null });
   else if (view || phase) (view ?? phase).click();
   else return;
   event.preventDefault();
@@ -144,13 +148,10 @@ function listen() {
   const on = (id, kind, act) => byId(id).addEventListener(kind, act);
   document.addEventListener("keydown", onKey);
   for (const kind of ["pointermove", "pointerdown", "pointerleave"]) {
-    on("picture", kind, (event) => {
-      look.hover = kind === "pointerleave" ? null : placeOf(event);
-      showHover();
-    });
+    on("picture", kind, (event) => showHover(kind === "pointerleave" ? null : placeOf(event)));
   }
   // A click's place is rounded to whole points, a pointer's is not.
-  on("picture", "click", (event) => viewOf(capture, look) !== "map" && go({ pixel: look.hover ?? placeOf(event) }));
+  on("picture", "click", (event) => go({ [picked()]: look.hover ?? placeOf(event) }));
   const buttons = { previous: () => goStep(-1), next: () => goStep(1), up: () => goDraw(-1), down: () => goDraw(1), theme: turnTheme };
   for (const [id, act] of Object.entries(buttons)) on(id, "click", act);
   on("slider", "input", ({ target }) => go({ step: Number(target.value) }));

@@ -48,17 +48,20 @@ function outline(capture, { pass: index, triangle: { draw, triangle } }) {
 
 // A box round a texel, with arms that lead to it.
 const crosshair = ([x, y]) => `M${x - 2} ${y - 2}h5v5h-5zM${x - 9} ${y + 0.5}h6m7 0h6M${x + 0.5} ${y - 9}v6m0 7v6`;
+const box = ([x, y]) => `M${x} ${y}h1v1h-1z`;
 
-// What lies over the picture: the picked pixel and the selected triangle, or the texels that the pixel reads.
-export function mark(capture, look, view, event) {
+// What lies over the picture or the map: the picked pixel or texel, what reads or is read, and the selected triangle.
+export function mark(capture, look, view, event, readers) {
   const isMap = view === "map" && capture.lights[look.light].faces.length > 0;
   const [width, height] = isMap ? capture.lights[look.light].faces[look.face].size : capture.size;
   const read = isMap && look.pixel ? texelsRead(capture, look.light, look.pixel) : null;
   const texels = read && read.face === look.face ? read.texels.map(({ x, y }) => [x, y]) : [];
   const d = (isMap ? texels : look.pixel ? [look.pixel] : []).map(crosshair).join("");
+  const linked = (isMap ? [look.texel].filter(Boolean).map(crosshair) : (readers ?? []).map(box)).join("");
   const points = event?.triangle && !isMap ? outline(capture, event) : "";
   byId("marks").setAttribute("viewBox", `0 0 ${width} ${height}`);
   byId("marks").replaceChildren(
+    ...(linked ? [element("path", { d: linked, class: "linked" })] : []),
     ...(points ? ["halo", "face"].map((kind) => element("polygon", { points, class: kind })) : []),
     ...(d ? ["halo", "line"].map((kind) => element("path", { d, class: kind })) : []));
 }

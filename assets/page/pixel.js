@@ -54,12 +54,21 @@ function overSteps(capture, look, goTo) {
   return element("section", { class: "values" }, table(["step", "stencil", "colour", "distance"], rows, "Over the steps"));
 }
 
+// The picked texel of the shadow map, and how many pixels read it.
+function texelCard(capture, { light, face, texel }, readers, showReaders) {
+  if (!texel) return null;
+  const told = readers === null ? "Which pixels read it is not known." : `Pixels that read it: ${count(readers.length)}.`;
+  const show = readers?.length ? button({ onclick: showReaders }, "Show them in the picture") : null;
+  const title = `Texel ${texel.join(", ")} of ${capture.lights[light].faces[face].name}`;
+  return element("section", { class: "card texel" }, element("h3", {}, title), element("p", {}, told), show);
+}
+
 // The texels of the shadow map that the pixel reads.
 function readTable(capture, look, showMap) {
   const read = texelsRead(capture, look.light, look.pixel);
   if (!read) return null;
-  const rows = read.texels.map(({ x, y, stored, isCaster, isLit }) =>
-    row({}, `${x}, ${y}`, isCaster ? depthText(stored) : "no caster", depthText(read.own), read.byPlane ? "" : isLit ? "lit" : "shadow"));
+  const rows = read.texels.map(({ x, y, own, stored, isCaster, isLit }) =>
+    row({}, `${x}, ${y}`, isCaster ? depthText(stored) : "no caster", depthText(Math.fround(own)), isLit ? "lit" : "shadow"));
   const show = button({ onclick: () => showMap(read.face) }, `Show ${capture.lights[look.light].faces[read.face].name}`);
   return element("section", { class: "reads" }, element("h3", {}, "Shadow map"), show, table(["texel", "stored", "surface", "so"], rows));
 }
@@ -136,12 +145,12 @@ function ladderList(capture, history, look, select) {
   const words = `Counted from ${isBehind ? "infinity towards the surface" : "the eye"}: ${counting} of ${ladder.rungs.length} faces count.`;
   const items = [mark("eye", 0, isBehind ? "" : ladder.start), ...rungs(true), mark("surface", surface, isBehind ? ladder.count : ""),
     ...rungs(false), mark("infinity", Infinity, isBehind ? ladder.start : "")];
-  const title = element("h3", {}, `Ladder of ${lightName(look.light)}`);
-  return element("section", { class: "ladder" }, title, element("p", { class: "dim" }, words), element("ol", {}, items));
+  return element("section", { class: "ladder" }, element("h3", {}, `Ladder of ${lightName(look.light)}`),
+    element("p", { class: "dim" }, words), element("ol", {}, items));
 }
 
 // Fills the panel of the picked pixel.
-export function showPixel(capture, look, history, { goTo, select, showMap }) {
+export function showPixel(capture, look, history, readers, { goTo, select, showMap, showReaders }) {
   capture.size.forEach((most, axis) => {
     const field = byId("xy"[axis]);
     [field.max, field.value] = [most - 1, look.pixel?.[axis] ?? ""];
@@ -152,5 +161,5 @@ export function showPixel(capture, look, history, { goTo, select, showMap }) {
     ...capture.lights.map((_, light) => card(verdictOf(capture, history, light))), valuesNow(capture, look), overSteps(capture, look, goTo),
     readTable(capture, look, showMap), historyTable(capture, history, look, select), ladderList(capture, history, look, select),
   ];
-  byId("told").replaceChildren(...parts.filter((part) => part !== null));
+  byId("told").replaceChildren(...[texelCard(capture, look, readers, showReaders), ...parts].filter((part) => part !== null));
 }

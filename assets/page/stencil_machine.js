@@ -1,25 +1,17 @@
 // The depth and stencil tests of one fragment (src/stencil_machine.rs): the stencil test first, then depth.
 
 const COMPARE = {
-  never: () => false,
-  less: (a, b) => a < b,
-  equal: (a, b) => a === b,
-  "less-equal": (a, b) => a <= b,
-  greater: (a, b) => a > b,
-  "not-equal": (a, b) => a !== b,
-  "greater-equal": (a, b) => a >= b,
-  always: () => true,
+  never: () => false, always: () => true,
+  less: (a, b) => a < b, "less-equal": (a, b) => a <= b,
+  equal: (a, b) => a === b, "not-equal": (a, b) => a !== b,
+  greater: (a, b) => a > b, "greater-equal": (a, b) => a >= b,
 };
 
 const OPERATE = {
-  keep: (stored) => stored,
-  zero: () => 0,
-  replace: (_, reference) => reference,
-  invert: (stored) => ~stored & 0xff,
-  "increment-clamp": (stored) => Math.min(stored + 1, 255),
-  "decrement-clamp": (stored) => Math.max(stored - 1, 0),
-  "increment-wrap": (stored) => (stored + 1) & 0xff,
-  "decrement-wrap": (stored) => (stored - 1) & 0xff,
+  keep: (stored) => stored, invert: (stored) => ~stored & 0xff,
+  zero: () => 0, replace: (_, reference) => reference,
+  "increment-clamp": (stored) => Math.min(stored + 1, 255), "increment-wrap": (stored) => (stored + 1) & 0xff,
+  "decrement-clamp": (stored) => Math.max(stored - 1, 0), "decrement-wrap": (stored) => (stored - 1) & 0xff,
 };
 
 // Tests a fragment of a side of triangles against what is stored.

@@ -14,20 +14,34 @@ export function texelsRead(capture, light, pixel) {
   if (face < 0) return null;
   const { size: [width, height], image } = faces[face];
   const within = (value, side) => Math.min(Math.max(value - Math.floor(reads.filter / 2), 0), side - 1);
-  const own = capture.array(reads.depths)[at];
+  const depth = capture.array(reads.depths)[at];
+  const slope = capture.array(reads.slopes)?.subarray(at * 2, at * 2 + 2) ?? [0, 0];
   const texelOf = (_, index) => {
     const [x, y] = [within(column + index % reads.filter, width), within(row + Math.floor(index / reads.filter), height)];
+    const own = depth + slope[0] * (x - column) + slope[1] * (y - row);
     const stored = capture.array(image)[y * width + x];
     const isCaster = stored !== capture.clear_depth;
     const isNearest = capture.clear_depth === 0 ? own >= stored : own <= stored;
-    return { x, y, stored, isCaster, isLit: !isCaster || isNearest };
+    return { x, y, own, stored, isCaster, isLit: !isCaster || isNearest };
   };
-  return { face, own, byPlane: reads.by_plane, middle: [column, row], texels: Array.from({ length: reads.filter ** 2 }, texelOf) };
+  return { face, middle: [column, row], texels: Array.from({ length: reads.filter ** 2 }, texelOf) };
+}
+
+// The pixels that read a texel of a face, in reading order; null where that is not known.
+export function readersOf(capture, { light, face, texel }) {
+  const { reads } = capture.lights[light];
+  const texels = reads && capture.array(reads.texels);
+  if (!texels) return null;
+  const offset = Math.floor(reads.filter / 2) + 1;
+  const nth = (at, axis) => texel[axis] - texels[at * 3 + 1 + axis] + offset;
+  const isRead = (at, axis) => nth(at, axis) >= 0 && nth(at, axis) < reads.filter;
+  const pixels = [...Array(texels.length / 3).keys()].filter((at) => texels[at * 3] - 1 === face && isRead(at, 0) && isRead(at, 1));
+  return pixels.map((at) => [at % capture.size[0], Math.floor(at / capture.size[0])]);
 }
 
 function mapReason(capture, light, pixel, fallback) {
   const read = texelsRead(capture, light, pixel);
-  if (!read || read.byPlane) return fallback;
+  if (!read) return fallback;
   const face = capture.lights[light].faces[read.face];
   const middle = read.texels.find(({ x, y }) => x === read.middle[0] && y === read.middle[1]);
   const place = `${read.middle.join(", ")}${capture.lights[light].faces.length > 1 ? ` of ${face.name}` : ""}`;
@@ -42,7 +56,7 @@ function mapReason(capture, light, pixel, fallback) {
   const lit = read.texels.filter(({ isLit }) => isLit).length;
   const follows = read.texels.length > 1 ? `of the ${read.texels.length} texels read, ${lit} hold nothing nearer to the light`
     : lit === 0 ? "it is nearer, so the light pass adds nothing" : "it is not nearer, so the light pass adds the light";
-  return `Texel ${place} ${told}; this surface is ${far(read.own)}: ${follows}.`;
+  return `Texel ${place} ${told}; this surface is ${far(middle.own)}: ${follows}.`;
 }
 
 export function verdictOf(capture, history, light) {

@@ -93,10 +93,7 @@ export function whyOf(history, light) {
 }
 
 // Do bits hold a sum as this byte although it is another number? Of eight bits, the upper half reads as negative.
-function holdOtherwise(bits, sum, byte) {
-  const [modulus, least] = [2 ** bits, bits === 8 ? -128 : 0];
-  return ((sum % modulus) + modulus) % modulus === byte && (sum < least || sum >= modulus);
-}
+const holdOtherwise = (bits, sum, byte) => (sum & (2 ** bits - 1)) === byte && (sum < (bits === 8 ? -128 : 0) || sum >= 2 ** bits);
 
 function verbOf({ count, side }, isOne) {
   if (count.inFloat) return isOne ? "is counted" : "are counted";

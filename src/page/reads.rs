@@ -3,7 +3,7 @@
 use super::arrays::{ArrayIndex, Arrays, Layout, Word};
 use crate::capture::Capture;
 use crate::plan::{DecidedBy, FramePlan};
-use crate::reading::map_readers::MapReaders;
+use crate::reading::map_readers::{MapReaders, MapTexel};
 use crate::technique::MapSettings;
 use serde::Serialize;
 use std::sync::Arc;
@@ -14,12 +14,12 @@ pub struct ReadsEntry {
     /// Of each pixel the face, column and row of the texel in the middle of those that it reads, each with one added;
     /// zeros where it reads none.
     texels: ArrayIndex,
-    /// Of each pixel the depth that they are compared with.
+    /// Of each pixel the depth that the middle one is compared with.
     depths: ArrayIndex,
+    /// How much that grows a column and a row on, where texels are compared with the plane of the surface.
+    slopes: Option<ArrayIndex>,
     /// Texels along each side that are read.
     filter: u32,
-    /// Each texel is compared with a depth of its own, which is not here.
-    by_plane: bool,
 }
 
 /// Of a light; `None` where no map decides, or it is not known how it is read.
@@ -35,13 +35,34 @@ pub fn reads(capture: &Capture, plan: &Arc<FramePlan>, light: usize, arrays: &mu
         texel.map_or([0; 3], |texel| [texel.face as u32 + 1, texel.at[0] + 1, texel.at[1] + 1])
     };
     let texels: Vec<[u32; 3]> = pixels().map(texel).collect();
-    let depths: Vec<f32> = pixels().map(|pixel| readers.depth_of(pixel).unwrap_or(0.0) as f32).collect();
     let width = width as usize;
-    let lookup = plan.lights.get(light)?.map.as_ref()?.lookup?;
+    let filter = plan.lights.get(light)?.map.as_ref()?.lookup?.filter_width;
+    let is_by_plane = MapSettings::read(&capture.settings).bias_receiver_plane;
+    let (depths, slopes): (Vec<f32>, Vec<[f32; 2]>) = pixels()
+        .map(|pixel| match is_by_plane {
+            true => on_plane(&readers.compared(pixel), filter as usize),
+            false => (readers.depth_of(pixel).unwrap_or(0.0) as f32, [0.0; 2]),
+        })
+        .unzip();
     Some(ReadsEntry {
         texels: arrays.put(Layout { word: Word::U32, lanes: 3, width }, bytemuck::cast_slice(&texels)),
         depths: arrays.put(Layout { word: Word::F32, lanes: 1, width }, bytemuck::cast_slice(&depths)),
-        filter: lookup.filter_width,
-        by_plane: MapSettings::read(&capture.settings).bias_receiver_plane,
+        slopes: is_by_plane
+            .then(|| arrays.put(Layout { word: Word::F32, lanes: 2, width }, bytemuck::cast_slice(&slopes))),
+        filter,
     })
+}
+
+/// The depth at the middle of compared texels, and how much it grows a texel on; zeros of none.
+fn on_plane(compared: &[(MapTexel, f64)], filter: usize) -> (f32, [f32; 2]) {
+    let middle = filter / 2 * (filter + 1);
+    let Some((_, depth)) = compared.get(middle) else { return (0.0, [0.0; 2]) };
+    let (first, first_depth) = compared[0];
+    // The last one of the first row, and of the first column: at a map's border some are the same texel.
+    let slope = |axis: usize, last: usize| {
+        let (texel, depth) = compared[last];
+        let texels = texel.at[axis] - first.at[axis];
+        if texels == 0 { 0.0 } else { ((depth - first_depth) / f64::from(texels)) as f32 }
+    };
+    (*depth as f32, [slope(0, filter - 1), slope(1, filter * (filter - 1))])
 }
