@@ -16,9 +16,14 @@
 //! frame ends where it is shown; in a program without a surface with each submission, of which a recorded one goes on
 //! until something is drawn.
 //!
+//! The module [`example`] is a renderer with a fault, the test that finds it, and the mend.
+//!
 //! While it records, a program draws what it draws anyway. It may do a little more than it asked for: copy from its
 //! targets, bind one more group. Acceleration structures and mesh shaders are hidden from it.
 
+pub mod example {
+    #![doc = include_str!("example.md")]
+}
 mod error;
 mod fragments;
 mod probe;

@@ -31,7 +31,10 @@ pub struct Probes {
 
 /// Pipelines of one kind: those of the program that differ in nothing that counts here share one.
 #[derive(Debug, Default)]
-struct Made(Vec<(Arc<Described>, Result<Arc<Probe>, &'static str>)>);
+struct Made(Vec<(Arc<Described>, MadeProbe)>);
+
+/// Why there is none, in words, is kept as well.
+type MadeProbe = Result<Arc<Probe>, &'static str>;
 
 impl Made {
     fn get(
@@ -39,7 +42,7 @@ impl Made {
         described: &Arc<Described>,
         is_alike: impl Fn(&Described, &Described) -> bool,
         make: impl FnOnce() -> Result<Probe, &'static str>,
-    ) -> Result<Arc<Probe>, &'static str> {
+    ) -> MadeProbe {
         if let Some((_, made)) = self.0.iter().find(|(of, _)| Arc::ptr_eq(of, described) || is_alike(of, described)) {
             return made.clone();
         }
