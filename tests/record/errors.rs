@@ -69,6 +69,35 @@ fn validation_errors_are_wgpus_own_words() {
     assert!(plain.picture() == wrapped.picture());
 }
 
+/// A texture of 256 GiB, within all limits: no machine that runs this has it.
+#[test]
+fn out_of_memory_is_said_in_wgpus_own_words() {
+    let error = |renderer: &Renderer| {
+        let scope = renderer.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let texture = renderer.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("vast"),
+            size: wgpu::Extent3d { width: 8192, height: 8192, depth_or_array_layers: 256 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        drop(texture);
+        pollster::block_on(scope.pop())
+    };
+    let plain = Renderer::new(wgpu::Instance::new, Fault::None);
+    let wrapped = Renderer::new(record::instance, Fault::None);
+    let expected = error(&plain).expect("no memory");
+    assert!(matches!(expected, wgpu::Error::OutOfMemory { .. }), "{expected}");
+    let found = error(&wrapped).expect("no memory");
+    assert!(matches!(found, wgpu::Error::OutOfMemory { .. }) && found.to_string() == expected.to_string(), "{found}");
+    wrapped.draw();
+    plain.draw();
+    assert!(plain.picture() == wrapped.picture());
+}
+
 /// An error within a recorded frame is the program's to handle, as any; and no folder is left.
 #[test]
 fn an_error_in_a_recorded_frame_is_the_programs() {
