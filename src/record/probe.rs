@@ -302,6 +302,18 @@ pub struct Gpu<'a> {
     pub queue: &'a wgpu::Queue,
 }
 
+/// Every kind of error.
+pub(super) const FILTERS: [wgpu::ErrorFilter; 3] =
+    [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
+
+/// Does what is not the program's: an error of it is not the program's either.
+fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> Result<T, &'static str>) -> Result<T, &'static str> {
+    let scopes = FILTERS.map(|filter| device.push_error_scope(filter));
+    let made = work();
+    let errors = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).count();
+    if errors > 0 { Err("wgpu refuses to draw it once more") } else { made }
+}
+
 impl Probes {
     /// Where the vertices of a draw land.
     ///
@@ -309,12 +321,13 @@ impl Probes {
     /// Why that can't be found, in words.
     pub fn landed(&mut self, gpu: Gpu<'_>, state: &PassState, draw: &DrawCommand) -> Result<Landed, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
-        let probe = self.of_vertices.get(described, have_same_vertices, || of_vertices(gpu.device, described))?;
+        let make = || guarded(gpu.device, || of_vertices(gpu.device, described));
+        let probe = self.of_vertices.get(described, have_same_vertices, make)?;
         let parts = direct(gpu, draw)?;
         let mut all = Landed::default();
         for part in &parts {
             let corners = corners(gpu, state, described, part)?;
-            let log = probe.log(gpu, state, part, corners.len() as u64)?;
+            let log = guarded(gpu.device, || probe.log(gpu, state, part, corners.len() as u64))?;
             all.add(described, part, &corners, &log)?;
         }
         Ok(all)
@@ -333,11 +346,12 @@ impl Probes {
         size: [u32; 2],
     ) -> Result<Vec<([u16; 2], u32)>, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
-        let make = || fragments::probe(gpu.device, described);
+        let make = || guarded(gpu.device, || fragments::probe(gpu.device, described));
         let probe = self.of_fragments.get(described, have_same_fragments, make)?;
         let one_by_one = direct(gpu, draw)?.iter().flat_map(single).collect::<Vec<_>>();
         let first: Vec<u32> = landed.instances.iter().map(|triangles| triangles.start as u32).collect();
-        fragments::kept(&probe, gpu, state, &one_by_one.into_iter().zip(first).collect::<Vec<_>>(), size)
+        let draws: Vec<_> = one_by_one.into_iter().zip(first).collect();
+        guarded(gpu.device, || fragments::kept(&probe, gpu, state, &draws, size))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A recorded frame done draw by draw, with what each draw left read back.
 
-use super::probe::{Gpu, Landed, Probes};
+use super::probe::{FILTERS, Gpu, Landed, Probes};
 use super::states::{self, PassState};
 use super::{readback, rewrite};
 use crate::import::{
@@ -274,9 +274,6 @@ impl Replay {
         }
     }
 }
-
-const FILTERS: [wgpu::ErrorFilter; 3] =
-    [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
 
 const UNKNOWN: RawFragment = RawFragment { may_discard: RawMay::Unknown, writes_depth: RawMay::Unknown };
 
