@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use stencilscope::capture::{Capture, DrawSummary, disk};
 use stencilscope::history::{Fate, PixelHistory, TriangleEvent};
 use stencilscope::import::Converted;
-use stencilscope::record::{self, RecordError, Recorded};
+use stencilscope::record::{self, OfSeries, RecordError, Recorded};
 use stencilscope::session::Session;
 use stencilscope::testing::Rendered;
 use stencilscope::wgpu;
@@ -40,7 +40,7 @@ fn last_stencil(capture: &Capture) -> Vec<u8> {
 #[test]
 fn a_frame_is_recorded_draw_by_draw() {
     let renderer = Renderer::new(record::instance, Fault::None);
-    let Recorded { frame: Converted { capture, plan, lights, .. }, folder } = recorded("whole", &renderer);
+    let Recorded { frame: Converted { capture, plan, lights, .. }, folder, .. } = recorded("whole", &renderer);
     assert_eq!(draws(&capture).len(), 4, "{}", capture.plan_text);
     for draw in draws(&capture) {
         let differs = draw.differs.unwrap_or_else(|| panic!("{} is not computed anew", draw.name));
@@ -85,11 +85,55 @@ fn the_next_frame_is_recorded_without_a_closure() {
     assert!(!target.exists(), "one frame and no more");
 }
 
+/// Every frame between two moments is recorded in a folder of its own, with what it took; an upload is no frame.
+#[test]
+fn a_series_has_each_frame_and_what_it_cost() {
+    let renderer = Renderer::new(record::instance, Fault::None);
+    let target = folder("series");
+    renderer.draw();
+    record::start(&renderer.device, &target).expect("a wrapped device");
+    assert!(matches!(record::start(&renderer.device, &target), Err(RecordError::Busy)));
+    for _ in 0..2 {
+        let upload = renderer.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        renderer.queue.submit([upload.finish()]);
+        renderer.draw();
+    }
+    let series = record::stop(&renderer.device).expect("a wrapped device");
+    renderer.draw();
+    let folders = ["frame-0000", "frame-0001"].map(|name| target.join(name));
+    assert_eq!(series.iter().map(|frame| &frame.folder).collect::<Vec<_>>(), folders.iter().collect::<Vec<_>>());
+    for OfSeries { folder, outcome } in &series {
+        let cost = outcome.as_ref().expect("a frame");
+        let opened = disk::read_whole(folder).expect("a folder");
+        assert_eq!((cost.draws, draws(&opened.capture).len()), (4, 4));
+        assert_eq!(last_stencil(&opened.capture), renderer.stencil());
+        let files = std::fs::read_dir(folder).expect("a folder").map(|file| file.and_then(|file| file.metadata()));
+        assert_eq!(cost.bytes, files.map(|file| file.expect("a file").len()).sum::<u64>());
+        assert!(!cost.time.is_zero());
+    }
+    assert_eq!(std::fs::read_dir(&target).expect("a folder").count(), 2, "none after the end");
+    assert!(record::stop(&renderer.device).expect("a wrapped device").is_empty());
+    std::fs::remove_dir_all(target).expect("removed");
+}
+
+/// Where one frame of a series can't be written, the next is not tried.
+#[test]
+fn a_series_ends_where_nothing_can_be_written() {
+    let renderer = Renderer::new(record::instance, Fault::None);
+    let target = folder("series-file");
+    std::fs::write(&target, "a file").expect("written");
+    record::start(&renderer.device, &target).expect("a wrapped device");
+    (0..2).for_each(|_| renderer.draw());
+    let series = record::stop(&renderer.device).expect("a wrapped device");
+    assert!(matches!(series[..], [OfSeries { outcome: Err(RecordError::Disk(_)), .. }]), "{series:?}");
+    std::fs::remove_file(target).expect("removed");
+}
+
 /// The history of a pixel ends in what the program has stored there.
 #[test]
 fn histories_end_in_what_was_stored() {
     let renderer = Renderer::new(record::instance, Fault::None);
-    let Recorded { frame: Converted { capture, plan, .. }, folder } = recorded("history", &renderer);
+    let Recorded { frame: Converted { capture, plan, .. }, folder, .. } = recorded("history", &renderer);
     let mut session = Session::new(None).expect("an adapter");
     let [width, height] = capture.size;
     let mut fragments = 0;
@@ -109,7 +153,7 @@ fn histories_end_in_what_was_stored() {
 fn a_culled_face_shows_in_the_history_of_a_pixel_that_lacks_its_shadow() {
     let of = |fault, name| {
         let renderer = Renderer::new(record::instance, fault);
-        let Recorded { frame: Converted { capture, plan, .. }, folder } = recorded(name, &renderer);
+        let Recorded { frame: Converted { capture, plan, .. }, folder, .. } = recorded(name, &renderer);
         std::fs::remove_dir_all(folder).expect("removed");
         (renderer.stencil(), Rendered::recorded(plan, capture).expect("an adapter"))
     };

@@ -12,9 +12,13 @@
 //! ```
 //!
 //! Which frame is recorded says [`next_frame`], or the environment: `STENCILSCOPE_RECORD=DIR` for the first frame,
-//! `STENCILSCOPE_RECORD=DIR:N` for the one after `N` others. [`frame`] records what a closure encodes, as tests do. A
-//! frame ends where it is shown; in a program without a surface with each submission, of which a recorded one goes on
-//! until something is drawn.
+//! `STENCILSCOPE_RECORD=DIR:N` for the one after `N` others, `STENCILSCOPE_RECORD=DIR:A..B` for each from `A` to before
+//! `B`. [`start`] and [`stop`] record every frame between two moments. [`frame`] records what a closure encodes, as tests
+//! do. A frame ends where it is shown; in a program without a surface with each submission that has a render pass, of
+//! which a recorded one goes on until something is drawn.
+//!
+//! What a frame costs is said with it: its draws, the time that the program would not have spent, the bytes of its folder.
+//! Of a series, the frames after the first find shaders rewritten.
 //!
 //! The module [`example`] is a renderer with a fault, the test that finds it, and the mend.
 //!
@@ -34,7 +38,7 @@ mod rewrite;
 mod states;
 
 pub use error::RecordError;
-pub use recorder::Recorded;
+pub use recorder::{Cost, OfSeries, Recorded};
 
 use crate::wrap;
 use recorder::Recorder;
@@ -78,6 +82,24 @@ pub fn frame(
 pub fn next_frame(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
     recorder_of(device)?.1.wish(folder.to_owned());
     Ok(())
+}
+
+/// Records every frame that begins from now on, until [`stop`]: each in a folder of its own within `folder`, `frame-0000`
+/// and on. What each cost is said on standard error, in a line; after a folder that can't be written it goes no further.
+///
+/// # Errors
+/// The device is of another instance than [`instance`] makes; a series is being recorded.
+pub fn start(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
+    recorder_of(device)?.1.start_series(folder.to_owned())
+}
+
+/// Records no further frame, and says what became of each since [`start`]. A frame that has begun is still written when it
+/// ends.
+///
+/// # Errors
+/// The device is of another instance than [`instance`] makes.
+pub fn stop(device: &wgpu::Device) -> Result<Vec<OfSeries>, RecordError> {
+    Ok(recorder_of(device)?.1.stop_series())
 }
 
 fn recorder_of(device: &wgpu::Device) -> Result<(&wrap::Shared, &Recorder), RecordError> {

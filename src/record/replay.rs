@@ -34,6 +34,16 @@ struct Into {
 }
 
 impl Replay {
+    /// With probes of frames before, if there are any.
+    pub fn with(probes: Probes) -> Replay {
+        Replay { probes, ..Replay::default() }
+    }
+
+    /// How many draws were done yet.
+    pub fn draws(&self) -> usize {
+        self.draws
+    }
+
     /// Has anything been drawn yet?
     pub fn has_drawn(&self) -> bool {
         self.draws > 0
@@ -46,7 +56,7 @@ impl Replay {
         queue: &wgpu::Queue,
         buffers: Vec<Finished>,
     ) -> wgpu::SubmissionIndex {
-        for Finished { inner, list } in buffers {
+        for Finished { inner, list, .. } in buffers {
             let Some(list) = list else {
                 self.limit("some commands were encoded before the frame began, and are not recorded");
                 queue.submit([inner]);
@@ -258,11 +268,11 @@ impl Replay {
         }
     }
 
-    /// All of it, as an import has it.
-    pub fn frame(self, adapter: &wgpu::AdapterInfo) -> RawFrame {
+    /// All of it, as an import has it; and what frames after it may use again.
+    pub fn frame(self, adapter: &wgpu::AdapterInfo) -> (RawFrame, Probes) {
         let program = std::env::current_exe().ok();
         let program = program.and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
-        RawFrame {
+        let frame = RawFrame {
             api: Api::Wgpu,
             adapter: adapter.name.clone(),
             recorder: format!("stencilscope {}", env!("CARGO_PKG_VERSION")),
@@ -271,7 +281,8 @@ impl Replay {
             before: self.before,
             events: self.events,
             limits: self.limits,
-        }
+        };
+        (frame, self.probes)
     }
 }
 

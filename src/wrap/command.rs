@@ -28,6 +28,8 @@ impl CommandList {
 pub struct Finished {
     pub inner: wgpu::CommandBuffer,
     pub list: Option<CommandList>,
+    /// Render passes are among them.
+    pub has_passes: bool,
 }
 
 /// One call of an encoder, or a pass.

@@ -3,6 +3,7 @@ use super::compute_pass::ComputePass;
 use super::render_pass::RenderPass;
 use super::shared::Shared;
 use super::{Real, copy_end};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use wgpu::custom::{
     CommandBufferInterface, CommandEncoderInterface, DispatchBuffer, DispatchCommandBuffer, DispatchComputePass,
@@ -14,6 +15,7 @@ use wgpu::custom::{
 pub struct CommandEncoder {
     inner: Mutex<Option<wgpu::CommandEncoder>>,
     list: Option<CommandList>,
+    has_passes: AtomicBool,
 }
 
 impl CommandEncoder {
@@ -23,7 +25,8 @@ impl CommandEncoder {
         shared: &Shared,
     ) -> CommandEncoder {
         let list = shared.recorder.is_recording().then(CommandList::default);
-        CommandEncoder { inner: Mutex::new(Some(device.create_command_encoder(descriptor))), list }
+        let inner = Mutex::new(Some(device.create_command_encoder(descriptor)));
+        CommandEncoder { inner, list, has_passes: AtomicBool::new(false) }
     }
 
     fn lock(&self) -> MutexGuard<'_, Option<wgpu::CommandEncoder>> {
@@ -127,13 +130,15 @@ impl CommandEncoderInterface for CommandEncoder {
     }
 
     fn begin_render_pass(&self, descriptor: &wgpu::RenderPassDescriptor<'_>) -> DispatchRenderPass {
+        self.has_passes.store(true, Ordering::Relaxed);
         let targets = Targets::of(descriptor);
         DispatchRenderPass::custom(RenderPass::begin(&mut self.lock(), self.list.as_ref(), targets))
     }
 
     fn finish(&mut self) -> DispatchCommandBuffer {
         let inner = self.lock().take().map(wgpu::CommandEncoder::finish);
-        let finished = inner.map(|inner| Finished { inner, list: self.list.take() });
+        let has_passes = *self.has_passes.get_mut();
+        let finished = inner.map(|inner| Finished { inner, list: self.list.take(), has_passes });
         DispatchCommandBuffer::custom(CommandBuffer { finished: Mutex::new(finished) })
     }
 

@@ -176,7 +176,7 @@ impl Stage {
             pass.set_index_buffer(self.indices.slice(..), IndexFormat::Uint16);
             draw(&mut pass);
         });
-        let Recorded { frame, folder } = recorded.expect(name);
+        let Recorded { frame, folder, .. } = recorded.expect(name);
         for draw in draws(&frame.capture) {
             let differs = draw.differs.unwrap_or_else(|| panic!("{name}: not computed anew"));
             assert!(differs.is_nowhere() && differs.rounded == 0, "{name}: {differs:?}");
