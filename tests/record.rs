@@ -2,6 +2,7 @@
 
 mod errors;
 mod renderer;
+mod states;
 mod ways;
 
 use renderer::{Fault, Renderer};

@@ -11,9 +11,6 @@ use crate::wrap::Described;
 use crate::wrap::command::{DrawCommand, PassCommand};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
-/// More fragments than a draw is followed with.
-const MOST: u64 = 1 << 26;
-
 /// The pipeline that notes what is kept.
 ///
 /// # Errors
@@ -49,16 +46,17 @@ pub fn probe(device: &wgpu::Device, described: &Described) -> Result<Probe, &'st
 /// What is kept of some draws of one instance, each with the number of its first triangle.
 ///
 /// # Errors
-/// There are too many, or the GPU fails.
+/// There are more than `most`, or the GPU fails.
 pub fn kept(
     probe: &Probe,
     gpu: Gpu<'_>,
     state: &PassState,
     draws: &[(DrawCommand, u32)],
     size: [u32; 2],
+    most: u64,
 ) -> Result<Vec<([u16; 2], u32)>, &'static str> {
     // Enough for one layer of fragments; more where they are more.
-    let mut room = u64::from(size[0]) * u64::from(size[1]);
+    let mut room = most.min(u64::from(size[0]) * u64::from(size[1]));
     loop {
         let log = log(probe, gpu, state, draws, size, room)?;
         let read = |offset: u64, bytes: u64| {
@@ -74,9 +72,14 @@ pub fn kept(
             let records = read(HEAD, FRAGMENT_RECORD * count)?;
             return Ok(records.chunks_exact(FRAGMENT_RECORD as usize).map(record).collect());
         }
+        if count > most {
+            return Err(TOO_MANY);
+        }
         room = count;
     }
 }
+
+const TOO_MANY: &str = "it has more fragments than are followed";
 
 fn word(bytes: &[u8], at: usize) -> u32 {
     bytemuck::pod_read_unaligned(&bytes[4 * at..4 * at + 4])
@@ -91,8 +94,8 @@ fn log(
     room: u64,
 ) -> Result<wgpu::Buffer, &'static str> {
     let bytes = HEAD + FRAGMENT_RECORD * room.max(1);
-    if room > MOST || bytes > device.limits().max_storage_buffer_binding_size {
-        return Err("it has more fragments than are followed");
+    if bytes > device.limits().max_storage_buffer_binding_size {
+        return Err(TOO_MANY);
     }
     let log = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("stencilscope log"),

@@ -22,8 +22,14 @@
 //!
 //! The module [`example`] is a renderer with a fault, the test that finds it, and the mend.
 //!
-//! While it records, a program draws what it draws anyway. It may do a little more than it asked for: copy from its
-//! targets, bind one more group. Acceleration structures and mesh shaders are hidden from it.
+//! A wrapped program draws what it draws anyway, whether or not it is recorded. It may do a little more than it asked for:
+//! copy from its targets and its index and indirect buffers, bind one more group, read and write two more storage buffers.
+//! Acceleration structures and mesh shaders are hidden from it. So is the API beneath: `Device::as_hal` and its kin give
+//! nothing, and what `create_texture_from_hal` and its kin make is of no device that is recorded, so that wgpu panics.
+//!
+//! A recorded submission is done in parts, and other threads are kept from submitting meanwhile. What they write with
+//! `Queue::write_buffer` or `Queue::write_texture` meanwhile may come between two parts, where it would come before or after
+//! all of them.
 
 pub mod example {
     #![doc = include_str!("example.md")]
@@ -51,7 +57,7 @@ pub const VARIABLE: &str = "STENCILSCOPE_RECORD";
 /// An instance of wgpu whose frames can be recorded.
 #[must_use]
 pub fn instance(descriptor: wgpu::InstanceDescriptor) -> wgpu::Instance {
-    wgpu::Instance::from_custom(wrap::Instance::recorded_by(descriptor, || Box::new(Recorder::new())))
+    wgpu::Instance::from_custom(wrap::Instance::recorded_by(descriptor, || Box::new(Recorder::default())))
 }
 
 /// Records what `draw` encodes, and writes it to `folder` as a capture folder. What else is submitted meanwhile is
@@ -67,34 +73,33 @@ pub fn frame(
     draw: impl FnOnce(&mut wgpu::CommandEncoder),
 ) -> Result<Recorded, RecordError> {
     let (shared, recorder) = recorder_of(device)?;
-    recorder.begin(folder.to_owned())?;
+    let recording = recorder.begin(folder.to_owned())?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("recorded frame") });
     draw(&mut encoder);
     queue.submit([encoder.finish()]);
-    recorder.end(shared)
+    recording.end(shared)
 }
 
 /// Records the next frame that the program begins on a device, and writes it to `folder` as a capture folder. Whether that
 /// went well is said on standard error, in a line: nobody waits for it.
 ///
 /// # Errors
-/// The device is of another instance than [`instance`] makes.
+/// The device is of another instance than [`instance`] makes; a frame or a series is asked for already.
 pub fn next_frame(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
-    recorder_of(device)?.1.wish(folder.to_owned());
-    Ok(())
+    recorder_of(device)?.1.wish(folder.to_owned())
 }
 
 /// Records every frame that begins from now on, until [`stop`]: each in a folder of its own within `folder`, `frame-0000`
 /// and on. What each cost is said on standard error, in a line; after a folder that can't be written it goes no further.
 ///
 /// # Errors
-/// The device is of another instance than [`instance`] makes; a series is being recorded.
+/// The device is of another instance than [`instance`] makes; a frame or a series is asked for already.
 pub fn start(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
     recorder_of(device)?.1.start_series(folder.to_owned())
 }
 
 /// Records no further frame, and says what became of each since [`start`]. A frame that has begun is still written when it
-/// ends.
+/// ends, and said on standard error.
 ///
 /// # Errors
 /// The device is of another instance than [`instance`] makes.

@@ -6,13 +6,29 @@ use super::states::{PassState, topology};
 use super::{fragments, readback};
 use crate::import::unroll;
 use crate::wrap::command::{DrawCommand, PassCommand};
-use crate::wrap::{Described, Stage, VertexBuffer, real_group};
+use crate::wrap::{Described, Layout, Stage, VertexBuffer, real_group};
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 use std::sync::Arc;
 
 /// More corners than a draw is followed with.
 const MOST_CORNERS: u64 = 1 << 22;
+/// More instances than are followed fragment by fragment: each is a draw.
+const MOST_INSTANCES: usize = 1 << 14;
+
+/// How many corners and kept fragments of a frame there is still memory for.
+#[derive(Debug)]
+pub struct Room {
+    pub corners: u64,
+    pub fragments: u64,
+}
+
+impl Default for Room {
+    /// Half a gigabyte each.
+    fn default() -> Room {
+        Room { corners: 1 << 25, fragments: 1 << 26 }
+    }
+}
 
 /// What a draw's vertices are and how they make triangles, as `RawDraw` has them.
 #[derive(Debug, Default)]
@@ -55,7 +71,8 @@ impl Made {
 /// Have two pipelines the same vertices?
 fn have_same_vertices(one: &Described, other: &Described) -> bool {
     let of = |of: &Described| (of.primitive.topology, of.primitive.strip_index_format, of.multiview_mask);
-    of(one) == of(other) && one.vertex == other.vertex && one.buffers == other.buffers && one.layout == other.layout
+    let layout = |of: &Described| of.layout.as_ref().map(|layout| (layout.groups.clone(), layout.immediate_size));
+    of(one) == of(other) && one.vertex == other.vertex && one.buffers == other.buffers && layout(one) == layout(other)
 }
 
 /// And the same fragments, before any test?
@@ -93,7 +110,7 @@ pub(super) fn free_group(
     let variables = modules.iter().flat_map(|module| module.global_variables.iter());
     let automatic = || variables.filter_map(|(_, of)| of.binding).map(|of| of.group + 1).max();
     let group = match &described.layout {
-        Some((groups, _)) => groups.len() as u32,
+        Some(layout) => layout.groups.len() as u32,
         None => automatic().unwrap_or(0),
     };
     let is_free = group < device.limits().max_bind_groups;
@@ -137,7 +154,7 @@ pub(super) struct ProbeParts {
 impl Probe {
     /// `described` is the program's.
     pub fn new(device: &wgpu::Device, described: &Described, parts: ProbeParts) -> Probe {
-        let layout = described.layout.as_ref().map(|(groups, immediate_size)| {
+        let layout = described.layout.as_ref().map(|Layout { groups, immediate_size, .. }| {
             let entry = |(binding, (visibility, read_only)): (u32, &(wgpu::ShaderStages, bool))| {
                 let ty = wgpu::BufferBindingType::Storage { read_only: *read_only };
                 let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
@@ -302,16 +319,28 @@ pub struct Gpu<'a> {
     pub queue: &'a wgpu::Queue,
 }
 
+impl Gpu<'_> {
+    /// Does what was encoded; `None` where wgpu refuses it.
+    pub fn does(self, encoder: wgpu::CommandEncoder) -> Option<()> {
+        accepted(self.device, || drop(self.queue.submit([encoder.finish()])))
+    }
+}
+
 /// Every kind of error.
-pub(super) const FILTERS: [wgpu::ErrorFilter; 3] =
+const FILTERS: [wgpu::ErrorFilter; 3] =
     [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
 
 /// Does what is not the program's: an error of it is not the program's either.
 fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> Result<T, &'static str>) -> Result<T, &'static str> {
+    accepted(device, work).unwrap_or(Err("wgpu refuses to draw it once more"))
+}
+
+/// What comes of something, unless wgpu refuses it.
+pub(super) fn accepted<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Option<T> {
     let scopes = FILTERS.map(|filter| device.push_error_scope(filter));
     let made = work();
     let errors = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).count();
-    if errors > 0 { Err("wgpu refuses to draw it once more") } else { made }
+    (errors == 0).then_some(made)
 }
 
 impl Probes {
@@ -319,7 +348,13 @@ impl Probes {
     ///
     /// # Errors
     /// Why that can't be found, in words.
-    pub fn landed(&mut self, gpu: Gpu<'_>, state: &PassState, draw: &DrawCommand) -> Result<Landed, &'static str> {
+    pub fn landed(
+        &mut self,
+        gpu: Gpu<'_>,
+        state: &PassState,
+        draw: &DrawCommand,
+        room: &mut Room,
+    ) -> Result<Landed, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
         let make = || guarded(gpu.device, || of_vertices(gpu.device, described));
         let probe = self.of_vertices.get(described, have_same_vertices, make)?;
@@ -327,6 +362,11 @@ impl Probes {
         let mut all = Landed::default();
         for part in &parts {
             let corners = corners(gpu, state, described, part)?;
+            let all_corners = corners.len() as u64 * instances(part).len() as u64;
+            if all_corners > MOST_CORNERS || all_corners > room.corners {
+                return Err("it has more corners than are followed");
+            }
+            room.corners -= all_corners;
             let log = guarded(gpu.device, || probe.log(gpu, state, part, corners.len() as u64))?;
             all.add(described, part, &corners, &log)?;
         }
@@ -344,6 +384,7 @@ impl Probes {
         draw: &DrawCommand,
         landed: &Landed,
         size: [u32; 2],
+        room: &mut Room,
     ) -> Result<Vec<([u16; 2], u32)>, &'static str> {
         let described = state.pipeline().ok_or("it has no pipeline")?;
         let make = || guarded(gpu.device, || fragments::probe(gpu.device, described));
@@ -351,7 +392,12 @@ impl Probes {
         let one_by_one = direct(gpu, draw)?.iter().flat_map(single).collect::<Vec<_>>();
         let first: Vec<u32> = landed.instances.iter().map(|triangles| triangles.start as u32).collect();
         let draws: Vec<_> = one_by_one.into_iter().zip(first).collect();
-        guarded(gpu.device, || fragments::kept(&probe, gpu, state, &draws, size))
+        if draws.len() > MOST_INSTANCES {
+            return Err("it has more instances than are followed fragment by fragment");
+        }
+        let kept = guarded(gpu.device, || fragments::kept(&probe, gpu, state, &draws, size, room.fragments))?;
+        room.fragments -= kept.len() as u64;
+        Ok(kept)
     }
 }
 
@@ -374,7 +420,7 @@ impl Probe {
         let instances = instances(draw).len() as u64;
         let room = corners * instances;
         let size = HEAD + RECORD * room.max(1);
-        if room > MOST_CORNERS || size > device.limits().max_storage_buffer_binding_size {
+        if size > device.limits().max_storage_buffer_binding_size {
             return Err("it has more corners than are followed");
         }
         let log = device.create_buffer(&wgpu::BufferDescriptor {
@@ -454,7 +500,7 @@ fn instances(draw: &DrawCommand) -> Range<u32> {
     }
 }
 
-/// A draw whose numbers are on the GPU as draws whose numbers are known.
+/// A draw whose numbers may be on the GPU as draws whose numbers are known, and of which none is empty.
 fn direct(gpu: Gpu<'_>, draw: &DrawCommand) -> Result<Vec<DrawCommand>, &'static str> {
     let words = |buffer: &wgpu::Buffer, offset: u64, count: u64| {
         let bytes = readback::buffer(gpu.device, gpu.queue, buffer, offset, 4 * count);
@@ -462,7 +508,9 @@ fn direct(gpu: Gpu<'_>, draw: &DrawCommand) -> Result<Vec<DrawCommand>, &'static
         Ok::<Vec<u32>, &'static str>(bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect())
     };
     let (buffer, offset, count, is_indexed) = match draw {
-        DrawCommand::Vertices { .. } | DrawCommand::Indexed { .. } => return Ok(vec![draw.clone()]),
+        DrawCommand::Vertices { .. } | DrawCommand::Indexed { .. } => {
+            return Ok(Some(draw.clone()).into_iter().filter(draws_some).collect());
+        }
         DrawCommand::Indirect { buffer, offset, is_indexed } => (buffer, *offset, 1, *is_indexed),
         DrawCommand::Multi { buffer, offset, count, is_indexed } => (buffer, *offset, *count, *is_indexed),
         DrawCommand::Counted { buffer, offset, count, count_offset, most, is_indexed } => {
@@ -489,7 +537,15 @@ fn direct(gpu: Gpu<'_>, draw: &DrawCommand) -> Result<Vec<DrawCommand>, &'static
             _ => DrawCommand::Vertices { vertices: 0..0, instances: 0..0 },
         }
     };
-    Ok(words.chunks_exact(size as usize).map(part).collect())
+    Ok(words.chunks_exact(size as usize).map(part).filter(draws_some).collect())
+}
+
+fn draws_some(draw: &DrawCommand) -> bool {
+    match draw {
+        DrawCommand::Vertices { vertices: corners, instances }
+        | DrawCommand::Indexed { indices: corners, instances, .. } => !corners.is_empty() && !instances.is_empty(),
+        _ => false,
+    }
 }
 
 /// The vertices of a direct draw in the order drawn, `None` where a strip starts again.

@@ -6,7 +6,7 @@ use super::replay::Replay;
 use crate::capture::disk::{self, Contents};
 use crate::import::{Converted, convert};
 use crate::progress::Progress;
-use crate::session::Session;
+use crate::session::{Session, SessionError};
 use crate::wrap::command::Finished;
 use crate::wrap::{Record, Shared};
 use std::fmt;
@@ -14,6 +14,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 
 /// Frames that were asked for.
@@ -65,7 +66,7 @@ impl Wish {
     }
 }
 
-/// The wish of the environment, which the first device takes.
+/// The wish of the environment, which the first device takes that encodes something.
 fn of_environment() -> Option<Wish> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     let text = std::env::var(super::VARIABLE).ok().filter(|text| !text.is_empty())?;
@@ -112,14 +113,35 @@ pub struct OfSeries {
 }
 
 /// The recording of a device.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Recorder {
     is_recording: AtomicBool,
     /// An encoder was made since the last frame ended.
     has_begun: AtomicBool,
-    wish: Mutex<Option<Wish>>,
-    running: Mutex<Option<Running>>,
-    series: Mutex<Series>,
+    asked: Mutex<Asked>,
+    stage: Stage,
+}
+
+/// What was asked for, and has not ended. Nothing of wgpu's is called while it is locked.
+#[derive(Debug, Default)]
+struct Asked {
+    wish: Option<Wish>,
+    series: Series,
+}
+
+/// What lasts from frame to frame of a series.
+#[derive(Debug, Default)]
+struct Series {
+    number: u64,
+    recorded: Vec<OfSeries>,
+    tools: Tools,
+}
+
+/// What recording a frame needs, and takes time to make.
+#[derive(Debug, Default)]
+struct Tools {
+    probes: Probes,
+    session: Option<Session>,
 }
 
 #[derive(Debug)]
@@ -135,22 +157,61 @@ struct Running {
 enum End {
     /// A closure that is done.
     Closure,
-    /// The program, by showing it or, without a surface, by submitting it.
-    Frame { is_of_series: bool },
+    /// The program, by showing it or, without a surface, by submitting it. Maybe it is one of a series.
+    Frame(Option<u64>),
 }
 
-/// What lasts from frame to frame of a series.
+/// Where a frame is played. Threads take turns; what a thread submits while it has its turn, in a callback of wgpu's, goes
+/// past.
 #[derive(Debug, Default)]
-struct Series {
-    recorded: Vec<OfSeries>,
-    tools: Tools,
+struct Stage {
+    running: Mutex<Option<Running>>,
+    player: Mutex<Option<ThreadId>>,
 }
 
-/// What recording a frame needs, and takes time to make.
-#[derive(Debug, Default)]
-struct Tools {
-    probes: Probes,
-    session: Option<Session>,
+impl Stage {
+    /// `None` in a callback.
+    fn turn(&self) -> Option<Turn<'_>> {
+        let thread = std::thread::current().id();
+        if *lock(&self.player) == Some(thread) {
+            return None;
+        }
+        let running = lock(&self.running);
+        *lock(&self.player) = Some(thread);
+        Some(Turn { running, player: &self.player })
+    }
+}
+
+struct Turn<'a> {
+    running: MutexGuard<'a, Option<Running>>,
+    player: &'a Mutex<Option<ThreadId>>,
+}
+
+impl Drop for Turn<'_> {
+    fn drop(&mut self) {
+        *lock(self.player) = None;
+    }
+}
+
+/// A frame that a closure draws: recorded until it ends, or given up where the closure panics.
+#[derive(Debug)]
+pub struct OfClosure<'a>(&'a Recorder);
+
+impl OfClosure<'_> {
+    /// Writes what was recorded.
+    ///
+    /// # Errors
+    /// Nothing that can be followed was drawn; the folder can't be written.
+    pub fn end(self, shared: &Shared) -> Result<Recorded, RecordError> {
+        let running = self.0.take(|running| running.end == End::Closure).ok_or(RecordError::Busy)?;
+        running.write(shared, &mut Tools::default())
+    }
+}
+
+impl Drop for OfClosure<'_> {
+    fn drop(&mut self) {
+        drop(self.0.take(|running| running.end == End::Closure));
+    }
 }
 
 fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -158,112 +219,132 @@ fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Recorder {
-    pub fn new() -> Recorder {
-        Recorder {
-            is_recording: AtomicBool::new(false),
-            has_begun: AtomicBool::new(false),
-            wish: Mutex::new(of_environment()),
-            running: Mutex::default(),
-            series: Mutex::default(),
-        }
-    }
-
     /// Wishes for the next frame that begins.
-    pub fn wish(&self, folder: PathBuf) {
-        *lock(&self.wish) = Some(Wish::one(folder, 0));
+    ///
+    /// # Errors
+    /// A frame, or a series, is wished for already.
+    pub fn wish(&self, folder: PathBuf) -> Result<(), RecordError> {
+        let mut asked = lock(&self.asked);
+        if asked.wish.is_some() {
+            return Err(RecordError::Busy);
+        }
+        asked.wish = Some(Wish::one(folder, 0));
+        Ok(())
     }
 
     /// Wishes for each frame that begins from now on.
     ///
     /// # Errors
-    /// A series is wished for already.
+    /// A frame, or a series, is wished for already.
     pub fn start_series(&self, folder: PathBuf) -> Result<(), RecordError> {
-        let mut wish = lock(&self.wish);
-        if wish.as_ref().is_some_and(|wish| wish.is_series) {
+        let mut asked = lock(&self.asked);
+        if asked.wish.is_some() {
             return Err(RecordError::Busy);
         }
-        *wish = Some(Wish::series(folder, 0..u32::MAX));
-        *lock(&self.series) = Series::default();
+        let number = asked.series.number + 1;
+        *asked =
+            Asked { wish: Some(Wish::series(folder, 0..u32::MAX)), series: Series { number, ..Series::default() } };
         Ok(())
     }
 
     /// No further frame is wished for; those of the series that are written.
     pub fn stop_series(&self) -> Vec<OfSeries> {
-        lock(&self.wish).take_if(|wish| wish.is_series);
-        std::mem::take(&mut *lock(&self.series)).recorded
+        let mut asked = lock(&self.asked);
+        asked.wish.take_if(|wish| wish.is_series);
+        // A frame that goes on is of no series from now on.
+        let number = asked.series.number + 1;
+        std::mem::replace(&mut asked.series, Series { number, ..Series::default() }).recorded
     }
 
     /// A frame begins: is it recorded?
     fn begin_if_wished(&self) {
-        let mut wish = lock(&self.wish);
-        let Some(wished) = wish.as_mut() else { return };
-        let (folder, is_of_series) = (wished.next(), wished.is_series);
-        wish.take_if(|wish| wish.is_over());
-        drop(wish);
-        if let Some(folder) = folder {
-            self.start(folder, End::Frame { is_of_series });
+        let Some(mut turn) = self.stage.turn() else { return };
+        if turn.running.is_some() {
+            return;
         }
+        let mut asked = lock(&self.asked);
+        let Asked { wish, series } = &mut *asked;
+        if wish.is_none() {
+            *wish = of_environment();
+        }
+        let Some(wished) = wish.as_mut() else { return };
+        let (folder, of_series) = (wished.next(), wished.is_series.then_some(series.number));
+        wish.take_if(|wish| wish.is_over());
+        let Some(folder) = folder else { return };
+        let probes = of_series.map(|_| std::mem::take(&mut series.tools.probes)).unwrap_or_default();
+        drop(asked);
+        self.start(&mut turn, folder, probes, End::Frame(of_series));
     }
 
-    fn start(&self, folder: PathBuf, end: End) {
-        let is_of_series = end == End::Frame { is_of_series: true };
-        let probes = is_of_series.then(|| std::mem::take(&mut lock(&self.series).tools.probes)).unwrap_or_default();
-        *lock(&self.running) = Some(Running { folder, replay: Replay::with(probes), time: Duration::ZERO, end });
+    fn start(&self, turn: &mut Turn<'_>, folder: PathBuf, probes: Probes, end: End) {
+        *turn.running = Some(Running { folder, replay: Replay::with(probes), time: Duration::ZERO, end });
+        self.has_begun.store(true, Ordering::Release);
         self.is_recording.store(true, Ordering::Release);
     }
 
-    /// Begins, until [`Recorder::end`].
+    /// Begins a frame that a closure draws.
     ///
     /// # Errors
     /// A frame is being recorded; the folder can't be written.
-    pub fn begin(&self, folder: PathBuf) -> Result<(), RecordError> {
-        if self.is_recording.load(Ordering::Acquire) {
+    pub fn begin(&self, folder: PathBuf) -> Result<OfClosure<'_>, RecordError> {
+        let mut turn = self.stage.turn().ok_or(RecordError::Busy)?;
+        if turn.running.is_some() {
             return Err(RecordError::Busy);
         }
         disk::check_target(&folder, false)?;
-        self.start(folder, End::Closure);
-        Ok(())
+        self.start(&mut turn, folder, Probes::default(), End::Closure);
+        Ok(OfClosure(self))
+    }
+
+    /// The frame that is recorded, if it ends so.
+    fn take(&self, ends: impl FnOnce(&Running) -> bool) -> Option<Running> {
+        let mut turn = self.stage.turn()?;
+        let running = turn.running.take_if(|running| ends(running));
+        if turn.running.is_none() {
+            self.is_recording.store(false, Ordering::Release);
+            self.has_begun.store(false, Ordering::Release);
+        }
+        running
     }
 
     /// A frame ends that is recorded, or one that is not and has drawn.
     fn frame_ends(&self, shared: &Shared) {
-        let is_running = |running: &Running| running.end != End::Closure && running.replay.has_drawn();
         // A submission that draws nothing, such as an upload, is no frame.
-        let running = match &mut *lock(&self.running) {
-            None => None,
-            Some(running) if !is_running(running) => return,
-            running => running.take(),
-        };
-        self.is_recording.store(false, Ordering::Release);
-        self.has_begun.store(false, Ordering::Release);
+        let running = self.take(|running| running.end != End::Closure && running.replay.has_drawn());
         let Some(running) = running else { return };
-        let (folder, is_of_series) = (running.folder.clone(), running.end == End::Frame { is_of_series: true });
-        let mut series = lock(&self.series);
-        let mut tools = if is_of_series { std::mem::take(&mut series.tools) } else { Tools::default() };
+        let (folder, end) = (running.folder.clone(), running.end);
+        let is_of = |series: &Series| end == End::Frame(Some(series.number));
+        let mut tools = {
+            let mut asked = lock(&self.asked);
+            if is_of(&asked.series) { std::mem::take(&mut asked.series.tools) } else { Tools::default() }
+        };
         let outcome = running.write(shared, &mut tools).map(|recorded| recorded.cost);
         match &outcome {
             Ok(cost) => eprintln!("stencilscope: recorded a frame to {}: {cost}", folder.display()),
             Err(error) => eprintln!("stencilscope: no frame is recorded: {error}"),
         }
-        if !is_of_series {
+        let mut asked = lock(&self.asked);
+        if !is_of(&asked.series) {
             return;
         }
         // What can't be written once can't be written for each frame that follows.
-        let is_last = lock(&self.wish).take_if(|_| matches!(outcome, Err(RecordError::Disk(_)))).is_some()
-            || lock(&self.wish).is_none();
-        series.recorded.push(OfSeries { folder, outcome });
-        series.tools = if is_last { Tools::default() } else { tools };
+        asked.wish.take_if(|_| matches!(outcome, Err(RecordError::Disk(_))));
+        if asked.wish.is_some() {
+            asked.series.tools = tools;
+        }
+        asked.series.recorded.push(OfSeries { folder, outcome });
     }
+}
 
-    /// Writes what was recorded.
-    ///
-    /// # Errors
-    /// Nothing that can be followed was drawn; the folder can't be written.
-    pub fn end(&self, shared: &Shared) -> Result<Recorded, RecordError> {
-        self.is_recording.store(false, Ordering::Release);
-        self.has_begun.store(false, Ordering::Release);
-        let running = lock(&self.running).take().ok_or(RecordError::Busy)?;
-        running.write(shared, &mut Tools::default())
+impl Tools {
+    /// Computes each draw anew, and notes where that differs.
+    fn hold_against_itself(&mut self, of: &mut Converted, adapter: &wgpu::AdapterInfo) -> Result<(), SessionError> {
+        let session = match &mut self.session {
+            Some(session) => session,
+            none => none.insert(Session::new(Some(&adapter.name))?),
+        };
+        of.capture = session.held_against_itself(&of.plan, &of.capture, &Progress::default())?;
+        Ok(())
     }
 }
 
@@ -278,12 +359,9 @@ impl Running {
         let name = folder.file_name().map_or_else(|| "frame".into(), |name| name.to_string_lossy().into_owned());
         let mut converted = convert(&frame, &name)?;
         drop(frame);
-        if tools.session.is_none() {
-            tools.session = Some(Session::new(Some(&adapter.name))?);
-        }
-        if let Some(session) = &mut tools.session {
-            let Converted { plan, capture, .. } = &converted;
-            converted.capture = session.held_against_itself(plan, capture, &Progress::default())?;
+        if let Err(why) = tools.hold_against_itself(&mut converted, &adapter) {
+            let limit = format!("its draws are not computed anew: {why}");
+            converted.capture.origin.iter_mut().for_each(|origin| origin.limits.push(limit.clone()));
         }
         write(&converted, &folder)?;
         time += begin.elapsed();
@@ -304,16 +382,21 @@ impl Record for Recorder {
 
     fn submit(&self, shared: &Shared, buffers: Vec<Finished>) -> wgpu::SubmissionIndex {
         let has_passes = buffers.iter().any(|finished| finished.has_passes);
-        let index = match lock(&self.running).as_mut() {
+        let mut turn = if self.is_recording.load(Ordering::Acquire) { self.stage.turn() } else { None };
+        let index = match turn.as_mut().and_then(|turn| turn.running.as_mut()) {
             Some(Running { replay, time, .. }) => {
                 let begin = Instant::now();
                 let index = replay.submit(&shared.device, &shared.queue, buffers);
                 *time += begin.elapsed();
                 index
             }
-            None => shared.queue.submit(buffers.into_iter().map(|finished| finished.inner)),
+            None => {
+                drop(turn.take());
+                shared.queue.submit(buffers.into_iter().map(|finished| finished.inner))
+            }
         };
-        if has_passes && !shared.frames.end_where_shown() {
+        drop(turn);
+        if has_passes && !shared.is_presented() {
             self.frame_ends(shared);
         }
         index

@@ -1,12 +1,12 @@
 //! A recorded frame done draw by draw, with what each draw left read back.
 
-use super::probe::{FILTERS, Gpu, Landed, Probes};
+use super::probe::{Gpu, Landed, Probes, Room, accepted};
 use super::states::{self, PassState};
 use super::{readback, rewrite};
 use crate::import::{
     Api, RawContents, RawDraw, RawEvent, RawFragment, RawFrame, RawKind, RawMay, RawTarget, RawTexture, pictures,
 };
-use crate::wrap::command::{Command, ComputeCommand, DrawCommand, Finished, PassCommand, Targets, Timestamps};
+use crate::wrap::command::{Command, DrawCommand, Finished, PassCommand, Targets};
 use crate::wrap::{Described, Part};
 use std::collections::{BTreeMap, HashMap};
 
@@ -23,6 +23,7 @@ pub struct Replay {
     groups: Vec<String>,
     limits: Vec<String>,
     probes: Probes,
+    room: Room,
     draws: usize,
 }
 
@@ -62,12 +63,17 @@ impl Replay {
                 queue.submit([inner]);
                 continue;
             };
-            // An encoder with an error does nothing: the program is told so by submitting it.
-            let scopes = FILTERS.map(|filter| device.push_error_scope(filter));
-            self.play(Gpu { device, queue }, list.take());
-            let errors = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).count();
-            if errors > 0 {
+            let commands = list.take();
+            let played = accepted(device, || {
+                // An encoder with an error does nothing.
+                let mut encoder = new_encoder(device);
+                commands.iter().for_each(|command| command.encode(&mut encoder));
+                accepted(device, || drop(encoder.finish()))?;
+                self.play(Gpu { device, queue }, commands)
+            });
+            if played.flatten().is_none() {
                 self.limit("wgpu refused some of its commands");
+                // The program is told so by submitting all of it as it was.
                 queue.submit([inner]);
             }
         }
@@ -80,71 +86,74 @@ impl Replay {
         }
     }
 
-    fn play(&mut self, gpu: Gpu<'_>, commands: Vec<Command>) {
-        let encoder = || gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let mut pending = encoder();
+    /// `None` where wgpu refuses a part: what follows it is not done.
+    fn play(&mut self, gpu: Gpu<'_>, commands: Vec<Command>) -> Option<()> {
+        let mut pending = new_encoder(gpu.device);
         let depth = self.groups.len();
         for command in commands {
             match command {
-                Command::Encode(command) => command(&mut pending),
                 Command::PushGroup(name) => self.groups.push(name),
                 Command::PopGroup => drop(self.groups.pop()),
-                Command::ComputePass { label, timestamps, commands } => {
-                    compute(&mut pending, label.as_deref(), timestamps.as_ref(), &commands);
-                    self.event(label.unwrap_or_else(|| "compute pass".into()), RawKind::Compute, &Into::default());
+                Command::Encode(_) => command.encode(&mut pending),
+                Command::ComputePass { ref label, .. } => {
+                    command.encode(&mut pending);
+                    let name = label.clone().unwrap_or_else(|| "compute pass".into());
+                    self.event(name, RawKind::Compute, &Into::default());
                 }
-                Command::RenderPass(targets, commands) => {
-                    gpu.queue.submit([std::mem::replace(&mut pending, encoder()).finish()]);
-                    self.pass(gpu, &targets, &commands);
+                Command::RenderPass(..) => {
+                    gpu.does(std::mem::replace(&mut pending, new_encoder(gpu.device)))?;
+                    self.pass(gpu, &command)?;
                 }
             }
         }
         self.groups.truncate(depth);
-        gpu.queue.submit([pending.finish()]);
+        gpu.does(pending)
     }
 
-    /// A pass in as many parts as it has draws.
-    fn pass(&mut self, gpu: Gpu<'_>, targets: &Targets, commands: &[PassCommand]) {
+    /// A pass in as many parts as it has draws, where it can be taken apart.
+    fn pass(&mut self, gpu: Gpu<'_>, whole: &Command) -> Option<()> {
+        let Command::RenderPass(targets, commands) = whole else { return Some(()) };
         let into = self.targets(gpu, targets);
         let name = targets.label.clone().unwrap_or_else(|| "render pass".to_owned());
         let depth = self.groups.len();
         self.groups.push(name.clone());
-        // What spans draws can't be taken apart.
-        let is_whole = targets.occlusion.is_some() || commands.iter().any(PassCommand::spans);
-        if is_whole {
-            self.limit("passes with queries are not taken apart: what their draws leave one by one is not known");
-        }
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let why_whole = if targets.occlusion.is_some() || commands.iter().any(PassCommand::spans) {
+            Some("passes with queries are not taken apart: what their draws leave one by one is not known")
+        } else if targets.are_transient() {
+            Some("passes into transient targets are not taken apart: what their draws leave one by one is not known")
+        } else {
+            None
+        };
+        why_whole.into_iter().for_each(|why| self.limit(why));
+        let is_whole = why_whole.is_some();
+        let mut encoder = new_encoder(gpu.device);
         if !is_whole {
             drop(targets.begin(&mut encoder, true, false));
-            gpu.queue.submit([encoder.finish()]);
+            gpu.does(std::mem::replace(&mut encoder, new_encoder(gpu.device)))?;
             self.after(gpu, name.clone(), RawKind::BeginPass, &into);
-            encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         }
         let mut state = PassState::default();
         let mut between: Vec<&PassCommand> = Vec::new();
-        for command in commands {
+        for command in commands.iter().flat_map(PassCommand::one_by_one) {
             match command {
                 PassCommand::PushGroup(name) => self.groups.push(name.clone()),
                 PassCommand::PopGroup => drop(self.groups.pop()),
                 PassCommand::Draw(draw) => {
-                    let raw = self.draw(gpu, targets, &state, draw);
-                    if !is_whole {
-                        let mut pass = targets.begin(&mut encoder, false, false);
-                        state.commands().chain(between.drain(..)).for_each(|command| command.encode(&mut pass));
-                        draw.encode(&mut pass);
-                        drop(pass);
-                        gpu.queue.submit([encoder.finish()]);
-                        encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                    }
+                    let raw = RawKind::Draw(Box::new(self.draw(gpu, targets, &state, draw)));
                     let label = state.pipeline().map_or("", |pipeline| &pipeline.label);
                     let name =
                         if label.is_empty() { draw.name().to_owned() } else { format!("{}({label})", draw.name()) };
                     self.draws += 1;
-                    match is_whole {
-                        true => self.event(name, RawKind::Draw(Box::new(raw)), &into),
-                        false => self.after(gpu, name, RawKind::Draw(Box::new(raw)), &into),
+                    if is_whole {
+                        self.event(name, raw, &into);
+                        continue;
                     }
+                    let mut pass = targets.begin(&mut encoder, false, false);
+                    state.commands().chain(between.drain(..)).for_each(|command| command.encode(&mut pass));
+                    draw.encode(&mut pass);
+                    drop(pass);
+                    gpu.does(std::mem::replace(&mut encoder, new_encoder(gpu.device)))?;
+                    self.after(gpu, name, raw, &into);
                 }
                 command => {
                     if !state.note(command) {
@@ -153,17 +162,16 @@ impl Replay {
                 }
             }
         }
-        let mut pass = targets.begin(&mut encoder, is_whole, true);
         if is_whole {
-            // Groups are balanced here, as all of the pass is.
-            commands.iter().for_each(|command| command.encode(&mut pass));
+            whole.encode(&mut encoder);
         } else {
+            let mut pass = targets.begin(&mut encoder, false, true);
             between.into_iter().for_each(|command| command.encode(&mut pass));
         }
-        drop(pass);
-        gpu.queue.submit([encoder.finish()]);
+        gpu.does(encoder)?;
         self.after(gpu, name, RawKind::EndPass, &into);
         self.groups.truncate(depth);
+        Some(())
     }
 
     /// The targets of a pass; what they hold is read where they are met for the first time.
@@ -230,7 +238,7 @@ impl Replay {
     }
 
     fn draw(&mut self, gpu: Gpu<'_>, targets: &Targets, state: &PassState, draw: &DrawCommand) -> RawDraw {
-        let landed = self.probes.landed(gpu, state, draw).unwrap_or_else(|why| {
+        let landed = self.probes.landed(gpu, state, draw, &mut self.room).unwrap_or_else(|why| {
             self.limit(&format!("a draw has states alone: {why}"));
             Landed::default()
         });
@@ -243,14 +251,18 @@ impl Replay {
         let view = state.view(size);
         let described = state.pipeline().cloned();
         let described = described.as_deref();
+        let clips = described.is_some_and(clips);
+        let unlike = described.map(unlike).unwrap_or_default().into_iter().chain(clips.then_some(CLIPS));
+        unlike.for_each(|what| self.limit(what));
         let fragment = described.map_or(UNKNOWN, fragment);
         // What is not followed has no fragments to tell apart.
         let is_followed =
             !landed.triangles.is_empty() && described.is_some_and(|described| described.multisample.count == 1);
         let is_asked = is_followed && fragment.may_discard == RawMay::Yes;
-        let kept = is_asked.then(|| self.probes.kept(gpu, state, draw, &landed, size)).and_then(|kept| {
-            kept.map_err(|why| self.limit(&format!("which fragments a draw discards is not known: {why}"))).ok()
-        });
+        let kept =
+            is_asked.then(|| self.probes.kept(gpu, state, draw, &landed, size, &mut self.room)).and_then(|kept| {
+                kept.map_err(|why| self.limit(&format!("which fragments a draw discards is not known: {why}"))).ok()
+            });
         let Landed { positions, triangles, instances } = landed;
         RawDraw {
             topology: described.map_or(crate::import::RawTopology::Other, states::topology),
@@ -258,7 +270,7 @@ impl Replay {
             triangles,
             instances,
             view,
-            shape: described.map_or_else(no_shape, states::shape),
+            shape: described.map_or_else(no_shape, |described| states::shape(described, clips)),
             depth: described.and_then(states::depth),
             stencil: described.and_then(|described| state.stencil(described)),
             blend: described.and_then(states::blend),
@@ -286,6 +298,29 @@ impl Replay {
     }
 }
 
+fn new_encoder(device: &wgpu::Device) -> wgpu::CommandEncoder {
+    device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+}
+
+const CLIPS: &str = "a draw is cut by planes of its shader's, which are not followed";
+
+fn clips(described: &Described) -> bool {
+    let stage = &described.vertex;
+    stage.source.module().is_some_and(|module| rewrite::clips(&module, stage.entry_point.as_deref()))
+}
+
+/// What a pipeline does that is not followed, in words.
+fn unlike(described: &Described) -> Vec<&'static str> {
+    let all = if described.multisample.count >= 64 { u64::MAX } else { (1 << described.multisample.count) - 1 };
+    let masks = described.multisample.mask & all != all;
+    let masks = masks.then_some("a draw leaves out samples by a mask, which is not followed");
+    let conservative = described.primitive.conservative;
+    masks
+        .into_iter()
+        .chain(conservative.then_some("a draw is rasterised conservatively, which is not followed"))
+        .collect()
+}
+
 const UNKNOWN: RawFragment = RawFragment { may_discard: RawMay::Unknown, writes_depth: RawMay::Unknown };
 
 /// Of a draw without a pipeline, which wgpu refuses.
@@ -311,17 +346,9 @@ fn fragment(described: &Described) -> RawFragment {
         return UNKNOWN;
     };
     let may = |does: bool| if does { RawMay::Yes } else { RawMay::No };
-    let discards = found.discards || described.multisample.alpha_to_coverage_enabled;
-    RawFragment { may_discard: may(discards), writes_depth: may(found.writes_depth) }
-}
-
-fn compute(
-    encoder: &mut wgpu::CommandEncoder,
-    label: Option<&str>,
-    timestamps: Option<&Timestamps>,
-    commands: &[ComputeCommand],
-) {
-    let timestamp_writes = timestamps.map(Timestamps::of_compute);
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
-    commands.iter().for_each(|ComputeCommand(command)| command(&mut pass));
+    let may_discard = match found.masks {
+        true => RawMay::Unknown,
+        false => may(found.discards || described.multisample.alpha_to_coverage_enabled),
+    };
+    RawFragment { may_discard, writes_depth: may(found.writes_depth) }
 }

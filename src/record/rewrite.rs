@@ -9,8 +9,8 @@
 //! }
 //!
 //! fn fs(…same inputs…, position, primitive) {
-//!     inner(…);                  // what is discarded here does not come back
-//!     note(pixel of position, first triangle + primitive);
+//!     inner(…);                  // where it discards, it says so before: some GPUs go on from there
+//!     if !discarded { note(pixel of position, first triangle + primitive); }
 //! }
 //! ```
 
@@ -322,8 +322,54 @@ fn noting_vertices(module: &mut Module, entry: &Function, note: Handle<Function>
     Some(function)
 }
 
-/// A function in place of an entry point's, that calls it and notes the fragment, if that has come back.
+/// A variable that is set before each discard in a module's functions and in an entry point's.
+fn flag_discards(module: &mut Module, entry: &mut Function) -> Handle<GlobalVariable> {
+    let ty = add_type(module, TypeInner::Scalar(Scalar::BOOL));
+    let variable = GlobalVariable {
+        name: Some("stencilscope_discarded".into()),
+        space: AddressSpace::Private,
+        binding: None,
+        ty,
+        init: None,
+        memory_decorations: naga::MemoryDecorations::empty(),
+    };
+    let flag = module.global_variables.append(variable, Span::UNDEFINED);
+    for function in module.functions.iter_mut().map(|(_, function)| function).chain([entry]) {
+        let pointer = function.expressions.append(Expression::GlobalVariable(flag), Span::UNDEFINED);
+        let value = function.expressions.append(Expression::Literal(Literal::Bool(true)), Span::UNDEFINED);
+        before_kills(&mut function.body, &Statement::Store { pointer, value });
+    }
+    flag
+}
+
+/// Puts a statement before each discard of a block.
+fn before_kills(block: &mut Block, statement: &Statement) {
+    let mut changed = Block::with_capacity(block.len());
+    for (mut one, span) in std::mem::take(block).span_into_iter() {
+        match &mut one {
+            Statement::Kill => changed.push(statement.clone(), span),
+            Statement::Block(inner) => before_kills(inner, statement),
+            Statement::If { accept, reject, .. } => {
+                [accept, reject].into_iter().for_each(|inner| before_kills(inner, statement));
+            }
+            Statement::Switch { cases, .. } => {
+                cases.iter_mut().for_each(|case| before_kills(&mut case.body, statement));
+            }
+            Statement::Loop { body, continuing, .. } => {
+                [body, continuing].into_iter().for_each(|inner| before_kills(inner, statement));
+            }
+            _ => {}
+        }
+        changed.push(one, span);
+    }
+    *block = changed;
+}
+
+/// A function in place of an entry point's, that calls it and notes the fragment, if it was not discarded.
 fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function>, group: u32) -> Function {
+    let mut entry = entry.clone();
+    let discarded = flag_discards(module, &mut entry);
+    let entry = &entry;
     let inner = inner(module, entry);
     let mut arguments = entry.arguments.clone();
     let position = TypeInner::Vector { size: VectorSize::Quad, scalar: Scalar::F32 };
@@ -355,7 +401,12 @@ fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function
     let first = code.emitted(Expression::Load { pointer: first });
     let primitive = code.given(&given, primitive);
     let triangle = code.emitted(Expression::Binary { op: BinaryOperator::Add, left: first, right: primitive });
+    let discarded = code.plain(Expression::GlobalVariable(discarded));
+    let discarded = code.emitted(Expression::Load { pointer: discarded });
+    let outer = std::mem::replace(&mut code.body, Block::new());
     code.push(Statement::Call { function: note, arguments: vec![pixel, triangle], result: None });
+    let reject = std::mem::replace(&mut code.body, outer);
+    code.push(Statement::If { condition: discarded, accept: Block::new(), reject });
     code.push(Statement::Return { value: None });
     function.body = code.body;
     function
@@ -365,16 +416,28 @@ fn noting_fragments(module: &mut Module, entry: &Function, note: Handle<Function
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fragment {
     pub discards: bool,
+    /// It says which samples of a fragment are kept.
+    pub masks: bool,
     pub writes_depth: bool,
+}
+
+/// Does the vertex entry point of that name, or the only one, cut triangles by planes of its own?
+pub fn clips(module: &Module, name: Option<&str>) -> bool {
+    let entry = entry_of(module, ShaderStage::Vertex, name);
+    entry.is_some_and(|entry| output(module, entry, BuiltIn::ClipDistances).is_some())
+}
+
+fn output(module: &Module, entry: &EntryPoint, wanted: BuiltIn) -> Option<Place> {
+    let result = entry.function.result.as_ref()?;
+    place(module, 0, result.ty, result.binding.as_ref(), wanted)
 }
 
 /// What the fragment entry point of that name, or the only one, may do; `None` where there is no such.
 pub fn fragment(module: &Module, name: Option<&str>) -> Option<Fragment> {
     let entry = entry_of(module, ShaderStage::Fragment, name)?;
-    let result = entry.function.result.as_ref();
-    let depth = result.and_then(|result| place(module, 0, result.ty, result.binding.as_ref(), BuiltIn::FragDepth));
-    let mut seen = BTreeSet::new();
-    Some(Fragment { discards: kills(module, &entry.function.body, &mut seen), writes_depth: depth.is_some() })
+    let has = |wanted| output(module, entry, wanted).is_some();
+    let discards = kills(module, &entry.function.body, &mut BTreeSet::new());
+    Some(Fragment { discards, masks: has(BuiltIn::SampleMask), writes_depth: has(BuiltIn::FragDepth) })
 }
 
 /// Does a fragment's life end in a block, or in what it calls?
@@ -412,6 +475,7 @@ mod tests {
         @fragment fn deep() -> @builtin(frag_depth) f32 { return used.x; }
         struct In { @location(0) @interpolate(flat) x: u32, @builtin(position) at: vec4<f32> }
         @fragment fn knows(in: In, @builtin(front_facing) front: bool) { if front { drops(in.at.x * used.x); } }
+        @fragment fn masked() -> @builtin(sample_mask) u32 { return 0u; }
         @fragment fn counts_too() { atomicAdd(&counter, 1u); }
     ";
 
@@ -457,9 +521,10 @@ mod tests {
     #[test]
     fn a_discard_is_found_in_what_a_shader_calls() {
         let found = |name| fragment(&module(), Some(name));
-        assert_eq!(found("keeps"), Some(Fragment { discards: false, writes_depth: false }));
-        assert_eq!(found("may_drop"), Some(Fragment { discards: true, writes_depth: false }));
-        assert_eq!(found("deep"), Some(Fragment { discards: false, writes_depth: true }));
+        assert_eq!(found("keeps"), Some(Fragment { discards: false, masks: false, writes_depth: false }));
+        assert_eq!(found("may_drop"), Some(Fragment { discards: true, masks: false, writes_depth: false }));
+        assert_eq!(found("deep"), Some(Fragment { discards: false, masks: false, writes_depth: true }));
+        assert_eq!(found("masked"), Some(Fragment { discards: false, masks: true, writes_depth: false }));
         assert_eq!(found("nobody"), None);
     }
 }

@@ -23,11 +23,19 @@ enum Slot {
     BindGroup(u32),
     IndexBuffer,
     VertexBuffer(u32),
+    /// Of four bytes, that offset.
     Immediates(u32),
     BlendConstant,
     Scissor,
     Viewport,
     StencilReference,
+}
+
+impl Slot {
+    /// Is it there after a bundle as it was before?
+    fn outlasts_bundles(self) -> bool {
+        matches!(self, Slot::BlendConstant | Slot::Scissor | Slot::Viewport | Slot::StencilReference)
+    }
 }
 
 fn slot(command: &PassCommand) -> Option<Slot> {
@@ -36,7 +44,6 @@ fn slot(command: &PassCommand) -> Option<Slot> {
         PassCommand::BindGroup { index, .. } => Slot::BindGroup(*index),
         PassCommand::IndexBuffer { .. } => Slot::IndexBuffer,
         PassCommand::VertexBuffer { slot, .. } => Slot::VertexBuffer(*slot),
-        PassCommand::Immediates { offset, .. } => Slot::Immediates(*offset),
         PassCommand::BlendConstant(_) => Slot::BlendConstant,
         PassCommand::Scissor(_) => Slot::Scissor,
         PassCommand::Viewport { .. } => Slot::Viewport,
@@ -48,11 +55,42 @@ fn slot(command: &PassCommand) -> Option<Slot> {
 impl PassState {
     /// Notes a command; is it a state?
     pub fn note(&mut self, command: &PassCommand) -> bool {
-        let slot = slot(command);
-        if let Some(slot) = slot {
-            self.held.insert(slot, command.clone());
+        match command {
+            PassCommand::Unbound => self.held.retain(|slot, _| slot.outlasts_bundles()),
+            PassCommand::Immediates { offset, data } => {
+                for (offset, word) in (*offset..).step_by(4).zip(data.chunks(4)) {
+                    let word = PassCommand::Immediates { offset, data: word.to_vec() };
+                    self.held.insert(Slot::Immediates(offset), word);
+                }
+            }
+            command => {
+                let Some(slot) = slot(command) else { return false };
+                if let PassCommand::Pipeline { described, .. } = command {
+                    self.clear_immediates(described);
+                }
+                self.held.insert(slot, command.clone());
+            }
         }
-        slot.is_some()
+        true
+    }
+
+    /// A pipeline of another layout finds zeros.
+    fn clear_immediates(&mut self, next: &Arc<Described>) {
+        let is_same = self.pipeline().is_some_and(|held| match (&held.layout, &next.layout) {
+            (Some(held), Some(next)) => held.real == next.real,
+            _ => Arc::ptr_eq(held, next),
+        });
+        if is_same {
+            return;
+        }
+        // How much a layout of wgpu's own has room for is not known.
+        let room = next.layout.as_ref().map_or(0, |layout| layout.immediate_size);
+        self.held.retain(|slot, _| !matches!(slot, Slot::Immediates(offset) if *offset >= room));
+        for command in self.held.values_mut() {
+            if let PassCommand::Immediates { data, .. } = command {
+                data.fill(0);
+            }
+        }
     }
 
     /// All of it, the pipeline first.
@@ -111,8 +149,8 @@ impl PassState {
     }
 }
 
-/// Which triangles make fragments.
-pub fn shape(pipeline: &Described) -> RawShape {
+/// Which triangles make fragments; maybe they are cut by planes of the shader's.
+pub fn shape(pipeline: &Described, clip_planes: bool) -> RawShape {
     let primitive = &pipeline.primitive;
     let bias = pipeline.depth_stencil.as_ref().map(|state| state.bias).unwrap_or_default();
     RawShape {
@@ -130,7 +168,7 @@ pub fn shape(pipeline: &Described) -> RawShape {
         bias: [bias.constant as f32, bias.slope_scale, bias.clamp],
         depth_clamp: primitive.unclipped_depth,
         depth_clip: !primitive.unclipped_depth,
-        clip_planes: false,
+        clip_planes,
     }
 }
 

@@ -1,6 +1,6 @@
 use super::device::Device;
 use super::queue::Queue;
-use super::shared::{Frames, Shared};
+use super::shared::{MakeRecorder, Shared};
 use super::{Real, ray_tracing};
 use std::future::ready;
 use std::pin::Pin;
@@ -14,17 +14,18 @@ const WANTED: wgpu::Features = wgpu::Features::VERTEX_WRITABLE_STORAGE.union(wgp
 #[derive(Debug)]
 pub struct Adapter {
     pub inner: wgpu::Adapter,
-    pub frames: Arc<Frames>,
+    pub recorder: MakeRecorder,
 }
 
 impl Adapter {
-    /// The limits asked for, with room for one bind group and one storage buffer of our own.
+    /// The limits asked for, with room for one bind group and two storage buffers of our own.
     fn with_room(&self, asked: &wgpu::Limits) -> wgpu::Limits {
         let most = self.inner.limits();
-        let one_more = |asked: u32, most: u32| asked.max(most.min(asked.saturating_add(1)));
+        let more = |by: u32, asked: u32, most: u32| asked.max(most.min(asked.saturating_add(by)));
         wgpu::Limits {
-            max_bind_groups: one_more(asked.max_bind_groups, most.max_bind_groups),
-            max_storage_buffers_per_shader_stage: one_more(
+            max_bind_groups: more(1, asked.max_bind_groups, most.max_bind_groups),
+            max_storage_buffers_per_shader_stage: more(
+                2,
                 asked.max_storage_buffers_per_shader_stage,
                 most.max_storage_buffers_per_shader_stage,
             ),
@@ -43,7 +44,7 @@ impl AdapterInterface for Adapter {
             wanted.required_features = wgpu::Features::all();
         }
         let made = pollster::block_on(self.inner.request_device(&wanted)).map(|(device, queue)| {
-            let shared = Arc::new(Shared::new(&device, &queue, &self.inner, self.frames.clone()));
+            let shared = Arc::new(Shared::new(&device, &queue, &self.inner, self.recorder));
             let (features, limits) = (asked.required_features, asked.required_limits.clone());
             let device = Device { inner: device, features, limits, shared: shared.clone() };
             (DispatchDevice::custom(device), DispatchQueue::custom(Queue { inner: queue, shared }))

@@ -46,6 +46,27 @@ pub enum Command {
     Encode(Box<dyn Fn(&mut wgpu::CommandEncoder) + Send + Sync>),
 }
 
+impl Command {
+    /// Encodes it as it was.
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
+        match self {
+            Command::RenderPass(targets, commands) => {
+                let mut pass = targets.begin(encoder, true, true);
+                commands.iter().for_each(|command| command.encode(&mut pass));
+            }
+            Command::ComputePass { label, timestamps, commands } => {
+                let timestamp_writes = timestamps.as_ref().map(Timestamps::of_compute);
+                let descriptor = wgpu::ComputePassDescriptor { label: label.as_deref(), timestamp_writes };
+                let mut pass = encoder.begin_compute_pass(&descriptor);
+                commands.iter().for_each(|ComputeCommand(command)| command(&mut pass));
+            }
+            Command::PushGroup(name) => encoder.push_debug_group(name),
+            Command::PopGroup => encoder.pop_debug_group(),
+            Command::Encode(command) => command(encoder),
+        }
+    }
+}
+
 impl fmt::Debug for Command {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -142,6 +163,13 @@ impl Targets {
         }
     }
 
+    /// Has it targets that hold nothing between passes?
+    pub fn are_transient(&self) -> bool {
+        let colors = self.colors.iter().flatten().map(|color| &color.view);
+        let mut all = colors.chain(self.depth_stencil.as_ref().map(|depth| &depth.view));
+        all.any(|view| view.texture().usage().contains(wgpu::TextureUsages::TRANSIENT_ATTACHMENT))
+    }
+
     /// Begins the pass, or a part of it: what the first part loads or clears the next ones find, and all but the last
     /// store what they leave.
     pub fn begin<'e>(
@@ -206,16 +234,45 @@ pub struct HeldGroup {
 /// One call of a render pass.
 #[derive(Debug, Clone)]
 pub enum PassCommand {
-    Pipeline { real: wgpu::RenderPipeline, described: Arc<Described> },
-    BindGroup { index: u32, group: Option<HeldGroup>, offsets: Vec<u32> },
-    IndexBuffer { buffer: wgpu::Buffer, format: wgpu::IndexFormat, offset: u64, size: Option<wgpu::BufferSize> },
-    VertexBuffer { slot: u32, buffer: Option<wgpu::Buffer>, offset: u64, size: Option<wgpu::BufferSize> },
-    Immediates { offset: u32, data: Vec<u8> },
+    Pipeline {
+        real: wgpu::RenderPipeline,
+        described: Arc<Described>,
+    },
+    BindGroup {
+        index: u32,
+        group: Option<HeldGroup>,
+        offsets: Vec<u32>,
+    },
+    IndexBuffer {
+        buffer: wgpu::Buffer,
+        format: wgpu::IndexFormat,
+        offset: u64,
+        size: Option<wgpu::BufferSize>,
+    },
+    VertexBuffer {
+        slot: u32,
+        buffer: Option<wgpu::Buffer>,
+        offset: u64,
+        size: Option<wgpu::BufferSize>,
+    },
+    Immediates {
+        offset: u32,
+        data: Vec<u8>,
+    },
     BlendConstant(wgpu::Color),
     Scissor([u32; 4]),
-    Viewport { area: [f32; 4], depth: [f32; 2] },
+    Viewport {
+        area: [f32; 4],
+        depth: [f32; 2],
+    },
     StencilReference(u32),
     Draw(DrawCommand),
+    Bundle {
+        real: wgpu::RenderBundle,
+        commands: Arc<[PassCommand]>,
+    },
+    /// What a bundle finds and leaves: no pipeline, nothing bound. Never encoded.
+    Unbound,
     Marker(String),
     PushGroup(String),
     PopGroup,
@@ -234,6 +291,15 @@ impl PassCommand {
     pub fn bind_group(index: u32, group: Option<&BindGroup>, offsets: &[u32]) -> PassCommand {
         let held = |group: &BindGroup| HeldGroup { real: group.inner.clone(), entries: group.entries.clone() };
         PassCommand::BindGroup { index, group: group.map(held), offsets: offsets.to_vec() }
+    }
+
+    /// One by one what it is, so that there is a state after each draw.
+    pub fn one_by_one(&self) -> impl Iterator<Item = &PassCommand> {
+        let (around, within) = match self {
+            PassCommand::Bundle { commands, .. } => (Some(&PassCommand::Unbound), &**commands),
+            one => (None, std::slice::from_ref(one)),
+        };
+        around.into_iter().chain(within).chain(around)
     }
 
     /// Must what it begins end in the same pass?
@@ -261,6 +327,8 @@ impl PassCommand {
             }
             PassCommand::StencilReference(reference) => pass.set_stencil_reference(*reference),
             PassCommand::Draw(draw) => draw.encode(pass),
+            PassCommand::Bundle { real, .. } => pass.execute_bundles([real]),
+            PassCommand::Unbound => {}
             PassCommand::Marker(label) => pass.insert_debug_marker(label),
             PassCommand::PushGroup(label) => pass.push_debug_group(label),
             PassCommand::PopGroup => pass.pop_debug_group(),

@@ -1,26 +1,25 @@
 use super::Real;
 use super::adapter::Adapter;
-use super::shared::{Frames, HandsOn, Record};
+use super::shared::{HandsOn, MakeRecorder};
 use super::surface::Surface;
 use std::future::ready;
 use std::pin::Pin;
-use std::sync::Arc;
 use wgpu::custom::{DispatchAdapter, DispatchSurface, EnumerateAdapterFuture, InstanceInterface, RequestAdapterFuture};
 
 #[derive(Debug)]
 pub struct Instance {
     inner: wgpu::Instance,
-    frames: Arc<Frames>,
+    recorder: MakeRecorder,
 }
 
 impl Instance {
     /// An instance whose devices have such recorders.
-    pub fn recorded_by(descriptor: wgpu::InstanceDescriptor, recorder: fn() -> Box<dyn Record>) -> Instance {
-        Instance { inner: wgpu::Instance::new(descriptor), frames: Arc::new(Frames::new(recorder)) }
+    pub fn recorded_by(descriptor: wgpu::InstanceDescriptor, recorder: MakeRecorder) -> Instance {
+        Instance { inner: wgpu::Instance::new(descriptor), recorder }
     }
 
     fn wrap(&self, inner: wgpu::Adapter) -> DispatchAdapter {
-        DispatchAdapter::custom(Adapter { inner, frames: self.frames.clone() })
+        DispatchAdapter::custom(Adapter { inner, recorder: self.recorder })
     }
 }
 
@@ -35,7 +34,6 @@ impl InstanceInterface for Instance {
         target: wgpu::SurfaceTargetUnsafe,
     ) -> Result<DispatchSurface, wgpu::CreateSurfaceError> {
         let inner = unsafe { self.inner.create_surface_unsafe(target) }?;
-        self.frames.are_presented();
         Ok(DispatchSurface::custom(Surface { inner }))
     }
 

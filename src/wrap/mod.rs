@@ -1,8 +1,8 @@
 //! A backend of wgpu that holds the real objects and hands every call on: one file an interface, as `wgpu::custom` has them.
 //!
 //! What is not a plain forward:
-//! - targets can be copied from and sampled, index and indirect buffers can be copied from (`texture.rs`, `buffer.rs`);
-//! - a device has one more bind group and storage buffer than was asked for, where the adapter has them (`adapter.rs`);
+//! - targets, index and indirect buffers can be copied from (`texture.rs`, `buffer.rs`);
+//! - a device has one more bind group and two more storage buffers than were asked for, where the adapter has them (`adapter.rs`);
 //! - pipelines, bind groups and bundles keep what they were made from;
 //! - while a frame is recorded, an encoder writes a list beside what it encodes (`encoder.rs`), and who records the device does that instead.
 
@@ -28,7 +28,7 @@ mod texture;
 pub(crate) use binding::{BindGroup, real_group};
 pub(crate) use device::Device;
 pub(crate) use instance::Instance;
-pub(crate) use pipeline::{Described, RenderPipeline, Stage, VertexBuffer};
+pub(crate) use pipeline::{Described, Layout, RenderPipeline, Stage, VertexBuffer};
 use shader::ShaderModule;
 pub(crate) use shared::{Record, Shared};
 pub(crate) use texture::Part;

@@ -16,8 +16,8 @@ pub struct RenderPipeline {
 #[derive(Debug)]
 pub struct Described {
     pub label: String,
-    /// Layouts of its groups and bytes of immediates; `None` where wgpu made them from the shaders.
-    pub layout: Option<(Vec<Option<wgpu::BindGroupLayout>>, u32)>,
+    /// `None` where wgpu made it from the shaders.
+    pub layout: Option<Layout>,
     pub vertex: Stage,
     pub buffers: Vec<Option<VertexBuffer>>,
     pub primitive: wgpu::PrimitiveState,
@@ -26,6 +26,15 @@ pub struct Described {
     pub fragment: Option<Stage>,
     pub targets: Vec<Option<wgpu::ColorTargetState>>,
     pub multiview_mask: Option<std::num::NonZeroU32>,
+}
+
+/// A layout that the program made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    pub real: wgpu::PipelineLayout,
+    pub groups: Vec<Option<wgpu::BindGroupLayout>>,
+    /// Bytes.
+    pub immediate_size: u32,
 }
 
 /// A programmable stage.
@@ -70,7 +79,11 @@ impl Described {
         };
         Described {
             label: descriptor.label.unwrap_or_default().to_owned(),
-            layout: layout.map(|layout| (layout.groups.clone(), layout.immediate_size)),
+            layout: layout.map(|layout| Layout {
+                real: layout.inner.clone(),
+                groups: layout.groups.clone(),
+                immediate_size: layout.immediate_size,
+            }),
             vertex: Stage::of(vertex.module, vertex.entry_point, &vertex.compilation_options),
             buffers: vertex.buffers.iter().map(|one| one.as_ref().map(buffer)).collect(),
             primitive: descriptor.primitive,

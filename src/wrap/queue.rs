@@ -27,7 +27,8 @@ impl QueueInterface for Queue {
     fn validate_write_buffer(&self, buffer: &DispatchBuffer, offset: u64, size: wgpu::BufferSize) -> Option<()> {
         // As wgpu validates it: a view that is dropped at once would write zeros, so that only an empty one is tried.
         let buffer = buffer.real();
-        let fits = offset.checked_add(size.get()).is_some_and(|end| end <= buffer.size());
+        let is_aligned = [offset, size.get()].iter().all(|bytes| bytes.is_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT));
+        let fits = is_aligned && offset.checked_add(size.get()).is_some_and(|end| end <= buffer.size());
         if !fits || !buffer.usage().contains(wgpu::BufferUsages::COPY_DST) {
             // The same call on the real queue says what is wrong, and gives no view.
             return self.inner.write_buffer_with(buffer, offset, size).map(drop);

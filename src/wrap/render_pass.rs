@@ -1,3 +1,4 @@
+use super::bundle::RenderBundle;
 use super::command::{Command, CommandList, DrawCommand, PassCommand, Targets};
 use super::{Real, bind_group_of, bundle_of, pipeline_of};
 use std::ops::Range;
@@ -232,8 +233,11 @@ impl RenderPassInterface for RenderPass {
             pass.execute_bundles(bundles.iter().map(|bundle| &bundle.inner));
         }
         if let Some((.., commands)) = &mut self.kept {
-            // Played one by one, so that there is a state after each draw.
-            commands.extend(bundles.iter().flat_map(|bundle| bundle.commands.iter().cloned()));
+            let held = |bundle: &&RenderBundle| PassCommand::Bundle {
+                real: bundle.inner.clone(),
+                commands: bundle.commands.clone(),
+            };
+            commands.extend(bundles.iter().map(held));
         }
     }
 }

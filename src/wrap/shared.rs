@@ -5,7 +5,7 @@ use std::any::Any;
 use std::collections::VecDeque;
 use std::fmt::Debug;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Who may keep what a device is told.
 pub trait Record: Any + Debug + Send + Sync {
@@ -35,30 +35,8 @@ impl Record for HandsOn {
     fn presented(&self, _: &Shared) {}
 }
 
-/// What instance, devices and surfaces know together of frames.
-#[derive(Debug)]
-pub struct Frames {
-    is_presented: AtomicBool,
-    /// Makes the recorder of a device.
-    recorder: fn() -> Box<dyn Record>,
-}
-
-impl Frames {
-    /// Of an instance whose devices have such recorders.
-    pub fn new(recorder: fn() -> Box<dyn Record>) -> Frames {
-        Frames { is_presented: AtomicBool::new(false), recorder }
-    }
-
-    /// From now on a frame ends where it is shown, not where it is submitted.
-    pub fn are_presented(&self) {
-        self.is_presented.store(true, Ordering::Relaxed);
-    }
-
-    /// Does a frame end where it is shown?
-    pub fn end_where_shown(&self) -> bool {
-        self.is_presented.load(Ordering::Relaxed)
-    }
-}
+/// Makes the recorder of a device.
+pub type MakeRecorder = fn() -> Box<dyn Record>;
 
 /// What a device, its queue and its encoders have in common.
 #[derive(Debug)]
@@ -66,21 +44,31 @@ pub struct Shared {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub adapter: wgpu::Adapter,
-    pub frames: Arc<Frames>,
     pub recorder: Box<dyn Record>,
+    is_presented: AtomicBool,
     submissions: Mutex<Submissions>,
 }
 
 impl Shared {
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, adapter: &wgpu::Adapter, frames: Arc<Frames>) -> Shared {
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, adapter: &wgpu::Adapter, recorder: MakeRecorder) -> Shared {
         Shared {
             device: device.clone(),
             queue: queue.clone(),
             adapter: adapter.clone(),
-            recorder: (frames.recorder)(),
-            frames,
+            recorder: recorder(),
+            is_presented: AtomicBool::new(false),
             submissions: Mutex::default(),
         }
+    }
+
+    /// From now on a frame ends where it is shown, not where it is submitted.
+    pub fn has_surface(&self) {
+        self.is_presented.store(true, Ordering::Relaxed);
+    }
+
+    /// Does a frame end where it is shown?
+    pub fn is_presented(&self) -> bool {
+        self.is_presented.load(Ordering::Relaxed)
     }
 
     /// The program's number of a submission.

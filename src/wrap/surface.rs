@@ -23,6 +23,7 @@ impl SurfaceInterface for Surface {
 
     fn configure(&self, device: &DispatchDevice, asked: &wgpu::SurfaceConfiguration) {
         let device = device.as_custom::<super::Device>().expect(super::FOREIGN);
+        device.shared.has_surface();
         let can = self.inner.get_capabilities(&device.shared.adapter).usages;
         let usage = asked.usage | (can & wgpu::TextureUsages::COPY_SRC);
         self.inner.configure(&device.inner, &wgpu::SurfaceConfiguration { usage, ..asked.clone() });

@@ -9,16 +9,14 @@ pub struct Texture {
     pub inner: wgpu::Texture,
 }
 
-/// What a texture is made with, so that what passes draw into it can be read afterwards: colours are copied, depths
-/// that can't be are sampled.
+/// What a texture is made with, so that what passes draw into it can be copied afterwards.
 pub fn usage(asked: &wgpu::TextureDescriptor<'_>) -> wgpu::TextureUsages {
     use wgpu::TextureUsages as Usages;
     let is_target = asked.usage.contains(Usages::RENDER_ATTACHMENT);
     if !is_target || asked.usage.contains(Usages::TRANSIENT_ATTACHMENT) || asked.sample_count > 1 {
         return asked.usage;
     }
-    let sampled = if asked.format.has_depth_aspect() { Usages::TEXTURE_BINDING } else { Usages::empty() };
-    asked.usage | Usages::COPY_SRC | sampled
+    asked.usage | Usages::COPY_SRC
 }
 
 impl TextureInterface for Texture {

@@ -12,7 +12,7 @@ fn buffer(device: &wgpu::Device, size: u64, usage: wgpu::BufferUsages) -> wgpu::
 }
 
 /// Each of these is refused by wgpu with an error of its own.
-const WRONG: [(&str, Wrong); 7] = [
+const WRONG: [(&str, Wrong); 8] = [
     ("usages that exclude each other", |of| {
         let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE;
         drop(buffer(&of.device, 16, usage));
@@ -38,6 +38,11 @@ const WRONG: [(&str, Wrong); 7] = [
     ("a write with a view past the end", |of| {
         let target = buffer(&of.device, 16, wgpu::BufferUsages::COPY_DST);
         let size = wgpu::BufferSize::new(32).expect("a size");
+        assert!(of.queue.write_buffer_with(&target, 0, size).is_none());
+    }),
+    ("a write with a view of five bytes", |of| {
+        let target = buffer(&of.device, 16, wgpu::BufferUsages::COPY_DST);
+        let size = wgpu::BufferSize::new(5).expect("a size");
         assert!(of.queue.write_buffer_with(&target, 0, size).is_none());
     }),
     ("a group that finishes what was never begun", |of| {

@@ -215,7 +215,9 @@ impl<'a> Making<'a> {
 
     fn add(&mut self, event: &RawEvent, draw: &RawDraw, place: Place, cull: Option<wgpu::Face>) {
         let is_of_picture = !matches!(place, Place::Map(..));
-        let after = is_of_picture.then(|| DrawState { snapshot: Snapshot::Frame(self.snapshot()), target: None });
+        // Of draws that are not taken apart it is not known.
+        let is_known = is_of_picture && event.after != RawContents::default();
+        let after = is_known.then(|| DrawState { snapshot: Snapshot::Frame(self.snapshot()), target: None });
         let (Some(pass), Some(step)) = (self.passes.last_mut(), self.steps.last_mut()) else { return };
         let part = match self.run.as_ref().map(|run| run.role) {
             Some(Role::FillsMap) => Part::Map,
