@@ -86,7 +86,8 @@ pub fn frame(
 /// # Errors
 /// The device is of another instance than [`instance`] makes; a frame or a series is asked for already.
 pub fn next_frame(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
-    recorder_of(device)?.1.wish(folder.to_owned())
+    let (shared, recorder) = recorder_of(device)?;
+    recorder.wish(shared, folder.to_owned())
 }
 
 /// Records every frame that begins from now on, until [`stop`]: each in a folder of its own within `folder`, `frame-0000`
@@ -95,7 +96,8 @@ pub fn next_frame(device: &wgpu::Device, folder: &Path) -> Result<(), RecordErro
 /// # Errors
 /// The device is of another instance than [`instance`] makes; a frame or a series is asked for already.
 pub fn start(device: &wgpu::Device, folder: &Path) -> Result<(), RecordError> {
-    recorder_of(device)?.1.start_series(folder.to_owned())
+    let (shared, recorder) = recorder_of(device)?;
+    recorder.start_series(shared, folder.to_owned())
 }
 
 /// Records no further frame, and says what became of each since [`start`]. A frame that has begun is still written when it

@@ -322,7 +322,9 @@ pub struct Gpu<'a> {
 impl Gpu<'_> {
     /// Does what was encoded; `None` where wgpu refuses it.
     pub fn does(self, encoder: wgpu::CommandEncoder) -> Option<()> {
-        accepted(self.device, || drop(self.queue.submit([encoder.finish()])))
+        accepted(self.device, || {
+            self.queue.submit([encoder.finish()]);
+        })
     }
 }
 

@@ -223,12 +223,22 @@ impl Recorder {
     ///
     /// # Errors
     /// A frame, or a series, is wished for already.
-    pub fn wish(&self, folder: PathBuf) -> Result<(), RecordError> {
+    pub fn wish(&self, shared: &Shared, folder: PathBuf) -> Result<(), RecordError> {
+        self.ask(shared, |_| Wish::one(folder, 0))
+    }
+
+    fn ask(&self, shared: &Shared, wish: impl FnOnce(&mut Series) -> Wish) -> Result<(), RecordError> {
         let mut asked = lock(&self.asked);
-        if asked.wish.is_some() {
+        let Asked { wish: asked, series } = &mut *asked;
+        if asked.is_some() {
             return Err(RecordError::Busy);
         }
-        asked.wish = Some(Wish::one(folder, 0));
+        *asked = Some(wish(series));
+        // Without a surface, an encoder that was made since the last frame need not be one of the next: it may have read
+        // the last one's picture back.
+        if !shared.is_presented() {
+            self.has_begun.store(false, Ordering::Release);
+        }
         Ok(())
     }
 
@@ -236,15 +246,11 @@ impl Recorder {
     ///
     /// # Errors
     /// A frame, or a series, is wished for already.
-    pub fn start_series(&self, folder: PathBuf) -> Result<(), RecordError> {
-        let mut asked = lock(&self.asked);
-        if asked.wish.is_some() {
-            return Err(RecordError::Busy);
-        }
-        let number = asked.series.number + 1;
-        *asked =
-            Asked { wish: Some(Wish::series(folder, 0..u32::MAX)), series: Series { number, ..Series::default() } };
-        Ok(())
+    pub fn start_series(&self, shared: &Shared, folder: PathBuf) -> Result<(), RecordError> {
+        self.ask(shared, |series| {
+            *series = Series { number: series.number + 1, ..Series::default() };
+            Wish::series(folder, 0..u32::MAX)
+        })
     }
 
     /// No further frame is wished for; those of the series that are written.

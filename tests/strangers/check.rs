@@ -20,19 +20,31 @@ pub fn device(
     (instance, adapter, device, queue)
 }
 
+/// What a program draws, all of which must be found.
+#[derive(Debug, PartialEq)]
+pub struct Expected {
+    pub draws: usize,
+    /// Draws of the picture: those that are computed anew.
+    pub of_picture: usize,
+    /// Draws whose kept fragments are known.
+    pub discarding: usize,
+    /// What is said of the frame as not known.
+    pub limits: &'static [&'static str],
+}
+
 /// Records what `draw` draws, and holds it against itself: each draw leaves the stored bytes when it is computed anew, and
 /// so do the histories of 200 pixels.
-pub fn record(name: &str, device: &wgpu::Device, draw: impl FnOnce(), at_least: usize) {
+pub fn record(name: &str, device: &wgpu::Device, draw: impl FnOnce(), expected: &Expected) {
     let folder = PathBuf::from(std::env::temp_dir()).join(format!("stencilscope-{name}-{}", std::process::id()));
     let begin = Instant::now();
     record::next_frame(device, &folder).expect("a device that records");
     draw();
     let seconds = begin.elapsed().as_secs_f64();
-    check(name, &folder, seconds, at_least);
+    check(name, &folder, seconds, expected);
     std::fs::remove_dir_all(folder).expect("removed");
 }
 
-fn check(name: &str, folder: &Path, seconds: f64, at_least: usize) {
+fn check(name: &str, folder: &Path, seconds: f64, expected: &Expected) {
     let WholeFrame { capture, plan, .. } = disk::read_whole(folder).expect("a capture folder");
     let plan = plan.expect("a plan");
     let draws: Vec<_> = capture.steps.iter().flat_map(|step| &step.draws).collect();
@@ -40,8 +52,11 @@ fn check(name: &str, folder: &Path, seconds: f64, at_least: usize) {
     for (draw, differs) in &compared {
         assert!(differs.is_nowhere() && differs.rounded == 0, "{name}, {draw}: {differs:?}");
     }
-    assert!(compared.len() >= at_least, "{name}: {} draws were computed anew", compared.len());
     let discarding = plan.meshes.iter().filter(|mesh| mesh.kept.is_some()).count();
+    let limits = capture.origin.as_ref().map(|origin| origin.limits.clone()).unwrap_or_default();
+    let found = (draws.len(), compared.len(), discarding);
+    assert_eq!(found, (expected.draws, expected.of_picture, expected.discarding), "{name}");
+    assert_eq!(limits, expected.limits, "{name}");
     let mut session = Session::new(None).expect("an adapter");
     let [width, height] = capture.size;
     let mut fragments = 0;

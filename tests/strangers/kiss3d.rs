@@ -32,5 +32,6 @@ fn main() {
     let mut camera = OrbitCamera3d::new_with_frustum(0.9, 0.1, 100.0, eye, Vec3::ZERO);
     let mut draw = || drop(pollster::block_on(surface.render_image_3d(&mut scene, &mut camera)));
     draw();
-    check::record("kiss3d", &device, draw, 4);
+    let expected = check::Expected { draws: 24, of_picture: 4, discarding: 4, limits: &[] };
+    check::record("kiss3d", &device, draw, &expected);
 }
