@@ -97,6 +97,7 @@ pub mod recorded;
 pub mod report;
 pub mod scene;
 pub mod session;
+pub mod shards;
 pub mod stencil_machine;
 pub mod stress;
 pub mod technique;

@@ -5,12 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each module with those that it may use.
-const MAY_USE: [(&str, &[&str]); 36] = [
+const MAY_USE: [(&str, &[&str]); 37] = [
     ("named", &[]),
     ("math", &[]),
     ("progress", &[]),
     ("numbers", &[]),
     ("files", &[]),
+    ("shards", &[]),
     ("picture", &["numbers"]),
     ("viewport", &[]),
     ("scene", &["math", "files"]),
@@ -45,8 +46,8 @@ const MAY_USE: [(&str, &[&str]); 36] = [
         ],
     ),
     ("anatomy", &["math", "scene", "geometry", "plan", "technique", "recorded"]),
-    ("report", &["technique", "capture", "numbers", "picture"]),
-    ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report"]),
+    ("report", &["technique", "capture", "numbers", "picture", "shards"]),
+    ("stress", &["scene", "technique", "accuracy", "capture", "numbers", "report", "shards"]),
     (
         "reading",
         &[
@@ -97,6 +98,7 @@ const MAY_USE: [(&str, &[&str]); 36] = [
             "accuracy",
             "progress",
             "report",
+            "shards",
             "history",
             "stencil_machine",
             "diagnosis",
@@ -177,6 +179,7 @@ const MAY_USE: [(&str, &[&str]); 36] = [
             "inspector",
             "progress",
             "report",
+            "shards",
             "stress",
             "ask",
             "reading",

@@ -176,7 +176,7 @@ fn what_is_only_excused_is_said_to_be() {
     let whole = &summary(&rows)[0];
     assert_eq!((whole.breaks_at, whole.blurred_at, whole.verdict), (None, Some(0.1), Verdict::FailsAsKnown));
     let adapter = session().adapter().clone();
-    let stress = Stress { adapter, size: [320, 240], rows };
+    let stress = Stress { adapter, size: [320, 240], rows, part: None };
     assert!(stress.to_table().contains("no wrong pixel, but too many pixels excused along edges at 0.1"));
     assert!(stress.to_markdown().contains("0.1 aliasing (too many excused)"));
     assert!(stress.to_json().expect("JSON").contains("\"too_many_excused_at\": 0.1"));

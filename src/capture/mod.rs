@@ -80,6 +80,15 @@ pub struct AdapterInfo {
     pub kind: String,
 }
 
+impl AdapterInfo {
+    /// In a sentence: `llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe 22.3.6 (cpu)`.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let AdapterInfo { name, driver, kind } = self;
+        format!("{name}, {driver} ({kind})")
+    }
+}
+
 /// One pass and the state after it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {

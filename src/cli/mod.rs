@@ -14,6 +14,7 @@ mod error;
 mod fix;
 mod help;
 mod import;
+mod merge;
 mod options;
 mod output;
 mod page;

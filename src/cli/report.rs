@@ -1,20 +1,26 @@
 //! `stencilscope report`: how wrong each technique is, and what it costs.
 
+use super::merge::{self, MergeArguments};
 use super::options::{SceneOptions, picture_size, setting, technique_named};
 use super::progress::with_bar;
-use super::results::{self, Form};
+use super::results::{self, Form, Target};
 use super::{CliError, output};
 use crate::progress::Progress;
 use crate::report::{PageOrigin, Report, Row};
 use crate::scene::Scene;
 use crate::scene::builtin::Builtin;
-use crate::session::{Measurement, Session, report_rows};
+use crate::session::{Block, Measurement, Session, Sweep, report_rows};
+use crate::shards::{Part, Shard};
+use crate::stress::Stress;
 use crate::technique::{Choice, Technique};
-use clap::Args;
+use clap::{Args, Subcommand};
 use std::path::Path;
 
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct ReportArguments {
+    #[command(subcommand)]
+    merge: Option<Merge>,
     /// Built-in scenes, scene files (.toml) or models (.obj)
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
@@ -32,9 +38,28 @@ pub struct ReportArguments {
     /// Timed frames of each row
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000), default_value = "9")]
     runs: u16,
+    /// Each scene at several values of `size`, `lights`, `casters`, `triangles` or `map-size`: `a,b,c` or `a..b`
+    #[arg(long, value_name = "NAME=VALUES")]
+    sweep: Option<Sweep>,
+    /// The K-th of N disjoint parts of the rows, for `report merge`
+    #[arg(long, value_name = "K/N")]
+    shard: Option<Shard>,
     /// A part of the GPU's name; `llvmpipe` is the software one [default: the best]
     #[arg(long, value_name = "SUBSTRING")]
     adapter: Option<String>,
+    #[command(flatten)]
+    results: ReportResults,
+}
+
+#[derive(Debug, Subcommand)]
+enum Merge {
+    /// Put the parts of a run together that `--shard` made, of `report` or of `stress`
+    Merge(MergeArguments),
+}
+
+/// Where a report goes, and in which forms.
+#[derive(Debug, Args)]
+pub struct ReportResults {
     /// Machine-readable, to a file or to standard output in place of the table
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     json: Option<Option<String>>,
@@ -57,38 +82,121 @@ pub struct ReportArguments {
 /// # Errors
 /// A scene, technique or setting that can't be used; no GPU; a file that can't be written.
 pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
+    if let Some(Merge::Merge(arguments)) = &arguments.merge {
+        return merge::run(arguments, command);
+    }
     let choices = choices(arguments)?;
     let open = |name: &String| arguments.scene_options.open(name);
     let scenes = arguments.scenes.iter().map(open).collect::<Result<Vec<Scene>, _>>()?;
-    let page = results::target(&arguments.output);
-    let forms = [&arguments.json, &arguments.csv, &arguments.markdown, &page];
-    check_no_scene(&results::files(&forms, &arguments.plot), &arguments.scenes)?;
-    results::check(&forms, &arguments.plot)?;
-    let mut session = Session::new(arguments.adapter.as_deref())?;
+    let page = results::target(&arguments.results.output);
+    let forms = [&arguments.results.json, &arguments.results.csv, &arguments.results.markdown, &page];
+    check_no_scene(&results::files(&forms, &arguments.results.plot), &arguments.scenes)?;
+    arguments.results.check()?;
     let what = Measurement { choices, size: arguments.size, runs: usize::from(arguments.runs) };
+    let blocks = scenes.iter().zip(distinct_names(&scenes)).map(|(scene, name)| blocks(arguments, scene, name, &what));
+    let blocks: Vec<(String, Block)> = blocks.collect::<Result<Vec<_>, _>>()?.concat();
+    let mut session = Session::new(arguments.adapter.as_deref())?;
     let mut rows: Vec<Row> = Vec::new();
-    for (scene, name) in scenes.iter().zip(distinct_names(&scenes)) {
-        let measured = with_bar(&name, &Progress::default(), |progress| session.measure(scene, &what, progress))?;
-        rows.extend(report_rows(&name, what.size, &measured));
+    let mut places = Vec::new();
+    let mut place = 0;
+    for (name, Block { scene, what, swept }) in &blocks {
+        let mut ours = what.clone();
+        ours.choices.retain(|_| {
+            let is_ours = arguments.shard.is_none_or(|shard| shard.has(place));
+            places.extend(is_ours.then_some(place));
+            place += 1;
+            is_ours
+        });
+        if ours.choices.is_empty() {
+            continue;
+        }
+        let bar = swept.as_ref().map_or_else(|| name.clone(), |swept| format!("{name}, {} {}", swept.name, swept.text));
+        let measured = with_bar(&bar, &Progress::default(), |progress| session.measure(scene, &ours, progress))?;
+        let of_block = report_rows(name, &ours, &measured, &what.choices);
+        rows.extend(of_block.into_iter().map(|row| Row { swept: swept.clone(), ..row }));
     }
-    deliver(arguments, command, &Report::new(session.adapter().clone(), rows))
+    let part = arguments.shard.map(|shard| {
+        let how = format!("stencilscope {} report, {} timed frames", env!("CARGO_PKG_VERSION"), arguments.runs);
+        Part::new(shard, places, how, blocks.iter().flat_map(names_of))
+    });
+    let report = Report { part, ..Report::new(session.adapter().clone(), rows) };
+    arguments.results.deliver(command, &report)
 }
 
-fn deliver(arguments: &ReportArguments, command: &str, report: &Report) -> Result<(), CliError> {
-    if let Some(file) = &arguments.plot {
-        let bytes = if is_png(file) { report.to_png()? } else { report.to_svg().into_bytes() };
-        output::write(file, &bytes)?;
+/// What is measured of a scene: once, or at each value of a sweep.
+fn blocks(
+    arguments: &ReportArguments,
+    scene: &Scene,
+    name: String,
+    what: &Measurement,
+) -> Result<Vec<(String, Block)>, CliError> {
+    let blocks = match &arguments.sweep {
+        None => vec![Block { scene: scene.clone(), what: what.clone(), swept: None }],
+        Some(sweep) => sweep.blocks(scene, what).map_err(|why| {
+            CliError::Usage(format!("`{}` can't be swept over {}: {why}", name.escape_debug(), sweep.name()))
+        })?,
+    };
+    Ok(blocks.into_iter().map(|block| (name.clone(), block)).collect())
+}
+
+/// What each row of a block is of: the same in all parts of a run.
+fn names_of((name, Block { what, swept, .. }): &(String, Block)) -> Vec<String> {
+    let [width, height] = what.size;
+    let swept = swept.as_ref().map_or_else(String::new, |swept| format!(" · {} {}", swept.name, swept.text));
+    let named = |choice: &Choice| {
+        let settings: Vec<String> = choice.settings().iter().map(|(key, value)| format!("{key}={value}")).collect();
+        let technique = choice.technique().name();
+        format!("{name} · {technique} {} · {width}×{height}{swept}", settings.join(" "))
+    };
+    what.choices.iter().map(named).collect()
+}
+
+impl ReportResults {
+    /// The forms in their order, and the page.
+    fn targets(&self) -> [Target; 4] {
+        [self.json.clone(), self.csv.clone(), self.markdown.clone(), results::target(&self.output)]
     }
-    let page = results::target(&arguments.output);
-    let plot = results::plot_beside(&arguments.output, &arguments.plot);
-    let origin = PageOrigin { command, plot: plot.as_deref() };
-    let forms: [Form; 4] = [
-        (&arguments.json, &|| Ok(report.to_json()?)),
-        (&arguments.csv, &|| Ok(report.to_csv())),
-        (&arguments.markdown, &|| Ok(report.to_markdown())),
-        (&page, &|| Ok(report.to_page(origin))),
-    ];
-    results::deliver(&forms, || report.to_table())
+
+    /// Checks, before long work, that all can be delivered.
+    ///
+    /// # Errors
+    /// As [`results::check`].
+    pub fn check(&self) -> Result<(), CliError> {
+        results::check(&self.targets().each_ref(), &self.plot)
+    }
+
+    /// Writes all that is asked for, the table where nothing is; `command` is the command line, for the page.
+    ///
+    /// # Errors
+    /// A file that can't be written; a plot that can't be drawn.
+    pub fn deliver(&self, command: &str, report: &Report) -> Result<(), CliError> {
+        if let Some(file) = &self.plot {
+            let bytes = if is_png(file) { report.to_png()? } else { report.to_svg().into_bytes() };
+            output::write(file, &bytes)?;
+        }
+        let [json, csv, markdown, page] = self.targets();
+        let plot = results::plot_beside(&self.output, &self.plot);
+        let origin = PageOrigin { command, plot: plot.as_deref() };
+        let forms: [Form; 4] = [
+            (&json, &|| Ok(report.to_json()?)),
+            (&csv, &|| Ok(report.to_csv())),
+            (&markdown, &|| Ok(report.to_markdown())),
+            (&page, &|| Ok(report.to_page(origin))),
+        ];
+        results::deliver(&forms, || report.to_table())
+    }
+
+    /// Results of stress cases in the forms that they have.
+    ///
+    /// # Errors
+    /// A form that they have not; a file that can't be written; [`CliError::Unexpected`].
+    pub fn deliver_stress(&self, command: &str, stress: &Stress) -> Result<(), CliError> {
+        let [json, csv, markdown, page] = self.targets();
+        if csv.is_some() {
+            return Err(CliError::Usage("results of `stress` have no CSV: choose `--json`".to_owned()));
+        }
+        super::stress::deliver(stress, command, [&json, &markdown, &page], (&self.output, &self.plot))
+    }
 }
 
 /// The default grid, or its rows of the techniques asked for, with settings changed.

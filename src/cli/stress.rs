@@ -3,12 +3,13 @@
 use super::options::{picture_size, technique_named};
 use super::progress::with_bar;
 use super::report::{is_png, page_file, plot_file};
-use super::results::{self, Form};
+use super::results::{self, Form, Target};
 use super::{CliError, output};
 use crate::progress::Progress;
 use crate::report::PageOrigin;
 use crate::scene::suggestion;
-use crate::session::Session;
+use crate::session::{Session, StressSteps};
+use crate::shards::Shard;
 use crate::stress::{Case, Stress, cases, right_because};
 use crate::technique::Technique;
 use clap::Args;
@@ -27,6 +28,9 @@ pub struct StressArguments {
     /// Width and height of the picture
     #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "320x240")]
     size: [u32; 2],
+    /// The K-th of N disjoint parts of the rows, for `report merge`
+    #[arg(long, value_name = "K/N")]
+    shard: Option<Shard>,
     /// A part of the GPU's name; `llvmpipe` is the software one [default: the best]
     #[arg(long, value_name = "SUBSTRING")]
     adapter: Option<String>,
@@ -65,13 +69,19 @@ pub fn run(arguments: &StressArguments, command: &str) -> Result<(), CliError> {
     check_that_all_run(&chosen, is_named, &only)?;
     results::check(&[&arguments.json, &arguments.markdown, &results::target(&arguments.output)], &arguments.plot)?;
     let mut session = Session::new(arguments.adapter.as_deref())?;
-    let rows =
-        with_bar("stress", &Progress::default(), |progress| session.stress(&chosen, &only, arguments.size, progress))?;
-    let stress = Stress { adapter: session.adapter().clone(), size: arguments.size, rows };
-    deliver(arguments, command, &stress)?;
-    let unexpected =
-        stress.summary().into_iter().filter(|summary| summary.verdict == crate::stress::Verdict::Unexpected).count();
-    if unexpected > 0 { Err(CliError::Unexpected { count: unexpected }) } else { Ok(()) }
+    let steps = StressSteps::new(&chosen, &only, arguments.size);
+    let (steps, part) = match arguments.shard {
+        None => (steps, None),
+        Some(shard) => {
+            let (steps, part) = steps.of(shard);
+            (steps, Some(part))
+        }
+    };
+    let rows = with_bar("stress", &Progress::default(), |progress| session.stress_rows(steps, progress))?;
+    let stress = Stress { adapter: session.adapter().clone(), size: arguments.size, rows, part };
+    let page = results::target(&arguments.output);
+    let forms = [&arguments.json, &arguments.markdown, &page];
+    deliver(&stress, command, forms, (&arguments.output, &arguments.plot))
 }
 
 /// Every technique that is asked for runs in a chosen case, and every case that is named runs one:
@@ -100,22 +110,33 @@ fn runs_nowhere(chosen: &[&Case], is_named: bool, technique: Technique) -> CliEr
     }))
 }
 
-fn deliver(arguments: &StressArguments, command: &str, stress: &Stress) -> Result<(), CliError> {
-    if let Some(file) = &arguments.plot {
+/// Writes JSON, Markdown and the page where they are asked for, else the table; and the plot.
+///
+/// # Errors
+/// A file that can't be written; [`CliError::Unexpected`] where a technique did not do as expected.
+pub fn deliver(
+    stress: &Stress,
+    command: &str,
+    [json, markdown, page]: [&Target; 3],
+    (page_file, plot): (&Option<String>, &Option<String>),
+) -> Result<(), CliError> {
+    if let Some(file) = plot {
         let plot = stress.to_plot();
         let bytes = if is_png(file) { plot.to_png()? } else { plot.to_svg().into_bytes() };
         output::write(file, &bytes)?;
     }
     let failed = |error: serde_json::Error| CliError::Output { path: "the rows".to_owned(), source: error.into() };
-    let page = results::target(&arguments.output);
-    let plot = results::plot_beside(&arguments.output, &arguments.plot);
+    let plot = results::plot_beside(page_file, plot);
     let origin = PageOrigin { command, plot: plot.as_deref() };
     let forms: [Form; 3] = [
-        (&arguments.json, &|| stress.to_json().map_err(failed)),
-        (&arguments.markdown, &|| Ok(stress.to_markdown())),
-        (&page, &|| Ok(stress.to_page(origin))),
+        (json, &|| stress.to_json().map_err(failed)),
+        (markdown, &|| Ok(stress.to_markdown())),
+        (page, &|| Ok(stress.to_page(origin))),
     ];
-    results::deliver(&forms, || stress.to_table())
+    results::deliver(&forms, || stress.to_table())?;
+    let unexpected =
+        stress.summary().into_iter().filter(|summary| summary.verdict == crate::stress::Verdict::Unexpected).count();
+    if unexpected > 0 { Err(CliError::Unexpected { count: unexpected }) } else { Ok(()) }
 }
 
 fn unknown(name: &str) -> CliError {

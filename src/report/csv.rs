@@ -4,7 +4,7 @@ use super::{Report, Row};
 
 const COLUMNS: &str = "scene,technique,label,settings,width,height,compared,false_shadow,missing_shadow,\
 wrong_surface,edge_band,wrong_fraction,frame_ms_median,frame_ms_min,frame_ms_max,frame_runs,gpu_ms,setup_ms,\
-triangles,bytes,pareto,adapter";
+triangles,bytes,pareto,adapter,sweep,sweep_value";
 
 /// A heading line, then one line a row; each ends as the standard says, with CR LF.
 pub fn csv(report: &Report) -> String {
@@ -37,6 +37,8 @@ fn line(row: &Row, adapter: &str) -> String {
         row.bytes.to_string(),
         row.pareto.to_string(),
         field(adapter),
+        field(row.swept.as_ref().map_or("", |swept| &swept.name)),
+        row.swept.as_ref().map_or_else(String::new, |swept| swept.value.to_string()),
     ];
     fields.join(",")
 }
@@ -67,10 +69,10 @@ mod tests {
             BTreeMap::from([("size".to_owned(), "1024".to_owned()), ("bias-slope".to_owned(), "0".to_owned())]);
         let text = csv(&Report::new(adapter(), vec![row]));
         let lines: Vec<&str> = text.split("\r\n").collect();
-        assert_eq!(lines[0].split(',').count(), 22);
+        assert_eq!(lines[0].split(',').count(), 24);
         assert_eq!(
             lines[1],
-            "tori,shadow-map,\"1024, slope 0\",bias-slope=0;size=1024,100,10,1000,20,0,0,7,0.02,3.5,3.4,3.8,9,,12.5,5000,2097152,true,hand"
+            "tori,shadow-map,\"1024, slope 0\",bias-slope=0;size=1024,100,10,1000,20,0,0,7,0.02,3.5,3.4,3.8,9,,12.5,5000,2097152,true,hand,,"
         );
         assert_eq!(lines[2], "", "the last line ends too");
     }

@@ -22,6 +22,7 @@ pub use page::PageOrigin;
 
 use crate::capture::AdapterInfo;
 use crate::numbers;
+use crate::shards::{self, MergeError, Part, PartOf};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -36,6 +37,8 @@ pub struct Report {
     pub adapter: AdapterInfo,
     /// One a scene, technique and settings, in the order in which they are listed.
     pub rows: Vec<Row>,
+    /// Which part of a run it is; `None` of a whole one.
+    pub part: Option<Part>,
 }
 
 /// A report that was measured where not all may have had room.
@@ -61,6 +64,9 @@ pub struct Row {
     pub label: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// At which value of a sweep; `None` without one.
+    #[serde(default, rename = "sweep", skip_serializing_if = "Option::is_none")]
+    pub swept: Option<Swept>,
     /// Pixels whose label was compared with the truth, summed over lights.
     pub compared: u64,
     /// Of these: dark, but lit in truth.
@@ -88,6 +94,17 @@ pub struct Row {
     /// No other row of the scene is at least as fast and at least as right, and one of them more:
     /// see [`Report::mark_pareto`].
     pub pareto: bool,
+}
+
+/// A value of a sweep.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Swept {
+    /// What changes: `size`, `lights`, `casters`, `triangles` or `map-size`.
+    pub name: String,
+    /// The value; of sizes how many pixels.
+    pub value: f64,
+    /// The value as people read it: `1280×720`.
+    pub text: String,
 }
 
 /// Wall times of equal frames, milliseconds.
@@ -129,12 +146,14 @@ pub enum ReportError {
 struct Document {
     schema: u32,
     adapter: AdapterInfo,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    shard: Option<Part>,
     rows: Vec<Row>,
 }
 
 impl From<Report> for Document {
     fn from(report: Report) -> Document {
-        Document { schema: SCHEMA, adapter: report.adapter, rows: report.rows }
+        Document { schema: SCHEMA, adapter: report.adapter, shard: report.part, rows: report.rows }
     }
 }
 
@@ -143,7 +162,7 @@ impl TryFrom<Document> for Report {
 
     fn try_from(document: Document) -> Result<Report, ReportError> {
         match document.schema {
-            SCHEMA => Ok(Report { adapter: document.adapter, rows: document.rows }),
+            SCHEMA => Ok(Report { adapter: document.adapter, rows: document.rows, part: document.shard }),
             found => Err(ReportError::Schema { found }),
         }
     }
@@ -153,12 +172,27 @@ impl Report {
     /// Rows with what follows from them filled in: [`Row::wrong_fraction`] and [`Row::pareto`].
     #[must_use]
     pub fn new(adapter: AdapterInfo, rows: Vec<Row>) -> Report {
-        let mut report = Report { adapter, rows };
+        let mut report = Report { adapter, rows, part: None };
         for row in &mut report.rows {
             row.wrong_fraction = if row.compared == 0 { 0.0 } else { row.wrong() as f64 / row.compared as f64 };
         }
         report.mark_pareto();
         report
+    }
+
+    /// Reports of all parts of a run, each with its file's name, as of one run.
+    ///
+    /// # Errors
+    /// Parts that are missing, there twice, or not of one run.
+    pub fn merged(parts: Vec<(String, Report)>) -> Result<Report, MergeError> {
+        let adapter = parts.first().map(|(_, report)| report.adapter.clone()).ok_or(MergeError::Nothing)?;
+        let part = |(name, Report { adapter, rows, part }): (String, Report)| PartOf {
+            name,
+            adapter: adapter.in_words(),
+            part,
+            rows,
+        };
+        Ok(Report::new(adapter, shards::merged(parts.into_iter().map(part).collect())?))
     }
 
     /// Marks the rows that no other row of their scene beats: one beats another where it is at
@@ -168,13 +202,29 @@ impl Report {
         let marks: Vec<bool> = self
             .rows
             .iter()
-            .map(|row| {
-                row.is_measured() && !self.rows.iter().any(|other| other.scene == row.scene && beats(other, row))
-            })
+            .map(|row| row.is_measured() && !self.rows.iter().any(|other| other.is_beside(row) && beats(other, row)))
             .collect();
         for (row, mark) in self.rows.iter_mut().zip(marks) {
             row.pareto = mark;
         }
+    }
+
+    /// Is it of a sweep?
+    #[must_use]
+    pub fn is_swept(&self) -> bool {
+        self.rows.iter().any(|row| row.swept.is_some())
+    }
+
+    /// Indices of a scene's rows: of a sweep technique by technique, each from value to value.
+    #[must_use]
+    pub fn rows_of(&self, scene: &str) -> Vec<usize> {
+        let mut rows: Vec<usize> = (0..self.rows.len()).filter(|index| self.rows[*index].scene == scene).collect();
+        let names: Vec<String> = rows.iter().map(|index| self.rows[*index].name()).collect();
+        let first = |index: usize| names.iter().position(|name| *name == self.rows[index].name());
+        if self.is_swept() {
+            rows.sort_by_key(|index| first(*index));
+        }
+        rows
     }
 
     /// The scenes, in the order in which they first appear.
@@ -227,7 +277,7 @@ impl Report {
     #[must_use]
     #[cfg(feature = "program")]
     pub fn to_svg(&self) -> String {
-        svg::svg(&plot::layout(self, &plot::Page::PAPER))
+        svg::svg(&if self.is_swept() { plot::sweep(self) } else { plot::layout(self, &plot::Page::PAPER) })
     }
 
     /// The plot for paper, as PNG with two pixels a point.
@@ -266,6 +316,18 @@ fn beats(one: &Row, other: &Row) -> bool {
 }
 
 impl Row {
+    /// Is it of the same scene, at the same value of a sweep?
+    #[must_use]
+    pub fn is_beside(&self, other: &Row) -> bool {
+        self.scene == other.scene && self.swept == other.swept
+    }
+
+    /// Frames a second, by the median.
+    #[must_use]
+    pub fn fps(&self) -> f64 {
+        1000.0 / self.frame_ms.median
+    }
+
     /// Wrong pixels of all kinds.
     #[must_use]
     pub fn wrong(&self) -> u64 {

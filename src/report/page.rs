@@ -33,17 +33,19 @@ impl Report {
     #[must_use]
     pub fn to_page(&self, origin: PageOrigin) -> String {
         let adapter = &self.adapter;
-        let opening = origin.opening("How right, at what cost", "Wrong pixels against frame time, one chart a scene");
+        let of_plot = match self.is_swept() {
+            true => "Frame time against what a sweep changes, one chart a scene",
+            false => "Wrong pixels against frame time, one chart a scene",
+        };
+        let opening = origin.opening("How right, at what cost", of_plot);
         let sizes = table::sizes(self.rows.iter().map(|row| row.size));
         let runs = self.rows.iter().map(|row| row.frame_ms.runs).max().unwrap_or(0);
         let scenes = self.scenes();
         let tables = scenes.iter().map(|scene| format!("## {scene}\n\n{}", table::markdown_of(self, scene)));
         format!(
-            "{opening}on {}, {} ({}); pictures of {sizes}, {runs} timed frames a row. Only the ratios of times mean \
+            "{opening}on {}; pictures of {sizes}, {runs} timed frames a row. Only the ratios of times mean \
              anything elsewhere.\n\n{READING}\n\n{}",
-            adapter.name,
-            adapter.driver,
-            adapter.kind,
+            adapter.in_words(),
             tables.collect::<Vec<_>>().join("\n")
         )
     }

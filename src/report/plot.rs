@@ -10,6 +10,7 @@
 //! around.rs  heading, legend, notes           chart.rs   one scene's chart
 //! scale.rs   log scales and their ticks       labels.rs  words beside points, apart
 //! marks.rs   shape and colour of each technique
+//! swept.rs   a sweep's page: time against its value, a line each
 //! ```
 
 mod around;
@@ -17,11 +18,13 @@ mod chart;
 pub(crate) mod labels;
 mod marks;
 pub(crate) mod scale;
+mod swept;
 
 #[cfg(test)]
 mod tests;
 
 pub use marks::{Mark, STYLES, Style, UNKNOWN, style_of};
+pub use swept::sweep;
 
 use super::Report;
 use around::{heading, legend, notes, summary};

@@ -12,22 +12,22 @@ const LONGEST_NAMES: [usize; 4] = [24, 18, 13, 8];
 
 /// One column: its heading, and its text for a row.
 struct Column {
-    heading: &'static str,
+    heading: String,
     is_number: bool,
     cells: Vec<String>,
 }
 
 impl Column {
-    fn words(heading: &'static str, cells: impl Iterator<Item = String>) -> Column {
-        Column { heading, is_number: false, cells: cells.collect() }
+    fn words(heading: &str, cells: impl Iterator<Item = String>) -> Column {
+        Column { heading: heading.to_owned(), is_number: false, cells: cells.collect() }
     }
 
-    fn numbers(heading: &'static str, cells: impl Iterator<Item = String>) -> Column {
-        Column { heading, is_number: true, cells: cells.collect() }
+    fn numbers(heading: &str, cells: impl Iterator<Item = String>) -> Column {
+        Column { heading: heading.to_owned(), is_number: true, cells: cells.collect() }
     }
 
     fn width(&self) -> usize {
-        self.cells.iter().map(|cell| width(cell)).chain([width(self.heading)]).max().unwrap_or(0)
+        self.cells.iter().map(|cell| width(cell)).chain([width(&self.heading)]).max().unwrap_or(0)
     }
 
     fn padded(&self, text: &str, column_width: usize) -> String {
@@ -55,10 +55,10 @@ pub fn text(report: &Report) -> String {
         format!("{}\n", cells.collect::<Vec<_>>().join(GAP).trim_end())
     };
     for scene in report.scenes() {
-        let rows = || (0..report.rows.len()).filter(|index| report.rows[*index].scene == scene);
-        text += &format!("\n{scene} · {}\n", sizes(rows().map(|index| report.rows[index].size)));
-        text += &line(&|column| column.heading.to_owned());
-        for index in rows() {
+        let rows = report.rows_of(scene);
+        text += &format!("\n{scene} · {}\n", sizes(rows.iter().map(|index| report.rows[*index].size)));
+        text += &line(&|column| column.heading.clone());
+        for index in rows {
             text += &line(&|column| column.cells[index].clone());
         }
     }
@@ -93,7 +93,7 @@ fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
     let decimals = decimals(rows);
     let times = |ms: f64| milliseconds(ms, decimals);
     let spread = |ms: f64| milliseconds(ms, decimals - 1);
-    vec![
+    let mut columns = vec![
         words("", &|row| if row.pareto { "*".to_owned() } else { String::new() }),
         words("technique", &|row| shortened(&row.technique, longest)),
         words("settings", &|row| shortened(&row.label, longest)),
@@ -107,7 +107,30 @@ fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
         numbers("set-up ms", &|row| milliseconds(row.setup_ms, 1)),
         numbers("triangles", &|row| count(row.triangles)),
         numbers("MiB", &|row| mebibytes(row.bytes)),
-    ]
+    ];
+    if let Some(name) = swept_name(rows) {
+        columns.insert(3, numbers(name, &swept_text));
+        columns.insert(9, numbers("fps", &fps));
+    }
+    columns
+}
+
+/// What a sweep changes, if it is one.
+fn swept_name(rows: &[Row]) -> Option<&str> {
+    rows.iter().find_map(|row| Some(&*row.swept.as_ref()?.name))
+}
+
+fn swept_text(row: &Row) -> String {
+    row.swept.as_ref().map_or_else(String::new, |swept| swept.text.clone())
+}
+
+/// Frames a second, in three digits.
+fn fps(row: &Row) -> String {
+    match row.fps() {
+        fps if !fps.is_finite() => "-".to_owned(),
+        fps if fps < 100.0 => format!("{fps:.1}"),
+        fps => format!("{fps:.0}"),
+    }
 }
 
 /// The text, its end cut where it is too long for a column.
@@ -151,12 +174,17 @@ pub fn markdown(report: &Report) -> String {
 /// The Markdown table of one scene.
 pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
     let decimals = decimals(&report.rows);
-    let mut text = "| technique | settings | wrong pixels | % of compared | frame ms | set-up ms | triangles | MiB |\n\
-                    |---|---|--:|--:|--:|--:|--:|--:|\n"
-        .to_owned();
-    for row in report.rows.iter().filter(|row| row.scene == scene) {
+    let swept = swept_name(&report.rows);
+    let name = |name| format!(" {name} |");
+    let [of_value, of_fps] = [swept.map(name).unwrap_or_default(), swept.map(|_| name("fps")).unwrap_or_default()];
+    let rule = if swept.is_some() { "--:|" } else { "" };
+    let mut text = format!(
+        "| technique | settings |{of_value} wrong pixels | % of compared | frame ms |{of_fps} set-up ms | triangles | MiB |\n\
+         |---|---|{rule}--:|--:|--:|{rule}--:|--:|--:|\n"
+    );
+    for row in report.rows_of(scene).into_iter().map(|index| &report.rows[index]) {
         let strong = |cell: String| if row.pareto { format!("**{cell}**") } else { cell };
-        let cells = [
+        let mut cells = vec![
             strong(escaped(&row.technique)),
             escaped(&row.label),
             wrong(row),
@@ -166,6 +194,10 @@ pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
             count(row.triangles),
             mebibytes(row.bytes),
         ];
+        if swept.is_some() {
+            cells.insert(2, swept_text(row));
+            cells.insert(6, fps(row));
+        }
         text += &format!("| {} |\n", cells.join(" | "));
     }
     text

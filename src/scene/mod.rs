@@ -21,8 +21,10 @@ mod open;
 mod picture;
 mod placement;
 mod read_text;
+mod refine;
 pub mod shapes;
 mod suggestion;
+mod vary;
 mod wall_tree;
 
 pub use body::{Body, Standing};
@@ -39,6 +41,7 @@ pub use open::{OpenSpec, files_of, is_model, open};
 pub use picture::{Level, Picture, PictureError, Texture};
 pub use placement::Surroundings;
 pub use suggestion::{nearest, suggestion};
+pub use vary::VaryError;
 
 use std::collections::BTreeMap;
 

@@ -60,7 +60,9 @@ impl Surroundings {
         self.low.y
     }
 
-    fn middle(&self) -> DVec3 {
+    /// The middle of the bounding box.
+    #[must_use]
+    pub fn middle(&self) -> DVec3 {
         self.low / 2.0 + self.high / 2.0
     }
 

@@ -17,6 +17,7 @@ mod step_tests;
 mod stress;
 mod stress_steps;
 mod suited;
+mod sweep;
 mod trials;
 mod truth;
 mod volumes;
@@ -31,6 +32,7 @@ pub use measure::{Measured, Measurement};
 pub use report::report_rows;
 pub use stress::Fault;
 pub use stress_steps::StressSteps;
+pub use sweep::{Block, Sweep};
 pub use truth::{TruthCost, truth_cost};
 pub use volumes::{VolumeCost, volume_cost};
 

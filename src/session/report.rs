@@ -1,21 +1,23 @@
 //! Measurements as rows of a report.
 
-use super::{Measured, median_ms, milliseconds};
+use super::{Measured, Measurement, median_ms, milliseconds};
 use crate::report::{FrameTimes, Row};
+use crate::technique::Choice;
 use std::collections::BTreeSet;
 
-/// Rows of one scene, in the order measured; [`Report::new`](crate::report::Report::new) fills in
-/// what depends on the other rows.
+/// Rows of one scene, in the order measured, labelled by what sets them apart `among` all choices of the run;
+/// [`Report::new`](crate::report::Report::new) fills in what depends on the other rows.
 #[must_use]
-pub fn report_rows(scene: &str, size: [u32; 2], measured: &[Measured]) -> Vec<Row> {
+pub fn report_rows(scene: &str, what: &Measurement, measured: &[Measured], among: &[Choice]) -> Vec<Row> {
     let row = |one: &Measured| {
         let frames: Vec<f64> = one.frames.iter().copied().map(milliseconds).collect();
         Row {
             scene: scene.to_owned(),
             technique: one.choice.technique().name().to_owned(),
             settings: one.choice.settings().clone(),
-            label: label(one, measured),
-            size,
+            label: label(&one.choice, among),
+            size: what.size,
+            swept: None,
             compared: one.error.compared,
             false_shadow: one.error.false_shadow,
             missing_shadow: one.error.missing_shadow,
@@ -38,20 +40,18 @@ pub fn report_rows(scene: &str, size: [u32; 2], measured: &[Measured]) -> Vec<Ro
     measured.iter().map(row).collect()
 }
 
-/// What sets a row apart from others of its technique: its size, and other settings that differ
+/// What sets a choice apart from others of its technique: its size, and other settings that differ
 /// between them where they are not the default.
-fn label(one: &Measured, measured: &[Measured]) -> String {
-    let technique = one.choice.technique();
-    let peers = measured.iter().filter(|other| other.choice.technique() == technique);
+fn label(one: &Choice, among: &[Choice]) -> String {
+    let technique = one.technique();
+    let peers = among.iter().filter(|other| other.technique() == technique);
     let differing: BTreeSet<&String> = peers
-        .flat_map(|other| {
-            other.choice.settings().iter().filter(|(key, value)| one.choice.settings().get(*key) != Some(value))
-        })
+        .flat_map(|other| other.settings().iter().filter(|(key, value)| one.settings().get(*key) != Some(value)))
         .map(|(key, _)| key)
         .collect();
     let varies = |key: &str| differing.iter().any(|other| *other == key);
     let words = technique.settings().iter().filter_map(|spec| {
-        let value = one.choice.settings().get(spec.key)?;
+        let value = one.settings().get(spec.key)?;
         match spec.key {
             "size" if varies("size") => Some(value.clone()),
             key if varies(key) && value != spec.default => Some(format!("{key} {value}")),

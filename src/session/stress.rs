@@ -69,7 +69,14 @@ impl Session {
         size: [u32; 2],
         progress: &Progress,
     ) -> Result<Vec<Row>, SessionError> {
-        let mut steps = StressSteps::new(cases, only, size);
+        self.stress_rows(StressSteps::new(cases, only, size), progress)
+    }
+
+    /// Makes all rows that are left.
+    ///
+    /// # Errors
+    /// As [`Session::stress`].
+    pub fn stress_rows(&mut self, mut steps: StressSteps, progress: &Progress) -> Result<Vec<Row>, SessionError> {
         progress.start(steps.left());
         let mut rows = Vec::with_capacity(steps.left());
         while !progress.is_cancelled() {

@@ -3,7 +3,8 @@
 use super::stress::{Before, Fault, Step, scene_of};
 use super::{Session, SessionError};
 use crate::scene::Scene;
-use crate::stress::{Case, Row};
+use crate::shards::{Part, Shard};
+use crate::stress::{Case, Entrant, Row};
 use crate::technique::Technique;
 use std::collections::VecDeque;
 
@@ -42,6 +43,32 @@ impl StressSteps {
     pub fn without_heavy(mut self) -> StressSteps {
         self.left.retain(|(_, step)| step.case.is_light(step.value));
         self
+    }
+
+    /// Those of one part of the run: each technique of each case, with all of its values, is made by one.
+    #[must_use]
+    pub fn of(mut self, shard: Shard) -> (StressSteps, Part) {
+        let name = |Step { case, entrant, value, size: [width, height] }: &Step| {
+            format!("{} · {entrant} · {value} · {width}×{height}", case.name)
+        };
+        let names: Vec<String> = self.left.iter().map(|(_, step)| name(step)).collect();
+        let mut pieces: Vec<(usize, Entrant)> = Vec::new();
+        let mut places = Vec::new();
+        let mut place = 0;
+        self.left.retain(|([case, _], step)| {
+            let piece = (*case, step.entrant);
+            let known = pieces.iter().position(|known| *known == piece);
+            let number = known.unwrap_or_else(|| {
+                pieces.push(piece);
+                pieces.len() - 1
+            });
+            let is_ours = shard.has(number);
+            places.extend(is_ours.then_some(place));
+            place += 1;
+            is_ours
+        });
+        let how = format!("stencilscope {} stress", env!("CARGO_PKG_VERSION"));
+        (self, Part::new(shard, places, how, names))
     }
 
     /// How many rows are still to be made.

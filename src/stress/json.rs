@@ -7,6 +7,8 @@
 //! `frame_ms` is the median of `timed_frames` frames, and `setup_from_nothing` says that no pipeline of
 //! an earlier row was used; geometry never is.
 //!
+//! A part of a run, which `shard` is about, has only its rows, and summaries of these.
+//!
 //! `surprise` says in words why a row is unexpected, and a summary's is that of the first such row, whose
 //! value is `surprise_at`; both are null where nothing is. A summary's `course` tells how the rows of a
 //! case change from value to value, where that is the case's lesson: `text`, and whether it `holds`; one
@@ -16,9 +18,11 @@
 //! `lit` and `shadow` are so in truth. Expectations are those of pictures of `measured_at` pixels: at
 //! another `size` a failure may not show, or show more.
 
-use super::{Case, Course, MEASURED_AT, Row, Stress, Summary};
+use super::{Case, Course, MEASURED_AT, Row, Seen, Stress, Summary};
+use crate::accuracy::ErrorCounts;
 use crate::capture::AdapterInfo;
-use serde::Serialize;
+use crate::shards::Part;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Version of the form.
@@ -37,6 +41,7 @@ impl Stress {
             adapter: &self.adapter,
             size: self.size,
             measured_at: MEASURED_AT,
+            shard: self.part.as_ref(),
             rows,
             summary,
         };
@@ -50,6 +55,8 @@ struct Document<'a> {
     adapter: &'a AdapterInfo,
     size: [u32; 2],
     measured_at: [u32; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shard: Option<&'a Part>,
     rows: Vec<RowEntry<'a>>,
     summary: Vec<SummaryEntry>,
 }
@@ -72,10 +79,13 @@ struct RowEntry<'a> {
     missing_shadow: u64,
     wrong_surface: u64,
     edge_band: u64,
+    pixels: u64,
     lit: u64,
     shadow: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
     flips: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    off_limit: Option<u64>,
     expected: &'static str,
     verdict: &'static str,
     surprise: Option<String>,
@@ -99,9 +109,11 @@ impl<'a> RowEntry<'a> {
             missing_shadow: row.error.missing_shadow,
             wrong_surface: row.error.wrong_surface,
             edge_band: row.error.edge_band,
+            pixels: row.seen.pixels,
             lit: row.seen.lit,
             shadow: row.seen.shadow,
             flips: row.flips,
+            off_limit: row.off_limit,
             expected: row.expected.name(),
             verdict: row.verdict().name(),
             surprise: row.surprise().map(|surprise| surprise.to_string()),
@@ -110,6 +122,99 @@ impl<'a> RowEntry<'a> {
             setup_ms: row.setup_ms,
             setup_from_nothing: case.is_some_and(|case| case.timed),
         }
+    }
+}
+
+/// A document that is read: what follows from its rows is worked out anew.
+#[derive(Deserialize)]
+struct ReadDocument {
+    schema: u32,
+    adapter: AdapterInfo,
+    size: [u32; 2],
+    shard: Option<Part>,
+    rows: Vec<ReadRow>,
+}
+
+#[derive(Deserialize)]
+struct ReadRow {
+    case: String,
+    parameter: ReadParameter,
+    entrant: String,
+    settings: BTreeMap<String, String>,
+    #[serde(flatten)]
+    error: ErrorCounts,
+    #[serde(flatten)]
+    seen: Seen,
+    flips: Option<u64>,
+    off_limit: Option<u64>,
+    frame_ms: f64,
+    setup_ms: f64,
+}
+
+#[derive(Deserialize)]
+struct ReadParameter {
+    value: f64,
+}
+
+/// What makes JSON no results of stress cases.
+#[derive(Debug, thiserror::Error)]
+pub enum StressReadError {
+    /// Not JSON, or fields are missing.
+    #[error("the rows can't be read: {0}")]
+    Json(#[from] serde_json::Error),
+    /// Written by another version.
+    #[error("rows of schema {found} can't be read: make them again, this version knows schema {SCHEMA}")]
+    Schema {
+        /// The schema it names.
+        found: u32,
+    },
+    /// Of a case or an entrant that this version does not know.
+    #[error("this version has no stress case `{case}` with `{entrant}`: make the rows again")]
+    Unknown {
+        /// The case.
+        case: String,
+        /// The technique, with its settings.
+        entrant: String,
+    },
+}
+
+impl Stress {
+    /// Reads what [`Stress::to_json`] writes.
+    ///
+    /// # Errors
+    /// No JSON, fields missing, another schema, or cases of another version.
+    pub fn from_json(text: &str) -> Result<Stress, StressReadError> {
+        let ReadDocument { schema, adapter, size, shard: part, rows } = serde_json::from_str(text)?;
+        if schema != SCHEMA {
+            return Err(StressReadError::Schema { found: schema });
+        }
+        let rows = rows.into_iter().map(ReadRow::row).collect::<Result<_, _>>()?;
+        Ok(Stress { adapter, size, rows, part })
+    }
+}
+
+impl ReadRow {
+    fn row(self) -> Result<Row, StressReadError> {
+        let ReadRow { case, entrant, settings, error, seen, flips, off_limit, frame_ms, setup_ms, .. } = self;
+        let value = self.parameter.value;
+        let known = Case::named(&case).and_then(|known| {
+            let entrant = known.entrants().into_iter().find(|one| one.to_string() == entrant)?;
+            Some((known, entrant))
+        });
+        let (case, entrant) = known.ok_or(StressReadError::Unknown { case, entrant })?;
+        Ok(Row {
+            case: case.name,
+            parameter: (case.parameter, value),
+            entrant,
+            settings,
+            error,
+            seen,
+            flips,
+            off_limit,
+            expected: case.expected_at(&entrant, value),
+            frame_ms,
+            setup_ms,
+        })
     }
 }
 
@@ -187,7 +292,9 @@ mod tests {
         let of_case = |(case, entrant): (&'static Case, _)| case.values.iter().map(move |v| (case, entrant, *v));
         let rows = entrants.flat_map(of_case).map(|(case, entrant, value)| row(case, entrant, value)).collect();
         let adapter = AdapterInfo { name: "none".to_owned(), driver: "1".to_owned(), kind: "cpu".to_owned() };
-        let json = Stress { adapter, size: [1, 1], rows }.to_json().expect("JSON");
+        let stress = Stress { adapter, size: [1, 1], rows, part: None };
+        let json = stress.to_json().expect("JSON");
+        assert_eq!(Stress::from_json(&json).expect("what was written"), stress);
         let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
         let [rows, summary] = ["rows", "summary"].map(|key| json[key].as_array().expect("a list"));
         for row in rows {

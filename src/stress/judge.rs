@@ -5,6 +5,7 @@ use super::row::Row;
 use super::trend::Course;
 use super::{Case, Entrant};
 use crate::capture::AdapterInfo;
+use crate::shards::{self, MergeError, Part, PartOf};
 
 /// How a technique did in a case.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,9 +43,27 @@ pub struct Stress {
     pub size: [u32; 2],
     /// Case by case, value by value, technique by technique.
     pub rows: Vec<Row>,
+    /// Which part of a run it is; `None` of a whole one.
+    pub part: Option<Part>,
 }
 
 impl Stress {
+    /// Those of all parts of a run, each with its file's name, as of one run.
+    ///
+    /// # Errors
+    /// Parts that are missing, there twice, or not of one run.
+    pub fn merged(parts: Vec<(String, Stress)>) -> Result<Stress, MergeError> {
+        let (adapter, size) = parts.first().map(|(_, of)| (of.adapter.clone(), of.size)).ok_or(MergeError::Nothing)?;
+        let part = |(name, Stress { adapter, rows, part, .. }): (String, Stress)| PartOf {
+            name,
+            adapter: adapter.in_words(),
+            part,
+            rows,
+        };
+        let rows = shards::merged(parts.into_iter().map(part).collect())?;
+        Ok(Stress { adapter, size, rows, part: None })
+    }
+
     /// One entry a case and technique, in the order of the rows.
     #[must_use]
     pub fn summary(&self) -> Vec<Summary> {

@@ -21,6 +21,7 @@ mod table;
 mod trend;
 
 pub use expect::{Expected, Failure, Kind, Surprise, Symptom, Verdict};
+pub use json::StressReadError;
 pub use judge::{Stress, StressRows, Summary, summary};
 pub use row::{Least, Row, Seen, value_text};
 pub use trend::{Course, Trend};

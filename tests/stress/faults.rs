@@ -14,7 +14,7 @@ fn assert_found(session: &mut Session, (name, values): (&str, &[f64]), entrant: 
             !rows.is_empty()
                 && rows.iter().all(|row| row.expected == case(name).expected_at(&entrant, row.parameter.1))
         );
-        Stress { adapter: adapter.clone(), size: SMALL, rows }
+        Stress { adapter: adapter.clone(), size: SMALL, rows, part: None }
     };
     let good = run(Fault::None);
     assert!(!good.is_unexpected(), "{what}: {name} without it:\n{}", good.to_table());

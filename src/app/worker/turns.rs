@@ -129,7 +129,7 @@ impl Work {
         let measured = session.measure_between(scene, &what, &asked.progress, &mut between)?;
         let is_left_out = |choice: &&crate::technique::Choice| measured.iter().all(|row| row.choice != **choice);
         let left_out: BTreeSet<String> = what.choices.iter().filter(is_left_out).map(|one| one.short_name()).collect();
-        let rows = report_rows(&scene.name, what.size, &measured);
+        let rows = report_rows(&scene.name, &what, &measured, &what.choices);
         let report = Report::new(session.adapter().clone(), rows);
         Ok(MeasuredReport { report, left_out: left_out.into_iter().collect() })
     }

@@ -1,0 +1,64 @@
+//! `stencilscope report merge`: the parts of a run put together.
+
+use super::CliError;
+use super::report::ReportResults;
+use crate::report::Report;
+use crate::shards::MergeError;
+use crate::stress::Stress;
+use clap::Args;
+
+/// More than this is no file of results.
+const LARGEST_FILE: u64 = 256 << 20;
+
+#[derive(Debug, Args)]
+pub struct MergeArguments {
+    /// What `report --shard K/N --json FILE` or `stress --shard K/N --json FILE` has written, of every K
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<String>,
+    #[command(flatten)]
+    results: ReportResults,
+}
+
+/// Merges and prints; `command` is the command line, for the page.
+///
+/// # Errors
+/// A file that can't be read; parts that are missing or not of one run; a file that can't be written;
+/// [`CliError::Unexpected`] where a technique did not do as expected in a stress case.
+pub fn run(arguments: &MergeArguments, command: &str) -> Result<(), CliError> {
+    arguments.results.check()?;
+    let texts = arguments.files.iter().map(|file| Ok((file.clone(), read(file)?)));
+    let texts: Vec<(String, String)> = texts.collect::<Result<_, CliError>>()?;
+    let refused = |error: MergeError| CliError::Usage(error.to_string());
+    if is_stress(&texts) {
+        let parts = parts(texts, |text| Stress::from_json(text).map_err(|error| error.to_string()))?;
+        arguments.results.deliver_stress(command, &Stress::merged(parts).map_err(refused)?)
+    } else {
+        let parts = parts(texts, |text| Report::from_json(text).map_err(|error| error.to_string()))?;
+        arguments.results.deliver(command, &Report::merged(parts).map_err(refused)?)
+    }
+}
+
+fn read(file: &str) -> Result<String, CliError> {
+    let unread = |why: String| CliError::Usage(format!("{}: {why}", file.escape_debug()));
+    let bytes =
+        crate::files::read_plain(std::path::Path::new(file), LARGEST_FILE).map_err(|why| unread(why.to_string()))?;
+    String::from_utf8(bytes).map_err(|_| unread("it is no text: give the JSON of a part".to_owned()))
+}
+
+/// Has any of them what only stress cases have?
+fn is_stress(texts: &[(String, String)]) -> bool {
+    let is =
+        |text: &str| serde_json::from_str(text).is_ok_and(|value: serde_json::Value| value.get("summary").is_some());
+    texts.iter().any(|(_, text)| is(text))
+}
+
+fn parts<T>(
+    texts: Vec<(String, String)>,
+    read: impl Fn(&str) -> Result<T, String>,
+) -> Result<Vec<(String, T)>, CliError> {
+    let part = |(file, text): (String, String)| {
+        let part = read(&text).map_err(|why| CliError::Usage(format!("{}: {why}", file.escape_debug())))?;
+        Ok((file, part))
+    };
+    texts.into_iter().map(part).collect()
+}

@@ -1,0 +1,140 @@
+//! A sweep's page: the median time of a frame against the value that changes, one chart a scene, a line each technique with its
+//! settings. Hollow marks are values at which pixels are wrong.
+
+use super::around::legend;
+use super::scale::{self, Log};
+use super::{Anchor, Chart, Ink, Line, Plot, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of};
+use crate::report::{Report, Row, Swept};
+
+/// Width of the page and height of a chart, points.
+const WIDTH: f64 = 760.0;
+const HEIGHT: f64 = 400.0;
+/// Above a chart's area and below it, points.
+const TOP: f64 = 44.0;
+const BOTTOM: f64 = 44.0;
+/// Beside it: milliseconds on the left, frames a second and names on the right, points.
+const LEFT: f64 = 64.0;
+const RIGHT: f64 = 210.0;
+/// Where frames a second stand, right of the area, points.
+const FPS: f64 = 8.0;
+/// Where names begin, right of the area, points.
+const NAMES: f64 = 58.0;
+/// From a name to the next below it, points.
+const NAME_HEIGHT: f64 = 13.0;
+/// The axis where no row has a place on it, milliseconds.
+const NO_TIMES: [f64; 2] = [1.0, 100.0];
+
+/// Lays out the page of a report that is a sweep.
+#[must_use]
+pub fn sweep(report: &Report) -> Plot {
+    let scenes = report.scenes();
+    let name = report.rows.iter().find_map(|row| Some(row.swept.as_ref()?.name.clone())).unwrap_or_default();
+    let mut plot = Plot::empty(WIDTH);
+    plot.title = format!("Frame time against {name}");
+    plot.summary =
+        format!("{} charts: the median time of a frame against {name}, a line each technique.", scenes.len());
+    let title = Text::new([8.0, 18.0], plot.title.clone(), TITLE_SIZE + 2.0, Ink::Text).strong();
+    let facts = format!("{} · filled: right; hollow: pixels are wrong", report.adapter.name);
+    plot.texts = vec![title, Text::new([8.0, 38.0], facts, TEXT_SIZE, Ink::Dim)];
+    let mut top = 56.0;
+    for scene in scenes {
+        plot.charts.push(chart(report, scene, &name).moved([0.0, top]));
+        top += HEIGHT;
+    }
+    let legend = legend(report, WIDTH);
+    plot.add(Plot { lines: Vec::new(), ..legend }, top + 8.0);
+    plot
+}
+
+/// A line of the chart: the rows of a technique with its settings, from value to value.
+fn lines_of(report: &Report, scene: &str) -> Vec<(String, Vec<usize>)> {
+    let mut lines: Vec<(String, Vec<usize>)> = Vec::new();
+    for index in report.rows_of(scene) {
+        let row = &report.rows[index];
+        if row.swept.is_none() || !row.is_measured() {
+            continue;
+        }
+        match lines.iter_mut().find(|(name, _)| *name == row.name()) {
+            Some((_, rows)) => rows.push(index),
+            None => lines.push((row.name(), vec![index])),
+        }
+    }
+    lines
+}
+
+fn chart(report: &Report, scene: &str, name: &str) -> Chart {
+    let lines_of = lines_of(report, scene);
+    let rows = || lines_of.iter().flat_map(|(_, rows)| rows).map(|index| &report.rows[*index]);
+    let area = Rect { min: [LEFT, TOP], max: [WIDTH - RIGHT, HEIGHT - BOTTOM] };
+    let values = |row: &Row| row.swept.as_ref().map_or(1.0, |swept| swept.value);
+    let across = Log::new(scale::range(rows().map(values), [1.0, 10.0]), [area.min[0], area.max[0]]);
+    let up = Log::new(scale::range(rows().map(|row| row.frame_ms.median), NO_TIMES), [area.max[1], area.min[1]]);
+    let place = |row: &Row| [across.position(values(row)), up.position(row.frame_ms.median)];
+    let (mut lines, mut spots, mut names) = (Vec::new(), Vec::new(), Vec::new());
+    let mut values_shown: Vec<&Swept> = Vec::new();
+    let grid = |points: [[f64; 2]; 2]| Line { points: points.to_vec(), width: 1.0, ink: Ink::Grid, faint: false };
+    let mut texts = vec![
+        Text::new([8.0, 10.0], scene, TITLE_SIZE, Ink::Text).strong(),
+        Text::new([8.0, 28.0], "frame time, median", SMALL_SIZE, Ink::Dim),
+        Text::new([area.max[0] + FPS, 28.0], "frames a second", SMALL_SIZE, Ink::Dim),
+        Text::new([area.max[0], area.max[1] + 32.0], name, SMALL_SIZE, Ink::Dim).anchored(Anchor::End),
+    ];
+    for tick in up.ticks(17.0) {
+        let y = up.position(tick);
+        lines.push(grid([[area.min[0], y], [area.max[0], y]]));
+        let ms = Text::new([area.min[0] - 6.0, y], format!("{tick}\u{a0}ms"), SMALL_SIZE, Ink::Dim);
+        texts.push(ms.anchored(Anchor::End));
+        let fps = (1000.0 / tick * 100.0).round() / 100.0;
+        texts.push(Text::new([area.max[0] + FPS, y], fps.to_string(), SMALL_SIZE, Ink::Dim));
+    }
+    for (caption, rows) in &lines_of {
+        let style = style_of(&report.rows[rows[0]].technique);
+        let points: Vec<[f64; 2]> = rows.iter().map(|index| place(&report.rows[*index])).collect();
+        names.extend(points.last().map(|end| (end[1], caption.clone(), style)));
+        for (index, at) in rows.iter().zip(&points) {
+            let row = &report.rows[*index];
+            let filled = row.wrong() == 0;
+            let whisker = [at[0]; 2];
+            let value = row.swept.as_ref().map_or("", |swept| &swept.text);
+            let name = format!("{} at {value}", row.summary());
+            spots.push(Spot { row: *index, at: *at, whisker, style, filled, name, details: row.details() });
+            if let Some(swept) = row.swept.as_ref().filter(|swept| !values_shown.contains(swept)) {
+                values_shown.push(swept);
+            }
+        }
+        if points.len() > 1 {
+            lines.push(Line { points, width: 1.3, ink: Ink::Technique(style), faint: false });
+        }
+    }
+    // Values that are measured, as far as their words have room.
+    values_shown.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let mut free_from = f64::NEG_INFINITY;
+    for swept in values_shown {
+        let x = across.position(swept.value);
+        lines.insert(0, grid([[x, area.min[1]], [x, area.max[1]]]));
+        let text =
+            Text::new([x, area.max[1] + 13.0], swept.text.clone(), SMALL_SIZE, Ink::Dim).anchored(Anchor::Middle);
+        if text.rect().min[0] > free_from {
+            free_from = text.rect().max[0] + 6.0;
+            texts.push(text);
+        }
+    }
+    // Names at the ends of their lines, apart.
+    names.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut low = area.min[1] - NAME_HEIGHT;
+    let room = area.max[1] + 4.0 - NAME_HEIGHT * names.len() as f64;
+    let labels = names.into_iter().enumerate().map(|(index, (y, caption, style))| {
+        low = y.min(room + NAME_HEIGHT * (index + 1) as f64).max(low + NAME_HEIGHT);
+        Text::new([area.max[0] + NAMES, low], caption, SMALL_SIZE, Ink::Technique(style))
+    });
+    let labels = labels.collect();
+    Chart {
+        title: scene.to_owned(),
+        area,
+        band: Rect { min: [area.min[0], area.max[1]], max: area.max },
+        lines,
+        spots,
+        texts,
+        labels,
+    }
+}
