@@ -22,6 +22,97 @@ fn the_default_grid_has_every_technique() {
     }
 }
 
+/// The rows without what a clock has measured.
+fn untimed(json: &str) -> serde_json::Value {
+    let mut document: serde_json::Value = serde_json::from_str(json).expect("JSON");
+    for list in ["rows", "summary"] {
+        for row in document[list].as_array_mut().into_iter().flatten() {
+            let row = row.as_object_mut().expect("a row");
+            // Who is on the front depends on times.
+            ["frame_ms", "gpu_ms", "setup_ms", "pareto", "course"].iter().for_each(|key| drop(row.remove(*key)));
+        }
+    }
+    document
+}
+
+/// Four parts, one after the other and merged in any order, are the rows of one run; a part can be made again alone, and one
+/// that is missing is named.
+#[test]
+fn parts_merge_into_the_rows_of_one_run() {
+    let report = ["report", "triangle.obj", "--sweep", "lights=1..2", "--size", "40x30", "--runs", "1"];
+    let stress = ["stress", "--case", "near-plane", "--case", "nested", "--size", "40x30"];
+    for command in [&report[..], &stress[..]] {
+        let folder = folder();
+        let run = |words: &[&str]| run(folder.path(), words);
+        let file = |name: &str| fs::read_to_string(folder.path().join(name)).expect(name);
+        // Unexpected rows, of pictures as small as these, are no failure here.
+        let whole = run(&[command, &["--json", "whole.json"]].concat());
+        let parts = ["3", "1", "4", "2"].map(|part| {
+            let (shard, json) = (format!("{part}/4"), format!("part-{part}.json"));
+            run(&[command, &["--shard", &shard, "--json", &json]].concat());
+            assert!(file(&json).contains("\"shard\""));
+            json
+        });
+        let merge: Vec<&str> = ["report", "merge"].into_iter().chain(parts.iter().map(String::as_str)).collect();
+        let merged = run(&[&merge[..], &["--json", "merged.json"]].concat());
+        assert_eq!(merged.status.code(), whole.status.code(), "{}", text(&merged.stderr));
+        assert_eq!(untimed(&file("merged.json")), untimed(&file("whole.json")));
+        run(&[command, &["--shard", "4/4", "--json", "part-4.json"]].concat());
+        run(&[&merge[..], &["--json", "again.json"]].concat());
+        assert_eq!(untimed(&file("again.json")), untimed(&file("whole.json")));
+        let missing = run(&[&merge[..5], &["--json", "none.json"]].concat());
+        assert_eq!(missing.status.code(), Some(2));
+        let line = text(&missing.stderr);
+        assert!(line.contains("part 2/4 is missing: make it with `--shard 2/4`"), "{line}");
+        assert!(!folder.path().join("none.json").exists());
+    }
+    assert_fails(&["report", "merge", "missing.json"], 2, &["missing.json", "no such file"]);
+    assert_fails(&["report", "merge", "triangle.obj"], 2, &["triangle.obj", "can't be read"]);
+    assert_fails(&["report", "triangle.obj", "--shard", "0/4"], 2, &["counted from 1"]);
+}
+
+/// Each value of a sweep is a block of rows: with frames a second, and a plot of time against the value.
+#[test]
+fn a_sweep_measures_every_value() {
+    let folder = folder();
+    let sweep = |what: &str, more: &[&str]| {
+        let words = ["report", "triangle.obj", "--size", "40x30", "--runs", "1", "--sweep", what, "--json", "s.json"];
+        let output = run(folder.path(), &[&words[..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let json = fs::read_to_string(folder.path().join("s.json")).expect("rows");
+        crate::help::assert_json_is_explained("report", &serde_json::from_str(&json).expect("JSON"));
+        Report::from_json(&json).expect("a report").rows
+    };
+    let z_fail = ["-t", "z-fail", "--markdown", "s.md", "--plot", "s.svg"];
+    let finer = sweep("triangles=10..1000", &z_fail);
+    let triangles: Vec<u64> = finer.iter().map(|row| row.triangles).collect();
+    assert!(finer.len() == 7 && triangles.is_sorted() && triangles[6] > 1000, "{triangles:?}");
+    assert!(finer.iter().all(|row| row.wrong() == 0 && row.pareto), "the shape is the same");
+    let table = fs::read_to_string(folder.path().join("s.md")).expect("a table");
+    assert!(table.contains("| of casters | wrong pixels |") && table.contains("| fps |"), "{table}");
+    let plot = fs::read_to_string(folder.path().join("s.svg")).expect("a plot");
+    assert!(plot.contains("Frame time against triangles") && plot.contains("frames a second"));
+    let values = |rows: &[stencilscope::report::Row]| -> Vec<String> {
+        rows.iter().filter_map(|row| Some(row.sweep.as_ref()?.text.clone())).collect()
+    };
+    assert_eq!(values(&sweep("lights=1..3", &["-t", "auto"])), ["1", "2", "3"]);
+    let casters = sweep("casters=1,5", &["-t", "z-fail"]);
+    assert!(casters[1].triangles > casters[0].triangles && values(&casters) == ["1", "5"]);
+    assert_eq!(
+        sweep("size=20x10,40x20", &["-t", "none"]).iter().map(|row| row.size).collect::<Vec<_>>(),
+        [[20, 10], [40, 20]]
+    );
+    // Only what has a map, and each form of it.
+    let maps = sweep("map-size=64,128", &[]);
+    assert!(maps.len() > 4 && maps.iter().all(|row| row.settings.contains_key("size")));
+    let refused = |words: &[&str], why: &str| {
+        assert_fails(&[&["report", "triangle.obj", "--sweep"], words].concat(), 2, &[why]);
+    };
+    refused(&["lights=0"], "whole numbers from 1 to 64");
+    refused(&["wind=1"], "`size`, `lights`, `casters`, `triangles` or `map-size`");
+    refused(&["map-size=64", "-t", "z-fail"], "no technique whose maps");
+}
+
 #[test]
 fn a_report_is_written_in_every_form() {
     let folder = folder();

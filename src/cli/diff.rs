@@ -1,7 +1,7 @@
 //! `stencilscope diff`: where two frames first differ, pass by pass.
 
 use super::options::{FrameOptions, SceneOptions, picture_size, setting};
-use super::report::is_png;
+use super::report_results::is_png;
 use super::{CliError, output};
 use crate::capture::{Capture, disk};
 use crate::difference::{self, Difference};

@@ -1,11 +1,24 @@
 //! `stencilscope report merge`: the parts of a run put together.
 
-use super::CliError;
-use super::report::ReportResults;
+use super::report_results::ReportResults;
+use super::{CliError, stress};
 use crate::report::Report;
 use crate::shards::MergeError;
 use crate::stress::Stress;
 use clap::Args;
+
+/// How parts are made on several machines, after the help.
+pub const EXAMPLES: &str = "\
+Parts of a run side by side, here four; a part that was killed is run again alone:
+
+  GNU parallel   parallel stencilscope stress --shard {}/4 --json part-{}.json ::: 1 2 3 4
+  Slurm array    #SBATCH --array=1-4
+                 stencilscope stress --shard $SLURM_ARRAY_TASK_ID/4 --json part-$SLURM_ARRAY_TASK_ID.json
+  CI matrix      strategy: { matrix: { part: [1, 2, 3, 4] } }
+                 stencilscope stress --shard ${{ matrix.part }}/4 --json part-${{ matrix.part }}.json
+
+  then           stencilscope report merge part-*.json -o stress.md
+";
 
 /// More than this is no file of results.
 const LARGEST_FILE: u64 = 256 << 20;
@@ -31,11 +44,20 @@ pub fn run(arguments: &MergeArguments, command: &str) -> Result<(), CliError> {
     let refused = |error: MergeError| CliError::Usage(error.to_string());
     if is_stress(&texts) {
         let parts = parts(texts, |text| Stress::from_json(text).map_err(|error| error.to_string()))?;
-        arguments.results.deliver_stress(command, &Stress::merged(parts).map_err(refused)?)
+        deliver_stress(&Stress::merged(parts).map_err(refused)?, command, &arguments.results)
     } else {
         let parts = parts(texts, |text| Report::from_json(text).map_err(|error| error.to_string()))?;
         arguments.results.deliver(command, &Report::merged(parts).map_err(refused)?)
     }
+}
+
+/// In the forms that results of stress cases have.
+fn deliver_stress(merged: &Stress, command: &str, results: &ReportResults) -> Result<(), CliError> {
+    let [json, csv, markdown, page] = results.targets();
+    if csv.is_some() {
+        return Err(CliError::Usage("results of `stress` have no CSV: choose `--json`".to_owned()));
+    }
+    stress::deliver(merged, command, [&json, &markdown, &page], (&results.output, &results.plot))
 }
 
 fn read(file: &str) -> Result<String, CliError> {

@@ -23,6 +23,7 @@ mod pixel;
 mod progress;
 mod record;
 mod report;
+mod report_results;
 mod results;
 mod scenes;
 mod stress;

@@ -3,15 +3,14 @@
 use super::merge::{self, MergeArguments};
 use super::options::{SceneOptions, picture_size, setting, technique_named};
 use super::progress::with_bar;
-use super::results::{self, Form, Target};
-use super::{CliError, output};
+use super::report_results::ReportResults;
+use super::{CliError, results};
 use crate::progress::Progress;
-use crate::report::{PageOrigin, Report, Row};
+use crate::report::{Report, Row};
 use crate::scene::Scene;
 use crate::scene::builtin::Builtin;
 use crate::session::{Block, Measurement, Session, Sweep, report_rows};
 use crate::shards::{Part, Shard};
-use crate::stress::Stress;
 use crate::technique::{Choice, Technique};
 use clap::{Args, Subcommand};
 use std::path::Path;
@@ -54,27 +53,8 @@ pub struct ReportArguments {
 #[derive(Debug, Subcommand)]
 enum Merge {
     /// Put the parts of a run together that `--shard` made, of `report` or of `stress`
+    #[command(after_help = merge::EXAMPLES)]
     Merge(MergeArguments),
-}
-
-/// Where a report goes, and in which forms.
-#[derive(Debug, Args)]
-pub struct ReportResults {
-    /// Machine-readable, to a file or to standard output in place of the table
-    #[arg(long, value_name = "FILE", num_args = 0..=1)]
-    json: Option<Option<String>>,
-    /// Comma-separated, to a file or to standard output in place of the table
-    #[arg(long, value_name = "FILE", num_args = 0..=1)]
-    csv: Option<Option<String>>,
-    /// A Markdown table, to a file or to standard output in place of the table
-    #[arg(long, value_name = "FILE", num_args = 0..=1)]
-    markdown: Option<Option<String>>,
-    /// A picture of error against run time (.svg or .png)
-    #[arg(long, value_name = "FILE", value_parser = plot_file)]
-    plot: Option<String>,
-    /// A page in Markdown: this command, the machine, the plot, the tables, and how to read them
-    #[arg(short, long, value_name = "FILE.md", value_parser = page_file)]
-    output: Option<String>,
 }
 
 /// Measures and prints; `command` is the command line, for the page.
@@ -88,9 +68,8 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
     let choices = choices(arguments)?;
     let open = |name: &String| arguments.scene_options.open(name);
     let scenes = arguments.scenes.iter().map(open).collect::<Result<Vec<Scene>, _>>()?;
-    let page = results::target(&arguments.results.output);
-    let forms = [&arguments.results.json, &arguments.results.csv, &arguments.results.markdown, &page];
-    check_no_scene(&results::files(&forms, &arguments.results.plot), &arguments.scenes)?;
+    let targets = arguments.results.targets();
+    check_no_scene(&results::files(&targets.each_ref(), &arguments.results.plot), &arguments.scenes)?;
     arguments.results.check()?;
     let what = Measurement { choices, size: arguments.size, runs: usize::from(arguments.runs) };
     let blocks = scenes.iter().zip(distinct_names(&scenes)).map(|(scene, name)| blocks(arguments, scene, name, &what));
@@ -113,7 +92,7 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
         let bar = swept.as_ref().map_or_else(|| name.clone(), |swept| format!("{name}, {} {}", swept.name, swept.text));
         let measured = with_bar(&bar, &Progress::default(), |progress| session.measure(scene, &ours, progress))?;
         let of_block = report_rows(name, &ours, &measured, &what.choices);
-        rows.extend(of_block.into_iter().map(|row| Row { swept: swept.clone(), ..row }));
+        rows.extend(of_block.into_iter().map(|row| Row { sweep: swept.clone(), ..row }));
     }
     let part = arguments.shard.map(|shard| {
         let how = format!("stencilscope {} report, {} timed frames", env!("CARGO_PKG_VERSION"), arguments.runs);
@@ -151,58 +130,14 @@ fn names_of((name, Block { what, swept, .. }): &(String, Block)) -> Vec<String> 
     what.choices.iter().map(named).collect()
 }
 
-impl ReportResults {
-    /// The forms in their order, and the page.
-    fn targets(&self) -> [Target; 4] {
-        [self.json.clone(), self.csv.clone(), self.markdown.clone(), results::target(&self.output)]
-    }
-
-    /// Checks, before long work, that all can be delivered.
-    ///
-    /// # Errors
-    /// As [`results::check`].
-    pub fn check(&self) -> Result<(), CliError> {
-        results::check(&self.targets().each_ref(), &self.plot)
-    }
-
-    /// Writes all that is asked for, the table where nothing is; `command` is the command line, for the page.
-    ///
-    /// # Errors
-    /// A file that can't be written; a plot that can't be drawn.
-    pub fn deliver(&self, command: &str, report: &Report) -> Result<(), CliError> {
-        if let Some(file) = &self.plot {
-            let bytes = if is_png(file) { report.to_png()? } else { report.to_svg().into_bytes() };
-            output::write(file, &bytes)?;
-        }
-        let [json, csv, markdown, page] = self.targets();
-        let plot = results::plot_beside(&self.output, &self.plot);
-        let origin = PageOrigin { command, plot: plot.as_deref() };
-        let forms: [Form; 4] = [
-            (&json, &|| Ok(report.to_json()?)),
-            (&csv, &|| Ok(report.to_csv())),
-            (&markdown, &|| Ok(report.to_markdown())),
-            (&page, &|| Ok(report.to_page(origin))),
-        ];
-        results::deliver(&forms, || report.to_table())
-    }
-
-    /// Results of stress cases in the forms that they have.
-    ///
-    /// # Errors
-    /// A form that they have not; a file that can't be written; [`CliError::Unexpected`].
-    pub fn deliver_stress(&self, command: &str, stress: &Stress) -> Result<(), CliError> {
-        let [json, csv, markdown, page] = self.targets();
-        if csv.is_some() {
-            return Err(CliError::Usage("results of `stress` have no CSV: choose `--json`".to_owned()));
-        }
-        super::stress::deliver(stress, command, [&json, &markdown, &page], (&self.output, &self.plot))
-    }
-}
-
-/// The default grid, or its rows of the techniques asked for, with settings changed.
+/// The default grid, or its rows of the techniques asked for, with settings changed. In a sweep each technique has a row,
+/// but over map sizes, where every form with a map has its own.
 fn choices(arguments: &ReportArguments) -> Result<Vec<Choice>, CliError> {
     let only = arguments.technique.iter().map(|name| technique_named(name)).collect::<Result<Vec<Technique>, _>>()?;
-    let mut grid = Choice::report_grid()?;
+    let mut grid = match &arguments.sweep {
+        None | Some(Sweep::MapSize(_)) => Choice::report_grid()?,
+        Some(_) => Technique::ALL.map(Choice::new).to_vec(),
+    };
     grid.retain(|choice| only.is_empty() || only.contains(&choice.technique()));
     for (key, value) in &arguments.set {
         let has_key = |choice: &&mut Choice| choice.settings().contains_key(key);
@@ -241,21 +176,4 @@ fn check_no_scene(files: &[&str], scenes: &[String]) -> Result<(), CliError> {
         let what = "names a scene: put the option last, or give its file as `--json=FILE`";
         Err(CliError::Usage(format!("`{}` {what}", file.escape_debug())))
     })
-}
-
-/// Does a file's ending ask for pixels?
-pub fn is_png(file: &str) -> bool {
-    Path::new(file).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
-}
-
-/// A file whose ending says what to write.
-pub fn plot_file(text: &str) -> Result<String, String> {
-    let is_svg = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
-    if is_svg || is_png(text) { Ok(text.to_owned()) } else { Err("give a file that ends in .svg or .png".to_owned()) }
-}
-
-/// A page's file.
-pub fn page_file(text: &str) -> Result<String, String> {
-    let is_page = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md"));
-    if is_page { Ok(text.to_owned()) } else { Err("give a file that ends in .md".to_owned()) }
 }

@@ -2,7 +2,7 @@
 
 use super::options::{picture_size, technique_named};
 use super::progress::with_bar;
-use super::report::{is_png, page_file, plot_file};
+use super::report_results::{is_png, page_file, plot_file};
 use super::results::{self, Form, Target};
 use super::{CliError, output};
 use crate::progress::Progress;

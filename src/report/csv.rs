@@ -37,8 +37,8 @@ fn line(row: &Row, adapter: &str) -> String {
         row.bytes.to_string(),
         row.pareto.to_string(),
         field(adapter),
-        field(row.swept.as_ref().map_or("", |swept| &swept.name)),
-        row.swept.as_ref().map_or_else(String::new, |swept| swept.value.to_string()),
+        field(row.sweep.as_ref().map_or("", |swept| &swept.name)),
+        row.sweep.as_ref().map_or_else(String::new, |swept| swept.value.to_string()),
     ];
     fields.join(",")
 }

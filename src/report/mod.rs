@@ -65,8 +65,8 @@ pub struct Row {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// At which value of a sweep; `None` without one.
-    #[serde(default, rename = "sweep", skip_serializing_if = "Option::is_none")]
-    pub swept: Option<Swept>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sweep: Option<Swept>,
     /// Pixels whose label was compared with the truth, summed over lights.
     pub compared: u64,
     /// Of these: dark, but lit in truth.
@@ -212,7 +212,7 @@ impl Report {
     /// Is it of a sweep?
     #[must_use]
     pub fn is_swept(&self) -> bool {
-        self.rows.iter().any(|row| row.swept.is_some())
+        self.rows.iter().any(|row| row.sweep.is_some())
     }
 
     /// Indices of a scene's rows: of a sweep technique by technique, each from value to value.
@@ -319,7 +319,7 @@ impl Row {
     /// Is it of the same scene, at the same value of a sweep?
     #[must_use]
     pub fn is_beside(&self, other: &Row) -> bool {
-        self.scene == other.scene && self.swept == other.swept
+        self.scene == other.scene && self.sweep == other.sweep
     }
 
     /// Frames a second, by the median.

@@ -109,7 +109,7 @@ fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
         numbers("MiB", &|row| mebibytes(row.bytes)),
     ];
     if let Some(name) = swept_name(rows) {
-        columns.insert(3, numbers(name, &swept_text));
+        columns.insert(3, numbers(heading(name), &swept_text));
         columns.insert(9, numbers("fps", &fps));
     }
     columns
@@ -117,11 +117,16 @@ fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
 
 /// What a sweep changes, if it is one.
 fn swept_name(rows: &[Row]) -> Option<&str> {
-    rows.iter().find_map(|row| Some(&*row.swept.as_ref()?.name))
+    rows.iter().find_map(|row| Some(&*row.sweep.as_ref()?.name))
+}
+
+/// Of the column of a sweep's values, unlike those of other columns.
+fn heading(swept: &str) -> &str {
+    if swept == "triangles" { "of casters" } else { swept }
 }
 
 fn swept_text(row: &Row) -> String {
-    row.swept.as_ref().map_or_else(String::new, |swept| swept.text.clone())
+    row.sweep.as_ref().map_or_else(String::new, |swept| swept.text.clone())
 }
 
 /// Frames a second, in three digits.
@@ -176,7 +181,8 @@ pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
     let decimals = decimals(&report.rows);
     let swept = swept_name(&report.rows);
     let name = |name| format!(" {name} |");
-    let [of_value, of_fps] = [swept.map(name).unwrap_or_default(), swept.map(|_| name("fps")).unwrap_or_default()];
+    let [of_value, of_fps] =
+        [swept.map(heading).map(name).unwrap_or_default(), swept.map(|_| name("fps")).unwrap_or_default()];
     let rule = if swept.is_some() { "--:|" } else { "" };
     let mut text = format!(
         "| technique | settings |{of_value} wrong pixels | % of compared | frame ms |{of_fps} set-up ms | triangles | MiB |\n\

@@ -14,7 +14,7 @@ pub(crate) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64
         settings: BTreeMap::new(),
         label: label.to_owned(),
         size: [100, 10],
-        swept: None,
+        sweep: None,
         compared: 1000,
         false_shadow: wrong,
         missing_shadow: 0,

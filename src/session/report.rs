@@ -17,7 +17,7 @@ pub fn report_rows(scene: &str, what: &Measurement, measured: &[Measured], among
             settings: one.choice.settings().clone(),
             label: label(&one.choice, among),
             size: what.size,
-            swept: None,
+            sweep: None,
             compared: one.error.compared,
             false_shadow: one.error.false_shadow,
             missing_shadow: one.error.missing_shadow,

@@ -14,6 +14,7 @@ fn row(scene: &str, technique: &str, label: &str, settings: &[(&str, &str)], wro
         settings: settings.collect::<BTreeMap<_, _>>(),
         label: label.to_owned(),
         size: [1280, 720],
+        sweep: None,
         compared: 901_234,
         false_shadow: wrong / 3,
         missing_shadow: wrong - wrong / 3,

@@ -1,7 +1,6 @@
 //! A sweep's page: the median time of a frame against the value that changes, one chart a scene, a line each technique with its
 //! settings. Hollow marks are values at which pixels are wrong.
 
-use super::around::legend;
 use super::scale::{self, Log};
 use super::{Anchor, Chart, Ink, Line, Plot, Rect, SMALL_SIZE, Spot, TEXT_SIZE, TITLE_SIZE, Text, style_of};
 use crate::report::{Report, Row, Swept};
@@ -28,7 +27,7 @@ const NO_TIMES: [f64; 2] = [1.0, 100.0];
 #[must_use]
 pub fn sweep(report: &Report) -> Plot {
     let scenes = report.scenes();
-    let name = report.rows.iter().find_map(|row| Some(row.swept.as_ref()?.name.clone())).unwrap_or_default();
+    let name = report.rows.iter().find_map(|row| Some(row.sweep.as_ref()?.name.clone())).unwrap_or_default();
     let mut plot = Plot::empty(WIDTH);
     plot.title = format!("Frame time against {name}");
     plot.summary =
@@ -41,8 +40,7 @@ pub fn sweep(report: &Report) -> Plot {
         plot.charts.push(chart(report, scene, &name).moved([0.0, top]));
         top += HEIGHT;
     }
-    let legend = legend(report, WIDTH);
-    plot.add(Plot { lines: Vec::new(), ..legend }, top + 8.0);
+    plot.size[1] = top;
     plot
 }
 
@@ -51,7 +49,7 @@ fn lines_of(report: &Report, scene: &str) -> Vec<(String, Vec<usize>)> {
     let mut lines: Vec<(String, Vec<usize>)> = Vec::new();
     for index in report.rows_of(scene) {
         let row = &report.rows[index];
-        if row.swept.is_none() || !row.is_measured() {
+        if row.sweep.is_none() || !row.is_measured() {
             continue;
         }
         match lines.iter_mut().find(|(name, _)| *name == row.name()) {
@@ -66,7 +64,7 @@ fn chart(report: &Report, scene: &str, name: &str) -> Chart {
     let lines_of = lines_of(report, scene);
     let rows = || lines_of.iter().flat_map(|(_, rows)| rows).map(|index| &report.rows[*index]);
     let area = Rect { min: [LEFT, TOP], max: [WIDTH - RIGHT, HEIGHT - BOTTOM] };
-    let values = |row: &Row| row.swept.as_ref().map_or(1.0, |swept| swept.value);
+    let values = |row: &Row| row.sweep.as_ref().map_or(1.0, |swept| swept.value);
     let across = Log::new(scale::range(rows().map(values), [1.0, 10.0]), [area.min[0], area.max[0]]);
     let up = Log::new(scale::range(rows().map(|row| row.frame_ms.median), NO_TIMES), [area.max[1], area.min[1]]);
     let place = |row: &Row| [across.position(values(row)), up.position(row.frame_ms.median)];
@@ -95,10 +93,10 @@ fn chart(report: &Report, scene: &str, name: &str) -> Chart {
             let row = &report.rows[*index];
             let filled = row.wrong() == 0;
             let whisker = [at[0]; 2];
-            let value = row.swept.as_ref().map_or("", |swept| &swept.text);
+            let value = row.sweep.as_ref().map_or("", |swept| &swept.text);
             let name = format!("{} at {value}", row.summary());
             spots.push(Spot { row: *index, at: *at, whisker, style, filled, name, details: row.details() });
-            if let Some(swept) = row.swept.as_ref().filter(|swept| !values_shown.contains(swept)) {
+            if let Some(swept) = row.sweep.as_ref().filter(|swept| !values_shown.contains(swept)) {
                 values_shown.push(swept);
             }
         }

@@ -1,0 +1,80 @@
+//! Where a report goes, and in which forms.
+
+use super::results::{self, Form, Target};
+use super::{CliError, output};
+use crate::report::{PageOrigin, Report};
+use clap::Args;
+use std::path::Path;
+
+/// Where a report goes, and in which forms.
+#[derive(Debug, Args)]
+pub struct ReportResults {
+    /// Machine-readable, to a file or to standard output in place of the table
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    pub json: Option<Option<String>>,
+    /// Comma-separated, to a file or to standard output in place of the table
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    pub csv: Option<Option<String>>,
+    /// A Markdown table, to a file or to standard output in place of the table
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    pub markdown: Option<Option<String>>,
+    /// A picture of error against run time (.svg or .png)
+    #[arg(long, value_name = "FILE", value_parser = plot_file)]
+    pub plot: Option<String>,
+    /// A page in Markdown: this command, the machine, the plot, the tables, and how to read them
+    #[arg(short, long, value_name = "FILE.md", value_parser = page_file)]
+    pub output: Option<String>,
+}
+
+impl ReportResults {
+    /// The forms in their order, and the page.
+    pub fn targets(&self) -> [Target; 4] {
+        [self.json.clone(), self.csv.clone(), self.markdown.clone(), results::target(&self.output)]
+    }
+
+    /// Checks, before long work, that all can be delivered.
+    ///
+    /// # Errors
+    /// As [`results::check`].
+    pub fn check(&self) -> Result<(), CliError> {
+        results::check(&self.targets().each_ref(), &self.plot)
+    }
+
+    /// Writes all that is asked for, the table where nothing is; `command` is the command line, for the page.
+    ///
+    /// # Errors
+    /// A file that can't be written; a plot that can't be drawn.
+    pub fn deliver(&self, command: &str, report: &Report) -> Result<(), CliError> {
+        if let Some(file) = &self.plot {
+            let bytes = if is_png(file) { report.to_png()? } else { report.to_svg().into_bytes() };
+            output::write(file, &bytes)?;
+        }
+        let [json, csv, markdown, page] = self.targets();
+        let plot = results::plot_beside(&self.output, &self.plot);
+        let origin = PageOrigin { command, plot: plot.as_deref() };
+        let forms: [Form; 4] = [
+            (&json, &|| Ok(report.to_json()?)),
+            (&csv, &|| Ok(report.to_csv())),
+            (&markdown, &|| Ok(report.to_markdown())),
+            (&page, &|| Ok(report.to_page(origin))),
+        ];
+        results::deliver(&forms, || report.to_table())
+    }
+}
+
+/// Does a file's ending ask for pixels?
+pub fn is_png(file: &str) -> bool {
+    Path::new(file).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
+}
+
+/// A file whose ending says what to write.
+pub fn plot_file(text: &str) -> Result<String, String> {
+    let is_svg = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+    if is_svg || is_png(text) { Ok(text.to_owned()) } else { Err("give a file that ends in .svg or .png".to_owned()) }
+}
+
+/// A page's file.
+pub fn page_file(text: &str) -> Result<String, String> {
+    let is_page = Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md"));
+    if is_page { Ok(text.to_owned()) } else { Err("give a file that ends in .md".to_owned()) }
+}
