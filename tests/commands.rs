@@ -247,9 +247,13 @@ fn captures_are_written_and_replaced_only_on_request() {
         serde_json::from_str(&text).expect("JSON")
     };
     assert_eq!(manifest()["technique"], "auto");
-    for key in ["frame_ms", "captured_ms", "write_ms", "setup_ms"] {
-        assert!(manifest()["timing"][key].as_f64().is_some_and(|ms| ms > 0.0), "{key}");
-    }
+    let is_timed = |key: &str| manifest()["timing"][key].as_f64().is_some_and(|ms| ms > 0.0);
+    let keys = ["write_ms", "setup_ms", "frame_ms", "captured_ms"];
+    assert_eq!(keys.map(is_timed), [true, true, false, false], "a frame that is not timed runs once");
+    assert!(manifest()["timing"]["frame_ms"].is_null());
+    let timed = run(folder.path(), &[&capture[..], &["--overwrite", "--timing"]].concat());
+    assert_eq!(timed.status.code(), Some(0), "{}", text(&timed.stderr));
+    assert_eq!(keys.map(is_timed), [true; 4]);
     let again = run(folder.path(), &capture);
     assert_eq!(again.status.code(), Some(2));
     assert!(text(&again.stderr).contains("--overwrite"));

@@ -33,6 +33,9 @@ pub struct CaptureArguments {
     /// Also trace the ground truth, and tell the technique's errors
     #[arg(long)]
     truth: bool,
+    /// Also time the frame, with and without snapshots: it runs twelve times more
+    #[arg(long)]
+    timing: bool,
     /// Also put the frame into one HTML file that any browser opens; one that is there is replaced with --overwrite
     #[arg(long, value_name = "FILE.html")]
     page: Option<String>,
@@ -43,13 +46,18 @@ pub struct CaptureArguments {
 /// # Errors
 /// A scene, option or folder that can't be used; no GPU; a frame that can't be made.
 pub fn run(arguments: &CaptureArguments) -> Result<(), CliError> {
-    let CaptureArguments { scene, scene_options, frame, output, overwrite, truth, page } = arguments;
+    let CaptureArguments { scene, scene_options, frame, output, overwrite, truth, timing, page } = arguments;
     if let Some(page) = page {
         super::page::check_target(page, *overwrite)?;
     }
     let how = Writing { folder: output, overwrite: *overwrite, truth: *truth, page: page.as_deref() };
-    Job::new(scene, scene_options, frame, how)?.run()
+    let mut job = Job::new(scene, scene_options, frame, how)?;
+    job.request.timing_runs = if *timing { TIMING_RUNS } else { 0 };
+    job.run()
 }
+
+/// Frames that are timed where that is asked for, each with and without snapshots, after one of each that is not.
+const TIMING_RUNS: usize = 5;
 
 /// A capture whose input was checked.
 pub struct Job<'a> {

@@ -150,7 +150,7 @@ fn request(
         adapter: arguments.adapter.clone(),
         external_capture: false,
     };
-    Ok(CaptureRequest { timing_runs: 0, ..frame.request(scene)? })
+    frame.request(scene)
 }
 
 /// Which capture is A, and which B.

@@ -17,8 +17,6 @@ const LARGEST: u32 = 16_384;
 const DEFAULT_TECHNIQUE: &str = "auto";
 /// Used where the command line names no size.
 const DEFAULT_SIZE: [u32; 2] = [1280, 720];
-/// How often a frame is timed with and without snapshots.
-const TIMING_RUNS: usize = 5;
 
 /// How a scene is completed, seen and lit.
 #[derive(Debug, Clone, Args)]
@@ -196,7 +194,7 @@ impl Subject {
         if !is_capture && shipped.is_none() {
             let loaded = scene.load(name)?;
             let at = loaded.at(scene.time);
-            let request = CaptureRequest { timing_runs: 0, ..frame.request(&at)? };
+            let request = frame.request(&at)?;
             return Ok(Subject::Scene(Box::new(SceneSubject { loaded, scene: at, request })));
         }
         if !scene.is_untouched() || frame.technique.is_some() || !frame.set.is_empty() || frame.size.is_some() {
@@ -252,11 +250,9 @@ impl FrameOptions {
     /// A technique or setting that does not exist, or is not there yet.
     pub fn request(&self, scene: &Scene) -> Result<CaptureRequest, CliError> {
         Ok(CaptureRequest {
-            choice: self.choice(scene)?,
-            size: self.picture_size(),
-            timing_runs: TIMING_RUNS,
             every: self.every()?,
             external_capture: self.external_capture,
+            ..CaptureRequest::new(self.choice(scene)?, self.picture_size())
         })
     }
 

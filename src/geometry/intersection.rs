@@ -22,6 +22,8 @@ pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2
     }
     let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
     let boxes: Vec<Aabb> = (0..triangles.len()).map(|triangle| outer_box(corners(triangle))).collect();
+    let has_area: Vec<bool> =
+        (0..triangles.len()).into_par_iter().map(|triangle| Flat::of(corners(triangle)).is_some()).collect();
     let hierarchy = build_bvh2(&boxes, BvhBuildParams::very_fast_build(), &mut Duration::default());
     let first_of = |one: usize| {
         let mut met = None;
@@ -31,7 +33,7 @@ pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2
             for other in hierarchy.primitive_indices[leaf].iter().map(|index| *index as usize) {
                 if other > one
                     && boxes[one].intersect_aabb(&boxes[other])
-                    && meet(world, triangles[one], triangles[other])
+                    && meet(world, [one, other].map(|triangle| (triangles[triangle], has_area[triangle])))
                 {
                     met = Some([one, other]);
                 }
@@ -49,18 +51,20 @@ fn outer_box([a, b, c]: [DVec3; 3]) -> Aabb {
     Aabb { min: round(a.min(b).min(c), f32::next_down), max: round(a.max(b).max(c), f32::next_up) }
 }
 
-/// Do two triangles meet in more than the corners and edges that they share?
-fn meet(world: &[DVec3], one: [u32; 3], other: [u32; 3]) -> bool {
+/// Do two triangles, each of which may have an area, meet in more than the corners and edges that they share?
+fn meet(world: &[DVec3], [(one, one_has_area), (other, other_has_area)]: [([u32; 3], bool); 2]) -> bool {
+    let have_area = one_has_area && other_has_area;
     let at = |corners: [u32; 3]| corners.map(|vertex| world[vertex as usize]);
-    let shared: Vec<usize> = (0..3).filter(|corner| other.contains(&one[*corner])).collect();
+    let shared = [0, 1, 2].map(|corner| other.contains(&one[corner]));
     let rotated = |corners: [u32; 3], first: usize| [0, 1, 2].map(|step| corners[(first + step) % 3]);
-    match shared[..] {
-        [] => meet_apart(at(one), at(other)),
-        [corner] => {
+    match shared.iter().filter(|is_shared| **is_shared).count() {
+        0 => !have_area || meet_apart(at(one), at(other)),
+        1 => {
+            let corner = shared.iter().position(|is_shared| *is_shared).unwrap_or_default();
             let apex = other.iter().position(|vertex| *vertex == one[corner]).unwrap_or_default();
-            meet_at_corner(at(rotated(one, corner)), at(rotated(other, apex)))
+            !have_area || meet_at_corner(at(rotated(one, corner)), at(rotated(other, apex)))
         }
-        [_, _] => {
+        2 => {
             let opposite = |corners: [u32; 3], than: [u32; 3]| {
                 corners.iter().position(|vertex| !than.contains(vertex)).unwrap_or_default()
             };
@@ -135,13 +139,16 @@ fn meet_at_edge([from, to]: [DVec3; 2], tip: DVec3, other_tip: DVec3) -> bool {
 
 /// Triangles with corner 0 in common.
 fn meet_at_corner(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
-    let (Some(flat_one), Some(flat_other)) = (Flat::of(one), Flat::of(other)) else { return true };
-    let of_other = [side(one, other[1]), side(one, other[2])];
-    let of_one = [side(other, one[1]), side(other, one[2])];
     let same_side = |signs: [Sign; 2]| signs[0] != Sign::Zero && signs[0] == signs[1];
-    if same_side(of_other) || same_side(of_one) {
+    let of_other = [side(one, other[1]), side(one, other[2])];
+    if same_side(of_other) {
         return false;
     }
+    let of_one = [side(other, one[1]), side(other, one[2])];
+    if same_side(of_one) {
+        return false;
+    }
+    let (Some(flat_one), Some(flat_other)) = (Flat::of(one), Flat::of(other)) else { return true };
     match of_other {
         [Sign::Zero, Sign::Zero] => !wedges_are_apart(&flat_one, [other[1], other[2]]),
         // One edge of the other lies in this plane; all else of it is on one side.
@@ -177,13 +184,16 @@ fn wedges_are_apart(one: &Flat, other: [DVec3; 2]) -> bool {
 
 /// Triangles with nothing in common.
 fn meet_apart(one: [DVec3; 3], other: [DVec3; 3]) -> bool {
-    let (Some(flat_one), Some(flat_other)) = (Flat::of(one), Flat::of(other)) else { return true };
-    let of_other = other.map(|corner| side(one, corner));
-    let of_one = one.map(|corner| side(other, corner));
     let one_side = |signs: [Sign; 3]| signs[0] != Sign::Zero && signs[0] == signs[1] && signs[1] == signs[2];
-    if one_side(of_other) || one_side(of_one) {
+    let of_other = other.map(|corner| side(one, corner));
+    if one_side(of_other) {
         return false;
     }
+    let of_one = one.map(|corner| side(other, corner));
+    if one_side(of_one) {
+        return false;
+    }
+    let (Some(flat_one), Some(flat_other)) = (Flat::of(one), Flat::of(other)) else { return true };
     if of_other == [Sign::Zero; 3] {
         return !flat_one.keeps_out(&other.map(|corner| flat_one.flat(corner)))
             && !flat_along(other, flat_one.axis).keeps_out(&flat_one.corners);
