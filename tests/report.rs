@@ -113,6 +113,40 @@ fn a_sweep_measures_every_value() {
     refused(&["map-size=64", "-t", "z-fail"], "no technique whose maps");
 }
 
+/// Where the scene moves, what each frame is set up in counts, and errors are those of all frames.
+#[test]
+fn frames_that_move_are_counted_with_their_set_up() {
+    let folder = folder();
+    let words = ["report", "tetrahedron", "--size", "80x60", "-t", "z-fail", "-t", "none", "--json", "m.json"];
+    let rows = |time: &str| {
+        let output = run(folder.path(), &[&words[..], &["--time", time]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let json = fs::read_to_string(folder.path().join("m.json")).expect("rows");
+        crate::help::assert_json_is_explained("report", &serde_json::from_str(&json).expect("JSON"));
+        Report::from_json(&json).expect("a report").rows
+    };
+    let [still, moving] = ["0.5", "0..1:4"].map(rows);
+    for (still, moving) in still.iter().zip(&moving) {
+        assert_eq!((still.technique.as_str(), still.moving), (moving.technique.as_str(), None));
+        let of_frame = moving.moving.expect("it moves");
+        assert!(of_frame.setup_ms > 0.0 && of_frame.total_ms > moving.frame_ms.min, "{of_frame:?}");
+        assert!((0.0..1.0).contains(&of_frame.setup_share) && moving.frame_ms.runs == 4);
+        assert!(moving.cost_ms() == of_frame.total_ms && still.cost_ms() == still.frame_ms.median);
+        // Of four frames.
+        assert!(moving.compared > 3 * still.compared, "{} of {}", moving.compared, still.compared);
+    }
+    let wrong = |technique: &str| {
+        moving.iter().find(|row| row.technique == technique && row.label.is_empty()).map(|row| row.wrong())
+    };
+    assert!(wrong("z-fail") == Some(0) && wrong("none") > Some(0));
+    let table = run(folder.path(), &[&words[..8], &["--time", "0..1:2"]].concat());
+    let table = text(&table.stdout);
+    assert!(table.contains("+ set-up") && table.contains("total") && table.contains("fps"), "{table}");
+    assert_fails(&["report", "tetrahedron", "--time", "2..1"], 2, &["low to high"]);
+    assert_fails(&["report", "tetrahedron", "--time", "0..1:0"], 2, &["frames from 1"]);
+    assert_fails(&["capture", "tetrahedron", "--time", "0..1", "-o", "out"], 2, &["for `report`", "one moment"]);
+}
+
 #[test]
 fn a_report_is_written_in_every_form() {
     let folder = folder();

@@ -83,7 +83,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<(), CliError> {
         notes += &write_folder(folder, &files)?;
     }
     if let Some(fix) = fix {
-        notes += &fix.write(&mut session, &loaded, scene_options.time, &request, &diagnosis, &suited)?;
+        notes += &fix.write(&mut session, &loaded, scene_options.moment()?, &request, &diagnosis, &suited)?;
     }
     if arguments.json.is_none() {
         output::print(&notes)?;

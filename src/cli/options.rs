@@ -4,7 +4,7 @@ use super::CliError;
 use crate::capture::disk;
 use crate::import::Shipped;
 use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, UpAxis, is_model, open};
-use crate::session::{CaptureRequest, Every, RunFrame, Session};
+use crate::session::{CaptureRequest, Every, Moments, RunFrame, Session};
 use crate::technique::{Choice, ChoiceError, Technique};
 use clap::Args;
 use glam::DVec3;
@@ -54,9 +54,33 @@ pub struct SceneOptions {
     /// A light that is switched off, counted as sentences count, from 1; repeatable
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub off: Vec<u32>,
-    /// The moment of an animated scene
-    #[arg(long, value_name = "SECONDS", value_parser = finite, default_value = "0", allow_hyphen_values = true)]
-    pub time: f64,
+    /// The moment of an animated scene; `report` also takes frames from A to B, A..B[:N], and counts the set-up of each
+    #[arg(long, value_name = "SECONDS", value_parser = when, default_value = "0", allow_hyphen_values = true)]
+    time: When,
+}
+
+/// When a scene is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum When {
+    /// At a moment, seconds.
+    At(f64),
+    /// From a moment to another, in so many frames.
+    Moving { from: f64, to: f64, frames: Option<usize> },
+}
+
+/// More frames than anybody waits for.
+const MOST_FRAMES: usize = 10_000;
+
+/// `SECONDS`, `A..B` or `A..B:N`.
+fn when(text: &str) -> Result<When, String> {
+    let Some((from, rest)) = text.split_once("..") else { return finite(text).map(When::At) };
+    let (to, frames) = rest.split_once(':').map_or((rest, None), |(to, frames)| (to, Some(frames)));
+    let frames = frames.map(|frames| frames.parse().ok().filter(|frames| (1..=MOST_FRAMES).contains(frames)));
+    match (finite(from), finite(to), frames) {
+        (Ok(from), Ok(to), None) if from < to => Ok(When::Moving { from, to, frames: None }),
+        (Ok(from), Ok(to), Some(Some(frames))) if from < to => Ok(When::Moving { from, to, frames: Some(frames) }),
+        _ => Err(format!("give seconds from low to high, and maybe frames from 1 to {MOST_FRAMES}, as `0..2:30`")),
+    }
 }
 
 /// How the picture is made.
@@ -94,7 +118,14 @@ impl SceneOptions {
         let SceneOptions { no_floor, z_up, eye, target, up, fov, near, far, light, sun, off, time } = self;
         let points = [eye, target, up].iter().all(|point| point.is_none());
         let numbers = [fov, near, far].iter().all(|number| number.is_none());
-        !no_floor && !z_up && points && numbers && light.is_empty() && sun.is_empty() && off.is_empty() && *time == 0.0
+        !no_floor
+            && !z_up
+            && points
+            && numbers
+            && light.is_empty()
+            && sun.is_empty()
+            && off.is_empty()
+            && *time == When::At(0.0)
     }
 
     /// Opens the scene and applies these options; the result stands still at `--time`.
@@ -102,7 +133,28 @@ impl SceneOptions {
     /// # Errors
     /// A scene that can't be opened; a camera or light that can't be used.
     pub fn open(&self, name: &str) -> Result<Scene, CliError> {
-        Ok(self.load(name)?.at(self.time))
+        Ok(self.load(name)?.at(self.moment()?))
+    }
+
+    /// The moment at which scenes are seen.
+    ///
+    /// # Errors
+    /// Frames from one to another were asked for.
+    pub fn moment(&self) -> Result<f64, CliError> {
+        match self.time {
+            When::At(seconds) => Ok(seconds),
+            When::Moving { .. } => {
+                Err(CliError::Usage("`--time A..B` is for `report`: give one moment, in seconds".to_owned()))
+            }
+        }
+    }
+
+    /// The frames that were asked for, `usual` ones where their number was not; `None` of one moment.
+    pub fn moments(&self, usual: usize) -> Option<Moments> {
+        match self.time {
+            When::At(_) => None,
+            When::Moving { from, to, frames } => Some(Moments { from, to, frames: frames.unwrap_or(usual) }),
+        }
     }
 
     /// The same, still at time 0, with all motions.
@@ -193,7 +245,7 @@ impl Subject {
         let shipped = Shipped::named(name).filter(|_| !is_capture);
         if !is_capture && shipped.is_none() {
             let loaded = scene.load(name)?;
-            let at = loaded.at(scene.time);
+            let at = loaded.at(scene.moment()?);
             let request = frame.request(&at)?;
             return Ok(Subject::Scene(Box::new(SceneSubject { loaded, scene: at, request })));
         }

@@ -9,7 +9,7 @@ use crate::progress::Progress;
 use crate::report::{Report, Row};
 use crate::scene::Scene;
 use crate::scene::builtin::Builtin;
-use crate::session::{Block, Measurement, Session, Sweep, report_rows};
+use crate::session::{Block, Measurement, Moments, Session, Sweep, report_rows};
 use crate::shards::{Part, Shard};
 use crate::technique::{Choice, Technique};
 use clap::{Args, Subcommand};
@@ -66,7 +66,10 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
         return merge::run(arguments, command);
     }
     let choices = choices(arguments)?;
-    let open = |name: &String| arguments.scene_options.open(name);
+    let open = |name: &String| match arguments.scene_options.moments(1) {
+        Some(_) => arguments.scene_options.load(name),
+        None => arguments.scene_options.open(name),
+    };
     let scenes = arguments.scenes.iter().map(open).collect::<Result<Vec<Scene>, _>>()?;
     let targets = arguments.results.targets();
     check_no_scene(&results::files(&targets.each_ref(), &arguments.results.plot), &arguments.scenes)?;
@@ -90,12 +93,19 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
             continue;
         }
         let bar = swept.as_ref().map_or_else(|| name.clone(), |swept| format!("{name}, {} {}", swept.name, swept.text));
-        let measured = with_bar(&bar, &Progress::default(), |progress| session.measure(scene, &ours, progress))?;
+        let moments = arguments.scene_options.moments(what.runs);
+        let measured = with_bar(&bar, &Progress::default(), |progress| match moments {
+            Some(moments) => session.measure_moving(scene, &ours, moments, progress),
+            None => session.measure(scene, &ours, progress),
+        })?;
         let of_block = report_rows(name, &ours, &measured, &what.choices);
         rows.extend(of_block.into_iter().map(|row| Row { sweep: swept.clone(), ..row }));
     }
     let part = arguments.shard.map(|shard| {
-        let how = format!("stencilscope {} report, {} timed frames", env!("CARGO_PKG_VERSION"), arguments.runs);
+        let moments = arguments.scene_options.moments(usize::from(arguments.runs));
+        let moving = moments
+            .map_or_else(String::new, |Moments { from, to, frames }| format!(", {frames} from {from} to {to} s"));
+        let how = format!("stencilscope {} report, {} timed frames{moving}", env!("CARGO_PKG_VERSION"), arguments.runs);
         Part::new(shard, places, how, blocks.iter().flat_map(names_of))
     });
     let report = Report { part, ..Report::new(session.adapter().clone(), rows) };

@@ -119,7 +119,7 @@ pub mod window {
             source: ViewSource::Scene(Box::new(loaded)),
             name: scene.spec(name),
             capture,
-            time: scene.time,
+            time: scene.moment()?,
             adapter: frame.adapter.clone(),
             step: None,
             pick: None,

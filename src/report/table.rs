@@ -1,6 +1,6 @@
 //! The report as text: a table for the terminal, and one in Markdown.
 
-use super::{Report, Row};
+use super::{Moving, Report, Row};
 use crate::numbers::{count, mebibytes, per_hundred};
 
 /// Between columns.
@@ -108,6 +108,15 @@ fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
         numbers("triangles", &|row| count(row.triangles)),
         numbers("MiB", &|row| mebibytes(row.bytes)),
     ];
+    if rows.iter().any(|row| row.moving.is_some()) {
+        let of = |part: fn(&Moving) -> f64| move |row: &Row| row.moving.as_ref().map_or(f64::NAN, part);
+        let (setup, total) = (of(|moving| moving.setup_ms), of(|moving| moving.total_ms));
+        columns.insert(9, numbers("+ set-up", &|row| times(setup(row))));
+        columns.insert(10, numbers("total", &|row| times(total(row))));
+        columns.insert(11, numbers("fps", &fps));
+        // Over frames of a motion it says little.
+        columns.remove(8);
+    }
     if let Some(name) = swept_name(rows) {
         columns.insert(3, numbers(heading(name), &swept_text));
         columns.insert(9, numbers("fps", &fps));

@@ -23,6 +23,7 @@ pub(crate) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64
         wrong_fraction: 0.0,
         frame_ms: FrameTimes { median: ms, min: ms - 0.1, max: ms + 0.3, runs: 9 },
         gpu_ms: None,
+        moving: None,
         setup_ms: 12.5,
         triangles: 5000,
         bytes: 2 << 20,

@@ -25,6 +25,25 @@ pub struct Measurement {
     pub runs: usize,
 }
 
+/// Frames of a scene that moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moments {
+    /// Seconds after the start: the frame before those that count.
+    pub from: f64,
+    /// Seconds after the start: the last frame.
+    pub to: f64,
+    /// How many count, in even steps.
+    pub frames: usize,
+}
+
+impl Moments {
+    /// The seconds of each frame that counts.
+    fn all(self) -> impl Iterator<Item = f64> {
+        let Moments { from, to, frames } = self;
+        (1..=frames).map(move |frame| from + (to - from) * frame as f64 / frames as f64)
+    }
+}
+
 /// How one technique did.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
@@ -39,6 +58,8 @@ pub struct Measured {
     pub gpu_ms: Option<f64>,
     /// Planning, geometry, pipelines and uploads of this technique.
     pub setup_ms: f64,
+    /// What each frame of a scene that moves was set up in, of `frames` one each; empty where nothing moves.
+    pub setups: Vec<Duration>,
     /// Submitted in a frame.
     pub triangles: u64,
     /// GPU memory of attachments, vertices and indices.
@@ -125,6 +146,61 @@ impl Session {
         Ok(measured)
     }
 
+    /// Measures every choice on a scene that moves: what a frame must be set up with anew is timed beside it, and what lasts
+    /// from frame to frame is kept, by each choice for itself. Errors are those of all frames together.
+    ///
+    /// # Errors
+    /// As [`Session::measure`].
+    pub fn measure_moving(
+        &mut self,
+        scene: &Scene,
+        what: &Measurement,
+        moments: Moments,
+        progress: &Progress,
+    ) -> Result<Vec<Measured>, SessionError> {
+        progress.start(what.choices.len() * (moments.frames + 1));
+        let first = scene.at(moments.from);
+        let traced = self.traced(&first, what.size, &Progress::default())?;
+        let mut moving = Vec::with_capacity(what.choices.len());
+        for (item, choice) in what.choices.iter().enumerate() {
+            progress.turn_to(item);
+            if let Some(measured) = self.first_frame(&first, what, choice, &traced)? {
+                let measured = Measured { error: ErrorCounts::default(), ..measured };
+                moving.push((item, measured, GeometryCache::default()));
+            }
+            progress.advance();
+        }
+        // What lasts is there before the first frame that counts.
+        for (_, measured, cache) in &mut moving {
+            let plan = technique::plan(Job { scene: &first, size: what.size, choice: &measured.choice, cache })?;
+            let plan = self.without_unseen(plan, &measured.choice)?;
+            let ready = self.executor.prepare(&plan)?;
+            self.executor.time(&ready, false)?;
+        }
+        for seconds in moments.all() {
+            let scene = scene.at(seconds);
+            let traced = self.traced(&scene, what.size, &Progress::default())?;
+            for (item, measured, cache) in &mut moving {
+                progress.turn_to(*item);
+                if progress.is_cancelled() {
+                    return Err(SessionError::Cancelled);
+                }
+                let start = Instant::now();
+                let plan = technique::plan(Job { scene: &scene, size: what.size, choice: &measured.choice, cache })?;
+                let plan = self.without_unseen(plan, &measured.choice)?;
+                let ready = self.executor.prepare(&plan)?;
+                measured.setups.push(start.elapsed());
+                measured.frames.push(self.executor.time(&ready, false)?);
+                let labels = self.executor.labels(ready)?;
+                let labels = labels.iter().enumerate();
+                let errors = labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts));
+                measured.error = std::iter::once(measured.error).chain(errors).sum();
+                progress.advance();
+            }
+        }
+        Ok(moving.into_iter().map(|(_, measured, _)| measured).collect())
+    }
+
     /// Sets a choice up from nothing and judges its first frame; `None` where it is left out. Nothing is kept from
     /// one to the next, so that none is set up at another's cost.
     fn first_frame(
@@ -149,7 +225,7 @@ impl Session {
         let labels = labels.iter().enumerate();
         let error = labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
         let (choice, frames) = (choice.clone(), Vec::with_capacity(what.runs));
-        Ok(Some(Measured { choice, error, frames, gpu_ms: None, setup_ms, triangles, bytes }))
+        Ok(Some(Measured { choice, error, frames, gpu_ms: None, setup_ms, setups: Vec::new(), triangles, bytes }))
     }
 
     /// The plans of those that stay set up for all of their frames: the smallest first, until [`KEPT_BYTES`] are

@@ -1,9 +1,10 @@
 //! Measurements as rows of a report.
 
 use super::{Measured, Measurement, median_ms, milliseconds};
-use crate::report::{FrameTimes, Row};
+use crate::report::{FrameTimes, Moving, Row};
 use crate::technique::Choice;
 use std::collections::BTreeSet;
+use std::time::Duration;
 
 /// Rows of one scene, in the order measured, labelled by what sets them apart `among` all choices of the run;
 /// [`Report::new`](crate::report::Report::new) fills in what depends on the other rows.
@@ -30,6 +31,7 @@ pub fn report_rows(scene: &str, what: &Measurement, measured: &[Measured], among
                 max: frames.iter().copied().fold(f64::NAN, f64::max),
                 runs: frames.len() as u32,
             },
+            moving: moving(one),
             gpu_ms: one.gpu_ms,
             setup_ms: one.setup_ms,
             triangles: one.triangles,
@@ -38,6 +40,15 @@ pub fn report_rows(scene: &str, what: &Measurement, measured: &[Measured], among
         }
     };
     measured.iter().map(row).collect()
+}
+
+/// What a frame of a scene that moves took, with its set-up.
+fn moving(one: &Measured) -> Option<Moving> {
+    let ms = |all: &[Duration]| median_ms(all);
+    let totals: Vec<Duration> = one.setups.iter().zip(&one.frames).map(|(setup, frame)| *setup + *frame).collect();
+    let (setup_ms, total_ms) = (ms(&one.setups)?, ms(&totals)?);
+    let all = |times: &[Duration]| times.iter().sum::<Duration>().as_secs_f64();
+    Some(Moving { setup_ms, total_ms, setup_share: all(&one.setups) / all(&totals) })
 }
 
 /// What sets a choice apart from others of its technique: its size, and other settings that differ

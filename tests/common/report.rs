@@ -23,6 +23,7 @@ fn row(scene: &str, technique: &str, label: &str, settings: &[(&str, &str)], wro
         wrong_fraction: 0.0,
         frame_ms: FrameTimes { median: ms, min: ms * (1.0 - spread), max: ms * (1.0 + 2.5 * spread), runs: 15 },
         gpu_ms: Some(ms * 0.93),
+        moving: None,
         setup_ms: 4.0 + ms,
         triangles: (ms * 1900.0) as u64,
         bytes: (ms * 1.1e6) as u64,
