@@ -6,9 +6,7 @@
 fn arriving(surface: Surface) -> vec4f {
     var arriving = vec4f(1.0);
     for (var layer = 0u; layer < light.face_count; layer++) {
-        if layer != draw.layer {
-            arriving *= through(layer, surface.relative);
-        }
+        arriving *= select(through(layer, surface.relative), vec4f(1.0), layer == draw.layer);
     }
     return arriving;
 }

@@ -4,10 +4,9 @@
 @group(3) @binding(2) var smooth_sampler: sampler;
 
 fn arriving(surface: Surface) -> vec4f {
-    if draw.layer == NO_LAYER {
-        return vec4f(1.0);
-    }
-    let clip = light.clip_from_relative[draw.layer] * vec4f(surface.relative, 1.0);
+    let has_none = draw.layer == NO_LAYER;
+    let layer = select(draw.layer, 0u, has_none);
+    let clip = light.clip_from_relative[layer] * vec4f(surface.relative, 1.0);
     let place = clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5;
-    return textureSampleLevel(textures, smooth_sampler, place, draw.layer, 0.0);
+    return select(textureSampleLevel(textures, smooth_sampler, place, layer, 0.0), vec4f(1.0), has_none);
 }

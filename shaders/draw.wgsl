@@ -6,8 +6,7 @@ struct DrawConstants {
     // Strength and Blinn-Phong exponent of the highlight.
     specular: f32,
     shininess: f32,
-    // 0 flat, 1 Gouraud, 2 Phong.
-    shading: u32,
+    unused: u32,
     // What a label draw writes.
     label: u32,
     // First plus last triangle where triangles run in reverse order, else NOT_REVERSED.
@@ -32,12 +31,15 @@ struct DrawConstants {
 
 const NO_LAYER: u32 = 0xffffffffu;
 
-// Storage, not uniform: see `uniforms.rs`.
-@group(1) @binding(0) var<storage, read> draw: DrawConstants;
+// No condition reads it: see `uniforms.rs`.
+@group(1) @binding(0) var<uniform> draw: DrawConstants;
+
+// What a pipeline's draws have; see `specialization.rs`.
+override has_checks: bool = true;
 
 // How much of its colour a surface has at a place relative to the eye: a third in every other check.
 fn in_checks(relative: vec3f) -> f32 {
-    if draw.checks == 0.0 {
+    if !has_checks {
         return 1.0;
     }
     let place = floor((relative.xz + draw.checks_from) / draw.checks);

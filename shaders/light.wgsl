@@ -11,10 +11,10 @@ fn fs_light(surface: Surface) -> @location(0) vec4f {
 // `share`: how much of its colour the surface has there.
 fn added(surface: Surface, share: vec3f) -> vec3f {
     // Wrapped light reaches round the edge; Lambert's ends there, and exact signs say where.
-    if faces_away(surface.sides) && light.wraps == 0u {
+    if !wraps && faces_away(surface.sides) {
         return vec3f(0.0);
     }
-    if draw.shading == GOURAUD {
+    if is_gouraud {
         return surface.diffuse * share + surface.gloss;
     }
     let light_here = light_on(surface.relative, normalize(surface.normal));

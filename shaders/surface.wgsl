@@ -1,7 +1,6 @@
 // Surfaces with what shading and labels need.
 
 const NOT_REVERSED: u32 = 0xffffffffu;
-const GOURAUD: u32 = 1u;
 const SEES_BACK: u32 = 0x80000000u;
 // Labels.
 const LIT: u32 = 0u;
@@ -17,8 +16,7 @@ struct Light {
     range: f32,
     // Which bit of a triangle's sides is its.
     index: u32,
-    // Lambert's diffuse, or wrapped.
-    wraps: u32,
+    unused: u32,
     // Faces of its map, and what their depth was cleared to: 0 where depth is reversed.
     face_count: u32,
     map_clear: f32,
@@ -34,8 +32,12 @@ struct Light {
     clip_from_relative: array<mat4x4f, 64>,
 }
 
-// Storage, not uniform: see `uniforms.rs`.
-@group(3) @binding(0) var<storage, read> light: Light;
+// What a pipeline's draws and light have; see `specialization.rs`.
+override is_gouraud: bool = true;
+override has_gloss: bool = true;
+override fades: bool = true;
+override wraps: bool = true;
+override is_depth_clamped: bool = true;
 
 struct Surface {
     @invariant @builtin(position) clip: vec4f,
@@ -55,10 +57,8 @@ fn vs_surface(@builtin(vertex_index) vertex_index: u32) -> Surface {
 }
 
 fn surface_at(vertex_index: u32) -> Surface {
-    var triangle = vertex_index / 3u;
-    if draw.reversed_sum != NOT_REVERSED {
-        triangle = draw.reversed_sum - triangle;
-    }
+    let in_order = vertex_index / 3u;
+    let triangle = select(draw.reversed_sum - in_order, in_order, draw.reversed_sum == NOT_REVERSED);
     let corner = triangle * 3u + vertex_index % 3u;
     let relative = positions[corners[corner]];
     var out: Surface;
@@ -67,7 +67,7 @@ fn surface_at(vertex_index: u32) -> Surface {
     out.sides = sides[triangle];
     let normal = normals[corner].xyz;
     out.normal = select(normal, -normal, (out.sides & SEES_BACK) != 0u);
-    if draw.shading == GOURAUD {
+    if is_gouraud {
         let light_here = light_on(out.relative, out.normal);
         out.diffuse = light_here.diffuse;
         out.gloss = light_here.gloss;
@@ -77,7 +77,7 @@ fn surface_at(vertex_index: u32) -> Surface {
 
 // Clamped depth is 1 beyond the far plane, which is also what nothing was drawn at.
 fn is_beyond_far(surface: Surface) -> bool {
-    return surface.clip.z > 1.0;
+    return is_depth_clamped && surface.clip.z > 1.0;
 }
 
 fn faces_away(surface_sides: u32) -> bool {
@@ -95,15 +95,18 @@ fn light_on(relative: vec3f, normal: vec3f) -> LightOn {
     let to_light = light.position.xyz - relative * light.position.w;
     let direction = normalize(to_light);
     let cosine = dot(normal, direction);
-    let diffuse = select(max(cosine, 0.0), 0.5 * cosine + 0.5, light.wraps != 0u);
+    let diffuse = select(max(cosine, 0.0), 0.5 * cosine + 0.5, wraps);
+    let arriving = light.color * falloff(length(to_light));
+    if !has_gloss {
+        return LightOn(arriving * draw.color * diffuse, vec3f(0.0));
+    }
     let halfway = normalize(direction + normalize(view.eye.xyz - relative * view.eye.w));
     let gloss = select(0.0, draw.specular * pow(max(dot(normal, halfway), 0.0), draw.shininess), cosine > 0.0);
-    let arriving = light.color * falloff(length(to_light));
     return LightOn(arriving * draw.color * diffuse, arriving * gloss);
 }
 
 fn falloff(distance: f32) -> f32 {
-    if light.range == 0.0 || light.position.w == 0.0 {
+    if !fades {
         return 1.0;
     }
     let inside = max(1.0 - distance * distance / (light.range * light.range), 0.0);

@@ -5,7 +5,7 @@ fn fs_through(surface: Surface) -> @location(0) vec4f {
     if is_beyond_far(surface) {
         discard;
     }
-    if faces_away(surface.sides) && light.wraps == 0u {
+    if !wraps && faces_away(surface.sides) {
         return vec4f(1.0);
     }
     return vec4f(through(draw.layer, surface.relative).rgb, 1.0);

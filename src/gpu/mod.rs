@@ -29,6 +29,7 @@ mod prepared;
 mod queries;
 mod readback;
 mod shaders;
+mod specialization;
 mod start;
 mod uniforms;
 

@@ -4,6 +4,7 @@
 //! programs that read them, its map or labels. A program has only the groups it uses.
 
 use super::shaders::{Form, Shader, source_of};
+use super::specialization::Specialization;
 use crate::plan::{ColorWrite, RasterState, Visibility};
 use std::collections::HashMap;
 use wgpu::{
@@ -17,6 +18,7 @@ use wgpu::{
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineKey {
     pub shader: Shader,
+    pub specialization: Specialization,
     /// Its reference is set by the pass, and 0 here.
     pub raster: RasterState,
     pub color_format: Option<TextureFormat>,
@@ -127,10 +129,10 @@ impl Pipelines {
         };
         let positions = Some(VertexBufferLayout { array_stride, step_mode: wgpu::VertexStepMode::Vertex, attributes });
         let color_target = key.color_format.map(|format| color_target(format, key.raster.color));
-        let compilation_options = wgpu::PipelineCompilationOptions::default();
         let is_recorded = program.is_recorded();
-        let constants = key.depth_steps.map(|steps| ("steps", f64::from(steps)));
-        let constants = constants.as_slice();
+        let specialized = key.specialization.constants(program);
+        let steps = key.depth_steps.map(|steps| ("steps", f64::from(steps)));
+        let options = |constants| wgpu::PipelineCompilationOptions { constants, ..Default::default() };
         // Floats are stored as they are.
         let fragment = match key.shader.form {
             Form::Kept if key.depth_steps.is_some() => Some("fs_recorded_kept_steps"),
@@ -143,7 +145,7 @@ impl Pipelines {
             vertex: VertexState {
                 module,
                 entry_point: Some(source.vertex),
-                compilation_options: compilation_options.clone(),
+                compilation_options: options(&specialized),
                 buffers: if key.shader.pulls_vertices() { &[] } else { std::slice::from_ref(&positions) },
             },
             primitive: wgpu::PrimitiveState {
@@ -157,7 +159,7 @@ impl Pipelines {
             fragment: fragment.map(|entry_point| FragmentState {
                 module,
                 entry_point: Some(entry_point),
-                compilation_options: wgpu::PipelineCompilationOptions { constants, ..compilation_options },
+                compilation_options: options(if is_recorded { steps.as_slice() } else { &specialized }),
                 targets: if is_recorded { &[] } else { std::slice::from_ref(&color_target) },
             }),
             multiview_mask: None,
@@ -197,7 +199,8 @@ impl Layouts {
     fn new(device: &Device) -> Layouts {
         let both = ShaderStages::VERTEX_FRAGMENT;
         let uniform = |binding| entry(binding, both, BufferBindingType::Uniform, true);
-        let constants = |binding| entry(binding, both, BufferBindingType::Storage { read_only: true }, true);
+        // Of programs that branch on them: see `uniforms.rs`.
+        let branched_on = |binding| entry(binding, both, BufferBindingType::Storage { read_only: true }, true);
         let storage =
             |binding| entry(binding, ShaderStages::VERTEX, BufferBindingType::Storage { read_only: true }, false);
         let texture = |sample_type, view_dimension| BindGroupLayoutEntry {
@@ -224,7 +227,7 @@ impl Layouts {
         };
         Layouts {
             view: layout("view", &[uniform(0)]),
-            draw: layout("draw", &[constants(0)]),
+            draw: layout("draw", &[uniform(0)]),
             surface: layout("surface", &[storage(0), storage(1), storage(2), storage(3)]),
             textured_surface: layout(
                 "textured surface",
@@ -234,11 +237,11 @@ impl Layouts {
                 "kept fragments",
                 &[entry(0, ShaderStages::FRAGMENT, BufferBindingType::Storage { read_only: true }, false)],
             ),
-            light: layout("light", &[constants(0)]),
-            light_with_map: layout("light with map", &[constants(0), map]),
-            light_with_labels: layout("light with labels", &[constants(0), labels]),
-            light_with_count: layout("light with count", &[constants(0), count]),
-            light_with_textures: layout("light with textures", &[constants(0), textures, sampler]),
+            light: layout("light", &[uniform(0)]),
+            light_with_map: layout("light with map", &[branched_on(0), map]),
+            light_with_labels: layout("light with labels", &[uniform(0), labels]),
+            light_with_count: layout("light with count", &[uniform(0), count]),
+            light_with_textures: layout("light with textures", &[branched_on(0), textures, sampler]),
         }
     }
 

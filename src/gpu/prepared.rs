@@ -7,6 +7,7 @@ use super::pictures::Pictures;
 use super::pipelines::{Layouts, PipelineKey, Pipelines};
 use super::readback::{Change, StagedPass, Staging, color_change, depth_change, stencil_change};
 use super::shaders::{Form, Shader};
+use super::specialization::Specialization;
 use super::uniforms::{self, UniformArray};
 use super::{Context, GpuError, start};
 use crate::plan::{
@@ -104,9 +105,11 @@ impl<'a> Prepared<'a> {
                 let states = draw.raster.by_face();
                 let mesh = &plan.meshes[draw.mesh.0];
                 let shader = Shader::of(draw, mesh);
+                let light = pass.light.map(|light| &plan.lights[light.0]);
+                let specialization = Specialization::of(draw, light, plan.wraps_diffuse);
                 let of_state = |raster: &RasterState| {
-                    let reference = raster.stencil_reference;
-                    (pipelines.get(device, &key_of(plan, pass, shader, raster)), reference)
+                    let key = PipelineKey { specialization, ..key_of(plan, pass, shader, raster) };
+                    (pipelines.get(device, &key), raster.stencil_reference)
                 };
                 let states = states.iter().map(of_state).collect();
                 let vertices = match &mesh.extruded {
@@ -302,6 +305,7 @@ fn key_of(plan: &FramePlan, pass: &Pass, shader: Shader, raster: &RasterState) -
     let depth_stencil = pass.depth_stencil.as_ref().map(|target| plan.attachment(target.attachment));
     PipelineKey {
         shader,
+        specialization: Specialization::default(),
         raster: RasterState { stencil_reference: 0, ..raster.clone() },
         color_format: pass.color.as_ref().map(|target| plan.attachment(target.attachment).format),
         depth_format: depth_stencil.map(Attachment::held_format),

@@ -1,11 +1,12 @@
 //! The plan's small values as the shaders' structs, packed into one buffer each.
 //!
-//! Those of draws and lights, which shaders branch on, are storage buffers. Were they uniform, lavapipe (Mesa 22.3)
-//! would put their values into the shader and compile it anew for every draw whose values differ, and keep what it
-//! compiled until the process ends: 5 MB and tens of milliseconds a frame of `tori`. It does not look into storage.
+//! Shaders must not branch on those that are uniform: lavapipe (Mesa 22.3) would put their values into the shader and
+//! compile it anew for every draw whose values differ, and keep what it compiled until the process ends: 5 MB and tens of
+//! milliseconds a frame of `tori`. What sets draws apart is therefore a part of their pipeline (`specialization.rs`), or
+//! chosen with `select`. Programs that look up maps branch on their light: for them it is storage, which lavapipe does not
+//! look into, but whose values it fetches pixel by pixel.
 
 use crate::plan::{Carry, Draw, FramePlan, Pass, PlanLight, PlanMap, Program};
-use crate::scene::Shading;
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
@@ -31,7 +32,7 @@ struct DrawUniform {
     color: [f32; 3],
     specular: f32,
     shininess: f32,
-    shading: u32,
+    unused: u32,
     label: u32,
     reversed_sum: u32,
     flat: [f32; 4],
@@ -54,7 +55,7 @@ struct LightUniform {
     color: [f32; 3],
     range: f32,
     index: u32,
-    wraps: u32,
+    unused: u32,
     face_count: u32,
     map_clear: f32,
     bias_normal: f32,
@@ -125,7 +126,7 @@ pub(super) fn draws(device: &Device, plan: &FramePlan) -> UniformArray {
         let carry = |draw: &Draw| plan.meshes.get(draw.mesh.0)?.extruded.as_ref().map(|extruded| extruded.carry);
         pass.draws.iter().map(|draw| draw_uniform(draw, map, carry(draw))).collect::<Vec<_>>()
     };
-    UniformArray::new(device, "draws", &plan.passes.iter().flat_map(of_pass).collect::<Vec<_>>(), BufferUsages::STORAGE)
+    UniformArray::new(device, "draws", &plan.passes.iter().flat_map(of_pass).collect::<Vec<_>>(), BufferUsages::UNIFORM)
 }
 
 fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> DrawUniform {
@@ -137,11 +138,7 @@ fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> Dra
         color: material.color,
         specular: material.specular,
         shininess: material.shininess,
-        shading: match material.shading {
-            Shading::Flat => 0,
-            Shading::Gouraud => 1,
-            Shading::Phong => 2,
-        },
+        unused: 0,
         label: draw.constants.label,
         flat: draw.constants.flat,
         count: draw.constants.count,
@@ -160,11 +157,11 @@ fn draw_uniform(draw: &Draw, map: Option<&PlanMap>, carry: Option<Carry>) -> Dra
 
 pub(super) fn lights(device: &Device, plan: &FramePlan) -> UniformArray {
     let lights = plan.lights.iter().enumerate();
-    let uniforms = lights.map(|(index, light)| light_uniform(index, light, plan.wraps_diffuse));
-    UniformArray::new(device, "lights", &uniforms.collect::<Vec<_>>(), BufferUsages::STORAGE)
+    let uniforms = lights.map(|(index, light)| light_uniform(index, light));
+    UniformArray::new(device, "lights", &uniforms.collect::<Vec<_>>(), BufferUsages::UNIFORM | BufferUsages::STORAGE)
 }
 
-fn light_uniform(index: usize, light: &PlanLight, wraps: bool) -> LightUniform {
+fn light_uniform(index: usize, light: &PlanLight) -> LightUniform {
     let lookup = light.map.as_ref().and_then(|map| map.lookup);
     let mut clip_from_relative = [[0.0; 16]; PlanMap::MOST_FACES];
     // In the order of the texture's layers. What lies in a face that is left out lies in none.
@@ -180,7 +177,7 @@ fn light_uniform(index: usize, light: &PlanLight, wraps: bool) -> LightUniform {
         color: light.color,
         range: light.range.unwrap_or(0.0),
         index: index as u32,
-        wraps: u32::from(wraps),
+        unused: 0,
         face_count,
         map_clear: lookup.map_or(0.0, |lookup| lookup.clear_depth),
         bias_normal: lookup.map_or(0.0, |lookup| lookup.bias_normal),

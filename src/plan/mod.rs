@@ -449,6 +449,12 @@ pub enum Visibility {
 }
 
 impl Visibility {
+    /// Shaders branch on what the light's map is like.
+    #[must_use]
+    pub(crate) fn branches_on_light(self) -> bool {
+        matches!(self, Visibility::Map | Visibility::ReceiverTexture | Visibility::Projected)
+    }
+
     /// Every one.
     pub const ALL: [Visibility; 6] = [
         Visibility::Everywhere,

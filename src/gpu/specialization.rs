@@ -1,0 +1,72 @@
+//! What a draw's shader need not do: its pipeline is made without (specialization constants, `override` in WGSL).
+//!
+//! A software driver runs both sides of a condition for every pixel, and a `discard` that may come keeps it from testing
+//! depth and stencil before it shades. So what a material, a light or a depth mapping never asks for is not in the
+//! pipeline.
+
+use crate::plan::{Draw, PlanLight, Program};
+use crate::scene::Shading;
+
+/// What the draws of a pipeline have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub(super) struct Specialization {
+    /// A pattern of checks.
+    has_checks: bool,
+    /// A highlight.
+    has_gloss: bool,
+    /// Lit at its vertices.
+    is_gouraud: bool,
+    /// The light fades to nothing somewhere.
+    fades: bool,
+    /// Diffuse light reaches round the edge.
+    wraps: bool,
+    /// Depth is clamped: fragments beyond the far plane come, too.
+    is_depth_clamped: bool,
+}
+
+impl Specialization {
+    /// Of a draw under the light of its pass.
+    pub fn of(draw: &Draw, light: Option<&PlanLight>, wraps_diffuse: bool) -> Specialization {
+        let material = &draw.constants.material;
+        let has_checks = material.checks != 0.0;
+        let of_surface = Specialization {
+            fades: light.is_some_and(|light| light.range.is_some() && light.relative_position[3] != 0.0),
+            is_depth_clamped: draw.raster.unclipped_depth,
+            ..Specialization::default()
+        };
+        match draw.program {
+            Program::Light(_) => Specialization {
+                has_checks,
+                has_gloss: material.specular != 0.0,
+                is_gouraud: material.shading == Shading::Gouraud,
+                wraps: wraps_diffuse,
+                ..of_surface
+            },
+            Program::Label(_) => of_surface,
+            Program::Through => Specialization { wraps: wraps_diffuse, fades: false, ..of_surface },
+            Program::Ambient { .. } => Specialization { has_checks, ..Specialization::default() },
+            Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Recorded { .. } => {
+                Specialization::default()
+            }
+        }
+    }
+
+    /// The constants of a program's shader, by their names in WGSL.
+    pub fn constants(self, program: Program) -> Vec<(&'static str, f64)> {
+        let Specialization { has_checks, has_gloss, is_gouraud, fades, wraps, is_depth_clamped } = self;
+        let of_surface = [
+            ("has_checks", has_checks),
+            ("has_gloss", has_gloss),
+            ("is_gouraud", is_gouraud),
+            ("fades", fades),
+            ("wraps", wraps),
+            ("is_depth_clamped", is_depth_clamped),
+        ];
+        let count = match program {
+            Program::Light(_) | Program::Label(_) | Program::Through => of_surface.len(),
+            Program::Ambient { .. } => 1,
+            Program::Position | Program::Flat | Program::FlatLabel | Program::Count | Program::Recorded { .. } => 0,
+        };
+        of_surface[..count].iter().map(|(name, value)| (*name, f64::from(u8::from(*value)))).collect()
+    }
+}
