@@ -4,7 +4,7 @@ use super::CliError;
 use crate::capture::disk;
 use crate::import::Shipped;
 use crate::scene::{Light, OpenSpec, Scene, TechniqueRequest, UpAxis, is_model, open};
-use crate::session::{CaptureRequest, Every, Moments, RunFrame, Session};
+use crate::session::{CaptureRequest, Every, Moments, Moves, RunFrame, Session};
 use crate::technique::{Choice, ChoiceError, Technique};
 use clap::Args;
 use glam::DVec3;
@@ -150,10 +150,10 @@ impl SceneOptions {
     }
 
     /// The frames that were asked for, `usual` ones where their number was not; `None` of one moment.
-    pub fn moments(&self, usual: usize) -> Option<Moments> {
+    pub fn moments(&self, moves: Moves, usual: usize) -> Option<Moments> {
         match self.time {
             When::At(_) => None,
-            When::Moving { from, to, frames } => Some(Moments { from, to, frames: frames.unwrap_or(usual) }),
+            When::Moving { from, to, frames } => Some(Moments { moves, from, to, frames: frames.unwrap_or(usual) }),
         }
     }
 

@@ -7,9 +7,9 @@ use super::report_results::ReportResults;
 use super::{CliError, results};
 use crate::progress::Progress;
 use crate::report::{Report, Row};
-use crate::scene::Scene;
+use crate::scene::{Scene, suggestion};
 use crate::scene::builtin::Builtin;
-use crate::session::{Block, Measurement, Moments, Session, Sweep, report_rows};
+use crate::session::{Block, Measurement, Moments, Moves, Session, Sweep, report_rows};
 use crate::shards::{Part, Shard};
 use crate::technique::{Choice, Technique};
 use clap::{Args, Subcommand};
@@ -37,6 +37,10 @@ pub struct ReportArguments {
     /// Timed frames of each row
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000), default_value = "9")]
     runs: u16,
+    /// What moves in the frames of `--time A..B`: `scene` as it is made to, its first `light` or the `eye` round what the
+    /// camera looks at, or `nothing` after the first
+    #[arg(long, value_name = "WHAT", value_parser = moves, default_value = "scene")]
+    moves: Moves,
     /// Each scene at several values of `size`, `lights`, `casters`, `triangles` or `map-size`: `a,b,c` or `a..b`
     #[arg(long, value_name = "NAME=VALUES")]
     sweep: Option<Sweep>,
@@ -66,7 +70,7 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
         return merge::run(arguments, command);
     }
     let choices = choices(arguments)?;
-    let open = |name: &String| match arguments.scene_options.moments(1) {
+    let open = |name: &String| match arguments.moments() {
         Some(_) => arguments.scene_options.load(name),
         None => arguments.scene_options.open(name),
     };
@@ -93,7 +97,7 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
             continue;
         }
         let bar = swept.as_ref().map_or_else(|| name.clone(), |swept| format!("{name}, {} {}", swept.name, swept.text));
-        let moments = arguments.scene_options.moments(what.runs);
+        let moments = arguments.moments();
         let measured = with_bar(&bar, &Progress::default(), |progress| match moments {
             Some(moments) => session.measure_moving(scene, &ours, moments, progress),
             None => session.measure(scene, &ours, progress),
@@ -102,14 +106,26 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
         rows.extend(of_block.into_iter().map(|row| Row { sweep: swept.clone(), ..row }));
     }
     let part = arguments.shard.map(|shard| {
-        let moments = arguments.scene_options.moments(usize::from(arguments.runs));
-        let moving = moments
-            .map_or_else(String::new, |Moments { from, to, frames }| format!(", {frames} from {from} to {to} s"));
+        let moving = arguments.moments().map_or_else(String::new, |Moments { moves, from, to, frames }| {
+            format!(", {frames} from {from} to {to} s, {} moves", moves.name())
+        });
         let how = format!("stencilscope {} report, {} timed frames{moving}", env!("CARGO_PKG_VERSION"), arguments.runs);
         Part::new(shard, places, how, blocks.iter().flat_map(names_of))
     });
     let report = Report { part, ..Report::new(session.adapter().clone(), rows) };
     arguments.results.deliver(command, &report)
+}
+
+impl ReportArguments {
+    /// The frames of a motion that are asked for; `None` of scenes that stand still.
+    fn moments(&self) -> Option<Moments> {
+        self.scene_options.moments(self.moves, usize::from(self.runs))
+    }
+}
+
+fn moves(name: &str) -> Result<Moves, String> {
+    let names = Moves::ALL.map(Moves::name);
+    Moves::from_name(name).ok_or_else(|| suggestion(name, &names))
 }
 
 /// What is measured of a scene: once, or at each value of a sweep.

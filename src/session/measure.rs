@@ -8,6 +8,7 @@ use crate::plan::FramePlan;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::technique::{self, Choice, Job};
+use glam::DQuat;
 use std::time::{Duration, Instant};
 
 /// Bytes of GPU memory that choices may hold together while others are timed. A software GPU's are this
@@ -25,9 +26,48 @@ pub struct Measurement {
     pub runs: usize,
 }
 
+named_enum! {
+    /// What moves from frame to frame.
+    pub enum Moves {
+        /// What the scene's file or maker says.
+        Scene = "scene",
+        /// Its first light alone, about the vertical axis through what the camera looks at.
+        Light = "light",
+        /// The eye alone, about the same axis.
+        Eye = "eye",
+        /// Nothing: what was set up for the first frame serves the others.
+        Nothing = "nothing",
+    }
+}
+
+/// How far lights and eyes go round in a second, degrees.
+const DEGREES_PER_SECOND: f64 = 10.0;
+
+impl Moves {
+    /// A scene at a moment.
+    fn at(self, scene: &Scene, seconds: f64) -> Scene {
+        let mut moved = scene.at(if self == Moves::Scene { seconds } else { 0.0 });
+        let turn = DQuat::from_rotation_y((seconds * DEGREES_PER_SECOND).to_radians());
+        let target = moved.camera.target;
+        match self {
+            Moves::Scene | Moves::Nothing => {}
+            Moves::Eye => moved.camera.eye = target + turn * (moved.camera.eye - target),
+            Moves::Light => {
+                if let Some(light) = moved.lights.first_mut() {
+                    let middle = target * light.position.w;
+                    light.position = (middle + turn * (light.position.truncate() - middle)).extend(light.position.w);
+                }
+            }
+        }
+        moved
+    }
+}
+
 /// Frames of a scene that moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
+    /// What moves.
+    pub moves: Moves,
     /// Seconds after the start: the frame before those that count.
     pub from: f64,
     /// Seconds after the start: the last frame.
@@ -39,7 +79,7 @@ pub struct Moments {
 impl Moments {
     /// The seconds of each frame that counts.
     fn all(self) -> impl Iterator<Item = f64> {
-        let Moments { from, to, frames } = self;
+        let Moments { from, to, frames, .. } = self;
         (1..=frames).map(move |frame| from + (to - from) * frame as f64 / frames as f64)
     }
 }
@@ -159,7 +199,7 @@ impl Session {
         progress: &Progress,
     ) -> Result<Vec<Measured>, SessionError> {
         progress.start(what.choices.len() * (moments.frames + 1));
-        let first = scene.at(moments.from);
+        let first = moments.moves.at(scene, moments.from);
         let traced = self.traced(&first, what.size, &Progress::default())?;
         let mut moving = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
@@ -171,25 +211,37 @@ impl Session {
             progress.advance();
         }
         // What lasts is there before the first frame that counts.
+        let mut plans = Vec::with_capacity(moving.len());
         for (_, measured, cache) in &mut moving {
             let plan = technique::plan(Job { scene: &first, size: what.size, choice: &measured.choice, cache })?;
             let plan = self.without_unseen(plan, &measured.choice)?;
             let ready = self.executor.prepare(&plan)?;
             self.executor.time(&ready, false)?;
+            plans.push(plan);
         }
         for seconds in moments.all() {
-            let scene = scene.at(seconds);
+            let scene = moments.moves.at(scene, seconds);
             let traced = self.traced(&scene, what.size, &Progress::default())?;
-            for (item, measured, cache) in &mut moving {
+            for ((item, measured, cache), kept) in moving.iter_mut().zip(&plans) {
                 progress.turn_to(*item);
                 if progress.is_cancelled() {
                     return Err(SessionError::Cancelled);
                 }
-                let start = Instant::now();
-                let plan = technique::plan(Job { scene: &scene, size: what.size, choice: &measured.choice, cache })?;
-                let plan = self.without_unseen(plan, &measured.choice)?;
-                let ready = self.executor.prepare(&plan)?;
-                measured.setups.push(start.elapsed());
+                let (start, made);
+                let ready = if moments.moves == Moves::Nothing {
+                    let ready = self.executor.prepare(kept)?;
+                    measured.setups.push(Duration::ZERO);
+                    self.executor.time(&ready, false)?;
+                    ready
+                } else {
+                    start = Instant::now();
+                    let plan =
+                        technique::plan(Job { scene: &scene, size: what.size, choice: &measured.choice, cache })?;
+                    made = self.without_unseen(plan, &measured.choice)?;
+                    let ready = self.executor.prepare(&made)?;
+                    measured.setups.push(start.elapsed());
+                    ready
+                };
                 measured.frames.push(self.executor.time(&ready, false)?);
                 let labels = self.executor.labels(ready)?;
                 let labels = labels.iter().enumerate();

@@ -28,7 +28,7 @@ pub(crate) use crate::gpu::MEMORY_HINTS;
 pub use answer::{FrameSource, RunFrame};
 pub use draws::Every;
 pub use history::HistoryCost;
-pub use measure::{Measured, Measurement, Moments};
+pub use measure::{Measured, Measurement, Moments, Moves};
 pub use report::report_rows;
 pub use stress::Fault;
 pub use stress_steps::StressSteps;
