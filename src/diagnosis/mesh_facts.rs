@@ -45,9 +45,9 @@ impl MeshFacts {
         let mesh = &object.mesh;
         let world = object.world_positions();
         let [open, split, near] = sort_open_edges(mesh, &world, edges);
-        let is_whole = open.is_empty() && topology.is_oriented() && topology.non_manifold_edges.count == 0;
+        let is_whole = open.is_empty() && topology.is_oriented() && topology.connectivity.non_manifold_edges.count == 0;
         let matrix = object.pose.world_from_object();
-        let placed = |found: &crate::geometry::topology::Found| {
+        let placed = |found: &crate::geometry::Found| {
             (found.count, found.places.iter().map(|place| matrix.transform_point3(*place)).collect::<Vec<_>>())
         };
         let corners = |of: &[u32; 3]| of.map(|vertex| world[vertex as usize]);
@@ -64,8 +64,8 @@ impl MeshFacts {
             open,
             split,
             near,
-            non_manifold: placed(&topology.non_manifold_edges),
-            inconsistent: placed(&topology.inconsistent_edges),
+            non_manifold: placed(&topology.connectivity.non_manifold_edges),
+            inconsistent: placed(&topology.connectivity.inconsistent_edges),
             flat: placed(&topology.flat_triangles),
             dropped: topology.dropped_triangles,
             duplicates: duplicates(mesh).into_iter().map(|triangle| middle(&mesh.triangles()[triangle])).collect(),

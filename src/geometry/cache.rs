@@ -4,8 +4,8 @@
 use super::hugging::{has_edge_on, put_hugging_last};
 use super::planar::Flattened;
 use super::{
-    Casters, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings, Fan, FarEnd, Planes, SilhouetteEdge, Topology,
-    VolumeParts, silhouette, silhouette_by_search, solid, write_indices,
+    Casters, Connectivity, EdgeList, ExtrudedForm, ExtrudedVolume, Extruder, Facings, Fan, FarEnd, Planes,
+    SilhouetteEdge, Topology, VolumeParts, silhouette, silhouette_by_search, solid, write_indices,
 };
 use crate::scene::{Mesh, Pose};
 use glam::{DVec3, DVec4};
@@ -29,8 +29,11 @@ pub struct GeometryCache {
     /// In all of them.
     flattened_kept: usize,
     planes: HashMap<(u64, PoseBits), Arc<Planes>>,
+    connectivities: HashMap<u64, Arc<Connectivity>>,
     topologies: HashMap<u64, Arc<Topology>>,
     solids: HashMap<(u64, PoseBits), Result<(), solid::NotSolid>>,
+    /// Do two of its triangles have the same corners?
+    doubled: HashMap<(u64, PoseBits), bool>,
     /// With whether the newest plan has asked for them.
     extruded: HashMap<ExtrudedKey, (ExtrudedVolume, bool)>,
     triangles_kept: usize,
@@ -172,9 +175,16 @@ impl GeometryCache {
 
     /// How `mesh` hangs together, found out on first use.
     pub fn topology(&mut self, mesh: &Mesh) -> Arc<Topology> {
-        let edges = self.edges(mesh);
-        let build = || Arc::new(Topology::new(mesh, &edges));
+        let connectivity = self.connectivity(mesh);
+        let build = || Arc::new(Topology::new(mesh, connectivity));
         self.topologies.entry(mesh.content_hash()).or_insert_with(build).clone()
+    }
+
+    /// The same, of its edges alone.
+    pub fn connectivity(&mut self, mesh: &Mesh) -> Arc<Connectivity> {
+        let edges = self.edges(mesh);
+        let build = || Arc::new(Connectivity::new(mesh, &edges));
+        self.connectivities.entry(mesh.content_hash()).or_insert_with(build).clone()
     }
 
     /// Do the triangles that face the light cast the shadow of the whole mesh? The mesh is looked at
@@ -183,9 +193,9 @@ impl GeometryCache {
     /// # Errors
     /// What speaks against it, or is not proven.
     pub fn light_facing_suffices(&mut self, caster: Caster, light: DVec4) -> Result<(), String> {
-        let (mesh, topology) = (caster.mesh, self.topology(caster.mesh));
+        let (mesh, connectivity) = (caster.mesh, self.connectivity(caster.mesh));
         let key = (mesh.content_hash(), pose_bits(caster.pose));
-        let check = || solid::check(caster.world, mesh.triangles(), &topology);
+        let check = || solid::check(caster.world, mesh.triangles(), &connectivity);
         self.solids.entry(key).or_insert_with(check).clone().map_err(|doubt| doubt.to_string())?;
         if has_edge_on(caster, light) {
             return Err("some triangle is edge-on to it, as far as single precision can tell".to_owned());
@@ -196,13 +206,26 @@ impl GeometryCache {
         }
     }
 
+    /// Has a placed mesh two triangles with the same corners? `find_out` looks, once a place.
+    pub fn has_doubles(&mut self, caster: Caster, find_out: impl FnOnce() -> bool) -> bool {
+        let key = (caster.mesh.content_hash(), pose_bits(caster.pose));
+        if let Some(known) = self.doubled.get(&key) {
+            return *known;
+        }
+        let found = find_out();
+        self.doubled.insert(key, found);
+        found
+    }
+
     fn make_room(&mut self, mesh: &Mesh) {
         self.triangles_kept += mesh.triangles().len();
         if self.triangles_kept > MOST_TRIANGLES_KEPT {
             self.edges.clear();
             self.planes.clear();
+            self.connectivities.clear();
             self.topologies.clear();
             self.solids.clear();
+            self.doubled.clear();
             self.triangles_kept = mesh.triangles().len();
         }
     }

@@ -21,9 +21,8 @@ pub fn self_meeting(world: &[DVec3], triangles: &[[u32; 3]]) -> Option<[usize; 2
         return None;
     }
     let corners = |triangle: usize| triangles[triangle].map(|vertex| world[vertex as usize]);
-    let boxes: Vec<Aabb> = (0..triangles.len()).map(|triangle| outer_box(corners(triangle))).collect();
-    let has_area: Vec<bool> =
-        (0..triangles.len()).into_par_iter().map(|triangle| Flat::of(corners(triangle)).is_some()).collect();
+    let each = |triangle: usize| (outer_box(corners(triangle)), Flat::of(corners(triangle)).is_some());
+    let (boxes, has_area): (Vec<Aabb>, Vec<bool>) = (0..triangles.len()).into_par_iter().map(each).unzip();
     let hierarchy = build_bvh2(&boxes, BvhBuildParams::very_fast_build(), &mut Duration::default());
     let first_of = |one: usize| {
         let mut met = None;

@@ -5,6 +5,7 @@
 
 mod blob;
 mod cache;
+mod connectivity;
 mod edges;
 mod extruded;
 mod facing;
@@ -28,6 +29,7 @@ mod winding;
 
 pub use blob::Blob;
 pub use cache::{Caster, GeometryCache, SilhouetteBy, VolumeOf};
+pub use connectivity::{Connectivity, Found};
 pub use edges::{Edge, EdgeList};
 pub use extruded::{Carry, Extruded, ExtrudedCorner, ExtrudedForm, ExtrudedVolume};
 pub use facing::{Casters, Facings, Planes};

@@ -7,8 +7,8 @@
 //! settles it. All of it is decided by exact signs of world positions, so that a mirrored pose or
 //! its rounding can't deceive; what can't be decided counts as not proven.
 
+use super::connectivity::Connectivity;
 use super::intersection::self_meeting;
-use super::topology::Topology;
 use super::winding::{crossings, winding_number};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
@@ -67,24 +67,24 @@ pub enum NotSolid {
 ///
 /// # Errors
 /// What speaks against it, or is not proven.
-pub fn check(world: &[DVec3], triangles: &[[u32; 3]], topology: &Topology) -> Result<(), NotSolid> {
-    if !topology.is_closed() {
-        let (open, non_manifold) = (topology.open_edges.count, topology.non_manifold_edges.count);
+pub fn check(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivity) -> Result<(), NotSolid> {
+    if !connectivity.is_closed() {
+        let (open, non_manifold) = (connectivity.open_edges.count, connectivity.non_manifold_edges.count);
         return Err(NotSolid::NotClosed { open, non_manifold });
     }
-    if !topology.is_oriented() {
-        return Err(NotSolid::NotOriented { edges: topology.inconsistent_edges.count });
+    if !connectivity.is_oriented() {
+        return Err(NotSolid::NotOriented { edges: connectivity.inconsistent_edges.count });
     }
-    if topology.components.saturating_mul(triangles.len()) > MOST_WORK {
-        return Err(NotSolid::TooMany { components: topology.components, triangles: triangles.len() });
+    if connectivity.components.saturating_mul(triangles.len()) > MOST_WORK {
+        return Err(NotSolid::TooMany { components: connectivity.components, triangles: triangles.len() });
     }
     if let Some([one, other]) = self_meeting(world, triangles) {
         return Err(NotSolid::MeetsItself(one, other));
     }
-    let mut largest: Vec<Option<(f64, usize)>> = vec![None; topology.components];
+    let mut largest: Vec<Option<(f64, usize)>> = vec![None; connectivity.components];
     for (triangle, corners) in triangles.iter().enumerate() {
         let area = normal(corners.map(|vertex| world[vertex as usize])).length_squared();
-        let best = &mut largest[topology.component_of(triangle)];
+        let best = &mut largest[connectivity.component_of(triangle)];
         if best.is_none_or(|(known, _)| area > known) {
             *best = Some((area, triangle));
         }
@@ -148,7 +148,7 @@ mod tests {
     fn checked(mesh: &Mesh, place: impl Fn(DVec3) -> DVec3) -> Result<(), NotSolid> {
         let world: Vec<DVec3> = mesh.positions().iter().map(|p| place(*p)).collect();
         let edges = EdgeList::new(mesh.triangles(), world.len());
-        check(&world, mesh.triangles(), &Topology::new(mesh, &edges))
+        check(&world, mesh.triangles(), &Connectivity::new(mesh, &edges))
     }
 
     /// Spheres of the given radii around one point, those with a negative radius turned inside out.

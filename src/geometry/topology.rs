@@ -3,50 +3,26 @@
 //! Nothing here is mended; z-fail with all casters needs no mending. It is what a person wants to
 //! know of a model, and what decides whether simpler ways would do.
 
-use super::EdgeList;
+use super::connectivity::{Connectivity, Found, MOST_PLACES};
 use crate::math::{Sign, side_of_line};
 use crate::scene::Mesh;
+use foldhash::fast::RandomState;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::fmt::{self, Display, Formatter};
+use std::sync::Arc;
 
-/// Places kept of each kind.
-const MOST_PLACES: usize = 64;
 /// Distinct vertices nearer to each other than this part of the mesh's size are suspected to be
 /// one vertex, split.
 const NEAR: f64 = 1e-6;
 
-/// How often something was found, and where.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Found {
-    /// How often.
-    pub count: usize,
-    /// The first places, object space: at most 64.
-    pub places: Vec<DVec3>,
-}
-
-impl Found {
-    fn add(&mut self, place: DVec3) {
-        self.count += 1;
-        if self.places.len() < MOST_PLACES {
-            self.places.push(place);
-        }
-    }
-}
-
-/// How a mesh hangs together. Places of edges are their middles, of triangles their centroids.
+/// How a mesh hangs together. Places of triangles are their centroids.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Topology {
     /// Triangles that the mesh has.
     pub triangles: usize,
-    /// Parts that hang together by edges.
-    pub components: usize,
-    /// Edges of one triangle.
-    pub open_edges: Found,
-    /// Edges of more than two triangles.
-    pub non_manifold_edges: Found,
-    /// Edges of two triangles that both run the same way along it.
-    pub inconsistent_edges: Found,
+    /// By its edges.
+    pub connectivity: Arc<Connectivity>,
     /// Pairs of vertices that are not bit-identical, yet nearer than a millionth of the size: welding
     /// joins equal positions only. (Positions that a file splits by normal or texture coordinate are
     /// bit-identical, and whole again.)
@@ -55,66 +31,39 @@ pub struct Topology {
     pub flat_triangles: Found,
     /// Triangles with two equal corners, which loading left out.
     pub dropped_triangles: usize,
-    /// Of each triangle, numbered in the order of their first triangles.
-    component_of: Vec<u32>,
 }
 
 impl Topology {
-    /// Of a mesh and its edges.
+    /// Of a mesh, whose connectivity is known.
     #[must_use]
-    pub fn new(mesh: &Mesh, edges: &EdgeList) -> Topology {
+    pub fn new(mesh: &Mesh, connectivity: Arc<Connectivity>) -> Topology {
         let (positions, triangles) = (mesh.positions(), mesh.triangles());
         let mut topology = Topology {
             triangles: triangles.len(),
-            dropped_triangles: mesh.dropped_triangles(),
+            connectivity,
             split_vertices: split_vertices(mesh),
-            ..Topology::default()
+            flat_triangles: Found::default(),
+            dropped_triangles: mesh.dropped_triangles(),
         };
-        let mut sets = Sets::new(triangles.len());
-        for (index, edge) in edges.edges().iter().enumerate() {
-            let middle = || (positions[edge.low as usize] + positions[edge.high as usize]) / 2.0;
-            let (mut count, mut balance, mut first) = (0, 0, 0);
-            for (triangle, direction) in edges.incident(index) {
-                if count == 0 {
-                    first = triangle;
-                } else {
-                    sets.join(first, triangle);
-                }
-                (count, balance) = (count + 1, balance + direction);
-            }
-            match (count, balance) {
-                (1, _) => topology.open_edges.add(middle()),
-                (2, 0) => {}
-                (2, _) => topology.inconsistent_edges.add(middle()),
-                _ => topology.non_manifold_edges.add(middle()),
-            }
-        }
         for corners in triangles {
             let corners = corners.map(|vertex| positions[vertex as usize]);
             if is_flat(corners) {
                 topology.flat_triangles.add(corners.iter().sum::<DVec3>() / 3.0);
             }
         }
-        (topology.component_of, topology.components) = sets.numbered();
         topology
     }
 
     /// No edge ends the surface, and none joins more than two triangles.
     #[must_use]
     pub fn is_closed(&self) -> bool {
-        self.open_edges.count == 0 && self.non_manifold_edges.count == 0
+        self.connectivity.is_closed()
     }
 
     /// Neighbouring triangles agree on which side is out.
     #[must_use]
     pub fn is_oriented(&self) -> bool {
-        self.inconsistent_edges.count == 0
-    }
-
-    /// Which component a triangle belongs to, in the order of their first triangles.
-    #[must_use]
-    pub fn component_of(&self, triangle: usize) -> usize {
-        self.component_of[triangle] as usize
+        self.connectivity.is_oriented()
     }
 }
 
@@ -122,7 +71,12 @@ impl Topology {
 impl Display for Topology {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let some = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
-        write!(f, "{} in {}", some(self.triangles, "triangle", "triangles"), some(self.components, "part", "parts"))?;
+        write!(
+            f,
+            "{} in {}",
+            some(self.triangles, "triangle", "triangles"),
+            some(self.connectivity.components, "part", "parts")
+        )?;
         if self.is_closed() {
             write!(f, ", closed")?;
         }
@@ -130,9 +84,13 @@ impl Display for Topology {
             write!(f, ", consistently wound")?;
         }
         for (found, one, many) in [
-            (&self.open_edges, "open edge", "open edges"),
-            (&self.non_manifold_edges, "edge of more than two triangles", "edges of more than two triangles"),
-            (&self.inconsistent_edges, "edge wound both ways", "edges wound both ways"),
+            (&self.connectivity.open_edges, "open edge", "open edges"),
+            (
+                &self.connectivity.non_manifold_edges,
+                "edge of more than two triangles",
+                "edges of more than two triangles",
+            ),
+            (&self.connectivity.inconsistent_edges, "edge wound both ways", "edges wound both ways"),
             (&self.split_vertices, "pair of split vertices", "pairs of split vertices"),
             (&self.flat_triangles, "triangle without area", "triangles without area"),
         ] {
@@ -165,7 +123,8 @@ fn split_vertices(mesh: &Mesh) -> Found {
         return found;
     }
     let cell_of = |p: DVec3| ((p - low) / (2.0 * near)).floor().to_array().map(|x| x as i64);
-    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::with_capacity(mesh.positions().len());
+    let mut cells: HashMap<[i64; 3], Vec<u32>, RandomState> = HashMap::default();
+    cells.reserve(mesh.positions().len());
     for (index, &position) in mesh.positions().iter().enumerate() {
         // Of the cells within reach, mostly one.
         let (first, last) = (cell_of(position - near), cell_of(position + near));
@@ -187,46 +146,9 @@ fn split_vertices(mesh: &Mesh) -> Found {
     found
 }
 
-/// Disjoint sets of triangles.
-struct Sets {
-    parent: Vec<u32>,
-}
-
-impl Sets {
-    fn new(count: usize) -> Sets {
-        Sets { parent: (0..count as u32).collect() }
-    }
-
-    fn root(&mut self, mut member: usize) -> usize {
-        while self.parent[member] as usize != member {
-            // Halves the way for whoever comes next.
-            self.parent[member] = self.parent[self.parent[member] as usize];
-            member = self.parent[member] as usize;
-        }
-        member
-    }
-
-    /// The smaller root stays, so that a set is named for its first member.
-    fn join(&mut self, one: usize, other: usize) {
-        let (one, other) = (self.root(one), self.root(other));
-        self.parent[one.max(other)] = one.min(other) as u32;
-    }
-
-    fn numbered(mut self) -> (Vec<u32>, usize) {
-        let mut numbers = Vec::with_capacity(self.parent.len());
-        let mut count = 0;
-        for member in 0..self.parent.len() {
-            let root = self.root(member);
-            let number = if root == member { count } else { numbers[root] };
-            count += u32::from(root == member);
-            numbers.push(number);
-        }
-        (numbers, count as usize)
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::EdgeList;
     use super::*;
     use crate::scene::MeshBuilder;
 
@@ -234,7 +156,8 @@ mod tests {
         let positions = positions.iter().map(|p| DVec3::from_array(*p)).collect();
         let builder = MeshBuilder { positions, triangles: triangles.to_vec(), ..MeshBuilder::default() };
         let mesh = builder.build().expect("a mesh");
-        Topology::new(&mesh, &EdgeList::new(mesh.triangles(), mesh.positions().len()))
+        let edges = EdgeList::new(mesh.triangles(), mesh.positions().len());
+        Topology::new(&mesh, Arc::new(Connectivity::new(&mesh, &edges)))
     }
 
     const CORNERS: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -245,8 +168,8 @@ mod tests {
         let whole = topology(&CORNERS, &TETRAHEDRON);
         assert_eq!(whole.to_string(), "4 triangles in 1 part, closed, consistently wound");
         let open = topology(&CORNERS, &TETRAHEDRON[..3]);
-        assert_eq!(open.open_edges.count, 3);
-        assert!(open.open_edges.places.contains(&DVec3::new(0.0, 0.5, 0.5)));
+        assert_eq!(open.connectivity.open_edges.count, 3);
+        assert!(open.connectivity.open_edges.places.contains(&DVec3::new(0.0, 0.5, 0.5)));
         assert_eq!(open.to_string(), "3 triangles in 1 part, consistently wound, 3 open edges");
     }
 
@@ -254,15 +177,15 @@ mod tests {
     fn turned_doubled_flat_and_split_are_told_apart() {
         let mut turned = TETRAHEDRON;
         turned[0].swap(0, 1);
-        assert_eq!(topology(&CORNERS, &turned).inconsistent_edges.count, 3);
+        assert_eq!(topology(&CORNERS, &turned).connectivity.inconsistent_edges.count, 3);
         let doubled = topology(&CORNERS, &[TETRAHEDRON.to_vec(), vec![TETRAHEDRON[0]]].concat());
-        assert_eq!((doubled.non_manifold_edges.count, doubled.is_closed()), (3, false));
+        assert_eq!((doubled.connectivity.non_manifold_edges.count, doubled.is_closed()), (3, false));
         let flat = topology(&[[0.0; 3], [0.25; 3], [0.5; 3]], &[[0, 1, 2], [0, 1, 1]]);
         assert_eq!((flat.flat_triangles.count, flat.dropped_triangles), (1, 1));
         let split = topology(
             &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1e-7, 0.0], [0.0, 1.0 - 1e-7, 0.0], [1.0, 1.0, 0.0]],
             &[[0, 1, 2], [3, 5, 4]],
         );
-        assert_eq!((split.split_vertices.count, split.components), (2, 2));
+        assert_eq!((split.split_vertices.count, split.connectivity.components), (2, 2));
     }
 }

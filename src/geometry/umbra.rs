@@ -6,7 +6,7 @@
 //! darkens is less than what the other does: two casters can't hold each other, and each chain of them ends
 //! at one that is drawn. The same holds of the parts of one mesh, such as a box in a box.
 
-use super::{EdgeList, Topology};
+use super::{Connectivity, EdgeList};
 use crate::math::{AxisBox, Plane};
 use glam::{DVec3, DVec4};
 
@@ -127,13 +127,13 @@ const MOST_HOLDERS: usize = 8;
 
 /// Of each triangle of a mesh: its part lies wholly in the umbra of another part. Empty where none does.
 #[must_use]
-pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], topology: &Topology, light: DVec4) -> Vec<bool> {
-    if topology.components < 2 || triangles.len() > MOST_TRIANGLES_OF_PARTS {
+pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivity, light: DVec4) -> Vec<bool> {
+    if connectivity.components < 2 || triangles.len() > MOST_TRIANGLES_OF_PARTS {
         return Vec::new();
     }
-    let mut parts: Vec<Vec<[u32; 3]>> = vec![Vec::new(); topology.components];
+    let mut parts: Vec<Vec<[u32; 3]>> = vec![Vec::new(); connectivity.components];
     for (index, corners) in triangles.iter().enumerate() {
-        parts[topology.component_of(index)].push(*corners);
+        parts[connectivity.component_of(index)].push(*corners);
     }
     let used = |part: &Vec<[u32; 3]>| AxisBox::around(part.iter().flatten().map(|vertex| world[*vertex as usize]));
     let bounds: Vec<AxisBox> = parts.iter().map(used).collect();
@@ -158,7 +158,7 @@ pub fn held_by_parts(world: &[DVec3], triangles: &[[u32; 3]], topology: &Topolog
     if !held.contains(&true) {
         return Vec::new();
     }
-    (0..triangles.len()).map(|index| held[topology.component_of(index)]).collect()
+    (0..triangles.len()).map(|index| held[connectivity.component_of(index)]).collect()
 }
 
 /// A part with its own vertices alone.
@@ -195,8 +195,8 @@ mod tests {
         let held = |inner: f64, offset: [f64; 3], light: DVec4| {
             let [outer, inner] = [2.0, inner].map(|size| shapes::cuboid([size; 3]).expect("a box"));
             let both = shapes::joined([(&outer, DVec3::ZERO), (&inner, DVec3::from_array(offset))]).expect("two boxes");
-            let topology = Topology::new(&both, &EdgeList::new(both.triangles(), both.positions().len()));
-            held_by_parts(both.positions(), both.triangles(), &topology, light)
+            let connectivity = Connectivity::new(&both, &EdgeList::new(both.triangles(), both.positions().len()));
+            held_by_parts(both.positions(), both.triangles(), &connectivity, light)
         };
         let inner_alone: Vec<bool> = (0..24).map(|triangle| triangle >= 12).collect();
         for light in [LAMP, SUN, DVec4::new(5.0, 2.0, 1.0, 1.0), DVec4::new(1e9, 4e8, 1e8, 1.0)] {

@@ -25,6 +25,12 @@ impl AxisBox {
         self.low.cmple(point).all() && self.high.cmpge(point).all()
     }
 
+    /// What two boxes have in common; empty where they don't meet.
+    #[must_use]
+    pub fn common(self, other: AxisBox) -> AxisBox {
+        AxisBox { low: self.low.max(other.low), high: self.high.min(other.high) }
+    }
+
     /// Its length from corner to corner; infinite around no point.
     #[must_use]
     pub fn diagonal(&self) -> f64 {

@@ -65,22 +65,22 @@ fn findings(topology: &Topology) -> Vec<(String, &'static str)> {
     let edges = |count: usize, kind: &str| format::counted(count as u64, &format!("{kind} edge"));
     let all = [
         (
-            topology.open_edges.count,
-            edges(topology.open_edges.count, "open"),
+            topology.connectivity.open_edges.count,
+            edges(topology.connectivity.open_edges.count, "open"),
             "Open edges end the surface. Volumes under casters = all are right all the same, and by-topology falls back \
              on them. Under light-facing, triangles that face away and have nothing before them cast nothing; under \
              light-back-facing, those that face the light. A shadow map that culls loses them likewise.",
         ),
         (
-            topology.non_manifold_edges.count,
-            edges(topology.non_manifold_edges.count, "non-manifold"),
+            topology.connectivity.non_manifold_edges.count,
+            edges(topology.connectivity.non_manifold_edges.count, "non-manifold"),
             "Non-manifold edges join more than two triangles. Volumes count each edge as often as its triangles \
              demand, so casters = all is right, and by-topology falls back on it. Under light-facing what lies \
              double counts double.",
         ),
         (
-            topology.inconsistent_edges.count,
-            edges(topology.inconsistent_edges.count, "inconsistently wound"),
+            topology.connectivity.inconsistent_edges.count,
+            edges(topology.connectivity.inconsistent_edges.count, "inconsistently wound"),
             "Neighbours disagree on which side is out. Volumes under casters = all do not care. Under light-facing, or \
              in a shadow map that culls, the turned triangles are taken for the other side and go missing.",
         ),

@@ -8,9 +8,10 @@
 //! picture opens no mesh.
 
 use super::{Material, Texture};
+use foldhash::{fast::RandomState, quality::FixedState};
 use glam::{DVec3, Vec2, Vec3};
 use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{BuildHasher, Hash, Hasher};
 use std::ops::Range;
 
 /// A welded triangle mesh in object space. Made by [`MeshBuilder`].
@@ -215,7 +216,7 @@ impl MeshBuilder {
         }
         kept_before.push(triangles.len());
         let groups = self.groups_after(&kept_before);
-        let mut hasher = DefaultHasher::new();
+        let mut hasher = FixedState::default().build_hasher();
         for position in &welder.positions {
             bits(*position).hash(&mut hasher);
         }
@@ -265,7 +266,7 @@ struct Welder {
     /// Every vertex that was given stays one of its own.
     keeps_apart: bool,
     positions: Vec<DVec3>,
-    index_of: HashMap<([u64; 3], u32), u32>,
+    index_of: HashMap<([u64; 3], u32), u32, RandomState>,
 }
 
 impl Welder {

@@ -189,8 +189,8 @@ impl Decides for Questions {
         }
         let placed = &frame.placed[index];
         let mesh = &placed.object.mesh;
-        let topology = frame.job.cache.topology(mesh);
-        let held = umbra::held_by_parts(&placed.world, mesh.triangles(), &topology, self.position);
+        let connectivity = frame.job.cache.connectivity(mesh);
+        let held = umbra::held_by_parts(&placed.world, mesh.triangles(), &connectivity, self.position);
         if !held.is_empty() {
             let count = held.iter().filter(|is_held| **is_held).count();
             let because = "another part of it holds them in its umbra";

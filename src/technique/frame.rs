@@ -4,6 +4,7 @@
 //! and, for each light, `mask_pass` and `light_pass` (`passes.rs`, of what `drawn.rs` says), and finishes it into a
 //! plan.
 
+mod coincident;
 mod drawn;
 mod passes;
 mod places;
@@ -19,7 +20,6 @@ use crate::plan::{
 use crate::scene::{Material, Object, Scene, Texture};
 pub use drawn::Drawn;
 use glam::{DVec3, DVec4};
-pub use places::coincide;
 use std::ops::Range;
 
 /// What a technique is asked for.
@@ -86,6 +86,8 @@ pub struct Frame<'a> {
     color: AttachmentId,
     depth_stencil: AttachmentId,
     has_stencil: bool,
+    /// What [`Frame::surfaces_coincide`] has found out.
+    coincide: Option<bool>,
     /// The light whose passes have last written the stencil.
     stencil_of: Option<LightId>,
     /// By light: the pixels that its passes are cut to.
@@ -140,6 +142,7 @@ impl<'a> Frame<'a> {
             color: no_target,
             depth_stencil: no_target,
             has_stencil: stencil == StencilUse::Always || !common.allows(Decision::Stencil),
+            coincide: None,
             stencil_of: None,
             scissors: Vec::new(),
             common,
@@ -149,7 +152,7 @@ impl<'a> Frame<'a> {
         frame.plan.depth = frame.depth_curve();
         frame.plan.views.push(places::camera_view(scene, frame.job.size, &frame.plan.depth));
         // Looking at every triangle pays only where it decides something.
-        frame.has_stencil = frame.has_stencil || coincide(&frame.placed);
+        frame.has_stencil = frame.has_stencil || frame.surfaces_coincide();
         frame.add_attachments();
         frame.add_lights()?;
         Ok(frame)
@@ -163,6 +166,11 @@ impl<'a> Frame<'a> {
     /// Where lines of sight meet, homogeneous, world space: of a parallel camera the direction towards it.
     pub fn eye_position(&self) -> DVec4 {
         self.job.scene.camera.eye_position()
+    }
+
+    /// Do any two drawn triangles have the same three corners? Then both are visible at one depth.
+    pub fn surfaces_coincide(&mut self) -> bool {
+        *self.coincide.get_or_insert_with(|| coincident::coincide(&self.placed, self.job.cache))
     }
 
     /// The lights in order.

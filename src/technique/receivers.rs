@@ -65,7 +65,7 @@ pub fn leave_out_unmarked(frame: &mut Frame, shown: &mut Vec<&FlatReceiver>, of:
         // The inside of a room is what one sees of it: an object that the eye is in has the eye within its bounds.
         let is_inside = side_of_triangle(corners, eye) != Sign::Positive
             && !AxisBox::around(world.iter().copied()).holds(place)
-            && frame.job.cache.topology(&placed.object.mesh).is_closed();
+            && frame.job.cache.connectivity(&placed.object.mesh).is_closed();
         !is_inside && one.receiver.area >= FACET * area(world, triangles)
     });
     let count = (all - shown.len()) as u64;

@@ -4,7 +4,7 @@
 //! face away from the eye are hidden by others; and a triangle that faces away from a light gets nothing
 //! from it, so the light pass needs only the rest.
 
-use super::frame::{Frame, Piece, coincide};
+use super::frame::{Frame, Piece};
 use super::{outside, surfaces};
 use crate::geometry::{Caster, ViewVolume};
 use crate::plan::{Decision, DrawMesh, LeftOut, LightId};
@@ -98,7 +98,7 @@ fn subset(frame: &mut Frame, piece: Piece, shows: impl Fn(u32) -> bool) -> Optio
 /// where of surfaces that coincide only the first may be lit.
 pub fn lit_by(frame: &mut Frame, light: LightId) -> Vec<Piece> {
     let pieces = frame.pieces.clone();
-    if !frame.common.allows(Decision::UnlitTriangles) || frame.plan.wraps_diffuse || coincide(&frame.placed) {
+    if !frame.common.allows(Decision::UnlitTriangles) || frame.plan.wraps_diffuse || frame.surfaces_coincide() {
         return pieces;
     }
     let total = |pieces: &[Piece]| pieces.iter().map(|piece| piece.triangles.len() as u64).sum::<u64>();

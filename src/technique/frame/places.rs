@@ -7,7 +7,6 @@ use crate::plan::{Attachment, AttachmentRole, DecidedBy, Decision, LeftOut, Mesh
 use crate::scene::{Group, Material, Object, Scene};
 use crate::technique::{PlanError, outside, surfaces};
 use glam::{DMat4, DVec3, DVec4};
-use std::collections::HashSet;
 use wgpu::TextureFormat;
 
 /// Beyond it, products of single-precision coordinates overflow.
@@ -155,17 +154,4 @@ pub(super) fn camera_view(scene: &Scene, size: [u32; 2], depth: &DepthCurve) -> 
     let clip_from_relative = (camera.clip_from_view(aspect, depth) * view_from_relative).as_mat4();
     let eye = camera.relative_eye().as_vec4();
     PlanView { name: "camera".to_owned(), origin: camera.eye, eye, clip_from_relative }
-}
-
-/// Do any two drawn triangles have the same three corners? Then both are visible at one depth.
-pub fn coincide(placed: &[Placed]) -> bool {
-    let mut seen = HashSet::new();
-    let drawn = placed.iter().filter(|placed| placed.surface.is_some());
-    drawn.flat_map(|placed| placed.object.mesh.triangles().iter().map(move |corners| (placed, corners))).any(
-        |(placed, corners)| {
-            let mut key = corners.map(|vertex| placed.world[vertex as usize].to_array().map(f64::to_bits));
-            key.sort_unstable();
-            !seen.insert(key)
-        },
-    )
 }

@@ -46,8 +46,8 @@ pub fn make(
     let placed = &frame.placed[index];
     let caster = Caster { mesh: &placed.object.mesh, pose: &placed.object.pose, world: &placed.world };
     let cache = &mut *frame.job.cache;
-    let topology = cache.topology(caster.mesh);
-    let is_closed = topology.is_closed() && topology.is_oriented() && casters == Casters::LightFacing;
+    let connectivity = cache.connectivity(caster.mesh);
+    let is_closed = connectivity.is_closed() && connectivity.is_oriented() && casters == Casters::LightFacing;
     let of = if is_closed { ExtrudedForm::Closed } else { ExtrudedForm::Prisms(casters) };
     let ExtrudedVolume { corners, indices, sides, caps, turned_caps } = cache.extruded(caster, eye, of);
     let carry = Extruder::new(&placed.world, position, options.extrusion).carry_from(eye);

@@ -1,0 +1,130 @@
+//! How the triangles of a mesh hang together by their edges: what is open, torn or turned, and which parts there are.
+//!
+//! All that is asked before a light's shadow is made: whether simpler ways would do. What a person wants to know of a
+//! model besides is [`Topology`](super::Topology).
+
+use super::EdgeList;
+use crate::scene::Mesh;
+use glam::DVec3;
+
+/// Places kept of each kind.
+pub(super) const MOST_PLACES: usize = 64;
+
+/// How often something was found, and where.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Found {
+    /// How often.
+    pub count: usize,
+    /// The first places, object space: at most 64.
+    pub places: Vec<DVec3>,
+}
+
+impl Found {
+    pub(super) fn add(&mut self, place: DVec3) {
+        self.count += 1;
+        if self.places.len() < MOST_PLACES {
+            self.places.push(place);
+        }
+    }
+}
+
+/// How the triangles of a mesh hang together. Places are the middles of edges.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Connectivity {
+    /// Parts that hang together by edges.
+    pub components: usize,
+    /// Edges of one triangle.
+    pub open_edges: Found,
+    /// Edges of more than two triangles.
+    pub non_manifold_edges: Found,
+    /// Edges of two triangles that both run the same way along it.
+    pub inconsistent_edges: Found,
+    /// Of each triangle, numbered in the order of their first triangles.
+    component_of: Vec<u32>,
+}
+
+impl Connectivity {
+    /// Of a mesh and its edges.
+    #[must_use]
+    pub fn new(mesh: &Mesh, edges: &EdgeList) -> Connectivity {
+        let positions = mesh.positions();
+        let mut connectivity = Connectivity::default();
+        let mut sets = Sets::new(mesh.triangles().len());
+        for (index, edge) in edges.edges().iter().enumerate() {
+            let middle = || (positions[edge.low as usize] + positions[edge.high as usize]) / 2.0;
+            let (mut count, mut balance, mut first) = (0, 0, 0);
+            for (triangle, direction) in edges.incident(index) {
+                if count == 0 {
+                    first = triangle;
+                } else {
+                    sets.join(first, triangle);
+                }
+                (count, balance) = (count + 1, balance + direction);
+            }
+            match (count, balance) {
+                (1, _) => connectivity.open_edges.add(middle()),
+                (2, 0) => {}
+                (2, _) => connectivity.inconsistent_edges.add(middle()),
+                _ => connectivity.non_manifold_edges.add(middle()),
+            }
+        }
+        (connectivity.component_of, connectivity.components) = sets.numbered();
+        connectivity
+    }
+
+    /// No edge ends the surface, and none joins more than two triangles.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.open_edges.count == 0 && self.non_manifold_edges.count == 0
+    }
+
+    /// Neighbouring triangles agree on which side is out.
+    #[must_use]
+    pub fn is_oriented(&self) -> bool {
+        self.inconsistent_edges.count == 0
+    }
+
+    /// Which component a triangle belongs to, in the order of their first triangles.
+    #[must_use]
+    pub fn component_of(&self, triangle: usize) -> usize {
+        self.component_of[triangle] as usize
+    }
+}
+
+/// Disjoint sets of triangles.
+struct Sets {
+    parent: Vec<u32>,
+}
+
+impl Sets {
+    fn new(count: usize) -> Sets {
+        Sets { parent: (0..count as u32).collect() }
+    }
+
+    fn root(&mut self, mut member: usize) -> usize {
+        while self.parent[member] as usize != member {
+            // Halves the way for whoever comes next.
+            self.parent[member] = self.parent[self.parent[member] as usize];
+            member = self.parent[member] as usize;
+        }
+        member
+    }
+
+    /// The smaller root stays, so that a set is named for its first member.
+    fn join(&mut self, one: usize, other: usize) {
+        let (one, other) = (self.root(one), self.root(other));
+        self.parent[one.max(other)] = one.min(other) as u32;
+    }
+
+    fn numbered(mut self) -> (Vec<u32>, usize) {
+        let mut numbers = Vec::with_capacity(self.parent.len());
+        let mut count = 0;
+        for member in 0..self.parent.len() {
+            let root = self.root(member);
+            let number = if root == member { count } else { numbers[root] };
+            count += u32::from(root == member);
+            numbers.push(number);
+        }
+        (numbers, count as usize)
+    }
+}

@@ -1,0 +1,96 @@
+//! Do any two drawn triangles have the same three corners? Then both are visible at one depth, and a light must be kept
+//! from being added twice.
+//!
+//! Whether a mesh has two of its own is found out once a place. Of different objects, all triangles of small ones are held
+//! against each other; those of large ones only where the boxes around two objects meet.
+
+use super::Placed;
+use crate::geometry::{Caster, GeometryCache};
+use crate::math::AxisBox;
+use foldhash::fast::RandomState;
+use std::collections::HashSet;
+
+/// Objects of more triangles are looked at pair by pair.
+const MOST_OF_SMALL: usize = 256;
+
+/// A triangle's corners, in an order that does not depend on where it begins or which way it runs.
+type Key = [[u64; 3]; 3];
+
+type Keys = HashSet<Key, RandomState>;
+
+/// Of all drawn triangles.
+pub(super) fn coincide(placed: &[Placed], cache: &mut GeometryCache) -> bool {
+    let drawn: Vec<&Placed> = placed.iter().filter(|placed| placed.surface.is_some()).collect();
+    let is_small = |placed: &Placed| placed.object.mesh.triangles().len() <= MOST_OF_SMALL;
+    let mut keys = Keys::default();
+    for placed in drawn.iter().filter(|placed| is_small(placed)) {
+        if has_doubles(placed, &mut keys) {
+            return true;
+        }
+    }
+    for large in drawn.iter().filter(|placed| !is_small(placed)) {
+        let caster = Caster { mesh: &large.object.mesh, pose: &large.object.pose, world: &large.world };
+        if cache.has_doubles(caster, || has_doubles(large, &mut Keys::default())) {
+            return true;
+        }
+    }
+    let boxes: Vec<AxisBox> = drawn.iter().map(|placed| AxisBox::around(placed.world.iter().copied())).collect();
+    (0..drawn.len()).filter(|one| !is_small(drawn[*one])).any(|one| {
+        // Two large ones are one pair.
+        let others = (0..drawn.len()).filter(|other| is_small(drawn[*other]) || *other > one);
+        others.into_iter().any(|other| {
+            let shared = boxes[one].common(boxes[other]);
+            let keys: Keys = keys_within(drawn[other], shared).collect();
+            !keys.is_empty() && keys_within(drawn[one], shared).any(|key| keys.contains(&key))
+        })
+    })
+}
+
+/// Adds an object's triangles; is one of them there already?
+fn has_doubles(placed: &Placed, keys: &mut Keys) -> bool {
+    let triangles = placed.object.mesh.triangles();
+    keys.reserve(triangles.len());
+    triangles.iter().any(|corners| !keys.insert(key(placed, corners)))
+}
+
+/// The triangles of an object that lie wholly in a box.
+fn keys_within(placed: &Placed, within: AxisBox) -> impl Iterator<Item = Key> {
+    let holds = move |vertex: &u32| within.holds(placed.world[*vertex as usize]);
+    let inner = placed.object.mesh.triangles().iter().filter(move |corners| corners.iter().all(holds));
+    inner.map(|corners| key(placed, corners))
+}
+
+fn key(placed: &Placed, corners: &[u32; 3]) -> Key {
+    // −0 and 0 are one place.
+    let mut key = corners.map(|vertex| (placed.world[vertex as usize] + 0.0).to_array().map(f64::to_bits));
+    key.sort_unstable();
+    key
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::MeshId;
+    use crate::scene::{Object, shapes};
+
+    fn together(objects: &[Object]) -> bool {
+        let placed = |object| Placed { object, world: object.world_positions(), surface: Some(MeshId(0)) };
+        coincide(&objects.iter().map(placed).collect::<Vec<_>>(), &mut GeometryCache::default())
+    }
+
+    #[test]
+    fn triangles_of_small_and_of_large_objects_are_found_where_they_coincide() {
+        let small = |x: f64| Object::of("box", shapes::cuboid([1.0; 3]).expect("a box")).at([x, 0.0, 0.0]);
+        let large = |x: f64| Object::of("ring", shapes::torus(2.0, 0.5, 40, 20).expect("a torus")).at([x, 0.0, 0.0]);
+        assert!(!together(&[small(0.0), small(0.25), large(0.0), large(0.25)]));
+        assert!(together(&[small(0.5), large(0.0), small(0.5)]));
+        assert!(together(&[large(0.5), small(0.0), large(0.5)]));
+        // A small one that has a triangle of a large one.
+        let ring = large(0.5);
+        let world = ring.world_positions();
+        let corners = ring.mesh.triangles()[77].map(|vertex| world[vertex as usize].to_array());
+        let part = shapes::triangles(&corners, &[[1, 0, 2]]).expect("a triangle");
+        assert!(together(&[Object::of("part", part.clone()), ring.clone()]));
+        assert!(!together(&[Object::of("part", part).at([0.0, 1e-9, 0.0]), ring]));
+    }
+}
