@@ -9,7 +9,7 @@ use super::pictures::Pictures;
 use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
 use super::queries::{Notes, Samples, Timestamps};
-use super::readback::{StagedPass, Staging, color_change};
+use super::readback::{Change, StagedPass, Staging, color_change};
 use super::{Context, GpuError, features, start};
 use crate::capture::{Image, PixelFormat};
 use crate::plan::{AttachmentRole, Draw, FramePlan, LightId, Pass, Viewport, lint};
@@ -41,6 +41,8 @@ enum Mode {
     Snapshots,
     /// All passes, but only the labels of lights are kept.
     Labels,
+    /// All passes, but only the labels of lights and the finished picture are kept.
+    Answer,
     /// All passes, a snapshot after each.
     Everything,
 }
@@ -99,6 +101,18 @@ impl Executor {
         self.check(plan)?;
         let Executor { context, pipelines, buffers, pictures, .. } = self;
         context.guarded(|| Prepared::new(context, pipelines, buffers, pictures, &mut Maps::default(), plan))
+    }
+
+    /// The same for a plan between frames that are timed: nothing that it uploads is there for the next one, and what is
+    /// there stays.
+    ///
+    /// # Errors
+    /// As [`Executor::prepare`].
+    pub fn prepare_apart<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
+        self.check(plan)?;
+        let Executor { context, pipelines, .. } = self;
+        let (mut buffers, mut pictures, mut maps) = (Buffers::default(), Pictures::default(), Maps::default());
+        context.guarded(|| Prepared::new(context, pipelines, &mut buffers, &mut pictures, &mut maps, plan))
     }
 
     /// Finds what can't be run, and a device for what can.
@@ -196,17 +210,59 @@ impl Executor {
     /// A driver that fails.
     pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
         run(&prepared, Mode::Labels, &Notes::default())?;
-        let plan = prepared.plan;
-        let mut labels = vec![None; plan.lights.len()];
-        for (index, pass) in plan.passes.iter().enumerate() {
-            if let Some(light) = labelled(plan, pass) {
-                let staged = prepared.staged(index)?;
-                let left = after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
-                keep(&mut labels[light.0], left, Memory::Mapped);
-            }
-        }
-        Ok(labels)
+        staged_labels(&prepared)
     }
+
+    /// The same, and the finished picture.
+    ///
+    /// # Errors
+    /// A driver that fails.
+    pub fn answer(&self, prepared: Prepared) -> Result<Answer, GpuError> {
+        run(&prepared, Mode::Answer, &Notes::default())?;
+        let plan = prepared.plan;
+        let left = match last_of_picture(plan) {
+            Some(index) => {
+                let staged = prepared.staged(index)?;
+                after(&color_change(plan, &plan.passes[index]), &staged.color, PixelFormat::Rgba8Srgb, plan.size)?
+            }
+            None => None,
+        };
+        // wgpu clears new textures to zero.
+        let untouched = || Arc::new(Image::uniform(PixelFormat::Rgba8Srgb, plan.size, &[0; 4]));
+        Ok(Answer { labels: staged_labels(&prepared)?, picture: left.unwrap_or_else(untouched) })
+    }
+}
+
+/// What a frame says of its lights, and what it shows.
+#[derive(Debug)]
+pub struct Answer {
+    /// One a light: its labels.
+    pub labels: Vec<Option<Arc<Image>>>,
+    /// The picture after the last pass that changes it.
+    pub picture: Arc<Image>,
+}
+
+/// The labels of each light, of a run that has kept them.
+fn staged_labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
+    let plan = prepared.plan;
+    let mut labels = vec![None; plan.lights.len()];
+    for (index, pass) in plan.passes.iter().enumerate() {
+        if let Some(light) = labelled(plan, pass) {
+            let staged = prepared.staged(index)?;
+            let left = after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
+            keep(&mut labels[light.0], left, Memory::Mapped);
+        }
+    }
+    Ok(labels)
+}
+
+/// The last pass that changes the picture.
+fn last_of_picture(plan: &FramePlan) -> Option<usize> {
+    let is_picture = |pass: &Pass| {
+        let color = pass.color.as_ref();
+        color.is_some_and(|target| plan.attachment(target.attachment).role == AttachmentRole::Color)
+    };
+    plan.passes.iter().rposition(|pass| is_picture(pass) && color_change(plan, pass) != Change::Unchanged)
 }
 
 impl Notes {
@@ -219,13 +275,15 @@ impl Notes {
 
 impl Mode {
     fn runs(self, pass: &Pass) -> bool {
-        pass.timed || matches!(self, Mode::Labels | Mode::Everything)
+        pass.timed || matches!(self, Mode::Labels | Mode::Answer | Mode::Everything)
     }
 
-    fn copies(self, plan: &FramePlan, pass: &Pass) -> bool {
+    fn copies(self, plan: &FramePlan, index: usize) -> bool {
+        let pass = &plan.passes[index];
         match self {
             Mode::Frame => false,
             Mode::Labels => labelled(plan, pass).is_some(),
+            Mode::Answer => labelled(plan, pass).is_some() || last_of_picture(plan) == Some(index),
             Mode::Snapshots | Mode::Everything => self.runs(pass),
         }
     }
@@ -246,7 +304,7 @@ fn staged<'a>(
     passes: Range<usize>,
 ) -> Result<impl Iterator<Item = &'a StagedPass>, GpuError> {
     let plan = prepared.plan;
-    let copied = passes.filter(|index| mode.copies(plan, &plan.passes[*index]));
+    let copied = passes.filter(|index| mode.copies(plan, *index));
     Ok(copied.map(|index| prepared.staged(index)).collect::<Result<Vec<_>, _>>()?.into_iter())
 }
 
@@ -328,7 +386,7 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes, passes: Range<usize>) 
             }
             record_pass(&mut encoder, prepared, index, notes);
         }
-        if mode.copies(prepared.plan, pass) {
+        if mode.copies(prepared.plan, index) {
             prepared.staged(index)?.iter().for_each(|staging| staging.record(&mut encoder));
         }
     }

@@ -37,5 +37,5 @@ pub use context::Context;
 #[cfg(feature = "inspector")]
 pub use context::MEMORY_HINTS;
 pub use error::GpuError;
-pub use executor::Executor;
+pub use executor::{Answer, Executor};
 pub use prepared::Prepared;

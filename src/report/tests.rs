@@ -21,6 +21,7 @@ pub(crate) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64
         wrong_surface: 0,
         edge_band: 7,
         wrong_fraction: 0.0,
+        wrong_color: Some(wrong),
         frame_ms: FrameTimes { median: ms, min: ms - 0.1, max: ms + 0.3, runs: 9 },
         gpu_ms: None,
         moving: None,
@@ -104,6 +105,7 @@ fn json_has_the_names_of_the_contract_and_survives_the_way_there_and_back() {
             "size",
             "technique",
             "triangles",
+            "wrong_color",
             "wrong_fraction",
             "wrong_surface",
         ]
