@@ -1,18 +1,19 @@
 //! Runs a prepared plan: one command buffer, with copies between passes where snapshots are wanted; more than one
 //! where those copies are many.
 
+use super::answer::{self, Answer};
 use super::buffers::Buffers;
-use super::collect::{Collector, Memory, Output, after, keep};
+use super::collect::{Collector, Memory, Output};
 use super::fragment_log::LogKeeper;
 use super::maps::Maps;
 use super::pictures::Pictures;
 use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
 use super::queries::{Notes, Samples, Timestamps};
-use super::readback::{Change, StagedPass, Staging, color_change};
+use super::readback::{StagedPass, Staging};
 use super::{Context, GpuError, features, start};
-use crate::capture::{Image, PixelFormat};
-use crate::plan::{AttachmentRole, Draw, FramePlan, LightId, Pass, Viewport, lint};
+use crate::capture::Image;
+use crate::plan::{Draw, FramePlan, Pass, Viewport, lint};
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -210,7 +211,7 @@ impl Executor {
     /// A driver that fails.
     pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
         run(&prepared, Mode::Labels, &Notes::default())?;
-        staged_labels(&prepared)
+        answer::labels(&prepared)
     }
 
     /// The same, and the finished picture.
@@ -219,50 +220,8 @@ impl Executor {
     /// A driver that fails.
     pub fn answer(&self, prepared: Prepared) -> Result<Answer, GpuError> {
         run(&prepared, Mode::Answer, &Notes::default())?;
-        let plan = prepared.plan;
-        let left = match last_of_picture(plan) {
-            Some(index) => {
-                let staged = prepared.staged(index)?;
-                after(&color_change(plan, &plan.passes[index]), &staged.color, PixelFormat::Rgba8Srgb, plan.size)?
-            }
-            None => None,
-        };
-        // wgpu clears new textures to zero.
-        let untouched = || Arc::new(Image::uniform(PixelFormat::Rgba8Srgb, plan.size, &[0; 4]));
-        Ok(Answer { labels: staged_labels(&prepared)?, picture: left.unwrap_or_else(untouched) })
+        Ok(Answer { labels: answer::labels(&prepared)?, picture: answer::picture(&prepared)? })
     }
-}
-
-/// What a frame says of its lights, and what it shows.
-#[derive(Debug)]
-pub struct Answer {
-    /// One a light: its labels.
-    pub labels: Vec<Option<Arc<Image>>>,
-    /// The picture after the last pass that changes it.
-    pub picture: Arc<Image>,
-}
-
-/// The labels of each light, of a run that has kept them.
-fn staged_labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
-    let plan = prepared.plan;
-    let mut labels = vec![None; plan.lights.len()];
-    for (index, pass) in plan.passes.iter().enumerate() {
-        if let Some(light) = labelled(plan, pass) {
-            let staged = prepared.staged(index)?;
-            let left = after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
-            keep(&mut labels[light.0], left, Memory::Mapped);
-        }
-    }
-    Ok(labels)
-}
-
-/// The last pass that changes the picture.
-fn last_of_picture(plan: &FramePlan) -> Option<usize> {
-    let is_picture = |pass: &Pass| {
-        let color = pass.color.as_ref();
-        color.is_some_and(|target| plan.attachment(target.attachment).role == AttachmentRole::Color)
-    };
-    plan.passes.iter().rposition(|pass| is_picture(pass) && color_change(plan, pass) != Change::Unchanged)
 }
 
 impl Notes {
@@ -282,18 +241,10 @@ impl Mode {
         let pass = &plan.passes[index];
         match self {
             Mode::Frame => false,
-            Mode::Labels => labelled(plan, pass).is_some(),
-            Mode::Answer => labelled(plan, pass).is_some() || last_of_picture(plan) == Some(index),
+            Mode::Labels => answer::labelled(plan, pass).is_some(),
+            Mode::Answer => answer::labelled(plan, pass).is_some() || answer::last_of_picture(plan) == Some(index),
             Mode::Snapshots | Mode::Everything => self.runs(pass),
         }
-    }
-}
-
-/// The light whose labels the pass writes.
-fn labelled(plan: &FramePlan, pass: &Pass) -> Option<LightId> {
-    match plan.attachment(pass.color.as_ref()?.attachment).role {
-        AttachmentRole::Labels(light) => Some(light),
-        _ => None,
     }
 }
 

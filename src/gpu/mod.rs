@@ -15,6 +15,7 @@
 //! collect      mapped copies → steps, with what did not change shared
 //! ```
 
+mod answer;
 mod buffers;
 mod collect;
 mod context;
@@ -37,5 +38,5 @@ pub use context::Context;
 #[cfg(feature = "inspector")]
 pub use context::MEMORY_HINTS;
 pub use error::GpuError;
-pub use executor::{Answer, Executor};
+pub use executor::Executor;
 pub use prepared::Prepared;
