@@ -6,7 +6,9 @@
 //! snap to. Only for disagreeing pixels are those extra rays cast.
 //!
 //! Labels say nothing of the background, nor of how dark a shadow is. So colours are compared too, at every
-//! pixel, with the picture of the same shading that is lit as the truth says ([`wrong_colors`]).
+//! pixel, with the picture of the same shading that is lit as the truth says ([`wrong_colors`]): that finds a
+//! shadow that hangs over its receiver's edge into the air, and one that is blended twice. It also counts what is
+//! meant to differ from hard shadows of opaque casters: soft edges, and light that translucent casters let through.
 
 use crate::truth::{LIT, SHADOW, Tracer, Truth};
 use rayon::prelude::*;
@@ -18,8 +20,8 @@ const SURFACE_REACH: f64 = 1.0 / 256.0;
 
 /// By how many 8-bit steps (of sRGB, as stored) a channel may differ from the right picture's. Techniques that only decide
 /// where light arrives add the same numbers in the same order, and have the same bytes. One that dims what is there, as
-/// shadows that are blended over a lit surface do, multiplies a sum that was rounded to eight bits and rounds again:
-/// where that is the right colour, 0.4 times the sum is up to 0.84 steps away from it.
+/// shadows that are blended over a lit surface do, multiplies a sum that was rounded to eight bits, half a step, and rounds
+/// again: where that is the right colour, its byte may be the next one, and no more.
 pub const COLOR_TOLERANCE: u8 = 1;
 
 named_enum! {
