@@ -63,8 +63,8 @@ pub fn text(report: &Report) -> String {
         }
     }
     text += "\n* nothing else of the scene is both at least as fast and at least as right (Pareto front)\n";
-    text + "wrong: false shadow + missing shadow + wrong surface, % of the pixels compared; colour: pixels unlike the ray-traced picture's, background included\n\
-            frame: median, then fastest to slowest\n"
+    text + "wrong: false shadow + missing shadow + wrong surface, % of the pixels compared\n\
+            colour: pixels unlike those of the ray-traced picture, background included; frame: median, then fastest to slowest\n"
 }
 
 /// The picture sizes that occur: `1280×720`.
