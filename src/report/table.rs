@@ -8,7 +8,7 @@ const GAP: &str = "  ";
 /// Columns of the terminal that a table stays below.
 const MOST_COLUMNS: usize = 140;
 /// Techniques and labels are cut to the first of these that keeps the table narrow enough.
-const LONGEST_NAMES: [usize; 4] = [24, 18, 13, 8];
+const LONGEST_NAMES: [usize; 5] = [24, 18, 13, 8, 6];
 
 /// One column: its heading, and its text for a row.
 struct Column {
