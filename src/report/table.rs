@@ -8,7 +8,7 @@ const GAP: &str = "  ";
 /// Columns of the terminal that a table stays below.
 const MOST_COLUMNS: usize = 140;
 /// Techniques and labels are cut to the first of these that keeps the table narrow enough.
-const LONGEST_NAMES: [usize; 5] = [24, 18, 13, 8, 6];
+const LONGEST_NAMES: [usize; 4] = [24, 18, 13, 8];
 
 /// One column: its heading, and its text for a row.
 struct Column {
@@ -171,10 +171,12 @@ fn wrong_percent(row: &Row) -> String {
     if row.compared == 0 { "-".to_owned() } else { per_hundred(row.wrong_fraction) }
 }
 
-/// Digits after the point that the shortest frame needs, the same for all so that points align.
+/// Digits after the point that the shortest frame needs, the same for all so that points align; fewer where the longest
+/// takes seconds, whose numbers are wide already.
 fn decimals(rows: &[Row]) -> usize {
-    let shortest = rows.iter().map(|row| row.frame_ms.median).filter(|ms| *ms > 0.0).fold(f64::INFINITY, f64::min);
-    if shortest < 0.2 { 3 } else { 2 }
+    let times = || rows.iter().map(|row| row.frame_ms.median).filter(|ms| *ms > 0.0);
+    let (shortest, longest) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
+    if shortest < 0.2 && longest < 1000.0 { 3 } else { 2 }
 }
 
 fn milliseconds(value: f64, decimals: usize) -> String {
