@@ -4,6 +4,11 @@
 //! else it is wrong, unless no picture of that size could be certain: the truth itself changes
 //! within an eighth of a pixel, or another triangle is visible within 1/256, which rasterisers
 //! snap to. Only for disagreeing pixels are those extra rays cast.
+//!
+//! Labels say nothing of the background, nor of how dark a shadow is. So colours are compared too, at every
+//! pixel, with the picture of the same shading that is lit as the truth says ([`wrong_colors`]): that finds a
+//! shadow that hangs over its receiver's edge into the air, and one that is blended twice. It also counts what is
+//! meant to differ from hard shadows of opaque casters: soft edges, and light that translucent casters let through.
 
 use crate::truth::{LIT, SHADOW, Tracer, Truth};
 use rayon::prelude::*;
@@ -12,6 +17,12 @@ use rayon::prelude::*;
 const LABEL_REACH: f64 = 1.0 / 8.0;
 /// The same for another visible triangle.
 const SURFACE_REACH: f64 = 1.0 / 256.0;
+
+/// By how many 8-bit steps (of sRGB, as stored) a channel may differ from the right picture's. Techniques that only decide
+/// where light arrives add the same numbers in the same order, and have the same bytes. One that dims what is there, as
+/// shadows that are blended over a lit surface do, multiplies a sum that was rounded to eight bits, half a step, and rounds
+/// again: where that is the right colour, its byte may be the next one, and no more.
+pub const COLOR_TOLERANCE: u8 = 1;
 
 named_enum! {
     /// What a pixel of the error picture says.
@@ -149,6 +160,41 @@ pub fn compare(tracer: &Tracer, truth: &Truth, light: usize, rows: &[&[u8]]) -> 
         }
     });
     Accuracy { counts: ErrorCounts::of(&findings), worst: worst_region(&findings, truth.size), findings }
+}
+
+/// Counts the pixels whose colour is wrong: red, green or blue is more than [`COLOR_TOLERANCE`] apart from the right
+/// picture's, background included. Excused is what labels are excused for: pixels where no light's label is
+/// [wrong](Finding::is_wrong), and the truth of one changes so near. `findings` are those of each light that has labels,
+/// and pictures are given by rows of four bytes a pixel.
+///
+/// # Panics
+/// If rows or findings are not of the truth's size.
+#[must_use]
+pub fn wrong_colors(tracer: &Tracer, truth: &Truth, findings: &[Vec<u8>], picture: &[&[u8]], right: &[&[u8]]) -> u64 {
+    let width = truth.size[0] as usize;
+    let height = truth.size[1] as usize;
+    assert_eq!([picture.len(), right.len()], [height; 2], "rows of pictures");
+    let is_wrong = |[x, y]: [usize; 2]| {
+        let at = y * width + x;
+        let finding = |light: &Vec<u8>| Finding::from_byte(light[at]);
+        if findings.iter().filter_map(finding).any(Finding::is_wrong) {
+            return true;
+        }
+        let lights = 0..truth.labels.len();
+        !lights.into_iter().any(|light| is_at_an_edge(tracer, light, truth.labels[light][at], [x as u32, y as u32]))
+    };
+    let of_row = |y: usize| {
+        let [shown, right] = [picture[y], right[y]].map(|row| row.as_chunks::<4>().0);
+        assert_eq!([shown.len(), right.len()], [width; 2], "pixels of a row");
+        let differing = (0..width).filter(|x| differ(shown[*x], right[*x]));
+        differing.filter(|x| is_wrong([*x, y])).count() as u64
+    };
+    (0..height).into_par_iter().map(of_row).sum()
+}
+
+/// Is a channel of light, the fourth is none, further apart than rounding may leave it?
+fn differ(one: [u8; 4], other: [u8; 4]) -> bool {
+    (0..3).any(|channel| one[channel].abs_diff(other[channel]) > COLOR_TOLERANCE)
 }
 
 /// Could the truth be another one so near the pixel's centre that no rasteriser can be held to it?

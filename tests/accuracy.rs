@@ -5,7 +5,7 @@ use crate::common::random::Random;
 use crate::common::{cuboid, from_above, request, session, square};
 use glam::DVec3;
 use std::sync::Arc;
-use stencilscope::accuracy::{ErrorCounts, Finding, Region, compare};
+use stencilscope::accuracy::{COLOR_TOLERANCE, ErrorCounts, Finding, Region, compare, wrong_colors};
 use stencilscope::capture::Capture;
 use stencilscope::progress::Progress;
 use stencilscope::scene::{Light, MeshBuilder, OpenSpec, Scene, open};
@@ -197,4 +197,46 @@ fn a_cancelled_judgement_leaves_the_capture_as_it_was() {
     progress.cancel();
     assert!(session.truth(&scene, &capture, &progress).is_err());
     assert_eq!(capture, before);
+}
+
+/// Every pixel counts, the background too, but for those at an edge of the truth whose labels are not wrong; the fourth
+/// channel is no light.
+#[test]
+fn colours_are_wrong_beyond_a_step_and_not_at_an_edge() {
+    let size = [64, 64];
+    let scene = from_above(vec![square("roof", 2.0, 1.0)]);
+    let tracer = Tracer::new(&scene, size).expect("a tracer");
+    let truth = tracer.trace(&Progress::default()).expect("a truth");
+    let agrees = vec![Finding::Agrees as u8; 64 * 64];
+    let counted = |changed: &[([usize; 2], usize, u8)], findings: &[Vec<u8>]| {
+        let right = vec![100; 64 * 64 * 4];
+        let mut shown = right.clone();
+        changed.iter().for_each(|([x, y], channel, by)| shown[(y * 64 + x) * 4 + channel] += by);
+        let [shown, right] = [&shown, &right].map(|bytes: &Vec<u8>| bytes.chunks(64 * 4).collect::<Vec<&[u8]>>());
+        wrong_colors(&tracer, &truth, findings, &shown, &right)
+    };
+    let clear = [5, 9];
+    assert_eq!(counted(&[], std::slice::from_ref(&agrees)), 0);
+    assert_eq!(counted(&[(clear, 0, COLOR_TOLERANCE)], std::slice::from_ref(&agrees)), 0);
+    assert_eq!(counted(&[(clear, 0, COLOR_TOLERANCE + 1)], std::slice::from_ref(&agrees)), 1);
+    assert_eq!(counted(&[(clear, 2, 90), (clear, 1, 90), ([0, 1], 1, 2)], std::slice::from_ref(&agrees)), 2);
+    assert_eq!(counted(&[(clear, 3, 90)], std::slice::from_ref(&agrees)), 0);
+    // Along a row through the shadow: its ends, 6.4 pixels from the middle, and where the roof's two triangles meet.
+    let row = 32;
+    let label = |x: f64| tracer.labels_at(0, [[x, row as f64 + 0.5]]);
+    let visible = |x: f64| tracer.visible_at([[x, row as f64 + 0.5]]);
+    let both_sides = |reach: f64| [-reach, reach];
+    let edges: Vec<usize> = (0..64)
+        .filter(|x| {
+            let center = *x as f64 + 0.5;
+            both_sides(1.0 / 8.0).iter().any(|by| label(center + by) != label(center))
+                || both_sides(1.0 / 256.0).iter().any(|by| visible(center + by) != visible(center))
+        })
+        .collect();
+    assert_eq!(edges.len(), 3, "{edges:?}");
+    let all: Vec<_> = (0..64).map(|x| ([x, row], 1, 9)).collect();
+    assert_eq!(counted(&all, std::slice::from_ref(&agrees)), 64 - edges.len() as u64);
+    // A label that is wrong, and not excused, excuses no colour.
+    let wrong = vec![Finding::FalseShadow as u8; 64 * 64];
+    assert_eq!(counted(&all, &[agrees, wrong]), 64);
 }

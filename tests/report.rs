@@ -1,12 +1,13 @@
 //! `report` from outside: all its forms, and what it refuses.
 
 use crate::commands::{assert_fails, folder, run, text};
-use crate::common::session;
+use crate::common::{from_above, session, square};
 use std::collections::BTreeSet;
 use std::fs;
 use stencilscope::progress::Progress;
 use stencilscope::report::Report;
 use stencilscope::scene::builtin::Builtin;
+use stencilscope::scene::{Light, Object, Scene};
 use stencilscope::session::{Measured, Measurement};
 use stencilscope::technique::{Choice, Technique};
 
@@ -133,12 +134,16 @@ fn frames_that_move_are_counted_with_their_set_up() {
         assert!((0.0..1.0).contains(&of_frame.setup_share) && moving.frame_ms.runs == 4);
         assert!(moving.cost_ms() == of_frame.total_ms && still.cost_ms() == still.frame_ms.median);
         // Of four frames.
+        assert!(moving.wrong_color.is_some_and(|all| still.wrong_color.is_some_and(|one| all >= 3 * one)));
         assert!(moving.compared > 3 * still.compared, "{} of {}", moving.compared, still.compared);
     }
     let wrong = |technique: &str| {
         moving.iter().find(|row| row.technique == technique && row.label.is_empty()).map(|row| row.wrong())
     };
     assert!(wrong("z-fail") == Some(0) && wrong("none") > Some(0));
+    let first = |technique: &str| moving.iter().find(|row| row.technique == technique && row.label.is_empty());
+    let color = |technique: &str| first(technique).and_then(|row| row.wrong_color);
+    assert!(color("z-fail") == Some(0) && color("none") > Some(0));
     let table = run(folder.path(), &[&words[..8], &["--time", "0..1:2"]].concat());
     let table = text(&table.stdout);
     assert!(table.contains("+ set-up") && table.contains("total") && table.contains("fps"), "{table}");
@@ -166,7 +171,7 @@ fn a_report_is_written_in_every_form() {
         // Light-facing triangles alone are wrong for an open mesh, a far plane for every mesh.
         let is_wrong_form = row.label.contains("light-facing") || row.label.contains("standard-finite");
         let is_exact = ["z-pass", "z-fail", "ray-traced"].contains(&row.technique.as_str()) && !is_wrong_form;
-        assert!(!is_exact || row.wrong() == 0, "{row:?}");
+        assert!(!is_exact || (row.wrong(), row.wrong_color) == (0, Some(0)), "{row:?}");
     }
     let none = report.rows.iter().find(|row| row.technique == "none").expect("none");
     assert!(none.missing_shadow > 20 && none.wrong_fraction > 0.0, "{none:?}");
@@ -210,6 +215,69 @@ fn rows_for_which_there_is_no_room_are_left_out_and_the_others_are_as_they_were(
     assert_eq!(all.iter().map(|one| one.choice.clone()).collect::<Vec<_>>(), what.choices);
     assert_eq!(few.iter().map(row).collect::<Vec<_>>(), [&all[0], &all[2]].map(row));
     assert!(all.iter().all(|row| row.frames.len() == 2 && row.gpu_ms.is_none_or(|ms| ms > 0.0)));
+}
+
+/// Planar shadows that are blended leave 0.4 of what is there: this sun is such that it is the ambient light alone. A pixel
+/// is 0.2 wide at height 0, and what is a height h above it throws its shadow 3 h to the left.
+fn under_a_low_sun(floor: Object, casters: &[[f64; 2]]) -> Scene {
+    let caster = |(index, [x, y]): (usize, &[f64; 2])| square(&format!("board {index}"), *y, 1.0).at([*x, 0.0, 0.0]);
+    let mut scene = from_above(casters.iter().enumerate().map(caster).collect());
+    scene.objects[0] = floor;
+    let cosine = 1.0 / 10_f32.sqrt();
+    scene.lights = vec![Light { intensity: 1.5 * scene.ambient[0] / cosine, ..Light::directional([3.0, 1.0, 0.0]) }];
+    scene
+}
+
+/// Wrong labels and wrong colours of a technique with settings.
+fn wrong(scene: &Scene, size: [u32; 2], rows: &[(Technique, &[(&str, &str)])]) -> Vec<[u64; 2]> {
+    let choice = |(technique, settings): &(Technique, &[(&str, &str)])| {
+        let mut choice = Choice::new(*technique);
+        settings.iter().for_each(|(key, value)| choice.set(key, value).expect("a setting"));
+        choice
+    };
+    let what = Measurement { choices: rows.iter().map(choice).collect(), size, runs: 1 };
+    let measured = session().measure(scene, &what, &Progress::default()).expect("rows");
+    measured.iter().map(|row| [row.error.wrong(), row.wrong_color]).collect()
+}
+
+/// Half of the shadow, 5 by 10 pixels, lies beyond the floor's edge, where nothing has a label.
+#[test]
+fn a_shadow_in_the_air_has_right_labels_and_wrong_colours() {
+    let scene = under_a_low_sun(square("floor", 0.0, 3.0), &[[0.0, 1.0]]);
+    let rows: [(Technique, &[_]); 3] =
+        [(Technique::Planar, &[]), (Technique::Planar, &[("stencil", "off")]), (Technique::None, &[])];
+    // Without shadows, the half on the floor is missing.
+    assert_eq!(wrong(&scene, [100, 100], &rows), [[0, 0], [0, 50], [50, 50]]);
+}
+
+/// Shadows of two boards overlap in 5 by 10 pixels.
+#[test]
+fn a_shadow_that_is_blended_twice_has_right_labels_and_wrong_colours() {
+    let scene = under_a_low_sun(square("floor", 0.0, 50.0), &[[6.0, 1.0], [8.0, 2.0]]);
+    let rows: [(Technique, &[_]); 3] =
+        [(Technique::Planar, &[]), (Technique::Planar, &[("blend", "twice")]), (Technique::ZFail, &[])];
+    assert_eq!(wrong(&scene, [100, 100], &rows), [[0, 0], [0, 50], [0, 0]]);
+}
+
+/// Where labels are right and shadows are hard, so are colours; a wrong label is a wrong colour wherever the light is
+/// more than a trace.
+#[test]
+fn colours_are_wrong_where_labels_are() {
+    for name in ["tori", "table", "inside", "two-lights", "glass", "spheres"] {
+        let scene = Builtin::named(name).expect("a name").scene().expect("a scene");
+        for shading in ["as-given", "gouraud"] {
+            let same = ("shading", shading);
+            let right = [Technique::ZFail, Technique::Auto, Technique::RayTraced];
+            let rows: Vec<(Technique, &[_])> = right.iter().map(|one| (*one, std::slice::from_ref(&same))).collect();
+            assert_eq!(wrong(&scene, [160, 90], &rows), [[0, 0]; 3], "{name}, {shading}");
+        }
+        if scene.lights.len() == 1 {
+            let rows: [(Technique, &[_]); 2] = [(Technique::ShadowMap, &[("bias-slope", "0")]), (Technique::None, &[])];
+            for [labels, colors] in wrong(&scene, [160, 90], &rows) {
+                assert!(colors * 100 >= labels * 95 && labels * 100 >= colors * 95, "{name}: {labels}, {colors}");
+            }
+        }
+    }
 }
 
 /// Two models of one name are two scenes: neither hides the other's front.

@@ -1,18 +1,19 @@
 //! Runs a prepared plan: one command buffer, with copies between passes where snapshots are wanted; more than one
 //! where those copies are many.
 
+use super::answer::{self, Answer};
 use super::buffers::Buffers;
-use super::collect::{Collector, Memory, Output, after, keep};
+use super::collect::{Collector, Memory, Output};
 use super::fragment_log::LogKeeper;
 use super::maps::Maps;
 use super::pictures::Pictures;
 use super::pipelines::Pipelines;
 use super::prepared::{Prepared, PreparedDraw};
 use super::queries::{Notes, Samples, Timestamps};
-use super::readback::{StagedPass, Staging, color_change};
+use super::readback::{StagedPass, Staging};
 use super::{Context, GpuError, features, start};
-use crate::capture::{Image, PixelFormat};
-use crate::plan::{AttachmentRole, Draw, FramePlan, LightId, Pass, Viewport, lint};
+use crate::capture::Image;
+use crate::plan::{Draw, FramePlan, Pass, Viewport, lint};
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -41,6 +42,8 @@ enum Mode {
     Snapshots,
     /// All passes, but only the labels of lights are kept.
     Labels,
+    /// All passes, but only the labels of lights and the finished picture are kept.
+    Answer,
     /// All passes, a snapshot after each.
     Everything,
 }
@@ -99,6 +102,18 @@ impl Executor {
         self.check(plan)?;
         let Executor { context, pipelines, buffers, pictures, .. } = self;
         context.guarded(|| Prepared::new(context, pipelines, buffers, pictures, &mut Maps::default(), plan))
+    }
+
+    /// The same for a plan between frames that are timed: nothing that it uploads is there for the next one, and what is
+    /// there stays.
+    ///
+    /// # Errors
+    /// As [`Executor::prepare`].
+    pub fn prepare_apart<'a>(&mut self, plan: &'a FramePlan) -> Result<Prepared<'a>, GpuError> {
+        self.check(plan)?;
+        let Executor { context, pipelines, .. } = self;
+        let (mut buffers, mut pictures, mut maps) = (Buffers::default(), Pictures::default(), Maps::default());
+        context.guarded(|| Prepared::new(context, pipelines, &mut buffers, &mut pictures, &mut maps, plan))
     }
 
     /// Finds what can't be run, and a device for what can.
@@ -196,16 +211,16 @@ impl Executor {
     /// A driver that fails.
     pub fn labels(&self, prepared: Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
         run(&prepared, Mode::Labels, &Notes::default())?;
-        let plan = prepared.plan;
-        let mut labels = vec![None; plan.lights.len()];
-        for (index, pass) in plan.passes.iter().enumerate() {
-            if let Some(light) = labelled(plan, pass) {
-                let staged = prepared.staged(index)?;
-                let left = after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
-                keep(&mut labels[light.0], left, Memory::Mapped);
-            }
-        }
-        Ok(labels)
+        answer::labels(&prepared)
+    }
+
+    /// The same, and the finished picture.
+    ///
+    /// # Errors
+    /// A driver that fails.
+    pub fn answer(&self, prepared: Prepared) -> Result<Answer, GpuError> {
+        run(&prepared, Mode::Answer, &Notes::default())?;
+        Ok(Answer { labels: answer::labels(&prepared)?, picture: answer::picture(&prepared)? })
     }
 }
 
@@ -219,23 +234,17 @@ impl Notes {
 
 impl Mode {
     fn runs(self, pass: &Pass) -> bool {
-        pass.timed || matches!(self, Mode::Labels | Mode::Everything)
+        pass.timed || matches!(self, Mode::Labels | Mode::Answer | Mode::Everything)
     }
 
-    fn copies(self, plan: &FramePlan, pass: &Pass) -> bool {
+    fn copies(self, plan: &FramePlan, index: usize) -> bool {
+        let pass = &plan.passes[index];
         match self {
             Mode::Frame => false,
-            Mode::Labels => labelled(plan, pass).is_some(),
+            Mode::Labels => answer::labelled(plan, pass).is_some(),
+            Mode::Answer => answer::labelled(plan, pass).is_some() || answer::last_of_picture(plan) == Some(index),
             Mode::Snapshots | Mode::Everything => self.runs(pass),
         }
-    }
-}
-
-/// The light whose labels the pass writes.
-fn labelled(plan: &FramePlan, pass: &Pass) -> Option<LightId> {
-    match plan.attachment(pass.color.as_ref()?.attachment).role {
-        AttachmentRole::Labels(light) => Some(light),
-        _ => None,
     }
 }
 
@@ -246,7 +255,7 @@ fn staged<'a>(
     passes: Range<usize>,
 ) -> Result<impl Iterator<Item = &'a StagedPass>, GpuError> {
     let plan = prepared.plan;
-    let copied = passes.filter(|index| mode.copies(plan, &plan.passes[*index]));
+    let copied = passes.filter(|index| mode.copies(plan, *index));
     Ok(copied.map(|index| prepared.staged(index)).collect::<Result<Vec<_>, _>>()?.into_iter())
 }
 
@@ -328,7 +337,7 @@ fn submit(prepared: &Prepared, mode: Mode, notes: &Notes, passes: Range<usize>) 
             }
             record_pass(&mut encoder, prepared, index, notes);
         }
-        if mode.copies(prepared.plan, pass) {
+        if mode.copies(prepared.plan, index) {
             prepared.staged(index)?.iter().for_each(|staging| staging.record(&mut encoder));
         }
     }

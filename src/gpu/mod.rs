@@ -15,6 +15,7 @@
 //! collect      mapped copies → steps, with what did not change shared
 //! ```
 
+mod answer;
 mod buffers;
 mod collect;
 mod context;

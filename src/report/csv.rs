@@ -3,7 +3,7 @@
 use super::{Report, Row};
 
 const COLUMNS: &str = "scene,technique,label,settings,width,height,compared,false_shadow,missing_shadow,\
-wrong_surface,edge_band,wrong_fraction,frame_ms_median,frame_ms_min,frame_ms_max,frame_runs,gpu_ms,setup_ms,\
+wrong_surface,edge_band,wrong_fraction,wrong_color,frame_ms_median,frame_ms_min,frame_ms_max,frame_runs,gpu_ms,setup_ms,\
 triangles,bytes,pareto,adapter,sweep,sweep_value";
 
 /// A heading line, then one line a row; each ends as the standard says, with CR LF.
@@ -27,6 +27,7 @@ fn line(row: &Row, adapter: &str) -> String {
         row.wrong_surface.to_string(),
         row.edge_band.to_string(),
         row.wrong_fraction.to_string(),
+        row.wrong_color.map_or_else(String::new, |pixels| pixels.to_string()),
         row.frame_ms.median.to_string(),
         row.frame_ms.min.to_string(),
         row.frame_ms.max.to_string(),
@@ -69,10 +70,10 @@ mod tests {
             BTreeMap::from([("size".to_owned(), "1024".to_owned()), ("bias-slope".to_owned(), "0".to_owned())]);
         let text = csv(&Report::new(adapter(), vec![row]));
         let lines: Vec<&str> = text.split("\r\n").collect();
-        assert_eq!(lines[0].split(',').count(), 24);
+        assert_eq!(lines[0].split(',').count(), 25);
         assert_eq!(
             lines[1],
-            "tori,shadow-map,\"1024, slope 0\",bias-slope=0;size=1024,100,10,1000,20,0,0,7,0.02,3.5,3.4,3.8,9,,12.5,5000,2097152,true,hand,,"
+            "tori,shadow-map,\"1024, slope 0\",bias-slope=0;size=1024,100,10,1000,20,0,0,7,0.02,20,3.5,3.4,3.8,9,,12.5,5000,2097152,true,hand,,"
         );
         assert_eq!(lines[2], "", "the last line ends too");
     }

@@ -80,6 +80,10 @@ pub struct Row {
     pub edge_band: u64,
     /// Wrong pixels of those compared, 0 to 1; 0 where nothing was compared.
     pub wrong_fraction: f64,
+    /// Pixels, background included, whose colour is not that of the ray-traced picture in the same shading; each counts
+    /// once, however many lights there are. `None` in reports from before it was measured.
+    #[serde(default)]
+    pub wrong_color: Option<u64>,
     /// Wall time of a frame.
     pub frame_ms: FrameTimes,
     /// With its set-up, where the scene moves; `None` where it stands still and set-up is done once.
@@ -404,6 +408,10 @@ impl Row {
                 count(self.false_shadow),
                 count(self.missing_shadow),
                 count(self.wrong_surface),
+            ),
+            format!(
+                "{} of another colour, background included",
+                self.wrong_color.map_or_else(|| "?".to_owned(), count)
             ),
             format!(
                 "{} to {} ms in {} frames, set-up {} ms",

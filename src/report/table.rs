@@ -63,7 +63,8 @@ pub fn text(report: &Report) -> String {
         }
     }
     text += "\n* nothing else of the scene is both at least as fast and at least as right (Pareto front)\n";
-    text + "wrong: false shadow + missing shadow + wrong surface, % of the pixels compared; frame: median, then fastest to slowest\n"
+    text + "wrong: false shadow + missing shadow + wrong surface, % of the pixels compared\n\
+            colour: pixels unlike those of the ray-traced picture, background included; frame: median, then fastest to slowest\n"
 }
 
 /// The picture sizes that occur: `1280×720`.
@@ -101,6 +102,7 @@ fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
         numbers("%", &wrong_percent),
         numbers("false", &|row| count(row.false_shadow)),
         numbers("missing", &|row| count(row.missing_shadow)),
+        numbers("colour", &wrong_color),
         numbers("frame ms", &|row| times(row.frame_ms.median)),
         numbers("min–max", &|row| format!("{}–{}", spread(row.frame_ms.min), spread(row.frame_ms.max))),
         numbers("GPU ms", &|row| row.gpu_ms.map_or_else(|| "-".to_owned(), times)),
@@ -111,15 +113,15 @@ fn columns_with_names(rows: &[Row], longest: usize) -> Vec<Column> {
     if rows.iter().any(|row| row.moving.is_some()) {
         let of = |part: fn(&Moving) -> f64| move |row: &Row| row.moving.as_ref().map_or(f64::NAN, part);
         let (setup, total) = (of(|moving| moving.setup_ms), of(|moving| moving.total_ms));
-        columns.insert(9, numbers("+ set-up", &|row| times(setup(row))));
-        columns.insert(10, numbers("total", &|row| times(total(row))));
-        columns.insert(11, numbers("fps", &fps));
+        columns.insert(10, numbers("+ set-up", &|row| times(setup(row))));
+        columns.insert(11, numbers("total", &|row| times(total(row))));
+        columns.insert(12, numbers("fps", &fps));
         // Over frames of a motion it says little.
-        columns.remove(8);
+        columns.remove(9);
     }
     if let Some(name) = swept_name(rows) {
         columns.insert(3, numbers(heading(name), &swept_text));
-        columns.insert(9, numbers("fps", &fps));
+        columns.insert(10, numbers("fps", &fps));
     }
     columns
 }
@@ -160,14 +162,21 @@ fn wrong(row: &Row) -> String {
     if row.compared == 0 { "-".to_owned() } else { count(row.wrong()) }
 }
 
+/// Pixels of a wrong colour; a dash where that was not measured.
+fn wrong_color(row: &Row) -> String {
+    row.wrong_color.map_or_else(|| "-".to_owned(), count)
+}
+
 fn wrong_percent(row: &Row) -> String {
     if row.compared == 0 { "-".to_owned() } else { per_hundred(row.wrong_fraction) }
 }
 
-/// Digits after the point that the shortest frame needs, the same for all so that points align.
+/// Digits after the point that the shortest frame needs, the same for all so that points align; fewer where the longest
+/// takes seconds, whose numbers are wide already.
 fn decimals(rows: &[Row]) -> usize {
-    let shortest = rows.iter().map(|row| row.frame_ms.median).filter(|ms| *ms > 0.0).fold(f64::INFINITY, f64::min);
-    if shortest < 0.2 { 3 } else { 2 }
+    let times = || rows.iter().map(|row| row.frame_ms.median).filter(|ms| *ms > 0.0);
+    let (shortest, longest) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
+    if shortest < 0.2 && longest < 1000.0 { 3 } else { 2 }
 }
 
 fn milliseconds(value: f64, decimals: usize) -> String {
@@ -194,8 +203,8 @@ pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
         [swept.map(heading).map(name).unwrap_or_default(), swept.map(|_| name("fps")).unwrap_or_default()];
     let rule = if swept.is_some() { "--:|" } else { "" };
     let mut text = format!(
-        "| technique | settings |{of_value} wrong pixels | % of compared | frame ms |{of_fps} set-up ms | triangles | MiB |\n\
-         |---|---|{rule}--:|--:|--:|{rule}--:|--:|--:|\n"
+        "| technique | settings |{of_value} wrong pixels | % of compared | wrong colour | frame ms |{of_fps} set-up ms | triangles | MiB |\n\
+         |---|---|{rule}--:|--:|--:|--:|{rule}--:|--:|--:|\n"
     );
     for row in report.rows_of(scene).into_iter().map(|index| &report.rows[index]) {
         let strong = |cell: String| if row.pareto { format!("**{cell}**") } else { cell };
@@ -204,6 +213,7 @@ pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
             escaped(&row.label),
             wrong(row),
             wrong_percent(row),
+            wrong_color(row),
             milliseconds(row.frame_ms.median, decimals),
             milliseconds(row.setup_ms, 1),
             count(row.triangles),
@@ -211,7 +221,7 @@ pub(super) fn markdown_of(report: &Report, scene: &str) -> String {
         ];
         if swept.is_some() {
             cells.insert(2, swept_text(row));
-            cells.insert(6, fps(row));
+            cells.insert(7, fps(row));
         }
         text += &format!("| {} |\n", cells.join(" | "));
     }
@@ -232,7 +242,7 @@ mod tests {
         let mut timed = row("tori", "z-fail", "", 0, 6.25);
         timed.gpu_ms = Some(5.5);
         let mut empty = row("table", "none", "", 0, 2.0);
-        empty.compared = 0;
+        (empty.compared, empty.wrong_color) = (0, None);
         Report::new(adapter(), vec![timed, row("tori", "shadow-map", "1024", 20, 8.0), empty])
     }
 
@@ -242,13 +252,13 @@ mod tests {
 hand · 1 · cpu
 
 tori · 100×10
-   technique   settings  wrong px    %  false  missing  frame ms  min–max  GPU ms  set-up ms  triangles  MiB
-*  z-fail                       0    0      0        0      6.25  6.2–6.5    5.50       12.5      5 000  2.0
-   shadow-map  1024            20  2.0     20        0      8.00  7.9–8.3       -       12.5      5 000  2.0
+   technique   settings  wrong px    %  false  missing  colour  frame ms  min–max  GPU ms  set-up ms  triangles  MiB
+*  z-fail                       0    0      0        0       0      6.25  6.2–6.5    5.50       12.5      5 000  2.0
+   shadow-map  1024            20  2.0     20        0      20      8.00  7.9–8.3       -       12.5      5 000  2.0
 
 table · 100×10
-   technique   settings  wrong px    %  false  missing  frame ms  min–max  GPU ms  set-up ms  triangles  MiB
-   none                         -    -      0        0      2.00  1.9–2.3       -       12.5      5 000  2.0
+   technique   settings  wrong px    %  false  missing  colour  frame ms  min–max  GPU ms  set-up ms  triangles  MiB
+   none                         -    -      0        0       -      2.00  1.9–2.3       -       12.5      5 000  2.0
 ";
         let text = text(&report()).replace('\u{2009}', " ");
         assert!(text.starts_with(expected), "{text}");
@@ -260,6 +270,7 @@ table · 100×10
         long.compared = 3840 * 2160;
         long.false_shadow = 2_000_000;
         long.missing_shadow = 2_000_000;
+        long.wrong_color = Some(4_000_000);
         long.triangles = 120_000_000;
         long.gpu_ms = Some(1234.5);
         long.bytes = 1 << 34;
@@ -276,6 +287,6 @@ table · 100×10
     #[test]
     fn markdown_marks_the_front_in_bold_and_keeps_cells_apart() {
         let text = markdown(&Report::new(adapter(), vec![row("tori", "z-fail", "a|b", 0, 6.25)]));
-        assert!(text.contains("| **z-fail** | a\\|b | 0 | 0 | 6.25 | 12.5 | 5\u{2009}000 | 2.0 |\n"), "{text}");
+        assert!(text.contains("| **z-fail** | a\\|b | 0 | 0 | 0 | 6.25 | 12.5 | 5\u{2009}000 | 2.0 |\n"), "{text}");
     }
 }

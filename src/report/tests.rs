@@ -21,6 +21,7 @@ pub(crate) fn row(scene: &str, technique: &str, label: &str, wrong: u64, ms: f64
         wrong_surface: 0,
         edge_band: 7,
         wrong_fraction: 0.0,
+        wrong_color: Some(wrong),
         frame_ms: FrameTimes { median: ms, min: ms - 0.1, max: ms + 0.3, runs: 9 },
         gpu_ms: None,
         moving: None,
@@ -104,6 +105,7 @@ fn json_has_the_names_of_the_contract_and_survives_the_way_there_and_back() {
             "size",
             "technique",
             "triangles",
+            "wrong_color",
             "wrong_fraction",
             "wrong_surface",
         ]
@@ -111,6 +113,30 @@ fn json_has_the_names_of_the_contract_and_survives_the_way_there_and_back() {
     assert_eq!(names(&value["rows"][0]["frame_ms"]), ["max", "median", "min", "runs"]);
     assert_eq!(value["rows"][0]["gpu_ms"], serde_json::Value::Null);
     assert_eq!(Report::from_json(&text).expect("a report"), report);
+}
+
+/// Files from before colours were compared have no such field: it stays unknown, also where parts are merged.
+#[test]
+fn reports_without_wrong_colours_can_be_read_and_merged() {
+    let shards = ["1/2", "2/2"].map(|shard| shard.parse().expect("a shard"));
+    let part = |(place, shard)| {
+        let one = row("tori", "z-fail", "", 0, 6.25);
+        let part = Part::new(shard, vec![place], "one run".to_owned(), ["a".to_owned(), "b".to_owned()]);
+        let mut value: serde_json::Value = serde_json::from_str(
+            &Report { part: Some(part), ..Report::new(adapter(), vec![one]) }.to_json().expect("JSON"),
+        )
+        .expect("a value");
+        if place == 0 {
+            value["rows"][0].as_object_mut().expect("a row").remove("wrong_color").expect("a count");
+        }
+        (format!("part-{place}.json"), Report::from_json(&value.to_string()).expect("a report"))
+    };
+    let merged = Report::merged((0..).zip(shards).map(part).collect()).expect("all parts");
+    assert_eq!(merged.rows.iter().map(|row| row.wrong_color).collect::<Vec<_>>(), [None, Some(0)]);
+    let csv = merged.to_csv();
+    assert!(csv.lines().nth(1).is_some_and(|line| line.contains(",7,0,,6.25,")), "{csv}");
+    assert!(merged.to_markdown().contains("| 0 | 0 | - | 6.25 |"));
+    assert!(merged.rows[0].details().contains("? of another colour"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Error against run time: several techniques on one scene, timed in turn.
 
-use super::truth::Traced;
+use super::reference::{FrameError, Reference};
 use super::{CaptureRequest, Session, SessionError, median, milliseconds};
 use crate::accuracy::ErrorCounts;
 use crate::geometry::GeometryCache;
@@ -89,8 +89,11 @@ impl Moments {
 pub struct Measured {
     /// Technique and settings.
     pub choice: Choice,
-    /// Errors, summed over lights.
+    /// Errors of labels, summed over lights.
     pub error: ErrorCounts,
+    /// Pixels whose colour is not that of the picture that the truth lights in the same shading, background included: see
+    /// [`wrong_colors`](crate::accuracy::wrong_colors).
+    pub wrong_color: u64,
     /// Wall times of frames without capture: recording, submitting, waiting.
     pub frames: Vec<Duration>,
     /// Median of the GPU's time for the frame's passes, measured in frames of their own between
@@ -141,13 +144,14 @@ impl Session {
             if progress.is_cancelled() { Err(SessionError::Cancelled) } else { Ok(()) }
         };
         progress.start(what.choices.len() * (what.runs + 1));
+        let mut reference = Reference::new(scene, &traced);
         let mut measured = Vec::with_capacity(what.choices.len());
         // By row: which of the choices it is.
         let mut items = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
             go_on(self)?;
-            let row = self.first_frame(scene, what, choice, &traced)?;
+            let row = self.first_frame(scene, what, choice, &mut reference)?;
             let steps = if row.is_some() { 1 } else { 1 + what.runs };
             items.extend(row.is_some().then_some(item));
             measured.extend(row);
@@ -201,11 +205,12 @@ impl Session {
         progress.start(what.choices.len() * (moments.frames + 1));
         let first = moments.moves.at(scene, moments.from);
         let traced = self.traced(&first, what.size, &Progress::default())?;
+        let mut reference = Reference::new(&first, &traced);
         let mut moving = Vec::with_capacity(what.choices.len());
         for (item, choice) in what.choices.iter().enumerate() {
             progress.turn_to(item);
-            if let Some(measured) = self.first_frame(&first, what, choice, &traced)? {
-                let measured = Measured { error: ErrorCounts::default(), ..measured };
+            if let Some(measured) = self.first_frame(&first, what, choice, &mut reference)? {
+                let measured = Measured { error: ErrorCounts::default(), wrong_color: 0, ..measured };
                 moving.push((item, measured, GeometryCache::default()));
             }
             progress.advance();
@@ -222,6 +227,7 @@ impl Session {
         for seconds in moments.all() {
             let scene = moments.moves.at(scene, seconds);
             let traced = self.traced(&scene, what.size, &Progress::default())?;
+            let mut reference = Reference::new(&scene, &traced);
             for ((item, measured, cache), kept) in moving.iter_mut().zip(&plans) {
                 progress.turn_to(*item);
                 if progress.is_cancelled() {
@@ -243,10 +249,10 @@ impl Session {
                     ready
                 };
                 measured.frames.push(self.executor.time(&ready, false)?);
-                let labels = self.executor.labels(ready)?;
-                let labels = labels.iter().enumerate();
-                let errors = labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts));
-                measured.error = std::iter::once(measured.error).chain(errors).sum();
+                let FrameError { labels, wrong_color } =
+                    reference.judge(&mut self.executor, &measured.choice, ready)?;
+                measured.error = [measured.error, labels].into_iter().sum();
+                measured.wrong_color += wrong_color;
                 progress.advance();
             }
         }
@@ -260,7 +266,7 @@ impl Session {
         scene: &Scene,
         what: &Measurement,
         choice: &Choice,
-        traced: &Traced,
+        reference: &mut Reference,
     ) -> Result<Option<Measured>, SessionError> {
         self.executor.forget();
         let cache = &mut GeometryCache::default();
@@ -273,11 +279,18 @@ impl Session {
         let (triangles, bytes) = (plan.triangles(), plan.bytes());
         let ready = self.executor.prepare(&plan)?;
         let setup_ms = milliseconds(start.elapsed());
-        let labels = self.executor.labels(ready)?;
-        let labels = labels.iter().enumerate();
-        let error = labels.filter_map(|(light, labels)| Some(traced.compare(light, labels.as_ref()?).counts)).sum();
-        let (choice, frames) = (choice.clone(), Vec::with_capacity(what.runs));
-        Ok(Some(Measured { choice, error, frames, gpu_ms: None, setup_ms, setups: Vec::new(), triangles, bytes }))
+        let FrameError { labels, wrong_color } = reference.judge(&mut self.executor, choice, ready)?;
+        Ok(Some(Measured {
+            choice: choice.clone(),
+            error: labels,
+            wrong_color,
+            frames: Vec::with_capacity(what.runs),
+            gpu_ms: None,
+            setup_ms,
+            setups: Vec::new(),
+            triangles,
+            bytes,
+        }))
     }
 
     /// The plans of those that stay set up for all of their frames: the smallest first, until [`KEPT_BYTES`] are

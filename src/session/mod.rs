@@ -12,6 +12,7 @@ mod draws;
 mod history;
 mod measure;
 mod recorded;
+mod reference;
 mod report;
 mod step_tests;
 mod stress;

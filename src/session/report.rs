@@ -25,6 +25,7 @@ pub fn report_rows(scene: &str, what: &Measurement, measured: &[Measured], among
             wrong_surface: one.error.wrong_surface,
             edge_band: one.error.edge_band,
             wrong_fraction: 0.0,
+            wrong_color: Some(one.wrong_color),
             frame_ms: FrameTimes {
                 median: median_ms(&one.frames).unwrap_or(f64::NAN),
                 min: frames.iter().copied().fold(f64::NAN, f64::min),

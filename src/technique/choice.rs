@@ -158,6 +158,16 @@ impl Choice {
         (is_in_eight_bits && in_floats.set(key, value).is_ok()).then_some(in_floats)
     }
 
+    /// The ground truth in the same shading: its picture is what this choice's should be. How depth is stored is left as
+    /// it is by default, since it shades nothing, and what it cuts away should be there.
+    #[must_use]
+    pub fn truth_in_same_shading(&self) -> Choice {
+        let mut truth = Choice::new(Technique::RayTraced);
+        let same = settings::SHADING_KEYS.into_iter().filter_map(|key| self.settings.get_key_value(key));
+        truth.settings.extend(same.map(|(key, value)| (key.clone(), value.clone())));
+        truth
+    }
+
     /// Why a setting does nothing as the others are; `None` where it does something.
     #[must_use]
     pub fn without_effect(&self, key: &str) -> Option<&'static str> {

@@ -107,6 +107,7 @@ pub use frame::{Drawn, Frame, Job, Piece, Placed, StencilUse};
 pub use lesson::{Lesson, Source};
 pub use named::Technique;
 pub use plan::plan;
+pub(crate) use ray_traced::plan_of_labels;
 pub use settings::{
     CommonSettings, CountsBy, MapSettings, PlanarSettings, SettingSpec, SettingValues, TextureSettings, Values,
     VolumeSettings, WhoCasts,

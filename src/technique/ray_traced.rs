@@ -29,6 +29,16 @@ impl MakeImage for LightRays {
     }
 }
 
+/// Labels that rays have found already.
+#[derive(Debug)]
+struct KnownLabels(Vec<u8>);
+
+impl MakeImage for KnownLabels {
+    fn make(&self) -> Vec<u8> {
+        self.0.clone()
+    }
+}
+
 /// What is said of it.
 pub(super) const DESCRIPTION: Description = Description {
     summary: "Follows rays from the eye and the light on the CPU: what the other techniques are measured against.",
@@ -49,20 +59,32 @@ pub(super) const DESCRIPTION: Description = Description {
 /// Plans a frame with traced shadows.
 pub fn plan(job: Job) -> Result<FramePlan, PlanError> {
     let (scene, size) = (job.scene, job.size);
-    let mut frame = Frame::new(job, StencilUse::ToLightOnce)?;
+    let frame = Frame::new(job, StencilUse::ToLightOnce)?;
     let tracer = Tracer::new(scene, size).map_err(|error| PlanError::Unusable { problem: error.to_string() })?;
     let tracer = Arc::new(tracer);
+    Ok(lit_by(frame, |light| Arc::new(LightRays { tracer: tracer.clone(), light })))
+}
+
+/// The same frame of labels that are known, one list a light, a byte a pixel: no ray is followed again.
+pub fn plan_of_labels(job: Job, labels: &[Vec<u8>]) -> Result<FramePlan, PlanError> {
+    let frame = Frame::new(job, StencilUse::ToLightOnce)?;
+    let known = |light: LightId| labels.get(light.0).cloned().unwrap_or_default();
+    Ok(lit_by(frame, |light| Arc::new(KnownLabels(known(light)))))
+}
+
+/// Surfaces, to which each light is added where its labels say so.
+fn lit_by(mut frame: Frame, labels: impl Fn(LightId) -> Arc<dyn MakeImage>) -> FramePlan {
     frame.ambient_pass();
     for light in frame.light_ids() {
         frame.plan.lights[light.0].decided_by = DecidedBy::Labels;
-        ray_pass(&mut frame, light, LightRays { tracer: tracer.clone(), light });
+        ray_pass(&mut frame, light, labels(light));
         let purpose = "Adds the light where its rays arrived.";
         frame.light_pass(light, purpose, &frame.light_by(Visibility::Labels));
     }
-    Ok(frame.finish())
+    frame.finish()
 }
 
-fn ray_pass(frame: &mut Frame, light: LightId, rays: LightRays) {
+fn ray_pass(frame: &mut Frame, light: LightId, source: Arc<dyn MakeImage>) {
     let attachment = frame.plan.lights[light.0].labels;
     let content = content_hash(frame.job.scene, light);
     frame.plan.passes.push(Pass {
@@ -77,7 +99,7 @@ fn ray_pass(frame: &mut Frame, light: LightId, rays: LightRays) {
         color: Some(ColorTarget { attachment, layer: 0, clear: None }),
         depth_stencil: None,
         draws: Vec::new(),
-        image: Some(CpuImage { name: format!("rays of {}", light.name()), content, source: Arc::new(rays) }),
+        image: Some(CpuImage { name: format!("rays of {}", light.name()), content, source }),
         recorded: None,
     });
 }

@@ -11,6 +11,7 @@ mod planar;
 mod volume;
 
 pub use common::CommonSettings;
+pub(super) use common::SHADING_KEYS;
 pub use face::{SettingSpec, SettingValues, Values};
 pub(super) use maps::SIZE;
 pub use maps::{MapSettings, TextureSettings};

@@ -21,6 +21,7 @@ fn row(scene: &str, technique: &str, label: &str, settings: &[(&str, &str)], wro
         wrong_surface: 0,
         edge_band: 20_366,
         wrong_fraction: 0.0,
+        wrong_color: Some(wrong + wrong / 8),
         frame_ms: FrameTimes { median: ms, min: ms * (1.0 - spread), max: ms * (1.0 + 2.5 * spread), runs: 15 },
         gpu_ms: Some(ms * 0.93),
         moving: None,

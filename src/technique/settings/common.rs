@@ -118,6 +118,8 @@ const OCCLUSION: Words<bool> = words(
         sources: &[cited::BITTNER],
     },
 );
+/// Those that decide how bright a lit surface is.
+pub(in crate::technique) const SHADING_KEYS: [&str; 2] = [DIFFUSE.spec.key, SHADING.spec.key];
 const SPECS: [SettingSpec; 6] = [DEPTH.spec, EPSILON.spec, DIFFUSE.spec, SHADING.spec, LEAVE_OUT, OCCLUSION.spec];
 
 /// A technique's settings: those that every technique has, and its `own`.

@@ -24,13 +24,19 @@ struct Column {
     cell: fn(&Row) -> String,
 }
 
-const COLUMNS: [Column; 6] = [
+const COLUMNS: [Column; 7] = [
     Column { heading: "wrong", width: 58.0, rank: 2, cell: |row| format::count(row.wrong()) },
     Column { heading: "%", width: 46.0, rank: 0, cell: |row| numbers::per_hundred(row.wrong_fraction) },
+    Column {
+        heading: "colour",
+        width: 58.0,
+        rank: 3,
+        cell: |row| row.wrong_color.map_or_else(|| "-".to_owned(), format::count),
+    },
     Column { heading: "ms", width: 46.0, rank: 1, cell: |row| numbers::milliseconds(row.frame_ms.median) },
-    Column { heading: "set-up ms", width: 66.0, rank: 3, cell: |row| numbers::milliseconds(row.setup_ms) },
-    Column { heading: "triangles", width: 66.0, rank: 4, cell: |row| format::count(row.triangles) },
-    Column { heading: "MiB", width: 46.0, rank: 5, cell: |row| numbers::mebibytes(row.bytes) },
+    Column { heading: "set-up ms", width: 66.0, rank: 4, cell: |row| numbers::milliseconds(row.setup_ms) },
+    Column { heading: "triangles", width: 66.0, rank: 5, cell: |row| format::count(row.triangles) },
+    Column { heading: "MiB", width: 46.0, rank: 6, cell: |row| numbers::mebibytes(row.bytes) },
 ];
 
 /// Draws the table in the width that there is.

@@ -1,0 +1,63 @@
+//! What a frame is judged by, of a run that has kept no more: the labels of its lights, and the finished picture.
+
+use super::GpuError;
+use super::collect::{Memory, after, keep};
+use super::prepared::Prepared;
+use super::readback::{Change, color_change};
+use crate::capture::{Image, PixelFormat};
+use crate::plan::{AttachmentRole, FramePlan, LightId, Pass};
+use std::sync::Arc;
+
+/// What a frame says of its lights, and what it shows.
+#[derive(Debug)]
+pub struct Answer {
+    /// One a light: its labels.
+    pub labels: Vec<Option<Arc<Image>>>,
+    /// The picture after the last pass that changes it.
+    pub picture: Arc<Image>,
+}
+
+/// The light whose labels the pass writes.
+pub(super) fn labelled(plan: &FramePlan, pass: &Pass) -> Option<LightId> {
+    match plan.attachment(pass.color.as_ref()?.attachment).role {
+        AttachmentRole::Labels(light) => Some(light),
+        _ => None,
+    }
+}
+
+/// The last pass that changes the picture.
+pub(super) fn last_of_picture(plan: &FramePlan) -> Option<usize> {
+    let is_picture = |pass: &Pass| {
+        let color = pass.color.as_ref();
+        color.is_some_and(|target| plan.attachment(target.attachment).role == AttachmentRole::Color)
+    };
+    plan.passes.iter().rposition(|pass| is_picture(pass) && color_change(plan, pass) != Change::Unchanged)
+}
+
+/// The labels of each light.
+pub(super) fn labels(prepared: &Prepared) -> Result<Vec<Option<Arc<Image>>>, GpuError> {
+    let plan = prepared.plan;
+    let mut labels = vec![None; plan.lights.len()];
+    for (index, pass) in plan.passes.iter().enumerate() {
+        if let Some(light) = labelled(plan, pass) {
+            let staged = prepared.staged(index)?;
+            let left = after(&color_change(plan, pass), &staged.color, PixelFormat::U8, plan.size)?;
+            keep(&mut labels[light.0], left, Memory::Mapped);
+        }
+    }
+    Ok(labels)
+}
+
+/// The finished picture.
+pub(super) fn picture(prepared: &Prepared) -> Result<Arc<Image>, GpuError> {
+    let (plan, format) = (prepared.plan, PixelFormat::Rgba8Srgb);
+    let left = match last_of_picture(plan) {
+        Some(index) => {
+            let change = color_change(plan, &plan.passes[index]);
+            after(&change, &prepared.staged(index)?.color, format, plan.size)?
+        }
+        None => None,
+    };
+    // wgpu clears new textures to zero.
+    Ok(left.unwrap_or_else(|| Arc::new(Image::uniform(format, plan.size, &[0; 4]))))
+}

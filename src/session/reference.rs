@@ -1,0 +1,66 @@
+//! Frames held against the truth: their labels, and their pictures against the one that the truth lights.
+
+use super::SessionError;
+use super::truth::Traced;
+use crate::accuracy::{self, ErrorCounts};
+use crate::capture::Image;
+use crate::geometry::GeometryCache;
+use crate::gpu::{Executor, Prepared};
+use crate::scene::Scene;
+use crate::technique::{self, Choice, Job};
+use std::sync::Arc;
+
+/// Right pictures of one scene: one for each way to shade it.
+pub(super) struct Reference<'a> {
+    scene: &'a Scene,
+    traced: &'a Traced,
+    pictures: Vec<(Choice, Arc<Image>)>,
+}
+
+/// How wrong a frame is.
+pub(super) struct FrameError {
+    /// Of labels, summed over lights.
+    pub labels: ErrorCounts,
+    /// Pixels of another colour than the right picture's.
+    pub wrong_color: u64,
+}
+
+impl<'a> Reference<'a> {
+    /// Of a scene and its truth; pictures are made when they are first asked for.
+    pub fn new(scene: &'a Scene, traced: &'a Traced) -> Reference<'a> {
+        Reference { scene, traced, pictures: Vec::new() }
+    }
+
+    /// Runs a choice's frame, untimed, and judges it.
+    pub fn judge(
+        &mut self,
+        executor: &mut Executor,
+        choice: &Choice,
+        ready: Prepared,
+    ) -> Result<FrameError, SessionError> {
+        let answer = executor.answer(ready)?;
+        let right = self.picture(executor, choice)?;
+        let labels = answer.labels.iter().enumerate();
+        let judged = labels.filter_map(|(light, labels)| Some(self.traced.compare(light, labels.as_ref()?)));
+        let (counts, findings): (Vec<_>, Vec<_>) = judged.map(|one| (one.counts, one.findings)).unzip();
+        let [picture, right] = [&answer.picture, &right].map(|image| image.rows().collect::<Vec<&[u8]>>());
+        let Traced { tracer, truth, .. } = self.traced;
+        let wrong_color = accuracy::wrong_colors(tracer, truth, &findings, &picture, &right);
+        Ok(FrameError { labels: counts.into_iter().sum(), wrong_color })
+    }
+
+    /// The scene lit by the truth's labels, in the shading of `choice`.
+    fn picture(&mut self, executor: &mut Executor, choice: &Choice) -> Result<Arc<Image>, SessionError> {
+        let choice = choice.truth_in_same_shading();
+        if let Some((_, picture)) = self.pictures.iter().find(|(known, _)| *known == choice) {
+            return Ok(picture.clone());
+        }
+        let Traced { truth, .. } = self.traced;
+        let job = Job { scene: self.scene, size: truth.size, choice: &choice, cache: &mut GeometryCache::default() };
+        let plan = technique::plan_of_labels(job, &truth.labels)?;
+        let ready = executor.prepare_apart(&plan)?;
+        let picture = executor.answer(ready)?.picture;
+        self.pictures.push((choice, picture.clone()));
+        Ok(picture)
+    }
+}
