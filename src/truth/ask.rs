@@ -4,7 +4,7 @@
 //! is for people, and for telling causes apart.
 
 use super::chart::Line;
-use super::pencil::{Bundle, Then};
+use super::pencil::{Bundle, Plane};
 use super::{Place, Surface, Tracer};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
@@ -86,10 +86,11 @@ impl Tracer {
         let mut bundle = Bundle::new();
         bundle.push(Line::To(seen.point));
         of.pencil.for_each_meeting(&self.world.triangles, &bundle, |met, _| {
-            if self.lies_between(of, met, &seen.surface) {
+            let plane = Plane::new(of.pencil.origin, &self.world.triangles[met.index as usize]);
+            if self.lies_between(of, met, &plane, &seen.surface) {
                 found.push(met.index as usize);
             }
-            Then::Continue
+            0
         });
         self.met(light, seen.point, found)
     }
@@ -127,7 +128,7 @@ impl Tracer {
             bundle.push(Line::To(end));
             of.pencil.for_each_meeting(&self.world.triangles, &bundle, |met, _| {
                 found.push(met.index as usize);
-                Then::Continue
+                0
             });
         }
         self.met(light, point, found)

@@ -17,9 +17,11 @@
 
 mod ask;
 mod chart;
+mod coarse;
 mod pencil;
 #[cfg(test)]
 mod tests;
+mod tree;
 mod view;
 mod world;
 
@@ -31,8 +33,9 @@ use crate::progress::Progress;
 use crate::scene::{Scene, Sight};
 use chart::Line;
 use glam::{DVec3, DVec4};
-use pencil::{Bundle, Pencil, Seen, Then, Whose};
+use pencil::{Bundle, Met as Meeting, Pencil, Plane, Whose};
 use rayon::prelude::*;
+use tree::set_bits;
 use view::View;
 use world::World;
 
@@ -279,15 +282,21 @@ impl Tracer {
             });
         });
         let mut nearest = [Nearest::NOTHING; Bundle::MOST];
-        self.eye.for_each_meeting(&self.world.triangles, &bundle, |seen, line| {
-            let distance = self.distance(seen, &rays[line]);
-            let best = nearest[line];
-            let is_nearer = distance < best.distance || (distance == best.distance && seen.index < best.triangle);
-            if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
-                let rounding = seen.plane_rounding();
-                nearest[line] = Nearest { distance, triangle: seen.index, eye_side: seen.center_side, rounding };
+        let triangles = &self.world.triangles;
+        self.eye.for_each_meeting(triangles, &bundle, |met, lines| {
+            let corners = &triangles[met.index as usize];
+            let plane = Plane::new(self.eye.origin, corners);
+            let depths = self.depths(corners);
+            for line in set_bits(lines) {
+                let distance = self.distance(&plane, depths, &rays[line]);
+                let best = nearest[line];
+                let is_nearer = distance < best.distance || (distance == best.distance && met.index < best.triangle);
+                if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
+                    let rounding = plane.rounding();
+                    nearest[line] = Nearest { distance, triangle: met.index, eye_side: met.center_side, rounding };
+                }
             }
-            Then::Continue
+            0
         });
         let eye = self.view.eye;
         for ((surface, ray), nearest) in surfaces.iter_mut().zip(rays).zip(nearest) {
@@ -303,19 +312,22 @@ impl Tracer {
         }
     }
 
+    /// Along the view's axis, how far a triangle is at least and at most.
+    fn depths(&self, corners: &[DVec3; 3]) -> [f64; 2] {
+        let axis = self.view.axis();
+        let [a, b, c] = corners.map(|corner| (corner - self.view.eye).dot(axis));
+        [a.min(b).min(c), a.max(b).max(c)]
+    }
+
     /// Along the view's axis, within the triangle's own distances: a sliver's plane may be so
     /// steep that rounding puts the meeting anywhere.
-    fn distance(&self, seen: &Seen, ray: &Sight) -> f64 {
-        let axis = self.view.axis();
-        let depth = |corner: DVec3| (corner - self.view.eye).dot(axis);
-        let [a, b, c] = self.world.triangles[seen.index as usize];
-        let (a, b, c) = (depth(a), depth(b), depth(c));
+    fn distance(&self, plane: &Plane, [least, most]: [f64; 2], ray: &Sight) -> f64 {
         let from = match self.view.is_parallel {
             // Relative to what the pencil's places are relative to.
-            true => seen.normal.dot(self.view.eye - self.eye.origin + ray.from),
+            true => plane.normal.dot(self.view.eye - self.eye.origin + ray.from),
             false => 0.0,
         };
-        ((seen.offset - from) / seen.normal.dot(ray.along)).max(a.min(b).min(c)).min(a.max(b).max(c))
+        ((plane.offset - from) / plane.normal.dot(ray.along)).max(least).min(most)
     }
 
     fn label_surfaces(&self, light: &LightPencil, surfaces: &[Option<Surface>], labels: &mut [u8]) {
@@ -340,34 +352,38 @@ impl Tracer {
                 bundle.push(Line::To(surface.point));
             }
         }
-        let mut left = bundle.len();
-        if left == 0 {
+        if bundle.len() == 0 {
             return;
         }
-        light.pencil.for_each_meeting(&self.world.triangles, &bundle, |seen, line| {
-            let index = lines[line];
-            let is_darkened = labels[index] == LIT
-                && surfaces[index].as_ref().is_some_and(|surface| self.lies_between(light, seen, surface));
-            if is_darkened {
-                labels[index] = SHADOW;
-                left -= 1;
+        let triangles = &self.world.triangles;
+        light.pencil.for_each_meeting(triangles, &bundle, |met, met_lines| {
+            let is_other = |line: &usize| surfaces[lines[*line]].is_some_and(|of| of.triangle != met.index as usize);
+            let others = set_bits(met_lines).filter(is_other).fold(0, |others, line| others | 1 << line);
+            if others == 0 {
+                return 0;
             }
-            if left == 0 { Then::Stop } else { Then::Continue }
+            let plane = Plane::new(light.pencil.origin, &triangles[met.index as usize]);
+            let lies_between = |line: &usize| {
+                surfaces[lines[*line]].as_ref().is_some_and(|surface| self.lies_between(light, met, &plane, surface))
+            };
+            let dark = set_bits(others).filter(lies_between).fold(0, |dark, line| dark | 1 << line);
+            set_bits(dark).for_each(|line| labels[lines[line]] = SHADOW);
+            dark
         });
     }
 
     /// Are the light and a surface point on different sides of a triangle that their line meets?
     /// A plane through the point itself, as far as its rounding can tell, has it on neither; nor
     /// has the surface's own plane.
-    fn lies_between(&self, light: &LightPencil, seen: &Seen, surface: &Surface) -> bool {
-        let other = seen.index as usize;
+    fn lies_between(&self, light: &LightPencil, met: &Meeting, plane: &Plane, surface: &Surface) -> bool {
+        let other = met.index as usize;
         if other == surface.triangle {
             return false;
         }
-        let (height, rounding) = seen.height(surface.point - light.pencil.origin);
-        let is_sure = height.abs() > rounding + seen.normal.abs().element_sum() * surface.rounding;
+        let (height, rounding) = plane.height(surface.point - light.pencil.origin);
+        let is_sure = height.abs() > rounding + plane.normal.abs().element_sum() * surface.rounding;
         let height = if is_sure { height } else { self.height_near(other, surface) };
-        is_opposite(height, seen.center_side) && !self.world.share_plane(surface.triangle, other)
+        is_opposite(height, met.center_side) && !self.world.share_plane(surface.triangle, other)
     }
 
     /// How far above a triangle's plane a point is that is so near that it takes care, times twice

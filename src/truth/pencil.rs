@@ -9,44 +9,48 @@
 //! always see a line on opposite sides of it: it slips between none, and meets no two.
 
 use super::chart::{Chart, Line, NEAREST};
+use super::coarse::{Core, Four};
+use super::tree::{Area, Tree, set_bits};
 use crate::math::{Sign, side_of_triangle, sign_of_sum};
-use glam::{DVec3, DVec4, Vec3A};
-use obvhs::BvhBuildParams;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
+use glam::{DVec3, DVec4};
 use rayon::prelude::*;
-use std::time::Duration;
 
 /// Some more than the roundings of a cross and a dot product of rounded differences, in units
 /// of the sum of their products' absolute values.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The same for single precision, which sorts out most lines that pass a triangle by.
-const COARSE_ROUNDING: f32 = 64.0 * f32::EPSILON;
-
-/// A triangle as its pencil sees it.
+/// A triangle that lines meet.
 #[derive(Debug, Clone, Copy)]
-pub struct Seen {
-    /// Planes through the centre and the edges opposite to each corner: normal …
-    edge_normals: [DVec3; 3],
-    /// … and offset, which is zero where the centre is the origin.
-    edge_offsets: [f64; 3],
-    is_centered: bool,
-    /// What rounding may move an edge's value by, for each unit of the place's span.
-    edge_rounding: f64,
-    /// The triangle's own plane, scaled by twice its area: normal …
+pub struct Met {
+    /// Which of all.
+    pub index: u32,
+    /// On which side of it the centre is; exact.
+    pub center_side: Sign,
+}
+
+/// A triangle's plane, scaled by twice its area.
+#[derive(Debug, Clone, Copy)]
+pub struct Plane {
     pub normal: DVec3,
-    /// … and what `normal · p` is for its points, relative to the pencil's origin.
+    /// What `normal · p` is for its points, relative to the pencil's origin.
     pub offset: f64,
     /// What rounding may move a height by, for each unit of its spread.
     height_rounding: f64,
     /// The largest sum of a corner's absolute coordinates, relative to the pencil's origin.
     size: f64,
-    /// On which side of the triangle the centre is; exact.
-    pub center_side: Sign,
-    /// Which triangle of all.
-    pub index: u32,
+}
+
+/// Planes through the centre and a triangle's edges.
+#[derive(Debug, Clone, Copy)]
+pub struct Edges {
+    /// Of the edges opposite to each corner: normal …
+    pub normals: [DVec3; 3],
+    /// … and offset, which is zero where the centre is the origin.
+    pub offsets: [f64; 3],
+    /// The most that the products sum up to which make an edge's value, for each unit of the place's span …
+    pub products: f64,
+    /// … and what is added to that span.
+    pub size: f64,
 }
 
 /// Whose lines they are: an eye's go on without end, a light's end at a surface.
@@ -62,17 +66,14 @@ pub struct Pencil {
     /// What points and corners are relative to: the centre, or near the scene.
     pub origin: DVec3,
     chart: Chart,
-    /// `None` where there is nothing to meet.
-    hierarchy: Option<Bvh2>,
-    /// In the order of the hierarchy's leaves.
-    seen: Vec<Seen>,
-    /// Parallel to `seen`.
-    coarse: Vec<Coarse>,
+    tree: Tree,
+    /// In the order of the tree.
+    fours: Vec<Four>,
 }
 
 impl std::fmt::Debug for Pencil {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Pencil").field("center", &self.center).field("seen", &self.seen.len()).finish_non_exhaustive()
+        f.debug_struct("Pencil").field("center", &self.center).field("fours", &self.fours.len()).finish_non_exhaustive()
     }
 }
 
@@ -81,6 +82,8 @@ impl std::fmt::Debug for Pencil {
 pub struct Bundle {
     lines: [Line; Bundle::MOST],
     len: usize,
+    /// Does one of them go on without end?
+    pub is_endless: bool,
 }
 
 impl Bundle {
@@ -88,54 +91,22 @@ impl Bundle {
     pub const MOST: usize = 16;
 
     pub fn new() -> Bundle {
-        Bundle { lines: [Line::Along(DVec3::ZERO); Bundle::MOST], len: 0 }
+        Bundle { lines: [Line::Along(DVec3::ZERO); Bundle::MOST], len: 0, is_endless: false }
     }
 
     pub fn push(&mut self, line: Line) {
         self.lines[self.len] = line;
         self.len += 1;
+        self.is_endless |= !matches!(line, Line::To(_));
     }
 
     pub fn len(&self) -> usize {
         self.len
     }
 
-    fn lines(&self) -> impl Iterator<Item = Line> + Clone {
-        self.lines[..self.len].iter().copied()
+    pub fn lines(&self) -> &[Line] {
+        &self.lines[..self.len]
     }
-}
-
-/// The edges of a triangle in single precision.
-#[derive(Debug, Clone, Copy)]
-struct Coarse {
-    normals: [Vec3A; 3],
-    offsets: [f32; 3],
-    /// What rounding may move an edge's value by, for each unit of the place's span …
-    rounding: f32,
-    /// … and for none.
-    least_rounding: f32,
-}
-
-/// A bundle's places relative to a pencil's origin, and a box around its lines where they cross
-/// the chart.
-struct Core {
-    places: [DVec3; Bundle::MOST],
-    x: [f32; Bundle::MOST],
-    y: [f32; Bundle::MOST],
-    z: [f32; Bundle::MOST],
-    /// The largest sum of a place's absolute coordinates.
-    span: f32,
-    middle: Vec3A,
-    half: Vec3A,
-    /// The same for the box; it carries the rounding of the places that it was moved from.
-    charted_span: f32,
-}
-
-/// What is done after a line has met a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Then {
-    Continue,
-    Stop,
 }
 
 impl Pencil {
@@ -154,94 +125,67 @@ impl Pencil {
             Whose::Eye => Chart::of_eye(center, middle, reach),
             Whose::Light => Chart::of_light(center, middle, reach),
         };
-        let is_met = |index: &usize| takes_part(*index) && side_of_triangle(triangles[*index], center) != Sign::Zero;
-        let entries: Vec<(Aabb, usize)> = (0..triangles.len())
-            .into_par_iter()
-            .with_min_len(1024)
-            .filter(is_met)
-            .flat_map_iter(|index| {
-                let boxes = chart.triangle(triangles[index], is_near(center, &triangles[index]));
-                boxes.into_iter().flatten().map(move |area| (area, index))
-            })
-            .collect();
-        let areas: Vec<Aabb> = entries.iter().map(|(area, _)| *area).collect();
-        let build = || build_bvh2(&areas, BvhBuildParams::very_fast_build(), &mut Duration::default());
-        let hierarchy = (!areas.is_empty()).then(build);
-        let order = hierarchy.as_ref().map_or(&[][..], |hierarchy| &hierarchy.primitive_indices);
-        let seen = |entry: &u32| {
-            let index = entries[*entry as usize].1;
-            Seen::new(center, &chart, &triangles[index], index as u32)
+        let charted = |index: usize| {
+            let center_side = side_of_triangle(triangles[index], center);
+            let is_met = takes_part(index) && center_side != Sign::Zero;
+            let boxes = is_met.then(|| chart.triangle(triangles[index], is_near(center, &triangles[index])));
+            let met = Met { index: index as u32, center_side };
+            boxes.into_iter().flatten().flatten().map(move |area| (area, met))
         };
-        let seen: Vec<Seen> = order.par_iter().with_min_len(1024).map(seen).collect();
-        let coarse = seen.par_iter().with_min_len(1024).map(Seen::coarse).collect();
-        Pencil { center, origin: chart.origin(), chart, hierarchy, seen, coarse }
+        let (areas, met): (Vec<Area>, Vec<Met>) =
+            (0..triangles.len()).into_par_iter().with_min_len(1024).flat_map_iter(charted).unzip();
+        let (tree, order) = Tree::new(&areas);
+        let four = |places: &[u32]| {
+            let met = places.iter().map(|place| met[*place as usize]);
+            Four::new(met.map(|met| (met, Edges::new(center, &chart, &triangles[met.index as usize]))))
+        };
+        let fours = order.par_chunks(Tree::WIDTH).with_min_len(256).map(four).collect();
+        Pencil { center, origin: chart.origin(), chart, tree, fours }
     }
 
-    /// Calls `meets` with each triangle that a line of the bundle meets and the line's number, in
-    /// no particular order, perhaps more than once; some lie on a line's other side of the centre or
-    /// beyond its end.
-    pub fn for_each_meeting(
-        &self,
-        triangles: &[[DVec3; 3]],
-        bundle: &Bundle,
-        mut meets: impl FnMut(&Seen, usize) -> Then,
-    ) {
-        let Some(hierarchy) = &self.hierarchy else { return };
-        let core = self.core(bundle);
-        for area in self.chart.bundle(bundle.lines()).into_iter().flatten() {
-            let mut goes_on = true;
-            hierarchy.aabb_traverse(area, |hierarchy, node| {
-                let node = &hierarchy.nodes[node as usize];
-                let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-                for index in leaf.filter(|index| !core.misses(&self.coarse[*index])) {
-                    let seen = &self.seen[index];
-                    for line in set_bits(core.near(&self.coarse[index], bundle.len)) {
-                        let is_met = seen.is_met(core.places[line]);
-                        let is_met = is_met.unwrap_or_else(|| self.is_met(triangles, seen, bundle.lines[line]));
-                        goes_on = goes_on && (!is_met || meets(seen, line) == Then::Continue);
+    /// Calls `meets` with each triangle that lines of the bundle meet and with these lines, a bit each, in no
+    /// particular order, some perhaps more than once; some lie on a line's other side of the centre or beyond
+    /// its end. `meets` says which lines need no more.
+    pub fn for_each_meeting(&self, triangles: &[[DVec3; 3]], bundle: &Bundle, mut meets: impl FnMut(&Met, u32) -> u32) {
+        let core = Core::new(&self.chart, bundle);
+        let mut left = (1_u32 << bundle.len) - 1;
+        let mut follow = |area: &Area| {
+            self.tree.for_each_meeting(area, |index, found| {
+                let four = &self.fours[index];
+                for lane in set_bits(found & !core.misses(four)) {
+                    let (near, sure) = core.near(four, lane);
+                    let met = &four.met[lane];
+                    let open = near & !sure & left;
+                    let mut lines = sure & left;
+                    if open != 0 {
+                        lines |= self.met_of(&triangles[met.index as usize], bundle, open);
+                    }
+                    if lines != 0 {
+                        left &= !meets(met, lines);
                     }
                 }
-                goes_on
+                left != 0
             });
-            if !goes_on {
-                return;
-            }
+        };
+        match core.area {
+            Some(area) => follow(&area),
+            None => self.chart.bundle(bundle.lines().iter().copied()).iter().flatten().for_each(follow),
         }
     }
 
-    fn core(&self, bundle: &Bundle) -> Core {
-        let mut core = Core {
-            places: [DVec3::ZERO; Bundle::MOST],
-            x: [0.0; Bundle::MOST],
-            y: [0.0; Bundle::MOST],
-            z: [0.0; Bundle::MOST],
-            span: 0.0,
-            middle: Vec3A::ZERO,
-            half: Vec3A::ZERO,
-            charted_span: 0.0,
+    /// Which of some lines, a bit each, meet a triangle: in double precision, or exactly where that leaves it open.
+    #[cold]
+    fn met_of(&self, corners: &[DVec3; 3], bundle: &Bundle, lines: u32) -> u32 {
+        let edges = Edges::new(self.center, &self.chart, corners);
+        let is_met = |line: &usize| {
+            let line = bundle.lines[*line];
+            edges.is_met(line.from(self.origin)).unwrap_or_else(|| self.is_met(corners, line))
         };
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for (index, line) in bundle.lines().enumerate() {
-            let place = line.from(self.origin);
-            core.places[index] = place;
-            let coarse = place.as_vec3a();
-            (core.x[index], core.y[index], core.z[index]) = coarse.into();
-            core.span = core.span.max(coarse.abs().element_sum());
-            let charted = self.chart.on_chart(line);
-            (low, high) = (low.min(charted), high.max(charted));
-        }
-        core.middle = ((low + high) / 2.0).as_vec3a();
-        core.half = ((high - low) / 2.0).as_vec3a();
-        core.charted_span = core.middle.abs().element_sum() + core.half.element_sum();
-        if !self.chart.is_centered() {
-            core.charted_span += core.span;
-        }
-        core
+        set_bits(lines).filter(is_met).fold(0, |met, line| met | 1 << line)
     }
 
     /// Does a line pass all three edges on the same side? Exact.
-    fn is_met(&self, triangles: &[[DVec3; 3]], seen: &Seen, line: Line) -> bool {
-        let corners = &triangles[seen.index as usize];
+    fn is_met(&self, corners: &[DVec3; 3], line: Line) -> bool {
         let side = |from: usize, to: usize| self.exact_side(corners[from], corners[to], line);
         let first = side(0, 1);
         first != Sign::Zero && side(1, 2) == first && side(2, 0) == first
@@ -263,53 +207,6 @@ impl Pencil {
     }
 }
 
-impl Core {
-    /// Do all lines pass some edge of the triangle on one side, and some edge on the other?
-    fn misses(&self, coarse: &Coarse) -> bool {
-        let rounding = coarse.rounding_at(self.charted_span);
-        let (mut left, mut right) = (false, false);
-        for (normal, offset) in coarse.normals.iter().zip(coarse.offsets) {
-            let value = normal.dot(self.middle) + offset;
-            let spread = normal.abs().dot(self.half) + rounding;
-            left |= value < -spread;
-            right |= value > spread;
-        }
-        left && right
-    }
-
-    /// Which of the first `count` lines do not clearly pass two edges on different sides: a bit each.
-    fn near(&self, coarse: &Coarse, count: usize) -> u32 {
-        let rounding = coarse.rounding_at(self.span);
-        let mut low = [f32::INFINITY; Bundle::MOST];
-        let mut high = [f32::NEG_INFINITY; Bundle::MOST];
-        for (normal, offset) in coarse.normals.iter().zip(coarse.offsets) {
-            for line in 0..Bundle::MOST {
-                let value = normal.x * self.x[line] + normal.y * self.y[line] + normal.z * self.z[line] + offset;
-                low[line] = if value < low[line] { value } else { low[line] };
-                high[line] = if value > high[line] { value } else { high[line] };
-            }
-        }
-        let is_near = |line: &usize| !(low[*line] < -rounding && high[*line] > rounding);
-        (0..count).filter(is_near).fold(0, |bits, line| bits | 1 << line)
-    }
-}
-
-impl Coarse {
-    /// More than what rounding may have moved an edge's value by, for a place of that span.
-    fn rounding_at(&self, span: f32) -> f32 {
-        self.rounding * span + self.least_rounding
-    }
-}
-
-/// Which bits are set.
-fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let bit = bits.trailing_zeros();
-        bits &= bits.wrapping_sub(1);
-        (bit < u32::BITS).then_some(bit as usize)
-    })
-}
-
 /// The exact sign of the first component of `(a − b) × d` that is not zero: how
 /// `d · ((a − p) × (b − p))` changes as `p` moves along x, y or z.
 fn first_sign_of_cross(a: DVec3, b: DVec3, d: DVec3) -> Sign {
@@ -317,58 +214,48 @@ fn first_sign_of_cross(a: DVec3, b: DVec3, d: DVec3) -> Sign {
     component(1, 2).or_else(|| component(2, 0)).or_else(|| component(0, 1))
 }
 
-impl Seen {
-    fn new(center: DVec4, chart: &Chart, corners: &[DVec3; 3], index: u32) -> Seen {
-        let [a, b, c] = *corners;
+impl Edges {
+    fn new(center: DVec4, chart: &Chart, &[a, b, c]: &[DVec3; 3]) -> Edges {
         let (towards, origin) = (center.truncate(), chart.origin());
         // From the centre to a corner; a lever that is the same for all where the centre is at infinity.
         let lever = |corner: DVec3| if center.w == 0.0 { -towards } else { corner - towards };
         // Planes through the centre and an edge: differences of near corners keep what products of
         // far ones would lose.
         let edges = [(b, c), (c, a), (a, b)];
-        let edge_normals = edges.map(|(p, q)| lever(p).cross(q - p));
-        let offset = |i: usize| if chart.is_centered() { 0.0 } else { -edge_normals[i].dot(edges[i].0 - origin) };
-        let span = |vector: DVec3| vector.abs().element_sum();
-        let largest = |of: [DVec3; 3]| span(of[0]).max(span(of[1])).max(span(of[2]));
-        let normal = (b - a).cross(c - a);
-        let edge = largest([b - a, c - b, a - c]);
-        Seen {
-            edge_normals,
-            edge_offsets: [offset(0), offset(1), offset(2)],
-            is_centered: chart.is_centered(),
-            edge_rounding: ROUNDING * edge * largest([lever(a), lever(b), lever(c)]),
-            normal,
-            offset: normal.dot(a - origin),
-            height_rounding: ROUNDING * edge * edge,
-            size: largest([a - origin, b - origin, c - origin]),
-            center_side: side_of_triangle(*corners, center),
-            index,
+        let normals = edges.map(|(p, q)| lever(p).cross(q - p));
+        let products = largest_span([b - a, c - b, a - c]) * largest_span([lever(a), lever(b), lever(c)]);
+        if chart.is_centered() {
+            return Edges { normals, offsets: [0.0; 3], products, size: 0.0 };
         }
-    }
-
-    fn coarse(&self) -> Coarse {
-        let rounding = (self.edge_rounding / ROUNDING) as f32 * COARSE_ROUNDING;
-        // Where single precision ends, nothing is sorted out: what is not a number decides nothing.
-        let least_rounding = if self.is_centered { 0.0 } else { rounding * self.size as f32 };
-        Coarse {
-            normals: self.edge_normals.map(|normal| normal.as_vec3a()),
-            offsets: self.edge_offsets.map(|offset| offset as f32),
-            rounding,
-            least_rounding: least_rounding + f32::MIN_POSITIVE,
-        }
+        let offset = |i: usize| -normals[i].dot(edges[i].0 - origin);
+        let size = largest_span([a - origin, b - origin, c - origin]);
+        Edges { normals, offsets: [offset(0), offset(1), offset(2)], products, size }
     }
 
     /// Does a line pass all edges on the same side? `None` where rounding leaves it open.
     fn is_met(&self, place: DVec3) -> Option<bool> {
-        let span = place.abs().element_sum();
-        let rounding = self.edge_rounding * if self.is_centered { span } else { span + self.size };
-        let value = |i: usize| self.edge_normals[i].dot(place) + self.edge_offsets[i];
+        let rounding = ROUNDING * self.products * (place.abs().element_sum() + self.size);
+        let value = |i: usize| self.normals[i].dot(place) + self.offsets[i];
         let (a, b, c) = (value(0), value(1), value(2));
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         if low < -rounding && high > rounding {
             return Some(false);
         }
         (low > rounding || high < -rounding).then_some(true)
+    }
+}
+
+impl Plane {
+    /// Relative to a pencil's origin.
+    pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> Plane {
+        let normal = (b - a).cross(c - a);
+        let edge = largest_span([b - a, c - b, a - c]);
+        Plane {
+            normal,
+            offset: normal.dot(a - origin),
+            height_rounding: ROUNDING * edge * edge,
+            size: largest_span([a - origin, b - origin, c - origin]),
+        }
     }
 
     /// How far above the triangle's plane a place is, times twice its area, and more than what
@@ -380,9 +267,14 @@ impl Seen {
 
     /// More than what rounding may have moved a point of the triangle's plane off it, where the
     /// plane was computed from here.
-    pub fn plane_rounding(&self) -> f64 {
+    pub fn rounding(&self) -> f64 {
         ROUNDING * self.size
     }
+}
+
+fn largest_span(of: [DVec3; 3]) -> f64 {
+    let [a, b, c] = of.map(|vector| vector.abs().element_sum());
+    a.max(b).max(c)
 }
 
 /// Is a centre so near to a triangle's plane that the triangle may be seen anywhere around it?

@@ -1,7 +1,8 @@
 //! Lines and triangles: watertight at edges and vertices, and complete against brute force.
 
 use super::chart::Line;
-use super::pencil::{Bundle, Pencil, Then, Whose};
+use super::pencil::{Bundle, Pencil, Whose};
+use super::tree::set_bits;
 use crate::math::side_of_triangle;
 use glam::{DVec3, DVec4};
 
@@ -10,9 +11,9 @@ fn met<const N: usize>(pencil: &Pencil, triangles: &[[DVec3; 3]], lines: [Line; 
     let mut bundle = Bundle::new();
     lines.into_iter().for_each(|line| bundle.push(line));
     let mut met = lines.map(|_| Vec::new());
-    pencil.for_each_meeting(triangles, &bundle, |seen, line| {
-        met[line].push(seen.index);
-        Then::Continue
+    pencil.for_each_meeting(triangles, &bundle, |triangle, lines| {
+        set_bits(lines).for_each(|line| met[line].push(triangle.index));
+        0
     });
     for met in &mut met {
         met.sort_unstable();

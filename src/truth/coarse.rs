@@ -1,0 +1,161 @@
+//! Lines and triangles in single precision, which tells most of them apart: sixteen lines or four triangles at a time.
+
+use super::chart::Chart;
+use super::pencil::{Bundle, Edges, Met};
+use super::tree::{Area, Tree};
+use crate::math::Sign;
+use glam::{BVec4A, DVec3, Vec3A, Vec4};
+
+/// More than the roundings of places, normals, scales, products and sums, in units of the sum of the products'
+/// absolute values: ten of half a unit each.
+const ROUNDING: f32 = 16.0 * f32::EPSILON;
+/// What rounding is taken as at least: numbers near it lose places.
+const LEAST: f32 = f32::MIN_POSITIVE;
+/// Lines' places are scaled to 1 from this size on.
+const SMALLEST: f32 = 1e-30;
+
+/// The edges of four triangles.
+#[derive(Debug, Clone, Copy)]
+pub struct Four {
+    /// By edge and axis.
+    normals: [[Vec4; 3]; 3],
+    offsets: [Vec4; 3],
+    /// What rounding may move an edge's value by, for each unit of the place's span …
+    rounding: Vec4,
+    /// … and for none.
+    least_rounding: Vec4,
+    pub met: [Met; Tree::WIDTH],
+}
+
+/// A bundle's places relative to a pencil's origin, and a box around its lines where they cross the chart.
+pub struct Core {
+    /// By axis; where the origin is the centre they are scaled, which moves no line.
+    places: [[Vec4; Bundle::MOST / 4]; 3],
+    /// The largest sum of a place's absolute coordinates.
+    span: f32,
+    middle: Vec3A,
+    half: Vec3A,
+    /// The same for the box; it carries the rounding of the places that it was moved from.
+    charted_span: f32,
+    /// Where the lines are seen, if that is clearly on one face of the chart.
+    pub area: Option<Area>,
+}
+
+impl Core {
+    pub fn new(chart: &Chart, bundle: &Bundle) -> Core {
+        let lines = bundle.lines();
+        let origin = chart.origin();
+        // What is left over is as the first line.
+        let mut places = [[0.0_f32; Bundle::MOST]; 3];
+        for index in 0..Bundle::MOST {
+            let place = lines[if index < lines.len() { index } else { 0 }].from(origin);
+            for axis in 0..3 {
+                places[axis][index] = place[axis] as f32;
+            }
+        }
+        let mut places = places.map(|axis| std::array::from_fn(|four| Vec4::from_slice(&axis[four * 4..])));
+        if chart.is_centered() {
+            return Core::centered(chart, places, bundle.is_endless);
+        }
+        let mut span = Vec4::ZERO;
+        for four in 0..Bundle::MOST / 4 {
+            let [x, y, z] = places.map(|axis: [Vec4; 4]| axis[four].abs());
+            span = span.max(x + y + z);
+        }
+        let charted = lines.iter().map(|line| chart.on_chart(*line));
+        let (low, high) = charted
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), place| (low.min(place), high.max(place)));
+        let mut core = Core::within(places, span.max_element(), low.as_vec3a(), high.as_vec3a());
+        core.charted_span += core.span;
+        core
+    }
+
+    /// Scales places so that they lie on a cube around the centre.
+    fn centered(chart: &Chart, mut places: [[Vec4; Bundle::MOST / 4]; 3], is_endless: bool) -> Core {
+        let (mut low, mut high) = ([Vec4::INFINITY; 3], [Vec4::NEG_INFINITY; 3]);
+        let (mut span, mut end) = (Vec4::ONE, Vec4::ZERO);
+        for four in 0..Bundle::MOST / 4 {
+            let [x, y, z] = places.map(|axis| axis[four].abs());
+            let largest = x.max(y).max(z);
+            end = end.max(largest);
+            let scale = largest.max(Vec4::splat(SMALLEST)).recip();
+            span = span.max((x + y + z) * scale);
+            for axis in 0..3 {
+                let place = places[axis][four] * scale;
+                places[axis][four] = place;
+                (low[axis], high[axis]) = (low[axis].min(place), high[axis].max(place));
+            }
+        }
+        let low = Vec3A::from_array(low.map(Vec4::min_element));
+        let high = Vec3A::from_array(high.map(Vec4::max_element));
+        let end = if is_endless { f32::INFINITY } else { end.max_element() };
+        Core { area: chart.on_one_face(low, high, end), ..Core::within(places, span.max_element(), low, high) }
+    }
+
+    fn within(places: [[Vec4; Bundle::MOST / 4]; 3], span: f32, low: Vec3A, high: Vec3A) -> Core {
+        let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
+        let charted_span = middle.abs().element_sum() + half.element_sum();
+        Core { places, span, middle, half, charted_span, area: None }
+    }
+
+    /// Of which triangles do all lines pass some edge on one side, and some edge on the other? A bit each.
+    pub fn misses(&self, four: &Four) -> u32 {
+        let rounding = four.rounding * self.charted_span + four.least_rounding;
+        let (mut left, mut right) = (BVec4A::FALSE, BVec4A::FALSE);
+        for ([x, y, z], offset) in four.normals.iter().zip(four.offsets) {
+            let value = *x * self.middle.x + *y * self.middle.y + *z * self.middle.z + offset;
+            let spread = x.abs() * self.half.x + y.abs() * self.half.y + z.abs() * self.half.z + rounding;
+            left |= value.cmplt(-spread);
+            right |= value.cmpgt(spread);
+        }
+        (left & right).bitmask()
+    }
+
+    /// Which lines do not clearly pass two edges of a triangle on different sides, and which clearly pass all on one
+    /// side: a bit each.
+    pub fn near(&self, four: &Four, lane: usize) -> (u32, u32) {
+        let rounding = Vec4::splat(four.rounding[lane] * self.span + four.least_rounding[lane]);
+        let normals = four.normals.map(|axes| axes.map(|axis| Vec4::splat(axis[lane])));
+        let offsets = four.offsets.map(|offset| Vec4::splat(offset[lane]));
+        let (mut misses, mut sure) = (0, 0);
+        let [xs, ys, zs] = &self.places;
+        for four in 0..Bundle::MOST / 4 {
+            let value = |edge: usize| {
+                let [x, y, z] = normals[edge];
+                x * xs[four] + y * ys[four] + z * zs[four] + offsets[edge]
+            };
+            let (a, b, c) = (value(0), value(1), value(2));
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            misses |= (low.cmplt(-rounding) & high.cmpgt(rounding)).bitmask() << (4 * four);
+            sure |= (low.cmpgt(rounding) | high.cmplt(-rounding)).bitmask() << (4 * four);
+        }
+        (!misses, sure)
+    }
+}
+
+impl Four {
+    /// Of up to four triangles.
+    pub fn new(edges: impl Iterator<Item = (Met, Edges)>) -> Four {
+        let mut four = Four {
+            normals: [[Vec4::ZERO; 3]; 3],
+            offsets: [Vec4::ZERO; 3],
+            rounding: Vec4::ZERO,
+            least_rounding: Vec4::ZERO,
+            met: [Met { index: 0, center_side: Sign::Zero }; Tree::WIDTH],
+        };
+        for (lane, (met, edges)) in edges.enumerate() {
+            for edge in 0..3 {
+                for axis in 0..3 {
+                    four.normals[edge][axis][lane] = edges.normals[edge][axis] as f32;
+                }
+                four.offsets[edge][lane] = edges.offsets[edge] as f32;
+            }
+            // Where single precision ends, nothing is sorted out: what is not a number decides nothing.
+            let rounding = (edges.products as f32 * ROUNDING).max(LEAST);
+            four.rounding[lane] = rounding;
+            four.least_rounding[lane] = rounding * edges.size as f32;
+            four.met[lane] = met;
+        }
+        four
+    }
+}

@@ -1,0 +1,167 @@
+//! Areas of a chart in a tree, four to a node: those that another area meets are found four at a time.
+//!
+//! Areas are sorted along a space-filling curve, four in a row make a node, and four nodes in a row one
+//! of the next level (a linear hierarchy: Lauterbach et al. 2009). So a tree takes little more than a sort to
+//! build, and no links. Where a node would take in large areas and small ones alike, its box would be met
+//! by lines far from most of them: areas are sorted by their size first (after Vinkler, Bittner and
+//! Havran 2017).
+
+use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+
+/// Areas of one size class differ in size by up to this power of two.
+const CLASS_BITS: u32 = 3;
+/// Bits of the curve along each axis.
+const CURVE_BITS: u32 = 20;
+/// More levels of four than 32-bit indices reach.
+const MOST_LEVELS: usize = 17;
+
+/// A rectangle of a chart.
+#[derive(Debug, Clone, Copy)]
+pub struct Area {
+    pub low: Vec2,
+    pub high: Vec2,
+    /// Of triangles: how near they come; of lines: how far they go.
+    pub depth: f32,
+}
+
+/// Four areas.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    low: [Vec4; 2],
+    high: [Vec4; 2],
+    depth: Vec4,
+}
+
+/// Many areas.
+#[derive(Debug, Default)]
+pub struct Tree {
+    /// Level by level; the first holds the areas themselves, each other one the nodes of the level before.
+    nodes: Vec<Node>,
+    /// Where each level begins.
+    starts: Vec<usize>,
+}
+
+impl Tree {
+    /// How many areas make a node.
+    pub const WIDTH: usize = 4;
+
+    /// Sorts areas into a tree; also says in which order they are in it.
+    pub fn new(areas: &[Area]) -> (Tree, Vec<u32>) {
+        let order = order(areas);
+        let mut level: Vec<Node> = order
+            .par_chunks(Tree::WIDTH)
+            .with_min_len(1024)
+            .map(|four| node(four.iter().map(|i| areas[*i as usize])))
+            .collect();
+        let mut tree = Tree::default();
+        while !level.is_empty() {
+            tree.starts.push(tree.nodes.len());
+            tree.nodes.extend(&level);
+            if level.len() == 1 {
+                break;
+            }
+            level = level.chunks(Tree::WIDTH).map(|four| node(four.iter().map(Node::area))).collect();
+        }
+        (tree, order)
+    }
+
+    /// Calls `meets` with the number of each four areas of the order that `area` meets one of, and which: a bit each. Ends
+    /// where that is false.
+    pub fn for_each_meeting(&self, area: &Area, mut meets: impl FnMut(usize, u32) -> bool) {
+        let mut stack = [(0, 0); MOST_LEVELS * (Tree::WIDTH - 1) + 1];
+        let mut count = 0;
+        if let Some(top) = self.starts.len().checked_sub(1) {
+            stack[0] = (top, 0);
+            count = 1;
+        }
+        while count > 0 {
+            count -= 1;
+            let (level, index) = stack[count];
+            let met = self.nodes[self.starts[level] + index].met(area);
+            if level > 0 {
+                for lane in set_bits(met) {
+                    stack[count] = (level - 1, index * Tree::WIDTH + lane);
+                    count += 1;
+                }
+            } else if met != 0 && !meets(index, met) {
+                return;
+            }
+        }
+    }
+}
+
+impl Node {
+    /// A box around all four.
+    fn area(&self) -> Area {
+        let least = |axis: [Vec4; 2]| Vec2::new(axis[0].min_element(), axis[1].min_element());
+        let most = |axis: [Vec4; 2]| Vec2::new(axis[0].max_element(), axis[1].max_element());
+        Area { low: least(self.low), high: most(self.high), depth: self.depth.min_element() }
+    }
+
+    /// Which of the four meet the area of lines: a bit each.
+    fn met(&self, area: &Area) -> u32 {
+        let along_x = self.low[0].cmple(Vec4::splat(area.high.x)) & self.high[0].cmpge(Vec4::splat(area.low.x));
+        let along_y = self.low[1].cmple(Vec4::splat(area.high.y)) & self.high[1].cmpge(Vec4::splat(area.low.y));
+        (along_x & along_y & self.depth.cmple(Vec4::splat(area.depth))).bitmask()
+    }
+}
+
+/// Up to four areas; what is left of the node is met by nothing.
+fn node(areas: impl Iterator<Item = Area>) -> Node {
+    let mut node = Node { low: [Vec4::INFINITY; 2], high: [Vec4::NEG_INFINITY; 2], depth: Vec4::INFINITY };
+    for (lane, area) in areas.enumerate() {
+        for axis in 0..2 {
+            node.low[axis][lane] = area.low[axis];
+            node.high[axis][lane] = area.high[axis];
+        }
+        node.depth[lane] = area.depth;
+    }
+    node
+}
+
+/// Areas by size and along the curve.
+fn order(areas: &[Area]) -> Vec<u32> {
+    let place = |area: &Area| ((area.low + area.high) / 2.0).extend(area.depth);
+    let (low, high) = areas
+        .iter()
+        .map(place)
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), place| (low.min(place), high.max(place)));
+    let size = (high - low).max_element().max(f32::MIN_POSITIVE);
+    let scale = ((1 << CURVE_BITS) - 1) as f32 / size;
+    let key = |(index, area): (usize, &Area)| {
+        let at = (place(area) - low) * scale;
+        let curve = spread(at.x as u64) | spread(at.y as u64) << 1 | spread(at.z as u64) << 2;
+        let part = ((area.high - area.low).max_element() / size).clamp(f32::MIN_POSITIVE, 1.0);
+        // The exponent, from 127 downwards.
+        let class = (127 - (part.to_bits() >> 23)) / CLASS_BITS;
+        (u64::from(class.min(15)) << (3 * CURVE_BITS) | curve, index as u32)
+    };
+    let mut keys: Vec<(u64, u32)> = areas.iter().enumerate().map(key).collect();
+    keys.par_sort_unstable();
+    keys.into_iter().map(|(_, index)| index).collect()
+}
+
+/// Puts two zeros before each bit.
+fn spread(bits: u64) -> u64 {
+    let mut bits = bits & 0x1f_ffff;
+    for (shift, mask) in [
+        (32, 0x001f_0000_0000_ffff),
+        (16, 0x001f_0000_ff00_00ff),
+        (8, 0x100f_00f0_0f00_f00f),
+        (4, 0x10c3_0c30_c30c_30c3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
+        bits = (bits | bits << shift) & mask;
+    }
+    bits
+}
+
+/// Which bits are set.
+pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = bits.trailing_zeros();
+        bits &= bits.wrapping_sub(1);
+        (bit < u32::BITS).then_some(bit as usize)
+    })
+}
