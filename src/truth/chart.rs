@@ -100,23 +100,21 @@ impl Chart {
         Chart::Plane { center, middle, across: [u, towards.cross(u)], towards, reach, distance }
     }
 
-    /// Where a triangle is seen; `is_near`: its plane all but contains the centre.
-    pub fn triangle(&self, corners: [DVec3; 3], is_near: bool) -> Boxes {
-        let mut boxes = Boxes::default();
+    /// Calls `add` with each area where a triangle is seen; `is_near`: its plane all but contains the centre.
+    pub fn for_each_area(&self, corners: [DVec3; 3], is_near: bool, mut add: impl FnMut(Area)) {
         let Chart::Cube { center, .. } = self else {
-            boxes[0] = Some(self.on_sheet(corners.into_iter().map(Line::To)).of_triangle());
-            return boxes;
+            add(self.on_sheet(corners.into_iter().map(Line::To)).of_triangle());
+            return;
         };
         let corners = corners.map(|corner| corner - *center);
         let face = face_of(corners[0]);
         if is_near {
-            boxes = std::array::from_fn(|face| Some(whole_face(face).of_triangle()));
+            (0..6).for_each(|face| add(whole_face(face).of_triangle()));
         } else if corners.iter().all(|corner| is_within(face, *corner)) {
-            boxes[0] = Some(bounds(corners.map(|corner| self.on_face(face, corner)), face, PADDING).of_triangle());
+            add(bounds(corners.map(|corner| self.on_face(face, corner)), face, PADDING).of_triangle());
         } else {
-            boxes = std::array::from_fn(|face| self.clipped(face, corners).map(Span::of_triangle));
+            (0..6).filter_map(|face| self.clipped(face, corners)).for_each(|span| add(span.of_triangle()));
         }
-        boxes
     }
 
     /// Where a bundle of lines is seen.
@@ -169,6 +167,15 @@ impl Chart {
         match self {
             Chart::Cube { center, .. } | Chart::Window { center, .. } => *center,
             Chart::Plane { middle, .. } => *middle,
+        }
+    }
+
+    /// From the lines' centre to a corner; where the centre is at infinity, a lever that is the same for all.
+    pub fn lever(&self, corner: DVec3) -> DVec3 {
+        match self {
+            Chart::Cube { center, .. } | Chart::Window { center, .. } => corner - center,
+            Chart::Plane { center, .. } if center.w == 0.0 => -center.truncate(),
+            Chart::Plane { center, .. } => corner - center.truncate(),
         }
     }
 

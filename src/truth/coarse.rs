@@ -1,13 +1,13 @@
 //! Lines and triangles in single precision, which tells most of them apart: sixteen lines or four triangles at a time.
 
 use super::chart::Chart;
-use super::pencil::{Bundle, Edges, Met};
+use super::pencil::{Bundle, Met};
 use super::tree::{Area, Tree};
 use crate::math::Sign;
 use glam::{BVec4A, DVec3, Vec3A, Vec4};
 
-/// More than the roundings of places, normals, scales, products and sums, in units of the sum of the products'
-/// absolute values: ten of half a unit each.
+/// More than twice the roundings of a cross product of differences, a scaled place and their dot product: 13 of half a unit
+/// each, in units of the product of their absolute sums.
 const ROUNDING: f32 = 16.0 * f32::EPSILON;
 /// What rounding is taken as at least: numbers near it lose places.
 const LEAST: f32 = f32::MIN_POSITIVE;
@@ -134,28 +134,59 @@ impl Core {
 }
 
 impl Four {
-    /// Of up to four triangles.
-    pub fn new(edges: impl Iterator<Item = (Met, Edges)>) -> Four {
-        let mut four = Four {
-            normals: [[Vec4::ZERO; 3]; 3],
-            offsets: [Vec4::ZERO; 3],
-            rounding: Vec4::ZERO,
-            least_rounding: Vec4::ZERO,
-            met: [Met { index: 0, center_side: Sign::Zero }; Tree::WIDTH],
-        };
-        for (lane, (met, edges)) in edges.enumerate() {
-            for edge in 0..3 {
-                for axis in 0..3 {
-                    four.normals[edge][axis][lane] = edges.normals[edge][axis] as f32;
+    /// Of up to four triangles, in single precision from the differences of their corners on.
+    pub fn new(chart: &Chart, triangles: &[[DVec3; 3]], met: impl Iterator<Item = Met>) -> Four {
+        let mut of = [Met { index: 0, center_side: Sign::Zero }; Tree::WIDTH];
+        let (mut levers, mut sides, mut places) = ([Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3]);
+        for (lane, met) in met.enumerate() {
+            of[lane] = met;
+            let [a, b, c] = triangles[met.index as usize];
+            for (edge, (p, q)) in [(b, c), (c, a), (a, b)].into_iter().enumerate() {
+                levers[edge].set(lane, chart.lever(p));
+                sides[edge].set(lane, q - p);
+                if !chart.is_centered() {
+                    places[edge].set(lane, p - chart.origin());
                 }
-                four.offsets[edge][lane] = edges.offsets[edge] as f32;
             }
-            // Where single precision ends, nothing is sorted out: what is not a number decides nothing.
-            let rounding = (edges.products as f32 * ROUNDING).max(LEAST);
-            four.rounding[lane] = rounding;
-            four.least_rounding[lane] = rounding * edges.size as f32;
-            four.met[lane] = met;
         }
-        four
+        let normals: [Vec3x4; 3] = std::array::from_fn(|edge| levers[edge].cross(sides[edge]));
+        let offsets = std::array::from_fn(|edge| -normals[edge].dot(places[edge]));
+        let largest = |of: [Vec3x4; 3]| of[0].span().max(of[1].span()).max(of[2].span());
+        let (lever, side) = (largest(levers), largest(sides));
+        // Where single precision ends, nothing is sorted out: what is infinite or not a number decides nothing.
+        let is_small = lever.min(side).cmplt(Vec4::splat(SMALLEST));
+        let rounding = Vec4::select(is_small, Vec4::INFINITY, (lever * side * ROUNDING).max(Vec4::splat(LEAST)));
+        let least_rounding = if chart.is_centered() { Vec4::ZERO } else { rounding * largest(places) };
+        Four { normals: normals.map(|normal| normal.0), offsets, rounding, least_rounding, met: of }
+    }
+}
+
+/// Four vectors, by axis.
+#[derive(Clone, Copy)]
+struct Vec3x4([Vec4; 3]);
+
+impl Vec3x4 {
+    const ZERO: Vec3x4 = Vec3x4([Vec4::ZERO; 3]);
+
+    fn set(&mut self, lane: usize, vector: DVec3) {
+        for axis in 0..3 {
+            self.0[axis][lane] = vector[axis] as f32;
+        }
+    }
+
+    fn cross(self, other: Vec3x4) -> Vec3x4 {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
+        Vec3x4([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    }
+
+    fn dot(self, other: Vec3x4) -> Vec4 {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
+        ax * bx + ay * by + az * bz
+    }
+
+    /// The sums of absolute coordinates.
+    fn span(self) -> Vec4 {
+        let [x, y, z] = self.0.map(Vec4::abs);
+        x + y + z
     }
 }

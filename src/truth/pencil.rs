@@ -42,16 +42,19 @@ pub struct Plane {
 
 /// Planes through the centre and a triangle's edges.
 #[derive(Debug, Clone, Copy)]
-pub struct Edges {
+struct Edges {
     /// Of the edges opposite to each corner: normal …
-    pub normals: [DVec3; 3],
+    normals: [DVec3; 3],
     /// … and offset, which is zero where the centre is the origin.
-    pub offsets: [f64; 3],
+    offsets: [f64; 3],
     /// The most that the products sum up to which make an edge's value, for each unit of the place's span …
-    pub products: f64,
+    products: f64,
     /// … and what is added to that span.
-    pub size: f64,
+    size: f64,
 }
+
+/// How many triangles are charted in a row.
+const PART: usize = 4096;
 
 /// Whose lines they are: an eye's go on without end, a light's end at a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -125,19 +128,25 @@ impl Pencil {
             Whose::Eye => Chart::of_eye(center, middle, reach),
             Whose::Light => Chart::of_light(center, middle, reach),
         };
-        let charted = |index: usize| {
-            let center_side = side_of_triangle(triangles[index], center);
-            let is_met = takes_part(index) && center_side != Sign::Zero;
-            let boxes = is_met.then(|| chart.triangle(triangles[index], is_near(center, &triangles[index])));
-            let met = Met { index: index as u32, center_side };
-            boxes.into_iter().flatten().flatten().map(move |area| (area, met))
-        };
-        let (areas, met): (Vec<Area>, Vec<Met>) =
-            (0..triangles.len()).into_par_iter().with_min_len(1024).flat_map_iter(charted).unzip();
+        // One list for each part: what each triangle has few of is fast to put into a row of its own.
+        let parts: Vec<Vec<(Area, Met)>> = triangles
+            .par_chunks(PART)
+            .enumerate()
+            .map(|(part, corners)| {
+                let mut charted = Vec::with_capacity(corners.len());
+                for (index, corners) in (part * PART..).zip(corners).filter(|(index, _)| takes_part(*index)) {
+                    let Some((center_side, is_near)) = side_of(center, corners) else { continue };
+                    let met = Met { index: index as u32, center_side };
+                    chart.for_each_area(*corners, is_near, |area| charted.push((area, met)));
+                }
+                charted
+            })
+            .collect();
+        let areas: Vec<Area> = parts.iter().flatten().map(|(area, _)| *area).collect();
+        let met: Vec<Met> = parts.iter().flatten().map(|(_, met)| *met).collect();
         let (tree, order) = Tree::new(&areas);
-        let four = |places: &[u32]| {
-            let met = places.iter().map(|place| met[*place as usize]);
-            Four::new(met.map(|met| (met, Edges::new(center, &chart, &triangles[met.index as usize]))))
+        let four = |places: &[Option<u32>]| {
+            Four::new(&chart, triangles, places.iter().flatten().map(|place| met[*place as usize]))
         };
         let fours = order.par_chunks(Tree::WIDTH).with_min_len(256).map(four).collect();
         Pencil { center, origin: chart.origin(), chart, tree, fours }
@@ -176,7 +185,7 @@ impl Pencil {
     /// Which of some lines, a bit each, meet a triangle: in double precision, or exactly where that leaves it open.
     #[cold]
     fn met_of(&self, corners: &[DVec3; 3], bundle: &Bundle, lines: u32) -> u32 {
-        let edges = Edges::new(self.center, &self.chart, corners);
+        let edges = Edges::new(&self.chart, corners);
         let is_met = |line: &usize| {
             let line = bundle.lines[*line];
             edges.is_met(line.from(self.origin)).unwrap_or_else(|| self.is_met(corners, line))
@@ -215,10 +224,8 @@ fn first_sign_of_cross(a: DVec3, b: DVec3, d: DVec3) -> Sign {
 }
 
 impl Edges {
-    fn new(center: DVec4, chart: &Chart, &[a, b, c]: &[DVec3; 3]) -> Edges {
-        let (towards, origin) = (center.truncate(), chart.origin());
-        // From the centre to a corner; a lever that is the same for all where the centre is at infinity.
-        let lever = |corner: DVec3| if center.w == 0.0 { -towards } else { corner - towards };
+    fn new(chart: &Chart, &[a, b, c]: &[DVec3; 3]) -> Edges {
+        let (lever, origin) = (|corner| chart.lever(corner), chart.origin());
         // Planes through the centre and an edge: differences of near corners keep what products of
         // far ones would lose.
         let edges = [(b, c), (c, a), (a, b)];
@@ -277,14 +284,19 @@ fn largest_span(of: [DVec3; 3]) -> f64 {
     a.max(b).max(c)
 }
 
-/// Is a centre so near to a triangle's plane that the triangle may be seen anywhere around it?
-fn is_near(center: DVec4, corners: &[DVec3; 3]) -> bool {
+/// The exact side of a triangle that a centre is on, and whether it is so near to the triangle's plane that the triangle may be seen
+/// anywhere around it. `None` where it is in the plane.
+fn side_of(center: DVec4, corners: &[DVec3; 3]) -> Option<(Sign, bool)> {
     let [a, b, c] = corners.map(|corner| corner - center.truncate());
     let normal = (b - a).cross(c - a);
     let span = |vector: DVec3| vector.abs().element_sum();
-    let size = span(a).max(span(b)).max(span(c));
     let edge = span(b - a).max(span(c - a));
-    normal.dot(a).abs() <= size * (NEAREST * normal.length() + ROUNDING * edge * edge)
+    let height = normal.dot(a);
+    if height.abs() > largest_span([a, b, c]) * (NEAREST * span(normal) + ROUNDING * edge * edge) && center.w != 0.0 {
+        return Some((if height < 0.0 { Sign::Positive } else { Sign::Negative }, false));
+    }
+    let side = side_of_triangle(*corners, center);
+    (side != Sign::Zero).then_some((side, true))
 }
 
 /// The box around the triangles that take part.

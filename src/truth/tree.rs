@@ -1,16 +1,17 @@
-//! Areas of a chart in a tree, four to a node: those that another area meets are found four at a time.
+//! Areas of a chart in trees, four to a node: those that another area meets are found four at a time.
 //!
 //! Areas are sorted along a space-filling curve, four in a row make a node, and four nodes in a row one
-//! of the next level (a linear hierarchy: Lauterbach et al. 2009). So a tree takes little more than a sort to
-//! build, and no links. Where a node would take in large areas and small ones alike, its box would be met
-//! by lines far from most of them: areas are sorted by their size first (after Vinkler, Bittner and
-//! Havran 2017).
+//! of the next level (a linear hierarchy: Lauterbach et al. 2009), so that building takes little more than a
+//! sort. A node of large areas and small ones alike would be met by lines far from most of them:
+//! areas of each size make a tree of their own.
 
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
-/// Areas of one size class differ in size by up to this power of two.
+/// Areas of one tree differ in size by up to this power of two.
 const CLASS_BITS: u32 = 3;
+/// The last tree is of all smaller ones.
+const MOST_CLASSES: u32 = 16;
 /// Bits of the curve along each axis.
 const CURVE_BITS: u32 = 20;
 /// More levels of four than 32-bit indices reach.
@@ -31,67 +32,102 @@ struct Node {
     low: [Vec4; 2],
     high: [Vec4; 2],
     depth: Vec4,
+    /// The first of the four nodes below.
+    first: u32,
 }
 
 /// Many areas.
 #[derive(Debug, Default)]
 pub struct Tree {
-    /// Level by level; the first holds the areas themselves, each other one the nodes of the level before.
+    /// Those without nodes below come first.
     nodes: Vec<Node>,
-    /// Where each level begins.
-    starts: Vec<usize>,
+    /// How many these are.
+    leaves: usize,
+    /// The topmost node of each size.
+    tops: Vec<u32>,
 }
 
 impl Tree {
     /// How many areas make a node.
     pub const WIDTH: usize = 4;
 
-    /// Sorts areas into a tree; also says in which order they are in it.
-    pub fn new(areas: &[Area]) -> (Tree, Vec<u32>) {
-        let order = order(areas);
-        let mut level: Vec<Node> = order
-            .par_chunks(Tree::WIDTH)
-            .with_min_len(1024)
-            .map(|four| node(four.iter().map(|i| areas[*i as usize])))
-            .collect();
-        let mut tree = Tree::default();
-        while !level.is_empty() {
-            tree.starts.push(tree.nodes.len());
-            tree.nodes.extend(&level);
-            if level.len() == 1 {
-                break;
-            }
-            level = level.chunks(Tree::WIDTH).map(|four| node(four.iter().map(Node::area))).collect();
+    /// Sorts areas into a tree; also says in which order they are in it. `None` fills a node up.
+    pub fn new(areas: &[Area]) -> (Tree, Vec<Option<u32>>) {
+        let keys = keys(areas);
+        let classes = keys.chunk_by(|(one, _), (other, _)| class(*one) == class(*other));
+        let mut order = Vec::with_capacity(keys.len() + Tree::WIDTH * MOST_CLASSES as usize);
+        let mut counts = Vec::new();
+        for class in classes {
+            let leaves = class.len().div_ceil(Tree::WIDTH);
+            let end = order.len() + leaves * Tree::WIDTH;
+            order.extend(class.iter().map(|(_, index)| Some(*index)));
+            order.resize(end, None);
+            counts.push(leaves);
+        }
+        let leaf = |four: &[Option<u32>]| Node::new(four.iter().flatten().map(|index| areas[*index as usize]), 0);
+        let nodes: Vec<Node> = order.par_chunks(Tree::WIDTH).with_min_len(1024).map(leaf).collect();
+        let mut tree = Tree { leaves: nodes.len(), nodes, tops: Vec::new() };
+        let mut first = 0;
+        for count in counts {
+            tree.stack_up(first, count);
+            first += count;
         }
         (tree, order)
+    }
+
+    /// Nodes above some in a row, up to a single one.
+    fn stack_up(&mut self, mut first: usize, mut count: usize) {
+        while count > 1 {
+            let next = self.nodes.len();
+            for below in (first..first + count).step_by(Tree::WIDTH) {
+                let four = &self.nodes[below..(below + Tree::WIDTH).min(first + count)];
+                let node = Node::new(four.iter().map(Node::area), below as u32);
+                self.nodes.push(node);
+            }
+            (first, count) = (next, self.nodes.len() - next);
+        }
+        self.tops.push(first as u32);
     }
 
     /// Calls `meets` with the number of each four areas of the order that `area` meets one of, and which: a bit each. Ends
     /// where that is false.
     pub fn for_each_meeting(&self, area: &Area, mut meets: impl FnMut(usize, u32) -> bool) {
-        let mut stack = [(0, 0); MOST_LEVELS * (Tree::WIDTH - 1) + 1];
-        let mut count = 0;
-        if let Some(top) = self.starts.len().checked_sub(1) {
-            stack[0] = (top, 0);
-            count = 1;
-        }
-        while count > 0 {
-            count -= 1;
-            let (level, index) = stack[count];
-            let met = self.nodes[self.starts[level] + index].met(area);
-            if level > 0 {
-                for lane in set_bits(met) {
-                    stack[count] = (level - 1, index * Tree::WIDTH + lane);
-                    count += 1;
+        let mut stack = [0; MOST_LEVELS * (Tree::WIDTH - 1) + 1];
+        for top in &self.tops {
+            stack[0] = *top;
+            let mut count = 1;
+            while count > 0 {
+                count -= 1;
+                let index = stack[count] as usize;
+                let node = &self.nodes[index];
+                let met = node.met(area);
+                if index >= self.leaves {
+                    for lane in set_bits(met) {
+                        stack[count] = node.first + lane as u32;
+                        count += 1;
+                    }
+                } else if met != 0 && !meets(index, met) {
+                    return;
                 }
-            } else if met != 0 && !meets(index, met) {
-                return;
             }
         }
     }
 }
 
 impl Node {
+    /// Up to four areas; what is left of the node is met by nothing.
+    fn new(areas: impl Iterator<Item = Area>, first: u32) -> Node {
+        let mut node = Node { low: [Vec4::INFINITY; 2], high: [Vec4::NEG_INFINITY; 2], depth: Vec4::INFINITY, first };
+        for (lane, area) in areas.enumerate() {
+            for axis in 0..2 {
+                node.low[axis][lane] = area.low[axis];
+                node.high[axis][lane] = area.high[axis];
+            }
+            node.depth[lane] = area.depth;
+        }
+        node
+    }
+
     /// A box around all four.
     fn area(&self) -> Area {
         let least = |axis: [Vec4; 2]| Vec2::new(axis[0].min_element(), axis[1].min_element());
@@ -107,21 +143,8 @@ impl Node {
     }
 }
 
-/// Up to four areas; what is left of the node is met by nothing.
-fn node(areas: impl Iterator<Item = Area>) -> Node {
-    let mut node = Node { low: [Vec4::INFINITY; 2], high: [Vec4::NEG_INFINITY; 2], depth: Vec4::INFINITY };
-    for (lane, area) in areas.enumerate() {
-        for axis in 0..2 {
-            node.low[axis][lane] = area.low[axis];
-            node.high[axis][lane] = area.high[axis];
-        }
-        node.depth[lane] = area.depth;
-    }
-    node
-}
-
-/// Areas by size and along the curve.
-fn order(areas: &[Area]) -> Vec<u32> {
+/// What areas are sorted by: class and place along the curve; and their indices, sorted.
+fn keys(areas: &[Area]) -> Vec<(u64, u32)> {
     let place = |area: &Area| ((area.low + area.high) / 2.0).extend(area.depth);
     let (low, high) = areas
         .iter()
@@ -133,13 +156,17 @@ fn order(areas: &[Area]) -> Vec<u32> {
         let at = (place(area) - low) * scale;
         let curve = spread(at.x as u64) | spread(at.y as u64) << 1 | spread(at.z as u64) << 2;
         let part = ((area.high - area.low).max_element() / size).clamp(f32::MIN_POSITIVE, 1.0);
-        // The exponent, from 127 downwards.
-        let class = (127 - (part.to_bits() >> 23)) / CLASS_BITS;
-        (u64::from(class.min(15)) << (3 * CURVE_BITS) | curve, index as u32)
+        // From the exponent: 127 for 1.
+        let class = ((127 - (part.to_bits() >> 23)) / CLASS_BITS).min(MOST_CLASSES - 1);
+        (u64::from(class) << (3 * CURVE_BITS) | curve, index as u32)
     };
     let mut keys: Vec<(u64, u32)> = areas.iter().enumerate().map(key).collect();
     keys.par_sort_unstable();
-    keys.into_iter().map(|(_, index)| index).collect()
+    keys
+}
+
+fn class(key: u64) -> u64 {
+    key >> (3 * CURVE_BITS)
 }
 
 /// Puts two zeros before each bit.
