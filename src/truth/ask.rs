@@ -4,8 +4,8 @@
 //! is for people, and for telling causes apart.
 
 use super::chart::Line;
-use super::pencil::{Bundle, Plane};
-use super::{Place, Surface, Tracer};
+use super::pencil::Bundle;
+use super::{Occluder, Place, Surface, Tracer};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
@@ -86,8 +86,8 @@ impl Tracer {
         let mut bundle = Bundle::new();
         bundle.push(Line::To(seen.point));
         of.pencil.for_each_meeting(&self.world.triangles, &bundle, |met, _| {
-            let plane = Plane::new(of.pencil.origin, &self.world.triangles[met.index as usize]);
-            if self.lies_between(of, met, &plane, &seen.surface) {
+            let mut occluder = Occluder::new(of.pencil.origin, &self.world.triangles, met);
+            if self.lies_between(of, &mut occluder, &seen.surface) {
                 found.push(met.index as usize);
             }
             0

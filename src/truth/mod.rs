@@ -33,7 +33,7 @@ use crate::progress::Progress;
 use crate::scene::{Scene, Sight};
 use chart::Line;
 use glam::{DVec3, DVec4};
-use pencil::{Bundle, Met as Meeting, Pencil, Plane, Whose};
+use pencil::{Bundle, Met as Meeting, Pencil, Plane, PlaneRounding, Whose};
 use rayon::prelude::*;
 use tree::set_bits;
 use view::View;
@@ -53,6 +53,9 @@ pub const LABEL_NAMES: [&str; 4] = ["lit", "in shadow", "background", "faces awa
 
 /// Pixels along each side of the tiles whose rays are followed together.
 const TILE: usize = 4;
+/// Rows of pixels that are traced in a go: tiles below each other meet much the same as those beside each other, and
+/// what was just met is near at hand.
+const BAND: usize = 4 * TILE;
 /// Units in the last place by which a surface point may be off: the eye, the direction and their
 /// sum are rounded.
 const POINT_ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -121,6 +124,35 @@ struct Surface {
     rounding: f64,
 }
 
+/// A triangle that may lie between a light and surfaces.
+#[derive(Debug)]
+struct Occluder {
+    triangle: usize,
+    light_side: Sign,
+    plane: Plane,
+    rounding: PlaneRounding,
+    /// The sum of the normal's absolute coordinates.
+    normal_span: f64,
+    /// The last surface's triangle whose plane was held against it, and whether they share it.
+    compared: (usize, bool),
+}
+
+impl Occluder {
+    /// Relative to a pencil's origin.
+    fn new(origin: DVec3, triangles: &[[DVec3; 3]], met: &Meeting) -> Occluder {
+        let corners = &triangles[met.index as usize];
+        let plane = Plane::new(origin, corners);
+        Occluder {
+            triangle: met.index as usize,
+            light_side: met.center_side,
+            plane,
+            rounding: PlaneRounding::new(origin, corners),
+            normal_span: plane.normal.abs().element_sum(),
+            compared: (usize::MAX, false),
+        }
+    }
+}
+
 /// What a ray of sight has met so far.
 #[derive(Debug, Clone, Copy)]
 struct Nearest {
@@ -128,13 +160,11 @@ struct Nearest {
     distance: f64,
     triangle: u32,
     eye_side: Sign,
-    /// How far the triangle's plane may be off.
-    rounding: f64,
 }
 
 impl Nearest {
     const NOTHING: Nearest =
-        Nearest { distance: f64::INFINITY, triangle: u32::MAX, eye_side: Sign::Zero, rounding: 0.0 };
+        Nearest { distance: f64::INFINITY, triangle: u32::MAX, eye_side: Sign::Zero };
 }
 
 impl Tracer {
@@ -201,7 +231,7 @@ impl Tracer {
     #[must_use]
     pub fn trace_lights(&self, lights: &[usize], progress: &Progress) -> Option<Truth> {
         let [width, height] = self.size.map(|n| n as usize);
-        let bands: Vec<usize> = (0..height).step_by(TILE).collect();
+        let bands: Vec<usize> = (0..height).step_by(BAND).collect();
         progress.start(bands.len());
         let traced: Option<Vec<Vec<Vec<u8>>>> = bands
             .into_par_iter()
@@ -248,25 +278,29 @@ impl Tracer {
     /// Labels of a band of rows, one list a light.
     fn trace_band(&self, top: usize, lights: &[usize]) -> Vec<Vec<u8>> {
         let [width, height] = self.size.map(|n| n as usize);
-        let rows = top..height.min(top + TILE);
-        let mut labels = vec![vec![BACKGROUND; rows.len() * width]; lights.len()];
+        let bottom = height.min(top + BAND);
+        let mut labels = vec![vec![BACKGROUND; (bottom - top) * width]; lights.len()];
+        let across: Vec<f64> = (0..width).map(|x| self.view.across(x as f64 + 0.5)).collect();
+        let down: Vec<f64> = (top..bottom).map(|y| self.view.down(y as f64 + 0.5)).collect();
         let (mut rays, mut places) = (Vec::with_capacity(TILE * TILE), Vec::with_capacity(TILE * TILE));
         for left in (0..width).step_by(TILE) {
-            rays.clear();
-            places.clear();
-            for (row, y) in rows.clone().enumerate() {
-                for x in left..width.min(left + TILE) {
-                    rays.push(self.view.ray([x as f64 + 0.5, y as f64 + 0.5]));
-                    places.push(row * width + x);
+            for first in (0..bottom - top).step_by(TILE) {
+                rays.clear();
+                places.clear();
+                for (row, y) in down.iter().enumerate().skip(first).take(TILE) {
+                    for (column, x) in across.iter().enumerate().skip(left).take(TILE) {
+                        rays.push(self.view.ray_through([*x, *y]));
+                        places.push(row * width + column);
+                    }
                 }
-            }
-            let mut surfaces = [None; TILE * TILE];
-            let surfaces = &mut surfaces[..rays.len()];
-            self.meet_surfaces(&rays, surfaces);
-            for (light, labels) in lights.iter().zip(&mut labels) {
-                let mut tile = [BACKGROUND; TILE * TILE];
-                self.label_surfaces(&self.lights[*light], surfaces, &mut tile[..surfaces.len()]);
-                places.iter().zip(tile).for_each(|(place, label)| labels[*place] = label);
+                let mut surfaces = [None; TILE * TILE];
+                let surfaces = &mut surfaces[..rays.len()];
+                self.meet_surfaces(&rays, surfaces);
+                for (light, labels) in lights.iter().zip(&mut labels) {
+                    let mut tile = [BACKGROUND; TILE * TILE];
+                    self.label_surfaces(&self.lights[*light], surfaces, &mut tile[..surfaces.len()]);
+                    places.iter().zip(tile).for_each(|(place, label)| labels[*place] = label);
+                }
             }
         }
         labels
@@ -292,21 +326,25 @@ impl Tracer {
                 let best = nearest[line];
                 let is_nearer = distance < best.distance || (distance == best.distance && met.index < best.triangle);
                 if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
-                    let rounding = plane.rounding();
-                    nearest[line] = Nearest { distance, triangle: met.index, eye_side: met.center_side, rounding };
+                    nearest[line] = Nearest { distance, triangle: met.index, eye_side: met.center_side };
                 }
             }
             0
         });
         let eye = self.view.eye;
+        let mut last = (u32::MAX, 0.0);
         for ((surface, ray), nearest) in surfaces.iter_mut().zip(rays).zip(nearest) {
             *surface = (nearest.triangle != u32::MAX).then(|| {
+                if last.0 != nearest.triangle {
+                    let rounding = PlaneRounding::new(self.eye.origin, &triangles[nearest.triangle as usize]);
+                    last = (nearest.triangle, rounding.of_point());
+                }
                 let offset = ray.at(nearest.distance);
                 let point = eye + offset;
                 // The sum is rounded at the size of its larger part.
                 let parts = ray.from.abs().max_element() + offset.abs().max_element();
                 let rounding = POINT_ROUNDING * (eye.abs().max_element() + parts + point.abs().max_element());
-                let rounding = rounding + nearest.rounding;
+                let rounding = rounding + last.1;
                 Surface { triangle: nearest.triangle as usize, eye_side: nearest.eye_side, point, rounding }
             });
         }
@@ -357,17 +395,18 @@ impl Tracer {
         }
         let triangles = &self.world.triangles;
         light.pencil.for_each_meeting(triangles, &bundle, |met, met_lines| {
-            let is_other = |line: &usize| surfaces[lines[*line]].is_some_and(|of| of.triangle != met.index as usize);
-            let others = set_bits(met_lines).filter(is_other).fold(0, |others, line| others | 1 << line);
-            if others == 0 {
-                return 0;
+            let mut occluder = None;
+            let mut dark = 0;
+            for line in set_bits(met_lines) {
+                let Some(surface) = surfaces[lines[line]].as_ref().filter(|of| of.triangle != met.index as usize) else {
+                    continue;
+                };
+                let occluder = occluder.get_or_insert_with(|| Occluder::new(light.pencil.origin, triangles, met));
+                if self.lies_between(light, occluder, surface) {
+                    labels[lines[line]] = SHADOW;
+                    dark |= 1 << line;
+                }
             }
-            let plane = Plane::new(light.pencil.origin, &triangles[met.index as usize]);
-            let lies_between = |line: &usize| {
-                surfaces[lines[*line]].as_ref().is_some_and(|surface| self.lies_between(light, met, &plane, surface))
-            };
-            let dark = set_bits(others).filter(lies_between).fold(0, |dark, line| dark | 1 << line);
-            set_bits(dark).for_each(|line| labels[lines[line]] = SHADOW);
             dark
         });
     }
@@ -375,15 +414,22 @@ impl Tracer {
     /// Are the light and a surface point on different sides of a triangle that their line meets?
     /// A plane through the point itself, as far as its rounding can tell, has it on neither; nor
     /// has the surface's own plane.
-    fn lies_between(&self, light: &LightPencil, met: &Meeting, plane: &Plane, surface: &Surface) -> bool {
-        let other = met.index as usize;
+    fn lies_between(&self, light: &LightPencil, occluder: &mut Occluder, surface: &Surface) -> bool {
+        let other = occluder.triangle;
         if other == surface.triangle {
             return false;
         }
-        let (height, rounding) = plane.height(surface.point - light.pencil.origin);
-        let is_sure = height.abs() > rounding + plane.normal.abs().element_sum() * surface.rounding;
-        let height = if is_sure { height } else { self.height_near(other, surface) };
-        is_opposite(height, met.center_side) && !self.world.share_plane(surface.triangle, other)
+        let place = surface.point - light.pencil.origin;
+        let height = occluder.plane.height(place);
+        let rounding = occluder.rounding.of_height(place) + occluder.normal_span * surface.rounding;
+        let height = if height.abs() > rounding { height } else { self.height_near(other, surface) };
+        if !is_opposite(height, occluder.light_side) {
+            return false;
+        }
+        if occluder.compared.0 != surface.triangle {
+            occluder.compared = (surface.triangle, self.world.share_plane(surface.triangle, other));
+        }
+        !occluder.compared.1
     }
 
     /// How far above a triangle's plane a point is that is so near that it takes care, times twice

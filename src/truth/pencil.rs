@@ -34,10 +34,6 @@ pub struct Plane {
     pub normal: DVec3,
     /// What `normal · p` is for its points, relative to the pencil's origin.
     pub offset: f64,
-    /// What rounding may move a height by, for each unit of its spread.
-    height_rounding: f64,
-    /// The largest sum of a corner's absolute coordinates, relative to the pencil's origin.
-    size: f64,
 }
 
 /// Planes through the centre and a triangle's edges.
@@ -256,25 +252,38 @@ impl Plane {
     /// Relative to a pencil's origin.
     pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> Plane {
         let normal = (b - a).cross(c - a);
+        Plane { normal, offset: normal.dot(a - origin) }
+    }
+
+    /// How far above the plane a place is, times twice the triangle's area.
+    pub fn height(&self, place: DVec3) -> f64 {
+        self.normal.dot(place) - self.offset
+    }
+}
+
+/// What rounding does to a triangle's plane.
+#[derive(Debug, Clone, Copy)]
+pub struct PlaneRounding {
+    /// What it may move a height by, for each unit of its spread.
+    height: f64,
+    /// The largest sum of a corner's absolute coordinates, relative to the pencil's origin.
+    size: f64,
+}
+
+impl PlaneRounding {
+    /// Of what is relative to a pencil's origin.
+    pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> PlaneRounding {
         let edge = largest_span([b - a, c - b, a - c]);
-        Plane {
-            normal,
-            offset: normal.dot(a - origin),
-            height_rounding: ROUNDING * edge * edge,
-            size: largest_span([a - origin, b - origin, c - origin]),
-        }
+        PlaneRounding { height: ROUNDING * edge * edge, size: largest_span([a - origin, b - origin, c - origin]) }
     }
 
-    /// How far above the triangle's plane a place is, times twice its area, and more than what
-    /// rounding may have moved that by.
-    pub fn height(&self, place: DVec3) -> (f64, f64) {
-        let spread = self.size + place.abs().element_sum();
-        (self.normal.dot(place) - self.offset, self.height_rounding * spread)
+    /// More than what it may have moved a place's height by.
+    pub fn of_height(&self, place: DVec3) -> f64 {
+        self.height * (self.size + place.abs().element_sum())
     }
 
-    /// More than what rounding may have moved a point of the triangle's plane off it, where the
-    /// plane was computed from here.
-    pub fn rounding(&self) -> f64 {
+    /// More than what it may have moved a point of the plane off it, where the plane was computed from here.
+    pub fn of_point(&self) -> f64 {
         ROUNDING * self.size
     }
 }
