@@ -4,7 +4,7 @@
 //! is for people, and for telling causes apart.
 
 use super::chart::Line;
-use super::pencil::Bundle;
+use super::pencil::{Bundle, Settled};
 use super::{Occluder, Place, Surface, Tracer};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
@@ -85,12 +85,12 @@ impl Tracer {
         let mut found = Vec::new();
         let mut bundle = Bundle::new();
         bundle.push(Line::To(seen.point));
-        of.pencil.for_each_meeting(&self.world.triangles, &bundle, |met, _| {
-            let mut occluder = Occluder::new(of.pencil.origin, &self.world.triangles, met);
+        of.pencil.for_each_meeting(&bundle, |met, corners, _| {
+            let mut occluder = Occluder::new(of.pencil.origin, met, corners);
             if self.lies_between(of, &mut occluder, &seen.surface) {
                 found.push(met.index as usize);
             }
-            0
+            Settled::NOTHING
         });
         self.met(light, seen.point, found)
     }
@@ -126,9 +126,9 @@ impl Tracer {
         for end in ends {
             let mut bundle = Bundle::new();
             bundle.push(Line::To(end));
-            of.pencil.for_each_meeting(&self.world.triangles, &bundle, |met, _| {
+            of.pencil.for_each_meeting(&bundle, |met, _, _| {
                 found.push(met.index as usize);
-                0
+                Settled::NOTHING
             });
         }
         self.met(light, point, found)

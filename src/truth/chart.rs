@@ -162,6 +162,14 @@ impl Chart {
         Some(padded(flat(low).extend(0.0), flat(high).extend(depth(end)), face, COARSE_PADDING).of_lines(false))
     }
 
+    /// How deep points are whose largest coordinates, relative to the centre, are up to `end`; or more.
+    pub fn depth(&self, end: f64) -> f32 {
+        match self {
+            Chart::Cube { middle, .. } => above(end / (end + middle) + COARSE_PADDING),
+            Chart::Window { .. } | Chart::Plane { .. } => f32::INFINITY,
+        }
+    }
+
     /// What the lines' places are best computed relative to: the centre, or near the scene.
     pub fn origin(&self) -> DVec3 {
         match self {

@@ -1,9 +1,8 @@
 //! Lines and triangles in single precision, which tells most of them apart: sixteen lines or four triangles at a time.
 
 use super::chart::Chart;
-use super::pencil::{Bundle, Met};
+use super::pencil::Bundle;
 use super::tree::{Area, Tree};
-use crate::math::Sign;
 use glam::{BVec4A, DVec3, Vec3A, Vec4};
 
 /// More than twice the roundings of a cross product of differences, a scaled place and their dot product: 13 of half a unit
@@ -24,7 +23,6 @@ pub struct Four {
     rounding: Vec4,
     /// … and for none.
     least_rounding: Vec4,
-    pub met: [Met; Tree::WIDTH],
 }
 
 /// A bundle's places relative to a pencil's origin, and a box around its lines where they cross the chart.
@@ -135,12 +133,9 @@ impl Core {
 
 impl Four {
     /// Of up to four triangles, in single precision from the differences of their corners on.
-    pub fn new(chart: &Chart, triangles: &[[DVec3; 3]], met: impl Iterator<Item = Met>) -> Four {
-        let mut of = [Met { index: 0, center_side: Sign::Zero }; Tree::WIDTH];
+    pub fn new(chart: &Chart, triangles: &[[DVec3; 3]]) -> Four {
         let (mut levers, mut sides, mut places) = ([Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3]);
-        for (lane, met) in met.enumerate() {
-            of[lane] = met;
-            let [a, b, c] = triangles[met.index as usize];
+        for (lane, &[a, b, c]) in triangles.iter().enumerate() {
             for (edge, (p, q)) in [(b, c), (c, a), (a, b)].into_iter().enumerate() {
                 levers[edge].set(lane, chart.lever(p));
                 sides[edge].set(lane, q - p);
@@ -157,7 +152,7 @@ impl Four {
         let is_small = lever.min(side).cmplt(Vec4::splat(SMALLEST));
         let rounding = Vec4::select(is_small, Vec4::INFINITY, (lever * side * ROUNDING).max(Vec4::splat(LEAST)));
         let least_rounding = if chart.is_centered() { Vec4::ZERO } else { rounding * largest(places) };
-        Four { normals: normals.map(|normal| normal.0), offsets, rounding, least_rounding, met: of }
+        Four { normals: normals.map(|normal| normal.0), offsets, rounding, least_rounding }
     }
 }
 

@@ -33,7 +33,7 @@ use crate::progress::Progress;
 use crate::scene::{Scene, Sight};
 use chart::Line;
 use glam::{DVec3, DVec4};
-use pencil::{Bundle, Met as Meeting, Pencil, Plane, PlaneRounding, Whose};
+use pencil::{Bundle, Met as Meeting, Pencil, Plane, PlaneRounding, Settled, Whose};
 use rayon::prelude::*;
 use tree::set_bits;
 use view::View;
@@ -139,8 +139,7 @@ struct Occluder {
 
 impl Occluder {
     /// Relative to a pencil's origin.
-    fn new(origin: DVec3, triangles: &[[DVec3; 3]], met: &Meeting) -> Occluder {
-        let corners = &triangles[met.index as usize];
+    fn new(origin: DVec3, met: &Meeting, corners: &[DVec3; 3]) -> Occluder {
         let plane = Plane::new(origin, corners);
         Occluder {
             triangle: met.index as usize,
@@ -163,8 +162,7 @@ struct Nearest {
 }
 
 impl Nearest {
-    const NOTHING: Nearest =
-        Nearest { distance: f64::INFINITY, triangle: u32::MAX, eye_side: Sign::Zero };
+    const NOTHING: Nearest = Nearest { distance: f64::INFINITY, triangle: u32::MAX, eye_side: Sign::Zero };
 }
 
 impl Tracer {
@@ -287,9 +285,9 @@ impl Tracer {
             for first in (0..bottom - top).step_by(TILE) {
                 rays.clear();
                 places.clear();
-                for (row, y) in down.iter().enumerate().skip(first).take(TILE) {
-                    for (column, x) in across.iter().enumerate().skip(left).take(TILE) {
-                        rays.push(self.view.ray_through([*x, *y]));
+                for row in first..down.len().min(first + TILE) {
+                    for column in left..width.min(left + TILE) {
+                        rays.push(self.view.ray_through([across[column], down[row]]));
                         places.push(row * width + column);
                     }
                 }
@@ -316,20 +314,29 @@ impl Tracer {
             });
         });
         let mut nearest = [Nearest::NOTHING; Bundle::MOST];
+        let mut open = (1_u32 << rays.len()) - 1;
+        let mut ends = [0.0; Bundle::MOST];
         let triangles = &self.world.triangles;
-        self.eye.for_each_meeting(triangles, &bundle, |met, lines| {
-            let corners = &triangles[met.index as usize];
+        self.eye.for_each_meeting(&bundle, |met, corners, lines| {
             let plane = Plane::new(self.eye.origin, corners);
             let depths = self.depths(corners);
+            let mut is_changed = false;
             for line in set_bits(lines) {
                 let distance = self.distance(&plane, depths, &rays[line]);
                 let best = nearest[line];
                 let is_nearer = distance < best.distance || (distance == best.distance && met.index < best.triangle);
                 if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
                     nearest[line] = Nearest { distance, triangle: met.index, eye_side: met.center_side };
+                    open &= !(1 << line);
+                    ends[line] = rays[line].at(distance).abs().max_element();
+                    is_changed = true;
                 }
             }
-            0
+            if open != 0 || !is_changed {
+                return Settled::NOTHING;
+            }
+            let farthest = ends.iter().fold(0.0, |farthest, end| if *end > farthest { *end } else { farthest });
+            Settled { depth: self.eye.depth(farthest), lines: 0 }
         });
         let eye = self.view.eye;
         let mut last = (u32::MAX, 0.0);
@@ -393,21 +400,21 @@ impl Tracer {
         if bundle.len() == 0 {
             return;
         }
-        let triangles = &self.world.triangles;
-        light.pencil.for_each_meeting(triangles, &bundle, |met, met_lines| {
+        light.pencil.for_each_meeting(&bundle, |met, corners, met_lines| {
             let mut occluder = None;
             let mut dark = 0;
             for line in set_bits(met_lines) {
-                let Some(surface) = surfaces[lines[line]].as_ref().filter(|of| of.triangle != met.index as usize) else {
+                let Some(surface) = surfaces[lines[line]].as_ref().filter(|of| of.triangle != met.index as usize)
+                else {
                     continue;
                 };
-                let occluder = occluder.get_or_insert_with(|| Occluder::new(light.pencil.origin, triangles, met));
+                let occluder = occluder.get_or_insert_with(|| Occluder::new(light.pencil.origin, met, corners));
                 if self.lies_between(light, occluder, surface) {
                     labels[lines[line]] = SHADOW;
                     dark |= 1 << line;
                 }
             }
-            dark
+            Settled { lines: dark, ..Settled::NOTHING }
         });
     }
 

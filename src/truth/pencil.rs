@@ -36,6 +36,19 @@ pub struct Plane {
     pub offset: f64,
 }
 
+/// What need not be looked for any more.
+#[derive(Debug, Clone, Copy)]
+pub struct Settled {
+    /// For these lines nothing: a bit each.
+    pub lines: u32,
+    /// For all lines nothing that begins deeper in the chart.
+    pub depth: f32,
+}
+
+impl Settled {
+    pub const NOTHING: Settled = Settled { lines: 0, depth: f32::INFINITY };
+}
+
 /// Planes through the centre and a triangle's edges.
 #[derive(Debug, Clone, Copy)]
 struct Edges {
@@ -68,6 +81,8 @@ pub struct Pencil {
     tree: Tree,
     /// In the order of the tree.
     fours: Vec<Four>,
+    met: Vec<Met>,
+    corners: Vec<[DVec3; 3]>,
 }
 
 impl std::fmt::Debug for Pencil {
@@ -124,16 +139,16 @@ impl Pencil {
             Whose::Eye => Chart::of_eye(center, middle, reach),
             Whose::Light => Chart::of_light(center, middle, reach),
         };
-        // One list for each part: what each triangle has few of is fast to put into a row of its own.
-        let parts: Vec<Vec<(Area, Met)>> = triangles
-            .par_chunks(PART)
-            .enumerate()
-            .map(|(part, corners)| {
-                let mut charted = Vec::with_capacity(corners.len());
-                for (index, corners) in (part * PART..).zip(corners).filter(|(index, _)| takes_part(*index)) {
-                    let Some((center_side, is_near)) = side_of(center, corners) else { continue };
+        // A list for each part, not for each triangle.
+        let parts: Vec<Vec<(Area, Met)>> = (0..triangles.len().div_ceil(PART))
+            .into_par_iter()
+            .map(|part| {
+                let mut charted = Vec::with_capacity(PART);
+                for index in (part * PART..triangles.len()).take(PART).filter(|index| takes_part(*index)) {
+                    let corners = triangles[index];
+                    let Some((center_side, is_near)) = side_of(center, &corners) else { continue };
                     let met = Met { index: index as u32, center_side };
-                    chart.for_each_area(*corners, is_near, |area| charted.push((area, met)));
+                    chart.for_each_area(corners, is_near, |area| charted.push((area, met)));
                 }
                 charted
             })
@@ -141,32 +156,42 @@ impl Pencil {
         let areas: Vec<Area> = parts.iter().flatten().map(|(area, _)| *area).collect();
         let met: Vec<Met> = parts.iter().flatten().map(|(_, met)| *met).collect();
         let (tree, order) = Tree::new(&areas);
-        let four = |places: &[Option<u32>]| {
-            Four::new(&chart, triangles, places.iter().flatten().map(|place| met[*place as usize]))
+        let nothing = (Met { index: 0, center_side: Sign::Zero }, [DVec3::ZERO; 3]);
+        let in_order = |place: &Option<u32>| {
+            place.map_or(nothing, |place| (met[place as usize], triangles[met[place as usize].index as usize]))
         };
-        let fours = order.par_chunks(Tree::WIDTH).with_min_len(256).map(four).collect();
-        Pencil { center, origin: chart.origin(), chart, tree, fours }
+        let (met, corners): (Vec<Met>, Vec<[DVec3; 3]>) = order.par_iter().with_min_len(PART).map(in_order).unzip();
+        let four = |corners: &[[DVec3; 3]]| Four::new(&chart, corners);
+        let fours = corners.par_chunks(Tree::WIDTH).with_min_len(256).map(four).collect();
+        Pencil { center, origin: chart.origin(), chart, tree, fours, met, corners }
+    }
+
+    /// How deep in the chart points are whose largest coordinates, relative to the centre, are up to `end`; or a little more.
+    pub fn depth(&self, end: f64) -> f32 {
+        self.chart.depth(end)
     }
 
     /// Calls `meets` with each triangle that lines of the bundle meet and with these lines, a bit each, in no
     /// particular order, some perhaps more than once; some lie on a line's other side of the centre or beyond
-    /// its end. `meets` says which lines need no more.
-    pub fn for_each_meeting(&self, triangles: &[[DVec3; 3]], bundle: &Bundle, mut meets: impl FnMut(&Met, u32) -> u32) {
+    /// its end. `meets` says what need not be looked for any more.
+    pub fn for_each_meeting(&self, bundle: &Bundle, mut meets: impl FnMut(&Met, &[DVec3; 3], u32) -> Settled) {
         let core = Core::new(&self.chart, bundle);
         let mut left = (1_u32 << bundle.len) - 1;
         let mut follow = |area: &Area| {
-            self.tree.for_each_meeting(area, |index, found| {
+            self.tree.for_each_meeting(*area, |index, found, depth| {
                 let four = &self.fours[index];
                 for lane in set_bits(found & !core.misses(four)) {
                     let (near, sure) = core.near(four, lane);
-                    let met = &four.met[lane];
+                    let place = index * Tree::WIDTH + lane;
                     let open = near & !sure & left;
                     let mut lines = sure & left;
                     if open != 0 {
-                        lines |= self.met_of(&triangles[met.index as usize], bundle, open);
+                        lines |= self.met_of(&self.corners[place], bundle, open);
                     }
                     if lines != 0 {
-                        left &= !meets(met, lines);
+                        let settled = meets(&self.met[place], &self.corners[place], lines);
+                        left &= !settled.lines;
+                        *depth = depth.min(settled.depth);
                     }
                 }
                 left != 0
@@ -309,9 +334,17 @@ fn side_of(center: DVec4, corners: &[DVec3; 3]) -> Option<(Sign, bool)> {
 }
 
 /// The box around the triangles that take part.
-fn bounds(triangles: &[[DVec3; 3]], takes_part: impl Fn(usize) -> bool) -> (DVec3, DVec3) {
-    let taking_part = triangles.iter().enumerate().filter(|(index, _)| takes_part(*index));
-    let mut corners = taking_part.flat_map(|(_, corners)| *corners);
-    let first = corners.next().unwrap_or(DVec3::ZERO);
-    corners.fold((first, first), |(low, high), corner| (low.min(corner), high.max(corner)))
+fn bounds(triangles: &[[DVec3; 3]], takes_part: impl Fn(usize) -> bool + Sync) -> (DVec3, DVec3) {
+    let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let part = |(part, corners): (usize, &[[DVec3; 3]])| {
+        let taking_part = (part * PART..).zip(corners).filter(|(index, _)| takes_part(*index));
+        taking_part
+            .fold(nothing, |(low, high), (_, [a, b, c])| (low.min(a.min(*b).min(*c)), high.max(a.max(*b).max(*c))))
+    };
+    let (low, high) = triangles
+        .par_chunks(PART)
+        .enumerate()
+        .map(part)
+        .reduce(|| nothing, |(low, high), other| (low.min(other.0), high.max(other.1)));
+    if low.x <= high.x { (low, high) } else { (DVec3::ZERO, DVec3::ZERO) }
 }

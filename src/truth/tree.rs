@@ -89,9 +89,9 @@ impl Tree {
         self.tops.push(first as u32);
     }
 
-    /// Calls `meets` with the number of each four areas of the order that `area` meets one of, and which: a bit each. Ends
-    /// where that is false.
-    pub fn for_each_meeting(&self, area: &Area, mut meets: impl FnMut(usize, u32) -> bool) {
+    /// Calls `meets` with the number of each four areas of the order that `area` meets one of, and which: a bit each; and
+    /// with the depth of `area`, which it may lessen. Ends where that is false. Near ones come first, more or less.
+    pub fn for_each_meeting(&self, mut area: Area, mut meets: impl FnMut(usize, u32, &mut f32) -> bool) {
         let mut stack = [0; MOST_LEVELS * (Tree::WIDTH - 1) + 1];
         for top in &self.tops {
             stack[0] = *top;
@@ -100,13 +100,16 @@ impl Tree {
                 count -= 1;
                 let index = stack[count] as usize;
                 let node = &self.nodes[index];
-                let met = node.met(area);
+                let mut met = node.met(&area);
                 if index >= self.leaves {
-                    for lane in set_bits(met) {
-                        stack[count] = node.first + lane as u32;
+                    // The first of them is looked at first.
+                    while met != 0 {
+                        let lane = met.ilog2();
+                        met ^= 1 << lane;
+                        stack[count] = node.first + lane;
                         count += 1;
                     }
-                } else if met != 0 && !meets(index, met) {
+                } else if met != 0 && !meets(index, met, &mut area.depth) {
                     return;
                 }
             }
