@@ -10,7 +10,7 @@
 //! Boxes are `f32`, rounded outwards: a box may be too large, never too small.
 
 use super::tree::Area;
-use glam::{DVec2, DVec3, DVec4, Vec2, Vec3A};
+use glam::{DVec2, DVec3, DVec4, Vec2, Vec3A, Vec3Swizzles};
 
 /// From farther than this many times its radius, a scene is seen through a window …
 const FAR: f64 = 4.0;
@@ -111,7 +111,7 @@ impl Chart {
         if is_near {
             (0..6).for_each(|face| add(whole_face(face).of_triangle()));
         } else if corners.iter().all(|corner| is_within(face, *corner)) {
-            add(bounds(corners.map(|corner| self.on_face(face, corner)), face, PADDING).of_triangle());
+            add(self.on_face_alone(face, corners).of_triangle());
         } else {
             (0..6).filter_map(|face| self.clipped(face, corners)).for_each(|span| add(span.of_triangle()));
         }
@@ -238,6 +238,15 @@ impl Chart {
         self.projected(along_face(face, point))
     }
 
+    /// Where a triangle is seen that is on one face alone.
+    fn on_face_alone(&self, face: usize, corners: [DVec3; 3]) -> Span {
+        let corners = corners.map(|corner| along_face(face, corner));
+        let [a, b, c] = corners.map(|corner| corner.truncate() * corner.z.recip());
+        let nearest = corners[0].z.min(corners[1].z).min(corners[2].z);
+        let nearest = self.projected(DVec3::new(0.0, 0.0, nearest)).z;
+        padded(a.min(b).min(c).extend(nearest), a.max(b).max(c).extend(nearest), face, PADDING)
+    }
+
     /// From a face's own coordinates, the third along its axis.
     fn projected(&self, point: DVec3) -> DVec3 {
         let Chart::Cube { middle, .. } = self else { return point };
@@ -326,9 +335,12 @@ fn face_of(direction: DVec3) -> usize {
 
 /// A point in a face's own coordinates: two across the face, the third along its axis.
 fn along_face(face: usize, point: DVec3) -> DVec3 {
-    let axis = face / 2;
-    let along = if face % 2 == 1 { -point[axis] } else { point[axis] };
-    DVec3::new(point[(axis + 1) % 3], point[(axis + 2) % 3], along)
+    let turned = match face / 2 {
+        0 => point.yzx(),
+        1 => point.zxy(),
+        _ => point,
+    };
+    if face % 2 == 1 { turned.with_z(-turned.z) } else { turned }
 }
 
 fn whole_face(face: usize) -> Span {
@@ -336,13 +348,14 @@ fn whole_face(face: usize) -> Span {
     Span { low: center - DVec3::new(1.5, 1.5, 0.0), high: center + DVec3::new(1.5, 1.5, 1.0) }
 }
 
-/// The nearest `f32` not above a number.
+/// An `f32` not above a number, and next to it.
 fn below(value: f64) -> f32 {
     let rounded = value as f32;
-    if f64::from(rounded) > value { rounded.next_down() } else { rounded }
+    rounded - (rounded.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }
 
-/// The nearest `f32` not below a number.
+/// An `f32` not below a number, and next to it.
 fn above(value: f64) -> f32 {
-    -below(-value)
+    let rounded = value as f32;
+    rounded + (rounded.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }

@@ -33,7 +33,7 @@ use crate::progress::Progress;
 use crate::scene::{Scene, Sight};
 use chart::Line;
 use glam::{DVec3, DVec4};
-use pencil::{Bundle, Met as Meeting, Pencil, Plane, PlaneRounding, Settled, Whose};
+use pencil::{Bundle, Met as Meeting, Pencil, Plane, PlaneRounding, Settled, Whose, point_rounding};
 use rayon::prelude::*;
 use tree::set_bits;
 use view::View;
@@ -280,24 +280,25 @@ impl Tracer {
         let mut labels = vec![vec![BACKGROUND; (bottom - top) * width]; lights.len()];
         let across: Vec<f64> = (0..width).map(|x| self.view.across(x as f64 + 0.5)).collect();
         let down: Vec<f64> = (top..bottom).map(|y| self.view.down(y as f64 + 0.5)).collect();
-        let (mut rays, mut places) = (Vec::with_capacity(TILE * TILE), Vec::with_capacity(TILE * TILE));
+        let mut rays = [Sight { from: DVec3::ZERO, along: DVec3::ZERO }; TILE * TILE];
+        let mut places = [0; TILE * TILE];
         for left in (0..width).step_by(TILE) {
             for first in (0..bottom - top).step_by(TILE) {
-                rays.clear();
-                places.clear();
-                for row in first..down.len().min(first + TILE) {
-                    for column in left..width.min(left + TILE) {
-                        rays.push(self.view.ray_through([across[column], down[row]]));
-                        places.push(row * width + column);
+                let mut count = 0;
+                for (row, y) in (first..).zip(&down[first..down.len().min(first + TILE)]) {
+                    for (column, x) in (left..).zip(&across[left..width.min(left + TILE)]) {
+                        rays[count] = self.view.ray_through([*x, *y]);
+                        places[count] = row * width + column;
+                        count += 1;
                     }
                 }
                 let mut surfaces = [None; TILE * TILE];
-                let surfaces = &mut surfaces[..rays.len()];
-                self.meet_surfaces(&rays, surfaces);
+                let surfaces = &mut surfaces[..count];
+                self.meet_surfaces(&rays[..count], surfaces);
                 for (light, labels) in lights.iter().zip(&mut labels) {
                     let mut tile = [BACKGROUND; TILE * TILE];
-                    self.label_surfaces(&self.lights[*light], surfaces, &mut tile[..surfaces.len()]);
-                    places.iter().zip(tile).for_each(|(place, label)| labels[*place] = label);
+                    self.label_surfaces(&self.lights[*light], surfaces, &mut tile[..count]);
+                    places[..count].iter().zip(tile).for_each(|(place, label)| labels[*place] = label);
                 }
             }
         }
@@ -316,7 +317,6 @@ impl Tracer {
         let mut nearest = [Nearest::NOTHING; Bundle::MOST];
         let mut open = (1_u32 << rays.len()) - 1;
         let mut ends = [0.0; Bundle::MOST];
-        let triangles = &self.world.triangles;
         self.eye.for_each_meeting(&bundle, |met, corners, lines| {
             let plane = Plane::new(self.eye.origin, corners);
             let depths = self.depths(corners);
@@ -343,8 +343,8 @@ impl Tracer {
         for ((surface, ray), nearest) in surfaces.iter_mut().zip(rays).zip(nearest) {
             *surface = (nearest.triangle != u32::MAX).then(|| {
                 if last.0 != nearest.triangle {
-                    let rounding = PlaneRounding::new(self.eye.origin, &triangles[nearest.triangle as usize]);
-                    last = (nearest.triangle, rounding.of_point());
+                    let corners = &self.world.triangles[nearest.triangle as usize];
+                    last = (nearest.triangle, point_rounding(self.eye.origin, corners));
                 }
                 let offset = ray.at(nearest.distance);
                 let point = eye + offset;
@@ -378,21 +378,22 @@ impl Tracer {
     fn label_surfaces(&self, light: &LightPencil, surfaces: &[Option<Surface>], labels: &mut [u8]) {
         let mut bundle = Bundle::new();
         let mut lines = [0; Bundle::MOST];
-        let mut last = (usize::MAX, Sign::Zero);
+        let mut last = (usize::MAX, Sign::Zero, false);
         for (index, surface) in surfaces.iter().enumerate() {
             let Some(surface) = surface else {
                 labels[index] = BACKGROUND;
                 continue;
             };
             if last.0 != surface.triangle {
-                last = (surface.triangle, side_of_triangle(self.world.triangles[surface.triangle], light.position));
+                let side = side_of_triangle(self.world.triangles[surface.triangle], light.position);
+                last = (surface.triangle, side, self.world.object(surface.triangle).receives);
             }
             if last.1 != surface.eye_side || light.is_out_of_range(surface.point) {
                 labels[index] = FACES_AWAY;
                 continue;
             }
             labels[index] = LIT;
-            if self.world.object(surface.triangle).receives {
+            if last.2 {
                 lines[bundle.len()] = index;
                 bundle.push(Line::To(surface.point));
             }

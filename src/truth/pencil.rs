@@ -306,11 +306,12 @@ impl PlaneRounding {
     pub fn of_height(&self, place: DVec3) -> f64 {
         self.height * (self.size + place.abs().element_sum())
     }
+}
 
-    /// More than what it may have moved a point of the plane off it, where the plane was computed from here.
-    pub fn of_point(&self) -> f64 {
-        ROUNDING * self.size
-    }
+/// More than what rounding may have moved a point of a triangle's plane off it, where the plane was computed relative to
+/// `origin`.
+pub fn point_rounding(origin: DVec3, corners: &[DVec3; 3]) -> f64 {
+    ROUNDING * largest_span(corners.map(|corner| corner - origin))
 }
 
 fn largest_span(of: [DVec3; 3]) -> f64 {
