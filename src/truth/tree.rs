@@ -9,9 +9,9 @@ use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 /// Areas of one tree differ in size by up to this power of two.
-const CLASS_BITS: u32 = 3;
+const CLASS_BITS: u32 = 8;
 /// The last tree is of all smaller ones.
-const MOST_CLASSES: u32 = 16;
+const MOST_CLASSES: u32 = 8;
 /// Bits of the curve along each axis.
 const CURVE_BITS: u32 = 20;
 /// More levels of four than 32-bit indices reach.
