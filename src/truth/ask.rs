@@ -83,8 +83,8 @@ impl Tracer {
     pub fn between(&self, light: usize, seen: &SeenSurface) -> Vec<Met> {
         let of = &self.lights[light];
         let mut found = Vec::new();
-        let mut bundle = Bundle::new();
-        bundle.push(Line::To(seen.point));
+        let mut bundle = Bundle::new(Line::To);
+        bundle.push(seen.point);
         of.pencil.for_each_meeting(&bundle, |met, corners, _| {
             let mut occluder = Occluder::new(of.pencil.origin, met, corners);
             if self.lies_between(of, &mut occluder, &seen.surface) {
@@ -124,8 +124,8 @@ impl Tracer {
         }
         let mut found = Vec::new();
         for end in ends {
-            let mut bundle = Bundle::new();
-            bundle.push(Line::To(end));
+            let mut bundle = Bundle::new(Line::To);
+            bundle.push(end);
             of.pencil.for_each_meeting(&bundle, |met, _, _| {
                 found.push(met.index as usize);
                 Settled::NOTHING

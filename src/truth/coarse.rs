@@ -35,32 +35,32 @@ pub struct Core {
     half: Vec3A,
     /// The same for the box; it carries the rounding of the places that it was moved from.
     charted_span: f32,
+    /// The largest coordinate of a place before it was scaled.
+    pub largest: f64,
     /// Where the lines are seen, if that is clearly on one face of the chart.
     pub area: Option<Area>,
 }
 
 impl Core {
     pub fn new(chart: &Chart, bundle: &Bundle) -> Core {
-        let lines = bundle.lines();
-        let origin = chart.origin();
+        let points = bundle.points();
+        let base = bundle.base(chart.origin());
         // What is left over is as the first line.
         let mut places = [[0.0_f32; Bundle::MOST]; 3];
         for index in 0..Bundle::MOST {
-            let place = lines[if index < lines.len() { index } else { 0 }].from(origin);
-            for axis in 0..3 {
-                places[axis][index] = place[axis] as f32;
-            }
+            let place = points[if index < points.len() { index } else { 0 }] - base;
+            (places[0][index], places[1][index], places[2][index]) = (place.x as f32, place.y as f32, place.z as f32);
         }
         let mut places = places.map(|axis| std::array::from_fn(|four| Vec4::from_slice(&axis[four * 4..])));
         if chart.is_centered() {
-            return Core::centered(chart, places, bundle.is_endless);
+            return Core::centered(chart, places, bundle.is_endless());
         }
         let mut span = Vec4::ZERO;
         for four in 0..Bundle::MOST / 4 {
             let [x, y, z] = places.map(|axis: [Vec4; 4]| axis[four].abs());
             span = span.max(x + y + z);
         }
-        let charted = lines.iter().map(|line| chart.on_chart(*line));
+        let charted = bundle.lines().map(|line| chart.on_chart(line));
         let (low, high) = charted
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), place| (low.min(place), high.max(place)));
         let mut core = Core::within(places, span.max_element(), low.as_vec3a(), high.as_vec3a());
@@ -86,14 +86,17 @@ impl Core {
         }
         let low = Vec3A::from_array(low.map(Vec4::min_element));
         let high = Vec3A::from_array(high.map(Vec4::max_element));
-        let end = if is_endless { f32::INFINITY } else { end.max_element() };
-        Core { area: chart.on_one_face(low, high, end), ..Core::within(places, span.max_element(), low, high) }
+        let largest = end.max_element();
+        let end = if is_endless { f32::INFINITY } else { largest };
+        // It is rounded by far less than that.
+        let largest = f64::from(largest) * (1.0 + f64::from(ROUNDING));
+        Core { largest, area: chart.on_one_face(low, high, end), ..Core::within(places, span.max_element(), low, high) }
     }
 
     fn within(places: [[Vec4; Bundle::MOST / 4]; 3], span: f32, low: Vec3A, high: Vec3A) -> Core {
         let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
         let charted_span = middle.abs().element_sum() + half.element_sum();
-        Core { places, span, middle, half, charted_span, area: None }
+        Core { places, span, middle, half, charted_span, largest: f64::INFINITY, area: None }
     }
 
     /// Of which triangles do all lines pass some edge on one side, and some edge on the other? A bit each.

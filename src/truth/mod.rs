@@ -94,6 +94,8 @@ pub struct Tracer {
     size: [u32; 2],
     eye: Pencil,
     lights: Vec<LightPencil>,
+    /// What does not depend on a surface of how far its point may be off, or more.
+    most_rounding: f64,
 }
 
 /// The rays of one light.
@@ -120,8 +122,10 @@ struct Surface {
     eye_side: Sign,
     /// World space, rounded.
     point: DVec3,
-    /// How far `point` may be off along any axis.
-    rounding: f64,
+    /// From the eye, of which `point` is the rounded sum.
+    offset: DVec3,
+    /// The largest coordinate of where the ray is at distance 0, relative to the eye.
+    from: f64,
 }
 
 /// A triangle that may lie between a light and surfaces.
@@ -192,7 +196,9 @@ impl Tracer {
             || Pencil::new(Whose::Eye, scene.camera.eye_position(), triangles, is_seen),
             || lights.into_par_iter().map(pencil_of).collect(),
         );
-        Ok(Tracer { view: View::new(&scene.camera, size), world, size, eye, lights })
+        let most_rounding = 3.0 * POINT_ROUNDING * scene.camera.eye.abs().max_element()
+            + 4.0 * point_rounding(DVec3::ZERO, &[DVec3::splat(world.reach(eye.origin)); 3]);
+        Ok(Tracer { view: View::new(&scene.camera, size), world, size, eye, lights, most_rounding })
     }
 
     /// The same, with rays of sight that end at a far plane: what lies beyond is not looked for. A far plane is a part of
@@ -307,16 +313,12 @@ impl Tracer {
 
     /// What rays of sight meet first. Of surfaces at one distance it is the one drawn first, as in a rasteriser.
     fn meet_surfaces(&self, rays: &[Sight], surfaces: &mut [Option<Surface>]) {
-        let mut bundle = Bundle::new();
-        rays.iter().for_each(|ray| {
-            bundle.push(match self.view.is_parallel {
-                true => Line::Through(self.view.eye + ray.from),
-                false => Line::Along(ray.along),
-            });
-        });
+        let mut bundle = Bundle::new(if self.view.is_parallel { Line::Through } else { Line::Along });
+        for ray in rays {
+            bundle.push(if self.view.is_parallel { self.view.eye + ray.from } else { ray.along });
+        }
         let mut nearest = [Nearest::NOTHING; Bundle::MOST];
         let mut open = (1_u32 << rays.len()) - 1;
-        let mut ends = [0.0; Bundle::MOST];
         self.eye.for_each_meeting(&bundle, |met, corners, lines| {
             let plane = Plane::new(self.eye.origin, corners);
             let depths = self.depths(corners);
@@ -328,33 +330,44 @@ impl Tracer {
                 if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
                     nearest[line] = Nearest { distance, triangle: met.index, eye_side: met.center_side };
                     open &= !(1 << line);
-                    ends[line] = rays[line].at(distance).abs().max_element();
                     is_changed = true;
                 }
             }
-            if open != 0 || !is_changed {
+            if open != 0 || !is_changed || self.view.is_parallel {
                 return Settled::NOTHING;
             }
-            let farthest = ends.iter().fold(0.0, |farthest, end| if *end > farthest { *end } else { farthest });
-            Settled { depth: self.eye.depth(farthest), lines: 0 }
+            let distances = nearest[..rays.len()].iter().map(|nearest| nearest.distance);
+            Settled {
+                lines: 0,
+                distance: distances.fold(0.0, |most, distance| if distance > most { distance } else { most }),
+            }
         });
-        let eye = self.view.eye;
-        let mut last = (u32::MAX, 0.0);
         for ((surface, ray), nearest) in surfaces.iter_mut().zip(rays).zip(nearest) {
-            *surface = (nearest.triangle != u32::MAX).then(|| {
-                if last.0 != nearest.triangle {
-                    let corners = &self.world.triangles[nearest.triangle as usize];
-                    last = (nearest.triangle, point_rounding(self.eye.origin, corners));
-                }
-                let offset = ray.at(nearest.distance);
-                let point = eye + offset;
-                // The sum is rounded at the size of its larger part.
-                let parts = ray.from.abs().max_element() + offset.abs().max_element();
-                let rounding = POINT_ROUNDING * (eye.abs().max_element() + parts + point.abs().max_element());
-                let rounding = rounding + last.1;
-                Surface { triangle: nearest.triangle as usize, eye_side: nearest.eye_side, point, rounding }
+            if nearest.triangle == u32::MAX {
+                continue;
+            }
+            let offset = ray.at(nearest.distance);
+            *surface = Some(Surface {
+                triangle: nearest.triangle as usize,
+                eye_side: nearest.eye_side,
+                point: self.view.eye + offset,
+                offset,
+                from: if self.view.is_parallel { ray.from.abs().max_element() } else { 0.0 },
             });
         }
+    }
+
+    /// More than [`Tracer::rounding`], in less time.
+    fn most_rounding(&self, surface: &Surface) -> f64 {
+        self.most_rounding + 3.0 * POINT_ROUNDING * (surface.from + surface.offset.abs().element_sum())
+    }
+
+    /// How far a surface's point may be off along any axis.
+    fn rounding(&self, surface: &Surface) -> f64 {
+        // The sum is rounded at the size of its larger part.
+        let parts = surface.from + surface.offset.abs().max_element();
+        let size = self.view.eye.abs().max_element() + parts + surface.point.abs().max_element();
+        POINT_ROUNDING * size + point_rounding(self.eye.origin, &self.world.triangles[surface.triangle])
     }
 
     /// Along the view's axis, how far a triangle is at least and at most.
@@ -376,7 +389,7 @@ impl Tracer {
     }
 
     fn label_surfaces(&self, light: &LightPencil, surfaces: &[Option<Surface>], labels: &mut [u8]) {
-        let mut bundle = Bundle::new();
+        let mut bundle = Bundle::new(Line::To);
         let mut lines = [0; Bundle::MOST];
         let mut last = (usize::MAX, Sign::Zero, false);
         for (index, surface) in surfaces.iter().enumerate() {
@@ -395,7 +408,7 @@ impl Tracer {
             labels[index] = LIT;
             if last.2 {
                 lines[bundle.len()] = index;
-                bundle.push(Line::To(surface.point));
+                bundle.push(surface.point);
             }
         }
         if bundle.len() == 0 {
@@ -429,8 +442,11 @@ impl Tracer {
         }
         let place = surface.point - light.pencil.origin;
         let height = occluder.plane.height(place);
-        let rounding = occluder.rounding.of_height(place) + occluder.normal_span * surface.rounding;
-        let height = if height.abs() > rounding { height } else { self.height_near(other, surface) };
+        let of_height = occluder.rounding.of_height(place);
+        let is_sure = |of_point: f64| height.abs() > of_height + occluder.normal_span * of_point;
+        // Most are so far from the plane that a rough bound will do.
+        let is_sure = is_sure(self.most_rounding(surface)) || is_sure(self.rounding(surface));
+        let height = if is_sure { height } else { self.height_near(other, surface) };
         if !is_opposite(height, occluder.light_side) {
             return false;
         }
@@ -448,7 +464,7 @@ impl Tracer {
         let normal = ab.cross(ac);
         let height = normal.dot(offset);
         let products = ab.abs().element_sum() * ac.abs().element_sum() * offset.abs().element_sum();
-        let rounding = 16.0 * f64::EPSILON * products + normal.abs().element_sum() * surface.rounding;
+        let rounding = 16.0 * f64::EPSILON * products + normal.abs().element_sum() * self.rounding(surface);
         if height.abs() > rounding { height } else { 0.0 }
     }
 }

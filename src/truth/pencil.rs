@@ -41,12 +41,12 @@ pub struct Plane {
 pub struct Settled {
     /// For these lines nothing: a bit each.
     pub lines: u32,
-    /// For all lines nothing that begins deeper in the chart.
-    pub depth: f32,
+    /// For all lines of sight nothing beyond this many times their directions.
+    pub distance: f64,
 }
 
 impl Settled {
-    pub const NOTHING: Settled = Settled { lines: 0, depth: f32::INFINITY };
+    pub const NOTHING: Settled = Settled { lines: 0, distance: f64::INFINITY };
 }
 
 /// Planes through the centre and a triangle's edges.
@@ -91,35 +91,52 @@ impl std::fmt::Debug for Pencil {
     }
 }
 
-/// Up to [`Bundle::MOST`] lines that are near each other.
+/// Up to [`Bundle::MOST`] lines of a kind that are near each other.
 #[derive(Debug)]
 pub struct Bundle {
-    lines: [Line; Bundle::MOST],
+    kind: fn(DVec3) -> Line,
+    points: [DVec3; Bundle::MOST],
     len: usize,
-    /// Does one of them go on without end?
-    pub is_endless: bool,
 }
 
 impl Bundle {
     /// Larger ones meet more triangles that most of their lines miss.
     pub const MOST: usize = 16;
 
-    pub fn new() -> Bundle {
-        Bundle { lines: [Line::Along(DVec3::ZERO); Bundle::MOST], len: 0, is_endless: false }
+    /// Of lines that `kind` makes of points.
+    pub fn new(kind: fn(DVec3) -> Line) -> Bundle {
+        Bundle { kind, points: [DVec3::ZERO; Bundle::MOST], len: 0 }
     }
 
-    pub fn push(&mut self, line: Line) {
-        self.lines[self.len] = line;
+    pub fn push(&mut self, point: DVec3) {
+        self.points[self.len] = point;
         self.len += 1;
-        self.is_endless |= !matches!(line, Line::To(_));
     }
 
     pub fn len(&self) -> usize {
         self.len
     }
 
-    pub fn lines(&self) -> &[Line] {
-        &self.lines[..self.len]
+    pub fn points(&self) -> &[DVec3] {
+        &self.points[..self.len]
+    }
+
+    fn line(&self, index: usize) -> Line {
+        (self.kind)(self.points[index])
+    }
+
+    pub fn lines(&self) -> impl Iterator<Item = Line> + Clone {
+        self.points().iter().map(|point| (self.kind)(*point))
+    }
+
+    /// What its points are relative to where a pencil's places are relative to `origin`.
+    pub fn base(&self, origin: DVec3) -> DVec3 {
+        if matches!((self.kind)(DVec3::ZERO), Line::Along(_)) { DVec3::ZERO } else { origin }
+    }
+
+    /// Do its lines go on without end?
+    pub fn is_endless(&self) -> bool {
+        !matches!((self.kind)(DVec3::ZERO), Line::To(_))
     }
 }
 
@@ -166,11 +183,6 @@ impl Pencil {
         Pencil { center, origin: chart.origin(), chart, tree, fours, met, corners }
     }
 
-    /// How deep in the chart points are whose largest coordinates, relative to the centre, are up to `end`; or a little more.
-    pub fn depth(&self, end: f64) -> f32 {
-        self.chart.depth(end)
-    }
-
     /// Calls `meets` with each triangle that lines of the bundle meet and with these lines, a bit each, in no
     /// particular order, some perhaps more than once; some lie on a line's other side of the centre or beyond
     /// its end. `meets` says what need not be looked for any more.
@@ -191,7 +203,9 @@ impl Pencil {
                     if lines != 0 {
                         let settled = meets(&self.met[place], &self.corners[place], lines);
                         left &= !settled.lines;
-                        *depth = depth.min(settled.depth);
+                        if settled.distance < f64::INFINITY {
+                            *depth = depth.min(self.chart.depth(settled.distance * core.largest));
+                        }
                     }
                 }
                 left != 0
@@ -199,7 +213,7 @@ impl Pencil {
         };
         match core.area {
             Some(area) => follow(&area),
-            None => self.chart.bundle(bundle.lines().iter().copied()).iter().flatten().for_each(follow),
+            None => self.chart.bundle(bundle.lines()).iter().flatten().for_each(follow),
         }
     }
 
@@ -208,7 +222,7 @@ impl Pencil {
     fn met_of(&self, corners: &[DVec3; 3], bundle: &Bundle, lines: u32) -> u32 {
         let edges = Edges::new(&self.chart, corners);
         let is_met = |line: &usize| {
-            let line = bundle.lines[*line];
+            let line = bundle.line(*line);
             edges.is_met(line.from(self.origin)).unwrap_or_else(|| self.is_met(corners, line))
         };
         set_bits(lines).filter(is_met).fold(0, |met, line| met | 1 << line)

@@ -8,8 +8,16 @@ use glam::{DVec3, DVec4};
 
 /// Which triangles each of up to 16 lines meets.
 fn met<const N: usize>(pencil: &Pencil, lines: [Line; N]) -> [Vec<u32>; N] {
-    let mut bundle = Bundle::new();
-    lines.into_iter().for_each(|line| bundle.push(line));
+    let mut bundle = Bundle::new(match lines[0] {
+        Line::To(_) => Line::To,
+        Line::Through(_) => Line::Through,
+        Line::Along(_) => Line::Along,
+    });
+    for line in lines {
+        match line {
+            Line::To(point) | Line::Through(point) | Line::Along(point) => bundle.push(point),
+        }
+    }
     let mut met = lines.map(|_| Vec::new());
     pencil.for_each_meeting(&bundle, |triangle, _, lines| {
         set_bits(lines).for_each(|line| met[line].push(triangle.index));
