@@ -5,7 +5,8 @@
 
 use super::chart::Line;
 use super::pencil::{Bundle, Settled};
-use super::{Occluder, Place, Surface, Tracer};
+use super::shadow::Occluder;
+use super::{Place, Surface, Tracer};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
