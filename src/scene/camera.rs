@@ -222,6 +222,7 @@ impl Camera {
 impl Sights {
     /// The one through a point of the picture, by x and y from −1 to 1, right and up.
     #[must_use]
+    #[inline]
     pub fn through(&self, at: DVec2) -> Sight {
         let place = at * self.half;
         if !self.is_parallel {

@@ -192,22 +192,6 @@ impl Chart {
         !matches!(self, Chart::Plane { .. })
     }
 
-    /// Another point of a line, near the chart, relative to the origin: bundles are narrow there.
-    pub fn on_chart(&self, line: Line) -> DVec3 {
-        match self {
-            Chart::Cube { center, .. } | Chart::Window { center, .. } => {
-                let point = line.from(*center);
-                point / point.abs().max_element()
-            }
-            Chart::Plane { center, middle, towards, .. } => {
-                let place = line.from(*middle);
-                let to_center =
-                    if center.w == 0.0 { *towards } else { (center.truncate() - middle - place).normalize() };
-                place - to_center * (place.dot(*towards) / to_center.dot(*towards))
-            }
-        }
-    }
-
     /// The box of points or lines on a chart that is one sheet.
     fn on_sheet(&self, lines: impl Iterator<Item = Line> + Clone) -> Span {
         match self {

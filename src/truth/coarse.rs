@@ -3,7 +3,7 @@
 use super::chart::Chart;
 use super::pencil::Bundle;
 use super::tree::{Area, Tree};
-use glam::{BVec4A, DVec3, Vec3A, Vec4};
+use glam::{DVec3, Vec3A, Vec4};
 
 /// More than twice the roundings of a cross product of differences, a scaled place and their dot product: 13 of half a unit
 /// each, in units of the product of their absolute sums.
@@ -25,16 +25,12 @@ pub struct Four {
     least_rounding: Vec4,
 }
 
-/// A bundle's places relative to a pencil's origin, and a box around its lines where they cross the chart.
+/// A bundle's places relative to a pencil's origin.
 pub struct Core {
     /// By axis; where the origin is the centre they are scaled, which moves no line.
     places: [[Vec4; Bundle::MOST / 4]; 3],
     /// The largest sum of a place's absolute coordinates.
     span: f32,
-    middle: Vec3A,
-    half: Vec3A,
-    /// The same for the box; it carries the rounding of the places that it was moved from.
-    charted_span: f32,
     /// The largest coordinate of a place before it was scaled.
     pub largest: f64,
     /// Where the lines are seen, if that is clearly on one face of the chart.
@@ -51,7 +47,7 @@ impl Core {
             let place = points[if index < points.len() { index } else { 0 }] - base;
             (places[0][index], places[1][index], places[2][index]) = (place.x as f32, place.y as f32, place.z as f32);
         }
-        let mut places = places.map(|axis| std::array::from_fn(|four| Vec4::from_slice(&axis[four * 4..])));
+        let places = places.map(|axis| std::array::from_fn(|four| Vec4::from_slice(&axis[four * 4..])));
         if chart.is_centered() {
             return Core::centered(chart, places, bundle.is_endless());
         }
@@ -60,12 +56,7 @@ impl Core {
             let [x, y, z] = places.map(|axis: [Vec4; 4]| axis[four].abs());
             span = span.max(x + y + z);
         }
-        let charted = bundle.lines().map(|line| chart.on_chart(line));
-        let (low, high) = charted
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), place| (low.min(place), high.max(place)));
-        let mut core = Core::within(places, span.max_element(), low.as_vec3a(), high.as_vec3a());
-        core.charted_span += core.span;
-        core
+        Core { places, span: span.max_element(), largest: f64::INFINITY, area: None }
     }
 
     /// Scales places so that they lie on a cube around the centre.
@@ -87,29 +78,10 @@ impl Core {
         let low = Vec3A::from_array(low.map(Vec4::min_element));
         let high = Vec3A::from_array(high.map(Vec4::max_element));
         let largest = end.max_element();
-        let end = if is_endless { f32::INFINITY } else { largest };
+        let area = chart.on_one_face(low, high, if is_endless { f32::INFINITY } else { largest });
         // It is rounded by far less than that.
         let largest = f64::from(largest) * (1.0 + f64::from(ROUNDING));
-        Core { largest, area: chart.on_one_face(low, high, end), ..Core::within(places, span.max_element(), low, high) }
-    }
-
-    fn within(places: [[Vec4; Bundle::MOST / 4]; 3], span: f32, low: Vec3A, high: Vec3A) -> Core {
-        let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
-        let charted_span = middle.abs().element_sum() + half.element_sum();
-        Core { places, span, middle, half, charted_span, largest: f64::INFINITY, area: None }
-    }
-
-    /// Of which triangles do all lines pass some edge on one side, and some edge on the other? A bit each.
-    pub fn misses(&self, four: &Four) -> u32 {
-        let rounding = four.rounding * self.charted_span + four.least_rounding;
-        let (mut left, mut right) = (BVec4A::FALSE, BVec4A::FALSE);
-        for ([x, y, z], offset) in four.normals.iter().zip(four.offsets) {
-            let value = *x * self.middle.x + *y * self.middle.y + *z * self.middle.z + offset;
-            let spread = x.abs() * self.half.x + y.abs() * self.half.y + z.abs() * self.half.z + rounding;
-            left |= value.cmplt(-spread);
-            right |= value.cmpgt(spread);
-        }
-        (left & right).bitmask()
+        Core { places, span: span.max_element(), largest, area }
     }
 
     /// Which lines do not clearly pass two edges of a triangle on different sides, and which clearly pass all on one

@@ -192,7 +192,7 @@ impl Pencil {
         let mut follow = |area: &Area| {
             self.tree.for_each_meeting(*area, |index, found, depth| {
                 let four = &self.fours[index];
-                for lane in set_bits(found & !core.misses(four)) {
+                for lane in set_bits(found) {
                     let (near, sure) = core.near(four, lane);
                     let place = index * Tree::WIDTH + lane;
                     let open = near & !sure & left;
