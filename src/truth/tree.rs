@@ -160,7 +160,7 @@ fn keys(areas: &[Area]) -> Vec<(u64, u32)> {
         let curve = spread(at.x as u64) | spread(at.y as u64) << 1 | spread(at.z as u64) << 2;
         let part = ((area.high - area.low).max_element() / size).clamp(f32::MIN_POSITIVE, 1.0);
         // From the exponent: 127 for 1.
-        let class = ((127 - (part.to_bits() >> 23)) / CLASS_BITS).min(MOST_CLASSES - 1);
+        let class = (127_u32.saturating_sub(part.to_bits() >> 23) / CLASS_BITS).min(MOST_CLASSES - 1);
         (u64::from(class) << (3 * CURVE_BITS) | curve, index as u32)
     };
     let mut keys: Vec<(u64, u32)> = areas.iter().enumerate().map(key).collect();
