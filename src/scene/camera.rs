@@ -222,12 +222,13 @@ impl Camera {
 impl Sights {
     /// The one through a point of the picture, by x and y from −1 to 1, right and up.
     #[must_use]
+    #[inline]
     pub fn through(&self, at: DVec2) -> Sight {
         let place = at * self.half;
-        let [from, along] = match self.is_parallel {
-            true => [(place + self.shear * self.in_place).extend(0.0), (-self.shear).extend(-1.0)],
-            false => [DVec3::ZERO, place.extend(-1.0)],
-        };
+        if !self.is_parallel {
+            return Sight { from: DVec3::ZERO, along: self.world_from_view * place.extend(-1.0) };
+        }
+        let (from, along) = ((place + self.shear * self.in_place).extend(0.0), (-self.shear).extend(-1.0));
         Sight { from: self.world_from_view * from, along: self.world_from_view * along }
     }
 

@@ -4,7 +4,8 @@
 //! is for people, and for telling causes apart.
 
 use super::chart::Line;
-use super::pencil::{Bundle, Then};
+use super::pencil::{Bundle, Settled};
+use super::shadow::Occluder;
 use super::{Place, Surface, Tracer};
 use crate::math::{Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
@@ -83,13 +84,14 @@ impl Tracer {
     pub fn between(&self, light: usize, seen: &SeenSurface) -> Vec<Met> {
         let of = &self.lights[light];
         let mut found = Vec::new();
-        let mut bundle = Bundle::new();
-        bundle.push(Line::To(seen.point));
-        of.pencil.for_each_meeting(&self.world.triangles, &bundle, |met, _| {
-            if self.lies_between(of, met, &seen.surface) {
+        let mut bundle = Bundle::new(Line::To);
+        bundle.push(seen.point);
+        of.pencil.for_each_meeting(&bundle, |met, corners, _| {
+            let mut occluder = Occluder::new(of.pencil.origin, met, corners);
+            if self.lies_between(of, &mut occluder, &seen.surface) {
                 found.push(met.index as usize);
             }
-            Then::Continue
+            Settled::NOTHING
         });
         self.met(light, seen.point, found)
     }
@@ -123,11 +125,11 @@ impl Tracer {
         }
         let mut found = Vec::new();
         for end in ends {
-            let mut bundle = Bundle::new();
-            bundle.push(Line::To(end));
-            of.pencil.for_each_meeting(&self.world.triangles, &bundle, |met, _| {
+            let mut bundle = Bundle::new(Line::To);
+            bundle.push(end);
+            of.pencil.for_each_meeting(&bundle, |met, _, _| {
                 found.push(met.index as usize);
-                Then::Continue
+                Settled::NOTHING
             });
         }
         self.met(light, point, found)

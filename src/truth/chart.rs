@@ -9,8 +9,8 @@
 //!
 //! Boxes are `f32`, rounded outwards: a box may be too large, never too small.
 
-use glam::{DVec2, DVec3, DVec4, Vec3A};
-use obvhs::aabb::Aabb;
+use super::tree::Area;
+use glam::{DVec2, DVec3, DVec4, Vec2, Vec3A, Vec3Swizzles};
 
 /// From farther than this many times its radius, a scene is seen through a window …
 const FAR: f64 = 4.0;
@@ -24,13 +24,24 @@ const FACE_SPACING: f64 = 4.0;
 /// More than what rounding moves a charted point by, as long as its triangle keeps
 /// [`NEAREST`] away from the centre.
 const PADDING: f64 = 1e-7;
+/// The same for points in single precision.
+const COARSE_PADDING: f64 = 1e-6;
+/// A line that is farther along an axis crosses that face, or one whose triangles are found on this face too.
+const FACE_SURE: f32 = 1.0 - 4e-6;
 /// A triangle whose plane is nearer to the centre than this part of its size may lie anywhere.
 pub const NEAREST: f64 = 1e-7;
 /// Faces reach this far over their borders: a line on a border is found on either face.
 const OVERLAP: f64 = 1e-5;
 
+/// A box on the chart, with its depth.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    low: DVec3,
+    high: DVec3,
+}
+
 /// Where a triangle or a bundle of lines is seen: a box for each face that it is on.
-pub type Boxes = [Option<Aabb>; 6];
+pub type Boxes = [Option<Area>; 6];
 
 /// A chart of the lines through a centre.
 #[derive(Debug, Clone, Copy)]
@@ -89,35 +100,27 @@ impl Chart {
         Chart::Plane { center, middle, across: [u, towards.cross(u)], towards, reach, distance }
     }
 
-    /// Where a triangle is seen; `is_near`: its plane all but contains the centre.
-    pub fn triangle(&self, corners: [DVec3; 3], is_near: bool) -> Boxes {
-        let mut boxes = Boxes::default();
+    /// Calls `add` with each area where a triangle is seen; `is_near`: its plane all but contains the centre.
+    pub fn for_each_area(&self, corners: [DVec3; 3], is_near: bool, mut add: impl FnMut(Area)) {
         let Chart::Cube { center, .. } = self else {
-            boxes[0] = Some(self.on_sheet(corners.into_iter().map(Line::To)));
-            return boxes;
+            add(self.on_sheet(corners.into_iter().map(Line::To)).of_triangle());
+            return;
         };
         let corners = corners.map(|corner| corner - *center);
         let face = face_of(corners[0]);
         if is_near {
-            boxes = std::array::from_fn(|face| Some(whole_face(face)));
+            (0..6).for_each(|face| add(whole_face(face).of_triangle()));
         } else if corners.iter().all(|corner| is_within(face, *corner)) {
-            boxes[0] = Some(bounds(corners.map(|corner| self.on_face(face, corner)), face, PADDING));
+            add(self.on_face_alone(face, corners).of_triangle());
         } else {
-            boxes = std::array::from_fn(|face| self.clipped(face, corners));
+            (0..6).filter_map(|face| self.clipped(face, corners)).for_each(|span| add(span.of_triangle()));
         }
-        boxes
     }
 
     /// Where a bundle of lines is seen.
     pub fn bundle(&self, lines: impl Iterator<Item = Line> + Clone) -> Boxes {
         let is_endless = lines.clone().any(|line| !matches!(line, Line::To(_)));
-        let open = |mut area: Aabb| {
-            area.min.z = f32::NEG_INFINITY;
-            if is_endless {
-                area.max.z = f32::INFINITY;
-            }
-            area
-        };
+        let open = |span: Span| span.of_lines(is_endless);
         let mut boxes = Boxes::default();
         match self {
             Chart::Plane { .. } => boxes[0] = Some(open(self.on_sheet(lines))),
@@ -145,6 +148,28 @@ impl Chart {
         boxes
     }
 
+    /// The same for lines that all cross one face of the cube, from single precision: the box of the points where they cross
+    /// the cube of half side 1 around the centre, and the largest coordinate of their ends. `None` where they don't,
+    /// or not clearly.
+    pub fn on_one_face(&self, low: Vec3A, high: Vec3A, end: f32) -> Option<Area> {
+        let Chart::Cube { middle, .. } = self else { return None };
+        let is_sure = |axis: &usize| low[*axis] > FACE_SURE || high[*axis] < -FACE_SURE;
+        let axis = (0..3).find(is_sure)?;
+        let face = axis * 2 + usize::from(high[axis] < 0.0);
+        let flat = |corner: Vec3A| DVec2::new(f64::from(corner[(axis + 1) % 3]), f64::from(corner[(axis + 2) % 3]));
+        let depth =
+            |end: f32| if end == f32::INFINITY { f64::INFINITY } else { f64::from(end) / (f64::from(end) + middle) };
+        Some(padded(flat(low).extend(0.0), flat(high).extend(depth(end)), face, COARSE_PADDING).of_lines(false))
+    }
+
+    /// How deep points are whose largest coordinates, relative to the centre, are up to `end`; or more.
+    pub fn depth(&self, end: f64) -> f32 {
+        match self {
+            Chart::Cube { middle, .. } => above(end / (end + middle) + COARSE_PADDING),
+            Chart::Window { .. } | Chart::Plane { .. } => f32::INFINITY,
+        }
+    }
+
     /// What the lines' places are best computed relative to: the centre, or near the scene.
     pub fn origin(&self) -> DVec3 {
         match self {
@@ -153,29 +178,22 @@ impl Chart {
         }
     }
 
+    /// From the lines' centre to a corner; where the centre is at infinity, a lever that is the same for all.
+    pub fn lever(&self, corner: DVec3) -> DVec3 {
+        match self {
+            Chart::Cube { center, .. } | Chart::Window { center, .. } => corner - center,
+            Chart::Plane { center, .. } if center.w == 0.0 => -center.truncate(),
+            Chart::Plane { center, .. } => corner - center.truncate(),
+        }
+    }
+
     /// Is [`Chart::origin`] the lines' centre?
     pub fn is_centered(&self) -> bool {
         !matches!(self, Chart::Plane { .. })
     }
 
-    /// Another point of a line, near the chart, relative to the origin: bundles are narrow there.
-    pub fn on_chart(&self, line: Line) -> DVec3 {
-        match self {
-            Chart::Cube { center, .. } | Chart::Window { center, .. } => {
-                let point = line.from(*center);
-                point / point.abs().max_element()
-            }
-            Chart::Plane { center, middle, towards, .. } => {
-                let place = line.from(*middle);
-                let to_center =
-                    if center.w == 0.0 { *towards } else { (center.truncate() - middle - place).normalize() };
-                place - to_center * (place.dot(*towards) / to_center.dot(*towards))
-            }
-        }
-    }
-
     /// The box of points or lines on a chart that is one sheet.
-    fn on_sheet(&self, lines: impl Iterator<Item = Line> + Clone) -> Aabb {
+    fn on_sheet(&self, lines: impl Iterator<Item = Line> + Clone) -> Span {
         match self {
             Chart::Cube { .. } => whole_face(0),
             Chart::Plane { middle, across: [u, v], towards, reach, distance, .. } => {
@@ -204,6 +222,15 @@ impl Chart {
         self.projected(along_face(face, point))
     }
 
+    /// Where a triangle is seen that is on one face alone.
+    fn on_face_alone(&self, face: usize, corners: [DVec3; 3]) -> Span {
+        let corners = corners.map(|corner| along_face(face, corner));
+        let [a, b, c] = corners.map(|corner| corner.truncate() * corner.z.recip());
+        let nearest = corners[0].z.min(corners[1].z).min(corners[2].z);
+        let nearest = self.projected(DVec3::new(0.0, 0.0, nearest)).z;
+        padded(a.min(b).min(c).extend(nearest), a.max(b).max(c).extend(nearest), face, PADDING)
+    }
+
     /// From a face's own coordinates, the third along its axis.
     fn projected(&self, point: DVec3) -> DVec3 {
         let Chart::Cube { middle, .. } = self else { return point };
@@ -212,7 +239,7 @@ impl Chart {
     }
 
     /// The part of a triangle within a face's pyramid (Sutherland and Hodgman 1974).
-    fn clipped(&self, face: usize, corners: [DVec3; 3]) -> Option<Aabb> {
+    fn clipped(&self, face: usize, corners: [DVec3; 3]) -> Option<Span> {
         let mut polygon: Vec<DVec3> = corners.iter().map(|corner| along_face(face, *corner)).collect();
         for side in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y] {
             let inwards = side + DVec3::Z * (1.0 + OVERLAP);
@@ -235,19 +262,30 @@ impl Chart {
 }
 
 /// The box around charted points, at the place of their face.
-fn bounds(charted: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> Aabb {
+fn bounds(charted: impl IntoIterator<Item = DVec3>, face: usize, padding: f64) -> Span {
     let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (low, high) = charted.into_iter().fold(empty, |(low, high), place| (low.min(place), high.max(place)));
     padded(low, high, face, padding)
 }
 
-fn padded(low: DVec3, high: DVec3, face: usize, padding: f64) -> Aabb {
+fn padded(low: DVec3, high: DVec3, face: usize, padding: f64) -> Span {
     let shift = DVec3::new(face as f64 * FACE_SPACING, 0.0, 0.0);
-    let (low, high) = (low + shift - padding, high + shift + padding);
-    Aabb::new(
-        Vec3A::new(below(low.x), below(low.y), below(low.z)),
-        Vec3A::new(above(high.x), above(high.y), above(high.z)),
-    )
+    Span { low: low + shift - padding, high: high + shift + padding }
+}
+
+impl Span {
+    fn area(&self, depth: f32) -> Area {
+        let (low, high) = (self.low, self.high);
+        Area { low: Vec2::new(below(low.x), below(low.y)), high: Vec2::new(above(high.x), above(high.y)), depth }
+    }
+
+    fn of_triangle(self) -> Area {
+        self.area(below(self.low.z))
+    }
+
+    fn of_lines(self, are_endless: bool) -> Area {
+        self.area(if are_endless { f32::INFINITY } else { above(self.high.z) })
+    }
 }
 
 impl Line {
@@ -281,23 +319,27 @@ fn face_of(direction: DVec3) -> usize {
 
 /// A point in a face's own coordinates: two across the face, the third along its axis.
 fn along_face(face: usize, point: DVec3) -> DVec3 {
-    let axis = face / 2;
-    let along = if face % 2 == 1 { -point[axis] } else { point[axis] };
-    DVec3::new(point[(axis + 1) % 3], point[(axis + 2) % 3], along)
+    let turned = match face / 2 {
+        0 => point.yzx(),
+        1 => point.zxy(),
+        _ => point,
+    };
+    if face % 2 == 1 { turned.with_z(-turned.z) } else { turned }
 }
 
-fn whole_face(face: usize) -> Aabb {
-    let center = face as f32 * FACE_SPACING as f32;
-    Aabb::new(Vec3A::new(center - 1.5, -1.5, 0.0), Vec3A::new(center + 1.5, 1.5, 1.0))
+fn whole_face(face: usize) -> Span {
+    let center = DVec3::new(face as f64 * FACE_SPACING, 0.0, 0.0);
+    Span { low: center - DVec3::new(1.5, 1.5, 0.0), high: center + DVec3::new(1.5, 1.5, 1.0) }
 }
 
-/// The nearest `f32` not above a number.
+/// An `f32` not above a number, and next to it.
 fn below(value: f64) -> f32 {
     let rounded = value as f32;
-    if f64::from(rounded) > value { rounded.next_down() } else { rounded }
+    rounded - (rounded.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }
 
-/// The nearest `f32` not below a number.
+/// An `f32` not below a number, and next to it.
 fn above(value: f64) -> f32 {
-    -below(-value)
+    let rounded = value as f32;
+    rounded + (rounded.abs() * f32::EPSILON + f32::MIN_POSITIVE)
 }

@@ -17,22 +17,27 @@
 
 mod ask;
 mod chart;
+mod coarse;
 mod pencil;
+mod shadow;
 #[cfg(test)]
 mod tests;
+mod tree;
 mod view;
 mod world;
 
 pub use ask::{Met, SeenSurface};
 pub use world::Place;
 
-use crate::math::{Sign, side_of_triangle};
+use crate::math::Sign;
 use crate::progress::Progress;
 use crate::scene::{Scene, Sight};
 use chart::Line;
-use glam::{DVec3, DVec4};
-use pencil::{Bundle, Pencil, Seen, Then, Whose};
+use glam::DVec3;
+use pencil::{Bundle, Pencil, Plane, Settled, Whose, point_rounding};
 use rayon::prelude::*;
+use shadow::LightPencil;
+use tree::set_bits;
 use view::View;
 use world::World;
 
@@ -50,6 +55,9 @@ pub const LABEL_NAMES: [&str; 4] = ["lit", "in shadow", "background", "faces awa
 
 /// Pixels along each side of the tiles whose rays are followed together.
 const TILE: usize = 4;
+/// Rows of pixels that are traced in a go: tiles below each other meet much the same as those beside each other, and
+/// what was just met is near at hand.
+const BAND: usize = 4 * TILE;
 /// Units in the last place by which a surface point may be off: the eye, the direction and their
 /// sum are rounded.
 const POINT_ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -88,22 +96,8 @@ pub struct Tracer {
     size: [u32; 2],
     eye: Pencil,
     lights: Vec<LightPencil>,
-}
-
-/// The rays of one light.
-#[derive(Debug)]
-struct LightPencil {
-    position: DVec4,
-    /// Of a lamp that fades: nothing at this distance, metres, is lit.
-    range: Option<f64>,
-    pencil: Pencil,
-}
-
-impl LightPencil {
-    /// The light has faded to nothing there.
-    fn is_out_of_range(&self, point: DVec3) -> bool {
-        self.range.is_some_and(|range| self.position.truncate().distance_squared(point) >= range * range)
-    }
+    /// What does not depend on a surface of how far its point may be off, or more.
+    most_rounding: f64,
 }
 
 /// What a ray of sight meets first.
@@ -114,8 +108,10 @@ struct Surface {
     eye_side: Sign,
     /// World space, rounded.
     point: DVec3,
-    /// How far `point` may be off along any axis.
-    rounding: f64,
+    /// From the eye, of which `point` is the rounded sum.
+    offset: DVec3,
+    /// The largest coordinate of where the ray is at distance 0, relative to the eye.
+    from: f64,
 }
 
 /// What a ray of sight has met so far.
@@ -125,13 +121,10 @@ struct Nearest {
     distance: f64,
     triangle: u32,
     eye_side: Sign,
-    /// How far the triangle's plane may be off.
-    rounding: f64,
 }
 
 impl Nearest {
-    const NOTHING: Nearest =
-        Nearest { distance: f64::INFINITY, triangle: u32::MAX, eye_side: Sign::Zero, rounding: 0.0 };
+    const NOTHING: Nearest = Nearest { distance: f64::INFINITY, triangle: u32::MAX, eye_side: Sign::Zero };
 }
 
 impl Tracer {
@@ -161,7 +154,9 @@ impl Tracer {
             || Pencil::new(Whose::Eye, scene.camera.eye_position(), triangles, is_seen),
             || lights.into_par_iter().map(pencil_of).collect(),
         );
-        Ok(Tracer { view: View::new(&scene.camera, size), world, size, eye, lights })
+        let most_rounding = 3.0 * POINT_ROUNDING * scene.camera.eye.abs().max_element()
+            + 4.0 * point_rounding(DVec3::ZERO, &[DVec3::splat(world.reach(eye.origin)); 3]);
+        Ok(Tracer { view: View::new(&scene.camera, size), world, size, eye, lights, most_rounding })
     }
 
     /// The same, with rays of sight that end at a far plane: what lies beyond is not looked for. A far plane is a part of
@@ -198,7 +193,7 @@ impl Tracer {
     #[must_use]
     pub fn trace_lights(&self, lights: &[usize], progress: &Progress) -> Option<Truth> {
         let [width, height] = self.size.map(|n| n as usize);
-        let bands: Vec<usize> = (0..height).step_by(TILE).collect();
+        let bands: Vec<usize> = (0..height).step_by(BAND).collect();
         progress.start(bands.len());
         let traced: Option<Vec<Vec<Vec<u8>>>> = bands
             .into_par_iter()
@@ -245,25 +240,30 @@ impl Tracer {
     /// Labels of a band of rows, one list a light.
     fn trace_band(&self, top: usize, lights: &[usize]) -> Vec<Vec<u8>> {
         let [width, height] = self.size.map(|n| n as usize);
-        let rows = top..height.min(top + TILE);
-        let mut labels = vec![vec![BACKGROUND; rows.len() * width]; lights.len()];
-        let (mut rays, mut places) = (Vec::with_capacity(TILE * TILE), Vec::with_capacity(TILE * TILE));
+        let bottom = height.min(top + BAND);
+        let mut labels = vec![vec![BACKGROUND; (bottom - top) * width]; lights.len()];
+        let across: Vec<f64> = (0..width).map(|x| self.view.across(x as f64 + 0.5)).collect();
+        let down: Vec<f64> = (top..bottom).map(|y| self.view.down(y as f64 + 0.5)).collect();
+        let mut rays = [Sight { from: DVec3::ZERO, along: DVec3::ZERO }; TILE * TILE];
+        let mut places = [0; TILE * TILE];
         for left in (0..width).step_by(TILE) {
-            rays.clear();
-            places.clear();
-            for (row, y) in rows.clone().enumerate() {
-                for x in left..width.min(left + TILE) {
-                    rays.push(self.view.ray([x as f64 + 0.5, y as f64 + 0.5]));
-                    places.push(row * width + x);
+            for first in (0..bottom - top).step_by(TILE) {
+                let mut count = 0;
+                for (row, y) in (first..).zip(&down[first..down.len().min(first + TILE)]) {
+                    for (column, x) in (left..).zip(&across[left..width.min(left + TILE)]) {
+                        rays[count] = self.view.ray_through([*x, *y]);
+                        places[count] = row * width + column;
+                        count += 1;
+                    }
                 }
-            }
-            let mut surfaces = [None; TILE * TILE];
-            let surfaces = &mut surfaces[..rays.len()];
-            self.meet_surfaces(&rays, surfaces);
-            for (light, labels) in lights.iter().zip(&mut labels) {
-                let mut tile = [BACKGROUND; TILE * TILE];
-                self.label_surfaces(&self.lights[*light], surfaces, &mut tile[..surfaces.len()]);
-                places.iter().zip(tile).for_each(|(place, label)| labels[*place] = label);
+                let mut surfaces = [None; TILE * TILE];
+                let surfaces = &mut surfaces[..count];
+                self.meet_surfaces(&rays[..count], surfaces);
+                for (light, labels) in lights.iter().zip(&mut labels) {
+                    let mut tile = [BACKGROUND; TILE * TILE];
+                    self.label_surfaces(&self.lights[*light], surfaces, &mut tile[..count]);
+                    places[..count].iter().zip(tile).for_each(|(place, label)| labels[*place] = label);
+                }
             }
         }
         labels
@@ -271,118 +271,65 @@ impl Tracer {
 
     /// What rays of sight meet first. Of surfaces at one distance it is the one drawn first, as in a rasteriser.
     fn meet_surfaces(&self, rays: &[Sight], surfaces: &mut [Option<Surface>]) {
-        let mut bundle = Bundle::new();
-        rays.iter().for_each(|ray| {
-            bundle.push(match self.view.is_parallel {
-                true => Line::Through(self.view.eye + ray.from),
-                false => Line::Along(ray.along),
-            });
-        });
+        let mut bundle = Bundle::new(if self.view.is_parallel { Line::Through } else { Line::Along });
+        for ray in rays {
+            bundle.push(if self.view.is_parallel { self.view.eye + ray.from } else { ray.along });
+        }
         let mut nearest = [Nearest::NOTHING; Bundle::MOST];
-        self.eye.for_each_meeting(&self.world.triangles, &bundle, |seen, line| {
-            let distance = self.distance(seen, &rays[line]);
-            let best = nearest[line];
-            let is_nearer = distance < best.distance || (distance == best.distance && seen.index < best.triangle);
-            if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
-                let rounding = seen.plane_rounding();
-                nearest[line] = Nearest { distance, triangle: seen.index, eye_side: seen.center_side, rounding };
+        let mut open = (1_u32 << rays.len()) - 1;
+        self.eye.for_each_meeting(&bundle, |met, corners, lines| {
+            let plane = Plane::new(self.eye.origin, corners);
+            let depths = self.depths(corners);
+            let mut is_changed = false;
+            for line in set_bits(lines) {
+                let distance = self.distance(&plane, depths, &rays[line]);
+                let best = nearest[line];
+                let is_nearer = distance < best.distance || (distance == best.distance && met.index < best.triangle);
+                if (self.view.near..=self.view.far).contains(&distance) && is_nearer {
+                    nearest[line] = Nearest { distance, triangle: met.index, eye_side: met.center_side };
+                    open &= !(1 << line);
+                    is_changed = true;
+                }
             }
-            Then::Continue
+            if open != 0 || !is_changed || self.view.is_parallel {
+                return Settled::NOTHING;
+            }
+            let distances = nearest[..rays.len()].iter().map(|nearest| nearest.distance);
+            Settled {
+                lines: 0,
+                distance: distances.fold(0.0, |most, distance| if distance > most { distance } else { most }),
+            }
         });
-        let eye = self.view.eye;
         for ((surface, ray), nearest) in surfaces.iter_mut().zip(rays).zip(nearest) {
-            *surface = (nearest.triangle != u32::MAX).then(|| {
-                let offset = ray.at(nearest.distance);
-                let point = eye + offset;
-                // The sum is rounded at the size of its larger part.
-                let parts = ray.from.abs().max_element() + offset.abs().max_element();
-                let rounding = POINT_ROUNDING * (eye.abs().max_element() + parts + point.abs().max_element());
-                let rounding = rounding + nearest.rounding;
-                Surface { triangle: nearest.triangle as usize, eye_side: nearest.eye_side, point, rounding }
+            if nearest.triangle == u32::MAX {
+                continue;
+            }
+            let offset = ray.at(nearest.distance);
+            *surface = Some(Surface {
+                triangle: nearest.triangle as usize,
+                eye_side: nearest.eye_side,
+                point: self.view.eye + offset,
+                offset,
+                from: if self.view.is_parallel { ray.from.abs().max_element() } else { 0.0 },
             });
         }
+    }
+
+    /// Along the view's axis, how far a triangle is at least and at most.
+    fn depths(&self, corners: &[DVec3; 3]) -> [f64; 2] {
+        let axis = self.view.axis();
+        let [a, b, c] = corners.map(|corner| (corner - self.view.eye).dot(axis));
+        [a.min(b).min(c), a.max(b).max(c)]
     }
 
     /// Along the view's axis, within the triangle's own distances: a sliver's plane may be so
     /// steep that rounding puts the meeting anywhere.
-    fn distance(&self, seen: &Seen, ray: &Sight) -> f64 {
-        let axis = self.view.axis();
-        let depth = |corner: DVec3| (corner - self.view.eye).dot(axis);
-        let [a, b, c] = self.world.triangles[seen.index as usize];
-        let (a, b, c) = (depth(a), depth(b), depth(c));
+    fn distance(&self, plane: &Plane, [least, most]: [f64; 2], ray: &Sight) -> f64 {
         let from = match self.view.is_parallel {
             // Relative to what the pencil's places are relative to.
-            true => seen.normal.dot(self.view.eye - self.eye.origin + ray.from),
+            true => plane.normal.dot(self.view.eye - self.eye.origin + ray.from),
             false => 0.0,
         };
-        ((seen.offset - from) / seen.normal.dot(ray.along)).max(a.min(b).min(c)).min(a.max(b).max(c))
+        ((plane.offset - from) / plane.normal.dot(ray.along)).max(least).min(most)
     }
-
-    fn label_surfaces(&self, light: &LightPencil, surfaces: &[Option<Surface>], labels: &mut [u8]) {
-        let mut bundle = Bundle::new();
-        let mut lines = [0; Bundle::MOST];
-        let mut last = (usize::MAX, Sign::Zero);
-        for (index, surface) in surfaces.iter().enumerate() {
-            let Some(surface) = surface else {
-                labels[index] = BACKGROUND;
-                continue;
-            };
-            if last.0 != surface.triangle {
-                last = (surface.triangle, side_of_triangle(self.world.triangles[surface.triangle], light.position));
-            }
-            if last.1 != surface.eye_side || light.is_out_of_range(surface.point) {
-                labels[index] = FACES_AWAY;
-                continue;
-            }
-            labels[index] = LIT;
-            if self.world.object(surface.triangle).receives {
-                lines[bundle.len()] = index;
-                bundle.push(Line::To(surface.point));
-            }
-        }
-        let mut left = bundle.len();
-        if left == 0 {
-            return;
-        }
-        light.pencil.for_each_meeting(&self.world.triangles, &bundle, |seen, line| {
-            let index = lines[line];
-            let is_darkened = labels[index] == LIT
-                && surfaces[index].as_ref().is_some_and(|surface| self.lies_between(light, seen, surface));
-            if is_darkened {
-                labels[index] = SHADOW;
-                left -= 1;
-            }
-            if left == 0 { Then::Stop } else { Then::Continue }
-        });
-    }
-
-    /// Are the light and a surface point on different sides of a triangle that their line meets?
-    /// A plane through the point itself, as far as its rounding can tell, has it on neither; nor
-    /// has the surface's own plane.
-    fn lies_between(&self, light: &LightPencil, seen: &Seen, surface: &Surface) -> bool {
-        let other = seen.index as usize;
-        if other == surface.triangle {
-            return false;
-        }
-        let (height, rounding) = seen.height(surface.point - light.pencil.origin);
-        let is_sure = height.abs() > rounding + seen.normal.abs().element_sum() * surface.rounding;
-        let height = if is_sure { height } else { self.height_near(other, surface) };
-        is_opposite(height, seen.center_side) && !self.world.share_plane(surface.triangle, other)
-    }
-
-    /// How far above a triangle's plane a point is that is so near that it takes care, times twice
-    /// the triangle's area; 0 where rounding can't tell it from the plane.
-    fn height_near(&self, triangle: usize, surface: &Surface) -> f64 {
-        let [a, b, c] = self.world.triangles[triangle];
-        let (ab, ac, offset) = (b - a, c - a, surface.point - a);
-        let normal = ab.cross(ac);
-        let height = normal.dot(offset);
-        let products = ab.abs().element_sum() * ac.abs().element_sum() * offset.abs().element_sum();
-        let rounding = 16.0 * f64::EPSILON * products + normal.abs().element_sum() * surface.rounding;
-        if height.abs() > rounding { height } else { 0.0 }
-    }
-}
-
-fn is_opposite(height: f64, side: Sign) -> bool {
-    (height > 0.0 && side == Sign::Negative) || (height < 0.0 && side == Sign::Positive)
 }

@@ -9,45 +9,61 @@
 //! always see a line on opposite sides of it: it slips between none, and meets no two.
 
 use super::chart::{Chart, Line, NEAREST};
+use super::coarse::{Core, Four};
+use super::tree::{Area, Tree, set_bits};
 use crate::math::{Sign, side_of_triangle, sign_of_sum};
-use glam::{DVec3, DVec4, Vec3A};
-use obvhs::BvhBuildParams;
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
+use glam::{DVec3, DVec4};
 use rayon::prelude::*;
-use std::time::Duration;
 
 /// Some more than the roundings of a cross and a dot product of rounded differences, in units
 /// of the sum of their products' absolute values.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The same for single precision, which sorts out most lines that pass a triangle by.
-const COARSE_ROUNDING: f32 = 64.0 * f32::EPSILON;
-
-/// A triangle as its pencil sees it.
+/// A triangle that lines meet.
 #[derive(Debug, Clone, Copy)]
-pub struct Seen {
-    /// Planes through the centre and the edges opposite to each corner: normal …
-    edge_normals: [DVec3; 3],
-    /// … and offset, which is zero where the centre is the origin.
-    edge_offsets: [f64; 3],
-    is_centered: bool,
-    /// What rounding may move an edge's value by, for each unit of the place's span.
-    edge_rounding: f64,
-    /// The triangle's own plane, scaled by twice its area: normal …
-    pub normal: DVec3,
-    /// … and what `normal · p` is for its points, relative to the pencil's origin.
-    pub offset: f64,
-    /// What rounding may move a height by, for each unit of its spread.
-    height_rounding: f64,
-    /// The largest sum of a corner's absolute coordinates, relative to the pencil's origin.
-    size: f64,
-    /// On which side of the triangle the centre is; exact.
-    pub center_side: Sign,
-    /// Which triangle of all.
+pub struct Met {
+    /// Which of all.
     pub index: u32,
+    /// On which side of it the centre is; exact.
+    pub center_side: Sign,
 }
+
+/// A triangle's plane, scaled by twice its area.
+#[derive(Debug, Clone, Copy)]
+pub struct Plane {
+    pub normal: DVec3,
+    /// What `normal · p` is for its points, relative to the pencil's origin.
+    pub offset: f64,
+}
+
+/// What need not be looked for any more.
+#[derive(Debug, Clone, Copy)]
+pub struct Settled {
+    /// For these lines nothing: a bit each.
+    pub lines: u32,
+    /// For all lines of sight nothing beyond this many times their directions.
+    pub distance: f64,
+}
+
+impl Settled {
+    pub const NOTHING: Settled = Settled { lines: 0, distance: f64::INFINITY };
+}
+
+/// Planes through the centre and a triangle's edges.
+#[derive(Debug, Clone, Copy)]
+struct Edges {
+    /// Of the edges opposite to each corner: normal …
+    normals: [DVec3; 3],
+    /// … and offset, which is zero where the centre is the origin.
+    offsets: [f64; 3],
+    /// The most that the products sum up to which make an edge's value, for each unit of the place's span …
+    products: f64,
+    /// … and what is added to that span.
+    size: f64,
+}
+
+/// How many triangles are charted in a row.
+const PART: usize = 4096;
 
 /// Whose lines they are: an eye's go on without end, a light's end at a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,24 +78,24 @@ pub struct Pencil {
     /// What points and corners are relative to: the centre, or near the scene.
     pub origin: DVec3,
     chart: Chart,
-    /// `None` where there is nothing to meet.
-    hierarchy: Option<Bvh2>,
-    /// In the order of the hierarchy's leaves.
-    seen: Vec<Seen>,
-    /// Parallel to `seen`.
-    coarse: Vec<Coarse>,
+    tree: Tree,
+    /// In the order of the tree.
+    fours: Vec<Four>,
+    met: Vec<Met>,
+    corners: Vec<[DVec3; 3]>,
 }
 
 impl std::fmt::Debug for Pencil {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Pencil").field("center", &self.center).field("seen", &self.seen.len()).finish_non_exhaustive()
+        f.debug_struct("Pencil").field("center", &self.center).field("fours", &self.fours.len()).finish_non_exhaustive()
     }
 }
 
-/// Up to [`Bundle::MOST`] lines that are near each other.
+/// Up to [`Bundle::MOST`] lines of a kind that are near each other.
 #[derive(Debug)]
 pub struct Bundle {
-    lines: [Line; Bundle::MOST],
+    kind: fn(DVec3) -> Line,
+    points: [DVec3; Bundle::MOST],
     len: usize,
 }
 
@@ -87,12 +103,13 @@ impl Bundle {
     /// Larger ones meet more triangles that most of their lines miss.
     pub const MOST: usize = 16;
 
-    pub fn new() -> Bundle {
-        Bundle { lines: [Line::Along(DVec3::ZERO); Bundle::MOST], len: 0 }
+    /// Of lines that `kind` makes of points.
+    pub fn new(kind: fn(DVec3) -> Line) -> Bundle {
+        Bundle { kind, points: [DVec3::ZERO; Bundle::MOST], len: 0 }
     }
 
-    pub fn push(&mut self, line: Line) {
-        self.lines[self.len] = line;
+    pub fn push(&mut self, point: DVec3) {
+        self.points[self.len] = point;
         self.len += 1;
     }
 
@@ -100,42 +117,27 @@ impl Bundle {
         self.len
     }
 
-    fn lines(&self) -> impl Iterator<Item = Line> + Clone {
-        self.lines[..self.len].iter().copied()
+    pub fn points(&self) -> &[DVec3] {
+        &self.points[..self.len]
     }
-}
 
-/// The edges of a triangle in single precision.
-#[derive(Debug, Clone, Copy)]
-struct Coarse {
-    normals: [Vec3A; 3],
-    offsets: [f32; 3],
-    /// What rounding may move an edge's value by, for each unit of the place's span …
-    rounding: f32,
-    /// … and for none.
-    least_rounding: f32,
-}
+    fn line(&self, index: usize) -> Line {
+        (self.kind)(self.points[index])
+    }
 
-/// A bundle's places relative to a pencil's origin, and a box around its lines where they cross
-/// the chart.
-struct Core {
-    places: [DVec3; Bundle::MOST],
-    x: [f32; Bundle::MOST],
-    y: [f32; Bundle::MOST],
-    z: [f32; Bundle::MOST],
-    /// The largest sum of a place's absolute coordinates.
-    span: f32,
-    middle: Vec3A,
-    half: Vec3A,
-    /// The same for the box; it carries the rounding of the places that it was moved from.
-    charted_span: f32,
-}
+    pub fn lines(&self) -> impl Iterator<Item = Line> + Clone {
+        self.points().iter().map(|point| (self.kind)(*point))
+    }
 
-/// What is done after a line has met a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Then {
-    Continue,
-    Stop,
+    /// What its points are relative to where a pencil's places are relative to `origin`.
+    pub fn base(&self, origin: DVec3) -> DVec3 {
+        if matches!((self.kind)(DVec3::ZERO), Line::Along(_)) { DVec3::ZERO } else { origin }
+    }
+
+    /// Do its lines go on without end?
+    pub fn is_endless(&self) -> bool {
+        !matches!((self.kind)(DVec3::ZERO), Line::To(_))
+    }
 }
 
 impl Pencil {
@@ -154,94 +156,80 @@ impl Pencil {
             Whose::Eye => Chart::of_eye(center, middle, reach),
             Whose::Light => Chart::of_light(center, middle, reach),
         };
-        let is_met = |index: &usize| takes_part(*index) && side_of_triangle(triangles[*index], center) != Sign::Zero;
-        let entries: Vec<(Aabb, usize)> = (0..triangles.len())
+        // A list for each part, not for each triangle.
+        let parts: Vec<Vec<(Area, Met)>> = (0..triangles.len().div_ceil(PART))
             .into_par_iter()
-            .with_min_len(1024)
-            .filter(is_met)
-            .flat_map_iter(|index| {
-                let boxes = chart.triangle(triangles[index], is_near(center, &triangles[index]));
-                boxes.into_iter().flatten().map(move |area| (area, index))
+            .map(|part| {
+                let mut charted = Vec::with_capacity(PART);
+                for index in (part * PART..triangles.len()).take(PART).filter(|index| takes_part(*index)) {
+                    let corners = triangles[index];
+                    let Some((center_side, is_near)) = side_of(center, &corners) else { continue };
+                    let met = Met { index: index as u32, center_side };
+                    chart.for_each_area(corners, is_near, |area| charted.push((area, met)));
+                }
+                charted
             })
             .collect();
-        let areas: Vec<Aabb> = entries.iter().map(|(area, _)| *area).collect();
-        let build = || build_bvh2(&areas, BvhBuildParams::very_fast_build(), &mut Duration::default());
-        let hierarchy = (!areas.is_empty()).then(build);
-        let order = hierarchy.as_ref().map_or(&[][..], |hierarchy| &hierarchy.primitive_indices);
-        let seen = |entry: &u32| {
-            let index = entries[*entry as usize].1;
-            Seen::new(center, &chart, &triangles[index], index as u32)
+        let areas: Vec<Area> = parts.iter().flatten().map(|(area, _)| *area).collect();
+        let met: Vec<Met> = parts.iter().flatten().map(|(_, met)| *met).collect();
+        let (tree, order) = Tree::new(&areas);
+        let nothing = (Met { index: 0, center_side: Sign::Zero }, [DVec3::ZERO; 3]);
+        let in_order = |place: &Option<u32>| {
+            place.map_or(nothing, |place| (met[place as usize], triangles[met[place as usize].index as usize]))
         };
-        let seen: Vec<Seen> = order.par_iter().with_min_len(1024).map(seen).collect();
-        let coarse = seen.par_iter().with_min_len(1024).map(Seen::coarse).collect();
-        Pencil { center, origin: chart.origin(), chart, hierarchy, seen, coarse }
+        let (met, corners): (Vec<Met>, Vec<[DVec3; 3]>) = order.par_iter().with_min_len(PART).map(in_order).unzip();
+        let four = |corners: &[[DVec3; 3]]| Four::new(&chart, corners);
+        let fours = corners.par_chunks(Tree::WIDTH).with_min_len(256).map(four).collect();
+        Pencil { center, origin: chart.origin(), chart, tree, fours, met, corners }
     }
 
-    /// Calls `meets` with each triangle that a line of the bundle meets and the line's number, in
-    /// no particular order, perhaps more than once; some lie on a line's other side of the centre or
-    /// beyond its end.
-    pub fn for_each_meeting(
-        &self,
-        triangles: &[[DVec3; 3]],
-        bundle: &Bundle,
-        mut meets: impl FnMut(&Seen, usize) -> Then,
-    ) {
-        let Some(hierarchy) = &self.hierarchy else { return };
-        let core = self.core(bundle);
-        for area in self.chart.bundle(bundle.lines()).into_iter().flatten() {
-            let mut goes_on = true;
-            hierarchy.aabb_traverse(area, |hierarchy, node| {
-                let node = &hierarchy.nodes[node as usize];
-                let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-                for index in leaf.filter(|index| !core.misses(&self.coarse[*index])) {
-                    let seen = &self.seen[index];
-                    for line in set_bits(core.near(&self.coarse[index], bundle.len)) {
-                        let is_met = seen.is_met(core.places[line]);
-                        let is_met = is_met.unwrap_or_else(|| self.is_met(triangles, seen, bundle.lines[line]));
-                        goes_on = goes_on && (!is_met || meets(seen, line) == Then::Continue);
+    /// Calls `meets` with each triangle that lines of the bundle meet and with these lines, a bit each, in no
+    /// particular order, some perhaps more than once; some lie on a line's other side of the centre or beyond
+    /// its end. `meets` says what need not be looked for any more.
+    pub fn for_each_meeting(&self, bundle: &Bundle, mut meets: impl FnMut(&Met, &[DVec3; 3], u32) -> Settled) {
+        let core = Core::new(&self.chart, bundle);
+        let mut left = (1_u32 << bundle.len) - 1;
+        let mut follow = |area: &Area| {
+            self.tree.for_each_meeting(*area, |index, found, depth| {
+                let four = &self.fours[index];
+                for lane in set_bits(found) {
+                    let (near, sure) = core.near(four, lane);
+                    let place = index * Tree::WIDTH + lane;
+                    let open = near & !sure & left;
+                    let mut lines = sure & left;
+                    if open != 0 {
+                        lines |= self.met_of(&self.corners[place], bundle, open);
+                    }
+                    if lines != 0 {
+                        let settled = meets(&self.met[place], &self.corners[place], lines);
+                        left &= !settled.lines;
+                        if settled.distance < f64::INFINITY {
+                            *depth = depth.min(self.chart.depth(settled.distance * core.largest));
+                        }
                     }
                 }
-                goes_on
+                left != 0
             });
-            if !goes_on {
-                return;
-            }
+        };
+        match core.area {
+            Some(area) => follow(&area),
+            None => self.chart.bundle(bundle.lines()).iter().flatten().for_each(follow),
         }
     }
 
-    fn core(&self, bundle: &Bundle) -> Core {
-        let mut core = Core {
-            places: [DVec3::ZERO; Bundle::MOST],
-            x: [0.0; Bundle::MOST],
-            y: [0.0; Bundle::MOST],
-            z: [0.0; Bundle::MOST],
-            span: 0.0,
-            middle: Vec3A::ZERO,
-            half: Vec3A::ZERO,
-            charted_span: 0.0,
+    /// Which of some lines, a bit each, meet a triangle: in double precision, or exactly where that leaves it open.
+    #[cold]
+    fn met_of(&self, corners: &[DVec3; 3], bundle: &Bundle, lines: u32) -> u32 {
+        let edges = Edges::new(&self.chart, corners);
+        let is_met = |line: &usize| {
+            let line = bundle.line(*line);
+            edges.is_met(line.from(self.origin)).unwrap_or_else(|| self.is_met(corners, line))
         };
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for (index, line) in bundle.lines().enumerate() {
-            let place = line.from(self.origin);
-            core.places[index] = place;
-            let coarse = place.as_vec3a();
-            (core.x[index], core.y[index], core.z[index]) = coarse.into();
-            core.span = core.span.max(coarse.abs().element_sum());
-            let charted = self.chart.on_chart(line);
-            (low, high) = (low.min(charted), high.max(charted));
-        }
-        core.middle = ((low + high) / 2.0).as_vec3a();
-        core.half = ((high - low) / 2.0).as_vec3a();
-        core.charted_span = core.middle.abs().element_sum() + core.half.element_sum();
-        if !self.chart.is_centered() {
-            core.charted_span += core.span;
-        }
-        core
+        set_bits(lines).filter(is_met).fold(0, |met, line| met | 1 << line)
     }
 
     /// Does a line pass all three edges on the same side? Exact.
-    fn is_met(&self, triangles: &[[DVec3; 3]], seen: &Seen, line: Line) -> bool {
-        let corners = &triangles[seen.index as usize];
+    fn is_met(&self, corners: &[DVec3; 3], line: Line) -> bool {
         let side = |from: usize, to: usize| self.exact_side(corners[from], corners[to], line);
         let first = side(0, 1);
         first != Sign::Zero && side(1, 2) == first && side(2, 0) == first
@@ -263,53 +251,6 @@ impl Pencil {
     }
 }
 
-impl Core {
-    /// Do all lines pass some edge of the triangle on one side, and some edge on the other?
-    fn misses(&self, coarse: &Coarse) -> bool {
-        let rounding = coarse.rounding_at(self.charted_span);
-        let (mut left, mut right) = (false, false);
-        for (normal, offset) in coarse.normals.iter().zip(coarse.offsets) {
-            let value = normal.dot(self.middle) + offset;
-            let spread = normal.abs().dot(self.half) + rounding;
-            left |= value < -spread;
-            right |= value > spread;
-        }
-        left && right
-    }
-
-    /// Which of the first `count` lines do not clearly pass two edges on different sides: a bit each.
-    fn near(&self, coarse: &Coarse, count: usize) -> u32 {
-        let rounding = coarse.rounding_at(self.span);
-        let mut low = [f32::INFINITY; Bundle::MOST];
-        let mut high = [f32::NEG_INFINITY; Bundle::MOST];
-        for (normal, offset) in coarse.normals.iter().zip(coarse.offsets) {
-            for line in 0..Bundle::MOST {
-                let value = normal.x * self.x[line] + normal.y * self.y[line] + normal.z * self.z[line] + offset;
-                low[line] = if value < low[line] { value } else { low[line] };
-                high[line] = if value > high[line] { value } else { high[line] };
-            }
-        }
-        let is_near = |line: &usize| !(low[*line] < -rounding && high[*line] > rounding);
-        (0..count).filter(is_near).fold(0, |bits, line| bits | 1 << line)
-    }
-}
-
-impl Coarse {
-    /// More than what rounding may have moved an edge's value by, for a place of that span.
-    fn rounding_at(&self, span: f32) -> f32 {
-        self.rounding * span + self.least_rounding
-    }
-}
-
-/// Which bits are set.
-fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let bit = bits.trailing_zeros();
-        bits &= bits.wrapping_sub(1);
-        (bit < u32::BITS).then_some(bit as usize)
-    })
-}
-
 /// The exact sign of the first component of `(a − b) × d` that is not zero: how
 /// `d · ((a − p) × (b − p))` changes as `p` moves along x, y or z.
 fn first_sign_of_cross(a: DVec3, b: DVec3, d: DVec3) -> Sign {
@@ -317,52 +258,26 @@ fn first_sign_of_cross(a: DVec3, b: DVec3, d: DVec3) -> Sign {
     component(1, 2).or_else(|| component(2, 0)).or_else(|| component(0, 1))
 }
 
-impl Seen {
-    fn new(center: DVec4, chart: &Chart, corners: &[DVec3; 3], index: u32) -> Seen {
-        let [a, b, c] = *corners;
-        let (towards, origin) = (center.truncate(), chart.origin());
-        // From the centre to a corner; a lever that is the same for all where the centre is at infinity.
-        let lever = |corner: DVec3| if center.w == 0.0 { -towards } else { corner - towards };
+impl Edges {
+    fn new(chart: &Chart, &[a, b, c]: &[DVec3; 3]) -> Edges {
+        let (lever, origin) = (|corner| chart.lever(corner), chart.origin());
         // Planes through the centre and an edge: differences of near corners keep what products of
         // far ones would lose.
         let edges = [(b, c), (c, a), (a, b)];
-        let edge_normals = edges.map(|(p, q)| lever(p).cross(q - p));
-        let offset = |i: usize| if chart.is_centered() { 0.0 } else { -edge_normals[i].dot(edges[i].0 - origin) };
-        let span = |vector: DVec3| vector.abs().element_sum();
-        let largest = |of: [DVec3; 3]| span(of[0]).max(span(of[1])).max(span(of[2]));
-        let normal = (b - a).cross(c - a);
-        let edge = largest([b - a, c - b, a - c]);
-        Seen {
-            edge_normals,
-            edge_offsets: [offset(0), offset(1), offset(2)],
-            is_centered: chart.is_centered(),
-            edge_rounding: ROUNDING * edge * largest([lever(a), lever(b), lever(c)]),
-            normal,
-            offset: normal.dot(a - origin),
-            height_rounding: ROUNDING * edge * edge,
-            size: largest([a - origin, b - origin, c - origin]),
-            center_side: side_of_triangle(*corners, center),
-            index,
+        let normals = edges.map(|(p, q)| lever(p).cross(q - p));
+        let products = largest_span([b - a, c - b, a - c]) * largest_span([lever(a), lever(b), lever(c)]);
+        if chart.is_centered() {
+            return Edges { normals, offsets: [0.0; 3], products, size: 0.0 };
         }
-    }
-
-    fn coarse(&self) -> Coarse {
-        let rounding = (self.edge_rounding / ROUNDING) as f32 * COARSE_ROUNDING;
-        // Where single precision ends, nothing is sorted out: what is not a number decides nothing.
-        let least_rounding = if self.is_centered { 0.0 } else { rounding * self.size as f32 };
-        Coarse {
-            normals: self.edge_normals.map(|normal| normal.as_vec3a()),
-            offsets: self.edge_offsets.map(|offset| offset as f32),
-            rounding,
-            least_rounding: least_rounding + f32::MIN_POSITIVE,
-        }
+        let offset = |i: usize| -normals[i].dot(edges[i].0 - origin);
+        let size = largest_span([a - origin, b - origin, c - origin]);
+        Edges { normals, offsets: [offset(0), offset(1), offset(2)], products, size }
     }
 
     /// Does a line pass all edges on the same side? `None` where rounding leaves it open.
     fn is_met(&self, place: DVec3) -> Option<bool> {
-        let span = place.abs().element_sum();
-        let rounding = self.edge_rounding * if self.is_centered { span } else { span + self.size };
-        let value = |i: usize| self.edge_normals[i].dot(place) + self.edge_offsets[i];
+        let rounding = ROUNDING * self.products * (place.abs().element_sum() + self.size);
+        let value = |i: usize| self.normals[i].dot(place) + self.offsets[i];
         let (a, b, c) = (value(0), value(1), value(2));
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         if low < -rounding && high > rounding {
@@ -370,35 +285,81 @@ impl Seen {
         }
         (low > rounding || high < -rounding).then_some(true)
     }
+}
 
-    /// How far above the triangle's plane a place is, times twice its area, and more than what
-    /// rounding may have moved that by.
-    pub fn height(&self, place: DVec3) -> (f64, f64) {
-        let spread = self.size + place.abs().element_sum();
-        (self.normal.dot(place) - self.offset, self.height_rounding * spread)
+impl Plane {
+    /// Relative to a pencil's origin.
+    pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> Plane {
+        let normal = (b - a).cross(c - a);
+        Plane { normal, offset: normal.dot(a - origin) }
     }
 
-    /// More than what rounding may have moved a point of the triangle's plane off it, where the
-    /// plane was computed from here.
-    pub fn plane_rounding(&self) -> f64 {
-        ROUNDING * self.size
+    /// How far above the plane a place is, times twice the triangle's area.
+    pub fn height(&self, place: DVec3) -> f64 {
+        self.normal.dot(place) - self.offset
     }
 }
 
-/// Is a centre so near to a triangle's plane that the triangle may be seen anywhere around it?
-fn is_near(center: DVec4, corners: &[DVec3; 3]) -> bool {
+/// What rounding does to a triangle's plane.
+#[derive(Debug, Clone, Copy)]
+pub struct PlaneRounding {
+    /// What it may move a height by, for each unit of its spread.
+    height: f64,
+    /// The largest sum of a corner's absolute coordinates, relative to the pencil's origin.
+    size: f64,
+}
+
+impl PlaneRounding {
+    /// Of what is relative to a pencil's origin.
+    pub fn new(origin: DVec3, &[a, b, c]: &[DVec3; 3]) -> PlaneRounding {
+        let edge = largest_span([b - a, c - b, a - c]);
+        PlaneRounding { height: ROUNDING * edge * edge, size: largest_span([a - origin, b - origin, c - origin]) }
+    }
+
+    /// More than what it may have moved a place's height by.
+    pub fn of_height(&self, place: DVec3) -> f64 {
+        self.height * (self.size + place.abs().element_sum())
+    }
+}
+
+/// More than what rounding may have moved a point of a triangle's plane off it, where the plane was computed relative to
+/// `origin`.
+pub fn point_rounding(origin: DVec3, corners: &[DVec3; 3]) -> f64 {
+    ROUNDING * largest_span(corners.map(|corner| corner - origin))
+}
+
+fn largest_span(of: [DVec3; 3]) -> f64 {
+    let [a, b, c] = of.map(|vector| vector.abs().element_sum());
+    a.max(b).max(c)
+}
+
+/// The exact side of a triangle that a centre is on, and whether it is so near to the triangle's plane that the triangle may be seen
+/// anywhere around it. `None` where it is in the plane.
+fn side_of(center: DVec4, corners: &[DVec3; 3]) -> Option<(Sign, bool)> {
     let [a, b, c] = corners.map(|corner| corner - center.truncate());
     let normal = (b - a).cross(c - a);
     let span = |vector: DVec3| vector.abs().element_sum();
-    let size = span(a).max(span(b)).max(span(c));
     let edge = span(b - a).max(span(c - a));
-    normal.dot(a).abs() <= size * (NEAREST * normal.length() + ROUNDING * edge * edge)
+    let height = normal.dot(a);
+    if height.abs() > largest_span([a, b, c]) * (NEAREST * span(normal) + ROUNDING * edge * edge) && center.w != 0.0 {
+        return Some((if height < 0.0 { Sign::Positive } else { Sign::Negative }, false));
+    }
+    let side = side_of_triangle(*corners, center);
+    (side != Sign::Zero).then_some((side, true))
 }
 
 /// The box around the triangles that take part.
-fn bounds(triangles: &[[DVec3; 3]], takes_part: impl Fn(usize) -> bool) -> (DVec3, DVec3) {
-    let taking_part = triangles.iter().enumerate().filter(|(index, _)| takes_part(*index));
-    let mut corners = taking_part.flat_map(|(_, corners)| *corners);
-    let first = corners.next().unwrap_or(DVec3::ZERO);
-    corners.fold((first, first), |(low, high), corner| (low.min(corner), high.max(corner)))
+fn bounds(triangles: &[[DVec3; 3]], takes_part: impl Fn(usize) -> bool + Sync) -> (DVec3, DVec3) {
+    let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let part = |(part, corners): (usize, &[[DVec3; 3]])| {
+        let taking_part = (part * PART..).zip(corners).filter(|(index, _)| takes_part(*index));
+        taking_part
+            .fold(nothing, |(low, high), (_, [a, b, c])| (low.min(a.min(*b).min(*c)), high.max(a.max(*b).max(*c))))
+    };
+    let (low, high) = triangles
+        .par_chunks(PART)
+        .enumerate()
+        .map(part)
+        .reduce(|| nothing, |(low, high), other| (low.min(other.0), high.max(other.1)));
+    if low.x <= high.x { (low, high) } else { (DVec3::ZERO, DVec3::ZERO) }
 }

@@ -1,18 +1,27 @@
 //! Lines and triangles: watertight at edges and vertices, and complete against brute force.
 
 use super::chart::Line;
-use super::pencil::{Bundle, Pencil, Then, Whose};
+use super::pencil::{Bundle, Pencil, Settled, Whose};
+use super::tree::set_bits;
 use crate::math::side_of_triangle;
 use glam::{DVec3, DVec4};
 
 /// Which triangles each of up to 16 lines meets.
-fn met<const N: usize>(pencil: &Pencil, triangles: &[[DVec3; 3]], lines: [Line; N]) -> [Vec<u32>; N] {
-    let mut bundle = Bundle::new();
-    lines.into_iter().for_each(|line| bundle.push(line));
+fn met<const N: usize>(pencil: &Pencil, lines: [Line; N]) -> [Vec<u32>; N] {
+    let mut bundle = Bundle::new(match lines[0] {
+        Line::To(_) => Line::To,
+        Line::Through(_) => Line::Through,
+        Line::Along(_) => Line::Along,
+    });
+    for line in lines {
+        match line {
+            Line::To(point) | Line::Through(point) | Line::Along(point) => bundle.push(point),
+        }
+    }
     let mut met = lines.map(|_| Vec::new());
-    pencil.for_each_meeting(triangles, &bundle, |seen, line| {
-        met[line].push(seen.index);
-        Then::Continue
+    pencil.for_each_meeting(&bundle, |triangle, _, lines| {
+        set_bits(lines).for_each(|line| met[line].push(triangle.index));
+        Settled::NOTHING
     });
     for met in &mut met {
         met.sort_unstable();
@@ -55,7 +64,7 @@ fn a_line_through_an_edge_or_a_vertex_meets_exactly_one_triangle_of_a_sheet() {
         for y in -5..=5 {
             for x in -5..=5 {
                 let point = DVec3::new(f64::from(x) / 2.0, f64::from(y) / 2.0, 0.0);
-                let [met] = met(&pencil, &triangles, [through(center, point)]);
+                let [met] = met(&pencil, [through(center, point)]);
                 let count = met.len();
                 assert_eq!(count, 1, "from {center} through {point}");
             }
@@ -89,7 +98,7 @@ fn a_line_through_a_closed_mesh_enters_as_often_as_it_leaves() {
                     } else {
                         through(center, point)
                     };
-                    let [met] = met(&pencil, &triangles, [line]);
+                    let [met] = met(&pencil, [line]);
                     let balance: i32 = met.iter().map(|index| side(&triangles[*index as usize], center)).sum();
                     assert_eq!(balance, 0, "from {center} through {point}: {met:?}");
                     crossed += met.len();
@@ -181,7 +190,7 @@ fn bundles_find_every_triangle_that_their_lines_meet() {
                         (Whose::Eye, false) => Line::Along(target - center.truncate()),
                     }
                 });
-                for (line, met) in lines.into_iter().zip(met(&pencil, &triangles, lines)) {
+                for (line, met) in lines.into_iter().zip(met(&pencil, lines)) {
                     for (index, corners) in (0..).zip(triangles) {
                         let (is_met, is_on) = (met.contains(&index), is_on_line(corners, center, line));
                         let must_be = is_on && is_on_the_way(corners, center, line);

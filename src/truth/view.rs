@@ -31,7 +31,22 @@ impl View {
 
     /// The ray through a point of the picture. The first pixel has its centre at (0.5, 0.5).
     pub fn ray(&self, [x, y]: [f64; 2]) -> Sight {
-        self.sights.through(DVec2::new(x / self.size[0] * 2.0 - 1.0, 1.0 - y / self.size[1] * 2.0))
+        self.ray_through([self.across(x), self.down(y)])
+    }
+
+    /// From a point's x in pixels: from −1 at the left edge to 1.
+    pub fn across(&self, x: f64) -> f64 {
+        x / self.size[0] * 2.0 - 1.0
+    }
+
+    /// From a point's y in pixels: from 1 at the upper edge to −1.
+    pub fn down(&self, y: f64) -> f64 {
+        1.0 - y / self.size[1] * 2.0
+    }
+
+    /// The ray through a point by [`View::across`] and [`View::down`].
+    pub fn ray_through(&self, [x, y]: [f64; 2]) -> Sight {
+        self.sights.through(DVec2::new(x, y))
     }
 
     /// World direction of the view's axis.

@@ -20,10 +20,12 @@ pub struct Place {
 /// A scene's triangles.
 #[derive(Debug)]
 pub struct World {
-    /// In world space.
+    /// World space.
     pub triangles: Vec<[DVec3; 3]>,
-    /// Parallel to `triangles`.
-    places: Vec<Place>,
+    /// The object of each triangle.
+    owners: Vec<u32>,
+    /// Each object's first triangle.
+    firsts: Vec<usize>,
     objects: Vec<Object>,
     /// Smallest and largest coordinates of all corners.
     bounds: [DVec3; 2],
@@ -32,7 +34,13 @@ pub struct World {
 impl World {
     pub fn new(scene: &Scene) -> Result<World, TruthError> {
         let bounds = [scene.camera.eye; 2];
-        let mut world = World { triangles: Vec::new(), places: Vec::new(), objects: scene.objects.clone(), bounds };
+        let mut world = World {
+            triangles: Vec::new(),
+            owners: Vec::new(),
+            firsts: Vec::new(),
+            objects: scene.objects.clone(),
+            bounds,
+        };
         for (index, object) in scene.objects.iter().enumerate() {
             let positions = object.world_positions();
             let is_usable = |position: &DVec3| (*position - scene.camera.eye).abs().max_element() <= FARTHEST;
@@ -46,15 +54,17 @@ impl World {
             }
             let [low, high] = &mut world.bounds;
             positions.iter().for_each(|position| (*low, *high) = (low.min(*position), high.max(*position)));
-            let triangles = object.mesh.triangles();
-            world.triangles.extend(triangles.iter().map(|corners| corners.map(|vertex| positions[vertex as usize])));
-            world.places.extend((0..triangles.len()).map(|triangle| Place { object: index, triangle }));
+            let (triangles, all) = (object.mesh.triangles(), &mut world.triangles);
+            world.firsts.push(all.len());
+            world.owners.resize(all.len() + triangles.len(), index as u32);
+            all.extend(triangles.iter().map(|corners| corners.map(|vertex| positions[vertex as usize])));
         }
         Ok(world)
     }
 
     pub fn place(&self, index: usize) -> Place {
-        self.places[index]
+        let object = self.owners[index] as usize;
+        Place { object, triangle: index - self.firsts[object] }
     }
 
     pub fn object_name(&self, object: usize) -> &str {
@@ -68,13 +78,13 @@ impl World {
     }
 
     pub fn object(&self, index: usize) -> &Object {
-        &self.objects[self.places[index].object]
+        &self.objects[self.owners[index] as usize]
     }
 
     /// Do two triangles lie in one plane of one object? Decided exactly, before the object was
     /// placed: placing it rounds.
     pub fn share_plane(&self, one: usize, other: usize) -> bool {
-        let (one, other) = (self.places[one], self.places[other]);
+        let (one, other) = (self.place(one), self.place(other));
         if one.object != other.object {
             return false;
         }

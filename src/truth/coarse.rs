@@ -1,0 +1,162 @@
+//! Lines and triangles in single precision, which tells most of them apart: sixteen lines or four triangles at a time.
+
+use super::chart::Chart;
+use super::pencil::Bundle;
+use super::tree::{Area, Tree};
+use glam::{DVec3, Vec3A, Vec4};
+
+/// More than twice the roundings of a cross product of differences, a scaled place and their dot product: 13 of half a unit
+/// each, in units of the product of their absolute sums.
+const ROUNDING: f32 = 16.0 * f32::EPSILON;
+/// What rounding is taken as at least: numbers near it lose places.
+const LEAST: f32 = f32::MIN_POSITIVE;
+/// Lines' places are scaled to 1 from this size on.
+const SMALLEST: f32 = 1e-30;
+
+/// The edges of four triangles.
+#[derive(Debug, Clone, Copy)]
+pub struct Four {
+    /// By edge and axis.
+    normals: [[Vec4; 3]; 3],
+    offsets: [Vec4; 3],
+    /// What rounding may move an edge's value by, for each unit of the place's span …
+    rounding: Vec4,
+    /// … and for none.
+    least_rounding: Vec4,
+}
+
+/// A bundle's places relative to a pencil's origin.
+pub struct Core {
+    /// By axis; where the origin is the centre they are scaled, which moves no line.
+    places: [[Vec4; Bundle::MOST / 4]; 3],
+    /// The largest sum of a place's absolute coordinates.
+    span: f32,
+    /// The largest coordinate of a place before it was scaled.
+    pub largest: f64,
+    /// Where the lines are seen, if that is clearly on one face of the chart.
+    pub area: Option<Area>,
+}
+
+impl Core {
+    pub fn new(chart: &Chart, bundle: &Bundle) -> Core {
+        let points = bundle.points();
+        let base = bundle.base(chart.origin());
+        // What is left over is as the first line.
+        let mut places = [[0.0_f32; Bundle::MOST]; 3];
+        for index in 0..Bundle::MOST {
+            let place = points[if index < points.len() { index } else { 0 }] - base;
+            (places[0][index], places[1][index], places[2][index]) = (place.x as f32, place.y as f32, place.z as f32);
+        }
+        let places = places.map(|axis| std::array::from_fn(|four| Vec4::from_slice(&axis[four * 4..])));
+        if chart.is_centered() {
+            return Core::centered(chart, places, bundle.is_endless());
+        }
+        let mut span = Vec4::ZERO;
+        for four in 0..Bundle::MOST / 4 {
+            let [x, y, z] = places.map(|axis: [Vec4; 4]| axis[four].abs());
+            span = span.max(x + y + z);
+        }
+        Core { places, span: span.max_element(), largest: f64::INFINITY, area: None }
+    }
+
+    /// Scales places so that they lie on a cube around the centre.
+    fn centered(chart: &Chart, mut places: [[Vec4; Bundle::MOST / 4]; 3], is_endless: bool) -> Core {
+        let (mut low, mut high) = ([Vec4::INFINITY; 3], [Vec4::NEG_INFINITY; 3]);
+        let (mut span, mut end) = (Vec4::ONE, Vec4::ZERO);
+        for four in 0..Bundle::MOST / 4 {
+            let [x, y, z] = places.map(|axis| axis[four].abs());
+            let largest = x.max(y).max(z);
+            end = end.max(largest);
+            let scale = largest.max(Vec4::splat(SMALLEST)).recip();
+            span = span.max((x + y + z) * scale);
+            for axis in 0..3 {
+                let place = places[axis][four] * scale;
+                places[axis][four] = place;
+                (low[axis], high[axis]) = (low[axis].min(place), high[axis].max(place));
+            }
+        }
+        let low = Vec3A::from_array(low.map(Vec4::min_element));
+        let high = Vec3A::from_array(high.map(Vec4::max_element));
+        let largest = end.max_element();
+        let area = chart.on_one_face(low, high, if is_endless { f32::INFINITY } else { largest });
+        // It is rounded by far less than that.
+        let largest = f64::from(largest) * (1.0 + f64::from(ROUNDING));
+        Core { places, span: span.max_element(), largest, area }
+    }
+
+    /// Which lines do not clearly pass two edges of a triangle on different sides, and which clearly pass all on one
+    /// side: a bit each.
+    pub fn near(&self, four: &Four, lane: usize) -> (u32, u32) {
+        let rounding = Vec4::splat(four.rounding[lane] * self.span + four.least_rounding[lane]);
+        let normals = four.normals.map(|axes| axes.map(|axis| Vec4::splat(axis[lane])));
+        let offsets = four.offsets.map(|offset| Vec4::splat(offset[lane]));
+        let (mut misses, mut sure) = (0, 0);
+        let [xs, ys, zs] = &self.places;
+        for four in 0..Bundle::MOST / 4 {
+            let value = |edge: usize| {
+                let [x, y, z] = normals[edge];
+                x * xs[four] + y * ys[four] + z * zs[four] + offsets[edge]
+            };
+            let (a, b, c) = (value(0), value(1), value(2));
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            misses |= (low.cmplt(-rounding) & high.cmpgt(rounding)).bitmask() << (4 * four);
+            sure |= (low.cmpgt(rounding) | high.cmplt(-rounding)).bitmask() << (4 * four);
+        }
+        (!misses, sure)
+    }
+}
+
+impl Four {
+    /// Of up to four triangles, in single precision from the differences of their corners on.
+    pub fn new(chart: &Chart, triangles: &[[DVec3; 3]]) -> Four {
+        let (mut levers, mut sides, mut places) = ([Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3], [Vec3x4::ZERO; 3]);
+        for (lane, &[a, b, c]) in triangles.iter().enumerate() {
+            for (edge, (p, q)) in [(b, c), (c, a), (a, b)].into_iter().enumerate() {
+                levers[edge].set(lane, chart.lever(p));
+                sides[edge].set(lane, q - p);
+                if !chart.is_centered() {
+                    places[edge].set(lane, p - chart.origin());
+                }
+            }
+        }
+        let normals: [Vec3x4; 3] = std::array::from_fn(|edge| levers[edge].cross(sides[edge]));
+        let offsets = std::array::from_fn(|edge| -normals[edge].dot(places[edge]));
+        let largest = |of: [Vec3x4; 3]| of[0].span().max(of[1].span()).max(of[2].span());
+        let (lever, side) = (largest(levers), largest(sides));
+        // Where single precision ends, nothing is sorted out: what is infinite or not a number decides nothing.
+        let is_small = lever.min(side).cmplt(Vec4::splat(SMALLEST));
+        let rounding = Vec4::select(is_small, Vec4::INFINITY, (lever * side * ROUNDING).max(Vec4::splat(LEAST)));
+        let least_rounding = if chart.is_centered() { Vec4::ZERO } else { rounding * largest(places) };
+        Four { normals: normals.map(|normal| normal.0), offsets, rounding, least_rounding }
+    }
+}
+
+/// Four vectors, by axis.
+#[derive(Clone, Copy)]
+struct Vec3x4([Vec4; 3]);
+
+impl Vec3x4 {
+    const ZERO: Vec3x4 = Vec3x4([Vec4::ZERO; 3]);
+
+    fn set(&mut self, lane: usize, vector: DVec3) {
+        for axis in 0..3 {
+            self.0[axis][lane] = vector[axis] as f32;
+        }
+    }
+
+    fn cross(self, other: Vec3x4) -> Vec3x4 {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
+        Vec3x4([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    }
+
+    fn dot(self, other: Vec3x4) -> Vec4 {
+        let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
+        ax * bx + ay * by + az * bz
+    }
+
+    /// The sums of absolute coordinates.
+    fn span(self) -> Vec4 {
+        let [x, y, z] = self.0.map(Vec4::abs);
+        x + y + z
+    }
+}

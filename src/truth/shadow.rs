@@ -1,0 +1,152 @@
+//! Whether anything lies between a light and surfaces.
+
+use super::chart::Line;
+use super::pencil::{Bundle, Met, Pencil, Plane, PlaneRounding, Settled, point_rounding};
+use super::tree::set_bits;
+use super::{BACKGROUND, FACES_AWAY, LIT, POINT_ROUNDING, SHADOW, Surface, Tracer};
+use crate::math::{Sign, side_of_triangle};
+use glam::{DVec3, DVec4};
+
+/// The rays of one light.
+#[derive(Debug)]
+pub struct LightPencil {
+    pub position: DVec4,
+    /// Of a lamp that fades: nothing at this distance, metres, is lit.
+    pub range: Option<f64>,
+    pub pencil: Pencil,
+}
+
+impl LightPencil {
+    /// The light has faded to nothing there.
+    fn is_out_of_range(&self, point: DVec3) -> bool {
+        self.range.is_some_and(|range| self.position.truncate().distance_squared(point) >= range * range)
+    }
+}
+
+/// A triangle that may lie between a light and surfaces.
+#[derive(Debug)]
+pub struct Occluder {
+    triangle: usize,
+    light_side: Sign,
+    plane: Plane,
+    rounding: PlaneRounding,
+    /// The sum of the normal's absolute coordinates.
+    normal_span: f64,
+    /// The last surface's triangle whose plane was held against it, and whether they share it.
+    compared: (usize, bool),
+}
+
+impl Occluder {
+    /// Relative to a pencil's origin.
+    pub fn new(origin: DVec3, met: &Met, corners: &[DVec3; 3]) -> Occluder {
+        let plane = Plane::new(origin, corners);
+        Occluder {
+            triangle: met.index as usize,
+            light_side: met.center_side,
+            plane,
+            rounding: PlaneRounding::new(origin, corners),
+            normal_span: plane.normal.abs().element_sum(),
+            compared: (usize::MAX, false),
+        }
+    }
+}
+
+impl Tracer {
+    /// Labels surfaces near each other.
+    pub(super) fn label_surfaces(&self, light: &LightPencil, surfaces: &[Option<Surface>], labels: &mut [u8]) {
+        let mut bundle = Bundle::new(Line::To);
+        let mut lines = [0; Bundle::MOST];
+        let mut last = (usize::MAX, Sign::Zero, false);
+        for (index, surface) in surfaces.iter().enumerate() {
+            let Some(surface) = surface else {
+                labels[index] = BACKGROUND;
+                continue;
+            };
+            if last.0 != surface.triangle {
+                let side = side_of_triangle(self.world.triangles[surface.triangle], light.position);
+                last = (surface.triangle, side, self.world.object(surface.triangle).receives);
+            }
+            if last.1 != surface.eye_side || light.is_out_of_range(surface.point) {
+                labels[index] = FACES_AWAY;
+                continue;
+            }
+            labels[index] = LIT;
+            if last.2 {
+                lines[bundle.len()] = index;
+                bundle.push(surface.point);
+            }
+        }
+        if bundle.len() == 0 {
+            return;
+        }
+        light.pencil.for_each_meeting(&bundle, |met, corners, met_lines| {
+            let mut occluder = None;
+            let mut dark = 0;
+            for line in set_bits(met_lines) {
+                let Some(surface) = surfaces[lines[line]].as_ref().filter(|of| of.triangle != met.index as usize)
+                else {
+                    continue;
+                };
+                let occluder = occluder.get_or_insert_with(|| Occluder::new(light.pencil.origin, met, corners));
+                if self.lies_between(light, occluder, surface) {
+                    labels[lines[line]] = SHADOW;
+                    dark |= 1 << line;
+                }
+            }
+            Settled { lines: dark, ..Settled::NOTHING }
+        });
+    }
+
+    /// Are the light and a surface point on different sides of a triangle that their line meets?
+    /// A plane through the point itself, as far as its rounding can tell, has it on neither; nor
+    /// has the surface's own plane.
+    pub(super) fn lies_between(&self, light: &LightPencil, occluder: &mut Occluder, surface: &Surface) -> bool {
+        let other = occluder.triangle;
+        if other == surface.triangle {
+            return false;
+        }
+        let place = surface.point - light.pencil.origin;
+        let height = occluder.plane.height(place);
+        let of_height = occluder.rounding.of_height(place);
+        let is_sure = |of_point: f64| height.abs() > of_height + occluder.normal_span * of_point;
+        // Most are so far from the plane that a rough bound will do.
+        let is_sure = is_sure(self.most_rounding(surface)) || is_sure(self.rounding(surface));
+        let height = if is_sure { height } else { self.height_near(other, surface) };
+        if !is_opposite(height, occluder.light_side) {
+            return false;
+        }
+        if occluder.compared.0 != surface.triangle {
+            occluder.compared = (surface.triangle, self.world.share_plane(surface.triangle, other));
+        }
+        !occluder.compared.1
+    }
+
+    /// How far above a triangle's plane a point is that is so near that it takes care, times twice
+    /// the triangle's area; 0 where rounding can't tell it from the plane.
+    fn height_near(&self, triangle: usize, surface: &Surface) -> f64 {
+        let [a, b, c] = self.world.triangles[triangle];
+        let (ab, ac, offset) = (b - a, c - a, surface.point - a);
+        let normal = ab.cross(ac);
+        let height = normal.dot(offset);
+        let products = ab.abs().element_sum() * ac.abs().element_sum() * offset.abs().element_sum();
+        let rounding = 16.0 * f64::EPSILON * products + normal.abs().element_sum() * self.rounding(surface);
+        if height.abs() > rounding { height } else { 0.0 }
+    }
+
+    /// More than [`Tracer::rounding`], in less time.
+    fn most_rounding(&self, surface: &Surface) -> f64 {
+        self.most_rounding + 3.0 * POINT_ROUNDING * (surface.from + surface.offset.abs().element_sum())
+    }
+
+    /// How far a surface's point may be off along any axis.
+    fn rounding(&self, surface: &Surface) -> f64 {
+        // The sum is rounded at the size of its larger part.
+        let parts = surface.from + surface.offset.abs().max_element();
+        let size = self.view.eye.abs().max_element() + parts + surface.point.abs().max_element();
+        POINT_ROUNDING * size + point_rounding(self.eye.origin, &self.world.triangles[surface.triangle])
+    }
+}
+
+fn is_opposite(height: f64, side: Sign) -> bool {
+    (height > 0.0 && side == Sign::Negative) || (height < 0.0 && side == Sign::Positive)
+}

@@ -1,0 +1,197 @@
+//! Areas of a chart in trees, four to a node: those that another area meets are found four at a time.
+//!
+//! Areas are sorted along a space-filling curve, four in a row make a node, and four nodes in a row one
+//! of the next level (a linear hierarchy: Lauterbach et al. 2009), so that building takes little more than a
+//! sort. A node of large areas and small ones alike would be met by lines far from most of them:
+//! areas of each size make a tree of their own.
+
+use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+
+/// Areas of one tree differ in size by up to this power of two.
+const CLASS_BITS: u32 = 8;
+/// The last tree is of all smaller ones.
+const MOST_CLASSES: u32 = 8;
+/// Bits of the curve along each axis.
+const CURVE_BITS: u32 = 20;
+/// More levels of four than 32-bit indices reach.
+const MOST_LEVELS: usize = 17;
+
+/// A rectangle of a chart.
+#[derive(Debug, Clone, Copy)]
+pub struct Area {
+    pub low: Vec2,
+    pub high: Vec2,
+    /// Of triangles: how near they come; of lines: how far they go.
+    pub depth: f32,
+}
+
+/// Four areas.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    low: [Vec4; 2],
+    high: [Vec4; 2],
+    depth: Vec4,
+    /// The first of the four nodes below.
+    first: u32,
+}
+
+/// Many areas.
+#[derive(Debug, Default)]
+pub struct Tree {
+    /// Those without nodes below come first.
+    nodes: Vec<Node>,
+    /// How many these are.
+    leaves: usize,
+    /// The topmost node of each size.
+    tops: Vec<u32>,
+}
+
+impl Tree {
+    /// How many areas make a node.
+    pub const WIDTH: usize = 4;
+
+    /// Sorts areas into a tree; also says in which order they are in it. `None` fills a node up.
+    pub fn new(areas: &[Area]) -> (Tree, Vec<Option<u32>>) {
+        let keys = keys(areas);
+        let classes = keys.chunk_by(|(one, _), (other, _)| class(*one) == class(*other));
+        let mut order = Vec::with_capacity(keys.len() + Tree::WIDTH * MOST_CLASSES as usize);
+        let mut counts = Vec::new();
+        for class in classes {
+            let leaves = class.len().div_ceil(Tree::WIDTH);
+            let end = order.len() + leaves * Tree::WIDTH;
+            order.extend(class.iter().map(|(_, index)| Some(*index)));
+            order.resize(end, None);
+            counts.push(leaves);
+        }
+        let leaf = |four: &[Option<u32>]| Node::new(four.iter().flatten().map(|index| areas[*index as usize]), 0);
+        let nodes: Vec<Node> = order.par_chunks(Tree::WIDTH).with_min_len(1024).map(leaf).collect();
+        let mut tree = Tree { leaves: nodes.len(), nodes, tops: Vec::new() };
+        let mut first = 0;
+        for count in counts {
+            tree.stack_up(first, count);
+            first += count;
+        }
+        (tree, order)
+    }
+
+    /// Nodes above some in a row, up to a single one.
+    fn stack_up(&mut self, mut first: usize, mut count: usize) {
+        while count > 1 {
+            let next = self.nodes.len();
+            for below in (first..first + count).step_by(Tree::WIDTH) {
+                let four = &self.nodes[below..(below + Tree::WIDTH).min(first + count)];
+                let node = Node::new(four.iter().map(Node::area), below as u32);
+                self.nodes.push(node);
+            }
+            (first, count) = (next, self.nodes.len() - next);
+        }
+        self.tops.push(first as u32);
+    }
+
+    /// Calls `meets` with the number of each four areas of the order that `area` meets one of, and which: a bit each; and
+    /// with the depth of `area`, which it may lessen. Ends where that is false. Near ones come first, more or less.
+    pub fn for_each_meeting(&self, mut area: Area, mut meets: impl FnMut(usize, u32, &mut f32) -> bool) {
+        let mut stack = [0; MOST_LEVELS * (Tree::WIDTH - 1) + 1];
+        for top in &self.tops {
+            stack[0] = *top;
+            let mut count = 1;
+            while count > 0 {
+                count -= 1;
+                let index = stack[count] as usize;
+                let node = &self.nodes[index];
+                let mut met = node.met(&area);
+                if index >= self.leaves {
+                    // The first of them is looked at first.
+                    while met != 0 {
+                        let lane = met.ilog2();
+                        met ^= 1 << lane;
+                        stack[count] = node.first + lane;
+                        count += 1;
+                    }
+                } else if met != 0 && !meets(index, met, &mut area.depth) {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+impl Node {
+    /// Up to four areas; what is left of the node is met by nothing.
+    fn new(areas: impl Iterator<Item = Area>, first: u32) -> Node {
+        let mut node = Node { low: [Vec4::INFINITY; 2], high: [Vec4::NEG_INFINITY; 2], depth: Vec4::INFINITY, first };
+        for (lane, area) in areas.enumerate() {
+            for axis in 0..2 {
+                node.low[axis][lane] = area.low[axis];
+                node.high[axis][lane] = area.high[axis];
+            }
+            node.depth[lane] = area.depth;
+        }
+        node
+    }
+
+    /// A box around all four.
+    fn area(&self) -> Area {
+        let least = |axis: [Vec4; 2]| Vec2::new(axis[0].min_element(), axis[1].min_element());
+        let most = |axis: [Vec4; 2]| Vec2::new(axis[0].max_element(), axis[1].max_element());
+        Area { low: least(self.low), high: most(self.high), depth: self.depth.min_element() }
+    }
+
+    /// Which of the four meet the area of lines: a bit each.
+    fn met(&self, area: &Area) -> u32 {
+        let along_x = self.low[0].cmple(Vec4::splat(area.high.x)) & self.high[0].cmpge(Vec4::splat(area.low.x));
+        let along_y = self.low[1].cmple(Vec4::splat(area.high.y)) & self.high[1].cmpge(Vec4::splat(area.low.y));
+        (along_x & along_y & self.depth.cmple(Vec4::splat(area.depth))).bitmask()
+    }
+}
+
+/// What areas are sorted by: class and place along the curve; and their indices, sorted.
+fn keys(areas: &[Area]) -> Vec<(u64, u32)> {
+    let place = |area: &Area| ((area.low + area.high) / 2.0).extend(area.depth);
+    let (low, high) = areas
+        .iter()
+        .map(place)
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), place| (low.min(place), high.max(place)));
+    let size = (high - low).max_element().max(f32::MIN_POSITIVE);
+    let scale = ((1 << CURVE_BITS) - 1) as f32 / size;
+    let key = |(index, area): (usize, &Area)| {
+        let at = (place(area) - low) * scale;
+        let curve = spread(at.x as u64) | spread(at.y as u64) << 1 | spread(at.z as u64) << 2;
+        let part = ((area.high - area.low).max_element() / size).clamp(f32::MIN_POSITIVE, 1.0);
+        // From the exponent: 127 for 1.
+        let class = (127_u32.saturating_sub(part.to_bits() >> 23) / CLASS_BITS).min(MOST_CLASSES - 1);
+        (u64::from(class) << (3 * CURVE_BITS) | curve, index as u32)
+    };
+    let mut keys: Vec<(u64, u32)> = areas.iter().enumerate().map(key).collect();
+    keys.par_sort_unstable();
+    keys
+}
+
+fn class(key: u64) -> u64 {
+    key >> (3 * CURVE_BITS)
+}
+
+/// Puts two zeros before each bit.
+fn spread(bits: u64) -> u64 {
+    let mut bits = bits & 0x1f_ffff;
+    for (shift, mask) in [
+        (32, 0x001f_0000_0000_ffff),
+        (16, 0x001f_0000_ff00_00ff),
+        (8, 0x100f_00f0_0f00_f00f),
+        (4, 0x10c3_0c30_c30c_30c3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
+        bits = (bits | bits << shift) & mask;
+    }
+    bits
+}
+
+/// Which bits are set.
+pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = bits.trailing_zeros();
+        bits &= bits.wrapping_sub(1);
+        (bit < u32::BITS).then_some(bit as usize)
+    })
+}
