@@ -4,6 +4,7 @@ use crate::commands::{assert_fails, folder, run, text};
 use crate::common::{from_above, session, square};
 use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
 use stencilscope::progress::Progress;
 use stencilscope::report::Report;
 use stencilscope::scene::builtin::Builtin;
@@ -144,12 +145,36 @@ fn frames_that_move_are_counted_with_their_set_up() {
     let first = |technique: &str| moving.iter().find(|row| row.technique == technique && row.label.is_empty());
     let color = |technique: &str| first(technique).and_then(|row| row.wrong_color);
     assert!(color("z-fail") == Some(0) && color("none") > Some(0));
+    // Where nothing moves the first frame's set-up serves all; else each has its own.
+    let total = |moves: &str| {
+        let words = [&words[..], &["--time", "0.5..1:3", "--moves", moves]].concat();
+        assert_eq!(run(folder.path(), &words).status.code(), Some(0));
+        let json = fs::read_to_string(folder.path().join("m.json")).expect("rows");
+        let rows = Report::from_json(&json).expect("a report").rows;
+        let row = rows.into_iter().find(|row| row.technique == "none").expect("none");
+        (row.moving.expect("it moves").setup_ms > 0.0, row.compared, row.missing_shadow)
+    };
+    let of_first = still_at_0(folder.path(), &words);
+    assert_eq!(total("nothing"), (false, 3 * of_first[0], 3 * of_first[1]));
+    let [light, eye] = ["light", "eye"].map(total);
+    assert!(light.0 && eye.0, "{light:?} {eye:?}");
+    assert!(light.2 != 3 * of_first[1] && eye.1 != 3 * of_first[0] && light != eye, "{light:?} {eye:?}");
+    assert_fails(&["report", "tetrahedron", "--time", "0..1", "--moves", "lihgt"], 2, &["light"]);
     let table = run(folder.path(), &[&words[..8], &["--time", "0..1:2"]].concat());
     let table = text(&table.stdout);
     assert!(table.contains("+ set-up") && table.contains("total") && table.contains("fps"), "{table}");
     assert_fails(&["report", "tetrahedron", "--time", "2..1"], 2, &["low to high"]);
     assert_fails(&["report", "tetrahedron", "--time", "0..1:0"], 2, &["frames from 1"]);
     assert_fails(&["capture", "tetrahedron", "--time", "0..1", "-o", "out"], 2, &["for `report`", "one moment"]);
+}
+
+/// Compared and missing pixels of `none`.
+fn still_at_0(folder: &Path, words: &[&str]) -> [u64; 2] {
+    assert_eq!(run(folder, words).status.code(), Some(0));
+    let json = fs::read_to_string(folder.join("m.json")).expect("rows");
+    let rows = Report::from_json(&json).expect("a report").rows;
+    let row = rows.into_iter().find(|row| row.technique == "none").expect("none");
+    [row.compared, row.missing_shadow]
 }
 
 #[test]

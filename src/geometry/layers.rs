@@ -19,15 +19,15 @@ pub fn may_exceed(triangles: &[[DVec3; 3]], light: DVec4, limit: usize) -> bool 
     }
     if light.w != 0.0 {
         let light = light.truncate() / light.w;
-        let relative = |axes: [DVec3; 3]| {
-            let along = |corner: DVec3| DVec3::from_array(axes.map(|axis| axis.dot(corner - light)));
-            triangles.iter().map(|corners| corners.map(along)).collect::<Vec<_>>()
-        };
         let faces = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
         return faces.into_iter().any(|ahead| {
             let side = DVec3::new(ahead.y.abs(), ahead.z.abs(), ahead.x.abs());
+            let axes = [side, ahead.cross(side), ahead];
+            let along = |corner: DVec3| DVec3::from_array(axes.map(|axis| axis.dot(corner - light)));
             let cell = Cell { low: [-1.0; 2], high: [1.0; 2] };
-            cell.exceeds(&cell.of(&relative([side, ahead.cross(side), ahead])), limit, MOST_HALVINGS)
+            let relative = triangles.iter().map(|corners| corners.map(along));
+            let inner: Vec<_> = relative.filter(|corners| cell.may_hold(corners)).collect();
+            cell.exceeds(&inner, limit, MOST_HALVINGS)
         });
     }
     let towards = light.truncate().normalize_or_zero();
@@ -62,21 +62,24 @@ impl Cell {
             low: [if right { middle[0] } else { self.low[0] }, if upper { middle[1] } else { self.low[1] }],
             high: [if right { self.high[0] } else { middle[0] }, if upper { self.high[1] } else { middle[1] }],
         });
-        quarters.iter().any(|quarter| quarter.exceeds(&quarter.of(triangles), limit, halvings - 1))
+        quarters.iter().any(|quarter| {
+            let mut inner: Vec<_> = triangles.iter().filter(|corners| quarter.may_hold(corners)).copied().collect();
+            // Looking at edges takes longest, and is needed only where cells as such don't tell.
+            if inner.len() > limit {
+                inner.retain(|corners| !quarter.is_beyond_an_edge(corners));
+            }
+            quarter.exceeds(&inner, limit, halvings - 1)
+        })
     }
 
-    /// Those that may reach into the cell.
-    fn of(&self, triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 3]> {
-        let is_in = |corners: &&[DVec3; 3]| {
-            let some = |inside: &dyn Fn(&DVec3) -> bool| corners.iter().any(inside);
-            some(&|p| p.z >= 0.0)
-                && some(&|p| p.x >= self.low[0] * p.z)
-                && some(&|p| p.x <= self.high[0] * p.z)
-                && some(&|p| p.y >= self.low[1] * p.z)
-                && some(&|p| p.y <= self.high[1] * p.z)
-                && !self.is_beyond_an_edge(corners)
-        };
-        triangles.iter().filter(is_in).copied().collect()
+    /// May a triangle reach into the cell, as far as the four planes around it tell?
+    fn may_hold(&self, corners: &[DVec3; 3]) -> bool {
+        let some = |inside: &dyn Fn(&DVec3) -> bool| corners.iter().any(inside);
+        some(&|p| p.z >= 0.0)
+            && some(&|p| p.x >= self.low[0] * p.z)
+            && some(&|p| p.x <= self.high[0] * p.z)
+            && some(&|p| p.y >= self.low[1] * p.z)
+            && some(&|p| p.y <= self.high[1] * p.z)
     }
 
     /// Does a plane through the light and an edge of the triangle have the triangle on its one side, and

@@ -5,6 +5,7 @@ use crate::math::{Sign, side_of_triangle};
 use crate::plan::{Blob, DrawMesh, SurfaceData};
 use crate::scene::{Light, Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec2, DVec3};
+use std::cell::LazyCell;
 
 /// The surface of `object`, relative to the eye; shaded as its materials say unless told otherwise.
 pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene, shading: Option<Shading>) -> DrawMesh {
@@ -70,7 +71,7 @@ fn sides(object: &Object, world: &[DVec3], scene: &Scene) -> Vec<u32> {
 fn corner_normals(object: &Object, world: &[DVec3], told: Option<Shading>) -> Vec<[f32; 4]> {
     let mesh = &object.mesh;
     let face_normals: Vec<DVec3> = mesh.triangles().iter().map(|corners| scaled_normal(world, *corners)).collect();
-    let averaged = averaged_normals(mesh, &face_normals);
+    let averaged = LazyCell::new(|| averaged_normals(mesh, &face_normals));
     let world_from_object = DMat3::from_mat4(object.pose.world_from_object());
     // Mirroring turns the way corners run, but not a stored normal.
     let orientation = world_from_object.determinant().signum();
