@@ -2,7 +2,7 @@
 
 use super::chart::Chart;
 use super::pencil::Bundle;
-use super::tree::{Area, Tree};
+use super::tree::Area;
 use glam::{DVec3, Vec3A, Vec4};
 
 /// More than twice the roundings of a cross product of differences, a scaled place and their dot product: 13 of half a unit
