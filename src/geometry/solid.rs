@@ -10,7 +10,7 @@
 use super::connectivity::Connectivity;
 use super::intersection::self_meeting;
 use super::winding::{crossings, winding_number};
-use crate::math::{Sign, side_of_triangle};
+use crate::math::{AxisBox, Sign, side_of_triangle};
 use glam::{DVec3, DVec4};
 
 /// Components times triangles that are looked at.
@@ -103,7 +103,8 @@ pub fn check(world: &[DVec3], triangles: &[[u32; 3]], connectivity: &Connectivit
 /// light is outside anything.
 #[must_use]
 pub fn light_is_outside(world: &[DVec3], triangles: &[[u32; 3]], light: DVec4) -> bool {
-    light.w == 0.0 || winding_number(world, triangles, light.truncate()) == Some(0)
+    let is_beyond = || !AxisBox::around(world.iter().copied()).holds(light.truncate() / light.w);
+    light.w == 0.0 || is_beyond() || winding_number(world, triangles, light.truncate()) == Some(0)
 }
 
 /// Winding numbers on both sides of a triangle: at points so near to it that, of all triangles on

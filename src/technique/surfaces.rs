@@ -1,14 +1,19 @@
 //! Drawn surfaces as data for the GPU: positions, normals, and which triangles face away.
 
-use crate::geometry::relative;
-use crate::math::{Sign, side_of_triangle};
+use crate::geometry::{Caster, Facings, GeometryCache, relative};
 use crate::plan::{Blob, DrawMesh, SurfaceData};
-use crate::scene::{Light, Mesh, Object, Scene, Shading};
+use crate::scene::{Mesh, Object, Scene, Shading};
 use glam::{DMat3, DVec2, DVec3};
 use std::cell::LazyCell;
 
 /// The surface of `object`, relative to the eye; shaded as its materials say unless told otherwise.
-pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene, shading: Option<Shading>) -> DrawMesh {
+pub fn draw_mesh(
+    object: &Object,
+    world: &[DVec3],
+    scene: &Scene,
+    shading: Option<Shading>,
+    cache: &mut GeometryCache,
+) -> DrawMesh {
     let eye = scene.camera.eye;
     let normals = corner_normals(object, world, shading);
     let vertices = world.iter().map(|position| relative::point(*position, eye)).collect();
@@ -16,7 +21,7 @@ pub fn draw_mesh(object: &Object, world: &[DVec3], scene: &Scene, shading: Optio
     DrawMesh {
         surface: Some(SurfaceData {
             normals: Blob::new(normals),
-            sides: Blob::new(sides(object, world, scene)),
+            sides: Blob::new(sides(object, world, scene, cache)),
             uvs: uvs(object, world).map(Blob::new),
         }),
         ..DrawMesh::of_positions(&object.name, vertices, indices)
@@ -54,17 +59,20 @@ fn uvs(object: &Object, world: &[DVec3]) -> Option<Vec<[f32; 2]>> {
 }
 
 /// [`SurfaceData::sides`].
-fn sides(object: &Object, world: &[DVec3], scene: &Scene) -> Vec<u32> {
-    let eye = scene.camera.eye_position();
-    let word = |corners: &[u32; 3]| {
-        let corners = corners.map(|vertex| world[vertex as usize]);
-        let eye_side = side_of_triangle(corners, eye);
-        let is_away =
-            |light: &Light| eye_side == Sign::Zero || side_of_triangle(corners, light.homogeneous()) != eye_side;
-        let away = scene.lights.iter().enumerate().map(|(index, light)| u32::from(is_away(light)) << index);
-        away.fold(u32::from(eye_side == Sign::Negative) << 31, |word, bit| word | bit)
-    };
-    object.mesh.triangles().iter().map(word).collect()
+fn sides(object: &Object, world: &[DVec3], scene: &Scene, cache: &mut GeometryCache) -> Vec<u32> {
+    let triangles = object.mesh.triangles();
+    let planes = cache.planes(Caster { mesh: &object.mesh, pose: &object.pose, world });
+    let (mut of_eye, mut of_light) = (Facings::default(), Facings::default());
+    planes.facings(world, triangles, scene.camera.eye_position(), &mut of_eye);
+    let mut sides: Vec<u32> = of_eye.signs().iter().map(|eye| u32::from(*eye < 0) << 31).collect();
+    for (index, light) in scene.lights.iter().enumerate() {
+        planes.facings(world, triangles, light.homogeneous(), &mut of_light);
+        let signs = of_eye.signs().iter().zip(of_light.signs());
+        for (word, (eye, light)) in sides.iter_mut().zip(signs) {
+            *word |= u32::from(*eye == 0 || light != eye) << index;
+        }
+    }
+    sides
 }
 
 /// Unit world-space normals of all corners, on the side from where corners run counter-clockwise.
@@ -80,15 +88,15 @@ fn corner_normals(object: &Object, world: &[DVec3], told: Option<Shading>) -> Ve
     for group in mesh.groups() {
         let shading = told.unwrap_or(group.material.unwrap_or(object.material).shading);
         for triangle in group.triangles.clone() {
-            for corner in 0..3 {
-                let normal = match (shading, mesh.corner_normals()) {
-                    (Shading::Flat, _) => face_normals[triangle],
-                    (_, Some(given)) => normal_from_object * given[triangle][corner].as_dvec3(),
-                    (_, None) => averaged[mesh.triangles()[triangle][corner] as usize],
-                };
+            let stored = |normal: DVec3| {
                 let usable = normal.try_normalize().or_else(|| face_normals[triangle].try_normalize());
-                normals.push(usable.unwrap_or(DVec3::Y).as_vec3().extend(0.0).to_array());
-            }
+                usable.unwrap_or(DVec3::Y).as_vec3().extend(0.0).to_array()
+            };
+            normals.extend(match (shading, mesh.corner_normals()) {
+                (Shading::Flat, _) => [stored(face_normals[triangle]); 3],
+                (_, Some(given)) => given[triangle].map(|given| stored(normal_from_object * given.as_dvec3())),
+                (_, None) => mesh.triangles()[triangle].map(|vertex| stored(averaged[vertex as usize])),
+            });
         }
     }
     normals

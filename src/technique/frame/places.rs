@@ -76,8 +76,9 @@ impl Frame<'_> {
                 return Err(PlanError::Unusable { problem });
             }
             let drawn = object.visible && !object.mesh.triangles().is_empty();
-            let surface =
-                drawn.then(|| self.add_mesh(surfaces::draw_mesh(object, &world, self.job.scene, self.common.shading)));
+            let (scene, shading) = (self.job.scene, self.common.shading);
+            let mesh = drawn.then(|| surfaces::draw_mesh(object, &world, scene, shading, self.job.cache));
+            let surface = mesh.map(|mesh| self.add_mesh(mesh));
             for not_taken in object.mesh.not_taken() {
                 let left_out =
                     LeftOut::named(Decision::Material, &not_taken.what, &object.name, not_taken.because.as_str());
