@@ -19,8 +19,8 @@ pub fn may_exceed(triangles: &[[DVec3; 3]], light: DVec4, limit: usize) -> bool 
     }
     if light.w != 0.0 {
         let light = light.truncate() / light.w;
-        if most_in_a_box(triangles, light) <= limit {
-            return false;
+        if let Some(exceeds) = exceeds_in_boxes(triangles, light, limit) {
+            return exceeds;
         }
         let faces = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
         return faces.into_iter().any(|ahead| {
@@ -44,58 +44,112 @@ pub fn may_exceed(triangles: &[[DVec3; 3]], light: DVec4, limit: usize) -> bool 
 
 /// Boxes along each side of a face of the cube around a light, at most.
 const MOST_BOXES: usize = 1024;
+/// Full boxes that are looked into one by one; of more, all directions are divided.
+const MOST_FULL: usize = 256;
 /// More than rounding moves a place on a face by, in parts of its half.
 const BESIDE: f64 = 1e-9;
 
-/// How many triangles may be met within one of many boxes on the faces of a cube around a point: what tells of most meshes,
-/// in one look at each triangle, that no ray meets many. A triangle counts in all boxes that the box around it touches.
-fn most_in_a_box(triangles: &[[DVec3; 3]], center: DVec3) -> usize {
+/// A face of the cube around a light: its axis, and on which side.
+#[derive(Debug, Clone, Copy)]
+struct Face {
+    axis: usize,
+    side: f64,
+}
+
+impl Face {
+    const ALL: [Face; 6] = [
+        Face { axis: 0, side: 1.0 },
+        Face { axis: 0, side: -1.0 },
+        Face { axis: 1, side: 1.0 },
+        Face { axis: 1, side: -1.0 },
+        Face { axis: 2, side: 1.0 },
+        Face { axis: 2, side: -1.0 },
+    ];
+
+    /// Across, across and ahead.
+    fn seen(self, corner: DVec3) -> DVec3 {
+        let [across, other] = [1, 2].map(|step| corner[(self.axis + step) % 3]);
+        DVec3::new(across, other, corner[self.axis] * self.side)
+    }
+
+    /// Which of so many boxes along each side the box around a triangle touches: first and last along both; `None` where it
+    /// is beyond the face. What reaches behind the light, or is no number, may be anywhere.
+    fn touched(self, corners: &[DVec3; 3], boxes: usize) -> Option<[[usize; 2]; 2]> {
+        let [a, b, c] = corners.map(|corner| self.seen(corner));
+        if a.z.max(b.z).max(c.z) < 0.0 {
+            return None;
+        }
+        let is_ahead = a.z.min(b.z).min(c.z) > 0.0;
+        let along = |side: usize| {
+            let [a, b, c] = [a, b, c].map(|corner| corner[side] / corner.z);
+            let (low, high) = (a.min(b).min(c) - BESIDE, a.max(b).max(c) + BESIDE);
+            let index = |place: f64| ((place + 1.0) / 2.0 * boxes as f64).clamp(0.0, boxes as f64 - 1.0) as usize;
+            let misses = is_ahead && (low > 1.0 + BESIDE || high < -1.0 - BESIDE);
+            let is_told = is_ahead && low <= high;
+            (!misses).then(|| if is_told { [index(low), index(high)] } else { [0, boxes - 1] })
+        };
+        Some([along(0)?, along(1)?])
+    }
+}
+
+/// Can a ray from `light` meet more than `limit`? Directions are divided into many boxes, in each of which the triangles
+/// that may reach into it are counted, with one look at each triangle; only full boxes are divided further. `None` where
+/// they are many.
+fn exceeds_in_boxes(triangles: &[[DVec3; 3]], light: DVec3, limit: usize) -> Option<bool> {
     let boxes = (triangles.len() as f64).sqrt().clamp(16.0, MOST_BOXES as f64) as usize;
     let width = boxes + 1;
+    let relative = |corners: &[DVec3; 3]| corners.map(|corner| corner - light);
     // Of each face, how the number changes from box to box along rows and columns.
-    let mut changes = vec![0_i32; 6 * width * width];
-    for corners in triangles {
-        let corners = corners.map(|corner| corner - center);
-        for (face, change) in changes.chunks_exact_mut(width * width).enumerate() {
-            let (axis, sign) = (face / 2, if face % 2 == 0 { 1.0 } else { -1.0 });
-            let ahead = corners.map(|corner| corner[axis] * sign);
-            if ahead.iter().all(|ahead| *ahead < 0.0) {
-                continue;
-            }
-            let along = |side: usize| {
-                let side = (axis + side) % 3;
-                // What is behind the light, or beside it, may be anywhere on the face.
-                if ahead.iter().any(|ahead| *ahead <= 0.0) {
-                    return Some([0, boxes - 1]);
-                }
-                let places = [0, 1, 2].map(|corner| corners[corner][side] / ahead[corner]);
-                let low = places[0].min(places[1]).min(places[2]) - BESIDE;
-                let high = places[0].max(places[1]).max(places[2]) + BESIDE;
-                let index = |place: f64| ((place + 1.0) / 2.0 * boxes as f64).clamp(0.0, boxes as f64 - 1.0) as usize;
-                // What is no number counts everywhere.
-                let misses = low > 1.0 + BESIDE || high < -1.0 - BESIDE;
-                (!misses).then(|| if low <= high { [index(low), index(high)] } else { [0, boxes - 1] })
-            };
-            let (Some([left, right]), Some([top, bottom])) = (along(1), along(2)) else { continue };
+    let mut changes = vec![0_i32; Face::ALL.len() * width * width];
+    for corners in triangles.iter().map(relative) {
+        for (face, change) in Face::ALL.iter().zip(changes.chunks_exact_mut(width * width)) {
+            let Some([[left, right], [top, bottom]]) = face.touched(&corners, boxes) else { continue };
             change[top * width + left] += 1;
             change[top * width + right + 1] -= 1;
             change[(bottom + 1) * width + left] -= 1;
             change[(bottom + 1) * width + right + 1] += 1;
         }
     }
-    let mut most = 0;
-    for face in changes.chunks_exact(width * width) {
+    let mut full: Vec<(usize, [usize; 2], Vec<[DVec3; 3]>)> = Vec::new();
+    for (face, changes) in changes.chunks_exact(width * width).enumerate() {
         let mut row = vec![0; width];
-        for changes in face.chunks_exact(width) {
+        for (y, changes) in changes.chunks_exact(width).enumerate() {
             let mut sum = 0;
-            for (count, change) in row.iter_mut().zip(changes) {
+            for (x, (count, change)) in row.iter_mut().zip(changes).enumerate() {
                 sum += change;
                 *count += sum;
-                most = most.max(*count);
+                if *count as usize > limit {
+                    full.push((face, [x, y], Vec::new()));
+                }
+            }
+        }
+        if full.len() > MOST_FULL {
+            return None;
+        }
+    }
+    if full.is_empty() {
+        return Some(false);
+    }
+    for corners in triangles.iter().map(relative) {
+        let mut last = None;
+        for (face, [x, y], inner) in &mut full {
+            let touched = match last {
+                Some((of, touched)) if of == *face => touched,
+                _ => Face::ALL[*face].touched(&corners, boxes),
+            };
+            last = Some((*face, touched));
+            if touched
+                .is_some_and(|[[left, right], [top, bottom]]| (left..=right).contains(x) && (top..=bottom).contains(y))
+            {
+                inner.push(corners.map(|corner| Face::ALL[*face].seen(corner)));
             }
         }
     }
-    most as usize
+    let border = |index: usize| index as f64 / boxes as f64 * 2.0 - 1.0;
+    Some(full.iter().any(|(_, [x, y], inner)| {
+        let cell = Cell { low: [border(*x), border(*y)], high: [border(*x + 1), border(*y + 1)] };
+        cell.exceeds(inner, limit, MOST_HALVINGS)
+    }))
 }
 
 /// What rounding may make of a sine of 0: some hundred times more than it does.
@@ -195,7 +249,7 @@ mod tests {
         assert!(may_exceed(&stack, DVec4::new(0.3, 9.0, 0.3, 1.0), 255));
     }
 
-    /// Boxes never say less than there is: beside, around and through a light, and where a triangle spans faces.
+    /// Boxes never miss a triangle: beside, around and through a light, and where one spans faces.
     #[test]
     fn no_box_is_short_of_a_triangle() {
         let mut seed = 7u64;
@@ -205,23 +259,25 @@ mod tests {
         };
         for _ in 0..200 {
             let mut point = || DVec3::new(number(), number(), number());
-            let (center, around) = (point(), point());
-            let triangles: Vec<[DVec3; 3]> =
-                (0..40).map(|_| [around + point() * 0.4, around + point() * 0.4, around]).collect();
-            // Every ray to the common corner meets all of them.
-            assert_eq!(most_in_a_box(&triangles, center), 40);
-            assert!(most_in_a_box(&triangles, around) == 40);
+            let (light, tip) = (point(), point());
+            let triangles: Vec<[DVec3; 3]> = (0..40).map(|_| [tip + point() * 0.4, tip + point() * 0.4, tip]).collect();
+            // The ray to the common corner meets all of them.
+            assert_eq!(exceeds_in_boxes(&triangles, light, 39), Some(true), "{light} {tip}");
+            assert_eq!(exceeds_in_boxes(&triangles, light, 40), Some(false), "{light} {tip}");
+            assert_ne!(exceeds_in_boxes(&triangles, tip, 39), Some(false), "{tip}");
         }
     }
 
+    /// Around a pole, a hundred triangles meet in a point; a ray beside it meets few.
     #[test]
-    fn boxes_tell_that_a_fine_mesh_has_few_layers() {
-        let mesh = shapes::torus(1.0, 0.4, 120, 80).expect("a torus");
+    fn a_full_box_is_divided() {
+        let mesh = shapes::sphere(1.0, 400, 300).expect("a sphere");
         let corners = |t: &[u32; 3]| t.map(|vertex| mesh.positions()[vertex as usize]);
         let triangles: Vec<[DVec3; 3]> = mesh.triangles().iter().map(corners).collect();
-        assert!(most_in_a_box(&triangles, DVec3::new(0.0, 5.0, 1.0)) <= 255);
-        // Through the light itself, anything may be met.
-        assert!(most_in_a_box(&stack(300), DVec3::new(0.0, 1.0, 0.0)) >= 300);
+        for light in [DVec3::new(0.1, 5.0, 1.0), DVec3::new(4.0, 0.3, 0.2)] {
+            assert_eq!(exceeds_in_boxes(&triangles, light, 700), Some(false), "{light}");
+            assert_eq!(exceeds_in_boxes(&triangles, light, 255), Some(true), "{light}: 400 at the pole");
+        }
     }
 
     /// A torus of many triangles has four layers, wherever the light is.
