@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::sync::Arc;
 use stencilscope::ask::{MeshesOf, RunRequest};
-use stencilscope::geometry::{EdgeList, Topology};
+use stencilscope::geometry::{Connectivity, EdgeList, Topology};
 use stencilscope::inspector::Action;
 use stencilscope::reading::ObjectMesh;
 use stencilscope::scene::{Mesh, Projection};
@@ -105,7 +105,10 @@ fn a_setting_says_on_hover_what_it_does() {
 
 fn object(name: &str, mesh: &Mesh) -> ObjectMesh {
     let edges = EdgeList::new(mesh.triangles(), mesh.positions().len());
-    ObjectMesh { object: name.to_owned(), topology: Arc::new(Topology::new(mesh, &edges)) }
+    ObjectMesh {
+        object: name.to_owned(),
+        topology: Arc::new(Topology::new(mesh, Arc::new(Connectivity::new(mesh, &edges)))),
+    }
 }
 
 #[test]

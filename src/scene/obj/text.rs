@@ -8,7 +8,9 @@
 
 use crate::scene::read_text::quoted;
 use glam::Vec2;
+use rayon::prelude::*;
 use std::borrow::Cow;
+use std::fmt::Write;
 
 /// Beyond it, a place in a picture is no number worth having in single precision.
 const MOST_UV: f32 = 1e5;
@@ -38,31 +40,68 @@ pub struct LineProblem {
 /// # Errors
 /// The first broken vertex or normal, else the first broken face.
 pub fn clean(raw: &str) -> Result<CleanText, LineProblem> {
-    let lines = logical_lines(raw);
-    let mut cleaned = CleanText::default();
-    let all = Counts::of(&lines, lines.len());
-    for (number, line) in &lines {
-        let vector = vector_line(line).map_err(|reason| LineProblem { line: *number, reason })?;
-        cleaned.text.extend(vector);
+    let (lines, all) = counted_lines(raw);
+    let vectors: Vec<_> = lines.par_chunks(PART).map(vectors_of).collect();
+    let places: Vec<Option<Vec2>> = lines.iter().filter_map(Line::place).collect();
+    let others: Vec<_> = lines.par_chunks(PART).map(|lines| others_of(lines, all, &places)).collect();
+    // The first error in the file's order, whichever thread was first.
+    let mut cleaned = CleanText { text: vectors.into_iter().collect::<Result<_, _>>()?, ..CleanText::default() };
+    for part in others {
+        let part = part?;
+        cleaned.text.push_str(&part.text);
+        cleaned.has_normals.extend(part.has_normals);
+        cleaned.uvs.extend(part.uvs);
     }
-    let places: Vec<Option<Vec2>> = lines.iter().filter_map(|(_, line)| place_line(line)).collect();
-    let mut before = Counts::default();
-    for (number, line) in &lines {
-        let (keyword, rest) = split_keyword(line);
+    Ok(cleaned)
+}
+
+/// Vertices and normals among some lines.
+fn vectors_of(lines: &[Line]) -> Result<String, LineProblem> {
+    let mut text = String::new();
+    for line in lines {
+        line.add_vector(&mut text).map_err(|reason| LineProblem { line: line.number, reason })?;
+    }
+    Ok(text)
+}
+
+/// All else among them.
+fn others_of(lines: &[Line], all: Counts, places: &[Option<Vec2>]) -> Result<CleanText, LineProblem> {
+    let mut cleaned = CleanText::default();
+    let mut corners = Vec::new();
+    for Line { number, content, before } in lines {
+        let (keyword, rest) = split_keyword(content);
         match keyword {
-            "v" | "vn" | "vt" => before.add(keyword),
             "f" => {
-                cleaned.uvs.push(words(rest).map(|word| place(word, before, &places)).collect());
-                let face = face_line(rest, before, all).map_err(|reason| LineProblem { line: *number, reason })?;
-                cleaned.has_normals.push(face.contains("//"));
-                cleaned.text.push_str(&face);
+                cleaned.uvs.push(words(rest).map(|word| place(word, *before, places)).collect());
+                let has_normals = add_face(&mut cleaned.text, rest, (*before, all), &mut corners);
+                cleaned.has_normals.push(has_normals.map_err(|reason| LineProblem { line: *number, reason })?);
             }
-            "o" | "g" => cleaned.text.push_str(&format!("{keyword} {rest}\n")),
-            "usemtl" | "mtllib" if !rest.is_empty() => cleaned.text.push_str(&format!("{keyword} {rest}\n")),
+            "o" | "g" => push_line(&mut cleaned.text, &[keyword, rest]),
+            "usemtl" | "mtllib" if !rest.is_empty() => push_line(&mut cleaned.text, &[keyword, rest]),
             _ => {}
         }
     }
     Ok(cleaned)
+}
+
+fn push_line(text: &mut String, words: &[&str]) {
+    for (index, word) in words.iter().enumerate() {
+        text.push_str(if index == 0 { "" } else { " " });
+        text.push_str(word);
+    }
+    text.push('\n');
+}
+
+/// Lines that a thread takes at once.
+const PART: usize = 8192;
+
+/// A line, joined with those that it continues on.
+struct Line<'a> {
+    /// Counted from 1.
+    number: usize,
+    content: Cow<'a, str>,
+    /// What stands before it.
+    before: Counts,
 }
 
 /// How many vertices, normals and places in a picture there are.
@@ -74,12 +113,6 @@ struct Counts {
 }
 
 impl Counts {
-    fn of(lines: &[(usize, Cow<str>)], upto: usize) -> Counts {
-        let mut counts = Counts::default();
-        lines[..upto].iter().for_each(|(_, line)| counts.add(split_keyword(line).0));
-        counts
-    }
-
     fn add(&mut self, keyword: &str) {
         match keyword {
             "v" => self.vertices += 1,
@@ -90,9 +123,9 @@ impl Counts {
     }
 }
 
-/// Lines with their numbers; a backslash at the end joins the next one.
-fn logical_lines(raw: &str) -> Vec<(usize, Cow<'_, str>)> {
-    let mut joined: Vec<(usize, Cow<str>)> = Vec::new();
+/// All lines, and how many vertices, normals and places they have; a backslash at the end joins the next one.
+fn counted_lines(raw: &str) -> (Vec<Line<'_>>, Counts) {
+    let mut joined: Vec<Line> = Vec::new();
     let mut continues = false;
     for (index, line) in raw.lines().enumerate() {
         let (content, goes_on) = match line.trim_end().strip_suffix('\\') {
@@ -100,12 +133,17 @@ fn logical_lines(raw: &str) -> Vec<(usize, Cow<'_, str>)> {
             None => (line, false),
         };
         match joined.last_mut().filter(|_| continues) {
-            Some((_, start)) => *start = format!("{start} {content}").into(),
-            None => joined.push((index + 1, content.into())),
+            Some(start) => start.content = format!("{} {content}", start.content).into(),
+            None => joined.push(Line { number: index + 1, content: content.into(), before: Counts::default() }),
         }
         continues = goes_on;
     }
-    joined
+    let mut counts = Counts::default();
+    for line in &mut joined {
+        line.before = counts;
+        counts.add(split_keyword(&line.content).0);
+    }
+    (joined, counts)
 }
 
 fn split_keyword(line: &str) -> (&str, &str) {
@@ -118,36 +156,40 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split_whitespace().take_while(|word| !word.starts_with('#'))
 }
 
-/// A `v` or `vn` line with its three numbers, or `None` for any other line.
-fn vector_line(line: &str) -> Result<Option<String>, String> {
-    let (keyword, rest) = split_keyword(line);
-    let (what, most) = match keyword {
-        "v" => ("vertex", f64::MAX),
-        "vn" => ("normal", f64::from(f32::MAX)),
-        _ => return Ok(None),
-    };
-    let three: Vec<&str> = words(rest).take(3).collect();
-    let [x, y, z] = three[..] else {
-        return Err(format!("a {what} needs three numbers, but this has {}: complete it", three.len()));
-    };
-    for word in [x, y, z] {
-        let number: f64 = word.parse().map_err(|_| format!("{} is not a number: correct it", quoted(word)))?;
-        if !number.is_finite() || number.abs() > most {
-            return Err(format!("{} is not a finite number: replace it", quoted(word)));
+impl Line<'_> {
+    /// Adds a `v` or `vn` line with its three numbers; nothing of any other line.
+    fn add_vector(&self, text: &mut String) -> Result<(), String> {
+        let (keyword, rest) = split_keyword(&self.content);
+        let (what, most) = match keyword {
+            "v" => ("vertex", f64::MAX),
+            "vn" => ("normal", f64::from(f32::MAX)),
+            _ => return Ok(()),
+        };
+        let mut three = words(rest);
+        let [Some(x), Some(y), Some(z)] = [three.next(), three.next(), three.next()] else {
+            let count = words(rest).count();
+            return Err(format!("a {what} needs three numbers, but this has {count}: complete it"));
+        };
+        for word in [x, y, z] {
+            let number: f64 = word.parse().map_err(|_| format!("{} is not a number: correct it", quoted(word)))?;
+            if !number.is_finite() || number.abs() > most {
+                return Err(format!("{} is not a finite number: replace it", quoted(word)));
+            }
         }
+        push_line(text, &[keyword, x, y, z]);
+        Ok(())
     }
-    Ok(Some(format!("{keyword} {x} {y} {z}\n")))
-}
 
-/// The place of a `vt` line: `None` inside where it can't be used, outside for any other line.
-fn place_line(line: &str) -> Option<Option<Vec2>> {
-    let (keyword, rest) = split_keyword(line);
-    (keyword == "vt").then(|| {
-        let mut numbers = words(rest).map(|word| word.parse().ok());
-        // The second is 0 unless given.
-        let place = Vec2::new(numbers.next()??, numbers.next().unwrap_or(Some(0.0))?);
-        is_usable(&place).then_some(place)
-    })
+    /// The place of a `vt` line: `None` inside where it can't be used, outside for any other line.
+    fn place(&self) -> Option<Option<Vec2>> {
+        let (keyword, rest) = split_keyword(&self.content);
+        (keyword == "vt").then(|| {
+            let mut numbers = words(rest).map(|word| word.parse().ok());
+            // The second is 0 unless given.
+            let place = Vec2::new(numbers.next()??, numbers.next().unwrap_or(Some(0.0))?);
+            is_usable(&place).then_some(place)
+        })
+    }
 }
 
 /// Is it a place that single precision tells from others?
@@ -162,30 +204,43 @@ fn place(word: &str, before: Counts, places: &[Option<Vec2>]) -> Option<Vec2> {
     *places.get(index - 1)?
 }
 
-/// A face line with absolute indices, as `v` or, where every corner has a normal, `v//vn`.
-fn face_line(rest: &str, before: Counts, all: Counts) -> Result<String, String> {
-    let corners = words(rest).map(|word| corner(word, before, all)).collect::<Result<Vec<_>, _>>()?;
+/// Vertex and, where it has one, normal of a corner: absolute.
+type Corner = (usize, Option<usize>);
+
+/// Adds a face line with absolute indices, as `v` or, where every corner has a normal, `v//vn`: whether they have. `corners`
+/// is room for them.
+fn add_face(
+    text: &mut String,
+    rest: &str,
+    counts: (Counts, Counts),
+    corners: &mut Vec<Corner>,
+) -> Result<bool, String> {
+    corners.clear();
+    for word in words(rest) {
+        corners.push(corner(word, counts)?);
+    }
     if corners.len() < 3 {
         let count = corners.len();
         return Err(format!("a face needs at least 3 corners, but this has {count}: complete it or delete the line"));
     }
     let all_have_normals = corners.iter().all(|(_, normal)| normal.is_some());
-    let mut line = "f".to_owned();
+    text.push('f');
     for (vertex, normal) in corners {
-        line += &match normal.filter(|_| all_have_normals) {
-            Some(normal) => format!(" {vertex}//{normal}"),
-            None => format!(" {vertex}"),
+        // Writing to a string can't fail.
+        let _ = match normal.filter(|_| all_have_normals) {
+            Some(normal) => write!(text, " {vertex}//{normal}"),
+            None => write!(text, " {vertex}"),
         };
     }
-    Ok(line + "\n")
+    text.push('\n');
+    Ok(all_have_normals)
 }
 
 /// Vertex and normal of a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-fn corner(word: &str, before: Counts, all: Counts) -> Result<(usize, Option<usize>), String> {
-    let parts: Vec<&str> = word.split('/').collect();
-    let (vertex, normal) = match parts[..] {
-        [vertex] | [vertex, _] => (vertex, ""),
-        [vertex, _, normal] => (vertex, normal),
+fn corner(word: &str, (before, all): (Counts, Counts)) -> Result<Corner, String> {
+    let mut parts = word.split('/');
+    let (vertex, normal) = match [parts.next(), parts.next(), parts.next(), parts.next()] {
+        [Some(vertex), _, normal, None] => (vertex, normal.unwrap_or_default()),
         _ => return Err(format!("{} is no corner: write v, v/vt, v//vn or v/vt/vn", quoted(word))),
     };
     let vertex = index("vertex", "vertices", vertex, before.vertices, all.vertices)?;
