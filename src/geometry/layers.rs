@@ -4,6 +4,9 @@
 //! that is small still is. A cell is the cone between four planes through the light. A triangle that one
 //! of them has outside is not in it, nor is one that has the whole cell beyond the plane through the light
 //! and one of its edges; all others are taken to be in it. So the answer errs to the safe side.
+//!
+//! Around a lamp, many small cells (boxes) are counted first, with one look at each triangle: that settles most meshes, and
+//! only full boxes are divided.
 
 use crate::math::AxisBox;
 use glam::{DVec3, DVec4};
@@ -96,7 +99,7 @@ impl Face {
 /// that may reach into it are counted, with one look at each triangle; only full boxes are divided further. `None` where
 /// they are many.
 fn exceeds_in_boxes(triangles: &[[DVec3; 3]], light: DVec3, limit: usize) -> Option<bool> {
-    let boxes = (triangles.len() as f64).sqrt().clamp(16.0, MOST_BOXES as f64) as usize;
+    let boxes = (2.0 * (triangles.len() as f64).sqrt()).clamp(16.0, MOST_BOXES as f64) as usize;
     let width = boxes + 1;
     let relative = |corners: &[DVec3; 3]| corners.map(|corner| corner - light);
     // Of each face, how the number changes from box to box along rows and columns.
