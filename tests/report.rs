@@ -160,6 +160,7 @@ fn frames_that_move_are_counted_with_their_set_up() {
     assert!(light.0 && eye.0, "{light:?} {eye:?}");
     assert!(light.2 != 3 * of_first[1] && eye.1 != 3 * of_first[0] && light != eye, "{light:?} {eye:?}");
     assert_fails(&["report", "tetrahedron", "--time", "0..1", "--moves", "lihgt"], 2, &["light"]);
+    assert_fails(&["report", "tetrahedron", "--moves", "light"], 2, &["--time A..B"]);
     let table = run(folder.path(), &[&words[..8], &["--time", "0..1:2"]].concat());
     let table = text(&table.stdout);
     assert!(table.contains("+ set-up") && table.contains("total") && table.contains("fps"), "{table}");

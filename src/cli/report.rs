@@ -69,6 +69,9 @@ pub fn run(arguments: &ReportArguments, command: &str) -> Result<(), CliError> {
     if let Some(Merge::Merge(arguments)) = &arguments.merge {
         return merge::run(arguments, command);
     }
+    if arguments.moves != Moves::Scene && arguments.moments().is_none() {
+        return Err(CliError::Usage("`--moves` is for frames from a moment to another: add `--time A..B`".to_owned()));
+    }
     let choices = choices(arguments)?;
     let open = |name: &String| match arguments.moments() {
         Some(_) => arguments.scene_options.load(name),

@@ -14,7 +14,10 @@ use std::sync::Arc;
 
 /// Triangles kept at once (about 60 bytes each, and as much again for each pose); a scene of more starts over with
 /// each mesh.
-const MOST_TRIANGLES_KEPT: usize = 1_000_000;
+const MOST_TRIANGLES_KEPT: usize = 2_000_000;
+
+/// Places of meshes that something short is known about.
+const MOST_PLACES_KEPT: usize = 16_384;
 
 /// Flattened triangles kept at once, of 96 bytes each; beyond, they are made anew for each plan.
 const MOST_FLATTENED_KEPT: usize = 500_000;
@@ -193,10 +196,18 @@ impl GeometryCache {
     /// # Errors
     /// What speaks against it, or is not proven.
     pub fn light_facing_suffices(&mut self, caster: Caster, light: DVec4) -> Result<(), String> {
-        let (mesh, connectivity) = (caster.mesh, self.connectivity(caster.mesh));
+        let mesh = caster.mesh;
         let key = (mesh.content_hash(), pose_bits(caster.pose));
-        let check = || solid::check(caster.world, mesh.triangles(), &connectivity);
-        self.solids.entry(key).or_insert_with(check).clone().map_err(|doubt| doubt.to_string())?;
+        let known = match self.solids.get(&key) {
+            Some(known) => known.clone(),
+            None => {
+                let connectivity = self.connectivity(mesh);
+                let known = solid::check(caster.world, mesh.triangles(), &connectivity);
+                insert_among(&mut self.solids, key, known.clone());
+                known
+            }
+        };
+        known.map_err(|doubt| doubt.to_string())?;
         if has_edge_on(caster, light) {
             return Err("some triangle is edge-on to it, as far as single precision can tell".to_owned());
         }
@@ -213,7 +224,7 @@ impl GeometryCache {
             return *known;
         }
         let found = find_out();
-        self.doubled.insert(key, found);
+        insert_among(&mut self.doubled, key, found);
         found
     }
 
@@ -224,11 +235,17 @@ impl GeometryCache {
             self.planes.clear();
             self.connectivities.clear();
             self.topologies.clear();
-            self.solids.clear();
-            self.doubled.clear();
             self.triangles_kept = mesh.triangles().len();
         }
     }
+}
+
+/// Adds what was found out about a mesh at a place, which takes long to find out and little room.
+fn insert_among<T>(known: &mut HashMap<(u64, PoseBits), T>, key: (u64, PoseBits), found: T) {
+    if known.len() >= MOST_PLACES_KEPT {
+        known.clear();
+    }
+    known.insert(key, found);
 }
 
 fn pose_bits(pose: &Pose) -> PoseBits {

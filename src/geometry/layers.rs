@@ -30,10 +30,9 @@ pub fn may_exceed(triangles: &[[DVec3; 3]], light: DVec4, limit: usize) -> bool 
             let side = DVec3::new(ahead.y.abs(), ahead.z.abs(), ahead.x.abs());
             let axes = [side, ahead.cross(side), ahead];
             let along = |corner: DVec3| DVec3::from_array(axes.map(|axis| axis.dot(corner - light)));
-            let cell = Cell { low: [-1.0; 2], high: [1.0; 2] };
             let relative = triangles.iter().map(|corners| corners.map(along));
-            let inner: Vec<_> = relative.filter(|corners| cell.may_hold(corners)).collect();
-            cell.exceeds(&inner, limit, MOST_HALVINGS)
+            let inner: Vec<_> = relative.filter(|corners| Cell::FACE.may_hold(corners)).collect();
+            Cell::FACE.exceeds(&inner, limit, MOST_HALVINGS)
         });
     }
     let towards = light.truncate().normalize_or_zero();
@@ -49,6 +48,8 @@ pub fn may_exceed(triangles: &[[DVec3; 3]], light: DVec4, limit: usize) -> bool 
 const MOST_BOXES: usize = 1024;
 /// Full boxes that are looked into one by one; of more, all directions are divided.
 const MOST_FULL: usize = 256;
+/// Triangles in them together that are always looked at, some 70 bytes each.
+const MOST_IN_FULL: usize = 1 << 16;
 /// More than rounding moves a place on a face by, in parts of its half.
 const BESIDE: f64 = 1e-9;
 
@@ -83,6 +84,9 @@ impl Face {
             return None;
         }
         let is_ahead = a.z.min(b.z).min(c.z) > 0.0;
+        if !is_ahead && !Cell::FACE.may_hold(&[a, b, c]) {
+            return None;
+        }
         let along = |side: usize| {
             let [a, b, c] = [a, b, c].map(|corner| corner[side] / corner.z);
             let (low, high) = (a.min(b).min(c) - BESIDE, a.max(b).max(c) + BESIDE);
@@ -114,6 +118,7 @@ fn exceeds_in_boxes(triangles: &[[DVec3; 3]], light: DVec3, limit: usize) -> Opt
         }
     }
     let mut full: Vec<(usize, [usize; 2], Vec<[DVec3; 3]>)> = Vec::new();
+    let mut in_full = 0;
     for (face, changes) in changes.chunks_exact(width * width).enumerate() {
         let mut row = vec![0; width];
         for (y, changes) in changes.chunks_exact(width).enumerate() {
@@ -122,12 +127,13 @@ fn exceeds_in_boxes(triangles: &[[DVec3; 3]], light: DVec3, limit: usize) -> Opt
                 sum += change;
                 *count += sum;
                 if *count as usize > limit {
+                    in_full += *count as usize;
+                    if full.len() >= MOST_FULL || in_full > MOST_IN_FULL.max(2 * triangles.len()) {
+                        return None;
+                    }
                     full.push((face, [x, y], Vec::new()));
                 }
             }
-        }
-        if full.len() > MOST_FULL {
-            return None;
         }
     }
     if full.is_empty() {
@@ -166,6 +172,9 @@ struct Cell {
 }
 
 impl Cell {
+    /// A face of the cube around a light.
+    const FACE: Cell = Cell { low: [-1.0 - BESIDE; 2], high: [1.0 + BESIDE; 2] };
+
     fn exceeds(&self, triangles: &[[DVec3; 3]], limit: usize, halvings: u32) -> bool {
         if triangles.len() <= limit {
             return false;

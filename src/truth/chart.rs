@@ -27,7 +27,7 @@ const PADDING: f64 = 1e-7;
 /// The same for points in single precision.
 const COARSE_PADDING: f64 = 1e-6;
 /// A line that is farther along an axis crosses that face, or one whose triangles are found on this face too.
-const FACE_SURE: f32 = 1.0 - 4e-6;
+const FACE_SURE: f32 = 1.0 - 4.0 * f32::EPSILON;
 /// A triangle whose plane is nearer to the centre than this part of its size may lie anywhere.
 pub const NEAREST: f64 = 1e-7;
 /// Faces reach this far over their borders: a line on a border is found on either face.

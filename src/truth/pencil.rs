@@ -335,13 +335,15 @@ fn largest_span(of: [DVec3; 3]) -> f64 {
 
 /// The exact side of a triangle that a centre is on, and whether it is so near to the triangle's plane that the triangle may be seen
 /// anywhere around it. `None` where it is in the plane.
-fn side_of(center: DVec4, corners: &[DVec3; 3]) -> Option<(Sign, bool)> {
-    let [a, b, c] = corners.map(|corner| corner - center.truncate());
-    let normal = (b - a).cross(c - a);
+pub(super) fn side_of(center: DVec4, corners: &[DVec3; 3]) -> Option<(Sign, bool)> {
+    // Edges of the corners as they are: what they are relative to a far centre is rounded by more than an edge's own units.
+    let [u, v] = [corners[1] - corners[0], corners[2] - corners[0]];
+    let normal = u.cross(v);
     let span = |vector: DVec3| vector.abs().element_sum();
-    let edge = span(b - a).max(span(c - a));
-    let height = normal.dot(a);
-    if height.abs() > largest_span([a, b, c]) * (NEAREST * span(normal) + ROUNDING * edge * edge) && center.w != 0.0 {
+    let edge = span(u).max(span(v));
+    let relative = corners.map(|corner| corner - center.truncate());
+    let height = normal.dot(relative[0]);
+    if height.abs() > largest_span(relative) * (NEAREST * span(normal) + ROUNDING * edge * edge) && center.w != 0.0 {
         return Some((if height < 0.0 { Sign::Positive } else { Sign::Negative }, false));
     }
     let side = side_of_triangle(*corners, center);

@@ -1,7 +1,7 @@
 //! Lines and triangles: watertight at edges and vertices, and complete against brute force.
 
 use super::chart::Line;
-use super::pencil::{Bundle, Pencil, Settled, Whose};
+use super::pencil::{Bundle, Pencil, Settled, Whose, side_of};
 use super::tree::set_bits;
 use crate::math::side_of_triangle;
 use glam::{DVec3, DVec4};
@@ -215,4 +215,34 @@ fn is_on_an_edge(corners: [DVec3; 3], center: DVec4, line: Line) -> bool {
         Line::To(point) | Line::Through(point) => side(&[center.truncate(), p, q], point.extend(1.0)) == 0,
         Line::Along(direction) => side(&[center.truncate(), p, q], direction.extend(0.0)) == 0,
     })
+}
+
+/// A lamp as far off as a sun, all but in a small triangle's plane: no rounding may turn the side it is on.
+#[test]
+fn the_side_of_a_far_center_is_exact() {
+    let mut seed = 11u64;
+    let mut number = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 40) as f64 / f64::from(1 << 23) - 1.0
+    };
+    let mut quick = 0;
+    for (distance, edge) in [(1e7, 1e-3), (1e8, 1e-3), (1e9, 1e-2)] {
+        for _ in 0..2000 {
+            let mut point = |size: f64| DVec3::new(number(), number(), number()) * size;
+            let (corner, along, across) = (point(1.0), point(edge), point(edge));
+            let tilt = 10f64.powf(4.0 * point(1.0).x - 5.0);
+            let towards = (along + across * point(1.0).y).normalize() + along.cross(across).normalize() * tilt;
+            let corners = [corner, corner + along, corner + across];
+            let center = (corner + towards * distance).extend(1.0);
+            let exact = side_of_triangle(corners, center);
+            let told = side_of(center, &corners);
+            assert_eq!(
+                told.map(|(side, _)| side),
+                Some(exact).filter(|side| side.value() != 0),
+                "{corners:?} {center}"
+            );
+            quick += usize::from(told.is_some_and(|(_, is_near)| !is_near));
+        }
+    }
+    assert!(quick > 1000, "{quick}");
 }

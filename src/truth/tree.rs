@@ -123,8 +123,9 @@ impl Node {
         let mut node = Node { low: [Vec4::INFINITY; 2], high: [Vec4::NEG_INFINITY; 2], depth: Vec4::INFINITY, first };
         for (lane, area) in areas.enumerate() {
             for axis in 0..2 {
-                node.low[axis][lane] = area.low[axis];
-                node.high[axis][lane] = area.high[axis];
+                // What has overflown is still met, and an empty lane never is.
+                node.low[axis][lane] = area.low[axis].min(f32::MAX);
+                node.high[axis][lane] = area.high[axis].max(-f32::MAX);
             }
             node.depth[lane] = area.depth;
         }

@@ -133,7 +133,11 @@ fn counted_lines(raw: &str) -> (Vec<Line<'_>>, Counts) {
             None => (line, false),
         };
         match joined.last_mut().filter(|_| continues) {
-            Some(start) => start.content = format!("{} {content}", start.content).into(),
+            Some(start) => {
+                let joined = start.content.to_mut();
+                joined.push(' ');
+                joined.push_str(content);
+            }
             None => joined.push(Line { number: index + 1, content: content.into(), before: Counts::default() }),
         }
         continues = goes_on;

@@ -15,6 +15,9 @@ use std::hash::BuildHasher;
 /// Objects of more triangles are looked at pair by pair.
 const MOST_OF_SMALL: usize = 256;
 
+/// How often each triangle may be looked at in pairs of objects; where they are more, all are held against each other.
+const MOST_LOOKS: usize = 4;
+
 /// A triangle's corners, in an order that does not depend on where it begins or which way it runs.
 type Key = [[u64; 3]; 3];
 
@@ -37,14 +40,27 @@ pub(super) fn coincide(placed: &[Placed], cache: &mut GeometryCache) -> bool {
         }
     }
     let boxes: Vec<AxisBox> = drawn.iter().map(|placed| AxisBox::around(placed.world.iter().copied())).collect();
-    (0..drawn.len()).filter(|one| !is_small(drawn[*one])).any(|one| {
+    let mut pairs = Vec::new();
+    let mut work = 0;
+    let count = |index: usize| drawn[index].object.mesh.triangles().len();
+    let most_work = MOST_LOOKS * (0..drawn.len()).map(count).sum::<usize>();
+    for one in (0..drawn.len()).filter(|one| !is_small(drawn[*one])) {
         // Two large ones are one pair.
-        let others = (0..drawn.len()).filter(|other| is_small(drawn[*other]) || *other > one);
-        others.into_iter().any(|other| {
+        for other in (0..drawn.len()).filter(|other| is_small(drawn[*other]) || *other > one) {
             let shared = boxes[one].common(boxes[other]);
-            let keys: Keys = keys_within(drawn[other], shared).collect();
-            !keys.is_empty() && keys_within(drawn[one], shared).any(|key| keys.contains(&key))
-        })
+            if shared.low.cmple(shared.high).all() {
+                work += count(other);
+                pairs.push(([one, other], shared));
+            }
+        }
+        if work > most_work {
+            let mut keys = Keys::default();
+            return drawn.iter().any(|placed| has_doubles(placed, &mut keys));
+        }
+    }
+    pairs.into_iter().any(|([one, other], shared)| {
+        let keys: Keys = keys_within(drawn[other], shared).collect();
+        !keys.is_empty() && keys_within(drawn[one], shared).any(|key| keys.contains(&key))
     })
 }
 
